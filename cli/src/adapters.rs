@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 use htex_device::{
     AdapterKind, Descriptor, Known, Origin, Profile, Registry, Search, Setting, SettingKind,
 };
+use htex_device_check::Subject;
 use htex_finding::plain;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
-use crate::output::tamed;
+use crate::output::{tamed, warn};
 
 /// The places of a search: named files and folders, then those of the environment and of the user.
 pub(crate) fn search(files: &[PathBuf], dirs: &[PathBuf]) -> Search {
@@ -35,12 +36,31 @@ pub(crate) fn named<A: AdapterKind + ?Sized>(
 ) -> Result<Known<A>, Failure> {
     let file = Path::new(name);
     if file.is_file() {
-        return Ok(Known {
-            adapter: A::load(file)?,
-            origin: Origin::Library(file.to_owned()),
-        });
+        return Ok(Known::load(file)?);
     }
     Ok(known()?.find(name)?.clone())
+}
+
+/// As [`named`], for a checker, which loads a library itself.
+pub(crate) fn subject<A: AdapterKind + ?Sized>(
+    name: &str,
+    known: impl FnOnce() -> Result<Registry<A>, Failure>,
+) -> Result<Subject<A>, Failure> {
+    if Path::new(name).is_file() {
+        return Ok(Subject::Library(name.into()));
+    }
+    let known = known()?.find(name)?.clone();
+    Ok(match known.origin {
+        Origin::Library(path) => Subject::Library(path),
+        Origin::Builtin => Subject::Builtin(known.adapter),
+    })
+}
+
+/// Reports the notes of a search on standard error.
+pub(crate) fn reported<A: AdapterKind + ?Sized>(found: Registry<A>) -> Registry<A> {
+    let notes: Vec<String> = found.notes().iter().map(ToString::to_string).collect();
+    warn(&notes);
+    found
 }
 
 /// An adapter and what is connected. A missing driver is reported beside the adapter and is not an error.

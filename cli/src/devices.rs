@@ -3,16 +3,15 @@
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
-use htex_device::{Adapter, DeviceError, Devices, KnownDevice, Origin, Settings};
+use htex_device::{Adapter, DeviceError, Devices, KnownDevice, Settings};
 use htex_device_builtin::Optional;
 use htex_device_check::Subject;
 
 use crate::adapters;
 use crate::failure::Failure;
-use crate::output::warn;
 
 /// How to have a device or source that is left out.
 pub(crate) fn built_with(left_out: &Optional) -> String {
@@ -52,10 +51,7 @@ pub(crate) struct DeviceArgs {
 impl DeviceArgs {
     /// The devices that are found; those that shadow others are reported on standard error.
     pub(crate) fn devices(&self) -> Result<Devices, Failure> {
-        let devices = self.devices_quietly()?;
-        let notes: Vec<String> = devices.notes().iter().map(ToString::to_string).collect();
-        warn(&notes);
-        Ok(devices)
+        Ok(adapters::reported(self.devices_quietly()?))
     }
 
     /// As [`Self::devices`], without reports.
@@ -82,14 +78,7 @@ impl DeviceArgs {
 
     /// As [`Self::named`], for a checker, which loads a library itself.
     pub(crate) fn subject(&self, name: &str) -> Result<Subject, Failure> {
-        if Path::new(name).is_file() {
-            return Ok(Subject::Library(name.into()));
-        }
-        let known = self.devices_quietly()?.find(name)?.clone();
-        Ok(match known.origin {
-            Origin::Library(path) => Subject::Library(path),
-            Origin::Builtin => Subject::Builtin(known.adapter),
-        })
+        adapters::subject(name, || self.devices_quietly())
     }
 
     /// These arguments, for another run of this program.

@@ -2,6 +2,7 @@
 //! Python package call it.
 #![forbid(unsafe_code)]
 
+mod adapter_checks;
 mod adapters;
 mod assets;
 mod bounded;

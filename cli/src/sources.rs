@@ -3,20 +3,19 @@
 #[cfg(feature = "lab")]
 use std::collections::BTreeMap;
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
 #[cfg(feature = "lab")]
 use htex_device::Source;
-use htex_device::{KnownSource, Origin, SourceAdapter, Sources};
-use htex_device_check::source::Subject;
+use htex_device::{KnownSource, SourceAdapter, Sources};
+use htex_device_check::Subject;
 use serde_json::Value;
 
 use crate::adapters;
 use crate::devices::left_out;
 use crate::failure::Failure;
-use crate::output::warn;
 
 /// The sources of this program, in the order in which they are shown: recordings, and those that are built in.
 fn builtin() -> Vec<Arc<dyn SourceAdapter>> {
@@ -47,10 +46,7 @@ pub(crate) struct SourceArgs {
 impl SourceArgs {
     /// The sources that are found; those that shadow others are reported on standard error.
     pub(crate) fn sources(&self) -> Result<Sources, Failure> {
-        let sources = self.sources_quietly()?;
-        let notes: Vec<String> = sources.notes().iter().map(ToString::to_string).collect();
-        warn(&notes);
-        Ok(sources)
+        Ok(adapters::reported(self.sources_quietly()?))
     }
 
     /// As [`Self::sources`], without reports.
@@ -78,15 +74,8 @@ impl SourceArgs {
     }
 
     /// As [`Self::named`], for a checker, which loads a library itself.
-    pub(crate) fn subject(&self, name: &str) -> Result<Subject, Failure> {
-        if Path::new(name).is_file() {
-            return Ok(Subject::Library(name.into()));
-        }
-        let known = self.sources_quietly()?.find(name)?.clone();
-        Ok(match known.origin {
-            Origin::Library(path) => Subject::Library(path),
-            Origin::Builtin => Subject::Builtin(known.adapter),
-        })
+    pub(crate) fn subject(&self, name: &str) -> Result<Subject<dyn SourceAdapter>, Failure> {
+        adapters::subject(name, || self.sources_quietly())
     }
 
     /// These arguments, for another run of this program.

@@ -1,20 +1,29 @@
-//! Reports of the checks of a device.
+//! Reports of the checks of a device or a source.
 
 use std::fmt::{self, Display};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-pub type Report = htex_check_runner::Report<DeviceName>;
+/// All checks of one device or source.
+pub type Report = htex_check_runner::Report<AdapterName>;
 
-/// The device that was checked.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DeviceName {
+/// The device or source that was checked. In JSON its key is its kind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AdapterName {
+    /// `device` or `source`.
+    pub kind: &'static str,
     /// A file or an id.
-    pub device: String,
+    pub name: String,
 }
 
-impl Display for DeviceName {
+impl Serialize for AdapterName {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map([(self.kind, &self.name)])
+    }
+}
+
+impl Display for AdapterName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.device)
+        f.write_str(&self.name)
     }
 }

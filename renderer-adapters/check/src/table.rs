@@ -1,7 +1,7 @@
 //! The table of checks.
 
-use crate::case::Case;
 use crate::checks::{describe, end, limit, open, write};
+use crate::device::Case;
 
 htex_check_runner::checks! { Case;
     "marker" needs [] describe::loaded:

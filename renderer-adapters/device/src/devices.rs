@@ -1,8 +1,8 @@
 //! The devices that a program finds.
 
-use std::path::Path;
 use std::sync::Arc;
 
+use crate::abi::DeviceTable;
 use crate::registry::{AdapterKind, Known, Registry};
 use crate::{Adapter, Descriptor, DeviceError, Endpoint, NativeAdapter};
 
@@ -12,6 +12,7 @@ pub type Devices = Registry<dyn Adapter>;
 pub type KnownDevice = Known<dyn Adapter>;
 
 impl AdapterKind for dyn Adapter {
+    type Table = DeviceTable;
     const WORD: &'static str = "device";
     const VARIABLE: &'static str = "HTEX_DEVICE_PATH";
     const FOLDER: &'static str = "htex/devices";
@@ -24,8 +25,8 @@ impl AdapterKind for dyn Adapter {
         self.endpoints()
     }
 
-    fn load(path: &Path) -> Result<Arc<Self>, DeviceError> {
-        Ok(Arc::new(NativeAdapter::load(path)?))
+    fn of_native(native: NativeAdapter) -> Arc<Self> {
+        Arc::new(native)
     }
 
     fn unknown(wanted: String, known: String) -> DeviceError {

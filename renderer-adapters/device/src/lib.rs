@@ -28,6 +28,7 @@ mod export;
 mod exported;
 mod handles;
 mod library;
+mod loaded;
 mod native;
 mod registry;
 #[cfg(feature = "schemars")]
@@ -43,6 +44,7 @@ pub use descriptor::{
 };
 pub use devices::{Devices, KnownDevice};
 pub use error::{AbiFault, DeviceError};
+pub use loaded::Native;
 pub use native::{NativeAdapter, NativeDevice};
 pub use registry::{AdapterKind, Known, Note, Origin, Registry, Search};
 #[cfg(feature = "schemars")]

@@ -5,22 +5,25 @@
 
 use std::path::Path;
 
+use htex_native::Symbols;
 use serde::de::DeserializeOwned;
 
 use crate::abi::{
-    AbiVersion, DescriptorJson, EndpointsJson, ExtensionFn, LastError, MAX_TEXT_BYTES,
+    AbiVersion, CloseFn, DescriptorJson, EndpointsJson, ExtensionFn, LastError, MAX_TEXT_BYTES,
 };
-use crate::{AbiFault, DescriptorError, DeviceError, Endpoint};
+use crate::{AbiFault, Descriptor, DescriptorError, DeviceError, Endpoint};
 
 /// Size of the buffer for a text at the first call, bytes.
 const USUAL_TEXT: usize = 16_384;
 /// Most calls for a text whose length changes in between.
 const TRIES: usize = 8;
 
-/// The functions of an ABI, of devices or of sources.
-pub(crate) trait Table: Sized + 'static {
+/// The functions of an ABI, of devices or of sources; only those of this crate implement it.
+pub trait Table: Copy + 'static {
     /// Negative results.
     type Code;
+    /// The description of an adapter.
+    type About: Clone + DeserializeOwned;
     /// `device` or `source`.
     const KIND: &'static str;
     /// The marker of this host's version.
@@ -32,10 +35,16 @@ pub(crate) trait Table: Sized + 'static {
     ///
     /// # Safety
     /// The library's functions have the types of the ABI.
-    unsafe fn of_symbols(symbols: &Symbols<'_>) -> Result<Self, DeviceError>;
+    unsafe fn of_symbols(symbols: &Symbols<'_, DeviceError>) -> Result<Self, DeviceError>;
 
     /// The functions that both ABIs have.
     fn common(&self) -> Common;
+
+    /// Checks what a library says of its adapter.
+    fn check(about: &Self::About) -> Result<(), DescriptorError>;
+
+    /// What an adapter of devices and one of sources share.
+    fn descriptor_of(about: &Self::About) -> &Descriptor;
 
     /// The code of a number that crossed the ABI.
     fn code(answer: i64) -> Self::Code;
@@ -46,51 +55,20 @@ pub(crate) trait Table: Sized + 'static {
 
 /// The functions that both ABIs have.
 #[derive(Clone, Copy)]
-pub(crate) struct Common {
+pub struct Common {
     pub(crate) abi_version: AbiVersion,
     pub(crate) descriptor: DescriptorJson,
     pub(crate) last_error: LastError,
     pub(crate) endpoints: EndpointsJson,
+    pub(crate) close: CloseFn,
     pub(crate) extension: ExtensionFn,
 }
 
-pub(crate) struct Symbols<'a> {
-    library: htex_native::Library,
-    name: &'a str,
-    kind: &'static str,
-}
-
-impl Symbols<'_> {
-    /// The address of a symbol.
-    ///
-    /// # Safety
-    /// The symbol has the type `T`.
-    pub(crate) unsafe fn get<T: Copy>(&self, symbol: &'static str) -> Result<T, DeviceError> {
-        // SAFETY: the caller's promise.
-        let found = unsafe { self.library.symbol(symbol) };
-        found.ok_or_else(|| DeviceError::Abi {
-            library: self.name.to_owned(),
-            fault: AbiFault::Symbol {
-                symbol,
-                kind: self.kind,
-            },
-        })
-    }
-}
-
 /// A library's name and its functions.
+#[derive(Clone)]
 pub(crate) struct Library<T: 'static> {
     pub(crate) name: String,
     pub(crate) table: &'static T,
-}
-
-impl<T> Clone for Library<T> {
-    fn clone(&self) -> Self {
-        Self {
-            name: self.name.clone(),
-            table: self.table,
-        }
-    }
 }
 
 /// The failure of a call.
@@ -112,10 +90,10 @@ impl<T: Table> Library<T> {
         // SAFETY: running a library's initialisers is what the user asked for by naming it.
         let library = unsafe { htex_native::Library::from_file(path) };
         let library = library.map_err(|e| error(AbiFault::NotLoaded(e.to_string())))?;
+        let kind = T::KIND;
         let symbols = Symbols {
             library,
-            name: &name,
-            kind: T::KIND,
+            missing: &|symbol| error(AbiFault::Symbol { symbol, kind }),
         };
         // SAFETY: the marker comes first, and says that the other symbols have the types of the ABI.
         let abi_version: AbiVersion = unsafe { symbols.get(T::ABI_VERSION)? };
@@ -137,20 +115,17 @@ impl<T: Table> Library<T> {
         Ok(library)
     }
 
-    /// The descriptor, checked.
-    pub(crate) fn descriptor<D: DeserializeOwned>(
-        &self,
-        check: impl FnOnce(&D) -> Result<(), DescriptorError>,
-    ) -> Result<D, DeviceError> {
+    /// What the library says of its adapter, checked.
+    pub(crate) fn about(&self) -> Result<T::About, DeviceError> {
         let wrong = |what: String| self.error(AbiFault::Descriptor(what));
         // SAFETY: the buffer is live and of this length, by `Self::text`.
         let json = self.text(|out, len| unsafe { (self.table.common().descriptor)(out, len) });
         let json = json.map_err(|trouble| match trouble {
             Trouble::Told(_, text) | Trouble::Broken(text) => wrong(text),
         })?;
-        let descriptor: D = serde_json::from_str(&json).map_err(|e| wrong(e.to_string()))?;
-        check(&descriptor).map_err(|error| wrong(error.to_string()))?;
-        Ok(descriptor)
+        let about = serde_json::from_str(&json).map_err(|e| wrong(e.to_string()))?;
+        T::check(&about).map_err(|error| wrong(error.to_string()))?;
+        Ok(about)
     }
 
     /// What is connected.

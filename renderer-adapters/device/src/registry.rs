@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use htex_native::folders::{data, libraries_in, listed};
 
+use crate::library::Table;
+use crate::loaded::Native;
 use crate::{Descriptor, DeviceError, Endpoint};
 
 /// Where native libraries of devices or of sources are searched. Earlier places take precedence over later ones:
@@ -55,6 +57,8 @@ impl std::fmt::Display for Origin {
 
 /// A kind of adapter: of devices or of sources.
 pub trait AdapterKind: Send + Sync + 'static {
+    /// The C functions of a native library of this kind.
+    type Table: Table;
     /// `device` or `source`.
     const WORD: &'static str;
     /// The environment variable with folders of libraries, separated as in `PATH`.
@@ -72,10 +76,7 @@ pub trait AdapterKind: Send + Sync + 'static {
     fn connected(&self) -> Result<Vec<Endpoint>, DeviceError>;
 
     /// The adapter of a native library.
-    ///
-    /// # Errors
-    /// When the file is not a library of this kind.
-    fn load(path: &Path) -> Result<Arc<Self>, DeviceError>;
+    fn of_native(native: Native<Self::Table>) -> Arc<Self>;
 
     /// The error that there is no adapter of the name `wanted`.
     fn unknown(wanted: String, known: String) -> DeviceError;
@@ -90,6 +91,17 @@ pub struct Known<A: ?Sized> {
 }
 
 impl<A: AdapterKind + ?Sized> Known<A> {
+    /// The adapter of a native library, which runs with all rights of this program.
+    ///
+    /// # Errors
+    /// When the file is not a library of this kind.
+    pub fn load(path: &Path) -> Result<Self, DeviceError> {
+        Ok(Self {
+            adapter: A::of_native(Native::load(path)?),
+            origin: Origin::Library(path.to_owned()),
+        })
+    }
+
     /// Name, version, settings and profiles.
     pub fn descriptor(&self) -> &Descriptor {
         self.adapter.about()
@@ -274,9 +286,7 @@ impl<A: AdapterKind + ?Sized> Registry<A> {
     }
 
     fn add_file(&mut self, path: &Path) -> Result<(), DeviceError> {
-        let adapter = A::load(path)?;
-        let origin = Origin::Library(path.to_owned());
-        self.add(Known { adapter, origin });
+        self.add(Known::load(path)?);
         Ok(())
     }
 

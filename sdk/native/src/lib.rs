@@ -66,6 +66,35 @@ impl Library {
     }
 }
 
+/// The functions that a library must have; `missing` makes the error of one that it lacks.
+pub struct Symbols<'a, E> {
+    pub library: Library,
+    pub missing: &'a dyn Fn(&'static str) -> E,
+}
+
+impl<E> Symbols<'_, E> {
+    /// Returns the function of this name.
+    ///
+    /// # Safety
+    /// The symbol has the type `T`.
+    ///
+    /// # Errors
+    /// When the library does not have it.
+    pub unsafe fn get<T: Copy>(&self, name: &'static str) -> Result<T, E> {
+        // SAFETY: guaranteed by the caller.
+        unsafe { self.library.symbol(name) }.ok_or_else(|| (self.missing)(name))
+    }
+}
+
+/// Makes a table of a library's functions of [`Symbols`]: the name of each is the prefix and its field's name. Unsafe, since
+/// each symbol must have the type of its field; an error ends the function around it.
+#[macro_export]
+macro_rules! table_of_symbols {
+    ($symbols:expr, $table:ident, $prefix:literal, $($field:ident)*) => {
+        $table { $($field: $symbols.get(concat!($prefix, stringify!($field)))?),* }
+    };
+}
+
 /// # Safety
 /// The symbol has the type `T`.
 #[cfg(any(unix, windows))]

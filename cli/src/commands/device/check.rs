@@ -1,12 +1,11 @@
 use clap::Args;
-use htex_device_check::{Finding, Runner, check, run_one};
+use htex_device::Adapter;
 
+use crate::adapter_checks::Checked;
 use crate::checking::CheckArgs;
 use crate::devices::{DeviceArgs, SettingArgs};
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::hints::with_quoted;
-use crate::output::print_json;
 
 /// Check that a device keeps every promise of the device ABI; exit status 1 if it does not.
 ///
@@ -45,41 +44,24 @@ struct Which {
 }
 
 impl Which {
-    fn run_one(&self, name: &str) -> Result<Finding, Failure> {
-        let subject = self.devices.subject(&self.device)?;
-        let given = self.settings.given()?;
-        run_one(&subject, name, self.settings.profile(), &given)
-            .map_err(|error| Failure::Usage(error.to_string()))
+    fn checked(&self) -> Result<Checked<'_, dyn Adapter>, Failure> {
+        Ok(Checked {
+            name: &self.device,
+            subject: self.devices.subject(&self.device)?,
+            places: self.devices.again(),
+            settings: &self.settings,
+        })
     }
 }
 
 impl Check {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        if let Some(name) = &self.checking.reproduce {
-            let finding = self.which.run_one(name)?;
-            return self.checking.print_one(name, &finding, with_quoted);
-        }
-        // A wrong name is reported once, not by each check.
-        self.which.devices.subject(&self.which.device)?;
-        self.which.settings.given()?;
-        let device = &self.which.device;
-        let report = check(device, &self.runner()?);
-        let again = |name: &str| format!("htex device check {device} --reproduce {name}");
-        self.checking.print_report(&report, with_quoted, again)
-    }
-
-    fn runner(&self) -> Result<Runner, Failure> {
-        let mut arguments = vec!["device".into(), "check-one".into()];
-        arguments.extend(self.which.devices.again());
-        arguments.extend(self.which.settings.again());
-        arguments.push(self.which.device.clone().into());
-        self.checking.runner(arguments)
+        self.which.checked()?.run(&self.checking)
     }
 }
 
 impl CheckOne {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        print_json(&self.which.run_one(&self.name)?)?;
-        Ok(Exit::SUCCESS)
+        self.which.checked()?.print_one(&self.name)
     }
 }

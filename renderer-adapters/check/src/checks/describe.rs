@@ -1,38 +1,14 @@
-//! The marker, the exports, the descriptor, endpoints and capabilities.
+//! The marker, the exports, the descriptor, endpoints and capabilities; those that sources have too are of any kind.
 
 use htex_check_runner::{Finding, Found, made_up_extensions};
-use htex_device::{
-    AbiFault, Descriptor, DeviceError, Endpoint, NativeAdapter, Setting, SettingKind, Settings,
-};
+use htex_device::{Descriptor, DeviceError, Setting, SettingKind, Settings};
 
-use crate::case::Case;
-
-/// The check that a loading error belongs to.
-pub(crate) fn owner(error: &DeviceError) -> &'static str {
-    match error {
-        DeviceError::Abi { fault, .. } => match fault {
-            AbiFault::Marker { .. } => "marker",
-            AbiFault::Descriptor(_) => "descriptor",
-            _ => "exports",
-        },
-        _ => "exports",
-    }
-}
-
-/// The library's functions; a built-in device has none.
-pub(crate) fn library(case: &Case) -> Result<&NativeAdapter, Finding> {
-    native(&case.native)
-}
-
-/// The library of an adapter that is not built in.
-pub(crate) fn native<N>(native: &Option<N>) -> Result<&N, Finding> {
-    let built_in = || Finding::skipped("it is built in and has no library");
-    native.as_ref().ok_or_else(built_in)
-}
+use crate::case::{self, CheckedKind};
+use crate::device::Case;
 
 /// A library that was loaded has the marker and the exports.
-pub(crate) fn loaded(case: &Case) -> Found {
-    library(case)?;
+pub(crate) fn loaded<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
+    case.native()?;
     Ok(Finding::passed("the library was loaded"))
 }
 
@@ -52,28 +28,21 @@ pub(crate) fn described(descriptor: &Descriptor) -> Finding {
 }
 
 /// Made-up extensions are absent.
-pub(crate) fn extensions(case: &Case) -> Found {
-    let native = library(case)?;
+pub(crate) fn extensions<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
+    let native = case.native()?;
     made_up_extensions(|id| native.has_extension(id))
 }
 
-/// Endpoints can be listed; none, or a missing driver, is a valid result.
-pub(crate) fn endpoints(case: &Case) -> Found {
-    listed(case.adapter.descriptor(), case.adapter.endpoints())
-}
-
-/// Endpoints choose settings of the descriptor.
-pub(crate) fn listed(
-    descriptor: &Descriptor,
-    endpoints: Result<Vec<Endpoint>, DeviceError>,
-) -> Found {
+/// Endpoints choose settings of the descriptor; none, or a missing driver, is a valid result.
+pub(crate) fn endpoints<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
+    let descriptor = case.adapter.about();
     let known = |name: &str| {
         descriptor
             .settings
             .iter()
             .any(|setting| setting.name == name)
     };
-    match endpoints {
+    match case.adapter.connected() {
         Ok(all) => match all.iter().find(|endpoint| !known(&endpoint.setting)) {
             Some(lost) => {
                 let (name, setting) = (&lost.name, &lost.setting);
@@ -111,7 +80,7 @@ pub(crate) fn capabilities(case: &Case) -> Found {
 
 /// Unknown and invalid settings are refused.
 pub(crate) fn bad_settings(case: &Case) -> Found {
-    let native = library(case)?;
+    let native = case.native()?;
     let descriptor = case.adapter.descriptor();
     refused(descriptor, &case.settings()?, |lines| {
         native.capabilities_of(lines).map(drop)

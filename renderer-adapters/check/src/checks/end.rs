@@ -5,8 +5,7 @@ use std::time::Duration;
 use htex_check_runner::{Finding, Found};
 use htex_device::{Adapter, Device, DeviceError, StreamFormat};
 
-use crate::case::{Case, write_all};
-use crate::checks::describe::library;
+use crate::device::{Case, write_all};
 
 /// All frames are played; nothing can be written afterwards.
 pub(crate) fn finishes(case: &Case) -> Found {
@@ -57,7 +56,9 @@ pub(crate) fn aborts(case: &Case) -> Found {
 }
 
 fn files(case: &Case) -> Vec<String> {
-    let entries = std::fs::read_dir(case.folder.path()).into_iter().flatten();
+    let entries = std::fs::read_dir(case.files.folder.path())
+        .into_iter()
+        .flatten();
     let names = entries.flatten().map(|entry| entry.file_name());
     names
         .map(|name| name.to_string_lossy().into_owned())
@@ -66,7 +67,7 @@ fn files(case: &Case) -> Vec<String> {
 
 /// A handle that was closed is refused, also when another device was opened.
 pub(crate) fn handles(case: &Case) -> Found {
-    let native = library(case)?;
+    let native = case.native()?;
     let can = case.capabilities()?;
     let format = StreamFormat {
         rate_hz: can.default_rate_hz,

@@ -5,7 +5,7 @@ use std::time::Duration;
 use htex_check_runner::{Finding, Found};
 use htex_device::DeviceError;
 
-use crate::case::{Case, write_all};
+use crate::device::{Case, write_all};
 
 /// Samples beyond the limit are refused, positive and negative.
 pub(crate) fn over(case: &Case) -> Found {

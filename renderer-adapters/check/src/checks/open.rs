@@ -3,7 +3,7 @@
 use htex_check_runner::{Finding, Found};
 use htex_device::DeviceError;
 
-use crate::case::{Case, rates, write_all};
+use crate::device::{Case, rates, write_all};
 
 /// The device opens at each of its rates, and takes silence.
 pub(crate) fn opens(case: &Case) -> Found {

@@ -5,8 +5,7 @@ use std::time::Duration;
 use htex_check_runner::{Finding, Found, Growth};
 use htex_device::Status;
 
-use crate::case::{Case, write_all};
-use crate::checks::describe::library;
+use crate::device::{Case, write_all};
 
 /// Blocks over which memory must not grow.
 const BLOCKS: usize = 10_000;
@@ -61,7 +60,7 @@ pub(crate) fn status(case: &Case) -> Found {
         return Err(Finding::failed(message));
     }
     drop(device);
-    if let Ok(native) = library(case) {
+    if let Ok(native) = case.native() {
         let can = case.adapter.capabilities(&settings)?;
         let format = htex_device::StreamFormat {
             rate_hz: can.default_rate_hz,

@@ -1,55 +1,33 @@
-//! The source under test, and operations that several checks use.
+//! Operations on the source under test that several checks use.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::time::Duration;
 
-use htex_check_runner::Finding;
-use htex_device::{Delivered, DeviceError, NativeSourceAdapter, Settings, Source, SourceAdapter};
+use htex_check_runner::{Check, Finding};
+use htex_device::{Delivered, DeviceError, Settings, Source, SourceAdapter};
 
-use crate::case::{filled, first};
-use crate::source::Subject;
+use crate::case::{CheckedKind, skip_missing};
+use crate::source::table::CHECKS;
 
 /// Most consecutive reads that may deliver nothing, each waiting [`PATIENCE`].
 const EMPTY_READS: u32 = 5;
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A loaded source, and its settings.
-pub struct Case {
-    pub(crate) adapter: Arc<dyn SourceAdapter>,
-    /// The same adapter, if it is a native library.
-    pub(crate) native: Option<NativeSourceAdapter>,
-    profile: Option<String>,
-    given: BTreeMap<String, String>,
+pub(crate) type Case = crate::case::Case<dyn SourceAdapter>;
+
+impl CheckedKind for dyn SourceAdapter {
+    const CHECKS: &'static [Check<Case>] = CHECKS;
+    type Files = ();
+
+    fn files() -> Result<(), DeviceError> {
+        Ok(())
+    }
 }
 
 impl Case {
-    pub(crate) fn load(
-        subject: &Subject,
-        profile: Option<&str>,
-        given: &BTreeMap<String, String>,
-    ) -> Result<Self, DeviceError> {
-        let (adapter, native): (Arc<dyn SourceAdapter>, _) = match subject {
-            Subject::Builtin(adapter) => (adapter.clone(), None),
-            Subject::Library(path) => {
-                let native = NativeSourceAdapter::load(path)?;
-                (Arc::new(native.clone()), Some(native))
-            }
-        };
-        Ok(Self {
-            adapter,
-            native,
-            profile: profile.map(str::to_owned),
-            given: given.clone(),
-        })
-    }
-
     /// The given settings; required ones that are missing are the first endpoint.
     pub(crate) fn settings(&self) -> Result<Settings, Finding> {
-        let profile = self.profile.as_deref();
-        filled(self.adapter.descriptor(), profile, &self.given, |setting| {
-            first(self.adapter.endpoints(), &setting.name)
-        })
+        self.filled(self.profile(), |s| self.first_endpoint(&s.name))
     }
 
     /// An open source; the check is skipped where the driver or the source is missing.
@@ -62,14 +40,6 @@ impl Case {
         let mut source = self.open()?;
         source.start()?;
         Ok(source)
-    }
-}
-
-/// A finding, or none where nothing is connected.
-pub(crate) fn skip_missing(error: DeviceError) -> Finding {
-    match error {
-        DeviceError::Missing(what) => Finding::skipped(what),
-        error => error.into(),
     }
 }
 

@@ -1,16 +1,11 @@
-//! The marker, the exports, the descriptor, endpoints, opening, settings.
+//! The descriptor, opening, settings.
 
-use htex_check_runner::{Finding, Found, made_up_extensions};
+use htex_check_runner::{Finding, Found};
 use htex_device::{SourceDescriptor, SourceStream};
 
-use crate::checks::describe::{described, listed, native, refused};
-use crate::source::case::{Case, skip_missing};
-
-/// A library that was loaded has the marker and the exports.
-pub(crate) fn loaded(case: &Case) -> Found {
-    native(&case.native)?;
-    Ok(Finding::passed("the library was loaded"))
-}
+use crate::case::skip_missing;
+use crate::checks::describe::{described, refused};
+use crate::source::case::Case;
 
 /// Loading checks a library's descriptor; this checks that of a built-in source.
 pub(crate) fn descriptor(case: &Case) -> Found {
@@ -20,17 +15,6 @@ pub(crate) fn descriptor(case: &Case) -> Found {
     };
     about.check()?;
     Ok(described(&about.descriptor))
-}
-
-/// Made-up extensions are absent.
-pub(crate) fn extensions(case: &Case) -> Found {
-    let native = native(&case.native)?;
-    made_up_extensions(|id| native.has_extension(id))
-}
-
-/// Endpoints can be listed; none, or a missing driver, is a valid result.
-pub(crate) fn endpoints(case: &Case) -> Found {
-    listed(case.adapter.descriptor(), case.adapter.endpoints())
 }
 
 /// Rate and channels are valid, the same at each opening and, of a library, at each call.
@@ -45,7 +29,7 @@ pub(crate) fn opens(case: &Case) -> Found {
     let first = stream()?;
     first.check()?;
     let mut others = vec![stream()?];
-    if let Some(native) = &case.native {
+    if let Ok(native) = case.native() {
         let source = native.open_native(&case.settings()?)?;
         others.push(source.stream_again()?);
         others.push(source.stream_again()?);
@@ -60,7 +44,7 @@ pub(crate) fn opens(case: &Case) -> Found {
 
 /// Unknown and invalid settings are refused.
 pub(crate) fn bad_settings(case: &Case) -> Found {
-    let native = native(&case.native)?;
+    let native = case.native()?;
     let settings = case.settings()?;
     native.open_native(&settings).map_err(skip_missing)?;
     refused(case.adapter.descriptor(), &settings, |lines| {

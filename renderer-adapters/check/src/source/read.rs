@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 use htex_check_runner::{Finding, Found, Growth};
 use htex_device::{Delivered, DeviceError, Source};
 
-use crate::checks::describe::native;
 use crate::source::case::{Case, closed, read_all};
 
 /// Frames of a block in the check of memory.
@@ -93,7 +92,7 @@ pub(crate) fn stops(case: &Case) -> Found {
 
 /// A handle that was closed is refused, also when another source was opened.
 pub(crate) fn handles(case: &Case) -> Found {
-    let native = native(&case.native)?;
+    let native = case.native()?;
     let mut old = native.open_native(&case.settings()?)?;
     old.close_and_keep_handle()?;
     let mut samples = vec![0.0; old.channels().len()];

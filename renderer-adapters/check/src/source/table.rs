@@ -1,18 +1,19 @@
 //! The table of checks.
 
+use crate::checks::describe::{endpoints, extensions, loaded};
 use crate::source::case::Case;
 use crate::source::{describe, read};
 
 htex_check_runner::checks! { Case;
-    "marker" needs [] describe::loaded:
+    "marker" needs [] loaded:
         "The marker names this ABI's major version.";
-    "exports" needs ["marker"] describe::loaded:
+    "exports" needs ["marker"] loaded:
         "The file loads, and exports every function of the ABI.";
     "descriptor" needs ["exports"] describe::descriptor:
         "The descriptor is JSON of the schema: names, ranges, defaults and profiles make sense, and the target is a setting.";
-    "extensions" needs ["exports"] describe::extensions:
+    "extensions" needs ["exports"] extensions:
         "Unknown extensions are absent.";
-    "endpoints" needs ["descriptor"] describe::endpoints:
+    "endpoints" needs ["descriptor"] endpoints:
         "Endpoints can be listed; a missing driver is reported.";
     "open" needs ["descriptor"] describe::opens:
         "It opens; rate and channels are valid, and the same each time.";

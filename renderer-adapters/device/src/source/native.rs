@@ -1,38 +1,32 @@
 //! Adapters and sources behind the C functions: safe calls, checked results.
 
-use std::path::Path;
-use std::sync::Arc;
 use std::time::Duration;
 
+use htex_native::{Symbols, table_of_symbols};
+
 use crate::crossing::{incoming, wait_ms};
-use crate::library::{Common, Library, Symbols, Table, Trouble};
+use crate::library::{Common, Table, Trouble};
+use crate::loaded::{Native, Opened};
 use crate::source::abi::{ABI_MARKER, Code, SourceTable};
 use crate::source::{Channel, Delivered, Source, SourceAdapter, SourceDescriptor, SourceStream};
-use crate::{Descriptor, DeviceError, Endpoint, Settings, abi};
+use crate::{Descriptor, DescriptorError, DeviceError, Endpoint, Settings, abi};
 
 impl Table for SourceTable {
     type Code = Code;
+    type About = SourceDescriptor;
     const KIND: &'static str = "source";
     const MARKER: u32 = ABI_MARKER;
     const ABI_VERSION: &'static str = "htex_source_abi_version";
 
-    unsafe fn of_symbols(symbols: &Symbols<'_>) -> Result<Self, DeviceError> {
+    unsafe fn of_symbols(symbols: &Symbols<'_, DeviceError>) -> Result<Self, DeviceError> {
         // SAFETY: each field's type is that of the function of its name, by the ABI.
-        unsafe {
-            Ok(Self {
-                abi_version: symbols.get(Self::ABI_VERSION)?,
-                descriptor: symbols.get("htex_source_descriptor")?,
-                last_error: symbols.get("htex_source_last_error")?,
-                endpoints: symbols.get("htex_source_endpoints")?,
-                open: symbols.get("htex_source_open")?,
-                stream: symbols.get("htex_source_stream")?,
-                start: symbols.get("htex_source_start")?,
-                read: symbols.get("htex_source_read")?,
-                stop: symbols.get("htex_source_stop")?,
-                close: symbols.get("htex_source_close")?,
-                extension: symbols.get("htex_source_extension")?,
-            })
-        }
+        Ok(unsafe {
+            table_of_symbols!(
+                symbols, Self, "htex_source_",
+                abi_version descriptor last_error endpoints
+                open stream start read stop close extension
+            )
+        })
     }
 
     fn common(&self) -> Common {
@@ -41,8 +35,17 @@ impl Table for SourceTable {
             descriptor: self.descriptor,
             last_error: self.last_error,
             endpoints: self.endpoints,
+            close: self.close,
             extension: self.extension,
         }
+    }
+
+    fn check(about: &SourceDescriptor) -> Result<(), DescriptorError> {
+        about.check()
+    }
+
+    fn descriptor_of(about: &SourceDescriptor) -> &Descriptor {
+        &about.descriptor
     }
 
     fn code(answer: i64) -> Code {
@@ -63,55 +66,10 @@ impl Table for SourceTable {
     }
 }
 
-/// An adapter of sources of a native library. Cheap to clone.
-#[derive(Clone)]
-pub struct NativeSourceAdapter {
-    about: Arc<SourceDescriptor>,
-    library: Library<SourceTable>,
-}
-
-impl std::fmt::Debug for NativeSourceAdapter {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (id, library) = (&self.descriptor().id, &self.library.name);
-        let mut tuple = f.debug_tuple("NativeSourceAdapter");
-        tuple.field(id).field(library).finish()
-    }
-}
+/// An adapter of sources of a native library.
+pub type NativeSourceAdapter = Native<SourceTable>;
 
 impl NativeSourceAdapter {
-    /// Loads a native library, which runs with all rights of this program.
-    ///
-    /// # Errors
-    /// When the file is not a library of this machine or not a source of this ABI, or its descriptor
-    /// is invalid.
-    pub fn load(path: &Path) -> Result<Self, DeviceError> {
-        Self::new(Library::load(path)?)
-    }
-
-    /// An adapter behind a table of this program; `name` identifies it in messages.
-    ///
-    /// # Errors
-    /// As [`Self::load`].
-    pub fn from_table(name: &str, table: &'static SourceTable) -> Result<Self, DeviceError> {
-        Self::new(Library::of_table(name, table)?)
-    }
-
-    fn new(library: Library<SourceTable>) -> Result<Self, DeviceError> {
-        let about = library.descriptor(SourceDescriptor::check)?;
-        Ok(Self {
-            about: Arc::new(about),
-            library,
-        })
-    }
-
-    /// Whether the source has the extension `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`).
-    ///
-    /// # Errors
-    /// When the result is neither 0 nor 1.
-    pub fn has_extension(&self, id: &str) -> Result<bool, DeviceError> {
-        self.library.has_extension(id)
-    }
-
     /// As [`SourceAdapter::open`], as a type with further functions for checkers, and of lines that need not be settings.
     ///
     /// # Errors
@@ -119,13 +77,8 @@ impl NativeSourceAdapter {
     pub fn open_lines(&self, lines: &str) -> Result<NativeSource, DeviceError> {
         // SAFETY: a live text.
         let handle = unsafe { (self.library.table.open)(lines.as_ptr(), lines.len()) };
-        match self.library.count(handle) {
-            Ok(0) => Err(self.library.broken("open: the handle is 0")),
-            Ok(_) => NativeSource::new(self.clone(), handle),
-            Err(trouble) => Err(self
-                .library
-                .trouble(&self.about.descriptor.name, "open", trouble)),
-        }
+        let opened = self.opened(handle);
+        NativeSource::new(opened.map_err(|trouble| self.error("open", trouble))?)
     }
 
     /// As [`SourceAdapter::open`], as a type with further functions for checkers.
@@ -133,13 +86,13 @@ impl NativeSourceAdapter {
     /// # Errors
     /// As [`SourceAdapter::open`].
     pub fn open_native(&self, settings: &Settings) -> Result<NativeSource, DeviceError> {
-        self.open_lines(&settings.to_lines(self.descriptor()))
+        self.open_lines(&self.lines(settings))
     }
 }
 
 impl SourceAdapter for NativeSourceAdapter {
     fn descriptor(&self) -> &Descriptor {
-        &self.about.descriptor
+        self.described()
     }
 
     fn target(&self) -> &str {
@@ -147,7 +100,7 @@ impl SourceAdapter for NativeSourceAdapter {
     }
 
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
-        self.library.endpoints(&self.about.descriptor.name)
+        self.library.endpoints(self.name())
     }
 
     fn open(&self, settings: &Settings) -> Result<Box<dyn Source>, DeviceError> {
@@ -158,28 +111,24 @@ impl SourceAdapter for NativeSourceAdapter {
 /// An open source of a native library; dropping it closes it.
 #[derive(Debug)]
 pub struct NativeSource {
-    adapter: NativeSourceAdapter,
-    handle: i64,
+    opened: Opened<SourceTable>,
     stream: SourceStream,
     delivered: u64,
     /// Nothing is read any more: an error occurred.
     failed: bool,
-    closed: bool,
 }
 
 impl NativeSource {
-    /// The source of a handle, whose rate and channels are checked; closes the handle if they are invalid.
-    fn new(adapter: NativeSourceAdapter, handle: i64) -> Result<Self, DeviceError> {
+    /// Checks rate and channels; closes the source if they are invalid.
+    fn new(opened: Opened<SourceTable>) -> Result<Self, DeviceError> {
         let mut source = Self {
-            adapter,
-            handle,
+            opened,
             stream: SourceStream {
                 rate_hz: 0.0,
                 channels: Vec::new(),
             },
             delivered: 0,
             failed: false,
-            closed: false,
         };
         source.stream = source.stream_again()?;
         Ok(source)
@@ -190,9 +139,9 @@ impl NativeSource {
     /// # Errors
     /// When they cannot be had, or are invalid.
     pub fn stream_again(&self) -> Result<SourceStream, DeviceError> {
-        let (library, name) = (&self.adapter.library, self.name());
+        let (library, name) = (&self.opened.adapter.library, self.name());
         // SAFETY: a buffer that is live and of this length, by `Library::text`.
-        let call = |out, len| unsafe { (library.table.stream)(self.handle, out, len) };
+        let call = |out, len| unsafe { (library.table.stream)(self.opened.handle, out, len) };
         let stream: SourceStream = library.json(name, "stream", call)?;
         let checked = stream.check();
         checked.map_err(|what| library.broken(format!("stream: {what}")))?;
@@ -205,17 +154,12 @@ impl NativeSource {
     /// # Errors
     /// The error of the source; when called a second time, that the handle is unknown.
     pub fn close_and_keep_handle(&mut self) -> Result<(), DeviceError> {
-        (self.closed, self.failed) = (true, false);
-        self.done("close", self.adapter.library.table.close)
+        self.failed = false;
+        self.opened.close()
     }
 
     fn name(&self) -> &str {
-        &self.adapter.about.descriptor.name
-    }
-
-    fn done(&self, call: &str, function: extern "C" fn(i64) -> i64) -> Result<(), DeviceError> {
-        let answer = function(self.handle);
-        self.adapter.library.done(self.name(), call, answer)
+        self.opened.adapter.name()
     }
 
     /// The result of a read of at most `frames`.
@@ -225,7 +169,8 @@ impl NativeSource {
         frames: usize,
         samples: &[f64],
     ) -> Result<Delivered, DeviceError> {
-        let library = &self.adapter.library;
+        let adapter = &self.opened.adapter;
+        let library = &adapter.library;
         let width = self.stream.channels.len();
         match library.count(answer) {
             Ok(count) if count <= frames => {
@@ -249,7 +194,7 @@ impl NativeSource {
                 frames: self.delivered,
                 advice,
             }),
-            Err(trouble) => Err(library.trouble(self.name(), "read", trouble)),
+            Err(trouble) => Err(adapter.error("read", trouble)),
         }
     }
 }
@@ -264,7 +209,7 @@ impl Source for NativeSource {
     }
 
     fn start(&mut self) -> Result<(), DeviceError> {
-        self.done("start", self.adapter.library.table.start)
+        self.opened.done("start", self.opened.table().start)
     }
 
     fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<Delivered, DeviceError> {
@@ -274,24 +219,15 @@ impl Source for NativeSource {
         let width = self.stream.channels.len();
         let frames = samples.len() / width;
         let (data, len) = (samples.as_mut_ptr(), frames * width);
-        let read = self.adapter.library.table.read;
+        let read = self.opened.table().read;
         // SAFETY: a live slice; `&mut self` keeps the handle to one thread at a time.
-        let answer = unsafe { read(self.handle, data, len, wait_ms(timeout)) };
+        let answer = unsafe { read(self.opened.handle, data, len, wait_ms(timeout)) };
         let delivered = self.delivered(answer, frames, samples);
         self.failed = delivered.is_err();
         delivered
     }
 
     fn stop(&mut self) -> Result<(), DeviceError> {
-        self.done("stop", self.adapter.library.table.stop)
-    }
-}
-
-impl Drop for NativeSource {
-    fn drop(&mut self) {
-        if !self.closed {
-            // An error of closing cannot be returned from a drop.
-            (self.adapter.library.table.close)(self.handle);
-        }
+        self.opened.done("stop", self.opened.table().stop)
     }
 }

@@ -1,10 +1,10 @@
 //! The sources that a program finds.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use crate::registry::{AdapterKind, Known, Registry};
+use crate::source::abi::SourceTable;
 use crate::source::{NativeSourceAdapter, Source, SourceAdapter};
 use crate::{Descriptor, DeviceError, Endpoint, Settings};
 
@@ -14,6 +14,7 @@ pub type Sources = Registry<dyn SourceAdapter>;
 pub type KnownSource = Known<dyn SourceAdapter>;
 
 impl AdapterKind for dyn SourceAdapter {
+    type Table = SourceTable;
     const WORD: &'static str = "source";
     const VARIABLE: &'static str = "HTEX_SOURCE_PATH";
     const FOLDER: &'static str = "htex/sources";
@@ -26,8 +27,8 @@ impl AdapterKind for dyn SourceAdapter {
         self.endpoints()
     }
 
-    fn load(path: &Path) -> Result<Arc<Self>, DeviceError> {
-        Ok(Arc::new(NativeSourceAdapter::load(path)?))
+    fn of_native(native: NativeSourceAdapter) -> Arc<Self> {
+        Arc::new(native)
     }
 
     fn unknown(wanted: String, known: String) -> DeviceError {

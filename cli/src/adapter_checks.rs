@@ -1,0 +1,53 @@
+//! What `htex device check` and `htex source check` share.
+
+use std::ffi::OsString;
+
+use htex_device_check::{CheckedKind, Finding, Subject, check, run_one};
+
+use crate::checking::CheckArgs;
+use crate::devices::SettingArgs;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::hints::with_quoted;
+use crate::output::print_json;
+
+/// A device or source to check.
+pub(crate) struct Checked<'a, A: CheckedKind + ?Sized> {
+    /// A short name, an id or a library file.
+    pub(crate) name: &'a str,
+    pub(crate) subject: Subject<A>,
+    /// Arguments that say where it comes from, for another run of this program.
+    pub(crate) places: Vec<OsString>,
+    pub(crate) settings: &'a SettingArgs,
+}
+
+impl<A: CheckedKind + ?Sized> Checked<'_, A> {
+    /// Runs all checks, or one in this process.
+    pub(crate) fn run(self, checking: &CheckArgs) -> Result<Exit, Failure> {
+        if let Some(name) = &checking.reproduce {
+            return checking.print_one(name, &self.run_one(name)?, with_quoted);
+        }
+        // A wrong setting is reported once, not by each check; so is a wrong name, of which there is no subject.
+        self.settings.given()?;
+        let (kind, adapter) = (A::WORD, self.name);
+        let mut arguments = vec![kind.into(), "check-one".into()];
+        arguments.extend(self.places);
+        arguments.extend(self.settings.again());
+        arguments.push(adapter.into());
+        let report = check::<A>(adapter, &checking.runner(arguments)?);
+        let again = |name: &str| format!("htex {kind} check {adapter} --reproduce {name}");
+        checking.print_report(&report, with_quoted, again)
+    }
+
+    /// Runs one check and prints its finding as JSON.
+    pub(crate) fn print_one(&self, name: &str) -> Result<Exit, Failure> {
+        print_json(&self.run_one(name)?)?;
+        Ok(Exit::SUCCESS)
+    }
+
+    fn run_one(&self, name: &str) -> Result<Finding, Failure> {
+        let (profile, given) = (self.settings.profile(), self.settings.given()?);
+        run_one(&self.subject, name, profile, &given)
+            .map_err(|error| Failure::Usage(error.to_string()))
+    }
+}

@@ -168,8 +168,7 @@ impl Failure {
     pub(crate) fn build(recipe: &Path, error: htex_build::BuildError) -> Self {
         use htex_build::BuildError;
         match error {
-            BuildError::Read { file, error } => FileError::reading(file, error).into(),
-            BuildError::Write { file, error } => FileError::writing(file, error).into(),
+            BuildError::File(error) => error.into(),
             BuildError::Storage(error) => error.into(),
             error => Self::Build {
                 recipe: shown(recipe),

@@ -29,6 +29,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         "htex-build",
         &[
             "htex-author",
+            "htex-files",
             "htex-format",
             "htex-host",
             "htex-library",

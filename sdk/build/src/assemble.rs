@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use htex_files::AtFile;
 use htex_format::Asset;
 use htex_library::{Packed, Writer};
 use rayon::prelude::*;
@@ -14,6 +15,7 @@ use crate::BuildError;
 use crate::build::BuildOptions;
 use crate::catalogue::catalogue;
 use crate::dist::Dist;
+use crate::error::AtPlace;
 use crate::gates::missed;
 use crate::hashes::Stamp;
 use crate::job::Job;
@@ -47,14 +49,11 @@ pub(crate) fn assemble(
     let file = format!("{}.htexlib", plan.library);
     let path = dist.file(&file);
     let found = |key: &str, texture: &PlannedTexture| {
-        made(key).ok_or_else(|| BuildError::Damaged {
-            problem: format!("{}: it was kept and is gone", texture.name),
+        made(key).ok_or_else(|| {
+            BuildError::Damaged(format!("{}: it was kept and is gone", texture.name))
         })
     };
-    let library = |error| BuildError::Library {
-        file: path.clone(),
-        error,
-    };
+    let library = path.display();
     let report = |((key, job), texture): (&(String, Job), &PlannedTexture)| {
         let made = found(key, texture)?;
         let report = judged(texture, key, job, &made)?;
@@ -74,15 +73,15 @@ pub(crate) fn assemble(
         None => {
             // Beside it, a kill would leave the writer's files.
             let written = dist.parts()?.join(&file);
-            let mut writer = Writer::create(&written, &plan.library).map_err(library)?;
+            let mut writer = Writer::create(&written, &plan.library).at(&library)?;
             for (texture, report) in plan.textures.iter().zip(&textures) {
                 if report.status == Status::Built {
                     let made = found(&report.key, texture)?;
-                    writer.add(&texture.name, &made.asset).map_err(library)?;
+                    writer.add(&texture.name, &made.asset).at(&library)?;
                 }
             }
-            let packed = writer.finish().map_err(library)?;
-            fs::rename(&written, &path).map_err(|error| BuildError::write(&path, error))?;
+            let packed = writer.finish().at(&library)?;
+            fs::rename(&written, &path).writing(&path)?;
             keep_library(dist, &path, contents, &packed)?
         }
     };
@@ -113,9 +112,8 @@ fn judged(
     let asset = match &made.asset[..] {
         [] => None,
         bytes => Some(
-            Asset::from_bytes(bytes).map_err(|error| BuildError::Damaged {
-                problem: format!("{}: {error}", texture.name),
-            })?,
+            Asset::from_bytes(bytes)
+                .map_err(|error| BuildError::Damaged(format!("{}: {error}", texture.name)))?,
         ),
     };
     let mut report = TextureReport::new(job, key, made, asset.as_ref());
@@ -163,7 +161,7 @@ fn keep_library(
 ) -> Result<KeptLibrary, BuildError> {
     let kept = KeptLibrary {
         contents,
-        stamp: Stamp::of(path).map_err(|error| BuildError::read(path, error))?,
+        stamp: Stamp::of(path).reading(path)?,
         bytes: packed.bytes,
         blake3: blake3::Hash::from_bytes(packed.blake3).to_hex().to_string(),
     };
@@ -197,13 +195,12 @@ fn copy_package(package: &Path, dist: &Dist) -> Result<(), BuildError> {
     let entry = package.join("index.js");
     if !entry.is_file() {
         let problem = "there is no index.js; give the folder of the browser package";
-        return Err(BuildError::plan(package.display().to_string(), problem));
+        return Err(BuildError::at(package.display(), problem));
     }
     for file in WalkDir::new(package).follow_links(true) {
-        let file = file.map_err(|error| BuildError::read(package, error.into()))?;
+        let file = file.reading(package)?;
         if file.file_type().is_file() {
-            let bytes =
-                fs::read(file.path()).map_err(|error| BuildError::read(file.path(), error))?;
+            let bytes = fs::read(file.path()).reading(file.path())?;
             let inside = file.path().strip_prefix(package).unwrap_or(file.path());
             dist.put(&dist.file("browser").join(inside), &bytes)?;
         }
@@ -212,9 +209,7 @@ fn copy_package(package: &Path, dist: &Dist) -> Result<(), BuildError> {
 }
 
 fn json(report: &Report) -> Result<Vec<u8>, BuildError> {
-    let text = serde_json::to_string_pretty(report).map_err(|error| BuildError::Damaged {
-        problem: error.to_string(),
-    })?;
+    let text = serde_json::to_string_pretty(report)?;
     Ok((text + "\n").into_bytes())
 }
 

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use htex_files::{AtFile, FileError};
 use htex_host::WasmLimits;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -15,6 +16,7 @@ use crate::assemble::{Built, assemble};
 use crate::cache::Cache;
 use crate::dist::Dist;
 use crate::elsewhere::{Elsewhere, folder_of, joined};
+use crate::error::AtPlace;
 use crate::hashes::{Hashed, Hashes, hash};
 use crate::job::{Job, Workbench};
 use crate::made::{Made, Outcome};
@@ -121,7 +123,7 @@ impl Build {
             lock,
         } = Prepared::new(recipe, output)?;
         let pool = ThreadPoolBuilder::new().num_threads(options.jobs).build();
-        let pool = pool.map_err(|error| BuildError::plan("jobs", error.to_string()))?;
+        let pool = pool.at("jobs")?;
         let job = |texture: &PlannedTexture| {
             let plugins = &recipe.library.plugins;
             let job = Job::new(texture, &folder, plugins, &options.program, &hashes)?;
@@ -227,9 +229,11 @@ impl Build {
         workbench: &mut Workbench,
     ) -> Result<Option<Made>, BuildError> {
         let made = match job.run(workbench) {
-            Err(error @ BuildError::Read { .. }) if self.options.keep_going => {
-                Made::refused(Outcome::Refused(error.to_string()))
-            }
+            Err(
+                error @ BuildError::File(FileError {
+                    is_output: false, ..
+                }),
+            ) if self.options.keep_going => Made::refused(Outcome::Refused(error.to_string())),
             made => made?,
         };
         self.keep(key, job, made)
@@ -244,10 +248,7 @@ impl Build {
         if self.options.keep_going {
             return Ok(Some(made));
         }
-        Err(BuildError::Texture {
-            texture: job.texture.clone(),
-            problem: problem.clone(),
-        })
+        Err(BuildError::at(&job.texture, problem))
     }
 
     /// Writes the library, the textures, the report and the catalogue.
@@ -256,9 +257,8 @@ impl Build {
     /// When jobs are still pending, or a file cannot be written.
     pub fn finish(self) -> Result<Built, BuildError> {
         if let Some(i) = self.pending.first() {
-            let texture = self.jobs[*i].1.texture.clone();
-            let problem = "it is not fitted yet; run the build again".to_owned();
-            return Err(BuildError::Texture { texture, problem });
+            let problem = "it is not fitted yet; run the build again";
+            return Err(BuildError::at(&self.jobs[*i].1.texture, problem));
         }
         let made = |key: &str| match self.unkept.get(key) {
             Some(made) => Some(made.clone()),
@@ -348,14 +348,14 @@ impl Prepared {
 /// Makes the folder of the results, and returns its folder of what is kept, locked for this build.
 fn claim(output: &Path) -> Result<(PathBuf, File), BuildError> {
     let kept = output.join(KEPT);
-    std::fs::create_dir_all(&kept).map_err(|error| BuildError::write(&kept, error))?;
+    std::fs::create_dir_all(&kept).writing(&kept)?;
     let file = kept.join("lock");
-    let lock = File::create(&file).map_err(|error| BuildError::write(&file, error))?;
+    let lock = File::create(&file).writing(&file)?;
     match lock.try_lock() {
         Ok(()) => Ok((kept, lock)),
         Err(std::fs::TryLockError::WouldBlock) => Err(BuildError::Locked {
             folder: output.to_owned(),
         }),
-        Err(std::fs::TryLockError::Error(error)) => Err(BuildError::write(&file, error)),
+        Err(std::fs::TryLockError::Error(error)) => Err(FileError::writing(&file, error).into()),
     }
 }

@@ -6,6 +6,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use htex_files::AtFile;
+
 use crate::BuildError;
 use crate::made::{Made, Outcome};
 
@@ -21,7 +23,7 @@ pub(crate) struct Cache {
 impl Cache {
     /// Opens the folder, creates it if there is none, and removes what a killed build left.
     pub(crate) fn open(folder: &Path) -> Result<Self, BuildError> {
-        fs::create_dir_all(folder).map_err(|error| BuildError::write(folder, error))?;
+        fs::create_dir_all(folder).writing(folder)?;
         let cache = Self {
             folder: folder.to_owned(),
         };
@@ -46,9 +48,7 @@ impl Cache {
         );
         let bytes = made.to_bytes(key)?;
         let write = |_| fs::write(&part, bytes).and_then(|()| fs::rename(&part, &file));
-        Ok(())
-            .and_then(write)
-            .map_err(|error| BuildError::write(&file, error))
+        Ok(Ok(()).and_then(write).writing(&file)?)
     }
 
     /// Removes everything but the entries of these keys.
@@ -66,6 +66,6 @@ impl Cache {
             }
             Ok(())
         };
-        remove().map_err(|error| BuildError::write(&self.folder, error))
+        Ok(remove().writing(&self.folder)?)
     }
 }

@@ -5,6 +5,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use htex_files::{AtFile, FileError};
 use walkdir::WalkDir;
 
 use crate::BuildError;
@@ -55,14 +56,14 @@ impl Dist {
             fs::write(&part, bytes)?;
             fs::rename(&part, file)
         };
-        write().map_err(|error| BuildError::write(file, error))
+        Ok(write().writing(file)?)
     }
 
     /// Removes a file of an earlier build, and the folders that it leaves empty.
     pub(crate) fn remove(&self, file: &Path) -> Result<(), BuildError> {
         match fs::remove_file(file) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                return Err(BuildError::write(file, error));
+                return Err(FileError::writing(file, error).into());
             }
             _ => {}
         }
@@ -88,7 +89,7 @@ impl Dist {
             }
             fs::create_dir_all(&folder)
         };
-        make().map_err(|error| BuildError::write(&folder, error))?;
+        make().writing(&folder)?;
         Ok(folder)
     }
 

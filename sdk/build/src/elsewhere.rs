@@ -9,6 +9,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
+use htex_files::AtFile;
 use htex_storage::{Location, Storage, StorageError, StorageProblem};
 use tempfile::TempDir;
 
@@ -141,7 +142,7 @@ impl Elsewhere {
         let (found, copy) = self.fetch(location)?;
         if found != blake3 {
             let problem = "it changed while it was used; start again when it is complete";
-            return Err(BuildError::plan(location.to_string(), problem));
+            return Err(BuildError::at(location, problem));
         }
         Ok(copy)
     }
@@ -149,15 +150,14 @@ impl Elsewhere {
     /// Reads a text.
     pub(crate) fn text(&self, location: &Location) -> Result<String, BuildError> {
         let bytes = self.storage()?.read(location, MOST_TEXT_BYTES)?;
-        String::from_utf8(bytes)
-            .map_err(|_| BuildError::plan(location.to_string(), "it is not UTF-8 text"))
+        String::from_utf8(bytes).map_err(|_| BuildError::at(location, "it is not UTF-8 text"))
     }
 
     /// Removes the copies.
     pub(crate) fn forget(&self) -> Result<(), BuildError> {
         match &self.copies {
             Copies::Folder(folder) if folder.exists() => {
-                fs::remove_dir_all(folder).map_err(|error| BuildError::write(folder, error))
+                Ok(fs::remove_dir_all(folder).writing(folder)?)
             }
             _ => Ok(()),
         }
@@ -166,20 +166,18 @@ impl Elsewhere {
     /// Downloads a file. Returns its hash and its copy.
     fn fetch(&self, location: &Location) -> Result<(String, PathBuf), BuildError> {
         let (copies, name) = (self.copies()?, named(location)?);
-        let failed = |error| BuildError::write(copies, error);
         let part = tempfile::Builder::new().suffix(".part").tempfile_in(copies);
-        let part = part.map_err(failed)?;
-        let file = part.reopen().map_err(failed)?;
+        let part = part.writing(copies)?;
+        let file = part.reopen().writing(copies)?;
         self.storage()?.download(location, file, MOST_BYTES)?;
         let mut hasher = blake3::Hasher::new();
-        let written = File::open(part.path()).map_err(failed)?;
-        hasher.update_reader(written).map_err(failed)?;
+        let written = File::open(part.path()).writing(copies)?;
+        hasher.update_reader(written).writing(copies)?;
         let blake3 = hasher.finalize().to_hex().to_string();
         let folder = copies.join(&blake3);
-        fs::create_dir_all(&folder).map_err(failed)?;
+        fs::create_dir_all(&folder).writing(copies)?;
         let copy = folder.join(name);
-        part.persist(&copy)
-            .map_err(|error| BuildError::write(&copy, error.error))?;
+        part.persist(&copy).writing(&copy)?;
         Ok((blake3, copy))
     }
 
@@ -194,7 +192,7 @@ impl Elsewhere {
     fn copies(&self) -> Result<&Path, BuildError> {
         match &self.copies {
             Copies::Folder(folder) => {
-                fs::create_dir_all(folder).map_err(|error| BuildError::write(folder, error))?;
+                fs::create_dir_all(folder).writing(folder)?;
                 Ok(folder)
             }
             Copies::Temporary(held) => {
@@ -202,8 +200,7 @@ impl Elsewhere {
                     return Ok(folder.path());
                 }
                 let folder = tempfile::Builder::new().prefix("htex-build-").tempdir();
-                let folder =
-                    folder.map_err(|error| BuildError::write(&std::env::temp_dir(), error))?;
+                let folder = folder.writing(std::env::temp_dir())?;
                 Ok(held.get_or_init(|| folder).path())
             }
         }
@@ -216,10 +213,7 @@ impl Elsewhere {
 
 /// The file's name, which its copy has too: readers and provenance depend on it.
 fn named(location: &Location) -> Result<String, BuildError> {
-    location.file_name().ok_or_else(|| {
-        BuildError::plan(
-            location.to_string(),
-            "it has no file name at its end; name a file",
-        )
-    })
+    location
+        .file_name()
+        .ok_or_else(|| BuildError::at(location, "it has no file name at its end; name a file"))
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
+use htex_files::AtFile;
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
@@ -146,7 +147,7 @@ impl Hashes {
     fn stamp(&self, path: &Path) -> Result<Stamp, BuildError> {
         match elsewhere(path)? {
             Some(location) => Ok(self.elsewhere.stamp(path, &location)?),
-            None => Stamp::of(path).map_err(|error| BuildError::read(path, error)),
+            None => Ok(Stamp::of(path).reading(path)?),
         }
     }
 
@@ -171,7 +172,7 @@ impl Hashes {
 pub(crate) fn hash(path: &Path, copies: &Elsewhere) -> Result<Hashed, BuildError> {
     match elsewhere(path)? {
         Some(location) => copies.hash(path, &location),
-        None => hash_local(path).map_err(|error| BuildError::read(path, error)),
+        None => Ok(hash_local(path).reading(path)?),
     }
 }
 

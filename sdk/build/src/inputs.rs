@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
 use globset::{GlobBuilder, GlobSet, GlobSetBuilder};
+use htex_files::{AtFile, FileError};
 use htex_storage::Location;
 use regex::Regex;
 use walkdir::WalkDir;
 
 use crate::BuildError;
 use crate::elsewhere::{Elsewhere, folder_of, is_elsewhere, joined};
+use crate::error::AtPlace;
 use crate::recipe::Textures;
 use crate::template::Fields;
 
@@ -33,18 +35,17 @@ pub(crate) fn inputs(
     elsewhere: &Elsewhere,
 ) -> Result<Vec<Input>, BuildError> {
     let pattern = rule.pattern.as_deref().map(Regex::new).transpose();
-    let pattern =
-        pattern.map_err(|e| BuildError::plan(format!("{place}.pattern"), e.to_string()))?;
+    let pattern = pattern.at(format!("{place}.pattern"))?;
     let found = match (&rule.recordings[..], &rule.table) {
         ([], Some(table)) => tabulated(&joined(folder, table), place, folder, elsewhere)?,
         ([], None) => {
             let problem = "it names no recordings; give `recordings` (a glob) or `table` (a CSV)";
-            return Err(BuildError::plan(place, problem));
+            return Err(BuildError::at(place, problem));
         }
         (_, Some(_)) => {
             let problem =
                 "`recordings` and `table` both say where recordings are; give one of them";
-            return Err(BuildError::plan(place, problem));
+            return Err(BuildError::at(place, problem));
         }
         (_, None) => recordings(&rule.recordings, place, (folder, output), elsewhere)?,
     };
@@ -95,7 +96,7 @@ fn globbed_elsewhere(
     let found = elsewhere.list(&Location::parse(folder.as_ref())?, &pattern)?;
     if found.is_empty() {
         let problem = format!("no file matches {pattern} in {folder}");
-        return Err(BuildError::plan(format!("{place}.recordings"), problem));
+        return Err(BuildError::at(format!("{place}.recordings"), problem));
     }
     let inputs = found
         .into_iter()
@@ -135,7 +136,7 @@ fn globbed(
     {
         let entry = entry.map_err(|error| {
             let file = error.path().unwrap_or(folder).to_owned();
-            BuildError::read(&file, error.into())
+            FileError::reading(file, error)
         })?;
         let file = entry.path().strip_prefix(folder).unwrap_or(entry.path());
         if entry.file_type().is_file() && set.is_match(file) {
@@ -145,7 +146,7 @@ fn globbed(
     if files.is_empty() {
         let globs = globs.join(", ");
         let problem = format!("no file matches {globs} in {}", folder.display());
-        return Err(BuildError::plan(place, problem));
+        return Err(BuildError::at(place, problem));
     }
     files.sort();
     Ok(files.into_iter().map(input).collect())
@@ -156,10 +157,9 @@ pub(crate) fn glob_set(globs: &[String], place: &str) -> Result<GlobSet, BuildEr
     let mut set = GlobSetBuilder::new();
     for glob in globs {
         let compiled = GlobBuilder::new(glob).literal_separator(true).build();
-        set.add(compiled.map_err(|error| BuildError::plan(place, error.to_string()))?);
+        set.add(compiled.at(place)?);
     }
-    set.build()
-        .map_err(|error| BuildError::plan(place, error.to_string()))
+    set.build().at(place)
 }
 
 /// Returns the rows of a table.
@@ -173,29 +173,29 @@ fn tabulated(
     let shown = table.display();
     let text = match crate::elsewhere::elsewhere(table)? {
         Some(location) => elsewhere.text(&location)?.into_bytes(),
-        None => std::fs::read(table).map_err(|error| BuildError::read(table, error))?,
+        None => std::fs::read(table).reading(table)?,
     };
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(&text[..]);
-    let broken = |error: csv::Error| BuildError::plan(&place, format!("{shown}: {error}"));
-    let headers = reader.headers().map_err(broken)?.clone();
+    let in_table = format!("{place}: {shown}");
+    let headers = reader.headers().at(&in_table)?.clone();
     let column = headers.iter().position(|name| name == "recording");
     let column = column.ok_or_else(|| {
         let problem = format!("{shown}: it has no column `recording` with the files");
-        BuildError::plan(&place, problem)
+        BuildError::at(&place, problem)
     })?;
     let beside = folder_of(table);
     let mut inputs = Vec::new();
     for row in reader.records() {
-        let row = row.map_err(broken)?;
+        let row = row.at(&in_table)?;
         let cell = row.get(column).unwrap_or_default();
         let file = joined(&beside, Path::new(cell));
         let is_away = is_elsewhere(&file);
         if !is_away && !file.is_file() {
             let line = row.position().map_or(0, csv::Position::line);
             let problem = format!("{shown}, line {line}: there is no file {}", file.display());
-            return Err(BuildError::plan(&place, problem));
+            return Err(BuildError::at(&place, problem));
         }
         let mut input = match is_away {
             true => input_elsewhere(file, Path::new(cell)),
@@ -207,7 +207,7 @@ fn tabulated(
         inputs.push(input);
     }
     if inputs.is_empty() {
-        return Err(BuildError::plan(&place, format!("{shown}: it has no rows")));
+        return Err(BuildError::at(&place, format!("{shown}: it has no rows")));
     }
     Ok(inputs)
 }
@@ -261,7 +261,7 @@ fn named_groups(
     let path = &input.path;
     let groups = pattern.captures(path).ok_or_else(|| {
         let problem = format!("`{path}` does not match `{pattern}`; change it, or the globs");
-        BuildError::plan(format!("{place}.pattern"), problem)
+        BuildError::at(format!("{place}.pattern"), problem)
     })?;
     for name in pattern.capture_names().flatten() {
         let value = groups.name(name).map_or("", |group| group.as_str());

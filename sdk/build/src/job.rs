@@ -3,6 +3,7 @@
 //! Models that are installed on a machine are not used, and no path or time is part of a key.
 
 use std::collections::BTreeMap;
+use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -11,6 +12,7 @@ use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
 use htex_author::{
     AuthorError, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
 };
+use htex_files::{AtFile, FileError};
 use htex_host::{Registry, Search, WasmLimits};
 use serde::{Deserialize, Serialize};
 
@@ -104,7 +106,7 @@ impl JobFile {
             return Ok(());
         };
         self.path = copies.copy(&location, &self.hashed.blake3)?;
-        let stamp = Stamp::of(&self.path).map_err(|error| BuildError::read(&self.path, error))?;
+        let stamp = Stamp::of(&self.path).reading(&self.path)?;
         self.hashed.stamp = stamp;
         Ok(())
     }
@@ -237,8 +239,7 @@ impl Job {
         // What was read is what was hashed, or the key is wrong.
         self.check_files()?;
         Ok(match fitted {
-            Err(Stopped::File(error)) => return Err(error),
-            Err(Stopped::Outcome(outcome)) => Made::refused(outcome),
+            Err(error) => Made::refused(outcome(error)?),
             Ok((fitted, asset, sound)) => Made {
                 record: Record {
                     outcome: Outcome::Fitted,
@@ -252,35 +253,31 @@ impl Job {
         })
     }
 
-    fn fitted(&self, registry: &Registry) -> Result<(FittedAsset, Vec<u8>, Vec<u8>), Stopped> {
+    fn fitted(&self, registry: &Registry) -> Result<Fitted, Box<dyn Error>> {
         let reading = ReadingSettings {
             tracker: Some(self.trackers().map(|file| file.path.clone()).collect()),
             ..self.reading.clone()
         };
         let request = self
             .fit
-            .request(registry, &reading, &self.texture, &self.program);
-        let request = request.map_err(refused)?;
+            .request(registry, &reading, &self.texture, &self.program)?;
         let takes = self.recordings.iter().map(|recording| self.take(recording));
         let takes = takes.collect::<Result<Vec<Take>, _>>()?;
-        let mut fitted = fit_asset(&takes, &request).map_err(|error| match error {
-            AuthorError::Strict { .. } => Stopped::Outcome(Outcome::NotStrict(error.to_string())),
-            other => refused(other),
-        })?;
+        let mut fitted = fit_asset(&takes, &request)?;
         self.metadata.apply(&mut fitted.asset.manifest);
         let travelling = self.plugins.len() - self.embedded.min(self.plugins.len());
         let files: Vec<PathBuf> = self.plugins[travelling..]
             .iter()
             .map(|f| f.path.clone())
             .collect();
-        embed_plugins(&mut fitted.asset, registry, &files, None).map_err(refused)?;
-        let bytes = fitted.asset.to_bytes().map_err(refused)?;
-        let sound = sound(&bytes, registry).map_err(refused)?;
+        embed_plugins(&mut fitted.asset, registry, &files, None)?;
+        let bytes = fitted.asset.to_bytes()?;
+        let sound = sound(&bytes, registry)?;
         Ok((fitted, bytes, sound))
     }
 
     /// Reads a recording.
-    fn take(&self, recording: &JobRecording) -> Result<Take, Stopped> {
+    fn take(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
         let reading = ReadingSettings {
             tracker: recording
                 .tracker
@@ -288,11 +285,7 @@ impl Job {
                 .map(|file| vec![file.path.clone()]),
             ..self.reading.clone()
         };
-        let options = reading
-            .read_options(1)
-            .map_err(refused)?
-            .pop()
-            .unwrap_or_default();
+        let options = reading.read_options(1)?.pop().unwrap_or_default();
         let given = Exploration {
             speed_mm_s: recording.speed_mm_s,
             force_n: recording.force_n,
@@ -303,8 +296,8 @@ impl Job {
             Err(ReadError {
                 problem: ReadProblem::Io(error),
                 ..
-            }) => Err(Stopped::File(BuildError::read(file, error))),
-            Err(error) => Err(refused(error)),
+            }) => Err(Box::new(BuildError::from(FileError::reading(file, error)))),
+            Err(error) => Err(error.into()),
         }
     }
 
@@ -332,27 +325,30 @@ impl Job {
     /// Refuses a file that is not the one that was hashed: by size and time, or where these differ, by its contents.
     fn check_files(&self) -> Result<(), BuildError> {
         for file in self.files() {
-            let read = |error| BuildError::read(&file.path, error);
-            if Stamp::of(&file.path).map_err(read)? == file.hashed.stamp {
+            if Stamp::of(&file.path).reading(&file.path)? == file.hashed.stamp {
                 continue;
             }
-            if hash_local(&file.path).map_err(read)?.blake3 != file.hashed.blake3 {
-                return Err(read(changed()));
+            if hash_local(&file.path).reading(&file.path)?.blake3 != file.hashed.blake3 {
+                return Err(FileError::reading(&file.path, changed()).into());
             }
         }
         Ok(())
     }
 }
 
-/// Why there is no asset.
-enum Stopped {
-    Outcome(Outcome),
-    /// A file cannot be read now; it may be later.
-    File(BuildError),
-}
+/// The fit, its asset as bytes, and its sound.
+type Fitted = (FittedAsset, Vec<u8>, Vec<u8>);
 
-fn refused(error: impl std::fmt::Display) -> Stopped {
-    Stopped::Outcome(Outcome::Refused(error.to_string()))
+/// Returns the result that the error of a fit is. A [`BuildError`] is none: a file that cannot be read now may be read later.
+fn outcome(error: Box<dyn Error>) -> Result<Outcome, BuildError> {
+    let error = match error.downcast::<BuildError>() {
+        Ok(error) => return Err(*error),
+        Err(other) => other,
+    };
+    Ok(match error.downcast_ref() {
+        Some(AuthorError::Strict { .. }) => Outcome::NotStrict(error.to_string()),
+        _ => Outcome::Refused(error.to_string()),
+    })
 }
 
 /// The models that a thread fits with, loaded once for each set of plugins.
@@ -376,7 +372,7 @@ impl Workbench {
 
     /// Returns the built-in models and the plugins of a job. Those that are installed on a machine are not used: a build is the
     /// same on all.
-    fn registry(&mut self, job: &Job) -> Result<&Registry, Stopped> {
+    fn registry(&mut self, job: &Job) -> Result<&Registry, Box<dyn Error>> {
         let files: Vec<PathBuf> = job.plugins.iter().map(|file| file.path.clone()).collect();
         if self
             .loaded
@@ -386,11 +382,11 @@ impl Workbench {
             let search = Search::builtin()
                 .with_limits(self.limits.clone())
                 .with_files(files.clone());
-            self.loaded = Some((files, Registry::search(&search).map_err(refused)?));
+            self.loaded = Some((files, Registry::search(&search)?));
         }
         match &self.loaded {
             Some((_, registry)) => Ok(registry),
-            None => Err(refused("no models are loaded")),
+            None => Err("no models are loaded".into()),
         }
     }
 }

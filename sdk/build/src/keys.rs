@@ -16,9 +16,7 @@ pub(crate) fn check_keys(text: &str, recipe: &toml::Table) -> Result<(), BuildEr
     let sentences: Vec<String> = unknown.iter().map(sentence).collect();
     match sentences.is_empty() {
         true => Ok(()),
-        false => Err(BuildError::Recipe {
-            problem: sentences.join("\n"),
-        }),
+        false => Err(BuildError::Recipe(sentences.join("\n"))),
     }
 }
 

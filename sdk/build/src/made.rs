@@ -85,9 +85,6 @@ impl Made {
     /// # Errors
     /// When the record cannot be written as JSON.
     pub fn to_bytes(&self, key: &str) -> Result<Vec<u8>, BuildError> {
-        let damaged = |error: serde_json::Error| BuildError::Damaged {
-            problem: error.to_string(),
-        };
         let mut header = Header {
             key: key.to_owned(),
             record: self.record.clone(),
@@ -95,8 +92,8 @@ impl Made {
             sound_bytes: self.sound.len(),
             blake3: String::new(),
         };
-        header.blake3 = header.hash(&self.asset, &self.sound).map_err(damaged)?;
-        let mut bytes = serde_json::to_vec(&header).map_err(damaged)?;
+        header.blake3 = header.hash(&self.asset, &self.sound)?;
+        let mut bytes = serde_json::to_vec(&header)?;
         bytes.push(b'\n');
         bytes.extend_from_slice(&self.asset);
         bytes.extend_from_slice(&self.sound);
@@ -108,9 +105,7 @@ impl Made {
     /// # Errors
     /// When they are not those of this job, or a bit of them changed.
     pub fn from_bytes(key: &str, bytes: &[u8]) -> Result<Self, BuildError> {
-        let damaged = |problem: &str| BuildError::Damaged {
-            problem: problem.to_owned(),
-        };
+        let damaged = |problem: &str| BuildError::Damaged(problem.to_owned());
         let line = bytes.iter().take(MOST_HEADER).position(|b| *b == b'\n');
         let line = line.ok_or_else(|| damaged("it has no first line"))?;
         let header: Header = serde_json::from_slice(&bytes[..line])

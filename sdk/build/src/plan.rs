@@ -8,6 +8,7 @@ use htex_author::settings::Metadata;
 
 use crate::BuildError;
 use crate::elsewhere::Elsewhere;
+use crate::error::AtPlace;
 use crate::inputs::{Input, glob_set, inputs, slashed};
 use crate::recipe::{Gates, NumberOrTemplate, Recipe, Settings, Textures};
 use crate::template::{Fields, fill};
@@ -77,11 +78,11 @@ impl Plan {
         check_name("library.name", &recipe.library.name)?;
         if recipe.library.name.contains('/') {
             let problem = "`/` is not possible in the name of a file; leave it out";
-            return Err(BuildError::plan("library.name", problem));
+            return Err(BuildError::at("library.name", problem));
         }
         if recipe.textures.is_empty() {
             let problem = "there is none; add a [[textures]] with `recordings`";
-            return Err(BuildError::plan("textures", problem));
+            return Err(BuildError::at("textures", problem));
         }
         let overrides = Overrides::new(recipe)?;
         let mut textures: BTreeMap<String, PlannedTexture> = BTreeMap::new();
@@ -129,10 +130,7 @@ impl<'a> Overrides<'a> {
         for (i, (set, _)) in self.0.iter().enumerate() {
             if !textures.keys().any(|name| set.is_match(name)) {
                 let problem = "no texture has such a name; correct it, or leave the override out";
-                return Err(BuildError::plan(
-                    format!("overrides[{i}].textures"),
-                    problem,
-                ));
+                return Err(BuildError::at(format!("overrides[{i}].textures"), problem));
             }
         }
         Ok(())
@@ -151,30 +149,27 @@ fn planned(
         file, mut fields, ..
     } = input;
     let shown = slashed(&file);
-    let wrong = |key: &str, problem: String| {
-        BuildError::plan(format!("{place}.{key}"), format!("{shown}: {problem}"))
-    };
+    let of = |key: &str| format!("{place}.{key}: {shown}");
     let template = match (&rule.name, fields.get("name")) {
         (Some(template), _) => template.clone(),
         (None, Some(_)) => "{name}".to_owned(),
         (None, None) => "{stem}".to_owned(),
     };
-    let name = fill(&template, &fields).map_err(|problem| wrong("name", problem))?;
+    let name = fill(&template, &fields).at(of("name"))?;
     check_name(&format!("{place}.name"), &name)?;
     fields.insert("name".to_owned(), name.clone());
     let mut settings = overrides.over(&name, settings.clone());
     let at = std::mem::take(&mut settings.at);
-    let condition = |key: &str, given: Option<NumberOrTemplate>| {
-        number(key, given, &fields).map_err(|problem| wrong("at", problem))
-    };
-    let tracker = tracker(&mut settings, &fields).map_err(|problem| wrong("tracker", problem))?;
+    let condition =
+        |key: &str, given: Option<NumberOrTemplate>| number(key, given, &fields).at(of("at"));
+    let tracker = tracker(&mut settings, &fields).at(of("tracker"))?;
     let recording = PlannedRecording {
         file,
         tracker,
         speed_mm_s: condition("speed_mm_s", at.speed_mm_s)?,
         force_n: condition("force_n", at.force_n)?,
     };
-    let metadata = filled(settings.metadata.clone(), &fields).map_err(|(key, p)| wrong(key, p))?;
+    let metadata = filled(settings.metadata.clone(), &fields, of)?;
     let gates = std::mem::take(&mut settings.gates);
     settings.gates.strict = gates.strict;
     Ok(PlannedTexture {
@@ -216,8 +211,12 @@ fn number(
     Ok(Some(number))
 }
 
-/// Fills the templates of metadata.
-fn filled(mut metadata: Metadata, fields: &Fields) -> Result<Metadata, (&'static str, String)> {
+/// Fills the templates of metadata; `of` is the place of a key.
+fn filled(
+    mut metadata: Metadata,
+    fields: &Fields,
+    of: impl Fn(&str) -> String,
+) -> Result<Metadata, BuildError> {
     let texts = [
         ("author", &mut metadata.author),
         ("license", &mut metadata.license),
@@ -229,15 +228,13 @@ fn filled(mut metadata: Metadata, fields: &Fields) -> Result<Metadata, (&'static
     ];
     for (key, text) in texts {
         if let Some(text) = text {
-            *text = fill(text, fields).map_err(|problem| (key, problem))?;
+            *text = fill(text, fields).at(of(key))?;
         }
     }
     for tag in metadata.tags.iter_mut().flatten() {
-        *tag = fill(tag, fields).map_err(|problem| ("tags", problem))?;
+        *tag = fill(tag, fields).at(of("tags"))?;
     }
-    metadata
-        .check()
-        .map_err(|error| ("metadata", error.to_string()))?;
+    metadata.check().at(of("metadata"))?;
     Ok(metadata)
 }
 
@@ -263,7 +260,7 @@ fn gather(
             slashed(&recording.file),
             planned.name
         );
-        return Err(BuildError::plan(place, problem));
+        return Err(BuildError::at(place, problem));
     }
     let same = (&known.settings, &known.metadata, &known.gates)
         == (&planned.settings, &planned.metadata, &planned.gates);
@@ -281,14 +278,14 @@ fn gather(
             file(&planned),
             planned.name
         );
-        return Err(BuildError::plan(place, problem));
+        return Err(BuildError::at(place, problem));
     }
     known.recordings.extend(planned.recordings);
     Ok(())
 }
 
 fn check_name(place: &str, name: &str) -> Result<(), BuildError> {
-    htex_library::check_name(name).map_err(|error| BuildError::plan(place, error.to_string()))
+    htex_library::check_name(name).at(place)
 }
 
 /// Refuses a texture whose file would be the folder of another's.
@@ -300,7 +297,7 @@ fn check_folders(textures: &[PlannedTexture]) -> Result<(), BuildError> {
                 "{} and {inside} cannot both be files; rename one",
                 pair[0].name
             );
-            return Err(BuildError::plan("textures", problem));
+            return Err(BuildError::at("textures", problem));
         }
     }
     Ok(())

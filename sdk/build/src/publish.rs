@@ -7,6 +7,7 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use htex_files::AtFile;
 use htex_storage::{Location, Storage, StorageError};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -15,6 +16,7 @@ use walkdir::WalkDir;
 use crate::BuildError;
 use crate::dist::Dist;
 use crate::elsewhere::elsewhere;
+use crate::error::AtPlace;
 use crate::hashes::{Stamp, hash_local};
 
 /// The file of what was copied, in the folder of the results.
@@ -115,7 +117,7 @@ fn default_folder(location: &Location) -> Result<PathBuf, BuildError> {
     let cache = variable("XDG_CACHE_HOME").or_else(|| variable("LOCALAPPDATA"));
     let cache = cache.map(PathBuf::from).or_else(home).ok_or_else(|| {
         let problem = "there is no folder for the work: HOME is not set; name one (`--work DIR`)";
-        BuildError::plan(location.to_string(), problem)
+        BuildError::at(location, problem)
     })?;
     let hash = blake3::hash(location.to_string().as_bytes()).to_hex();
     Ok(cache.join("htex").join("builds").join(&hash[..16]))
@@ -162,7 +164,7 @@ impl<'a> Publishing<'a> {
             .copied()
             .partition(|name| LAST.contains(&name.as_str()));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(AT_ONCE).build();
-        let pool = pool.map_err(|error| BuildError::plan("publish", error.to_string()))?;
+        let pool = pool.at("publish")?;
         pool.install(|| first.par_iter().try_for_each(|name| self.copy(name)))?;
         last.iter().try_for_each(|name| self.copy(name))?;
         let copied = wanted.len();
@@ -192,13 +194,13 @@ impl<'a> Publishing<'a> {
             .into_iter()
             .filter_entry(|e| !kept(e))
         {
-            let entry = entry.map_err(|error| BuildError::read(self.folder, error.into()))?;
+            let entry = entry.reading(self.folder)?;
             if entry.file_type().is_file() {
                 files.push(entry.into_path());
             }
         }
         let hashed = files.par_iter().map(|file| {
-            let hashed = hash_local(file).map_err(|error| BuildError::read(file, error))?;
+            let hashed = hash_local(file).reading(file)?;
             let inside = file.strip_prefix(self.folder).unwrap_or(file);
             Ok((crate::inputs::slashed(inside), hashed.blake3))
         });

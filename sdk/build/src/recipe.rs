@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use htex_author::settings::{FitSettings, Metadata, OneOrMore, ReadingSettings, one_or_more};
+use htex_files::AtFile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -164,11 +165,8 @@ impl Recipe {
     /// # Errors
     /// When it is not TOML, or has other keys or values than a recipe.
     pub fn parse(text: &str) -> Result<Self, BuildError> {
-        let wrong = |error: toml::de::Error| BuildError::Recipe {
-            problem: error.to_string().trim_end().to_owned(),
-        };
-        check_keys(text, &toml::from_str(text).map_err(wrong)?)?;
-        toml::from_str(text).map_err(wrong)
+        check_keys(text, &toml::from_str(text)?)?;
+        Ok(toml::from_str(text)?)
     }
 
     /// Reads a recipe's file, a path or URI.
@@ -178,7 +176,7 @@ impl Recipe {
     pub fn open(file: &Path) -> Result<Self, BuildError> {
         let text = match elsewhere(file)? {
             Some(location) => Elsewhere::temporary().text(&location)?,
-            None => std::fs::read_to_string(file).map_err(|error| BuildError::read(file, error))?,
+            None => std::fs::read_to_string(file).reading(file)?,
         };
         Self::parse(&text)
     }

@@ -1,5 +1,6 @@
 //! A second of a texture as sound, for catalogues.
 
+use std::error::Error;
 use std::io::Cursor;
 
 use htex_host::Registry;
@@ -15,14 +16,13 @@ const RMS: f32 = 0.1;
 const FADE: usize = 200;
 
 /// Returns a second of the asset's first representation as a WAV of 16 bits, at the same loudness for all textures.
-pub(crate) fn sound(asset: &[u8], registry: &Registry) -> Result<Vec<u8>, String> {
-    let text = |error: &dyn std::fmt::Display| error.to_string();
-    let data = htex_format::Asset::from_bytes(asset).map_err(|e| text(&e))?;
+pub(crate) fn sound(asset: &[u8], registry: &Registry) -> Result<Vec<u8>, Box<dyn Error>> {
+    let data = htex_format::Asset::from_bytes(asset)?;
     let asset = Asset::with_registry(data, registry.clone());
     let options = VoiceOptions::default().with_rate_hz(f64::from(RATE_HZ));
-    let mut voice = asset.voice(&options).map_err(|e| text(&e))?;
+    let mut voice = asset.voice(&options)?;
     let mut samples = vec![0.0_f32; SAMPLES];
-    voice.render(&mut samples).map_err(|e| text(&e))?;
+    voice.render(&mut samples)?;
     let power: f32 = samples.iter().map(|x| x * x).sum::<f32>() / SAMPLES as f32;
     let gain = if power > 0.0 { RMS / power.sqrt() } else { 0.0 };
     let specification = hound::WavSpec {
@@ -32,14 +32,12 @@ pub(crate) fn sound(asset: &[u8], registry: &Registry) -> Result<Vec<u8>, String
         sample_format: hound::SampleFormat::Int,
     };
     let mut bytes = Cursor::new(Vec::new());
-    let mut writer = hound::WavWriter::new(&mut bytes, specification).map_err(|e| text(&e))?;
+    let mut writer = hound::WavWriter::new(&mut bytes, specification)?;
     for (i, sample) in samples.iter().enumerate() {
         let from_end = i.min(SAMPLES - 1 - i).min(FADE) as f32 / FADE as f32;
         let value = (sample * gain * from_end).clamp(-1.0, 1.0);
-        writer
-            .write_sample((value * 32_767.0) as i16)
-            .map_err(|e| text(&e))?;
+        writer.write_sample((value * 32_767.0) as i16)?;
     }
-    writer.finalize().map_err(|e| text(&e))?;
+    writer.finalize()?;
     Ok(bytes.into_inner())
 }

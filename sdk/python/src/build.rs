@@ -161,9 +161,7 @@ pub(crate) fn run_job<'py>(py: Python<'py>, key: &str, job: &str) -> PyResult<Bo
 
 fn raised(error: BuildError) -> PyErr {
     match error {
-        BuildError::Read { file, error } | BuildError::Write { file, error } => {
-            of_file(&file, &error)
-        }
+        BuildError::File(error) => of_file(&error.file, &error.error),
         other => Raised::new_err(other.to_string()),
     }
 }

@@ -7,9 +7,10 @@ mod processors;
 mod python;
 mod web;
 
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use anyhow::{Context, Result, bail, ensure};
 
 use crate::jobs::at_a_time;
 use crate::places::target;
@@ -18,7 +19,7 @@ use crate::places::target;
 struct Binding {
     name: &'static str,
     needs: &'static [Program],
-    test: fn(&Path) -> Result<(), String>,
+    test: fn(&Path) -> Result<()>,
 }
 
 /// A program and how to install it.
@@ -120,44 +121,43 @@ const PROOFS: [Binding; 2] = [
 ///
 /// # Errors
 /// A message with what is missing, or with the test that failed; its own output has been printed.
-pub fn test(names: &[&str]) -> Result<(), String> {
+pub fn test(names: &[&str]) -> Result<()> {
     let known = BINDINGS.map(|binding| binding.name);
     if let Some(name) = names.iter().find(|name| !known.contains(name)) {
-        return Err(format!(
-            "no binding `{name}`; there are {}",
-            known.join(", ")
-        ));
+        bail!("no binding `{name}`; there are {}", known.join(", "));
     }
     let named = |binding: &&Binding| names.is_empty() || names.contains(&binding.name);
     // Most of them wait for browsers and emulated processors, and each for its turn to compile.
     let tested = at_a_time(2, BINDINGS.iter().filter(named).collect(), Binding::test);
-    let failed: Vec<String> = tested.into_iter().filter_map(Result::err).collect();
-    match failed.is_empty() {
-        true => Ok(()),
-        false => Err(failed.join("\n")),
-    }
+    all_of(tested)
+}
+
+/// The errors of all of them as one.
+fn all_of(tested: Vec<Result<()>>) -> Result<()> {
+    let errors = tested.into_iter().filter_map(Result::err);
+    let errors: Vec<String> = errors.map(|error| format!("{error:#}")).collect();
+    ensure!(errors.is_empty(), "{}", errors.join("\n"));
+    Ok(())
 }
 
 /// Proves what tests only sample.
 ///
 /// # Errors
 /// As [`test`].
-pub(crate) fn prove(name: &str) -> Result<(), String> {
+pub(crate) fn prove(name: &str) -> Result<()> {
     let proof = PROOFS.iter().find(|proof| proof.name == name);
     proof.map_or(Ok(()), Binding::test)
 }
 
 impl Binding {
-    fn test(&self) -> Result<(), String> {
+    fn test(&self) -> Result<()> {
         let name = self.name;
         let missing: Vec<String> = self.needs.iter().filter_map(Program::missing).collect();
-        if !missing.is_empty() {
-            return Err(format!("{name}: {}", missing.join("; ")));
-        }
+        ensure!(missing.is_empty(), "{name}: {}", missing.join("; "));
         eprintln!("bindings: {name}");
         let folder = target().join("bindings").join(name);
         let tested = prepare(&folder).and_then(|()| (self.test)(&folder));
-        tested.map_err(|what| format!("{name}: {what}"))
+        tested.context(name)
     }
 }
 
@@ -179,47 +179,23 @@ impl Program {
 }
 
 /// An empty folder.
-fn prepare(folder: &Path) -> Result<(), String> {
-    let wrong = |error: std::io::Error| format!("{}: {error}", folder.display());
+fn prepare(folder: &Path) -> Result<()> {
     if folder.exists() {
-        std::fs::remove_dir_all(folder).map_err(wrong)?;
+        fs_err::remove_dir_all(folder)?;
     }
-    std::fs::create_dir_all(folder).map_err(wrong)
-}
-
-/// A program, its folder and its environment; arguments are added.
-pub(crate) fn program(name: impl AsRef<OsStr>, folder: &Path) -> Command {
-    let mut command = Command::new(name);
-    command.current_dir(folder);
-    command
-}
-
-/// Runs a program to its end.
-pub(crate) fn run(command: &mut Command) -> Result<(), String> {
-    let name = command.get_program().to_string_lossy().into_owned();
-    let status = command
-        .status()
-        .map_err(|error| format!("{name}: {error}"))?;
-    if status.success() {
-        return Ok(());
-    }
-    let arguments: Vec<_> = command.get_args().map(OsStr::to_string_lossy).collect();
-    Err(format!("{name} {}: {status}", arguments.join(" ")))
+    Ok(fs_err::create_dir_all(folder)?)
 }
 
 /// Copies a file to a folder under a name.
-fn copy(from: &Path, to: &Path) -> Result<(), String> {
-    let wrong = |error| format!("{}: {error}", from.display());
-    std::fs::copy(from, to).map(drop).map_err(wrong)
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    fs_err::copy(from, to)?;
+    Ok(())
 }
 
-pub(crate) fn files(folder: &Path) -> Result<Vec<PathBuf>, String> {
-    let wrong = |error: std::io::Error| format!("{}: {error}", folder.display());
-    let entries = std::fs::read_dir(folder).map_err(wrong)?;
-    let paths: Result<Vec<_>, _> = entries.map(|entry| entry.map(|e| e.path())).collect();
-    Ok(paths
-        .map_err(wrong)?
-        .into_iter()
-        .filter(|path| path.is_file())
-        .collect())
+pub(crate) fn files(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = fs_err::read_dir(folder)?;
+    let paths = entries
+        .map(|entry| Ok(entry?.path()))
+        .collect::<Result<Vec<_>>>()?;
+    Ok(paths.into_iter().filter(|path| path.is_file()).collect())
 }

@@ -3,13 +3,16 @@
 use std::path::Path;
 use std::process::Command;
 
+use anyhow::Result;
+
 use crate::places::workspace;
+use crate::programs::run;
 
 /// Compiles a source of the workspace to a module; the path of the module is absolute.
 ///
 /// # Errors
 /// A message of what is missing or of the compiler's status; its own output has been printed.
-pub fn build(source: &str, module: &Path) -> Result<(), String> {
+pub fn build(source: &str, module: &Path) -> Result<()> {
     let mut clang = Command::new("clang");
     clang.args([
         "--target=wasm32",
@@ -32,10 +35,5 @@ pub fn build(source: &str, module: &Path) -> Result<(), String> {
         clang.arg("-I").arg(workspace().join(include));
     }
     clang.arg("-o").arg(module).arg(workspace().join(source));
-    let status = clang.status().map_err(|error| format!("clang: {error}"))?;
-    if status.success() {
-        Ok(())
-    } else {
-        Err(format!("clang cannot compile {source}: {status}"))
-    }
+    run(&mut clang)
 }

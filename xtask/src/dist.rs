@@ -1,11 +1,14 @@
 //! Installs libhtex: libraries, headers, C#, pkg-config and CMake files.
 
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use anyhow::{Context, Result};
+use fs_err as fs;
+
 use crate::places::{cargo, target, workspace};
+use crate::programs::run;
 
 /// What is installed, and where.
 pub struct Dist {
@@ -35,26 +38,20 @@ const SYSTEM_LIBRARIES: &str = if cfg!(target_os = "macos") {
 ///
 /// # Errors
 /// A message with the file or the program.
-pub fn dist(options: &Dist) -> Result<(), String> {
+pub fn dist(options: &Dist) -> Result<()> {
     let version = version()?;
     let built = build(options.small)?;
     let prefix = &options.prefix;
     let libraries = prefix.join("lib");
-    let wrong = |path: &Path| {
-        let path = path.display().to_string();
-        move |error: io::Error| format!("{path}: {error}")
-    };
     let put = |from: &Path, to: &Path| {
-        let folder = to.parent().unwrap_or(prefix);
-        fs::create_dir_all(folder).map_err(wrong(folder))?;
-        fs::copy(from, to).map(drop).map_err(wrong(from))
+        fs::create_dir_all(to.parent().unwrap_or(prefix))?;
+        fs::copy(from, to)
     };
     let write = |to: PathBuf, text: String| {
-        let folder = to.parent().unwrap_or(prefix);
-        fs::create_dir_all(folder).map_err(wrong(folder))?;
-        fs::write(&to, text).map_err(wrong(&to))
+        fs::create_dir_all(to.parent().unwrap_or(prefix))?;
+        fs::write(to, text)
     };
-    put_library(&built, &libraries, &version).map_err(wrong(&libraries))?;
+    put_library(&built, &libraries, &version)?;
     put(&built.join("libhtex_c.a"), &libraries.join("libhtex.a"))?;
     let source = workspace().join("sdk/capi");
     for header in HEADERS {
@@ -77,11 +74,12 @@ pub fn dist(options: &Dist) -> Result<(), String> {
     write(
         libraries.join("cmake/htex/htexConfigVersion.cmake"),
         CMAKE_VERSION.replace("@VERSION@", &version),
-    )
+    )?;
+    Ok(())
 }
 
 /// Builds the libraries; returns their folder.
-fn build(small: bool) -> Result<PathBuf, String> {
+fn build(small: bool) -> Result<PathBuf> {
     let mut command = Command::new(cargo());
     command.args(["build", "--locked", "--package", "htex-capi"]);
     let profile = match small {
@@ -96,11 +94,8 @@ fn build(small: bool) -> Result<PathBuf, String> {
             "release"
         }
     };
-    let status = command.current_dir(workspace()).status();
-    match status.map_err(|error| format!("cannot run cargo: {error}"))? {
-        status if status.success() => Ok(target().join(profile)),
-        _ => Err("libhtex does not build".to_owned()),
-    }
+    run(command.current_dir(workspace()))?;
+    Ok(target().join(profile))
 }
 
 /// The shared library under its full name, with links of the shorter ones.
@@ -129,7 +124,7 @@ fn link(to: &str, at: &Path) -> io::Result<()> {
         Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
         _ => {}
     }
-    std::os::unix::fs::symlink(to, at)
+    fs_err::os::unix::fs::symlink(to, at)
 }
 
 #[cfg(not(unix))]
@@ -138,13 +133,12 @@ fn link(_: &str, _: &Path) -> io::Result<()> {
 }
 
 /// The version of the workspace.
-fn version() -> Result<String, String> {
-    let path = workspace().join("Cargo.toml");
-    let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+fn version() -> Result<String> {
+    let text = fs::read_to_string(workspace().join("Cargo.toml"))?;
     let version = text
         .lines()
         .find_map(|line| line.strip_prefix("version = "));
-    let version = version.ok_or("Cargo.toml has no version")?;
+    let version = version.context("Cargo.toml has no version")?;
     Ok(version.trim_matches('"').to_owned())
 }
 

@@ -2,10 +2,12 @@
 //! `cargo xtask generate` sets. The tests that do so are named `generated_…`.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::io;
 use std::path::Path;
-use std::process::{Command, ExitCode};
+use std::process::Command;
+
+use anyhow::Result;
+use fs_err as fs;
 
 /// Set to 1, it makes the tests write what they would compare.
 const VARIABLE: &str = "HTEX_GENERATE";
@@ -29,19 +31,15 @@ const TESTS: &[&str] = &[
 ];
 
 /// Writes all generated files. The whole workspace is built, with the features that `cargo test` builds it with.
-pub fn generate() -> ExitCode {
+///
+/// # Errors
+/// When a test of a generated file fails.
+pub fn generate() -> Result<()> {
     let mut cargo = Command::new(crate::places::cargo());
     cargo.args(["test", "--quiet", "--workspace"]);
     cargo.args(TESTS.iter().flat_map(|test| ["--test", test]));
     cargo.args(["--", "generated_"]).env(VARIABLE, "1");
-    match cargo.current_dir(crate::places::workspace()).status() {
-        Ok(status) if status.success() => ExitCode::SUCCESS,
-        Ok(_) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("xtask: cannot run cargo: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    crate::programs::run(cargo.current_dir(crate::places::workspace()))
 }
 
 /// A generated file: its path from the workspace's folder, and its bytes.

@@ -10,6 +10,7 @@ mod jobs;
 pub mod needs;
 mod places;
 pub mod plugins;
+pub mod programs;
 pub mod prove;
 mod wasm;
 pub mod web;

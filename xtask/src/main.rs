@@ -2,7 +2,9 @@
 
 use std::process::{Command, ExitCode};
 
-use xtask::dist::Dist;
+use anyhow::Result;
+use xtask::dist::{Dist, dist};
+use xtask::programs::run;
 use xtask::{fuzz, plugins};
 
 const TASKS: &str = "\
@@ -24,113 +26,63 @@ cargo xtask prove [NAME]  runs a proof that takes long; lists them without a nam
 cargo xtask generate  writes the generated files of spec/: schemas, pages, conformance files; and
                       the seeds of the fuzz targets";
 
-fn main() -> ExitCode {
+fn main() -> Result<ExitCode> {
     let tasks: Vec<String> = std::env::args().skip(1).collect();
     match tasks.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["plugins", ref options @ ..] => build_plugins(options),
-        ["bench", ref options @ ..] => xtask::bench::run(options),
-        ["fuzz", ref options @ ..] => fuzz_targets(options),
-        ["dist", ref options @ ..] => dist(options),
-        ["bindings", ref names @ ..] => done(xtask::bindings::test(names)),
-        ["prove", ref arguments @ ..] => done(xtask::prove::prove(arguments)),
-        ["web", "--out", out] => done(xtask::web::web(out.as_ref())),
-        ["ci"] => run("bash", &[".ci/run"]),
-        ["generate"] => xtask::generated::generate(),
-        _ => usage(),
+        ["plugins", ref options @ ..] => return build_plugins(options),
+        ["bench", ref options @ ..] => xtask::bench::bench(options)?,
+        ["fuzz", ref options @ ..] => match fuzz::Options::parse(options) {
+            Ok(options) => fuzz::fuzz(&options)?,
+            Err(error) => return Ok(usage(&format!("{error}\n"))),
+        },
+        ["dist", "--prefix", prefix] => install(prefix, false)?,
+        ["dist", "--prefix", prefix, "--small"] | ["dist", "--small", "--prefix", prefix] => {
+            install(prefix, true)?;
+        }
+        ["bindings", ref names @ ..] => xtask::bindings::test(names)?,
+        ["prove", ref arguments @ ..] => xtask::prove::prove(arguments)?,
+        ["web", "--out", out] => xtask::web::web(out.as_ref())?,
+        ["ci"] => {
+            let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+            run(Command::new("bash").arg(".ci/run").current_dir(workspace))?;
+        }
+        ["generate"] => xtask::generated::generate()?,
+        _ => return Ok(usage("")),
     }
+    Ok(ExitCode::SUCCESS)
 }
 
-fn usage() -> ExitCode {
-    eprintln!("{TASKS}");
+/// Prints what is wrong and the tasks.
+fn usage(problem: &str) -> ExitCode {
+    eprintln!("{problem}{TASKS}");
     ExitCode::from(2)
 }
 
-/// Fuzzes; fails when something was found.
-fn fuzz_targets(options: &[&str]) -> ExitCode {
-    let options = match fuzz::Options::parse(options) {
-        Ok(options) => options,
-        Err(error) => {
-            eprintln!("xtask: {error}");
-            return usage();
-        }
-    };
-    match fuzz::fuzz(&options) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("xtask: {error}");
-            ExitCode::FAILURE
-        }
-    }
-}
-
 /// Builds the models as the options say, and prints their folder.
-fn build_plugins(options: &[&str]) -> ExitCode {
+fn build_plugins(options: &[&str]) -> Result<ExitCode> {
     let (options, way) = match options {
         [rest @ .., "--wasm-toolchain", way] => (rest, Some(*way)),
         ["--wasm-toolchain", way, rest @ ..] => (rest, Some(*way)),
         all => (all, None),
     };
     if let Some(Err(error)) = way.map(plugins::check_way) {
-        eprintln!("xtask: {error}");
-        return ExitCode::from(2);
+        return Ok(usage(&format!("{error}\n")));
     }
     let wasm = || way.map_or_else(plugins::wasm, plugins::wasm_by);
-    let built = match options {
-        [] => plugins::native().and_then(|_| wasm()),
-        ["--native-only"] if way.is_none() => plugins::native(),
-        ["--wasm-only"] => wasm(),
-        _ => return usage(),
+    let folder = match options {
+        [] => plugins::native().and_then(|_| wasm())?,
+        ["--native-only"] if way.is_none() => plugins::native()?,
+        ["--wasm-only"] => wasm()?,
+        _ => return Ok(usage("")),
     };
-    match built {
-        Ok(folder) => {
-            println!("{}", folder.display());
-            ExitCode::SUCCESS
-        }
-        Err(error) => {
-            eprintln!("xtask: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    println!("{}", folder.display());
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Installs libhtex.
-fn dist(options: &[&str]) -> ExitCode {
-    let (prefix, small) = match *options {
-        ["--prefix", prefix] => (prefix, false),
-        ["--prefix", prefix, "--small"] | ["--small", "--prefix", prefix] => (prefix, true),
-        _ => return usage(),
-    };
-    let options = Dist {
+fn install(prefix: &str, small: bool) -> Result<()> {
+    dist(&Dist {
         prefix: prefix.into(),
         small,
-    };
-    done(xtask::dist::dist(&options))
-}
-
-fn done(result: Result<(), String>) -> ExitCode {
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("xtask: {error}");
-            ExitCode::FAILURE
-        }
-    }
-}
-
-/// Runs a program in the workspace's folder.
-fn run(program: &str, arguments: &[&str]) -> ExitCode {
-    let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-    match Command::new(program)
-        .args(arguments)
-        .current_dir(workspace)
-        .status()
-    {
-        Ok(status) if status.success() => ExitCode::SUCCESS,
-        Ok(_) => ExitCode::FAILURE,
-        Err(error) => {
-            eprintln!("xtask: cannot run {program}: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    })
 }

@@ -1,8 +1,9 @@
 //! Software that tests use if it is installed, beyond Rust and a C compiler. No test installs anything: `.ci/run` does.
 
-use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
+
+use fs_err as fs;
 
 /// Software without which a test is skipped.
 pub struct Need {

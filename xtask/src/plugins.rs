@@ -3,21 +3,21 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use anyhow::Result;
+
 use crate::needs;
 use crate::places::{cargo, target, workspace};
+use crate::programs::run;
 use crate::wasm::{PROFILE, TARGET, Toolchain};
 
 /// The models' short names, which are those of the folders of `plugins`, in the order of the alphabet.
 ///
 /// # Errors
 /// When the folder cannot be read.
-pub fn models() -> Result<Vec<String>, String> {
-    let folder = workspace().join("plugins");
-    let read = std::fs::read_dir(&folder).and_then(|all| {
-        all.map(|one| Ok(one?.file_name().to_string_lossy().into_owned()))
-            .collect::<std::io::Result<Vec<String>>>()
-    });
-    let mut models = read.map_err(|error| format!("{}: {error}", folder.display()))?;
+pub fn models() -> Result<Vec<String>> {
+    let folders = fs_err::read_dir(workspace().join("plugins"))?;
+    let names = folders.map(|one| Ok(one?.file_name().to_string_lossy().into_owned()));
+    let mut models = names.collect::<Result<Vec<String>>>()?;
     models.sort();
     Ok(models)
 }
@@ -27,7 +27,7 @@ pub fn models() -> Result<Vec<String>, String> {
 ///
 /// # Errors
 /// The model that could not be built; the compiler has printed the reason.
-pub fn native() -> Result<PathBuf, String> {
+pub fn native() -> Result<PathBuf> {
     let target = target();
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     for model in &models()? {
@@ -43,7 +43,7 @@ pub fn native() -> Result<PathBuf, String> {
 ///
 /// # Errors
 /// When no toolchain is found, with instructions; or the model that could not be built.
-pub fn wasm() -> Result<PathBuf, String> {
+pub fn wasm() -> Result<PathBuf> {
     wasm_by(&way())
 }
 
@@ -61,7 +61,7 @@ fn way() -> String {
 ///
 /// # Errors
 /// As [`wasm`], and when the name is unknown.
-pub fn wasm_by(way: &str) -> Result<PathBuf, String> {
+pub fn wasm_by(way: &str) -> Result<PathBuf> {
     let toolchain = Toolchain::find(way)?;
     for model in &models()? {
         let (cargo, target) = toolchain.cargo(&target());
@@ -82,7 +82,7 @@ pub fn wasm_by(way: &str) -> Result<PathBuf, String> {
 ///
 /// # Errors
 /// The known names, when the name is unknown.
-pub fn check_way(way: &str) -> Result<(), String> {
+pub fn check_way(way: &str) -> Result<()> {
     Toolchain::check_way(way)
 }
 
@@ -102,32 +102,25 @@ pub fn wasm_if_there() -> Option<PathBuf> {
     if !needs::WASM_TARGET.met(Toolchain::find(&way()).is_ok()) {
         return None;
     }
-    Some(wasm().unwrap_or_else(|error| panic!("{error}")))
+    Some(wasm().unwrap_or_else(|error| panic!("{error:#}")))
 }
 
-fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Result<(), String> {
+fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Result<()> {
     let package = format!("htex-{model}");
-    let status = cargo
+    run(cargo
         .args(["rustc", "--quiet", "--lib", "--package", &package])
         .args(more)
         .args(["--features", "plugin", "--crate-type", "cdylib"])
         .env("CARGO_TARGET_DIR", target)
-        .current_dir(workspace())
-        .status();
-    match status {
-        Ok(status) if status.success() => Ok(()),
-        Ok(_) => Err(format!("{package} could not be built")),
-        Err(error) => Err(format!("cannot run cargo: {error}")),
-    }
+        .current_dir(workspace()))
 }
 
 /// Copies a built file to the folder of plugins, by a temporary name and a rename.
-fn place(built: &Path, name: &str) -> Result<(), String> {
+fn place(built: &Path, name: &str) -> Result<()> {
     let (folder, beside) = (folder(), format!("{name}.{}", std::process::id()));
-    std::fs::create_dir_all(&folder)
-        .and_then(|()| std::fs::copy(built, folder.join(&beside)))
-        .and_then(|_| std::fs::rename(folder.join(&beside), folder.join(name)))
-        .map_err(|error| format!("cannot copy {}: {error}", built.display()))
+    fs_err::create_dir_all(&folder)?;
+    fs_err::copy(built, folder.join(&beside))?;
+    Ok(fs_err::rename(folder.join(&beside), folder.join(name))?)
 }
 
 fn folder() -> PathBuf {

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use anyhow::{Context, Result, bail};
+
 /// The target of modules.
 pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 
@@ -31,23 +33,23 @@ pub(crate) enum Toolchain {
 
 impl Toolchain {
     /// The toolchain of this name, or the first that is installed. Nothing is installed.
-    pub(crate) fn find(way: &str) -> Result<Self, String> {
+    pub(crate) fn find(way: &str) -> Result<Self> {
         Self::check_way(way)?;
         let found = match way {
             "installed" => installed(),
             "debian" => debian(),
             _ => installed().or_else(debian),
         };
-        found.ok_or_else(|| NO_TOOLCHAIN.to_owned())
+        found.context(NO_TOOLCHAIN)
     }
 
     /// Whether the name of a toolchain is known.
-    pub(crate) fn check_way(way: &str) -> Result<(), String> {
+    pub(crate) fn check_way(way: &str) -> Result<()> {
         match way {
             "auto" | "installed" | "debian" => Ok(()),
-            other => Err(format!(
-                "unknown WASM toolchain `{other}`; known are auto, installed and debian"
-            )),
+            other => {
+                bail!("unknown WASM toolchain `{other}`; known are auto, installed and debian")
+            }
         }
     }
 

@@ -1,11 +1,13 @@
 //! Builds the npm package of `sdk/web`.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use anyhow::{Context, Result};
+use fs_err as fs;
+
 use crate::places::{cargo, target, workspace};
+use crate::programs::run;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
@@ -38,16 +40,11 @@ const PROCESSOR: [&str; 5] = [
 ///
 /// # Errors
 /// A message with the file or the program.
-pub fn web(out: &Path) -> Result<(), String> {
+pub fn web(out: &Path) -> Result<()> {
     let source = workspace().join("sdk/web");
     let library = library()?;
-    let wrong = |path: PathBuf| move |error: io::Error| format!("{}: {error}", path.display());
-    fs::create_dir_all(out).map_err(wrong(out.to_owned()))?;
-    let copy = |from: PathBuf, name: &str| {
-        fs::copy(&from, out.join(name))
-            .map(drop)
-            .map_err(wrong(from))
-    };
+    fs::create_dir_all(out)?;
+    let copy = |from: PathBuf, name: &str| fs::copy(from, out.join(name));
     for name in COPIED {
         copy(source.join("src").join(name), name)?;
     }
@@ -57,17 +54,15 @@ pub fn web(out: &Path) -> Result<(), String> {
     copy(library, "htex.wasm")?;
     let mut processor = String::new();
     for name in PROCESSOR {
-        let path = source.join("src").join(name);
-        let text = fs::read_to_string(&path).map_err(wrong(path))?;
-        processor += &without_modules(&text);
+        processor += &without_modules(&fs::read_to_string(source.join("src").join(name))?);
     }
-    let path = out.join("processor.js");
-    fs::write(&path, processor).map_err(wrong(path))
+    Ok(fs::write(out.join("processor.js"), processor)?)
 }
 
 /// Builds the library for WASM; returns its file.
-fn library() -> Result<PathBuf, String> {
-    let status = Command::new(cargo())
+fn library() -> Result<PathBuf> {
+    let mut build = Command::new(cargo());
+    build
         .args(["build", "--locked", "--package", "htex-capi", "--lib"])
         .args(["--profile", "small", "--no-default-features"])
         .args(["--features", "library"])
@@ -76,14 +71,8 @@ fn library() -> Result<PathBuf, String> {
             "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
             "-Ctarget-feature=+simd128",
         )
-        .current_dir(workspace())
-        .status()
-        .map_err(|error| format!("cargo: {error}"))?;
-    if !status.success() {
-        return Err(format!(
-            "the library for WASM cannot be built; `rustup target add {TARGET}` brings its target"
-        ));
-    }
+        .current_dir(workspace());
+    run(&mut build).context("`rustup target add` brings the target")?;
     Ok(target().join(TARGET).join("small/htex_c.wasm"))
 }
 

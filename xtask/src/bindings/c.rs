@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
-use super::{program, run};
+use anyhow::{Result, bail, ensure};
+
 use crate::dist::{Dist, dist};
 use crate::places::workspace;
+use crate::programs::{program, run};
 
 /// Most bytes of the small build's shared library; the goal is 1.5 MB (docs/languages.md says what takes the rest).
 const SMALL: u64 = 2_400_000;
@@ -13,10 +15,9 @@ const CMAKE: &str = "cmake_minimum_required(VERSION 3.16)\nproject(app C)\nfind_
                      add_executable(app main.c)\ntarget_link_libraries(app PRIVATE htex::htex m)\n\
                      add_executable(app_static main.c)\ntarget_link_libraries(app_static PRIVATE htex::static m)\n";
 
-pub(super) fn test(folder: &Path) -> Result<(), String> {
-    let folder = std::fs::canonicalize(folder).map_err(|error| error.to_string())?;
-    let capi =
-        std::fs::canonicalize(workspace().join("sdk/capi")).map_err(|error| error.to_string())?;
+pub(super) fn test(folder: &Path) -> Result<()> {
+    let folder = fs_err::canonicalize(folder)?;
+    let capi = fs_err::canonicalize(workspace().join("sdk/capi"))?;
     let asset = capi.join("../../examples/scenes/vinyl.htex");
     let install = |name: &str, small| {
         let prefix = folder.join(name);
@@ -27,13 +28,8 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
         .map(|()| prefix)
     };
     let (whole, small) = (install("whole", false)?, install("small", true)?);
-    let write = |name: &str, text: &str| {
-        std::fs::write(folder.join(name), text).map_err(|error| format!("{name}: {error}"))
-    };
-    write("CMakeLists.txt", CMAKE)?;
-    let source =
-        std::fs::read_to_string(capi.join("examples/play.c")).map_err(|error| error.to_string())?;
-    write("main.c", &source)?;
+    fs_err::write(folder.join("CMakeLists.txt"), CMAKE)?;
+    fs_err::copy(capi.join("examples/play.c"), folder.join("main.c"))?;
     let played = |name: &str, program_name: &Path, prefix: &Path| {
         let out = folder.join(format!("{name}.f32"));
         let mut play = program(program_name, &folder);
@@ -41,7 +37,7 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
             .arg(&out)
             .env("LD_LIBRARY_PATH", prefix.join("lib"));
         run(&mut play)?;
-        std::fs::read(&out).map_err(|error| error.to_string())
+        anyhow::Ok(fs_err::read(&out)?)
     };
     let mut samples = Vec::new();
     for (name, prefix) in [("whole", &whole), ("small", &small)] {
@@ -64,7 +60,7 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
         samples.push(played(name, &folder.join("built").join(name), &whole)?);
     }
     if samples.windows(2).any(|pair| pair[0] != pair[1]) || samples[0].len() != 4 * 64 * 625 {
-        return Err("the builds render different samples".to_owned());
+        bail!("the builds render different samples");
     }
     let line =
         "cc -std=c11 -Wall -Werror $0 $(pkg-config --cflags --libs htex sdl2) -lm -o play_sdl";
@@ -78,15 +74,9 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
         .env("SDL_AUDIODRIVER", "dummy")
         .env("LD_LIBRARY_PATH", whole.join("lib")))?;
     let library = small.join("lib/libhtex.so");
-    let bytes = std::fs::metadata(&library)
-        .map_err(|error| error.to_string())?
-        .len();
+    let bytes = fs_err::metadata(&library)?.len();
     eprintln!("bindings: libhtex without the engine and scenes: {bytes} bytes");
-    if bytes > SMALL {
-        return Err(format!(
-            "{}: {bytes} bytes; at most {SMALL}",
-            library.display()
-        ));
-    }
+    let library = library.display();
+    ensure!(bytes <= SMALL, "{library}: {bytes} bytes; at most {SMALL}");
     Ok(())
 }

@@ -4,9 +4,12 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
 
-use super::{copy, program, run};
+use anyhow::{Context, Result};
+
+use super::copy;
 use crate::dist::{Dist, dist};
 use crate::places::{cargo, target, workspace};
+use crate::programs::{program, run};
 
 const ROUNDS: usize = 15;
 const MODELS: [&str; 2] = ["ar", "sbeta"];
@@ -24,9 +27,9 @@ struct Cost {
     most: f64,
 }
 
-pub(super) fn test(folder: &Path) -> Result<(), String> {
-    let folder = std::fs::canonicalize(folder).map_err(|error| error.to_string())?;
-    let workspace = std::fs::canonicalize(workspace()).map_err(|error| error.to_string())?;
+pub(super) fn test(folder: &Path) -> Result<()> {
+    let folder = fs_err::canonicalize(folder)?;
+    let workspace = fs_err::canonicalize(workspace())?;
     let asset = workspace.join("examples/scenes/vinyl.htex");
     let (rust, all) = programs(&folder, &workspace)?;
     for model in MODELS {
@@ -59,21 +62,21 @@ fn time_ns(
     model: &str,
     asset: &Path,
     folder: &Path,
-) -> Result<f64, String> {
+) -> Result<f64> {
     let mut measured = program(&command[0], folder);
     measured.args(&command[1..]).arg(asset).arg(model);
     measured.arg(samples.to_string());
     measured.env("LD_LIBRARY_PATH", folder.join("prefix/lib"));
     measured.env("HTEX_PACKAGE", folder.join("htex"));
-    let output = measured.output().map_err(|error| error.to_string())?;
+    let output = measured.output()?;
     let printed = String::from_utf8_lossy(&output.stdout);
     let errors = String::from_utf8_lossy(&output.stderr);
-    let wrong = |_| format!("{command:?}: {printed}{errors}");
-    printed.trim().parse().map_err(wrong)
+    let time = printed.trim().parse();
+    time.with_context(|| format!("{command:?}: {printed}{errors}"))
 }
 
 /// Builds the programs: the command in Rust, and the other languages.
-fn programs(folder: &Path, workspace: &Path) -> Result<(Vec<OsString>, Vec<Cost>), String> {
+fn programs(folder: &Path, workspace: &Path) -> Result<(Vec<OsString>, Vec<Cost>)> {
     let mut build = Command::new(cargo());
     build.args([
         "build",
@@ -113,8 +116,7 @@ fn programs(folder: &Path, workspace: &Path) -> Result<(Vec<OsString>, Vec<Cost>
         &folder.join("block.mjs"),
     )?;
     let python = super::python::environment(folder, "test")?;
-    let rust = std::fs::canonicalize(target().join("release/examples/block"));
-    let rust = rust.map_err(|error| error.to_string())?;
+    let rust = fs_err::canonicalize(target().join("release/examples/block"))?;
     let words = |words: &[&str]| words.iter().map(OsString::from).collect();
     let cost = |language, command, samples, most| Cost {
         language,

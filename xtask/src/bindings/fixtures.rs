@@ -3,8 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use super::{copy, files, program, run};
+use anyhow::Result;
+
+use super::{copy, files};
 use crate::places::{cargo, target, workspace};
+use crate::programs::{program, run};
 use crate::{c_module, plugins};
 
 /// Length, rate and seed of the samples, and their motion, which single precision represents.
@@ -15,7 +18,7 @@ const SPEED: &str = "80";
 const FORCE: &str = "0.5";
 
 /// The `htex` command, built as the tests of the workspace build it: with the features of the whole workspace, so that nothing is built twice.
-pub(super) fn command() -> Result<PathBuf, String> {
+pub(super) fn command() -> Result<PathBuf> {
     let mut build = Command::new(cargo());
     run(build
         .args(["build", "--locked", "--workspace", "--bin", "htex"])
@@ -30,8 +33,8 @@ const COPIES: usize = 999;
 /// Writes an asset of six models (`vinyl.htex`), one that brings its model along (`bursts.htex`), their samples at 48 kHz, the
 /// spectrum of Bands, what the command tells of the asset, a library (`many.htexlib`) and its list, the models as modules, and a
 /// module that does not return.
-pub(super) fn write(folder: &Path) -> Result<(), String> {
-    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+pub(super) fn write(folder: &Path) -> Result<()> {
+    fs_err::create_dir_all(folder)?;
     let command = command()?;
     let htex = |arguments: &[&str]| {
         run(program(&command, folder)
@@ -83,9 +86,10 @@ pub(super) fn write(folder: &Path) -> Result<(), String> {
     }
     synth("bursts.htex", "bursts")?;
     let printed = |arguments: &[&str], out: &str| {
-        let file = folder.join(out);
-        let file = std::fs::File::create(&file).map_err(|error| format!("{out}: {error}"))?;
-        run(program(&command, folder).args(arguments).stdout(file))
+        let file = fs_err::File::create(folder.join(out))?;
+        run(program(&command, folder)
+            .args(arguments)
+            .stdout(file.into_file()))
     };
     let spectrum = ["spectrum", "vinyl.htex", "--model", "bands", "--json"];
     printed(&spectrum, "spectrum.json")?;
@@ -103,9 +107,9 @@ pub(super) fn write(folder: &Path) -> Result<(), String> {
 }
 
 /// Copies the assets to the folder `many`; the module of `bursts.htex` is then in the library twice.
-fn copy_many(folder: &Path) -> Result<(), String> {
+fn copy_many(folder: &Path) -> Result<()> {
     let floor = folder.join("many/floor");
-    std::fs::create_dir_all(&floor).map_err(|error| format!("{}: {error}", floor.display()))?;
+    fs_err::create_dir_all(&floor)?;
     for i in 0..COPIES {
         copy(
             &folder.join("vinyl.htex"),

@@ -4,10 +4,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use super::{files, fixtures, program, run};
+use anyhow::{Context, Result, ensure};
+
+use super::{all_of, files, fixtures};
 use crate::jobs::at_a_time;
 use crate::places::{cargo, target, workspace};
 use crate::plugins::models;
+use crate::programs::{program, run};
 
 /// Another architecture that the command is built for.
 const AARCH64: &str = "aarch64-unknown-linux-musl";
@@ -18,18 +21,18 @@ const X86: [&str; 3] = ["Haswell-noTSX", "SandyBridge", "Nehalem"];
 const SURFACES: [&str; 3] = ["vinyl", "corrugated-paper", "coarse-fabric"];
 
 /// With one surface.
-pub(super) fn sample(folder: &Path) -> Result<(), String> {
+pub(super) fn sample(folder: &Path) -> Result<()> {
     same(folder, &SURFACES[..1])
 }
 
-pub(super) fn all(folder: &Path) -> Result<(), String> {
+pub(super) fn all(folder: &Path) -> Result<()> {
     same(folder, &SURFACES)
 }
 
-fn same(folder: &Path, surfaces: &[&str]) -> Result<(), String> {
-    let folder = std::fs::canonicalize(folder).map_err(|error| error.to_string())?;
+fn same(folder: &Path, surfaces: &[&str]) -> Result<()> {
+    let folder = fs_err::canonicalize(folder)?;
     let native = fixtures::command()?;
-    let native = std::fs::canonicalize(&native).map_err(|error| error.to_string())?;
+    let native = fs_err::canonicalize(&native)?;
     let expected = written(
         &folder.join("native"),
         std::slice::from_ref(&native),
@@ -60,23 +63,17 @@ fn same(folder: &Path, surfaces: &[&str]) -> Result<(), String> {
             expected.len(),
             other.len()
         );
-        match other.is_empty() {
-            true => Ok(()),
-            false => Err(format!("{name}: {} differ", other.join(", "))),
-        }
+        ensure!(other.is_empty(), "{name}: {} differ", other.join(", "));
+        Ok(())
     });
-    let differ: Vec<String> = compared.into_iter().filter_map(Result::err).collect();
-    match differ.is_empty() {
-        true => Ok(()),
-        false => Err(differ.join("; ")),
-    }
+    all_of(compared)
 }
 
 /// Builds the command for another architecture, with the linker of the Rust toolchain.
-fn aarch64(folder: &Path) -> Result<PathBuf, String> {
+fn aarch64(folder: &Path) -> Result<PathBuf> {
     // musl has all of libdl in libc, and the target comes without the empty library of that name.
     let empty = folder.join("libdl.a");
-    std::fs::write(&empty, "!<arch>\n").map_err(|error| format!("{}: {error}", empty.display()))?;
+    fs_err::write(&empty, "!<arch>\n")?;
     let mut build = Command::new(cargo());
     build
         .args([
@@ -94,10 +91,9 @@ fn aarch64(folder: &Path) -> Result<PathBuf, String> {
         )
         .env("CC_aarch64_unknown_linux_musl", "clang")
         .current_dir(workspace());
-    run(&mut build)
-        .map_err(|error| format!("{error}; rustup target add {AARCH64} brings the target"))?;
+    run(&mut build).context("`rustup target add` brings the target")?;
     let built = target().join(AARCH64).join("quick/htex");
-    std::fs::canonicalize(built).map_err(|error| error.to_string())
+    Ok(fs_err::canonicalize(built)?)
 }
 
 /// All files that a command writes: recordings, spectra, assets, samples of all models at several motions, and of a scene.
@@ -105,15 +101,14 @@ fn written(
     folder: &Path,
     command: &[PathBuf],
     surfaces: &[&str],
-) -> Result<BTreeMap<String, Vec<u8>>, String> {
-    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+) -> Result<BTreeMap<String, Vec<u8>>> {
+    fs_err::create_dir_all(folder)?;
     let htex = |arguments: &[&str], out: Option<&str>| {
         let mut htex = program(&command[0], folder);
         htex.args(&command[1..]).args(arguments);
-        let path = out.map(|out| folder.join(out));
-        let file = path.map(std::fs::File::create).transpose();
-        let file = file.map_err(|error| format!("{}: {error}", folder.display()))?;
-        run(htex.stdout(file.map_or_else(Stdio::null, Stdio::from)))
+        let file = out.map(|out| fs_err::File::create(folder.join(out)));
+        let file = file.transpose()?;
+        run(htex.stdout(file.map_or_else(Stdio::null, |file| file.into_file().into())))
     };
     for surface in surfaces {
         let [csv, asset] = ["csv", "htex"].map(|kind| format!("{surface}.{kind}"));
@@ -168,7 +163,7 @@ fn written(
     ];
     htex(&[&burg[..], &["-o", "sandpaper.htex"]].concat(), None)?;
     let scene = workspace().join("examples/scenes/two-swatches.scene.json");
-    let scene = std::fs::canonicalize(scene).map_err(|error| error.to_string())?;
+    let scene = fs_err::canonicalize(scene)?;
     htex(
         &["render", &scene.to_string_lossy(), "-o", "scene.wav"],
         None,
@@ -179,8 +174,7 @@ fn written(
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned();
-        let bytes = std::fs::read(&file).map_err(|error| format!("{}: {error}", file.display()))?;
-        Ok::<_, String>((name, bytes))
+        Ok((name, fs_err::read(&file)?))
     };
     files(folder)?.into_iter().map(read).collect()
 }

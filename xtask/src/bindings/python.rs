@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{files, program, run};
-use crate::places::{target, workspace};
+use anyhow::{Context, Result};
 
-pub(super) fn test(folder: &Path) -> Result<(), String> {
-    let folder = std::fs::canonicalize(folder).map_err(|error| error.to_string())?;
+use super::files;
+use crate::places::{target, workspace};
+use crate::programs::{program, run};
+
+pub(super) fn test(folder: &Path) -> Result<()> {
+    let folder = fs_err::canonicalize(folder)?;
     let python = environment(&folder, "test,lab")?;
     // Outside the sources, so that the installed package is imported; its README's examples are among the tests.
     let tests = package()?.join("tests");
@@ -17,7 +20,7 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
 }
 
 /// Builds the wheel and installs it, with the dependencies of an extra, into an empty environment; returns its interpreter.
-pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf, String> {
+pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf> {
     let venv = folder.join("venv");
     run(program("python3", folder).args(["-m", "venv"]).arg(&venv))?;
     let python = venv.join("bin/python");
@@ -28,17 +31,17 @@ pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf, String>
         pip
     };
     // What the command and libhtex have built is not built again.
-    let built = std::path::absolute(target()).map_err(|error| error.to_string())?;
+    let built = std::path::absolute(target())?;
     run(pip(&["wheel", "--no-deps", "--wheel-dir", "wheel"])
         .arg(package()?)
         .env("CARGO_TARGET_DIR", built))?;
     let wheels = files(&folder.join("wheel"))?;
-    let wheel = wheels.first().ok_or("pip wheel wrote no wheel")?;
+    let wheel = wheels.first().context("pip wheel wrote no wheel")?;
     run(pip(&["install"]).arg(format!("{}[{extra}]", wheel.display())))?;
     Ok(python)
 }
 
 /// The folder of the sources.
-fn package() -> Result<PathBuf, String> {
-    std::fs::canonicalize(workspace().join("sdk/python")).map_err(|error| error.to_string())
+fn package() -> Result<PathBuf> {
+    Ok(fs_err::canonicalize(workspace().join("sdk/python"))?)
 }

@@ -2,17 +2,20 @@
 
 use std::path::Path;
 
-use super::{CHROMIUM, copy, files, fixtures, program, run};
-use crate::places::workspace;
+use anyhow::Result;
 
-pub(super) fn test(folder: &Path) -> Result<(), String> {
-    let folder = std::fs::canonicalize(folder).map_err(|error| error.to_string())?;
+use super::{CHROMIUM, copy, files, fixtures};
+use crate::places::workspace;
+use crate::programs::{program, run};
+
+pub(super) fn test(folder: &Path) -> Result<()> {
+    let folder = fs_err::canonicalize(folder)?;
     let (package, fixtures) = (folder.join("htex"), folder.join("fixtures"));
     crate::web::web(&package)?;
     fixtures::write(&fixtures)?;
     catalogue(&fixtures, &package)?;
     let tests = folder.join("tests");
-    std::fs::create_dir_all(&tests).map_err(|error| error.to_string())?;
+    fs_err::create_dir_all(&tests)?;
     for file in files(&workspace().join("sdk/web/tests"))? {
         copy(&file, &tests.join(file.file_name().unwrap_or_default()))?;
     }
@@ -45,19 +48,16 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
         ])
         .env("HTEX_PACKAGE", &package)
         .env("HTEX_FIXTURES", &fixtures)
-        .env(
-            "HTEX_EXAMPLE",
-            std::fs::canonicalize(example).map_err(|error| error.to_string())?,
-        )
+        .env("HTEX_EXAMPLE", fs_err::canonicalize(example)?)
         .env("HTEX_CHROMIUM", which(chromium)))
 }
 
 /// Builds a library whose catalogue plays textures by the package.
-fn catalogue(fixtures: &Path, package: &Path) -> Result<(), String> {
+fn catalogue(fixtures: &Path, package: &Path) -> Result<()> {
     let recipe = "[library]\nname = \"surfaces\"\n[[textures]]\nrecordings = \"vinyl.csv\"\nmodels = [\"bands\"]\n\
                   license = \"CC0-1.0\"\nat = { speed_mm_s = 80, force_n = 0.5 }\n";
     let file = fixtures.join("library.toml");
-    std::fs::write(&file, recipe).map_err(|error| format!("{}: {error}", file.display()))?;
+    fs_err::write(&file, recipe)?;
     run(program(&fixtures::command()?, fixtures)
         .args([
             "build",

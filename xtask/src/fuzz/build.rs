@@ -3,6 +3,10 @@
 use std::path::PathBuf;
 use std::process::Command;
 
+use anyhow::{Context, Result};
+
+use crate::programs::run;
+
 use super::{Options, folder};
 
 /// Coverage counters, as cargo-fuzz has them.
@@ -12,7 +16,7 @@ const COVERAGE: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-l
     -Cllvm-args=-sanitizer-coverage-trace-compares --cfg fuzzing -Ccodegen-units=1";
 
 /// Builds all programs; returns their folder.
-pub(super) fn build(options: &Options) -> Result<PathBuf, String> {
+pub(super) fn build(options: &Options) -> Result<PathBuf> {
     let host = host()?;
     let (flags, place) = match options.address {
         true => (format!("{COVERAGE} -Zsanitizer=address"), "address"),
@@ -34,19 +38,16 @@ pub(super) fn build(options: &Options) -> Result<PathBuf, String> {
         .arg(&place)
         .env("RUSTFLAGS", flags)
         .current_dir(folder());
-    match cargo.status() {
-        Ok(status) if status.success() => Ok(place.join(host).join("release")),
-        Ok(_) if options.address => Err(
+    run(&mut cargo).context(match options.address {
+        true => {
             "the targets cannot be built with the address sanitizer; it needs a nightly toolchain: \
              `rustup toolchain install nightly --profile minimal`, or leave --address out"
-                .to_owned(),
-        ),
-        Ok(_) => Err(
+        }
+        false => {
             "the targets cannot be built; libFuzzer needs a C++ compiler (`apt-get install g++`)"
-                .to_owned(),
-        ),
-        Err(error) => Err(format!("cannot run cargo: {error}")),
-    }
+        }
+    })?;
+    Ok(place.join(host).join("release"))
 }
 
 /// The cargo that runs this task, or the nightly one.
@@ -73,14 +74,14 @@ fn target_folder() -> PathBuf {
 }
 
 /// The triple of this machine.
-fn host() -> Result<String, String> {
+fn host() -> Result<String> {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let output = Command::new(rustc)
         .arg("-vV")
         .output()
-        .map_err(|error| format!("cannot run rustc: {error}"))?;
+        .context("cannot run rustc")?;
     let text = String::from_utf8_lossy(&output.stdout);
     let host = text.lines().find_map(|line| line.strip_prefix("host: "));
-    host.map(str::to_owned)
-        .ok_or_else(|| "rustc does not say what it builds for".to_owned())
+    let host = host.context("rustc does not say what it builds for")?;
+    Ok(host.to_owned())
 }

@@ -12,16 +12,17 @@ mod run;
 
 use std::path::{Path, PathBuf};
 
+use anyhow::{Result, bail, ensure};
 pub use options::Options;
 
 use crate::jobs::at_a_time;
 use report::Outcome;
 
-/// Builds and runs the chosen targets; true when nothing was found.
+/// Builds and runs the chosen targets.
 ///
 /// # Errors
-/// When the programs cannot be built or run.
-pub fn fuzz(options: &Options) -> Result<bool, String> {
+/// When the programs cannot be built or run, or something was found.
+pub fn fuzz(options: &Options) -> Result<()> {
     let targets = chosen(&options.targets)?;
     let programs = build::build(options)?;
     println!("{}", report::HEAD);
@@ -30,9 +31,11 @@ pub fn fuzz(options: &Options) -> Result<bool, String> {
         println!("{}", outcome.line());
         Ok(outcome)
     });
-    let outcomes: Vec<Outcome> = outcomes.into_iter().collect::<Result<_, String>>()?;
+    let outcomes: Vec<Outcome> = outcomes.into_iter().collect::<Result<_>>()?;
     print!("{}", report::end(&outcomes));
-    Ok(outcomes.iter().all(|outcome| outcome.finding.is_none()))
+    let clean = outcomes.iter().all(|outcome| outcome.finding.is_none());
+    ensure!(clean, "fuzzing found something");
+    Ok(())
 }
 
 /// The folder `fuzz`.
@@ -42,9 +45,8 @@ fn folder() -> PathBuf {
 }
 
 /// The targets of these names, or all: the files in `fuzz/fuzz_targets`.
-fn chosen(wanted: &[String]) -> Result<Vec<String>, String> {
-    let place = folder().join("fuzz_targets");
-    let files = std::fs::read_dir(&place).map_err(|e| format!("{}: {e}", place.display()))?;
+fn chosen(wanted: &[String]) -> Result<Vec<String>> {
+    let files = fs_err::read_dir(folder().join("fuzz_targets"))?;
     let name = |path: PathBuf| Some(path.file_stem()?.to_str()?.to_owned());
     let mut all: Vec<String> = files
         .flatten()
@@ -54,11 +56,8 @@ fn chosen(wanted: &[String]) -> Result<Vec<String>, String> {
     if wanted.is_empty() {
         return Ok(all);
     }
-    match wanted.iter().find(|name| !all.contains(name)) {
-        None => Ok(wanted.to_vec()),
-        Some(name) => Err(format!(
-            "unknown target {name}; known are {}",
-            all.join(", ")
-        )),
+    if let Some(name) = wanted.iter().find(|name| !all.contains(name)) {
+        bail!("unknown target {name}; known are {}", all.join(", "));
     }
+    Ok(wanted.to_vec())
 }

@@ -1,5 +1,7 @@
 //! Options of `cargo xtask fuzz`.
 
+use anyhow::{Context, Result, bail};
+
 /// Default time of a target, seconds.
 const SECONDS: u64 = 60;
 
@@ -23,7 +25,7 @@ impl Options {
     ///
     /// # Errors
     /// The invalid argument.
-    pub fn parse(arguments: &[&str]) -> Result<Self, String> {
+    pub fn parse(arguments: &[&str]) -> Result<Self> {
         let mut options = Self {
             targets: Vec::new(),
             seconds: None,
@@ -39,7 +41,7 @@ impl Options {
                 "--executions" => options.executions = Some(number()?),
                 "--jobs" => options.jobs = number()?.min(64) as usize,
                 "--address" => options.address = true,
-                _ if argument.starts_with('-') => return Err(format!("{argument} is unknown")),
+                _ if argument.starts_with('-') => bail!("{argument} is unknown"),
                 _ => options.targets.push(argument.to_owned()),
             }
         }
@@ -50,11 +52,11 @@ impl Options {
     }
 }
 
-fn number(name: &str, value: Option<&&str>) -> Result<u64, String> {
+fn number(name: &str, value: Option<&&str>) -> Result<u64> {
     let number = value.and_then(|text| text.parse().ok());
     number
         .filter(|number| *number > 0)
-        .ok_or_else(|| format!("{name} takes a whole number from 1"))
+        .with_context(|| format!("{name} takes a whole number from 1"))
 }
 
 #[cfg(test)]
@@ -82,12 +84,10 @@ mod tests {
             jobs: 1,
             address: true,
         };
-        assert_eq!(options, Ok(expected));
-        assert_eq!(Options::parse(&[]).map(|o| o.seconds), Ok(Some(SECONDS)));
-        assert_eq!(
-            Options::parse(&["--executions", "9"]).map(|o| o.seconds),
-            Ok(None)
-        );
+        assert_eq!(options.ok(), Some(expected));
+        let seconds = |options: &[&str]| Options::parse(options).ok().map(|o| o.seconds);
+        assert_eq!(seconds(&[]), Some(Some(SECONDS)));
+        assert_eq!(seconds(&["--executions", "9"]), Some(None));
         for wrong in [
             &["--seconds"][..],
             &["--seconds", "0"],

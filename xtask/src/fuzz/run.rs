@@ -1,8 +1,10 @@
 //! Running one fuzz target.
 
-use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use anyhow::{Context, Result};
+use fs_err::{self as fs, File};
 
 use super::report::Outcome;
 use super::{Options, folder};
@@ -15,13 +17,12 @@ const TIMEOUT_S: u32 = 10;
 const MEMORY_MIB: u32 = 1024;
 
 /// Runs a target; its output goes to `fuzz/logs`.
-pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Outcome, String> {
+pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Outcome> {
     let at = |kind: &str| folder().join(kind).join(target);
     let (corpus, artifacts) = (at("corpus"), at("artifacts"));
     let log = folder().join("logs").join(format!("{target}.log"));
-    let failed = |error: std::io::Error| format!("{target}: {error}");
     for place in [&corpus, &artifacts, &folder().join("logs")] {
-        fs::create_dir_all(place).map_err(failed)?;
+        fs::create_dir_all(place)?;
     }
     let before = found(&artifacts);
     let mut program = Command::new(programs.join(target));
@@ -47,10 +48,14 @@ pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Ou
     if dictionary.exists() {
         program.arg(format!("-dict={}", dictionary.display()));
     }
-    let file = File::create(&log).map_err(failed)?;
-    let also = file.try_clone().map_err(failed)?;
-    let status = program.stdout(also).stderr(file).status().map_err(failed)?;
-    let text = String::from_utf8_lossy(&fs::read(&log).map_err(failed)?).into_owned();
+    let file = File::create(&log)?;
+    let also = file.try_clone()?;
+    let status = program
+        .stdout(also.into_file())
+        .stderr(file.into_file())
+        .status()
+        .with_context(|| target.to_owned())?;
+    let text = String::from_utf8_lossy(&fs::read(&log)?).into_owned();
     let new = found(&artifacts)
         .into_iter()
         .find(|file| !before.contains(file));

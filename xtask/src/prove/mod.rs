@@ -4,7 +4,10 @@ mod outputs;
 
 use std::process::Command;
 
+use anyhow::{Context, Result, ensure};
+
 use crate::places::workspace;
+use crate::programs::run;
 use crate::{bindings, fuzz, places};
 
 /// A proof: its name, what it takes, what it proves, and how.
@@ -12,7 +15,7 @@ struct Proof {
     name: &'static str,
     takes: &'static str,
     proves: &'static str,
-    prove: fn(&[&str]) -> Result<(), String>,
+    prove: fn(&[&str]) -> Result<()>,
 }
 
 const PROOFS: &[Proof] = &[
@@ -83,13 +86,13 @@ pub fn whole() -> bool {
 ///
 /// # Errors
 /// What does not hold, or an unknown name.
-pub fn prove(arguments: &[&str]) -> Result<(), String> {
+pub fn prove(arguments: &[&str]) -> Result<()> {
     let Some((name, options)) = arguments.split_first() else {
         print!("{}", list());
         return Ok(());
     };
     let proof = PROOFS.iter().find(|proof| proof.name == *name);
-    let proof = proof.ok_or_else(|| format!("no proof `{name}`; there are\n{}", list()))?;
+    let proof = proof.with_context(|| format!("no proof `{name}`; there are\n{}", list()))?;
     (proof.prove)(options)
 }
 
@@ -98,32 +101,27 @@ fn list() -> String {
     PROOFS.iter().map(line).collect()
 }
 
-fn none(options: &[&str]) -> Result<(), String> {
-    match options {
-        [] => Ok(()),
-        _ => Err(format!("{} is unknown", options.join(" "))),
-    }
+fn none(options: &[&str]) -> Result<()> {
+    ensure!(options.is_empty(), "{} is unknown", options.join(" "));
+    Ok(())
 }
 
-fn fuzz(options: &[&str]) -> Result<(), String> {
+fn fuzz(options: &[&str]) -> Result<()> {
     let options = match options {
         [] => &["--seconds", "600"],
         _ => options,
     };
-    match fuzz::fuzz(&fuzz::Options::parse(options)?)? {
-        true => Ok(()),
-        false => Err("fuzzing found something".to_owned()),
-    }
+    fuzz::fuzz(&fuzz::Options::parse(options)?)
 }
 
 /// A test with all of what it takes a sample of.
-fn whole_test(options: &[&str], test: &[&str]) -> Result<(), String> {
+fn whole_test(options: &[&str], test: &[&str]) -> Result<()> {
     let test = [&["test", "--locked"], test, &["--", "--nocapture"]].concat();
     none(options).and_then(|()| cargo(&test, &[(WHOLE, "1"), ("HTEX_REQUIRE_WASM", "1")]))
 }
 
-fn cargo(arguments: &[&str], variables: &[(&str, &str)]) -> Result<(), String> {
+fn cargo(arguments: &[&str], variables: &[(&str, &str)]) -> Result<()> {
     let mut cargo = Command::new(places::cargo());
     cargo.args(arguments).envs(variables.iter().copied());
-    bindings::run(cargo.current_dir(workspace()))
+    run(cargo.current_dir(workspace()))
 }

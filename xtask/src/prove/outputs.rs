@@ -1,11 +1,13 @@
 //! Hashes of what the command writes and prints, one a line, of the same inputs every time.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use crate::bindings::{program, run};
+use anyhow::{Context, Result, bail};
+use fs_err as fs;
+
 use crate::places::{cargo, target, workspace};
+use crate::programs::{program, run};
 
 /// Command lines, in their order. `{WORD}` stands for each of several words.
 const LINES: &str = include_str!("outputs.txt");
@@ -32,13 +34,11 @@ const TIMED: [&str; 6] = [
     "on_time_front\":",
 ];
 
-pub(super) fn prove(options: &[&str]) -> Result<(), String> {
+pub(super) fn prove(options: &[&str]) -> Result<()> {
     let htex = match *options {
-        ["--htex", path] => {
-            std::path::absolute(path).map_err(|error| format!("{path}: {error}"))?
-        }
+        ["--htex", path] => std::path::absolute(path).context(path.to_owned())?,
         [] => built()?,
-        _ => return Err("prove outputs [--htex PATH]".to_owned()),
+        _ => bail!("prove outputs [--htex PATH]"),
     };
     let folder = target().join("outputs");
     prepare(&folder)?;
@@ -52,40 +52,39 @@ pub(super) fn prove(options: &[&str]) -> Result<(), String> {
 }
 
 /// The command as it is installed.
-fn built() -> Result<PathBuf, String> {
+fn built() -> Result<PathBuf> {
     let mut build = Command::new(cargo());
     build.args(["build", "--release", "--locked", "--package", "htex-cli"]);
     run(build.current_dir(workspace()))?;
-    std::path::absolute(target().join("release/htex")).map_err(|error| error.to_string())
+    Ok(std::path::absolute(target().join("release/htex"))?)
 }
 
 /// An empty folder with the inputs and a folder for what is printed.
-fn prepare(folder: &Path) -> Result<(), String> {
-    let wrong = |error: std::io::Error| format!("{}: {error}", folder.display());
+fn prepare(folder: &Path) -> Result<()> {
     if folder.exists() {
-        fs::remove_dir_all(folder).map_err(wrong)?;
+        fs::remove_dir_all(folder)?;
     }
-    fs::create_dir_all(folder.join("printed")).map_err(wrong)?;
+    fs::create_dir_all(folder.join("printed"))?;
     let inputs = INPUTS.map(|input| workspace().join(input));
     run(Command::new("cp").arg("-R").args(inputs).arg(folder))
 }
 
 /// The command in the folder, which knows of no model, device or setting of the user.
-fn htex(htex: &Path, folder: &Path, line: &str) -> Result<Output, String> {
+fn htex(htex: &Path, folder: &Path, line: &str) -> Result<Output> {
     let mut command = program(htex, folder);
     command.args(line.split_whitespace()).env_clear();
     let output = command.env("HOME", folder.join("home")).output();
-    output.map_err(|error| format!("{}: {error}", htex.display()))
+    output.with_context(|| htex.display().to_string())
 }
 
 /// Runs a command and keeps what it prints, with its status, in a file of its name.
-fn print(command: &Path, folder: &Path, line: &str) -> Result<(), String> {
+fn print(command: &Path, folder: &Path, line: &str) -> Result<()> {
     let output = htex(command, folder, line)?;
     let text = [output.stdout, output.stderr].concat();
     let mut text = without_times(&String::from_utf8_lossy(&text));
     text += &format!("{}\n", output.status);
     let file = folder.join("printed").join(line.replace('/', "+"));
-    fs::write(&file, text).map_err(|error| format!("{}: {error}", file.display()))
+    Ok(fs::write(&file, text)?)
 }
 
 /// A text but for measured times, and for what they decide in a sweep.
@@ -97,7 +96,7 @@ fn without_times(text: &str) -> String {
 }
 
 /// Prints the hash of each file that is no input, in the order of names.
-fn hash(folder: &Path) -> Result<(), String> {
+fn hash(folder: &Path) -> Result<()> {
     let skipped = INPUTS.map(|input| input.rsplit('/').next().unwrap_or(input));
     let mut find = program("find", folder);
     find.args(["-type", "f"]);
@@ -114,7 +113,7 @@ fn hash(folder: &Path) -> Result<(), String> {
         "./home/*",
     ]);
     find.args(["-not", "-name", "tradeoff.*", "-print"]);
-    let found = find.output().map_err(|error| format!("find: {error}"))?;
+    let found = find.output().context("find")?;
     let found = String::from_utf8_lossy(&found.stdout).into_owned();
     let mut files: Vec<&str> = found.lines().collect();
     files.sort_unstable();
@@ -128,7 +127,7 @@ fn hash(folder: &Path) -> Result<(), String> {
 struct Texts(Vec<(&'static str, Vec<String>)>);
 
 impl Texts {
-    fn of(command: &Path, folder: &Path) -> Result<Self, String> {
+    fn of(command: &Path, folder: &Path) -> Result<Self> {
         let owned = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect();
         let mut conformance = Vec::new();
         for place in INPUTS
@@ -175,7 +174,7 @@ impl Texts {
 }
 
 /// The first words of the lines that the command prints, of its help those of the list of commands.
-fn firsts(command: &Path, folder: &Path, line: &str) -> Result<Vec<String>, String> {
+fn firsts(command: &Path, folder: &Path, line: &str) -> Result<Vec<String>> {
     let printed = htex(command, folder, line)?.stdout;
     let printed = String::from_utf8_lossy(&printed);
     let list = printed.rsplit("Commands:\n").next().unwrap_or_default();

@@ -58,6 +58,55 @@ impl std::error::Error for FileError {
     }
 }
 
+/// A file whose content cannot be used.
+///
+/// ```
+/// use htex_files::InFile;
+///
+/// let error = "a".parse::<f64>().in_file("gain.txt").unwrap_err();
+/// assert_eq!(error.to_string(), "gain.txt: invalid float literal");
+/// ```
+#[derive(Debug)]
+pub struct ContentError {
+    /// The file or folder.
+    pub file: PathBuf,
+    /// What is wrong, and what to do.
+    pub problem: String,
+}
+
+impl ContentError {
+    /// A file with this problem.
+    pub fn new(file: impl AsRef<Path>, problem: impl fmt::Display) -> Self {
+        Self {
+            file: file.as_ref().to_owned(),
+            problem: problem.to_string(),
+        }
+    }
+}
+
+impl fmt::Display for ContentError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.file.display(), self.problem)
+    }
+}
+
+impl std::error::Error for ContentError {}
+
+/// Adds the name of the file to an error of its content.
+pub trait InFile<T> {
+    /// The error is in this file.
+    ///
+    /// # Errors
+    /// Those of the result.
+    fn in_file(self, file: impl AsRef<Path>) -> Result<T, ContentError>;
+}
+
+impl<T, E: fmt::Display> InFile<T> for Result<T, E> {
+    fn in_file(self, file: impl AsRef<Path>) -> Result<T, ContentError> {
+        self.map_err(|problem| ContentError::new(file, problem))
+    }
+}
+
 /// Adds the name of the file to an error of the system.
 pub trait AtFile<T> {
     /// The file was read.

@@ -24,7 +24,7 @@ use std::sync::{Mutex, PoisonError};
 
 use tempfile::NamedTempFile;
 
-pub use error::{AtFile, FileError};
+pub use error::{AtFile, ContentError, FileError, InFile};
 
 /// Files that this process is writing.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());

@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use htex_author::recording::response_from_bytes;
 use htex_dsp::noise::GaussianNoise;
 use htex_lab::response::{
-    Channel, Estimator, Excitation, HitOptions, MeasuredResponse, Reason, Record, ResponseError,
-    ResponseOptions, measure,
+    Channel, Estimator, Excitation, HitOptions, MeasuredResponse, Reason, Record, RecordProblem,
+    ResponseError, ResponseOptions, measure,
 };
 
 const RATE_HZ: f64 = 10_000.0;
@@ -338,18 +338,23 @@ fn what_cannot_be_measured_is_named() {
     let lengths = Record::new("a.csv", RATE_HZ, vec![0.0, 1.0], vec![0.0]).unwrap_err();
     assert!(matches!(
         lengths,
-        ResponseError::Lengths {
-            input: 2,
-            output: 1,
+        ResponseError::Record {
+            problem: RecordProblem::Lengths {
+                input: 2,
+                output: 1,
+            },
             ..
         }
     ));
     let missing = Record::new("a.csv", RATE_HZ, vec![0.0, 1.0], vec![0.0, f64::NAN]).unwrap_err();
     assert!(matches!(
         missing,
-        ResponseError::Sample {
-            channel: Channel::Output,
-            sample: 1,
+        ResponseError::Record {
+            problem: RecordProblem::Sample {
+                channel: Channel::Output,
+                sample: 1,
+                ..
+            },
             ..
         }
     ));

@@ -2,7 +2,9 @@
 
 use htex_author::SetupResponse;
 use htex_lab::record::RecordError;
-use htex_lab::response::{Record, ResponseError, ResponseOptions, ResponseSettings, measure};
+use htex_lab::response::{
+    Record, RecordProblem, ResponseError, ResponseOptions, ResponseSettings, measure,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde_json::json;
@@ -62,9 +64,11 @@ pub(crate) fn response_csv(
 impl IntoPyErr for ResponseError {
     fn into_py_err(self) -> PyErr {
         match self {
-            Self::Option { .. } | Self::Rate { .. } | Self::Lengths { .. } => {
-                option(self.to_string())
-            }
+            Self::Option { .. }
+            | Self::Record {
+                problem: RecordProblem::Rate { .. } | RecordProblem::Lengths { .. },
+                ..
+            } => option(self.to_string()),
             other => RecordingError::new_err(other.to_string()),
         }
     }

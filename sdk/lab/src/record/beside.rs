@@ -5,6 +5,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use htex_author::settings::ReadingSettings;
+use htex_files::ContentError;
 use serde_json::Value;
 
 use crate::record::data::TakeHeader;
@@ -26,7 +27,7 @@ impl KnownTake {
     /// format.
     ///
     /// # Errors
-    /// [`RecordError::Beside`] if the JSON is of a take and has another version or unknown keys.
+    /// [`RecordError::Content`] if the JSON is of a take and has another version or unknown keys.
     ///
     /// ```
     /// // Not a take: nothing is known but the file itself.
@@ -38,10 +39,7 @@ impl KnownTake {
         let header = match header(&beside) {
             Ok(Some(header)) => header,
             Err(error) if error.kind() == io::ErrorKind::InvalidData => {
-                return Err(RecordError::Beside {
-                    file: beside,
-                    error,
-                });
+                return Err(ContentError::new(beside, error).into());
             }
             _ => return Ok(None),
         };

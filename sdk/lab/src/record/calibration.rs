@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use htex_files::InFile;
 use serde::Deserialize;
 
 use crate::record::error::RecordError;
@@ -45,19 +46,9 @@ impl Calibration {
     /// Reads a file: CSV with six lines of six numbers (`#` begins a comment), or TOML with `matrix = [[…], …]`.
     ///
     /// # Errors
-    /// [`RecordError::Calibration`] if it cannot be read, or is not a matrix of full rank.
+    /// [`RecordError::Content`] if it cannot be read, or is not a matrix of full rank.
     pub fn read(path: &Path) -> Result<Self, RecordError> {
-        let length = std::fs::metadata(path)
-            .map_err(|e| refuse(path, e.to_string()))?
-            .len();
-        if length > MOST_BYTES {
-            return Err(refuse(
-                path,
-                format!("{length} bytes are no matrix of six by six numbers"),
-            ));
-        }
-        let text = std::fs::read_to_string(path).map_err(|e| refuse(path, e.to_string()))?;
-        Self::parse(path, &text)
+        in_calibration(path, text_of(path).and_then(|text| Self::of(path, &text)))
     }
 
     /// Reads a text; `path` tells TOML by its extension, and is the name in messages.
@@ -65,49 +56,35 @@ impl Calibration {
     /// # Errors
     /// As [`Self::read`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, RecordError> {
+        in_calibration(path, Self::of(path, text))
+    }
+
+    fn of(path: &Path, text: &str) -> Result<Self, Problem> {
         let is_toml = path
             .extension()
             .is_some_and(|e| e.eq_ignore_ascii_case("toml"));
         let matrix = match is_toml {
-            true => {
-                toml::from_str::<File>(text)
-                    .map_err(|e| refuse(path, e.to_string()))?
-                    .matrix
-            }
-            false => lines(path, text)?,
+            true => toml::from_str::<File>(text)?.matrix,
+            false => lines(text)?,
         };
         let width = matrix.iter().position(|row| row.len() != AXES);
         if let (true, Some(row)) = (matrix.len() == AXES, width) {
-            let problem = format!(
-                "row {} has {} numbers, not {AXES}",
-                row + 1,
-                matrix[row].len()
-            );
-            return Err(refuse(path, problem));
+            let (number, len) = (row + 1, matrix[row].len());
+            return Err(format!("row {number} has {len} numbers, not {AXES}").into());
         }
         let mut rows = [[0.0; AXES]; AXES];
         if matrix.len() != AXES {
-            return Err(refuse(
-                path,
-                format!("{} rows of numbers, not {AXES}", matrix.len()),
-            ));
+            return Err(format!("{} rows of numbers, not {AXES}", matrix.len()).into());
         }
         for (to, from) in rows.iter_mut().flatten().zip(matrix.iter().flatten()) {
             *to = *from;
         }
         if let Some(at) = rows.iter().flatten().position(|v| !v.is_finite()) {
-            return Err(refuse(
-                path,
-                format!(
-                    "row {}, number {} is not finite",
-                    at / AXES + 1,
-                    at % AXES + 1
-                ),
-            ));
+            let (row, number) = (at / AXES + 1, at % AXES + 1);
+            return Err(format!("row {row}, number {number} is not finite").into());
         }
         if rank(rows) < AXES {
-            let problem = "the matrix is singular: an axis is missing, or two are the same; copy it again from the sensor's file";
-            return Err(refuse(path, problem.to_owned()));
+            return Err("the matrix is singular: an axis is missing, or two are the same; copy it again from the sensor's file".into());
         }
         Ok(Self { rows })
     }
@@ -131,7 +108,15 @@ impl Calibration {
     }
 }
 
-fn lines(path: &Path, text: &str) -> Result<Vec<Vec<f64>>, RecordError> {
+fn text_of(path: &Path) -> Result<String, Problem> {
+    let length = std::fs::metadata(path)?.len();
+    if length > MOST_BYTES {
+        return Err(format!("{length} bytes are no matrix of six by six numbers").into());
+    }
+    Ok(std::fs::read_to_string(path)?)
+}
+
+fn lines(text: &str) -> Result<Vec<Vec<f64>>, String> {
     let mut rows = Vec::new();
     for (index, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
@@ -141,13 +126,9 @@ fn lines(path: &Path, text: &str) -> Result<Vec<Vec<f64>>, RecordError> {
         let cells = line
             .split([',', ';', '\t', ' '])
             .filter(|cell| !cell.is_empty());
+        let number = |cell: &str| cell.trim().parse::<f64>().ok();
         let row = cells.map(|cell| {
-            cell.trim().parse::<f64>().map_err(|_| {
-                refuse(
-                    path,
-                    format!("line {}: {cell:?} is not a number", index + 1),
-                )
-            })
+            number(cell).ok_or_else(|| format!("line {}: {cell:?} is not a number", index + 1))
         });
         rows.push(row.collect::<Result<_, _>>()?);
     }
@@ -176,11 +157,12 @@ fn rank(mut rows: [[f64; AXES]; AXES]) -> usize {
     AXES
 }
 
-fn refuse(file: &Path, problem: String) -> RecordError {
-    RecordError::Calibration {
-        file: file.to_owned(),
-        problem: format!(
-            "{problem}; a calibration is six rows of six numbers, N and N m for a volt of each channel"
-        ),
-    }
+/// What is wrong with a calibration.
+type Problem = Box<dyn std::error::Error>;
+
+/// Adds the file, and what a calibration is.
+fn in_calibration<T>(path: &Path, result: Result<T, Problem>) -> Result<T, RecordError> {
+    let advice = "a calibration is six rows of six numbers, N and N m for a volt of each channel";
+    let result = result.map_err(|problem| format!("{problem}; {advice}"));
+    Ok(result.in_file(path)?)
 }

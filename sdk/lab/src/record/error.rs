@@ -70,13 +70,9 @@ pub enum RecordError {
         value: String,
         allowed: &'static str,
     },
-    /// A calibration matrix cannot be used.
-    #[error("{}: {problem}", .file.display())]
-    Calibration {
-        file: PathBuf,
-        /// What is wrong, and what to do.
-        problem: String,
-    },
+    /// A calibration matrix, a part file or the JSON beside a recording cannot be used.
+    #[error(transparent)]
+    Content(#[from] htex_files::ContentError),
     /// A line of a tracker is not two numbers.
     #[error("tracker {name}, line {line}: {text:?} is not `x_mm y_mm` or `x_mm,y_mm`")]
     TrackerLine {
@@ -84,21 +80,6 @@ pub enum RecordError {
         /// Number of the line, from 1.
         line: usize,
         text: String,
-    },
-    /// A part file is damaged or is none.
-    #[error("{}: {problem}", .file.display())]
-    Part {
-        file: PathBuf,
-        /// What is wrong, and what to do.
-        problem: String,
-    },
-    /// The JSON beside a recording does not say how it is read.
-    #[error("{}: {error}", .file.display())]
-    Beside {
-        /// The JSON.
-        file: PathBuf,
-        #[source]
-        error: std::io::Error,
     },
     /// Another program is recording a take.
     #[error("{}: another htex is recording into it; wait for it to end", .file.display())]

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex_files::AtFile;
+use htex_files::{AtFile, InFile};
 use serde::Serialize;
 
 use crate::record::error::RecordError;
@@ -76,10 +76,7 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, Rec
 /// # Errors
 /// When a part file is damaged in its header, or a recording cannot be written.
 pub fn recover(folder: &Path) -> Result<Vec<Recorded>, RecordError> {
-    let parts = names::parts(folder).map_err(|error| RecordError::Part {
-        file: folder.to_owned(),
-        problem: error.to_string(),
-    })?;
+    let parts = names::parts(folder).in_file(folder)?;
     let mut recovered = Vec::new();
     for path in &parts {
         match finish(folder, path) {

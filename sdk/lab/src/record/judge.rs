@@ -1,5 +1,7 @@
 //! Whether a take kept to its target.
 
+use std::error::Error;
+
 use htex_author::recording::RecordingError;
 use htex_author::{Exploration, Reading, Recording, SpectrumOptions, Take, read_take, velocity};
 use serde::{Deserialize, Serialize};
@@ -74,7 +76,8 @@ pub fn judge(data: &TakeData) -> Verdict {
                 verdict.reasons.extend(untracked(data));
             }
         }
-        Err(problem) => {
+        Err(error) => {
+            let problem = error.to_string();
             verdict.findings.push(problem.clone());
             if header.target_speed_mm_s.is_some() || header.target_force_n.is_some() {
                 verdict.reasons.push(problem);
@@ -85,14 +88,13 @@ pub fn judge(data: &TakeData) -> Verdict {
     verdict
 }
 
-fn reading(data: &TakeData) -> Result<(Reading, Recording), String> {
-    let recording = recording(data).map_err(|error| error.to_string())?;
+fn reading(data: &TakeData) -> Result<(Reading, Recording), Box<dyn Error>> {
+    let recording = recording(data)?;
     let take = Take {
         recording,
         given: Exploration::default(),
     };
-    let reading = read_take(&take, &SpectrumOptions::default(), false);
-    let reading = reading.map_err(|error| error.to_string())?;
+    let reading = read_take(&take, &SpectrumOptions::default(), false)?;
     Ok((reading, take.recording))
 }
 

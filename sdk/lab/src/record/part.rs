@@ -8,7 +8,7 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use htex_files::AtFile;
+use htex_files::{AtFile, ContentError, InFile};
 
 use crate::record::data::{TakeData, TakeHeader};
 use crate::record::error::RecordError;
@@ -117,38 +117,37 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
 /// Reads a part file: all whole chunks. `None` if its header is incomplete, so that nothing was recorded.
 ///
 /// # Errors
-/// [`RecordError::Part`] if it cannot be read or is no part file; [`RecordError::Busy`] while another program writes it.
+/// [`RecordError::Content`] if it cannot be read or is no part file; [`RecordError::Busy`] while another program writes it.
 pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
-    let refuse = |problem: String| RecordError::Part {
-        file: path.to_owned(),
-        problem,
-    };
-    let file = File::open(path).map_err(|error| refuse(error.to_string()))?;
+    let file = File::open(path).in_file(path)?;
     if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
         let file = path.to_owned();
         return Err(RecordError::Busy { file });
     }
-    let bytes = std::fs::read(path).map_err(|error| refuse(error.to_string()))?;
+    let bytes = std::fs::read(path).in_file(path)?;
     let Some(end) = bytes.iter().take(MOST_HEADER).position(|b| *b == b'\n') else {
         return Ok(None);
     };
     let header = serde_json::from_slice(&bytes[..end]).map_err(|error| error.to_string());
     let header = header.and_then(TakeHeader::of_json).map_err(|error| {
-        refuse(format!(
+        format!(
             "it is not the part of a take that this htex records ({}); move it elsewhere",
             htex_finding::plain(&error)
-        ))
-    })?;
+        )
+    });
+    let header = header.in_file(path)?;
     if let Some(problem) = header.problem() {
-        return Err(refuse(format!(
+        let problem = format!(
             "it is not the part of a take that this htex records: {problem}; move it elsewhere"
-        )));
+        );
+        return Err(ContentError::new(path, problem).into());
     }
     let own = names::stem(&header.name, header.number);
     if path.file_stem().is_none_or(|stem| stem != &own[..]) {
-        return Err(refuse(format!(
+        let problem = format!(
             "it is the part of {own}; give it that name again, so that no other take is replaced"
-        )));
+        );
+        return Err(ContentError::new(path, problem).into());
     }
     Ok(Some(chunks(header, &bytes[end + 1..])))
 }

@@ -3,7 +3,7 @@
 use htex_author::recording::Role;
 use htex_device::Source;
 
-use htex_files::AtFile;
+use htex_files::{AtFile, ContentError};
 
 use crate::record::data::TakeHeader;
 use crate::record::error::RecordError;
@@ -147,9 +147,9 @@ impl Session {
         let path = part.path().to_owned();
         drop(part);
         match ran.and(flushed) {
-            Ok(()) => finish(&folder, &path)?.ok_or(RecordError::Part {
-                file: path,
-                problem: "it is empty after a take; the disk may be damaged".to_owned(),
+            Ok(()) => finish(&folder, &path)?.ok_or_else(|| {
+                let problem = "it is empty after a take; the disk may be damaged";
+                ContentError::new(path, problem).into()
             }),
             Err(error) => Err(with_kept(error, finish(&folder, &path)?)),
         }

@@ -1,7 +1,7 @@
 //! What is cut out of records, counted and averaged.
 
 use super::baseline::Baseline;
-use super::error::{Channel, ResponseError};
+use super::error::{Channel, RecordProblem, ResponseError};
 use super::frames::{Weights, farthest, spread, windows};
 use super::hits::hits;
 use super::options::{Excitation, ResponseOptions};
@@ -56,12 +56,8 @@ pub(crate) fn count_used(
     );
     if let (0, Some(first)) = (found, records.first()) {
         let rest = Baseline::of(first.channel(Channel::Input));
-        let (file, largest, noise) = (first.file().to_owned(), rest.largest, rest.noise);
-        return Err(ResponseError::NoHits {
-            file,
-            largest,
-            noise,
-        });
+        let (largest, noise) = (rest.largest, rest.noise);
+        return Err(RecordProblem::NoHits { largest, noise }.of(first.file()));
     }
     match pieces().filter(|piece| piece.thrown_out.is_none()).count() {
         used if used >= 2 => Ok(used),

@@ -37,32 +37,15 @@ pub enum ResponseError {
     /// The columns of both channels cannot be read, or not together.
     #[error("input and output: {problem}")]
     Columns { problem: String },
-    /// The recording does not hold one signal for each channel.
-    #[error(
-        "{file}: {signals} signals were read and 2 are needed; name one column as the input and one as the output"
-    )]
-    Signals {
+    /// A recording cannot be used.
+    #[error("{file}: {problem}")]
+    Record {
         file: String,
-        /// Number of signals that were read.
-        signals: usize,
+        problem: RecordProblem,
     },
     /// There is no recording.
     #[error("no recording is given; give at least one with input and output")]
     Nothing,
-    /// The channels have different numbers of samples.
-    #[error(
-        "{file}: the input has {input} samples and the output {output}; both must be recorded together, sample by sample"
-    )]
-    Lengths {
-        file: String,
-        /// Samples of the input.
-        input: usize,
-        /// Samples of the output.
-        output: usize,
-    },
-    /// The sample rate is zero, negative, not finite or too high.
-    #[error("{file}: the sample rate is {rate_hz} Hz; it must be above 0 and at most 1e9 Hz")]
-    Rate { file: String, rate_hz: f64 },
     /// Recordings have different sample rates.
     #[error(
         "{file} was recorded at {rate_hz} Hz and {first} at {first_hz} Hz; measure recordings of one rate together"
@@ -74,26 +57,6 @@ pub enum ResponseError {
         /// The recording that differs.
         file: String,
         rate_hz: f64,
-    },
-    /// A sample is not finite, or beyond 1e12.
-    #[error(
-        "{file}: the {channel} is {value} at sample {sample} (counted from 0); cut the recording there, or correct its unit"
-    )]
-    Sample {
-        file: String,
-        channel: Channel,
-        /// Index from 0.
-        sample: usize,
-        value: f64,
-    },
-    /// A channel does not change.
-    #[error(
-        "{file}: the {channel} is {value} at every sample; check that this is its column and that the sensor was on"
-    )]
-    Constant {
-        file: String,
-        channel: Channel,
-        value: f64,
     },
     /// A recording is shorter than one window.
     #[error(
@@ -113,17 +76,6 @@ pub enum ResponseError {
         hint: Hint,
         value: f64,
         problem: String,
-    },
-    /// No hit stands out of the input.
-    #[error(
-        "{file}: no hit found: the largest input is {largest:.4} and its noise {noise:.4} (RMS), and a hit must be 8 times above the noise; check that this is the hammer's column, or measure a continuous drive"
-    )]
-    NoHits {
-        file: String,
-        /// Largest distance of the input from its median.
-        largest: f64,
-        /// Noise of the input.
-        noise: f64,
     },
     /// Fewer than two hits or windows can be averaged.
     #[error(
@@ -149,13 +101,82 @@ pub enum ResponseError {
     },
 }
 
+/// What is wrong with a recording.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RecordProblem {
+    /// It does not hold one signal for each channel.
+    #[error(
+        "{signals} signals were read and 2 are needed; name one column as the input and one as the output"
+    )]
+    Signals {
+        /// Number of signals that were read.
+        signals: usize,
+    },
+    /// The channels have different numbers of samples.
+    #[error(
+        "the input has {input} samples and the output {output}; both must be recorded together, sample by sample"
+    )]
+    Lengths {
+        /// Samples of the input.
+        input: usize,
+        /// Samples of the output.
+        output: usize,
+    },
+    /// The sample rate is zero, negative, not finite or too high.
+    #[error("the sample rate is {rate_hz} Hz; it must be above 0 and at most 1e9 Hz")]
+    Rate { rate_hz: f64 },
+    /// A sample is not finite, or beyond 1e12.
+    #[error(
+        "the {channel} is {value} at sample {sample} (counted from 0); cut the recording there, or correct its unit"
+    )]
+    Sample {
+        channel: Channel,
+        /// Index from 0.
+        sample: usize,
+        value: f64,
+    },
+    /// A channel does not change.
+    #[error(
+        "the {channel} is {value} at every sample; check that this is its column and that the sensor was on"
+    )]
+    Constant { channel: Channel, value: f64 },
+    /// No hit stands out of the input.
+    #[error(
+        "no hit found: the largest input is {largest:.4} and its noise {noise:.4} (RMS), and a hit must be 8 times above the noise; check that this is the hammer's column, or measure a continuous drive"
+    )]
+    NoHits {
+        /// Largest distance of the input from its median.
+        largest: f64,
+        /// Noise of the input.
+        noise: f64,
+    },
+}
+
+impl RecordProblem {
+    pub(crate) fn of(self, file: impl Into<String>) -> ResponseError {
+        ResponseError::Record {
+            file: file.into(),
+            problem: self,
+        }
+    }
+
+    fn hint(&self) -> Hint {
+        match self {
+            Self::Constant { .. } => Hint::new(&["input", "output"]),
+            Self::NoHits { .. } => Hint::new(&["input", "continuous"]),
+            _ => Hint::NONE,
+        }
+    }
+}
+
 impl ResponseError {
     pub fn hint(&self) -> Hint {
         Hint::new(match self {
-            Self::Columns { .. } | Self::Constant { .. } => &["input", "output"],
-            Self::NoHits { .. } => &["input", "continuous"],
+            Self::Columns { .. } => &["input", "output"],
             Self::Short { .. } => &["window"],
             Self::Option { hint, .. } => return *hint,
+            Self::Record { problem, .. } => return problem.hint(),
             _ => &[],
         })
     }

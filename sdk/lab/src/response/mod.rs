@@ -43,7 +43,7 @@ mod record;
 mod settings;
 mod spectra;
 
-pub use error::{Channel, ResponseError};
+pub use error::{Channel, RecordProblem, ResponseError};
 pub use estimator::Estimator;
 pub use measure::measure;
 pub use measured::MeasuredResponse;

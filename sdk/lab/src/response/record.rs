@@ -3,7 +3,7 @@
 use htex_author::Recording;
 use htex_author::recording::{ColumnMap, MapEntry, ReadError, ReadProblem, Role};
 
-use super::error::{Channel, ResponseError};
+use super::error::{Channel, RecordProblem, ResponseError};
 
 /// Highest sample rate, hertz, and largest magnitude of a sample, as of recordings.
 const MOST_HZ: f64 = 1e9;
@@ -35,27 +35,16 @@ impl Record {
         output: Vec<f64>,
     ) -> Result<Self, ResponseError> {
         let file = file.into();
-        if !(rate_hz > 0.0 && rate_hz <= MOST_HZ) {
-            return Err(ResponseError::Rate { file, rate_hz });
-        }
-        if input.len() != output.len() {
-            let (input, output) = (input.len(), output.len());
-            return Err(ResponseError::Lengths {
+        match check(rate_hz, &input, &output) {
+            Err(problem) => Err(problem.of(file)),
+            Ok(()) => Ok(Self {
                 file,
+                rate_hz,
+                start_s: 0.0,
                 input,
                 output,
-            });
+            }),
         }
-        check(&file, Channel::Input, &input)?;
-        check(&file, Channel::Output, &output)?;
-        let start_s = 0.0;
-        Ok(Self {
-            file,
-            rate_hz,
-            start_s,
-            input,
-            output,
-        })
     }
 
     /// Creates a record of a recording that was read with [`column_map`]: its first axis is the input, its second the
@@ -73,7 +62,7 @@ impl Record {
                 let record = Self::new(file, recording.rate_hz, input, output)?;
                 Ok(Self { start_s, ..record })
             }
-            _ => Err(ResponseError::Signals { file, signals }),
+            _ => Err(RecordProblem::Signals { signals }.of(file)),
         }
     }
 
@@ -108,13 +97,23 @@ impl Record {
     }
 }
 
-fn check(file: &str, channel: Channel, values: &[f64]) -> Result<(), ResponseError> {
-    let file = file.to_owned();
+fn check(rate_hz: f64, input: &[f64], output: &[f64]) -> Result<(), RecordProblem> {
+    if !(rate_hz > 0.0 && rate_hz <= MOST_HZ) {
+        return Err(RecordProblem::Rate { rate_hz });
+    }
+    if input.len() != output.len() {
+        let (input, output) = (input.len(), output.len());
+        return Err(RecordProblem::Lengths { input, output });
+    }
+    check_channel(Channel::Input, input)?;
+    check_channel(Channel::Output, output)
+}
+
+fn check_channel(channel: Channel, values: &[f64]) -> Result<(), RecordProblem> {
     let is_sound = |value: &f64| value.abs() <= LARGEST;
     if let Some(sample) = values.iter().position(|value| !is_sound(value)) {
         let value = values[sample];
-        return Err(ResponseError::Sample {
-            file,
+        return Err(RecordProblem::Sample {
             channel,
             sample,
             value,
@@ -122,11 +121,7 @@ fn check(file: &str, channel: Channel, values: &[f64]) -> Result<(), ResponseErr
     }
     let value = values.first().copied().unwrap_or(0.0);
     if values.iter().all(|other| *other == value) {
-        return Err(ResponseError::Constant {
-            file,
-            channel,
-            value,
-        });
+        return Err(RecordProblem::Constant { channel, value });
     }
     Ok(())
 }

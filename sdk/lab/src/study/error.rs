@@ -52,17 +52,10 @@ pub enum StudyError {
         "recording what is felt: {0}; the trial is repeated when the same command is run again"
     )]
     Felt(#[from] RecordError),
-    /// A recording of what was felt is not the one that was rated.
-    #[error("{}: it is not the recording that was made in the trial ({problem}); restore it from a copy", .file.display())]
-    FeltFile { file: PathBuf, problem: String },
-    /// A recording has no spectrum that an analysis can use.
-    #[error("{}: {problem}", .file.display())]
-    Spectrum {
-        /// The recording, or the asset.
-        file: PathBuf,
-        /// What is wrong, and what to do.
-        problem: String,
-    },
+    /// A recording of what was felt is not the one that was rated, or a recording or an asset has no spectrum that an analysis
+    /// can use.
+    #[error(transparent)]
+    Content(#[from] htex_files::ContentError),
     /// There are no recordings of what was felt.
     #[error("{}: the felt force was not recorded; give `htex study run` a source (--source)", .folder.display())]
     NotRecorded {

@@ -1,12 +1,13 @@
 //! Spectra of what was felt, as a table for [`crate::analyse`].
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use htex_author::recording::read_recording;
 use htex_author::{Exploration, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, read_take};
 use htex_dsp::Band;
-use htex_files::AtFile;
+use htex_files::{AtFile, ContentError, InFile};
 use htex_format::{Asset, Condition, Quantity};
 
 use crate::record::{TakeHeader, header_beside, settings_of};
@@ -41,25 +42,23 @@ impl Reference {
     /// The spectrum of a recording; with `strict` no problem of its signals is accepted.
     ///
     /// # Errors
-    /// [`StudyError::Spectrum`] if they cannot be read as textures from 20 to 1000 Hz.
+    /// [`StudyError::Content`] if they cannot be read as textures from 20 to 1000 Hz.
     pub fn of_recording(
         take: &Take,
         file: &Path,
         options: &SpectrumOptions,
         strict: bool,
     ) -> Result<Self, StudyError> {
-        let refuse = |problem: String| refused(file, problem);
-        let reading = read_take(take, options, strict).map_err(|e| refuse(e.to_string()))?;
-        Self::average(&[reading.part], options).map_err(refuse)
+        let reading = read_take(take, options, strict).in_file(file)?;
+        Ok(Self::average(&[reading.part], options).in_file(file)?)
     }
 
     /// The spectrum that was recorded for an asset, at its condition nearest to a motion, or at its first one.
     ///
     /// # Errors
-    /// [`StudyError::Spectrum`] if the asset cannot be read or does not have it.
+    /// [`StudyError::Content`] if the asset cannot be read or does not have it.
     pub fn of_asset(file: &Path, motion: Exploration) -> Result<Self, StudyError> {
-        let refuse = |problem: String| refused(file, problem);
-        let asset = Asset::open(file).map_err(|error| refuse(error.to_string()))?;
+        let asset = Asset::open(file).in_file(file)?;
         let conditions = asset.manifest.conditions.iter().enumerate();
         let off = |condition: &Condition| {
             let off = |own: Option<f64>, wanted: Option<f64>| match own.zip(wanted) {
@@ -71,17 +70,23 @@ impl Reference {
         let nearest = conditions.min_by(|(_, a), (_, b)| off(a).total_cmp(&off(b)));
         let spectra = asset.reference.as_ref();
         let spectrum = nearest.and_then(|(at, _)| spectra?.get(at));
-        let spectrum = spectrum.ok_or_else(|| {
-            refuse("the asset has no recorded spectrum; make it with `htex fit --keep-reference`, or name the recording of the texture (--recorded TEXTURE=FILE)".to_owned())
-        })?;
+        let spectrum = spectrum.ok_or("the asset has no recorded spectrum; make it with `htex fit --keep-reference`, or name the recording of the texture (--recorded TEXTURE=FILE)");
+        let spectrum = spectrum.in_file(file)?;
         let magnitude = spectrum.iter().map(|m| f64::from(*m)).collect();
-        Self::whole(asset.manifest.band, asset.manifest.quantity, magnitude).map_err(refuse)
+        let whole = Self::whole(asset.manifest.band, asset.manifest.quantity, magnitude);
+        Ok(whole.in_file(file)?)
     }
 
-    fn average(parts: &[SegmentSpectra], options: &SpectrumOptions) -> Result<Self, String> {
-        let spectrum = TextureSpectrum::average(parts, options.averaging);
-        let spectrum = spectrum.map_err(|error| error.to_string())?;
-        Self::whole(spectrum.band, spectrum.quantity, spectrum.magnitude)
+    fn average(
+        parts: &[SegmentSpectra],
+        options: &SpectrumOptions,
+    ) -> Result<Self, Box<dyn Error>> {
+        let spectrum = TextureSpectrum::average(parts, options.averaging)?;
+        Ok(Self::whole(
+            spectrum.band,
+            spectrum.quantity,
+            spectrum.magnitude,
+        )?)
     }
 
     fn whole(band: Band, quantity: Quantity, magnitude: Vec<f64>) -> Result<Self, String> {
@@ -102,8 +107,8 @@ impl Reference {
 /// `htex fit` reads recordings of one condition. `recorded` has the real textures by name.
 ///
 /// # Errors
-/// Those of [`crate::study::export()`]; [`StudyError::NotRecorded`]; [`StudyError::FeltFile`] if a recording is not the one of its trial;
-/// [`StudyError::Spectrum`] if one has no spectrum, or the spectrum of a real texture is missing.
+/// Those of [`crate::study::export()`]; [`StudyError::NotRecorded`]; [`StudyError::Content`] if a recording is not the one of its trial, or
+/// has no spectrum, or the spectrum of a real texture is missing.
 pub fn felt_spectra(
     folder: &Path,
     recorded: &BTreeMap<String, Reference>,
@@ -130,8 +135,7 @@ pub fn felt_spectra(
                 parts.push(part(folder, felt, options)?);
                 recordings += 1;
             }
-            let felt = Reference::average(&parts, options)
-                .map_err(|problem| refused(&folder.join(participant), problem))?;
+            let felt = Reference::average(&parts, options).in_file(folder.join(participant))?;
             quantities.insert(felt.quantity);
             rows.push(row(participant, &texture, &model, &felt));
             textures.insert(texture);
@@ -148,7 +152,7 @@ pub fn felt_spectra(
                 "the spectrum of the real texture {texture} is missing; name its recording (--recorded {texture}=FILE) or the study \
                  whose asset has it (--study)"
             );
-            return Err(refused(folder, problem));
+            return Err(ContentError::new(folder, problem).into());
         };
         quantities.insert(reference.quantity);
         rows.push(row(RECORDED, texture, RECORDED, reference));
@@ -177,9 +181,11 @@ fn part(
         .file
         .split('/')
         .fold(folder.to_owned(), |path, part| path.join(part));
-    let other = |problem: &str| StudyError::FeltFile {
-        file: file.clone(),
-        problem: problem.to_owned(),
+    let other = |problem: &str| {
+        let problem = format!(
+            "it is not the recording that was made in the trial ({problem}); restore it from a copy"
+        );
+        StudyError::from(ContentError::new(&file, problem))
     };
     if felt
         .file
@@ -193,22 +199,16 @@ fn part(
     }
     let beside = file.with_extension("json");
     let header = header_beside(&beside).reading(&beside)?;
-    let header =
-        header.ok_or_else(|| refused(&beside, "it does not describe a recording".to_owned()))?;
-    let take = take(&file, &header).map_err(|problem| refused(&file, problem))?;
-    let reading = read_take(&take, options, false);
-    Ok(reading
-        .map_err(|error| refused(&file, error.to_string()))?
-        .part)
+    let header = header.ok_or("it does not describe a recording");
+    let header = header.in_file(&beside)?;
+    let take = take(&file, &header).in_file(&file)?;
+    Ok(read_take(&take, options, false).in_file(&file)?.part)
 }
 
-fn take(file: &Path, header: &TakeHeader) -> Result<Take, String> {
-    let settings = settings_of(file, header);
-    let options = settings
-        .read_options(1)
-        .map_err(|error| error.to_string())?;
+fn take(file: &Path, header: &TakeHeader) -> Result<Take, Box<dyn Error>> {
+    let options = settings_of(file, header).read_options(1)?;
     let options = options.into_iter().next().unwrap_or_default();
-    let recording = read_recording(file, &options).map_err(|error| error.to_string())?;
+    let recording = read_recording(file, &options)?;
     let given = Exploration {
         speed_mm_s: header
             .target_speed_mm_s
@@ -237,11 +237,4 @@ fn table(folder: &Path, rows: &[Vec<String>]) -> Result<String, StudyError> {
     }
     let bytes = csv.into_inner().unwrap_or_default();
     Ok(String::from_utf8_lossy(&bytes).into_owned())
-}
-
-fn refused(file: &Path, problem: String) -> StudyError {
-    StudyError::Spectrum {
-        file: file.to_owned(),
-        problem,
-    }
 }

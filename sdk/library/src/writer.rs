@@ -87,15 +87,11 @@ impl Writer {
             name: name.to_owned(),
             problem,
         })?;
-        let failed = |error| LibraryError::Write {
-            path: path.to_owned(),
-            error,
-        };
         Ok(Self {
             path: path.to_owned(),
             name: name.to_owned(),
-            target: Unfinished::create(path).map_err(failed)?,
-            spool: Spool::beside(path).map_err(failed)?,
+            target: Unfinished::create(path).unchanged(path)?,
+            spool: Spool::beside(path).unchanged(path)?,
             added: BTreeMap::new(),
             words: BTreeSet::new(),
         })
@@ -123,7 +119,7 @@ impl Writer {
         let facts = Facts::of(&read.manifest);
         check_words(name, "tags", &facts.tags)?;
         check_words(name, "models", &facts.models)?;
-        let spooled = self.spool.add(asset).map_err(|error| self.failed(error))?;
+        let spooled = self.spool.add(asset).unchanged(&self.path)?;
         let added = Added {
             words: self.common_words(facts.tags, facts.models),
             conditions: facts.conditions,
@@ -157,16 +153,13 @@ impl Writer {
             added,
             ..
         } = self;
-        let failed = |error| LibraryError::Write {
-            path: path.clone(),
-            error,
-        };
-        let (mut spool, modules) = spool.finish().map_err(failed)?;
+        let (mut spool, modules) = spool.finish().unchanged(&path)?;
         let sharing = Sharing::of(modules);
         let (header, index, total) = index(&name, &added, &sharing);
         check_limits(&name, &header, total)?;
-        write(target.file(), &header, &index, &mut spool, &sharing, &added).map_err(failed)?;
-        target.keep().map_err(failed)?;
+        write(target.file(), &header, &index, &mut spool, &sharing, &added)
+            .and_then(|()| target.keep())
+            .unchanged(&path)?;
         Ok(Packed {
             entries: header.entries,
             bytes: header.payload.end,
@@ -176,12 +169,19 @@ impl Writer {
             blake3: header.index_blake3,
         })
     }
+}
 
-    fn failed(&self, error: io::Error) -> LibraryError {
-        LibraryError::Write {
-            path: self.path.clone(),
+/// Adds the file, which stays as it was, to an error of writing it.
+trait Unchanged<T> {
+    fn unchanged(self, path: &Path) -> Result<T, LibraryError>;
+}
+
+impl<T> Unchanged<T> for io::Result<T> {
+    fn unchanged(self, path: &Path) -> Result<T, LibraryError> {
+        self.map_err(|error| LibraryError::Write {
+            path: path.to_owned(),
             error,
-        }
+        })
     }
 }
 

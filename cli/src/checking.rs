@@ -11,6 +11,7 @@ use serde::Serialize;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::invocation::{self, Program};
+use crate::of_file::OrFail;
 use crate::output::{print, print_json};
 
 /// How checks are run and reported.
@@ -87,7 +88,7 @@ fn timeout(seconds: f64) -> Result<Duration, Failure> {
 }
 
 fn this_program() -> Result<Program, Failure> {
-    invocation::program().map_err(|error| Failure::Other(error.to_string()))
+    invocation::program().or_fail()
 }
 
 fn exit_code(bad: bool) -> Exit {

@@ -1,7 +1,5 @@
 //! The error that a failed command ends with.
 
-use std::path::Path;
-
 use htex_author::AuthorError;
 use htex_files::FileError;
 use htex_finding::{Finding, Hint, listed, plain};
@@ -11,7 +9,6 @@ use htex_lab::record::RecordError;
 use crate::exit::Exit;
 use crate::hints::{flags_of, with_flags, with_hint};
 use crate::located::named;
-use crate::shown::shown;
 
 /// An error, with its place.
 #[derive(Debug, thiserror::Error)]
@@ -64,6 +61,8 @@ pub(crate) enum Failure {
     Record(#[from] htex_lab::record::RecordError),
     #[error(transparent)]
     File(#[from] FileError),
+    #[error("cannot write JSON: {0}")]
+    Json(#[from] serde_json::Error),
     /// The command line is invalid.
     #[error("{0}")]
     Usage(String),
@@ -122,63 +121,6 @@ impl Failure {
         }
     }
 
-    pub(crate) fn asset(file: &Path, error: impl Into<htex::Error>) -> Self {
-        Self::Asset {
-            file: shown(file),
-            error: error.into(),
-        }
-    }
-
-    /// A library that could not be read or written.
-    pub(crate) fn library(file: &Path, error: htex_library::LibraryError) -> Self {
-        use htex_library::LibraryError::{Open, Write};
-        match error {
-            Open { path, error } => FileError::reading(path, error).into(),
-            Write { path, error } => FileError::writing(path, error).into(),
-            error => Self::Library {
-                file: shown(file),
-                error,
-            },
-        }
-    }
-
-    /// A scene that could not be loaded.
-    pub(crate) fn load(file: &Path, error: htex_scene::LoadError) -> Self {
-        match error {
-            htex_scene::LoadError::Io { path, error } => FileError::reading(path, error).into(),
-            htex_scene::LoadError::Invalid { findings } => Self::Findings {
-                file: shown(file),
-                cannot: "this scene cannot be played",
-                findings,
-            },
-            other => Self::Other(format!("{}: {other}", shown(file))),
-        }
-    }
-
-    /// A scene that could not be planned or played.
-    pub(crate) fn scene(file: &Path, error: htex_scene::SceneError) -> Self {
-        Self::Scene {
-            file: shown(file),
-            error: Box::new(error),
-        }
-    }
-
-    /// A build that stopped.
-    #[cfg(feature = "build")]
-    pub(crate) fn build(recipe: &Path, error: htex_build::BuildError) -> Self {
-        use htex_build::BuildError;
-        match error {
-            BuildError::File(error) => error.into(),
-            BuildError::Storage(error) => error.into(),
-            error => Self::Build {
-                recipe: shown(recipe),
-                error,
-            },
-        }
-    }
-}
-
-impl Failure {
     /// The message, line by line. It may quote files and their names: control characters are escaped, and lines
     /// end only where this program ends them.
     pub(crate) fn to_lines(&self) -> Vec<String> {
@@ -224,6 +166,12 @@ impl Failure {
             }
             _ => flags,
         }
+    }
+}
+
+impl From<htex_format::WriteError> for Failure {
+    fn from(error: htex_format::WriteError) -> Self {
+        Self::Author(error.into())
     }
 }
 

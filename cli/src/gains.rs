@@ -76,9 +76,7 @@ pub(crate) fn key(person: &str, texture: Option<&str>, ready: &Ready) -> GainKey
 
 /// The hash that identified a texture in earlier versions.
 pub(crate) fn hash(ready: &Ready) -> Result<String, Failure> {
-    Gains::hash_of(&ready.file)
-        .reading(&ready.file)
-        .map_err(Failure::from)
+    Ok(Gains::hash_of(&ready.file).reading(&ready.file)?)
 }
 
 /// Names of the files that the textures were recorded in.

@@ -24,6 +24,7 @@ mod models;
 mod motions;
 #[cfg(not(feature = "schemas"))]
 mod no_schemas;
+mod of_file;
 mod output;
 mod outputs;
 mod playing;

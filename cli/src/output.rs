@@ -53,8 +53,7 @@ pub(crate) fn write_bytes(bytes: &[u8]) -> Result<(), Failure> {
 
 /// Writes a value as JSON, and a line end.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string(value)
-        .map_err(|error| Failure::Other(format!("cannot write JSON: {error}")))?;
+    let text = serde_json::to_string(value)?;
     write(&(text + "\n"))
 }
 
@@ -99,7 +98,5 @@ fn tell_all<N: Clone + Into<Notice>>(kind: &str, notices: &[N]) {
 
 /// Writes a file under a temporary name beside it and renames it.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    htex_format::write_file(path, bytes)
-        .writing(path)
-        .map_err(Failure::from)
+    Ok(htex_format::write_file(path, bytes).writing(path)?)
 }

@@ -13,6 +13,7 @@ use serde_json::Value;
 use crate::devices::{DeviceArgs, SettingArgs};
 use crate::failure::Failure;
 use crate::located;
+use crate::of_file::ResultOfFile;
 use crate::output::{note, warn};
 use crate::outputs::check_outputs;
 use crate::plugins::{PlayerArgs, PluginArgs};
@@ -158,7 +159,7 @@ impl SceneArgs {
             embedded: false,
             devices: &DeviceArgs::default().devices_quietly()?,
         };
-        htex_scene::validate(file, &around).map_err(|error| Failure::load(file, error))
+        htex_scene::validate(file, &around).of(file)
     }
 
     /// The schema of the settings of a scene's device, if the device is known.
@@ -194,7 +195,7 @@ impl Loader {
         told: &mut BTreeSet<String>,
         load: impl FnOnce(&Surroundings<'_>) -> Result<LoadedScene, htex_scene::LoadError>,
     ) -> Result<Ready, Failure> {
-        let scene = load(&self.around()).map_err(|error| Failure::load(file, error))?;
+        let scene = load(&self.around()).of(file)?;
         let notes = scene.notes.iter().map(ToString::to_string);
         let new: Vec<String> = notes.filter(|note| told.insert(note.clone())).collect();
         warn(&new);
@@ -212,8 +213,7 @@ impl Loader {
 
 impl Ready {
     pub(crate) fn plan(&self, costs: &Costs) -> Result<Plan, Failure> {
-        htex_scene::plan(&self.scene, &self.capabilities, costs)
-            .map_err(|error| Failure::scene(&self.file, error))
+        htex_scene::plan(&self.scene, &self.capabilities, costs).of(&self.file)
     }
 
     /// Refuses a device that is a file which the scene was read from.
@@ -262,7 +262,7 @@ pub(crate) fn is_asset(file: &Path) -> bool {
 
 /// The motion of an asset's first condition.
 pub(crate) fn first_motion(file: &Path) -> Result<Motion, Failure> {
-    let asset = htex_format::Asset::open(file).map_err(|error| Failure::asset(file, error))?;
+    let asset = htex_format::Asset::open(file).of(file)?;
     let first = asset.manifest.conditions.first();
     let (speed, force) = USUAL;
     Ok(Motion::Constant(Constant {

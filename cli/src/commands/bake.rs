@@ -2,11 +2,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex::{Asset, Motion};
-use htex_bake::{Baked, Grid};
+use htex_bake::{BakeError, Baked, Grid};
 use serde_json::json;
 
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::of_file::{OfFile, ResultOfFile};
 use crate::output::{print, print_json, warn};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
@@ -68,10 +69,10 @@ impl Bake {
         let asset = self.player.open(&self.asset)?;
         let grid = match given {
             Some(grid) => grid,
-            None => first_condition(&asset).map_err(|error| self.failure(error))?,
+            None => first_condition(&asset).of(&self.asset)?,
         };
         let baked = htex_bake::bake(&asset, self.model.as_deref(), &grid, self.rate, self.within)
-            .map_err(|error| self.failure(error))?;
+            .of(&self.asset)?;
         let written = match format {
             Format::Bytes => baked.bytes.clone(),
             Format::C => htex_bake::c_header(&stem, &baked.bytes).into_bytes(),
@@ -92,24 +93,11 @@ impl Bake {
         Ok(Exit::SUCCESS)
     }
 
-    fn failure(&self, error: htex_bake::BakeError) -> Failure {
-        use htex_bake::BakeError::{Asset, Axis, Incomplete, Model, Rate};
-        match error {
-            Asset(error) => Failure::asset(&self.asset, error),
-            Model(error) => Failure::asset(&self.asset, error),
-            Rate { .. } => Failure::Usage(format!("--rate {error}")),
-            Axis { .. } | Incomplete { .. } => Failure::Usage(format!("--at, --grid: {error}")),
-            error => Failure::Other(format!("{}: {error}", shown(&self.asset))),
-        }
-    }
-
     /// The conditions of the command line.
     fn given(&self) -> Result<Option<Grid>, Failure> {
         if let Some(text) = &self.grid {
             let [speeds, forces] = axes("--grid", text, span)?;
-            return Grid::new(speeds, forces)
-                .map(Some)
-                .map_err(|error| self.failure(error));
+            return Grid::new(speeds, forces).map(Some).of(&self.asset);
         }
         let mut motions = Vec::new();
         for text in &self.at {
@@ -118,9 +106,21 @@ impl Bake {
         }
         match motions.is_empty() {
             true => Ok(None),
-            false => Grid::of_conditions(&motions)
-                .map(Some)
-                .map_err(|error| self.failure(error)),
+            false => Grid::of_conditions(&motions).map(Some).of(&self.asset),
+        }
+    }
+}
+
+impl OfFile for BakeError {
+    fn of(self, asset: &Path) -> Failure {
+        match self {
+            Self::Asset(error) => error.of(asset),
+            Self::Model(error) => htex::Error::from(error).of(asset),
+            Self::Rate { .. } => Failure::Usage(format!("--rate {self}")),
+            Self::Axis { .. } | Self::Incomplete { .. } => {
+                Failure::Usage(format!("--at, --grid: {self}"))
+            }
+            error => Failure::Other(format!("{}: {error}", shown(asset))),
         }
     }
 }
@@ -149,7 +149,7 @@ fn named(output: &Path) -> Result<(String, Format), Failure> {
     Ok((stem, format))
 }
 
-fn first_condition(asset: &Asset) -> Result<Grid, htex_bake::BakeError> {
+fn first_condition(asset: &Asset) -> Result<Grid, BakeError> {
     let first = asset.manifest().conditions.first();
     let speed = first.and_then(|c| c.speed_mm_s).unwrap_or(USUAL.0);
     let force = first.and_then(|c| c.force_n).unwrap_or(USUAL.1);

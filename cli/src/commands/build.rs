@@ -15,6 +15,7 @@ use crate::assets::short_name;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::models::tool;
+use crate::of_file::ResultOfFile;
 use crate::output::{print, print_json};
 use crate::progress;
 use crate::wasm_limits::WasmLimit;
@@ -92,21 +93,20 @@ impl Build {
             .with_keep_going(self.keep_going)
             .with_limits(WasmLimit::all(&self.wasm_limit))
             .with_browser_package(self.browser_package.clone());
-        let failure = |error| Failure::build(&self.recipe, error);
-        let to = Destination::parse(&self.output, self.work.as_deref()).map_err(failure)?;
+        let to = Destination::parse(&self.output, self.work.as_deref()).of(&self.recipe)?;
         if to.remote().is_none() && self.work.is_some() {
             let sentence =
                 "--work goes with a URI after -o; a build of this machine works in its own folder";
             return Err(Failure::Usage(sentence.to_owned()));
         }
-        let mut build = Recipe::open(&self.recipe, to.folder(), options).map_err(failure)?;
+        let mut build = Recipe::open(&self.recipe, to.folder(), options).of(&self.recipe)?;
         let work = Work::of(&build);
         if self.dry_run {
             return self.announce(&build);
         }
-        fit(&mut build, &work).map_err(failure)?;
-        let built = build.finish().map_err(failure)?;
-        to.publish().map_err(failure)?;
+        fit(&mut build, &work).of(&self.recipe)?;
+        let built = build.finish().of(&self.recipe)?;
+        to.publish().of(&self.recipe)?;
         self.report(&built, &to, &work, start.elapsed().as_secs_f64())
     }
 

@@ -15,6 +15,7 @@ use crate::columns::{Column, cells, columns, headings};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
+use crate::of_file::OfFile;
 use crate::output::{note, print, print_json, warn};
 use crate::plugins::PlayerArgs;
 use crate::recordings::RecordingArgs;
@@ -113,7 +114,7 @@ impl Compare {
             CompareError::Quantities { held, .. } => {
                 Failure::Usage(format!("{error}; give --quantity {held}"))
             }
-            CompareError::Play(error) => Failure::asset(&self.other, error),
+            CompareError::Play(error) => error.of(&self.other),
             CompareError::Model(error) => error.into(),
             CompareError::Measure(error) => error.into(),
             error => Failure::Other(error.to_string()),

@@ -6,14 +6,13 @@ use htex::VoiceOptions;
 use htex_author::recording::{ReadOptions, read_recording};
 use htex_author::settings::FitSettings;
 use htex_author::{
-    AssetRequest, AuthorError, Exploration, FeltError, SetupResponse, SpectrumOptions, Take,
-    fit_asset,
+    AssetRequest, Exploration, FeltError, SetupResponse, SpectrumOptions, Take, fit_asset,
 };
 use htex_files::AtFile;
 use htex_format::{By, Keyed, Measure};
 use htex_host::Registry;
 use htex_report::{Share, Texture, TextureReport, spectra_picture, texture_report};
-use htex_simulate::{SimulationError, SimulationOptions, Surface, simulate};
+use htex_simulate::{SimulationOptions, Surface, simulate};
 use serde::Serialize;
 
 use super::simulate::write_response;
@@ -22,6 +21,7 @@ use crate::columns::{cells, columns, headings};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::models::tool;
+use crate::of_file::{OrFail, ResultOfFile};
 use crate::output::{print, print_json, write_file};
 use crate::progress::bar;
 use crate::report::{Reported, measures, shares};
@@ -63,7 +63,7 @@ impl Demo {
         std::fs::create_dir_all(&self.dir).writing(&self.dir)?;
         let rig = SimulationOptions::new(Surface::Sandpaper)
             .setup_response()
-            .map_err(simulation_failure)?;
+            .or_fail()?;
         write_response(&rig, &self.dir.join(RIG))?;
         let bar = bar(Surface::ALL.len() as u64);
         let mut done = Vec::new();
@@ -107,9 +107,9 @@ impl Demo {
         };
         let fitted = fit_asset(&[take], &request(&name, rig)?)?;
         let path = self.dir.join(format!("{name}.htex"));
-        let bytes = fitted.asset.to_bytes().map_err(AuthorError::from)?;
+        let bytes = fitted.asset.to_bytes()?;
         write_file(&path, &bytes)?;
-        let asset = htex::Asset::open(&path).map_err(|error| Failure::asset(&path, error))?;
+        let asset = htex::Asset::open(&path).of(&path)?;
         for representation in &asset.manifest().representations {
             let wav = self
                 .dir
@@ -125,20 +125,16 @@ impl Demo {
             summary: &summary,
             recording_bytes,
         };
-        let texture = reported
-            .texture(0)
-            .map_err(|error| Failure::asset(&path, error))?;
+        let texture = reported.texture(0).of(&path)?;
         Ok(DemoTexture { texture, summary })
     }
 
     fn write_recording(&self, surface: Surface, csv: &Path) -> Result<(), Failure> {
         let options = SimulationOptions::new(surface).with_seed(self.seed);
-        let simulation = simulate(&options).map_err(simulation_failure)?;
+        let simulation = simulate(&options).or_fail()?;
         let write =
             |file: &mut std::fs::File| simulation.write_csv(&mut std::io::BufWriter::new(file));
-        htex_format::replace_file(csv, write)
-            .writing(csv)
-            .map_err(Failure::from)
+        Ok(htex_format::replace_file(csv, write).writing(csv)?)
     }
 
     fn page(&self, textures: Vec<Texture>, shares: Vec<Share>) -> TextureReport {
@@ -205,10 +201,6 @@ impl DemoTexture {
     }
 }
 
-fn simulation_failure(error: SimulationError) -> Failure {
-    Failure::Other(error.to_string())
-}
-
 fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
     Ok(AssetRequest::new(name)
         .with_license("CC0-1.0".to_owned())
@@ -221,14 +213,13 @@ fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
 }
 
 fn play(asset: &htex::Asset, model: &str, file: &Path, wav: &Path) -> Result<(), Failure> {
-    let failure = |error| Failure::asset(file, error);
     let options = VoiceOptions::default()
         .with_model(model)
         .with_rate_hz(f64::from(WAV_RATE_HZ));
-    let mut voice = asset.voice(&options).map_err(failure)?;
+    let mut voice = asset.voice(&options).of(file)?;
     let frames = WAV_SECONDS * u64::from(WAV_RATE_HZ);
     write_wav(wav, WAV_RATE_HZ, frames, |block| {
-        voice.render(block).map_err(failure)
+        voice.render(block).of(file)
     })
 }
 

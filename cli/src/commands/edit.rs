@@ -13,6 +13,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
 use crate::metadata::checked;
+use crate::of_file::OfFile;
 use crate::output::{print, print_json, write_file};
 use crate::outputs::check_outputs;
 use crate::shown::shown;
@@ -56,11 +57,11 @@ impl Edit {
         checked(&metadata)?;
         let edited = edit(&read_asset(&self.asset)?, &metadata);
         let asset = edited.map_err(|error| match error {
-            EditError::Read(error) => Failure::asset(&self.asset, error),
+            EditError::Read(error) => error.of(&self.asset),
             lost => Failure::Other(format!("{}: {lost}", shown(&self.asset))),
         })?;
         let output = self.output.as_ref().unwrap_or(&self.asset);
-        let bytes = asset.to_bytes().map_err(htex_author::AuthorError::from)?;
+        let bytes = asset.to_bytes()?;
         write_file(output, &bytes)?;
         let summary = AssetSummary::new(output, bytes.len() as u64, &asset);
         if self.json {

@@ -16,6 +16,7 @@ use crate::invocation;
 use crate::located;
 use crate::metadata::checked;
 use crate::models::tool;
+use crate::of_file::ResultOfFile;
 use crate::output::{note, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
@@ -101,10 +102,7 @@ impl Fit {
         let mut fitted = fit_asset(&takes, &request)?;
         metadata.apply(&mut fitted.asset.manifest);
         self.embed(&mut fitted.asset, &registry)?;
-        let bytes = fitted
-            .asset
-            .to_bytes()
-            .map_err(htex_author::AuthorError::from)?;
+        let bytes = fitted.asset.to_bytes()?;
         write_file(&self.output, &bytes)?;
         let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &fitted.asset)
             .with_felt(&fitted.felt);
@@ -156,7 +154,7 @@ impl Fit {
         let page = TextureReport {
             title: format!("{}: recording and models", fitted.asset.manifest.name),
             measures: measures(),
-            textures: textures.map_err(|error| Failure::asset(&self.output, error))?,
+            textures: textures.of(&self.output)?,
             command: command_line(),
             pictures: grid
                 .map(|grid| grid_plot(&name, grid).to_svg())

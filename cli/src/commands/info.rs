@@ -7,6 +7,7 @@ use crate::assets::AssetSummary;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
+use crate::of_file::ResultOfFile;
 use crate::output::{print, print_json};
 
 /// Show an asset's contents and each model's distance from the recording.
@@ -27,8 +28,7 @@ pub(crate) struct Info {
 
 impl Info {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let asset = htex_format::Asset::open(&self.asset)
-            .map_err(|error| Failure::asset(&self.asset, error))?;
+        let asset = htex_format::Asset::open(&self.asset).of(&self.asset)?;
         let bytes = std::fs::metadata(&self.asset).map_or(0, |m| m.len());
         let mut summary = AssetSummary::new(&self.asset, bytes, &asset);
         let models = Registry::builtin();

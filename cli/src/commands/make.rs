@@ -12,6 +12,7 @@ use crate::failure::Failure;
 use crate::located;
 use crate::metadata::checked;
 use crate::models::tool;
+use crate::of_file::OrFail;
 use crate::output::{print, print_json, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
@@ -84,7 +85,7 @@ impl Make {
             }
         }
         let made = make(model, &texture);
-        let mut asset = made.map_err(|error| Failure::Usage(error.to_string()))?;
+        let mut asset = made.or_usage()?;
         metadata.apply(&mut asset.manifest);
         write(&self.output, &asset, self.json)
     }
@@ -96,7 +97,7 @@ pub(super) fn write(
     asset: &htex_format::Asset,
     is_json: bool,
 ) -> Result<Exit, Failure> {
-    let bytes = asset.to_bytes().map_err(htex_author::AuthorError::from)?;
+    let bytes = asset.to_bytes()?;
     write_file(output, &bytes)?;
     let summary = AssetSummary::new(output, bytes.len() as u64, asset);
     if is_json {

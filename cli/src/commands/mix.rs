@@ -11,6 +11,7 @@ use crate::failure::Failure;
 use crate::located;
 use crate::metadata::checked;
 use crate::models::tool;
+use crate::of_file::OrFail;
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 
@@ -65,7 +66,7 @@ impl Mix {
             &stem.to_string_lossy(),
             &tool(),
         );
-        let mut asset = mixed.map_err(|error| Failure::Other(error.to_string()))?;
+        let mut asset = mixed.or_fail()?;
         metadata.apply(&mut asset.manifest);
         write(&self.output, &asset, self.json)
     }

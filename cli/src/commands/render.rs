@@ -11,6 +11,7 @@ use serde_json::json;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
+use crate::of_file::ResultOfFile;
 use crate::output::{note, print, print_json};
 use crate::playing::Output;
 use crate::progress::bar;
@@ -58,8 +59,7 @@ impl Render {
         self.check_length(&mut ready)?;
         let plan = ready.plan(&costs())?;
         note(&plan.notes);
-        let mut renderer =
-            Renderer::new(&ready.scene, &plan).map_err(|e| Failure::scene(&self.scene, e))?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).of(&self.scene)?;
         if self.json {
             renderer = renderer.timed();
         }

@@ -140,11 +140,10 @@ impl Response {
 
     /// The response, with the settings that it was measured by.
     fn summary(&self, measured: &MeasuredResponse, remarks: &[Notice]) -> Result<Value, Failure> {
-        let failed = |error| Failure::Other(format!("cannot write JSON: {error}"));
-        let mut summary = serde_json::to_value(measured).map_err(failed)?;
+        let mut summary = serde_json::to_value(measured)?;
         summary["input"] = json!(self.input);
         summary["output"] = json!(self.output);
-        summary["settings"] = serde_json::to_value(self.options()).map_err(failed)?;
+        summary["settings"] = serde_json::to_value(self.options())?;
         summary["notes"] = json!(remarks);
         Ok(summary)
     }

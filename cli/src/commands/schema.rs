@@ -53,7 +53,7 @@ impl Schema {
             }
         };
         let text = value.and_then(|value| serde_json::to_string_pretty(&value));
-        let text = text.map_err(|error| Failure::Other(format!("cannot write JSON: {error}")))?;
+        let text = text?;
         print(&(text + "\n"))?;
         Ok(Exit::SUCCESS)
     }

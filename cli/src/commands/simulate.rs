@@ -4,11 +4,12 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 use htex_author::SetupResponse;
-use htex_simulate::{FreeMotion, SimulationError, SimulationOptions, Surface, simulate};
+use htex_simulate::{FreeMotion, SimulationOptions, Surface, simulate};
 
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
+use crate::of_file::OrFail;
 use crate::outputs::check_outputs;
 use htex_files::AtFile;
 
@@ -91,17 +92,16 @@ impl Simulate {
             .chain(self.truth.as_deref());
         check_outputs(outputs, [])?;
         let options = self.options()?;
-        let usage = |error: SimulationError| Failure::Usage(error.to_string());
-        let simulation = simulate(&options).map_err(usage)?;
+        let simulation = simulate(&options).or_usage()?;
         let write = |file: &mut std::fs::File| simulation.write_csv(&mut BufWriter::new(file));
         htex_format::replace_file(&self.output, write).writing(&self.output)?;
         if let Some(file) = &self.truth {
-            let truth = options.truth().map_err(usage)?;
+            let truth = options.truth().or_usage()?;
             let write = |file: &mut std::fs::File| truth.write_json(&mut BufWriter::new(file));
             htex_format::replace_file(file, write).writing(file)?;
         }
         if let Some(frf) = &self.frf {
-            write_response(&options.setup_response().map_err(usage)?, frf)?;
+            write_response(&options.setup_response().or_usage()?, frf)?;
         }
         Ok(Exit::SUCCESS)
     }
@@ -142,7 +142,5 @@ impl Simulate {
 /// Writes a setup response for `--frf`.
 pub(super) fn write_response(response: &SetupResponse, path: &Path) -> Result<(), Failure> {
     let write = |file: &mut std::fs::File| response.write_csv(&mut BufWriter::new(file));
-    htex_format::replace_file(path, write)
-        .writing(path)
-        .map_err(Failure::from)
+    Ok(htex_format::replace_file(path, write).writing(path)?)
 }

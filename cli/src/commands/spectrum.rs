@@ -6,6 +6,7 @@ use serde_json::json;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
+use crate::of_file::ResultOfFile;
 use crate::output::{print, print_json, warn};
 use crate::plugins::PlayerArgs;
 use crate::scenes::USUAL;
@@ -77,15 +78,14 @@ impl ChoiceArgs {
 
 impl Spectrum {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let failure = |error| Failure::asset(&self.asset, error);
         let asset = self.player.open(&self.asset)?;
         let grid = htex::Band::TACTILE.grid_hz();
         let motion = self.choice.motion(&asset);
         let magnitude = asset
             .magnitude(self.choice.model.as_deref(), motion, &grid)
-            .map_err(failure)?;
+            .of(&self.asset)?;
         let beyond = self.choice.beyond(&asset, htex::Effects::default());
-        if let Some(said) = beyond.map_err(failure)? {
+        if let Some(said) = beyond.of(&self.asset)? {
             warn(&[format!(
                 "{said}; the spectrum is the one recorded, and a voice plays it so"
             )]);

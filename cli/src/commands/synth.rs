@@ -7,6 +7,7 @@ use crate::commands::spectrum::ChoiceArgs;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
+use crate::of_file::ResultOfFile;
 use crate::output::warn;
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
@@ -61,7 +62,6 @@ impl Synth {
             return Err(Failure::Usage(sentence));
         }
         check_outputs([self.output.as_path()], [self.asset.as_path()])?;
-        let failure = |error| Failure::asset(&self.asset, error);
         let asset = self.player.open(&self.asset)?;
         let mut options = VoiceOptions::default()
             .with_rate_hz(f64::from(self.rate))
@@ -76,12 +76,12 @@ impl Synth {
         let beyond = self
             .choice
             .beyond(&asset, options.effects)
-            .map_err(failure)?;
+            .of(&self.asset)?;
         warn(&Vec::from_iter(beyond));
-        let mut voice = asset.voice(&options).map_err(failure)?;
+        let mut voice = asset.voice(&options).of(&self.asset)?;
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
         write_wav(&self.output, self.rate, frames, |block| {
-            voice.render(block).map_err(failure)
+            voice.render(block).of(&self.asset)
         })?;
         Ok(Exit::SUCCESS)
     }

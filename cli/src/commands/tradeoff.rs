@@ -14,6 +14,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::invocation;
 use crate::models::tool;
+use crate::of_file::OrFail;
 use crate::output::{print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
@@ -106,8 +107,7 @@ impl Tradeoff {
         })?;
         bar.finish_and_clear();
         let tradeoff = htex_tradeoff::Tradeoff::new(&tool(), &subjects, swept, self.error);
-        let json = serde_json::to_vec(&tradeoff)
-            .map_err(|error| Failure::Other(format!("cannot write JSON: {error}")))?;
+        let json = serde_json::to_vec(&tradeoff)?;
         write_file(&csv_file, csv(&tradeoff).as_bytes())?;
         write_file(&json_file, &json)?;
         write_file(&self.output, page(&tradeoff, &command()).as_bytes())?;
@@ -177,7 +177,7 @@ impl Tradeoff {
 fn simulated() -> Result<Vec<Take>, Failure> {
     let take = |surface: Surface| {
         let options = SimulationOptions::new(surface);
-        let simulation = simulate(&options).map_err(|error| Failure::Other(error.to_string()))?;
+        let simulation = simulate(&options).or_fail()?;
         let recording = simulation
             .to_recording(&surface.to_string())
             .map_err(AuthorError::from)?;

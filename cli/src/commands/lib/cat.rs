@@ -7,6 +7,7 @@ use super::given::Given;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
+use crate::of_file::ResultOfFile;
 use crate::output::{write_bytes, write_file};
 use crate::outputs::check_outputs;
 
@@ -33,8 +34,7 @@ impl Cat {
             return Err(Failure::Usage(sentence.to_owned()));
         }
         let library = self.library.open()?;
-        let bytes = library.get(&self.name);
-        let bytes = bytes.map_err(|error| self.library.failure(error))?;
+        let bytes = library.get(&self.name).of(&self.library.shown())?;
         match &self.output {
             Some(output) => write_file(output, &bytes)?,
             None => write_bytes(&bytes)?,

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::given::Given;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::of_file::ResultOfFile;
 use crate::output::{print, print_json};
 
 /// Compare the textures of two libraries by name and hash; exit status 1 if they differ.
@@ -72,7 +73,7 @@ impl<'a> Walk<'a> {
     /// Takes the next entry.
     fn step(&mut self) -> Result<Option<Entry>, Failure> {
         let next = self.entries.next().transpose();
-        let next = next.map_err(|error| self.given.failure(error))?;
+        let next = next.of(&self.given.shown())?;
         Ok(std::mem::replace(&mut self.next, next))
     }
 }

@@ -5,6 +5,7 @@ use super::given::Given;
 use super::listing::Listing;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::of_file::ResultOfFile;
 use crate::output::note;
 
 /// Search a library; all that is asked for must hold.
@@ -40,7 +41,7 @@ pub(crate) struct Find {
 
 impl Find {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let failed = |error| self.library.failure(error);
+        let file = self.library.shown();
         let library = self.library.open()?;
         let query = Query {
             words: self.words.clone(),
@@ -51,7 +52,7 @@ impl Find {
         };
         let mut listing = Listing::new(self.json);
         for entry in library.entries() {
-            let entry = entry.map_err(failed)?;
+            let entry = entry.of(&file)?;
             if query.matches(&entry) {
                 listing.add(&entry)?;
             }

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
-use htex_library::{Library, LibraryError, Located};
+use htex_library::{Library, Located};
 use htex_storage::{Location, Storage};
 
 use crate::failure::Failure;
+use crate::of_file::ResultOfFile;
 
 /// A library by path or URI.
 #[derive(Clone, Debug)]
@@ -19,8 +20,7 @@ impl Given {
     }
 
     pub(crate) fn open(&self) -> Result<Library<Located>, Failure> {
-        let opened = Library::open_located(&storage()?, &self.0);
-        opened.map_err(|error| self.failure(error))
+        Library::open_located(&storage()?, &self.0).of(&self.shown())
     }
 
     /// The file, if it is one of this machine.
@@ -31,13 +31,6 @@ impl Given {
     /// The path or URI for texts.
     pub(crate) fn shown(&self) -> PathBuf {
         PathBuf::from(self.0.to_string())
-    }
-
-    pub(crate) fn failure(&self, error: LibraryError) -> Failure {
-        match error {
-            LibraryError::Storage(error) => error.into(),
-            error => Failure::library(&self.shown(), error),
-        }
     }
 }
 

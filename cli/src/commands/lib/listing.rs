@@ -29,7 +29,7 @@ impl Listing {
     pub(super) fn add(&mut self, entry: &Entry) -> Result<(), Failure> {
         if self.is_json {
             let json = serde_json::to_string(entry);
-            let json = json.map_err(|e| Failure::Other(format!("cannot write JSON: {e}")))?;
+            let json = json?;
             self.text += if self.count == 0 { "[" } else { ",\n " };
             self.text += &json;
         } else {

@@ -4,6 +4,7 @@ use super::given::Given;
 use super::listing::Listing;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::of_file::ResultOfFile;
 use crate::output::note;
 
 /// List the textures of a library: name, bytes, recorded speeds and forces, models, tags.
@@ -22,7 +23,7 @@ pub(crate) struct Ls {
 
 impl Ls {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let failed = |error| self.library.failure(error);
+        let file = self.library.shown();
         let library = self.library.open()?;
         note(
             &library
@@ -33,7 +34,7 @@ impl Ls {
         );
         let mut listing = Listing::new(self.json);
         for entry in library.entries() {
-            listing.add(&entry.map_err(failed)?)?;
+            listing.add(&entry.of(&file)?)?;
         }
         listing.finish()?;
         Ok(Exit::SUCCESS)

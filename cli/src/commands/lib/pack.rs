@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_library::{EXTENSION, LibraryError, Packed, Writer};
+use htex_library::{EXTENSION, Packed, Writer};
 use serde_json::{Value, json};
 
 use super::sources::sources;
@@ -9,6 +9,7 @@ use crate::bounded::read_asset;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
+use crate::of_file::ResultOfFile;
 use crate::output::{print, print_json};
 use crate::outputs::check_outputs;
 use crate::progress::bar;
@@ -59,16 +60,14 @@ impl Pack {
             .name
             .clone()
             .unwrap_or(stem.unwrap_or_default().into_owned());
-        let failed = |error| Failure::library(&self.output, error);
-        let mut writer = Writer::create(&self.output, &name).map_err(failed)?;
+        let mut writer = Writer::create(&self.output, &name).of(&self.output)?;
         let bar = bar(sources.len() as u64);
         for (name, path) in &sources {
             let bytes = read_asset(path)?;
-            let added = writer.add(name, &bytes);
-            added.map_err(|error| of_texture(path, &self.output, error))?;
+            writer.add(name, &bytes).of(path)?;
             bar.inc(1);
         }
-        let packed = writer.finish().map_err(failed)?;
+        let packed = writer.finish().of(&self.output)?;
         bar.finish_and_clear();
         if self.json {
             print_json(&summary(&self.output, &name, &packed))?;
@@ -80,14 +79,6 @@ impl Pack {
 }
 
 /// The error of adding a texture, with its file.
-fn of_texture(path: &Path, output: &Path, error: LibraryError) -> Failure {
-    match error {
-        LibraryError::Write { .. } => Failure::library(output, error),
-        LibraryError::Asset { error, .. } => Failure::asset(path, *error),
-        other => Failure::library(path, other),
-    }
-}
-
 fn summary(path: &Path, name: &str, packed: &Packed) -> Value {
     json!({
         "file": path.display().to_string(),

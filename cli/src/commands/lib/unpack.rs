@@ -7,6 +7,7 @@ use htex_library::{Entry, LibraryError};
 use super::given::Given;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::of_file::{OfFile, ResultOfFile};
 use crate::output::{print, write_file};
 use crate::progress::bar;
 use crate::shown::shown;
@@ -34,7 +35,7 @@ pub(crate) struct Unpack {
 
 impl Unpack {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let failed = |error| self.library.failure(error);
+        let file = self.library.shown();
         let library = self.library.open()?;
         let count = if self.names.is_empty() {
             library.len()
@@ -43,18 +44,18 @@ impl Unpack {
         };
         let bar = bar(count);
         let write = |entry: Entry| {
-            let bytes = library.read(&entry).map_err(failed)?;
+            let bytes = library.read(&entry).of(&file)?;
             bar.inc(1);
             self.write(&entry.name, &bytes)
         };
         if self.names.is_empty() {
             library
                 .entries()
-                .try_for_each(|entry| write(entry.map_err(failed)?))?;
+                .try_for_each(|entry| write(entry.of(&file)?))?;
         }
         for name in &self.names {
-            let entry = library.entry(name).map_err(failed)?;
-            let absent = || failed(LibraryError::Absent { name: name.clone() });
+            let entry = library.entry(name).of(&file)?;
+            let absent = || LibraryError::Absent { name: name.clone() }.of(&file);
             write(entry.ok_or_else(absent)?)?;
         }
         bar.finish_and_clear();

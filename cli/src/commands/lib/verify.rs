@@ -6,6 +6,7 @@ use htex_finding::Report;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
+use crate::of_file::ResultOfFile;
 use crate::validation::report;
 
 /// Check every page and every texture of libraries; exit status 1 if one is not valid.
@@ -34,5 +35,5 @@ impl Verify {
 
 /// Validates a library.
 pub(crate) fn check(path: &Path) -> Result<Report, Failure> {
-    htex_library::validate(path).map_err(|error| Failure::library(path, error))
+    htex_library::validate(path).of(path)
 }

@@ -1,11 +1,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use htex_check::{Options, UnknownCheck, check, run_one};
+use htex_check::{Options, check, run_one};
 
 use crate::checking::CheckArgs;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::of_file::OrFail;
 use crate::output::print_json;
 
 /// Check that a model keeps every promise of the model ABI; exit status 1 if it does not.
@@ -53,10 +54,10 @@ impl Check {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let Self { file, seed, .. } = &self;
         if let Some(name) = &self.checking.reproduce {
-            let finding = run_one(file, name, *seed, self.against.as_deref()).map_err(unknown)?;
+            let finding = run_one(file, name, *seed, self.against.as_deref()).or_usage()?;
             return self.checking.print_one(name, &finding, |text| text.into());
         }
-        let report = check(file, &self.options()?).map_err(unknown)?;
+        let report = check(file, &self.options()?).or_usage()?;
         let again = |name: &str| {
             let file = file.display();
             format!("htex plugin check {file} --reproduce {name} --seed {seed}")
@@ -80,11 +81,7 @@ impl Check {
 impl CheckOne {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let finding = run_one(&self.file, &self.name, self.seed, self.against.as_deref());
-        print_json(&finding.map_err(unknown)?)?;
+        print_json(&finding.or_usage()?)?;
         Ok(Exit::SUCCESS)
     }
-}
-
-fn unknown(error: UnknownCheck) -> Failure {
-    Failure::Usage(error.to_string())
 }

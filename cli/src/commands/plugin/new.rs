@@ -133,9 +133,7 @@ fn sdk_from(dir: &Path, sdk: Option<PathBuf>) -> Result<String, Failure> {
 }
 
 fn make_folder(folder: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder)
-        .writing(folder)
-        .map_err(Failure::from)
+    Ok(std::fs::create_dir_all(folder).writing(folder)?)
 }
 
 fn write(file: &Path, text: &str) -> Result<(), Failure> {

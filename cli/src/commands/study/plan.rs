@@ -34,8 +34,7 @@ impl Plan {
         let plan = Planned::new(&study);
         if let Some(file) = &self.output {
             check_outputs([file.as_path()], [self.study.as_path()])?;
-            let text = serde_json::to_string_pretty(&plan)
-                .map_err(|error| Failure::Other(format!("cannot write JSON: {error}")))?;
+            let text = serde_json::to_string_pretty(&plan)?;
             write_file(file, (text + "\n").as_bytes())?;
         }
         if self.json {

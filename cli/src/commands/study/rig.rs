@@ -14,6 +14,7 @@ use htex_scene::{DeviceOverride, Finger, LoadedScene, Renderer, output_name};
 
 use crate::failure::Failure;
 use crate::motions::{Motions, Moved};
+use crate::of_file::ResultOfFile;
 use crate::playing::Output;
 use crate::scenes::{Loader, Ready, costs};
 use crate::signals::interrupted;
@@ -113,12 +114,9 @@ impl Rig for StudyRig<'_> {
     ) -> Result<Played, Failure> {
         let (ready, drive_v) = self.begin(stimulus)?;
         let plan = ready.plan(&costs())?;
-        let mut renderer =
-            Renderer::new(&ready.scene, &plan).map_err(|e| Failure::scene(&self.path, e))?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).of(&self.path)?;
         if ready.scene.scene.motion == Motion::Live {
-            renderer
-                .set_motion(Finger::AWAY)
-                .map_err(|e| Failure::scene(&self.path, e))?;
+            renderer.set_motion(Finger::AWAY).of(&self.path)?;
         }
         let mut felt = self.felt.take();
         let recorded = felt.as_mut().zip(stimulus.felt.as_ref());

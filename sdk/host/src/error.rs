@@ -1,5 +1,7 @@
 //! Errors of finding, loading and calling models.
 
+use std::fmt::Display;
+
 use htex_dsp::resample::UnusableRates;
 use htex_model::Status;
 
@@ -94,6 +96,20 @@ pub enum HostError {
     },
 }
 
+/// Adds the file, or the entry of an asset, to what is wrong with a model that is loaded.
+pub(crate) trait Loading<T> {
+    fn loading(self, origin: impl Display) -> Result<T, HostError>;
+}
+
+impl<T, E: Display> Loading<T> for Result<T, E> {
+    fn loading(self, origin: impl Display) -> Result<T, HostError> {
+        self.map_err(|error| HostError::Load {
+            path: origin.to_string(),
+            what: error.to_string(),
+        })
+    }
+}
+
 impl From<UnusableRates> for HostError {
     fn from(rates: UnusableRates) -> Self {
         let what = rates.to_string();
@@ -122,19 +138,12 @@ pub enum OptionError {
         /// The names of the model's options.
         known: String,
     },
-    /// The value is none of the option's choices.
-    #[error("`{name}` is `{text}`; it takes one of {choices}")]
-    Choice {
+    /// The value is none of the option's choices, or not a number in its range.
+    #[error("`{name}` is `{text}`; it takes {takes}")]
+    Value {
         name: String,
         text: String,
-        choices: String,
-    },
-    /// The value is not a number in the option's range.
-    #[error("`{name}` is `{text}`; it takes {range}")]
-    Number {
-        name: String,
-        text: String,
-        /// The kind of number, the range and the unit.
-        range: String,
+        /// The choices, or the kind of number, the range and the unit.
+        takes: String,
     },
 }

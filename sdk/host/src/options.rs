@@ -32,14 +32,16 @@ impl LoadedModel {
 }
 
 fn parse(option: &FitOption, text: &str) -> Result<f64, OptionError> {
-    let name = || option.name.clone();
+    let wrong = |takes| OptionError::Value {
+        name: option.name.clone(),
+        text: text.to_owned(),
+        takes,
+    };
     if !option.choices.is_empty() {
         let choice = option.choices.iter().position(|c| c == text);
-        return choice.map(|i| i as f64).ok_or_else(|| OptionError::Choice {
-            name: name(),
-            text: text.to_owned(),
-            choices: option.choices.join(", "),
-        });
+        return choice
+            .map(|i| i as f64)
+            .ok_or_else(|| wrong(format!("one of {}", option.choices.join(", "))));
     }
     let value: Option<f64> = text.parse().ok();
     value
@@ -51,13 +53,7 @@ fn parse(option: &FitOption, text: &str) -> Result<f64, OptionError> {
             } else {
                 "a number"
             };
-            OptionError::Number {
-                name: name(),
-                text: text.to_owned(),
-                range: format!(
-                    "{kind} from {} to {} {}",
-                    option.min, option.max, option.unit
-                ),
-            }
+            let FitOption { min, max, unit, .. } = option;
+            wrong(format!("{kind} from {min} to {max} {unit}"))
         })
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use htex_native::folders::{data, libraries_in, listed};
 
+use crate::error::Loading;
 use crate::registry::Rank;
 use crate::{HostError, LoadedModel, Note, Registry, WasmLimits};
 
@@ -113,10 +114,7 @@ impl Search {
             registry.add(Rank::File, model);
         }
         for dir in &self.dirs {
-            let files = libraries_in(dir, Some("wasm")).map_err(|e| HostError::Load {
-                path: dir.display().to_string(),
-                what: e.to_string(),
-            })?;
+            let files = libraries_in(dir, Some("wasm")).loading(dir.display())?;
             self.add_all(&mut registry, Rank::Folder, files);
         }
         if self.env {

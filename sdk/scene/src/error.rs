@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::load::LoadedScene;
+
 /// An error of planning or playing a scene.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -112,4 +114,19 @@ pub enum SceneError {
         /// Normal force, newtons.
         force_n: f64,
     },
+}
+
+/// Adds the surface to an error of its asset or its model.
+pub(crate) trait OfSurface<T> {
+    fn of_surface(self, surface: usize, scene: &LoadedScene) -> Result<T, SceneError>;
+}
+
+impl<T, E: Into<htex_play::Error>> OfSurface<T> for Result<T, E> {
+    fn of_surface(self, surface: usize, scene: &LoadedScene) -> Result<T, SceneError> {
+        self.map_err(|source| SceneError::Surface {
+            surface,
+            asset: scene.scene.surfaces[surface].asset.clone(),
+            source: source.into(),
+        })
+    }
 }

@@ -4,6 +4,7 @@ use htex_format::ErrorMeasure;
 use htex_play::{Explored, SampleSource, VoiceOptions};
 
 use crate::SceneError;
+use crate::error::OfSurface;
 use crate::file::{Effect, Switch};
 use crate::load::LoadedScene;
 use crate::requirements::{Requirements, Span};
@@ -62,12 +63,7 @@ impl PlayedSurface {
     ) -> Result<Self, SceneError> {
         let (asset, touch) = (&scene.assets[surface], &required.touches[surface]);
         let (known, explored, error_db) = known(asset, model, scene.scene.budget.error);
-        let failed = |source| SceneError::Surface {
-            surface,
-            asset: scene.scene.surfaces[surface].asset.clone(),
-            source,
-        };
-        let loaded = asset.loaded_model(Some(model)).map_err(failed)?;
+        let loaded = asset.loaded_model(Some(model)).of_surface(surface, scene)?;
         let mut played = Self {
             surface,
             model: model.to_owned(),
@@ -92,11 +88,13 @@ impl PlayedSurface {
         };
         played.scale_speed(scene);
         let force_gain = played.scale_force(scene);
-        let source = played.source(scene, required).map_err(failed)?;
+        let source = played.source(scene, required).of_surface(surface, scene)?;
         played.rate_hz = source.rate_hz();
         played.divide_rate(required.rate_hz);
         played.mix_rate_hz = played.rate_hz * played.oversampling;
-        let shape = played.compensated(required, asset).map_err(failed)?;
+        let shape = played
+            .compensated(required, asset)
+            .of_surface(surface, scene)?;
         played.level_rms =
             loudest(asset, model, source.level_rms()) * played.gain * force_gain * shape;
         Ok(played)

@@ -1,6 +1,7 @@
 //! Choice of the representation of each surface.
 
 use crate::SceneError;
+use crate::error::OfSurface;
 use crate::file::Budget;
 use crate::load::LoadedScene;
 use crate::played::PlayedSurface;
@@ -73,18 +74,15 @@ fn candidates(
         &scene.assets[surface],
         &scene.scene.surfaces[surface].representation,
     );
-    let failed = |source| SceneError::Surface {
-        surface,
-        asset: scene.scene.surfaces[surface].asset.clone(),
-        source,
-    };
     let models = asset
         .manifest()
         .representations
         .iter()
         .map(|r| &r.model[..]);
     if wanted != "auto" {
-        let id = asset.representation_id(Some(wanted)).map_err(failed)?;
+        let id = asset
+            .representation_id(Some(wanted))
+            .of_surface(surface, scene)?;
         return Ok(Candidates {
             surface,
             options: vec![PlayedSurface::new(scene, required, surface, id)?],

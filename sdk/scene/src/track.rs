@@ -1,6 +1,7 @@
 //! One surface of a running scene: its voice, and the stages before surfaces are mixed.
 
 use crate::SceneError;
+use crate::error::OfSurface;
 use crate::file::Effect;
 use crate::load::LoadedScene;
 use crate::path::PathPoint;
@@ -57,13 +58,9 @@ impl Track {
         planned: &PlannedSurface,
     ) -> Result<Self, SceneError> {
         let played = &planned.played;
-        let asset = &scene.scene.surfaces[played.surface].asset;
-        let source = played.source(scene, required);
-        let source = source.map_err(|source| SceneError::Surface {
-            surface: played.surface,
-            asset: asset.clone(),
-            source,
-        })?;
+        let source = played
+            .source(scene, required)
+            .of_surface(played.surface, scene)?;
         let synthesis = Synthesis::new(source);
         let mut chain = Chain::default();
         for entry in EFFECTS {

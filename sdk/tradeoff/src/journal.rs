@@ -61,8 +61,8 @@ impl Journal {
     /// truncated line.
     pub(crate) fn open(&mut self, key: &str) -> Result<(), TradeoffError> {
         let key = &format!("{HEAD}{key}");
-        self.entries = self.read(key).map_err(|error| self.error(error))?;
-        let file = self.rewrite(key).map_err(|error| self.error(error))?;
+        self.entries = self.kept(self.read(key))?;
+        let file = self.kept(self.rewrite(key))?;
         self.file = Some(Mutex::new(file));
         Ok(())
     }
@@ -108,10 +108,7 @@ impl Journal {
                 .map_err(|_| io::Error::other("a thread panicked"))?;
             file.write_all(line.as_bytes())
         };
-        self.file
-            .as_ref()
-            .map_or(Ok(()), write)
-            .map_err(|error| self.error(error))
+        self.kept(self.file.as_ref().map_or(Ok(()), write))
     }
 
     /// Removes the file, when the results are written elsewhere.
@@ -120,16 +117,17 @@ impl Journal {
     /// When it cannot be removed.
     pub fn discard(self) -> Result<(), TradeoffError> {
         match std::fs::remove_file(&self.path) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(self.error(error)),
-            _ => Ok(()),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+            removed => self.kept(removed),
         }
     }
 
-    fn error(&self, error: io::Error) -> TradeoffError {
-        TradeoffError::Journal {
+    /// Names the file in an error.
+    fn kept<T>(&self, result: io::Result<T>) -> Result<T, TradeoffError> {
+        result.map_err(|error| TradeoffError::Journal {
             path: self.path.clone(),
             error,
-        }
+        })
     }
 }
 

@@ -37,13 +37,11 @@ pub(crate) use model::WasmModel;
 use module::WasmModule;
 
 use crate::HostError;
+use crate::error::Loading;
 use crate::sandbox::Sandbox;
 
 /// Loads a model from the bytes of a module; messages name `origin`.
 pub(crate) fn load(origin: &str, bytes: &[u8], sandbox: &Sandbox) -> Result<WasmModel, HostError> {
-    let module = WasmModule::new(bytes, sandbox).map_err(|error| HostError::Load {
-        path: origin.to_owned(),
-        what: error.to_string(),
-    })?;
+    let module = WasmModule::new(bytes, sandbox).loading(origin)?;
     WasmModel::new(origin, Arc::new(module))
 }

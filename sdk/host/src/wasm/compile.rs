@@ -78,7 +78,7 @@ fn compile(
             let artifact = process::compile((program, arguments), bytes, limits, effort, time)?;
             // SAFETY: the compiler that the caller named has just written the artifact, to a pipe that no other process
             // has open.
-            unsafe { Module::deserialize(engine, artifact) }.map_err(CompileError::engine)
+            Ok(unsafe { Module::deserialize(engine, artifact) }?)
         }
     }
 }

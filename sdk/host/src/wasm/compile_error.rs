@@ -1,5 +1,7 @@
 //! Errors of compiling a module.
 
+use wasmparser::BinaryReaderError;
+
 use crate::sandbox::BudgetError;
 
 /// A module cannot be compiled.
@@ -23,15 +25,13 @@ pub(super) enum CompileError {
     TooSlow { ms: u128, allowed_ms: u128 },
     #[error(transparent)]
     Budget(#[from] BudgetError),
+    /// An error of the engine, here or in the compiler process.
     #[error("{what}")]
     Engine { what: String },
     #[error("cannot start the clock that interrupts modules: {what}")]
     Clock { what: String },
     #[error("cannot start {program} to compile: {what}")]
     Start { program: String, what: String },
-    /// The compiler process returned this error.
-    #[error("{what}")]
-    Refused { what: String },
     #[error(
         "the compiler process ended without a result: the module needs more than {bytes} bytes to compile, or it \
          crashes the compiler"
@@ -43,11 +43,19 @@ pub(super) enum CompileError {
     NoOutput,
 }
 
-impl CompileError {
+impl From<wasmtime::Error> for CompileError {
     /// An error of the engine, with its causes.
-    pub(super) fn engine(error: wasmtime::Error) -> Self {
+    fn from(error: wasmtime::Error) -> Self {
         Self::Engine {
             what: format!("{error:#}"),
+        }
+    }
+}
+
+impl From<BinaryReaderError> for CompileError {
+    fn from(error: BinaryReaderError) -> Self {
+        Self::Invalid {
+            what: error.to_string(),
         }
     }
 }

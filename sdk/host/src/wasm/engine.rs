@@ -78,7 +78,7 @@ pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, Comp
         .wasm_relaxed_simd(false)
         .wasm_memory64(false)
         .wasm_multi_memory(false);
-    Engine::new(&config).map_err(CompileError::engine)
+    Ok(Engine::new(&config)?)
 }
 
 /// Compiles a module in this process.

@@ -29,17 +29,14 @@ pub(super) struct Estimate {
 /// When it is not a valid module of WebAssembly 2.0, the version that models may use (specification of the model ABI,
 /// section 7).
 pub(super) fn estimate(module: &[u8]) -> Result<Estimate, CompileError> {
-    let wrong = |error: BinaryReaderError| CompileError::Invalid {
-        what: error.to_string(),
-    };
     let mut validator = Validator::new_with_features(WasmFeatures::WASM2);
     let mut all = Estimate::default();
     for payload in Parser::new(0).parse_all(module) {
-        let payload = payload.map_err(wrong)?;
+        let payload = payload?;
         all.add(section_us(&payload));
-        if let ValidPayload::Func(function, body) = validator.payload(&payload).map_err(wrong)? {
+        if let ValidPayload::Func(function, body) = validator.payload(&payload)? {
             let function = function.into_validator(Default::default());
-            let one = function_us(function, &body).map_err(wrong)?;
+            let one = function_us(function, &body)?;
             all.optimised_us += one.optimised_us;
             all.quick_us += one.quick_us;
         }

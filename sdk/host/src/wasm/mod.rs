@@ -30,31 +30,24 @@ mod voice;
 use std::path::Path;
 use std::sync::Arc;
 
-use compile_error::CompileError;
 pub use compile_error::CompilerError;
 pub(crate) use model::WasmModel;
 use module::WasmModule;
 pub use process::serve_compiler;
 
 use crate::HostError;
+use crate::error::Loading;
 use crate::sandbox::Sandbox;
 
 /// Loads a model from the bytes of a module; messages name `origin`.
 pub(crate) fn load(origin: &str, bytes: &[u8], sandbox: &Sandbox) -> Result<WasmModel, HostError> {
-    let error = |error: CompileError| HostError::Load {
-        path: origin.to_owned(),
-        what: error.to_string(),
-    };
-    let module = WasmModule::new(bytes, sandbox).map_err(error)?;
+    let module = WasmModule::new(bytes, sandbox).loading(origin)?;
     WasmModel::new(origin, Arc::new(module))
 }
 
 pub(crate) fn load_file(path: &Path, sandbox: &Sandbox) -> Result<WasmModel, HostError> {
     let origin = path.display().to_string();
-    let bytes = read(path, sandbox.limits.module_bytes).map_err(|error| HostError::Load {
-        path: origin.clone(),
-        what: error.to_string(),
-    })?;
+    let bytes = read(path, sandbox.limits.module_bytes).loading(&origin)?;
     load(&origin, &bytes, sandbox)
 }
 

@@ -11,6 +11,7 @@ use super::instance::Instance;
 use super::module::WasmModule;
 use super::voice::{WasmVoice, copy_text};
 use crate::HostError;
+use crate::error::Loading;
 use crate::marker::check_marker;
 use crate::raw::{RawFit, RawModel, RawVoice};
 
@@ -30,11 +31,7 @@ pub(crate) struct WasmModel {
 impl WasmModel {
     /// Makes the first instance and checks the marker.
     pub(super) fn new(origin: &str, module: Arc<WasmModule>) -> Result<Self, HostError> {
-        let load = |fault: Fault| HostError::Load {
-            path: origin.to_owned(),
-            what: fault.to_string(),
-        };
-        let mut instance = Instance::new(&module).map_err(load)?;
+        let mut instance = Instance::new(&module).loading(origin)?;
         let marker = instance.abi_version().map_err(|fault| HostError::Call {
             model: origin.to_owned(),
             call: "htex_model_abi_version",
@@ -46,7 +43,7 @@ impl WasmModel {
         let shared = match instance.extension(MotionTable::ID.as_bytes()) {
             Ok(1) => {
                 module.shared.require_motion();
-                Some(Instance::new(&module).map_err(load)?)
+                Some(Instance::new(&module).loading(origin)?)
             }
             Ok(_) => Some(instance),
             Err(_) => None,

@@ -53,7 +53,7 @@ pub(super) fn compile(
     match result {
         Ok(Some(bytes)) => match bytes.split_first() {
             Some((&COMPILED, artifact)) => Ok(artifact.to_vec()),
-            Some((_, message)) => Err(CompileError::Refused {
+            Some((_, message)) => Err(CompileError::Engine {
                 what: String::from_utf8_lossy(message).into_owned(),
             }),
             None => Err(CompileError::NoReply {
@@ -152,7 +152,7 @@ impl Request {
             Effort::Optimised
         };
         let module = here(&engine(&limits, effort)?, module)?;
-        module.serialize().map_err(CompileError::engine)
+        Ok(module.serialize()?)
     }
 
     /// Sets the limits that end this process when they are exceeded, without a core dump.

@@ -101,8 +101,13 @@ impl StorageProblem {
     }
 }
 
-impl StorageError {
-    pub(crate) fn io(path: impl Display, error: io::Error) -> Self {
-        StorageProblem::Io { error }.at(path)
+/// Adds the URI or the path to an error of the system.
+pub(crate) trait AtPlace<T> {
+    fn at(self, place: impl Display) -> Result<T, StorageError>;
+}
+
+impl<T> AtPlace<T> for io::Result<T> {
+    fn at(self, place: impl Display) -> Result<T, StorageError> {
+        self.map_err(|error| StorageProblem::Io { error }.at(place))
     }
 }

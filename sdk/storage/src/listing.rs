@@ -5,6 +5,7 @@ use std::time::SystemTime;
 
 use glob::{MatchOptions, Pattern};
 
+use crate::error::AtPlace;
 use crate::{Location, StorageError, StorageProblem};
 
 /// Most files of a list.
@@ -50,10 +51,10 @@ pub(crate) fn of_folder(folder: &Path, pattern: &Pattern) -> Result<Vec<Entry>, 
     let mut found = Vec::new();
     let mut open = vec![(folder.to_owned(), 0)];
     while let Some((path, depth)) = open.pop() {
-        let failed = |error| StorageError::io(path.display(), error);
-        for entry in std::fs::read_dir(&path).map_err(failed)? {
-            let entry = entry.map_err(failed)?;
-            let (kind, path) = (entry.file_type().map_err(failed)?, entry.path());
+        let shown = path.display();
+        for entry in std::fs::read_dir(&path).at(&shown)? {
+            let entry = entry.at(&shown)?;
+            let (kind, path) = (entry.file_type().at(&shown)?, entry.path());
             if kind.is_dir() && depth < MOST_DEPTH {
                 open.push((path, depth + 1));
                 continue;

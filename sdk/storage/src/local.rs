@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
+use crate::error::AtPlace;
 use crate::{Stat, StorageError, StorageProblem};
 
 pub(crate) fn read(path: &Path, most_bytes: u64) -> Result<Vec<u8>, StorageError> {
@@ -12,7 +13,7 @@ pub(crate) fn read(path: &Path, most_bytes: u64) -> Result<Vec<u8>, StorageError
     let taken = file
         .take(most_bytes.saturating_add(1))
         .read_to_end(&mut bytes);
-    let taken = taken.map_err(|error| StorageError::io(path.display(), error))?;
+    let taken = taken.at(path.display())?;
     check(path, taken as u64, most_bytes)?;
     Ok(bytes)
 }
@@ -20,7 +21,7 @@ pub(crate) fn read(path: &Path, most_bytes: u64) -> Result<Vec<u8>, StorageError
 pub(crate) fn copy(path: &Path, mut into: File, most_bytes: u64) -> Result<(), StorageError> {
     let mut from = opened(path)?.take(most_bytes.saturating_add(1));
     let copied = io::copy(&mut from, &mut into);
-    let copied = copied.map_err(|error| StorageError::io(path.display(), error))?;
+    let copied = copied.at(path.display())?;
     check(path, copied, most_bytes)
 }
 
@@ -32,18 +33,18 @@ pub(crate) fn stat(path: &Path) -> Result<Option<Stat>, StorageError> {
             modified: is.modified().ok(),
         })),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(StorageError::io(path.display(), error)),
+        Err(error) => Err(StorageProblem::Io { error }.at(path.display())),
     }
 }
 
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), StorageError> {
-    htex_files::write_file(path, bytes).map_err(|error| StorageError::io(path.display(), error))
+    htex_files::write_file(path, bytes).at(path.display())
 }
 
 pub(crate) fn remove(path: &Path) -> Result<(), StorageError> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
-            Err(StorageError::io(path.display(), error))
+            Err(StorageProblem::Io { error }.at(path.display()))
         }
         _ => Ok(()),
     }
@@ -51,12 +52,11 @@ pub(crate) fn remove(path: &Path) -> Result<(), StorageError> {
 
 pub(crate) fn write_copy(path: &Path, of: &Path) -> Result<(), StorageError> {
     let mut from = opened(of)?;
-    htex_files::replace_file(path, |into| io::copy(&mut from, into).map(drop))
-        .map_err(|error| StorageError::io(path.display(), error))
+    htex_files::replace_file(path, |into| io::copy(&mut from, into).map(drop)).at(path.display())
 }
 
 pub(crate) fn opened(path: &Path) -> Result<File, StorageError> {
-    File::open(path).map_err(|error| StorageError::io(path.display(), error))
+    File::open(path).at(path.display())
 }
 
 fn check(path: &Path, bytes: u64, most_bytes: u64) -> Result<(), StorageError> {

@@ -9,6 +9,7 @@ use std::sync::PoisonError;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::cloud::{Store, Version};
+use crate::error::AtPlace;
 use crate::{Location, StorageError, StorageProblem, local};
 
 /// What reading has cost so far.
@@ -85,10 +86,7 @@ impl Remote {
         head: Range<u64>,
     ) -> Result<Self, StorageError> {
         let file = local::opened(path)?;
-        let len = file
-            .metadata()
-            .map_err(|error| StorageError::io(path.display(), error))?
-            .len();
+        let len = file.metadata().at(path.display())?.len();
         let mut remote = Self {
             location: location.clone(),
             of: Of::File {
@@ -174,7 +172,7 @@ impl Remote {
                     &mut file.lock().unwrap_or_else(PoisonError::into_inner),
                     &range,
                 );
-                let read = read.map_err(|error| StorageError::io(&self.location, error))?;
+                let read = read.at(&self.location)?;
                 requests.fetch_add(1, Ordering::Relaxed);
                 bytes.fetch_add(read.len() as u64, Ordering::Relaxed);
                 read

@@ -25,6 +25,12 @@ pub(super) enum Fail {
     Own(StorageError),
 }
 
+impl From<io::Error> for Fail {
+    fn from(error: io::Error) -> Self {
+        Self::Local(error)
+    }
+}
+
 impl From<object_store::Error> for Fail {
     fn from(error: object_store::Error) -> Self {
         Self::Request(Box::new(error))
@@ -41,7 +47,7 @@ impl Store {
             Fail::Own(error) => return error,
             Fail::Local(error) => {
                 let copy = format_args!("the local copy of {}", self.location);
-                return StorageError::io(copy, error);
+                return StorageProblem::Io { error }.at(copy);
             }
             Fail::Slow => StorageProblem::TooSlow {
                 limit_s: self.settings.total.as_secs_f64(),

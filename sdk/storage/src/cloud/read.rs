@@ -107,7 +107,7 @@ impl Store {
                 .await?;
             let version = Version::of(&found.meta);
             self.check_size(version.bytes, most_bytes)?;
-            sink.start_over().map_err(Fail::Local)?;
+            sink.start_over()?;
             match Self::take_all(found, version.bytes, &mut sink).await {
                 // The library resumes at the same version, which only a tag tells.
                 Err(Fail::Body) if version.etag.is_none() && attempt < self.settings.retries => {
@@ -125,7 +125,7 @@ impl Store {
         while let Some(chunk) = stream.next().await {
             let chunk = chunk.map_err(|_| Fail::Body)?;
             rest = rest.checked_sub(chunk.len() as u64).ok_or(Fail::Body)?;
-            sink.take(&chunk).map_err(Fail::Local)?;
+            sink.take(&chunk)?;
         }
         match rest {
             0 => Ok(()),

@@ -10,6 +10,7 @@ use tokio::task::JoinSet;
 
 use super::Store;
 use super::explain::Fail;
+use crate::error::AtPlace;
 use crate::{StorageError, StorageProblem};
 
 /// Files up to this size are one request.
@@ -36,16 +37,15 @@ impl Store {
 
     /// Writes a local file.
     pub(crate) fn upload(&self, path: &Path) -> Result<(), StorageError> {
-        let read = |error| StorageError::io(path.display(), error);
-        let mut file = File::open(path).map_err(read)?;
-        let len = file.metadata().map_err(read)?.len();
+        let mut file = File::open(path).at(path.display())?;
+        let len = file.metadata().at(path.display())?.len();
         if len > MOST_BYTES {
             let most_bytes = MOST_BYTES;
             return Err(StorageProblem::TooLarge { most_bytes }.at(path.display()));
         }
         if len <= MOST_SINGLE_BYTES {
             let mut bytes = Vec::new();
-            file.read_to_end(&mut bytes).map_err(read)?;
+            file.read_to_end(&mut bytes).at(path.display())?;
             return self.write(bytes);
         }
         let limit = self.settings.total + 2 * ABORT;
@@ -93,7 +93,7 @@ async fn send_parts(
     loop {
         let mut part = Vec::new();
         let taken = (&mut file).take(PART_BYTES).read_to_end(&mut part);
-        if taken.map_err(Fail::Local)? == 0 {
+        if taken? == 0 {
             break;
         }
         if parts.len() == MOST_AT_ONCE {

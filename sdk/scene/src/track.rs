@@ -88,7 +88,7 @@ impl Track {
         });
         Ok(Self {
             surface: played.surface,
-            asset: asset.clone(),
+            asset: scene.scene.surfaces[played.surface].asset.clone(),
             synthesis,
             synthesis_run: Count::default(),
             interpolation: planned

@@ -10,9 +10,13 @@ use htex_device::{AbiFault, Adapter, AdapterKind, DeviceError, Native, Setting, 
 use crate::report::{AdapterName, Report};
 
 /// A kind of adapter that is checked: of devices or of sources.
-pub trait CheckedKind: AdapterKind {
+pub trait CheckedKind: CaseKind {
     /// Its checks, in the order in which they run.
     const CHECKS: &'static [Check<Case<Self>>];
+}
+
+/// What a case of this kind holds.
+pub trait CaseKind: AdapterKind {
     /// The files that its checks write.
     type Files;
 
@@ -33,7 +37,7 @@ pub enum Subject<A: ?Sized = dyn Adapter> {
 }
 
 /// A loaded adapter, and its settings.
-pub struct Case<A: CheckedKind + ?Sized> {
+pub struct Case<A: CaseKind + ?Sized> {
     pub(crate) adapter: Arc<A>,
     /// The same adapter, if it is a native library.
     native: Option<Native<A::Table>>,
@@ -81,7 +85,7 @@ fn owner(error: &DeviceError) -> &'static str {
     }
 }
 
-impl<A: CheckedKind + ?Sized> Case<A> {
+impl<A: CaseKind + ?Sized> Case<A> {
     fn load(
         subject: &Subject<A>,
         profile: Option<&str>,

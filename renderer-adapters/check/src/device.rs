@@ -3,14 +3,13 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-use htex_check_runner::{Check, Finding};
+use htex_check_runner::Finding;
 use htex_device::{
     Adapter, Capabilities, Device, DeviceError, Rates, Setting, SettingKind, Settings, StreamFormat,
 };
 use tempfile::TempDir;
 
-use crate::case::{CheckedKind, skip_missing};
-use crate::table::CHECKS;
+use crate::case::{CaseKind, skip_missing};
 
 /// A loaded device, and its settings.
 pub(crate) type Case = crate::case::Case<dyn Adapter>;
@@ -29,8 +28,7 @@ pub struct Files {
     count: AtomicU32,
 }
 
-impl CheckedKind for dyn Adapter {
-    const CHECKS: &'static [Check<Case>] = CHECKS;
+impl CaseKind for dyn Adapter {
     type Files = Files;
 
     fn files() -> Result<Files, DeviceError> {

@@ -16,7 +16,7 @@ mod report;
 pub mod source;
 mod table;
 
-pub use case::{Case, CheckedKind, Subject, check, run_one};
+pub use case::{Case, CaseKind, CheckedKind, Subject, check, run_one};
 pub use htex_check_runner::{Finding, Runner, UnknownCheck};
 pub use report::{AdapterName, Report};
 pub use table::CHECKS;

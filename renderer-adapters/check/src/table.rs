@@ -1,7 +1,15 @@
 //! The table of checks.
 
+use htex_check_runner::Check;
+use htex_device::Adapter;
+
+use crate::case::CheckedKind;
 use crate::checks::{describe, end, limit, open, write};
 use crate::device::Case;
+
+impl CheckedKind for dyn Adapter {
+    const CHECKS: &'static [Check<Case>] = CHECKS;
+}
 
 htex_check_runner::checks! { Case;
     "marker" needs [] describe::loaded:

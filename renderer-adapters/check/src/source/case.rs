@@ -2,11 +2,10 @@
 
 use std::time::Duration;
 
-use htex_check_runner::{Check, Finding};
+use htex_check_runner::Finding;
 use htex_device::{Delivered, DeviceError, Settings, Source, SourceAdapter};
 
-use crate::case::{CheckedKind, skip_missing};
-use crate::source::table::CHECKS;
+use crate::case::{CaseKind, skip_missing};
 
 /// Most consecutive reads that may deliver nothing, each waiting [`PATIENCE`].
 const EMPTY_READS: u32 = 5;
@@ -15,8 +14,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// A loaded source, and its settings.
 pub(crate) type Case = crate::case::Case<dyn SourceAdapter>;
 
-impl CheckedKind for dyn SourceAdapter {
-    const CHECKS: &'static [Check<Case>] = CHECKS;
+impl CaseKind for dyn SourceAdapter {
     type Files = ();
 
     fn files() -> Result<(), DeviceError> {

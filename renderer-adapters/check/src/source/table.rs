@@ -1,8 +1,16 @@
 //! The table of checks.
 
+use htex_check_runner::Check;
+use htex_device::SourceAdapter;
+
+use crate::case::CheckedKind;
 use crate::checks::describe::{endpoints, extensions, loaded};
 use crate::source::case::Case;
 use crate::source::{describe, read};
+
+impl CheckedKind for dyn SourceAdapter {
+    const CHECKS: &'static [Check<Case>] = CHECKS;
+}
 
 htex_check_runner::checks! { Case;
     "marker" needs [] loaded:

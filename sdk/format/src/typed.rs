@@ -11,7 +11,7 @@
 //! because `serde_ignored` sees no keys beside a variant's key, and leaves the variant out of the pointers inside it.
 
 use std::cell::RefCell;
-use std::fmt;
+use std::fmt::{self, Write};
 
 use serde::de::value::{BorrowedStrDeserializer, MapDeserializer, SeqDeserializer};
 use serde::de::{
@@ -65,11 +65,17 @@ impl Walk {
         self.pointer.borrow_mut().truncate(here);
     }
 
-    /// Goes to an element or a key of the value.
+    /// Goes to a key of the value, which is escaped.
     fn enter(&self, child: &str) {
         let mut pointer = self.pointer.borrow_mut();
         pointer.push('/');
         pointer.push_str(child);
+    }
+
+    /// The same for an element of a list.
+    fn enter_element(&self, index: usize) {
+        // A string takes all that is written.
+        let _ = write!(self.pointer.borrow_mut(), "/{index}");
     }
 
     /// Adds the place to the unknown keys.
@@ -106,7 +112,7 @@ impl<'de> Typed<'de, '_> {
         let items = std::iter::from_fn(|| {
             walk.return_to(here);
             let (index, value) = items.next()?;
-            walk.enter(&index.to_string());
+            walk.enter_element(index);
             Some(Typed { value, walk })
         });
         let mut items = SeqDeserializer::new(items);

@@ -17,14 +17,14 @@ const SEED: &str = "7";
 const SPEED: &str = "80";
 const FORCE: &str = "0.5";
 
-/// The `htex` command, built as the tests of the workspace build it: with the features of the whole workspace, so that nothing is built twice.
+/// The `htex` command as it is installed, which libhtex and the Python package are built beside.
 pub(super) fn command() -> Result<PathBuf> {
     let mut build = Command::new(cargo());
     run(build
-        .args(["build", "--locked", "--workspace", "--bin", "htex"])
+        .args(["build", "--release", "--locked", "--package", "htex-cli"])
         .current_dir(workspace()))?;
     let name = format!("htex{}", std::env::consts::EXE_SUFFIX);
-    Ok(target().join("debug").join(name))
+    Ok(target().join("release").join(name))
 }
 
 /// Textures of the library beside those of the fixtures: more than a page of its index holds.

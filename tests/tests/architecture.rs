@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use cargo_metadata::{DependencyKind, MetadataCommand};
+use cargo_metadata::{DependencyKind, Metadata, MetadataCommand};
 use htex_tests::workspace;
 
 /// A crate, and the crates of the workspace that it may depend on. The models are `plugin`, the
@@ -230,13 +230,18 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("xtask", &[]),
 ];
 
+/// The packages of the workspace, without those of others.
+fn metadata() -> Metadata {
+    let mut command = MetadataCommand::new();
+    command
+        .manifest_path(workspace().join("Cargo.toml"))
+        .no_deps();
+    command.exec().unwrap()
+}
+
 #[test]
 fn dependencies_follow_the_arrows() {
-    let metadata = MetadataCommand::new()
-        .manifest_path(workspace().join("Cargo.toml"))
-        .no_deps()
-        .exec()
-        .unwrap();
+    let metadata = metadata();
     let ours: BTreeSet<&str> = metadata.packages.iter().map(|p| p.name.as_str()).collect();
     let role = |package: &cargo_metadata::Package| {
         let path = package.manifest_path.as_str();
@@ -313,11 +318,7 @@ fn what_the_command_compiles_is_not_compiled_again() {
 /// takes minutes to build.
 #[test]
 fn the_short_build_stays_short() {
-    let metadata = MetadataCommand::new()
-        .manifest_path(workspace().join("Cargo.toml"))
-        .no_deps()
-        .exec()
-        .unwrap();
+    let metadata = metadata();
     let large = [
         "wasm",
         "cloud",
@@ -348,11 +349,7 @@ fn the_short_build_stays_short() {
 /// An application that only opens and plays assets links no validator of JSON Schemas.
 #[test]
 fn only_the_command_and_tests_hold_documents_to_schemas() {
-    let metadata = MetadataCommand::new()
-        .manifest_path(workspace().join("Cargo.toml"))
-        .no_deps()
-        .exec()
-        .unwrap();
+    let metadata = metadata();
     let mut holders = BTreeSet::new();
     for package in &metadata.packages {
         for used in &package.dependencies {
@@ -369,11 +366,7 @@ fn only_the_command_and_tests_hold_documents_to_schemas() {
 /// An application that plays scenes reads their traces, and links no other reader of recordings.
 #[test]
 fn only_authoring_reads_other_files_than_text() {
-    let metadata = MetadataCommand::new()
-        .manifest_path(workspace().join("Cargo.toml"))
-        .no_deps()
-        .exec()
-        .unwrap();
+    let metadata = metadata();
     let mut holders = BTreeSet::new();
     for package in &metadata.packages {
         for used in &package.dependencies {
@@ -389,11 +382,7 @@ fn only_authoring_reads_other_files_than_text() {
 /// An application that only opens and plays assets links no network library, and a short build of the command neither.
 #[test]
 fn only_the_default_command_reaches_the_network() {
-    let metadata = MetadataCommand::new()
-        .manifest_path(workspace().join("Cargo.toml"))
-        .no_deps()
-        .exec()
-        .unwrap();
+    let metadata = metadata();
     let network = ["object_store", "reqwest", "rustls", "tokio", "hyper"];
     let mut always = BTreeSet::new();
     for package in &metadata.packages {

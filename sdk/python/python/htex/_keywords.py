@@ -77,7 +77,7 @@ def as_json(settings: Mapping[str, Any]) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """Return what JSON has for a path, a number of NumPy, a response or another sequence."""
+    """Return what JSON has for a path, for numbers and arrays of NumPy, and for other sequences."""
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if hasattr(value, "tolist"):

@@ -41,8 +41,7 @@ fn fit_info_and_the_file_agree_and_are_the_same_twice() {
         assert_eq!(numbers(&fitted["band_error_db"]).len(), 9);
         let both = Measure::of_both().filter(|m| m.row().stored);
         let keys = both.flat_map(|m| [By::Magnitude, By::Samples].map(|by| m.key(by)));
-        for key in keys.chain(["level_rms".into()]) {
-            let key = &key[..];
+        for key in keys.chain(["level_rms"]) {
             let (a, b) = (fitted[key].as_f64().unwrap(), read[key].as_f64().unwrap());
             // The file keeps levels to nine digits and agreement to four decimals.
             assert!(

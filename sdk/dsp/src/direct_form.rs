@@ -47,8 +47,7 @@ impl Direct {
         match order {
             0..=2 => wide(One::<2>(self, groups)),
             3..=4 => wide(One::<4>(self, groups)),
-            5..=6 => wide(One::<6>(self, groups)),
-            7..=8 => wide(One::<8>(self, groups)),
+            5..=8 => wide(One::<8>(self, groups)),
             9..=12 => wide(One::<12>(self, groups)),
             _ => wide(One::<MAX_ORDER>(self, groups)),
         }

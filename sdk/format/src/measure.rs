@@ -1,7 +1,6 @@
 //! The measures of the agreement of a spectrum with a recorded one, a row each. The keys of `quality` with their checks, schema and
 //! rounding, the columns of tables and reports, and the documents come from these rows; `htex-author` has the function of each.
 
-use std::borrow::Cow;
 use std::fmt;
 
 use schemars::JsonSchema;
@@ -43,8 +42,10 @@ pub enum By {
 /// A row of the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasureRow {
-    /// Key in JSON; after `samples_` if it is measured from rendered samples.
+    /// Key in JSON.
     pub key: &'static str,
+    /// The same for rendered samples: after `samples_`.
+    pub samples_key: &'static str,
     /// Definition, a sentence.
     pub meaning: &'static str,
     /// The same for rendered samples; `None` if they are not measured.
@@ -80,6 +81,7 @@ pub struct MeasureRow {
 /// What most rows have.
 const STORED_ERROR: MeasureRow = MeasureRow {
     key: "",
+    samples_key: "",
     meaning: "",
     of_samples: None,
     lacking: None,
@@ -98,7 +100,7 @@ const STORED_ERROR: MeasureRow = MeasureRow {
 };
 
 macro_rules! measures {
-    ($(#[doc = $meaning:literal] $name:ident { $($field:ident: $value:expr,)* })*) => {
+    ($(#[doc = $meaning:literal] $name:ident { key: $key:literal, $($field:ident: $value:expr,)* })*) => {
         /// A measure of the agreement of a spectrum with a recorded one.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum Measure {
@@ -111,6 +113,8 @@ macro_rules! measures {
         }
 
         static ROWS: [MeasureRow; Measure::ALL.len()] = [$(MeasureRow {
+            key: $key,
+            samples_key: concat!("samples_", $key),
             meaning: $meaning.trim_ascii(),
             $($field: $value,)*
             ..STORED_ERROR
@@ -214,10 +218,10 @@ impl Measure {
     }
 
     /// Returns the key in JSON.
-    pub fn key(self, by: By) -> Cow<'static, str> {
+    pub fn key(self, by: By) -> &'static str {
         match by {
-            By::Magnitude => self.row().key.into(),
-            By::Samples => format!("samples_{}", self.row().key).into(),
+            By::Magnitude => self.row().key,
+            By::Samples => self.row().samples_key,
         }
     }
 

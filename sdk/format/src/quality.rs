@@ -1,6 +1,5 @@
 //! Agreement of a representation with the recorded spectrum: `quality` and `left_out`. Their JSON is in [`crate::quality_json`].
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -66,7 +65,7 @@ impl<const N: usize> From<[(Measure, f64); N]> for Measures {
 
 /// Values by key, an object in JSON.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Keyed(pub Vec<(Cow<'static, str>, Option<f64>)>);
+pub struct Keyed(pub Vec<(&'static str, Option<f64>)>);
 
 impl Serialize for Measures {
     /// Writes those that are known.

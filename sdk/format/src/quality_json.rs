@@ -21,7 +21,7 @@ const ROUNDING: &str = "rounding_error_db";
 
 /// A key with its value.
 pub(crate) struct Entry<'a> {
-    pub(crate) key: Cow<'static, str>,
+    pub(crate) key: &'static str,
     pub(crate) content: Content<'a>,
     required: bool,
     description: &'static str,
@@ -57,11 +57,11 @@ impl Entries for Quality {
         "Agreement with the recorded spectrum, of the model's magnitudes unless stated otherwise.";
 
     fn entries(&self) -> Vec<Entry<'_>> {
-        let mut entries = Vec::new();
+        let mut entries = Vec::with_capacity(2 * Measure::ALL.len() + 2);
         for measure in Measure::stored() {
             if measure == Measure::NineBand {
                 entries.push(Entry {
-                    key: BANDS.into(),
+                    key: BANDS,
                     content: Content::Bands(&self.band_error_db),
                     required: true,
                     description: "Energy relative to the recording's in nine bands, decibels.",
@@ -70,7 +70,7 @@ impl Entries for Quality {
             }
             let (row, value) = (measure.row(), self.get(measure));
             entries.push(Entry {
-                key: row.key.into(),
+                key: row.key,
                 content: Content::Number(value, row.judged),
                 required: row.required,
                 description: row.meaning,
@@ -88,7 +88,7 @@ impl Entries for Quality {
             }));
         }
         entries.push(Entry {
-            key: ROUNDING.into(),
+            key: ROUNDING,
             content: Content::Number(self.rounding_error_db, Judged::Error),
             required: false,
             description: "Nine-band RMS difference between the spectra of the fitted and of the stored parameters, decibels.",
@@ -140,8 +140,8 @@ fn write<T: Entries, S: Serializer>(object: &T, serializer: S) -> Result<S::Ok, 
     for Entry { key, content, .. } in object.entries() {
         match content {
             Content::Number(None, _) => {}
-            Content::Number(Some(value), _) => map.serialize_entry(&key, &value)?,
-            Content::Bands(errors) => map.serialize_entry(&key, errors)?,
+            Content::Number(Some(value), _) => map.serialize_entry(key, &value)?,
+            Content::Bands(errors) => map.serialize_entry(key, errors)?,
         }
     }
     map.end()
@@ -169,11 +169,8 @@ impl<'de, T: Entries> Visitor<'de> for Reader<T> {
             found.push(key);
         }
         let required = T::default();
-        let entries = required.entries().into_iter();
-        match entries
-            .filter(|e| e.required)
-            .find(|e| !found.contains(&e.key.to_string()))
-        {
+        let mut entries = required.entries().into_iter().filter(|e| e.required);
+        match entries.find(|e| found.iter().all(|key| key != e.key)) {
             Some(Entry { key, .. }) => Err(de::Error::custom(format!("missing field `{key}`"))),
             None => Ok(object),
         }
@@ -197,7 +194,7 @@ fn schema<T: Entries>() -> Schema {
         };
         property["description"] = entry.description.into();
         if entry.required {
-            required.push(Value::from(&*entry.key));
+            required.push(Value::from(entry.key));
         }
         properties.insert(entry.key.into(), property);
     }

@@ -12,6 +12,8 @@
 
 use std::cell::RefCell;
 use std::fmt::{self, Write};
+use std::iter::Enumerate;
+use std::slice;
 
 use serde::de::value::{BorrowedStrDeserializer, MapDeserializer, SeqDeserializer};
 use serde::de::{
@@ -39,7 +41,7 @@ pub(crate) fn typed<T: DeserializeOwned>(value: &Value) -> Result<(T, Vec<String
     match T::deserialize(Typed { value, walk: &walk }) {
         Ok(typed) => Ok((typed, walk.unknown.into_inner())),
         Err(TypeError { message, .. }) => {
-            let pointer = walk.pointer.into_inner();
+            let pointer = walk.pointer();
             Err(TypeError { pointer, message })
         }
     }
@@ -47,41 +49,50 @@ pub(crate) fn typed<T: DeserializeOwned>(value: &Value) -> Result<(T, Vec<String
 
 /// The traversal of a value.
 #[derive(Default)]
-struct Walk {
-    /// Pointer to the value that is being read: the last child that was taken, or the parent once there are no more. After
-    /// an error it stays at the value that has it.
-    pointer: RefCell<String>,
+struct Walk<'de> {
+    /// Way to the value that is being read: the last child that was taken, or the parent once there are no more. After an
+    /// error it stays at the value that has it. It is written as a pointer only where one is asked for: writing it at each
+    /// key took as long as all else.
+    way: RefCell<Vec<Step<'de>>>,
     /// Pointers to the unknown keys so far.
     unknown: RefCell<Vec<String>>,
 }
 
-impl Walk {
-    /// Returns the length of the pointer, for [`Self::return_to`].
+/// Way from a value to one inside it.
+enum Step<'de> {
+    Key(&'de str),
+    Element(usize),
+}
+
+impl<'de> Walk<'de> {
+    /// Returns the length of the way, for [`Self::return_to`].
     fn here(&self) -> usize {
-        self.pointer.borrow().len()
+        self.way.borrow().len()
     }
 
     fn return_to(&self, here: usize) {
-        self.pointer.borrow_mut().truncate(here);
+        self.way.borrow_mut().truncate(here);
     }
 
-    /// Goes to a key of the value, which is escaped.
-    fn enter(&self, child: &str) {
-        let mut pointer = self.pointer.borrow_mut();
-        pointer.push('/');
-        pointer.push_str(child);
+    fn enter(&self, child: Step<'de>) {
+        self.way.borrow_mut().push(child);
     }
 
-    /// The same for an element of a list.
-    fn enter_element(&self, index: usize) {
-        // A string takes all that is written.
-        let _ = write!(self.pointer.borrow_mut(), "/{index}");
+    fn pointer(&self) -> String {
+        let mut pointer = String::new();
+        for step in self.way.borrow().iter() {
+            // A string takes all that is written.
+            let _ = match step {
+                Step::Key(key) => write!(pointer, "/{}", escape(key)),
+                Step::Element(index) => write!(pointer, "/{index}"),
+            };
+        }
+        pointer
     }
 
     /// Adds the place to the unknown keys.
     fn skip(&self) {
-        let pointer = self.pointer.borrow().clone();
-        self.unknown.borrow_mut().push(pointer);
+        self.unknown.borrow_mut().push(self.pointer());
     }
 }
 
@@ -89,7 +100,7 @@ impl Walk {
 #[derive(Clone, Copy)]
 struct Typed<'de, 'w> {
     value: &'de Value,
-    walk: &'w Walk,
+    walk: &'w Walk<'de>,
 }
 
 impl<'de> Typed<'de, '_> {
@@ -108,13 +119,8 @@ impl<'de> Typed<'de, '_> {
 
     fn items<V: Visitor<'de>>(self, list: &'de [Value], visitor: V) -> Result<V::Value, TypeError> {
         let (walk, here) = (self.walk, self.walk.here());
-        let mut items = list.iter().enumerate();
-        let items = std::iter::from_fn(|| {
-            walk.return_to(here);
-            let (index, value) = items.next()?;
-            walk.enter_element(index);
-            Some(Typed { value, walk })
-        });
+        let values = list.iter().enumerate();
+        let items = Items { values, walk, here };
         let mut items = SeqDeserializer::new(items);
         let visited = visitor.visit_seq(&mut items)?;
         let end: Result<(), TypeError> = items.end();
@@ -132,9 +138,32 @@ impl<'de> Typed<'de, '_> {
         visitor.visit_map(MapDeserializer::new(std::iter::from_fn(|| {
             walk.return_to(here);
             let (key, value) = entries.next()?;
-            walk.enter(&escape(key));
+            walk.enter(Step::Key(key));
             Some((name(key), Typed { value, walk }))
         })))
+    }
+}
+
+/// The elements of a list; says how many are left, so that a list of numbers is allocated once.
+struct Items<'de, 'w> {
+    values: Enumerate<slice::Iter<'de, Value>>,
+    walk: &'w Walk<'de>,
+    here: usize,
+}
+
+impl<'de, 'w> Iterator for Items<'de, 'w> {
+    type Item = Typed<'de, 'w>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let walk = self.walk;
+        walk.return_to(self.here);
+        let (index, value) = self.values.next()?;
+        walk.enter(Step::Element(index));
+        Some(Typed { value, walk })
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.values.size_hint()
     }
 }
 
@@ -227,7 +256,7 @@ impl<'de> Deserializer<'de> for Typed<'de, '_> {
         }
         let here = walk.here();
         for key in map.keys().filter(|key| !is_known(key)) {
-            walk.enter(&escape(key));
+            walk.enter(Step::Key(key));
             walk.skip();
             walk.return_to(here);
         }
@@ -259,7 +288,7 @@ impl<'de> IntoDeserializer<'de, TypeError> for Typed<'de, '_> {
 struct Variant<'de, 'w> {
     word: &'de str,
     value: Option<&'de Value>,
-    walk: &'w Walk,
+    walk: &'w Walk<'de>,
 }
 
 impl<'de, 'w> Variant<'de, 'w> {
@@ -269,7 +298,7 @@ impl<'de, 'w> Variant<'de, 'w> {
             let message = format!("{word:?} needs a value; write {{{word:?}: ...}}");
             return Err(de::Error::custom(message));
         };
-        walk.enter(&escape(word));
+        walk.enter(Step::Key(word));
         Ok(Typed { value, walk })
     }
 }

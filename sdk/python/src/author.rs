@@ -184,8 +184,8 @@ pub(crate) fn agreement<'py>(
         .into_iter()
         .map(|(key, value)| (key, value.into()))
         .collect();
-    fields.insert("band_error_db".into(), found.band_error_db.into());
-    fields.insert("matching_gain_db".into(), found.matching_gain_db.into());
+    fields.insert("band_error_db", found.band_error_db.into());
+    fields.insert("matching_gain_db", found.matching_gain_db.into());
     from_json(py, &fields)
 }
 

@@ -1,15 +1,13 @@
 //! The points as CSV.
 
-use std::borrow::Cow;
-
 use htex_format::{By, Measure};
 
 use crate::{Point, Tradeoff};
 
 /// Returns the cells of a point by column: what [`Point`] has in JSON, without the knobs.
-fn cells(p: &Point) -> Vec<(Cow<'static, str>, String)> {
-    let mut cells: Vec<(Cow<'static, str>, String)> = Vec::new();
-    let mut add = |name: &'static str, cell: String| cells.push((name.into(), cell));
+fn cells(p: &Point) -> Vec<(&'static str, String)> {
+    let mut cells = Vec::new();
+    let mut add = |name: &'static str, cell: String| cells.push((name, cell));
     add("recording", text(&p.recording));
     add("model", text(&p.model));
     add("setting", text(&p.setting));
@@ -29,12 +27,12 @@ fn cells(p: &Point) -> Vec<(Cow<'static, str>, String)> {
         ),
         ("share_lossless", p.share_lossless),
     ];
-    let shares = shares.map(|(name, share)| (name.into(), Some(share)));
+    let shares = shares.map(|(name, share)| (name, Some(share)));
     let by_magnitude = p.by_magnitude.keyed(By::Magnitude, Measure::of_both());
     let numbers = by_magnitude.0.into_iter().chain(shares);
     cells.extend(numbers.chain(p.by_samples.keyed().0).map(number));
-    cells.push(("on_front".into(), p.on_front.to_string()));
-    cells.push(("on_time_front".into(), p.on_time_front.to_string()));
+    cells.push(("on_front", p.on_front.to_string()));
+    cells.push(("on_time_front", p.on_time_front.to_string()));
     cells
 }
 

@@ -97,9 +97,7 @@ impl Played {
                 .extend(self.measures.keyed(By::Samples, [measure]).0);
             if measure == Measure::NineBand {
                 let spread = Some(self.band_error_spread_db);
-                keyed
-                    .0
-                    .push(("samples_band_error_spread_db".into(), spread));
+                keyed.0.push(("samples_band_error_spread_db", spread));
             }
         }
         keyed

@@ -143,12 +143,12 @@ impl Document {
 }
 
 /// Returns the greatest number of arrays and objects open at once.
-fn depth(bytes: &[u8]) -> usize {
+fn depth(mut bytes: &[u8]) -> usize {
     let (mut open, mut deepest) = (0usize, 0);
-    let mut bytes = bytes.iter();
-    while let Some(&byte) = bytes.next() {
+    while let Some((&byte, rest)) = bytes.split_first() {
+        bytes = rest;
         match byte {
-            b'"' => skip_string(&mut bytes),
+            b'"' => bytes = after_string(bytes),
             b'[' | b'{' => {
                 open += 1;
                 deepest = deepest.max(open);
@@ -161,14 +161,15 @@ fn depth(bytes: &[u8]) -> usize {
 }
 
 /// Skips the rest of a string.
-fn skip_string(bytes: &mut std::slice::Iter<'_, u8>) {
-    while let Some(&byte) = bytes.next() {
-        match byte {
-            b'"' => return,
-            b'\\' => _ = bytes.next(),
-            _ => {}
+fn after_string(mut bytes: &[u8]) -> &[u8] {
+    while let Some(at) = memchr::memchr2(b'"', b'\\', bytes) {
+        match bytes[at] {
+            b'"' => return &bytes[at + 1..],
+            // The character after a backslash belongs to the string.
+            _ => bytes = bytes.get(at + 2..).unwrap_or_default(),
         }
     }
+    &[]
 }
 
 /// Parses `MAJOR.MINOR` without signs or leading zeros.

@@ -166,7 +166,7 @@ fn sound_modules_pass_too() {
     xtask::plugins::native().unwrap();
     for model in Registry::builtin_names() {
         let file = folder.join(format!("htex_{model}.wasm"));
-        // Other seeds are tried with the twins.
+        // The native libraries, which are of the same sources, are checked with other seeds above.
         if xtask::prove::whole() {
             checked_by_seeds(&file);
         }

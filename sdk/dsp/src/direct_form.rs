@@ -47,6 +47,7 @@ impl Direct {
         match order {
             0..=2 => wide(One::<2>(self, groups)),
             3..=4 => wide(One::<4>(self, groups)),
+            // Not 6: of a vector and a half compilers make a loop that shuffles lanes, and a voice takes a quarter longer.
             5..=8 => wide(One::<8>(self, groups)),
             9..=12 => wide(One::<12>(self, groups)),
             _ => wide(One::<MAX_ORDER>(self, groups)),

@@ -44,7 +44,7 @@ pub enum By {
 pub struct MeasureRow {
     /// Key in JSON.
     pub key: &'static str,
-    /// The same for rendered samples: after `samples_`.
+    /// Key in JSON if it is measured from rendered samples: `samples_` and the key.
     pub samples_key: &'static str,
     /// Definition, a sentence.
     pub meaning: &'static str,

@@ -51,8 +51,8 @@ pub(crate) fn typed<T: DeserializeOwned>(value: &Value) -> Result<(T, Vec<String
 #[derive(Default)]
 struct Walk<'de> {
     /// Way to the value that is being read: the last child that was taken, or the parent once there are no more. After an
-    /// error it stays at the value that has it. It is written as a pointer only where one is asked for: writing it at each
-    /// key took as long as all else.
+    /// error it stays at the value that has it. It is written as a pointer only where one is asked for: written at each
+    /// key, a manifest of 1 kB took 4.0 instead of 2.2 us.
     way: RefCell<Vec<Step<'de>>>,
     /// Pointers to the unknown keys so far.
     unknown: RefCell<Vec<String>>,

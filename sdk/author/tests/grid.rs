@@ -8,7 +8,7 @@ use htex_author::{
 };
 use htex_dsp::fidelity::third_octave_error_rms_db;
 use htex_dsp::normal::Normal;
-use htex_format::Measure;
+use htex_format::{AtCondition, Measure};
 use htex_host::Registry;
 use htex_play::{Asset, Mesh, Motion};
 use htex_simulate::{FreeMotion, SimulationOptions, Surface, simulate};
@@ -113,12 +113,9 @@ fn one_free_recording_gives_the_truth_inside_the_mesh() {
     );
     // The leave-one-out error, known without the truth, bounds what a player does.
     let at = &fitted.asset.manifest.representations[0].at;
-    let left: Vec<f64> = at
-        .iter()
-        .filter_map(|at| at.left_out?.0.get(Measure::ThirdOctave))
-        .collect();
+    let left: Vec<f64> = at.iter().filter_map(left_out_db).collect();
     assert!(left.len() * 2 > at.len(), "{} of {}", left.len(), at.len());
-    let left_db = (left.iter().map(|x| x * x).sum::<f64>() / left.len() as f64).sqrt();
+    let left_db = root_mean_square(left.iter().copied());
     let mut written = fitted.asset.clone();
     written.manifest.declare_version();
     assert_eq!(written.manifest.htex, "1.2");
@@ -235,59 +232,40 @@ fn recordings_without_a_free_motion_are_refused_with_what_to_do() {
     assert!(Grid::parse(["speed=1", "speed=2"]).is_err());
 }
 
-/// The measurement behind the numbers of the manual: `cargo test -p htex-author --test grid -- --ignored --nocapture`.
+/// The numbers of the manual: `cargo xtask prove grids` takes all models and surfaces, a test Bands on vinyl.
 #[test]
-#[ignore = "a measurement of minutes: all models over all surfaces"]
-fn errors_inside_the_mesh() {
-    let models = std::env::var("MODELS").unwrap_or_else(|_| Registry::builtin_names().join(","));
-    let models: Vec<&str> = models.split(',').collect();
-    let seconds = std::env::var("SECONDS").map_or(120.0, |s| s.parse().unwrap());
-    let wanted = std::env::var("SURFACES").unwrap_or_default();
-    let surfaces = Surface::ALL
-        .into_iter()
-        .filter(|s| wanted.is_empty() || wanted.contains(s.name()));
+fn errors_inside_the_mesh_stay_small() {
+    let (models, surfaces) = if xtask::prove::whole() {
+        (Registry::builtin_names(), Surface::ALL.to_vec())
+    } else {
+        (vec!["bands"], vec![Surface::Vinyl])
+    };
     for surface in surfaces {
-        let options = free(surface, seconds);
+        let options = free(surface, 120.0);
         let fitted = fit_at_finger(&options, &models);
         let report = fitted.grid.unwrap();
+        let [speeds, forces] = [&report.speed_mm_s, &report.force_n].map(Vec::len);
+        println!("{surface}: {speeds} x {forces} lines");
         let asset = Asset::new(fitted.asset);
-        let of = |status| report.cells.iter().filter(|c| c.status == status).count();
-        println!(
-            "{surface}: {} steady of {} windows, {} x {} lines, {} fitted, {} widened, {} thin",
-            report.steady,
-            report.windows,
-            report.speed_mm_s.len(),
-            report.force_n.len(),
-            of(CellStatus::Fitted),
-            of(CellStatus::Widened),
-            of(CellStatus::Thin)
-        );
-        for &model in &models {
-            let Ok(id) = asset.representation_id(Some(model)) else {
-                continue;
-            };
-            let representation = asset.manifest().representations.iter();
-            let representation = representation.clone().find(|r| r.model == id).unwrap();
-            let left: Vec<f64> = representation
-                .at
-                .iter()
-                .filter_map(|at| at.left_out?.0.get(Measure::ThirdOctave))
-                .collect();
-            let mean = (left.iter().map(|x| x * x).sum::<f64>() / left.len() as f64).sqrt();
-            let own: Vec<f64> = representation
-                .at
-                .iter()
-                .filter_map(|at| at.quality.as_ref()?.get(Measure::ThirdOctave))
-                .collect();
-            let own = (own.iter().map(|x| x * x).sum::<f64>() / own.len() as f64).sqrt();
+        for representation in &asset.manifest().representations {
+            let model = representation.model.as_str();
+            let left_out_db = root_mean_square(representation.at.iter().filter_map(left_out_db));
             let errors = errors_db(&asset, model, &options, 500);
+            let [median, most, worst] = [errors[250], errors[475], errors[499]];
             println!(
-                "  {model}: median {:.2}, 95 % {:.2}, worst {:.2} dB; own conditions {own:.2} dB, left out {mean:.2} dB of {}",
-                errors[250],
-                errors[475],
-                errors[499],
-                left.len()
+                "  {model}: median {median:.2}, 95 % {most:.2}, worst {worst:.2}, left out {left_out_db:.2} dB"
             );
+            let bands = model == "org.htex.bands";
+            assert!(!bands || (median < 0.7 && most < 1.1 && worst < 2.0));
         }
     }
+}
+
+fn left_out_db(at: &AtCondition) -> Option<f64> {
+    at.left_out?.0.get(Measure::ThirdOctave)
+}
+
+fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0), |(sum, n), x| (sum + x * x, n + 1));
+    (sum / f64::from(count)).sqrt()
 }

@@ -44,6 +44,12 @@ const PROOFS: &[Proof] = &[
         prove: |options| whole_test(options, &["-p", "htex-cli", "--test", "checker"]),
     },
     Proof {
+        name: "grids",
+        takes: "",
+        proves: "errors between the conditions of a free motion, of all models on all surfaces; tests take Bands on one",
+        prove: |options| whole_test(options, &["-p", "htex-author", "--test", "grid"]),
+    },
+    Proof {
         name: "days",
         takes: "[--hours N]",
         proves: "voices of a day keep their power and phase, and do not repeat; tests take an hour",

@@ -7,7 +7,7 @@ use htex_author::{
 };
 use htex_host::Registry;
 
-use crate::signals::{RATE_HZ, friction, impulse, noise, quantised, scaled, sum, tone};
+use crate::signals::{RATE_HZ, friction, noise, scaled};
 use crate::{Bound, Case, Section, refused, within, worse};
 
 pub(crate) const SECTION: Section = Section {
@@ -111,9 +111,6 @@ const fn lives(input: &'static str, worst: fn() -> f64) -> Case {
 }
 
 const CASES: &[Case] = &[
-    lives("friction noise at 20 kHz", || {
-        opened(recording(RATE_HZ, friction()), all())
-    }),
     lives("rates of 100 Hz, 999 Hz", || {
         [100.0, 999.0]
             .map(|rate_hz| opened(recording(rate_hz, friction()), all() - 1))
@@ -126,16 +123,6 @@ const CASES: &[Case] = &[
     }),
     lives("one segment and a sample", || {
         opened(recording(RATE_HZ, friction()[..4_001].to_vec()), all())
-    }),
-    lives("an impulse, a tone of 500 Hz, white noise", || {
-        [impulse(), tone(500.0), noise()]
-            .map(|x| opened(recording(RATE_HZ, x), all() - 1))
-            .into_iter()
-            .fold(0.0, worse)
-    }),
-    lives("3 N and half a step of a 16-bit converter", || {
-        let x = quantised(&sum(&vec![3.0; 40_000], &scaled(&noise(), 1e-5)), 1e-5);
-        opened(recording(RATE_HZ, x), all())
     }),
     lives("friction noise of 1e6 N", || {
         opened(recording(RATE_HZ, scaled(&friction(), 1e6)), all() - 1)

@@ -299,7 +299,7 @@ fn planned(scene: &LoadedScene) -> Plan {
 
 /// Neither frequencies nor levels are scaled, and the plan says why.
 fn the_plan_leaves_the_motion_to_the_model(plan: &Plan) {
-    for name in ["speed_scaling", "force_scaling"] {
+    for name in ["frequency_scaling", "level_scaling"] {
         let left_out = plan.left_out.iter().find(|out| out.name == name);
         let reason = &left_out.unwrap_or_else(|| panic!("{name} is in")).reason;
         assert_eq!(reason, "the model follows the motion itself");

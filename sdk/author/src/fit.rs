@@ -7,7 +7,7 @@ use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_finding::Notice;
 use htex_format::{
-    Asset, AtCondition, Condition, FIRST_VERSION, Manifest, Measure, Provenance, Quality, Quantity,
+    Asset, AtCondition, Condition, Contact, Law, Manifest, Measure, Provenance, Quality, Quantity,
     Reference, Representation, round_parameters,
 };
 use htex_host::{HostError, LoadedModel, Origin};
@@ -16,6 +16,7 @@ use crate::alternatives::warning;
 use crate::conditions::{Group, Grouped, group_takes};
 use crate::felt::FeltError;
 use crate::grid::{GridReport, group_grid, left_out};
+use crate::law::law;
 use crate::level::{Level, stored_level};
 use crate::request::{AssetRequest, ModelRequest};
 use crate::spectrum::SpectrumRef;
@@ -101,7 +102,16 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     let fit_ms = fitted.iter().map(|f| f.fit_ms).collect();
     let felt = fitted.iter_mut().map(|f| std::mem::take(&mut f.felt));
     let felt = felt.collect();
-    let asset = assemble(request, provenance, grouped.conditions, &spectra, fitted);
+    let contact = contact(takes);
+    let law = law(&grouped.conditions, &spectra, contact);
+    let asset = assemble(
+        request,
+        provenance,
+        (contact, law),
+        grouped.conditions,
+        &spectra,
+        fitted,
+    );
     Ok(FittedAsset {
         asset,
         fit_ms,
@@ -112,6 +122,14 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
         notes,
         grid,
     })
+}
+
+/// What slid over the surface, as far as recordings tell: the simulator has a finger.
+fn contact(takes: &[Take]) -> Contact {
+    match takes.iter().all(|take| take.recording.simulated) {
+        true => Contact::Finger,
+        false => Contact::Unknown,
+    }
 }
 
 struct FittedModel {
@@ -265,6 +283,7 @@ fn rounding_error_db(
 fn assemble(
     request: &AssetRequest,
     provenance: Provenance,
+    (contact, law): (Contact, Law),
     conditions: Vec<Condition>,
     spectra: &[TextureSpectrum],
     fitted: Vec<FittedModel>,
@@ -279,7 +298,7 @@ fn assemble(
     let to_f32 = |s: &TextureSpectrum| s.magnitude.iter().map(|&m| m as f32).collect();
     Asset {
         manifest: Manifest {
-            htex: FIRST_VERSION.to_owned(),
+            htex: htex_format::VERSION.to_owned(),
             name: request.name.clone(),
             license: request.license.clone(),
             author: request.author.clone(),
@@ -289,11 +308,13 @@ fn assemble(
             doi: None,
             sensor: None,
             finger: None,
+            contact,
             quantity,
             unit: quantity.unit().to_owned(),
             band,
             provenance,
             conditions,
+            law: Some(law),
             representations,
             reference: request.keep_reference.then(|| Reference {
                 file: "reference.bin".to_owned(),

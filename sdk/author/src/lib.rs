@@ -45,6 +45,7 @@ mod felt;
 pub mod findings;
 mod fit;
 pub mod grid;
+mod law;
 mod level;
 mod metrics;
 mod reading;

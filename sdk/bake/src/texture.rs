@@ -2,7 +2,8 @@
 
 use htex_dsp::grid::GRID_HZ;
 use htex_host::{Band, Descriptor, LoadedModel};
-use htex_play::{Asset, Explored, Motion};
+use htex_play::exploration::CEILING;
+use htex_play::{Asset, Motion, Motions};
 
 use crate::BakeError;
 use crate::filter::hann;
@@ -15,7 +16,7 @@ pub(crate) struct Texture<'a> {
     asset: &'a Asset,
     model: LoadedModel,
     id: String,
-    explored: Explored,
+    motions: Motions,
 }
 
 /// A texture at one motion.
@@ -35,13 +36,10 @@ impl<'a> Texture<'a> {
         if loaded.follows_motion() {
             return Err(BakeError::FollowsMotion { model: id });
         }
-        let manifest = asset.manifest();
-        let stored = manifest.representations.iter().find(|r| r.model == id);
-        let at = stored.map_or(&[][..], |r| &r.at);
         Ok(Self {
             asset,
             model: loaded,
-            explored: Explored::new(at, &manifest.conditions),
+            motions: asset.motions(Some(&id))?,
             id,
         })
     }
@@ -66,10 +64,11 @@ impl<'a> Texture<'a> {
 
     pub(crate) fn at(&self, motion: Motion) -> Result<Moment, BakeError> {
         let (parameters, level_rms) = self.asset.parameters(Some(&self.id), Some(motion))?;
+        let scaling = self.motions.scaling(motion, CEILING);
         Ok(Moment {
             parameters,
-            level_rms: level_rms * self.explored.force_gain(motion.force_n),
-            ratio: self.explored.speed_ratio(motion.speed_mm_s),
+            level_rms: level_rms * scaling.level,
+            ratio: scaling.frequency,
             motion,
         })
     }

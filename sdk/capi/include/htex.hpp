@@ -106,8 +106,8 @@ struct VoiceOptions {
     uint64_t seed = 0;
     std::optional<Motion> motion;
     std::optional<std::string> synthesis;
-    bool speed_scaling = true;
-    bool force_scaling = true;
+    bool frequency_scaling = true;
+    bool level_scaling = true;
     bool contact = true;
 };
 
@@ -194,8 +194,8 @@ public:
         c.seed = options.seed;
         c.motion = options.motion ? &*options.motion : nullptr;
         c.synthesis = options.synthesis ? options.synthesis->c_str() : nullptr;
-        c.no_speed_scaling = !options.speed_scaling;
-        c.no_force_scaling = !options.force_scaling;
+        c.no_frequency_scaling = !options.frequency_scaling;
+        c.no_level_scaling = !options.level_scaling;
         c.no_contact = !options.contact;
         htex_voice voice{};
         if (Status status = status_of(htex_voice_new(handle_.get(), &c, &voice)); !status)

@@ -57,9 +57,9 @@ pub struct htex_voice_options {
     /// How samples are made: "streamed", "loop:SECONDS" or "filter:TAPS"; NULL: streamed.
     pub synthesis: *const c_char,
     /// Not 0: frequencies do not follow speeds beyond the recorded ones.
-    pub no_speed_scaling: u32,
+    pub no_frequency_scaling: u32,
     /// Not 0: the level does not follow forces beyond the recorded ones.
-    pub no_force_scaling: u32,
+    pub no_level_scaling: u32,
     /// Not 0: a finger that rests is not silent.
     pub no_contact: u32,
 }
@@ -163,8 +163,8 @@ pub(crate) unsafe fn voice_options<'a>(
         seed: 0,
         motion: std::ptr::null(),
         synthesis: std::ptr::null(),
-        no_speed_scaling: 0,
-        no_force_scaling: 0,
+        no_frequency_scaling: 0,
+        no_level_scaling: 0,
         no_contact: 0,
     };
     // SAFETY: as here.
@@ -178,8 +178,8 @@ pub(crate) unsafe fn voice_options<'a>(
         )
     };
     let effects = Effects::default()
-        .with_speed_scaling(options.no_speed_scaling == 0)
-        .with_force_scaling(options.no_force_scaling == 0)
+        .with_frequency_scaling(options.no_frequency_scaling == 0)
+        .with_level_scaling(options.no_level_scaling == 0)
         .with_contact(options.no_contact == 0);
     let synthesis: Synthesis = match synthesis {
         Some(text) => text.parse().map_err(htex::Error::from)?,

@@ -230,8 +230,8 @@ fn options_are_checked_by_their_size() {
         seed: 3,
         motion: null(),
         synthesis: null(),
-        no_speed_scaling: 0,
-        no_force_scaling: 0,
+        no_frequency_scaling: 0,
+        no_level_scaling: 0,
         no_contact: 0,
     };
     let mut new = |options: &htex_voice_options| {

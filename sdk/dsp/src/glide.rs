@@ -29,6 +29,11 @@ impl Glide {
         }
     }
 
+    /// Sets the gain at once.
+    pub fn restart(&mut self, value: f32) {
+        (self.value, self.target, self.left) = (value, value, 0);
+    }
+
     /// Whether the gain is constant at `value`.
     pub fn rests_at(&self, value: f32) -> bool {
         self.left == 0 && self.value == value

@@ -8,6 +8,7 @@ use crate::doi::check_doi;
 use crate::license::check_license;
 use htex_model::Band;
 
+use crate::law::{Law, MOST_EXPONENT};
 use crate::manifest::{Condition, Manifest};
 use crate::rules as rule;
 use htex_finding::Findings;
@@ -41,6 +42,7 @@ pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
     check_sources(manifest, findings);
     check_made(manifest, findings);
     check_conditions(&manifest.conditions, findings);
+    check_law(manifest, findings);
     check_representations(manifest, findings);
     check_plugins(manifest, findings);
     check_extensions(manifest, findings);
@@ -147,6 +149,18 @@ fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
         findings.require(new, rule::CONDITION_DUPLICATE, at, || {
             "an earlier condition has the same speed and force; keep one".to_owned()
         });
+    }
+}
+
+fn check_law(manifest: &Manifest, findings: &mut Findings) {
+    let exponents = manifest.law.iter().flat_map(Law::exponents);
+    for (key, exponent) in exponents.filter(|(_, exponent)| !exponent.is_valid()) {
+        let message = format!(
+            "{} is not an exponent of -{MOST_EXPONENT} to {MOST_EXPONENT}, or its error is negative; correct it, \
+             or remove `law`",
+            exponent.exponent
+        );
+        findings.add(rule::LAW_INVALID, format!("/law/{key}"), message);
     }
 }
 

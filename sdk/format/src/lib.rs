@@ -28,6 +28,7 @@ mod entry_ranges;
 mod error;
 mod fields;
 mod json_text;
+mod law;
 mod license;
 mod limits;
 mod manifest;
@@ -62,12 +63,12 @@ pub use htex_files::{remove_unfinished, replace_file, write_file};
 pub use htex_finding::{FileReport, Finding, Report, Severity};
 pub use htex_model::Band;
 pub use json_text::{JsonError, parse_json};
+pub use law::{Contact, Exponent, ExponentSource, Law, MOST_EXPONENT};
 pub use license::{LicenseError, check_license};
 pub use limits::Limits;
 pub use manifest::{
-    AtCondition, Condition, FIRST_VERSION, How, Ingredient, Made, Manifest, Plugin, Provenance,
-    Reference, Representation, SAME_CONDITION, Signature, Source, Steps, StoredAs, StoredField,
-    VERSION,
+    AtCondition, Condition, How, Ingredient, Made, Manifest, Plugin, Provenance, Reference,
+    Representation, SAME_CONDITION, Signature, Source, Steps, StoredAs, StoredField, VERSION,
 };
 pub use measure::{By, ErrorMeasure, Judged, Measure, MeasureRow};
 pub use page::{manifest_schema, report_schema, validation_page};

@@ -11,16 +11,14 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::Quantity;
+use crate::law::{Contact, Law};
 use crate::quality::{LeftOut, Quality};
 use crate::schema_words::{
     DOI, ENTRY_NAME, MODEL_ID, SEMANTIC_VERSION, open_variants, own_entries, quantities_and_units,
 };
 
-/// The newest version of the format that this crate supports. The writer declares the lowest version that has all
-/// keys of the asset: [`Manifest::declare_version`].
-pub const VERSION: &str = "1.2";
-/// The first version of the format; an asset without later keys declares it.
-pub const FIRST_VERSION: &str = "1.0";
+/// The version of the format that this crate reads and writes.
+pub const VERSION: &str = "1.0";
 
 /// The manifest of an asset: one surface.
 ///
@@ -49,22 +47,25 @@ pub struct Manifest {
     /// Search terms.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
-    /// Description of the surface (1.1).
+    /// Description of the surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// Origin of the recordings: a dataset, a laboratory, an address (1.1).
+    /// Origin of the recordings: a dataset, a laboratory, an address.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
-    /// DOI of the recordings or of the paper that describes them, without `https://doi.org/` (1.1).
+    /// DOI of the recordings or of the paper that describes them, without `https://doi.org/`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = DOI))]
     pub doi: Option<String>,
-    /// Kind and model of the sensor (1.1).
+    /// Kind and model of the sensor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensor: Option<String>,
-    /// What slid over the surface: a bare finger, an artificial fingertip, a tool (1.1).
+    /// What slid over the surface: a bare finger, an artificial fingertip, a tool.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finger: Option<String>,
+    /// What slid over the surface, as far as it decides the law that is assumed.
+    #[serde(default, skip_serializing_if = "Contact::is_unknown")]
+    pub contact: Contact,
     /// Physical quantity of the samples.
     pub quantity: Quantity,
     /// Unit of the samples: [`Quantity::unit`].
@@ -79,6 +80,9 @@ pub struct Manifest {
     /// The conditions (speed and force) at which the texture was recorded.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub conditions: Vec<Condition>,
+    /// How frequencies and level follow a motion outside the conditions; else what is usual for `contact` and `quantity`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<Law>,
     /// The texture's spectrum, once per model.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub representations: Vec<Representation>,
@@ -102,29 +106,10 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// Raises `htex` to the lowest minor version that has all keys of the manifest.
-    pub fn declare_version(&mut self) {
-        let words = [
-            &self.description,
-            &self.source,
-            &self.doi,
-            &self.sensor,
-            &self.finger,
-        ];
-        let has_words = words.iter().any(|word| word.is_some());
-        let mut fits = self.representations.iter().flat_map(|r| &r.at);
-        let is_newer = self.conditions.iter().any(|c| c.segments.is_some())
-            || fits.any(|at| at.left_out.is_some())
-            || self.provenance.made.is_some();
-        let lowest = match (is_newer, has_words) {
-            (true, _) => VERSION,
-            (false, true) => "1.1",
-            (false, false) => FIRST_VERSION,
-        };
-        let is_older = ["1.0", "1.1"].contains(&self.htex.as_str()) && *self.htex < *lowest;
-        if is_older {
-            self.htex = lowest.to_owned();
-        }
+    /// Returns the law that is stated, else the one that is assumed for the quantity and the contact.
+    pub fn law(&self) -> Law {
+        let assumed = || Law::assumed(self.quantity, self.contact);
+        self.law.unwrap_or_else(assumed)
     }
 }
 
@@ -153,7 +138,7 @@ pub struct Provenance {
     /// The recordings that the asset was fitted to.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<Source>,
-    /// How it was made, if not by a fit to recordings (1.2).
+    /// How it was made, if not by a fit to recordings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub made: Option<Made>,
     /// Options that differ from their defaults.
@@ -234,7 +219,7 @@ pub struct Condition {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub repeatability_rms_db: Option<f64>,
-    /// Number of segments that were averaged at this condition (1.2).
+    /// Number of segments that were averaged at this condition.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segments: Option<u64>,
 }
@@ -361,7 +346,7 @@ pub struct AtCondition {
     /// Agreement with the recording.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quality: Option<Quality>,
-    /// Error of the interpolation between the other conditions at this one, leave-one-out (1.2).
+    /// Error of the interpolation between the other conditions at this one, leave-one-out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_out: Option<LeftOut>,
 }

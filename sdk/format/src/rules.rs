@@ -184,6 +184,10 @@ htex_finding::rule_table! {
         "Two conditions have the same speed and force.",
         "A player cannot know which of them to use.",
         "Average them, or remove one.";
+    LAW_INVALID Error [CONDITIONS]:
+        "An exponent of the law is out of range.",
+        "Exponents are from -4 to 4, and standard errors are not negative.",
+        "Correct it, or remove `law`: then what is usual for the contact and the quantity applies.";
     REPRESENTATIONS_EMPTY Error [REPRESENTATIONS]:
         "There is no representation.",
         "Without it there is nothing to play.",

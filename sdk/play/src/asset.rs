@@ -9,9 +9,7 @@ use std::sync::{Arc, OnceLock};
 use htex_format::{Manifest, Measure, Quantity, Representation};
 use htex_host::{Band, HostError, LoadedModel, RUNS_WASM, Registry, StillSound, Synthesis};
 
-use crate::exploration::Explored;
 use crate::known::{Known, Motions};
-use crate::mesh::Mesh;
 use crate::playable::{field_order, model_of};
 use crate::{Error, Motion, SampleSource, Voice, VoiceOptions};
 
@@ -174,21 +172,19 @@ impl Asset {
         let Some(motion) = options.motion else {
             return Ok(1.0);
         };
-        let Motion {
-            speed_mm_s,
-            force_n,
-            ..
-        } = motion.checked()?;
+        let motion = motion.checked()?;
         let r = self.representation(options.model)?;
         let streamed = options.synthesis == Synthesis::Streamed;
         let follows = streamed && self.model(r)?.follows_motion();
-        let slides = crate::exploration::slides(speed_mm_s, force_n);
-        let scales = options.effects.speed_scaling && slides && !follows;
-        let explored = self.explored(r);
-        Ok(if scales {
-            explored.speed_ratio(speed_mm_s)
-        } else {
-            1.0
+        let slides = crate::exploration::slides(motion.speed_mm_s, motion.force_n);
+        let scales = options.effects.frequency_scaling && slides && !follows;
+        Ok(match scales && motion.is_plausible() {
+            true => {
+                self.motions_of(r)
+                    .scaling(motion, options.ceiling)
+                    .frequency
+            }
+            false => 1.0,
         })
     }
 
@@ -286,7 +282,9 @@ impl Asset {
             .unwrap_or_else(|| self.first_condition(r))
             .checked()?;
         let model = self.model(r)?;
-        self.known(r, &model)?.at(&model, motion)
+        let known = self.known(r, &model)?;
+        let located = known.motions.locate(motion);
+        Ok((known.at(&model, &located)?, located.level_rms))
     }
 
     /// Returns the index of a representation by its model's id or short name, else of the best.
@@ -351,7 +349,6 @@ impl Asset {
         let parameters: Result<_, _> = sets.map(|flat| order.arrange(flat)).collect();
         Ok(Known {
             motions: self.motions_of(representation),
-            level_rms: stored.at.iter().map(|a| a.level_rms).collect(),
             parameters: parameters.map_err(|error| Error::Fields {
                 model: stored.model.clone(),
                 problem: error.to_string(),
@@ -362,24 +359,7 @@ impl Asset {
     fn motions_of(&self, representation: usize) -> Motions {
         let manifest = &self.data.manifest;
         let at = &manifest.representations[representation].at;
-        let point = |condition: usize| {
-            let condition = &manifest.conditions[condition];
-            [
-                condition.speed_mm_s.unwrap_or(0.0),
-                condition.force_n.unwrap_or(0.0),
-            ]
-        };
-        let points: Vec<[f64; 2]> = at.iter().map(|a| point(a.condition)).collect();
-        Motions {
-            mesh: Mesh::new(&points),
-            explored: self.explored(representation),
-        }
-    }
-
-    fn explored(&self, representation: usize) -> Explored {
-        let manifest = &self.data.manifest;
-        let at = &manifest.representations[representation].at;
-        Explored::new(at, &manifest.conditions)
+        Motions::new(at, &manifest.conditions, manifest.law())
     }
 
     fn first_condition(&self, representation: usize) -> Motion {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use htex_format::{AtCondition, Condition};
+use htex_format::{AtCondition, Condition, Law};
 
 use crate::Motion;
 
@@ -14,8 +14,14 @@ pub const MIN_RATIO: f64 = 1.0 / 16.0;
 pub const MAX_RATIO: f64 = 8.0;
 /// Length of an onset or offset of contact, seconds.
 pub const CONTACT_RAMP_S: f64 = 0.020;
-/// Largest gain of a force, so that all samples are finite.
-const MOST_GAIN: f64 = 1e6;
+/// Highest speed that counts as a reading of a finger, mm/s.
+pub const MOST_SPEED_MM_S: f64 = 1_000.0;
+/// Highest normal force that counts as a reading of a finger, newtons.
+pub const MOST_FORCE_N: f64 = 20.0;
+/// Longest time for which the last good motion is held while readings are out of range, seconds.
+pub const HOLD_S: f64 = 0.1;
+/// Highest level of a voice unless its options say another, as a multiple of the strongest recorded one.
+pub const CEILING: f64 = 4.0;
 
 /// Returns whether a finger slides at this speed (mm/s, either sign) and force (newtons).
 pub fn slides(speed_mm_s: f64, force_n: f64) -> bool {
@@ -28,34 +34,34 @@ pub fn slides(speed_mm_s: f64, force_n: f64) -> bool {
 /// ```
 /// use htex::Effects;
 /// let as_recorded_but_silent_at_rest = Effects::NONE.with_contact(true);
-/// assert!(!as_recorded_but_silent_at_rest.speed_scaling);
+/// assert!(!as_recorded_but_silent_at_rest.frequency_scaling);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Effects {
-    /// Frequencies are proportional to the speed if one speed was recorded.
-    pub speed_scaling: bool,
-    /// The level is proportional to the normal force if one force was recorded.
-    pub force_scaling: bool,
+    /// Outside the recorded speeds frequencies follow the law of the asset.
+    pub frequency_scaling: bool,
+    /// Outside the recorded speeds and forces the level follows the law of the asset.
+    pub level_scaling: bool,
     /// The voice is silent while the finger does not slide.
     pub contact: bool,
 }
 
 impl Effects {
-    /// Sets whether frequencies are proportional to the speed.
+    /// Sets whether frequencies follow the law outside the recorded speeds.
     #[must_use]
-    pub const fn with_speed_scaling(self, speed_scaling: bool) -> Self {
+    pub const fn with_frequency_scaling(self, frequency_scaling: bool) -> Self {
         Self {
-            speed_scaling,
+            frequency_scaling,
             ..self
         }
     }
 
-    /// Sets whether the level is proportional to the normal force.
+    /// Sets whether the level follows the law outside the recorded speeds and forces.
     #[must_use]
-    pub const fn with_force_scaling(self, force_scaling: bool) -> Self {
+    pub const fn with_level_scaling(self, level_scaling: bool) -> Self {
         Self {
-            force_scaling,
+            level_scaling,
             ..self
         }
     }
@@ -68,8 +74,8 @@ impl Effects {
 
     /// The texture as recorded, at any motion; it is still interpolated between several conditions.
     pub const NONE: Self = Self {
-        speed_scaling: false,
-        force_scaling: false,
+        frequency_scaling: false,
+        level_scaling: false,
         contact: false,
     };
 }
@@ -78,8 +84,8 @@ impl Default for Effects {
     /// All of them.
     fn default() -> Self {
         Self {
-            speed_scaling: true,
-            force_scaling: true,
+            frequency_scaling: true,
+            level_scaling: true,
             contact: true,
         }
     }
@@ -89,22 +95,15 @@ impl Default for Effects {
 ///
 /// ```
 /// use htex::Recorded;
-/// let speed = Recorded::One { low: 80.0, high: 80.0 };
-/// assert_eq!(speed.ratio(160.0), 2.0);
+/// let speed = Recorded::Between { low: 40.0, high: 160.0 };
+/// assert_eq!(speed.to_string(), "40 to 160");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Recorded {
-    /// The asset does not state it, or states 0.
+    /// The asset does not state it, or states 0: it has no effect.
     Unknown,
-    /// One value, whose measurements lie within the tolerance of [`htex_format::SAME_CONDITION`].
-    One {
-        /// The lowest recorded value, in mm/s or newtons.
-        low: f64,
-        /// The highest recorded value, in mm/s or newtons.
-        high: f64,
-    },
-    /// Several values, between which the texture is interpolated.
-    Several {
+    /// One value or several, between which the texture is interpolated.
+    Between {
         /// The lowest recorded value, in mm/s or newtons.
         low: f64,
         /// The highest recorded value, in mm/s or newtons.
@@ -121,28 +120,28 @@ impl Recorded {
             };
             (low, high) = (low.min(x), high.max(x));
         }
-        if high <= 0.0 {
-            Self::Unknown
-        } else if Condition::is_same(low, high) {
-            Self::One { low, high }
-        } else {
-            Self::Several { low, high }
+        match high > 0.0 {
+            true => Self::Between { low, high },
+            false => Self::Unknown,
         }
     }
 
-    /// Returns the ratio of a speed or force to the recorded one: 1 within its measurements, and 1 unless exactly one
-    /// value was recorded.
-    pub fn ratio(&self, x: f64) -> f64 {
-        match *self {
-            Self::One { low, .. } if x < low => x / low,
-            Self::One { high, .. } if x > high => x / high,
-            _ => 1.0,
-        }
-    }
-
-    /// Returns whether exactly one value was recorded.
+    /// Returns whether all recorded values are the same within [`htex_format::SAME_CONDITION`].
     pub fn is_one(&self) -> bool {
-        matches!(self, Self::One { .. })
+        matches!(*self, Self::Between { low, high } if Condition::is_same(low, high))
+    }
+
+    /// Returns whether the asset states it.
+    pub fn is_known(&self) -> bool {
+        *self != Self::Unknown
+    }
+
+    /// Returns the ratio of a speed or force to the nearest recorded one; 1 if it is unknown, or the nearest is 0.
+    fn ratio(&self, asked: f64, nearest: f64) -> f64 {
+        match self.is_known() && nearest > 0.0 {
+            true => asked / nearest,
+            false => 1.0,
+        }
     }
 }
 
@@ -151,33 +150,26 @@ impl fmt::Display for Recorded {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Unknown => f.write_str("unknown"),
-            Self::One { low, high } | Self::Several { low, high } if low == high => {
-                write!(f, "{low}")
-            }
-            Self::One { low, high } | Self::Several { low, high } => write!(f, "{low} to {high}"),
+            Self::Between { low, high } if low == high => write!(f, "{low}"),
+            Self::Between { low, high } => write!(f, "{low} to {high}"),
         }
     }
 }
 
-/// The speeds (mm/s) and forces (newtons) at which a representation was fitted.
-///
-/// ```
-/// use htex::{Explored, Recorded};
-/// let one = |x| Recorded::One { low: x, high: x };
-/// let explored = Explored { speed: one(80.0), force: one(0.4) };
-/// assert_eq!((explored.speed_ratio(40.0), explored.force_gain(0.8)), (0.5, 2.0));
-/// ```
+/// The speeds (mm/s) and forces (newtons) at which a representation was fitted, and the law beyond them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Explored {
     /// Recorded speeds, mm/s.
     pub speed: Recorded,
     /// Recorded normal forces, newtons.
     pub force: Recorded,
+    /// How frequencies and level follow a motion outside of them.
+    pub law: Law,
 }
 
 impl Explored {
     /// Collects the conditions that a representation is fitted `at`.
-    pub fn new(at: &[AtCondition], conditions: &[Condition]) -> Self {
+    pub fn new(at: &[AtCondition], conditions: &[Condition], law: Law) -> Self {
         let of = |value: fn(&Condition) -> Option<f64>| {
             let known = at.iter().filter_map(|at| conditions.get(at.condition));
             Recorded::new(known.map(value))
@@ -185,68 +177,90 @@ impl Explored {
         Self {
             speed: of(|c| c.speed_mm_s),
             force: of(|c| c.force_n),
+            law,
         }
     }
 
-    /// Returns the ratio of the playing speed to the recorded one: 1/16 to 8, and 1 unless exactly one speed was recorded.
-    pub fn speed_ratio(&self, speed_mm_s: f64) -> f64 {
-        self.speed.ratio(speed_mm_s).clamp(MIN_RATIO, MAX_RATIO)
+    /// Returns whether frequencies depend on the speed outside the recorded ones.
+    pub fn moves_frequencies(&self) -> bool {
+        self.speed.is_known() && self.law.frequency_speed.exponent != 0.0
     }
 
-    /// Returns the gain of the level at a force; 1 unless exactly one force was recorded.
-    pub fn force_gain(&self, force_n: f64) -> f64 {
-        self.force.ratio(force_n).min(MOST_GAIN)
+    /// Returns whether the level depends on the motion outside the recorded ones.
+    pub fn moves_level(&self) -> bool {
+        let by_speed = self.speed.is_known() && self.law.level_speed.exponent != 0.0;
+        by_speed || self.force.is_known() && self.law.level_force.exponent != 0.0
     }
 
-    /// Returns the coverage of a motion whose interpolation uses the conditions at `nearest`.
-    pub(crate) fn coverage(&self, motion: Motion, nearest: [f64; 2], effects: Effects) -> Coverage {
-        let (speed, force) = (motion.speed_mm_s, motion.force_n);
-        let slides = slides(speed, force);
-        let factor = |on: bool, factor: f64| on.then_some(factor);
+    /// Returns the factors of a motion whose nearest recorded one is `nearest`: speed, mm/s, and force, newtons.
+    pub(crate) fn scaling(&self, motion: Motion, nearest: [f64; 2]) -> Scaling {
+        let speed = self.speed.ratio(motion.speed_mm_s, nearest[0]);
+        let speed = speed.clamp(MIN_RATIO, MAX_RATIO);
+        let force = self.force.ratio(motion.force_n, nearest[1]);
+        Scaling {
+            frequency: self.law.frequency_factor(speed).clamp(MIN_RATIO, MAX_RATIO),
+            level: self.law.level_factor(speed, force),
+        }
+    }
+
+    /// Returns the coverage of a motion with these factors, whose nearest recorded one is `nearest`.
+    pub(crate) fn coverage(
+        &self,
+        motion: Motion,
+        nearest: [f64; 2],
+        scaling: Scaling,
+        effects: Effects,
+    ) -> Coverage {
+        let slides = slides(motion.speed_mm_s, motion.force_n);
         Coverage {
             slides: slides || !effects.contact,
-            speed: reach(
-                self.speed,
-                speed,
-                nearest[0],
-                factor(effects.speed_scaling, self.speed_ratio(speed)),
-            ),
-            force: reach(
-                self.force,
-                force,
-                nearest[1],
-                factor(effects.force_scaling, self.force_gain(force)),
-            ),
+            speed: reach(self.speed, motion.speed_mm_s, nearest[0]),
+            force: reach(self.force, motion.force_n, nearest[1]),
+            scaling: scaling.with(effects),
+            scales_level: effects.level_scaling,
+            scales_speed: effects.level_scaling || effects.frequency_scaling,
         }
     }
 }
 
-fn reach(recorded: Recorded, asked: f64, nearest: f64, factor: Option<f64>) -> Reach {
-    let played = match recorded {
-        Recorded::Unknown => return Reach::Unknown,
-        Recorded::Several { .. } => nearest,
-        Recorded::One { low, high } => asked.clamp(low, high),
+/// The factors by which a texture is played at a motion outside the recorded ones; both are 1 inside.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scaling {
+    /// Factor of all frequencies, 1/16 to 8.
+    pub frequency: f64,
+    /// Factor of the level.
+    pub level: f64,
+}
+
+impl Scaling {
+    /// The texture as recorded.
+    pub const NONE: Self = Self {
+        frequency: 1.0,
+        level: 1.0,
     };
-    match (recorded, factor) {
-        (Recorded::Several { .. }, _) if Condition::is_same(asked, played) => Reach::Inside,
-        _ if asked == played => Reach::Inside,
-        (Recorded::One { .. }, Some(factor)) => Reach::Scaled {
+
+    /// Returns the factors of the effects that are on.
+    pub(crate) fn with(self, effects: Effects) -> Self {
+        let on = |is_on: bool, factor: f64| if is_on { factor } else { 1.0 };
+        Self {
+            frequency: on(effects.frequency_scaling, self.frequency),
+            level: on(effects.level_scaling, self.level),
+        }
+    }
+}
+
+fn reach(recorded: Recorded, asked: f64, nearest: f64) -> Reach {
+    match recorded.is_known() {
+        false => Reach::Unknown,
+        true if Condition::is_same(asked, nearest) => Reach::Inside,
+        true => Reach::Outside {
             asked,
-            recorded: played,
-            factor,
+            recorded: nearest,
         },
-        _ => Reach::Clamped { asked, played },
     }
 }
 
 /// The relation of a motion to the recorded conditions, and how a voice plays it.
-///
-/// ```
-/// use htex::{Coverage, Reach};
-/// let speed = Reach::Clamped { asked: 160.0, played: 80.0 };
-/// let coverage = Coverage { slides: true, speed, force: Reach::Inside };
-/// assert!(!coverage.is_inside() && coverage.excess() == 1.0);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coverage {
     /// Whether the voice is audible: the finger slides, or the effect `contact` is off.
@@ -255,13 +269,17 @@ pub struct Coverage {
     pub speed: Reach,
     /// How the requested normal force relates to the recorded ones, in newtons.
     pub force: Reach,
+    /// The factors by which the texture is played.
+    pub scaling: Scaling,
+    scales_speed: bool,
+    scales_level: bool,
 }
 
 /// The relation of a speed or force to the recorded ones.
 ///
 /// ```
 /// use htex::Reach;
-/// let reach = Reach::Scaled { asked: 160.0, recorded: 80.0, factor: 2.0 };
+/// let reach = Reach::Outside { asked: 160.0, recorded: 80.0 };
 /// assert_ne!(reach, Reach::Inside);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -271,23 +289,14 @@ pub enum Reach {
     Inside,
     /// The asset does not state the recorded value; the speed or force has no effect.
     Unknown,
-    /// One value was recorded, and the texture is scaled from it.
-    Scaled {
-        /// The value of the requested motion, in mm/s or newtons.
-        asked: f64,
-        /// The value of the recording, or the nearest of its interval.
-        recorded: f64,
-        /// Factor of all frequencies for a speed, of the level for a force.
-        factor: f64,
-    },
     /// The model follows the motion itself ([`crate::Voice::follows_motion`]).
     Followed,
-    /// The texture is played at the nearest recorded value.
-    Clamped {
+    /// The texture is played as at the nearest recorded value, scaled by the law of the asset.
+    Outside {
         /// The value of the requested motion, in mm/s or newtons.
         asked: f64,
-        /// The value that is played.
-        played: f64,
+        /// The nearest recorded value.
+        recorded: f64,
     },
 }
 
@@ -295,7 +304,20 @@ impl Coverage {
     /// Returns the relative distance of the motion from the one that is played; 0 if the texture is played as
     /// recorded, interpolated, or scaled to the motion.
     pub fn excess(&self) -> f64 {
-        let excess = self.speed.excess().max(self.force.excess());
+        let speed = match (self.scales_speed, self.speed) {
+            (false, speed) => speed.excess(1.0),
+            // Beyond these ratios the speed counts as the last of them.
+            (true, Reach::Outside { asked, recorded }) => {
+                let ratio = asked / recorded;
+                self.speed.excess(ratio.clamp(MIN_RATIO, MAX_RATIO))
+            }
+            (true, _) => 0.0,
+        };
+        let force = match self.scales_level {
+            true => 0.0,
+            false => self.force.excess(1.0),
+        };
+        let excess = speed.max(force);
         // Smaller values are rounding errors.
         if excess > 1e-9 { excess } else { 0.0 }
     }
@@ -309,15 +331,11 @@ impl Coverage {
 }
 
 impl Reach {
-    fn excess(&self) -> f64 {
+    /// The relative distance from a motion that was recorded `ratio` times as fast, or as strong.
+    fn excess(&self, ratio: f64) -> f64 {
         match *self {
             Self::Inside | Self::Unknown | Self::Followed => 0.0,
-            Self::Scaled {
-                asked,
-                recorded,
-                factor,
-            } => (asked / recorded / factor - 1.0).abs(),
-            Self::Clamped { asked, played } => (asked / played - 1.0).abs(),
+            Self::Outside { asked, recorded } => (asked / recorded / ratio - 1.0).abs(),
         }
     }
 }
@@ -334,31 +352,25 @@ impl fmt::Display for Coverage {
             return f.write_str("the finger does not slide, so the texture is silent");
         }
         let mut joint = "";
-        for (reach, unit, scaled) in [
-            (self.speed, "mm/s", "frequencies are"),
-            (self.force, "N", "the level is"),
-        ] {
-            match reach {
-                Reach::Inside | Reach::Unknown | Reach::Followed => continue,
-                Reach::Scaled {
-                    asked,
-                    recorded,
-                    factor,
-                } => write!(
+        for (reach, unit) in [(self.speed, "mm/s"), (self.force, "N")] {
+            if let Reach::Outside { asked, recorded } = reach {
+                let [asked, recorded] = [asked, recorded].map(four_digits);
+                write!(
                     f,
-                    "{joint}{} {unit}, where {} {unit} was recorded: {scaled} {factor:.3} times as high",
-                    four_digits(asked),
-                    four_digits(recorded)
-                )?,
-                Reach::Clamped { asked, played } => write!(
-                    f,
-                    "{joint}{} {unit} is outside the recorded range, and is played as {} {unit}",
-                    four_digits(asked),
-                    four_digits(played)
-                )?,
+                    "{joint}{asked} {unit}, where {recorded} {unit} was recorded"
+                )?;
+                joint = "; ";
             }
-            joint = "; ";
         }
-        Ok(())
+        if joint.is_empty() {
+            return Ok(());
+        }
+        match self.scaling {
+            Scaling::NONE => f.write_str(": played as recorded"),
+            Scaling { frequency, level } => write!(
+                f,
+                ": frequencies are {frequency:.3} times as high, and the level is {level:.3} times as high"
+            ),
+        }
     }
 }

@@ -4,12 +4,11 @@ use htex_dsp::glide::Glide;
 use htex_dsp::warp::Warp;
 
 use crate::Motion;
-use crate::exploration::{CONTACT_RAMP_S, Effects, Explored, slides};
+use crate::exploration::{CONTACT_RAMP_S, Effects, Explored, HOLD_S, Scaling, slides};
 
 /// The state of a voice's effects.
 #[derive(Debug)]
 pub(crate) struct Follow {
-    explored: Explored,
     effects: Effects,
     /// Speed of the incoming samples, in the recorded speed.
     base: f64,
@@ -18,25 +17,28 @@ pub(crate) struct Follow {
     /// Reading speed of the texture, in the recorded speed.
     ratio: f64,
     gain: f64,
-    /// If exactly one speed was recorded.
+    /// If frequencies follow the motion.
     warp: Option<Warp>,
     contact: Glide,
+    /// Frames during which the last good motion is held while readings are out of range.
+    hold: u64,
+    /// The frame at which a held motion ends.
+    ends: Option<u64>,
 }
 
 impl Follow {
-    /// Makes the effects of a voice of `rate_hz` that starts with a motion, else as recorded. Its source has `base` times
-    /// the recorded speed, and reaches half the rate at `highest` times the recorded speed.
+    /// Makes the effects of a voice of `rate_hz` that plays as recorded. Its source has `base` times the recorded speed, and
+    /// reaches half the rate at `highest` times the recorded speed.
     pub(crate) fn new(
-        (explored, effects): (Explored, Effects),
-        motion: Option<Motion>,
+        explored: &Explored,
+        effects: Effects,
         base: f64,
         highest: f64,
         rate_hz: f64,
     ) -> Self {
         let ramp = (CONTACT_RAMP_S * rate_hz).ceil() as u32;
-        let scales = effects.speed_scaling && explored.speed.is_one();
-        let mut follow = Self {
-            explored,
+        let scales = effects.frequency_scaling && explored.moves_frequencies();
+        Self {
             effects,
             base,
             fastest: highest.max(base),
@@ -44,26 +46,44 @@ impl Follow {
             gain: 1.0,
             warp: scales.then(|| Warp::when_needed((0.5 * base / highest).min(0.5))),
             contact: Glide::new(1.0, ramp),
-        };
-        if motion.is_some_and(|motion| !follow.set_motion(motion)) {
-            follow.contact = Glide::new(0.0, ramp);
+            hold: (HOLD_S * rate_hz) as u64,
+            ends: None,
         }
-        follow
     }
 
-    /// Sets the motion; returns false if the voice is silent there, which leaves texture and level unchanged.
-    pub(crate) fn set_motion(&mut self, motion: Motion) -> bool {
-        let (speed_mm_s, force_n) = (motion.speed_mm_s, motion.force_n);
-        let slides = slides(speed_mm_s, force_n);
-        let felt = slides || !self.effects.contact;
+    /// Starts with a motion instead of as recorded, without a ramp.
+    pub(crate) fn start(&mut self, motion: Motion, scaling: Scaling) {
+        let felt = self.is_felt(motion) && motion.is_plausible();
+        if felt {
+            self.scale(motion, scaling);
+        } else {
+            self.contact.restart(0.0);
+        }
+    }
+
+    /// Returns whether the voice is audible at a motion; a silent one leaves texture and level unchanged.
+    pub(crate) fn is_felt(&self, motion: Motion) -> bool {
+        slides(motion.speed_mm_s, motion.force_n) || !self.effects.contact
+    }
+
+    /// Follows a motion that is felt or not.
+    pub(crate) fn set_contact(&mut self, felt: bool) {
+        self.ends = None;
         self.contact.set(if felt { 1.0 } else { 0.0 });
-        if slides && self.effects.speed_scaling {
-            self.ratio = self.explored.speed_ratio(speed_mm_s).min(self.fastest);
+    }
+
+    /// Sets reading speed and gain of a motion that is felt.
+    pub(crate) fn scale(&mut self, motion: Motion, scaling: Scaling) {
+        let Scaling { frequency, level } = scaling.with(self.effects);
+        if slides(motion.speed_mm_s, motion.force_n) {
+            self.ratio = frequency.min(self.fastest);
         }
-        if felt && self.effects.force_scaling {
-            self.gain = self.explored.force_gain(force_n);
-        }
-        felt
+        self.gain = level;
+    }
+
+    /// Holds the last motion, since a reading at `frame` is out of range.
+    pub(crate) fn hold(&mut self, frame: u64) {
+        self.ends.get_or_insert(frame + self.hold);
     }
 
     /// Returns the gain of the level.
@@ -71,9 +91,18 @@ impl Follow {
         self.gain
     }
 
-    /// Fades samples out while the finger does not slide.
-    pub(crate) fn apply_contact(&mut self, block: &mut [f32]) {
-        self.contact.apply(block);
+    /// Fades samples out while the finger does not slide, or its motion is unknown; the first sample is that of `frame`.
+    pub(crate) fn apply_contact(&mut self, block: &mut [f32], frame: u64) {
+        let left = self.ends.map(|end| end.saturating_sub(frame));
+        let held = left.map_or(block.len(), |left| {
+            usize::try_from(left).map_or(block.len(), |left| left.min(block.len()))
+        });
+        let (held, lost) = block.split_at_mut(held);
+        self.contact.apply(held);
+        if !lost.is_empty() {
+            self.contact.set(0.0);
+            self.contact.apply(lost);
+        }
     }
 
     /// Fills `out` with samples of the source, read at the speed of the motion.

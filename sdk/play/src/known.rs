@@ -1,12 +1,13 @@
 //! Recorded conditions of a representation, with its parameters and levels.
 
+use htex_format::{AtCondition, Condition, Law};
 use htex_host::LoadedModel;
 
-use crate::exploration::{Coverage, Effects, Explored};
+use crate::exploration::{Coverage, Effects, Explored, Scaling};
 use crate::mesh::{Mesh, Weights};
 use crate::{Error, Motion};
 
-/// The motions at which a representation was recorded.
+/// The motions at which a representation was recorded, with the level at each.
 ///
 /// ```no_run
 /// use htex::{Asset, Effects, Motion};
@@ -18,26 +19,95 @@ use crate::{Error, Motion};
 pub struct Motions {
     pub(crate) mesh: Mesh,
     pub(crate) explored: Explored,
+    pub(crate) level_rms: Vec<f64>,
+    /// The strongest of the levels.
+    pub(crate) strongest_rms: f64,
+}
+
+/// How a motion is played: what is mixed, and how the mix is scaled.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Located {
+    pub(crate) weights: Weights,
+    /// Level of the mix, before it is scaled.
+    pub(crate) level_rms: f64,
+    pub(crate) scaling: Scaling,
+    nearest: [f64; 2],
 }
 
 impl Motions {
-    /// Returns how a voice with these effects plays a motion, and whether the motion lies within the recorded conditions.
-    pub fn coverage(&self, motion: Motion, effects: Effects) -> Coverage {
-        let nearest = self.mesh.motion(&self.weights(motion));
-        self.explored.coverage(motion, nearest, effects)
+    /// Collects the conditions that a representation is fitted `at`.
+    pub fn new(at: &[AtCondition], conditions: &[Condition], law: Law) -> Self {
+        let point = |at: &AtCondition| {
+            let known = conditions.get(at.condition).copied().unwrap_or_default();
+            [known.speed_mm_s, known.force_n].map(Option::unwrap_or_default)
+        };
+        let points: Vec<[f64; 2]> = at.iter().map(point).collect();
+        let level_rms: Vec<f64> = at.iter().map(|at| at.level_rms).collect();
+        Self {
+            mesh: Mesh::new(&points),
+            explored: Explored::new(at, conditions, law),
+            strongest_rms: level_rms.iter().copied().fold(0.0, f64::max),
+            level_rms,
+        }
     }
 
-    /// Returns the weights of the conditions at a motion. Does not allocate.
-    pub(crate) fn weights(&self, motion: Motion) -> Weights {
-        self.mesh.weights(motion.speed_mm_s, motion.force_n)
+    /// Returns how a voice with these effects plays a motion, and whether the motion lies within the recorded conditions.
+    pub fn coverage(&self, motion: Motion, effects: Effects) -> Coverage {
+        let Located {
+            scaling, nearest, ..
+        } = self.locate(motion);
+        self.explored.coverage(motion, nearest, scaling, effects)
+    }
+
+    /// Returns the recorded speeds and forces, and the law beyond them.
+    pub fn explored(&self) -> &Explored {
+        &self.explored
+    }
+
+    /// Returns the factors of a motion outside the recorded ones, such that the level is at most `ceiling` times the
+    /// strongest recorded one. Does not allocate.
+    pub fn scaling(&self, motion: Motion, ceiling: f64) -> Scaling {
+        self.bounded(&self.locate(motion), ceiling)
+    }
+
+    /// Returns the factors of a located motion, with a bounded level.
+    pub(crate) fn bounded(&self, located: &Located, ceiling: f64) -> Scaling {
+        let most = ceiling * self.strongest_rms / located.level_rms;
+        let Scaling { frequency, level } = located.scaling;
+        // Inside, no level exceeds the strongest; a level of 0 has no most.
+        let level = if level > 1.0 && level > most {
+            most.max(1.0)
+        } else {
+            level
+        };
+        Scaling { frequency, level }
+    }
+
+    /// Returns how a motion is played. Does not allocate.
+    pub(crate) fn locate(&self, motion: Motion) -> Located {
+        let (weights, nearest) = self.mesh.locate(motion.speed_mm_s, motion.force_n);
+        Located {
+            level_rms: self.level_at(&weights),
+            scaling: self.explored.scaling(motion, nearest),
+            weights,
+            nearest,
+        }
+    }
+
+    /// Returns the level of weighted conditions: the weighted mean of the logarithms.
+    fn level_at(&self, weights: &Weights) -> f64 {
+        if weights.count == 1 {
+            return self.level_rms[weights.condition[0]];
+        }
+        let logarithm = |(i, weight): (usize, f64)| weight * libm::log(self.level_rms[i]);
+        libm::exp(weights.iter().map(logarithm).sum())
     }
 }
 
-/// The recorded conditions of a representation, with parameters and level at each.
+/// The recorded conditions of a representation, with the parameters at each.
 #[derive(Debug, Clone)]
 pub(crate) struct Known {
     pub(crate) motions: Motions,
-    pub(crate) level_rms: Vec<f64>,
     pub(crate) parameters: Vec<Vec<f64>>,
 }
 
@@ -47,18 +117,16 @@ impl Known {
         self.parameters.iter().map(Vec::len).max().unwrap_or(0)
     }
 
-    /// Returns parameters and level at a motion, interpolated by the model.
-    pub(crate) fn at(&self, model: &LoadedModel, motion: Motion) -> Result<(Vec<f64>, f64), Error> {
-        let weights = self.motions.weights(motion);
-        let level_rms = weights.iter().map(|(i, w)| w * self.level_rms[i]).sum();
+    /// Returns the parameters of a located motion, interpolated by the model.
+    pub(crate) fn at(&self, model: &LoadedModel, located: &Located) -> Result<Vec<f64>, Error> {
+        let weights = &located.weights;
         let sets: Vec<&[f64]> = weights
             .iter()
             .map(|(i, _)| &self.parameters[i][..])
             .collect();
         if let [only] = sets[..] {
-            return Ok((only.to_vec(), level_rms));
+            return Ok(only.to_vec());
         }
-        let parameters = model.interpolate(&sets, &weights.weight[..weights.count])?;
-        Ok((parameters, level_rms))
+        Ok(model.interpolate(&sets, &weights.weight[..weights.count])?)
     }
 }

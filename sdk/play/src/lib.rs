@@ -32,12 +32,13 @@ mod voice;
 
 pub use asset::Asset;
 pub use error::Error;
-pub use exploration::{Coverage, Effects, Explored, Reach, Recorded};
+pub use exploration::{Coverage, Effects, Explored, Reach, Recorded, Scaling};
 pub use htex_finding::{Finding, Severity};
 /// An asset's data, the argument of [`Asset::new`].
 pub use htex_format::Asset as AssetData;
 pub use htex_format::{
-    AtCondition, Condition, Limits, Manifest, Quantity, ReadError, Representation,
+    AtCondition, Condition, Contact, Exponent, ExponentSource, Law, Limits, Manifest, Quantity,
+    ReadError, Representation,
 };
 pub use htex_format::{FieldOrder, SAME_CONDITION};
 /// The motion that models receive: with a signed speed and a known position.

@@ -67,7 +67,8 @@ impl Weights {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Mesh {
-    conditions: Vec<[f64; 2]>,
+    /// The place of the only condition of a mesh without sides.
+    only: [f64; 2],
     axes: [Axis; 2],
     faces: Vec<Face>,
     sides: Vec<Side>,
@@ -101,10 +102,21 @@ impl Mesh {
 
     /// Returns the weights at a motion. Does not allocate.
     pub fn weights(&self, speed_mm_s: f64, force_n: f64) -> Weights {
-        let [speed, force] = &self.axes;
-        let q = [speed.place(speed_mm_s), force.place(force_n)];
+        self.locate(speed_mm_s, force_n).0
+    }
+
+    /// Returns the weights at a motion, and the recorded motion that is nearest to it, (speed, force): the motion itself
+    /// inside the mesh. Does not allocate.
+    pub(crate) fn locate(&self, speed_mm_s: f64, force_n: f64) -> (Weights, [f64; 2]) {
+        let asked = [speed_mm_s, force_n];
+        let q = [0, 1].map(|axis| self.axes[axis].place(asked[axis]));
         let inside = self.faces.iter().find_map(|face| self.within(face, q));
-        inside.unwrap_or_else(|| self.nearest(q)).without_zeros()
+        if let Some(weights) = inside {
+            return (weights.without_zeros(), asked);
+        }
+        let (weights, place) = self.nearest(q);
+        let nearest = [0, 1].map(|axis| self.axes[axis].value(place[axis], asked[axis]));
+        (weights.without_zeros(), nearest)
     }
 
     /// Returns whether a motion lies inside the mesh, or on its edge; a mesh on a line surrounds the motions on it.
@@ -119,17 +131,6 @@ impl Mesh {
     /// Iterates over the triangles, by the indices of their conditions.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
         self.faces.iter().map(|face| face.corners)
-    }
-
-    /// Returns the weighted mean of the conditions, (speed, force).
-    pub(crate) fn motion(&self, weights: &Weights) -> [f64; 2] {
-        let mean = |axis: usize| {
-            weights
-                .iter()
-                .map(|(i, w)| w * self.conditions[i][axis])
-                .sum()
-        };
-        [mean(0), mean(1)]
     }
 
     fn within(&self, face: &Face, q: [f64; 2]) -> Option<Weights> {
@@ -151,14 +152,17 @@ impl Mesh {
         })
     }
 
-    /// Returns the weights of the hull's nearest point.
-    fn nearest(&self, q: [f64; 2]) -> Weights {
+    /// Returns the weights of the hull's nearest point, and the point.
+    fn nearest(&self, q: [f64; 2]) -> (Weights, [f64; 2]) {
         let distance = |side: &Side| side.distance2(q);
         let nearest = self
             .sides
             .iter()
             .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.map_or(Weights::one(0), |side| side.weights(q))
+        let only = || (Weights::one(0), self.only);
+        nearest.map_or_else(only, |side| {
+            (side.weights(q), side.at(side.foot(q).clamp(0.0, 1.0)))
+        })
     }
 }
 

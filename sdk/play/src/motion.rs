@@ -1,6 +1,7 @@
 //! The motion of a finger over a texture, at one moment.
 
 use crate::Error;
+use crate::exploration::{MOST_FORCE_N, MOST_SPEED_MM_S};
 
 /// The motion of a finger over a texture, at one moment.
 ///
@@ -63,6 +64,12 @@ impl Motion {
             Some(position_mm) if !position_mm.is_finite() => Err(Error::Position { position_mm }),
             _ => Ok(self),
         }
+    }
+
+    /// Returns whether a finger moves so: speed and force are at most [`MOST_SPEED_MM_S`] and [`MOST_FORCE_N`]. A voice
+    /// ignores other motions as failed readings.
+    pub fn is_plausible(&self) -> bool {
+        self.speed_mm_s <= MOST_SPEED_MM_S && self.force_n <= MOST_FORCE_N
     }
 
     /// Returns whether speed and force, which determine the parameters, equal those of another motion.

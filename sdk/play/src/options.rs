@@ -3,7 +3,7 @@
 use htex_host::Synthesis;
 
 use crate::Motion;
-use crate::exploration::Effects;
+use crate::exploration::{CEILING, Effects};
 
 /// Options of a voice.
 ///
@@ -31,10 +31,12 @@ pub struct VoiceOptions<'a> {
     pub synthesis: Synthesis,
     /// Effects of a motion; [`Asset::source`](crate::Asset::source) has none.
     pub effects: Effects,
+    /// Highest level, as a multiple of the strongest recorded one; above 0.
+    pub ceiling: f64,
 }
 
 impl Default for VoiceOptions<'_> {
-    /// 20 kHz (the paper's rate), seed 0, the first condition, streamed, all effects.
+    /// 20 kHz (the paper's rate), seed 0, the first condition, streamed, all effects, and 4 times the strongest level.
     fn default() -> Self {
         Self {
             model: None,
@@ -43,6 +45,7 @@ impl Default for VoiceOptions<'_> {
             motion: None,
             synthesis: Synthesis::Streamed,
             effects: Effects::default(),
+            ceiling: CEILING,
         }
     }
 }
@@ -80,6 +83,13 @@ impl<'a> VoiceOptions<'a> {
     #[must_use]
     pub fn with_synthesis(mut self, synthesis: Synthesis) -> Self {
         self.synthesis = synthesis;
+        self
+    }
+
+    /// Sets the highest level, as a multiple of the strongest recorded one; above 0.
+    #[must_use]
+    pub fn with_ceiling(mut self, ceiling: f64) -> Self {
+        self.ceiling = ceiling;
         self
     }
 

@@ -2,8 +2,7 @@
 
 use htex_host::{Band, LoadedModel, ModelVoice, Motion as ModelMotion};
 
-use crate::exploration::{Coverage, Effects, Explored};
-use crate::known::Known;
+use crate::known::{Known, Located, Motions};
 use crate::mesh::Weights;
 use crate::{Error, Motion};
 
@@ -12,7 +11,7 @@ const MIXED: usize = 3;
 
 /// Samples of unit RMS at the model's own rate, and their level. A renderer of many textures resamples their sum once;
 /// [`crate::Voice`] resamples a single texture. A source interpolates between conditions; other effects of a motion
-/// ([`Effects`]) are left to the renderer.
+/// ([`crate::Effects`]) are left to the renderer.
 ///
 /// ```no_run
 /// use htex::{Asset, VoiceOptions};
@@ -48,7 +47,8 @@ impl SampleSource {
         motion: Motion,
     ) -> Result<Self, Error> {
         let motion = motion.checked()?;
-        let (parameters, level_rms) = known.at(&model, motion)?;
+        let located = known.motions.locate(motion);
+        let parameters = known.at(&model, &located)?;
         let rate_hz = model.voice_rate_hz(&parameters, band, wanted_hz)?;
         Ok(Self {
             voice: model.voice(&parameters, band, rate_hz, seed)?,
@@ -58,7 +58,7 @@ impl SampleSource {
             rate_hz,
             top_hz: band.high_hz,
             motion,
-            level_rms,
+            level_rms: located.level_rms,
             follows: model.follows_motion(),
             frames: 0,
         })
@@ -114,17 +114,12 @@ impl SampleSource {
         Ok(self.voice.set_motion(motion.clamped())?)
     }
 
-    /// Returns the recorded speeds and forces.
-    pub fn explored(&self) -> Explored {
-        self.known.motions.explored
+    /// Returns the recorded motions.
+    pub fn motions(&self) -> &Motions {
+        &self.known.motions
     }
 
-    /// Returns how a voice with these effects plays a motion. Does not allocate.
-    pub fn coverage(&self, motion: Motion, effects: Effects) -> Coverage {
-        self.known.motions.coverage(motion, effects)
-    }
-
-    /// Changes gradually to the spectrum at this motion, clamped to the recorded conditions, and returns its level. An
+    /// Changes gradually to the spectrum of the recorded motion nearest to this one, and returns its level. An
     /// unchanged motion takes no time; a new one interpolates parameters in the voice's own memory. Does not allocate,
     /// lock or do I/O if the model keeps to the ABI, as the models of this project do.
     ///
@@ -136,16 +131,22 @@ impl SampleSource {
         if self.motion.has_conditions_of(&motion) || self.known.parameters.len() < 2 {
             return Ok(self.level_rms);
         }
-        let weights = self.known.motions.weights(motion);
-        self.retune(&weights)?;
-        self.motion = motion;
-        let level_rms = |(i, weight): (usize, f64)| weight * self.known.level_rms[i];
-        self.level_rms = weights.iter().map(level_rms).sum();
+        let located = self.known.motions.locate(motion);
+        self.retune(motion, &located)
+    }
+
+    /// Changes the spectrum to that of a located motion, and returns its level.
+    pub(crate) fn retune(&mut self, motion: Motion, located: &Located) -> Result<f64, Error> {
+        if self.known.parameters.len() > 1 {
+            self.mix(&located.weights)?;
+            self.motion = motion;
+            self.level_rms = located.level_rms;
+        }
         Ok(self.level_rms)
     }
 
     /// Changes the spectrum to that of weighted conditions.
-    fn retune(&mut self, weights: &Weights) -> Result<(), Error> {
+    fn mix(&mut self, weights: &Weights) -> Result<(), Error> {
         let known = &self.known.parameters;
         if weights.count == 1 {
             return Ok(self.voice.retune(&known[weights.condition[0]])?);

@@ -42,6 +42,10 @@ pub struct Voice {
     /// Frames rendered so far.
     frames: u64,
     rate_hz: f64,
+    /// Highest level, as a multiple of the strongest recorded one.
+    ceiling: f64,
+    /// The last motion.
+    asked: Option<Motion>,
 }
 
 impl Voice {
@@ -64,14 +68,13 @@ impl Voice {
             None => options.effects,
             Some(_) => Effects::NONE.with_contact(options.effects.contact),
         };
-        let known = (source.explored(), effects);
-        let follow = Follow::new(
-            known,
-            options.motion,
-            base,
-            0.5 * rate_hz / source.top_hz(),
-            rate_hz,
-        );
+        let highest = 0.5 * rate_hz / source.top_hz();
+        let explored = source.motions().explored();
+        let mut follow = Follow::new(explored, effects, base, highest, rate_hz);
+        if let Some(motion) = options.motion {
+            let scaling = source.motions().scaling(motion, options.ceiling);
+            follow.start(motion, scaling);
+        }
         let level_rms = source.level_rms() * follow.gain();
         let (source_rate_hz, top_hz) = (source.rate_hz() * base, source.top_hz() * base);
         let mut voice = Self {
@@ -82,6 +85,8 @@ impl Voice {
             travel,
             frames: 0,
             rate_hz,
+            ceiling: options.ceiling,
+            asked: options.motion,
         };
         if let Some(motion) = options.motion {
             voice.send_motion(motion)?;
@@ -89,12 +94,16 @@ impl Voice {
         Ok(voice)
     }
 
-    /// Sets the motion. Spectrum and level change gradually to those interpolated between the recorded conditions, and
-    /// are clamped to these; if the voice is not streamed ([`Synthesis`](crate::Synthesis)), only the level changes. If
-    /// one speed was recorded, frequencies are proportional to the speed, 1/16 to 8 times the recorded ones and up to half
-    /// the rate; if one force was recorded, the level is proportional to the force. A finger that does not slide (below
+    /// Sets the motion. Spectrum and level change gradually to those interpolated between the recorded conditions; if the
+    /// voice is not streamed ([`Synthesis`](crate::Synthesis)), only the level changes. Outside the recorded conditions
+    /// frequencies and level follow the law of the asset ([`Law`](crate::Law)) from the nearest recorded motion: frequencies
+    /// 1/16 to 8 times the recorded ones and up to half the rate, the level up to
+    /// [`ceiling`](VoiceOptions::ceiling) times the strongest recorded one. A finger that does not slide (below
     /// 0.5 mm/s or at 0 N) makes the voice silent. Each of these can be switched off ([`Effects`](crate::Effects));
     /// [`Self::coverage`] reports them for a motion.
+    ///
+    /// A motion above 1 m/s or 20 N is a failed reading: the last good motion is held for at most 100 ms, and the voice is
+    /// silent after that until the next good one.
     ///
     /// An unchanged motion takes no time; a new one interpolates parameters in the voice's own memory. Does not allocate,
     /// lock or do I/O if the model keeps to the ABI, as the models of this project do.
@@ -104,11 +113,25 @@ impl Voice {
     /// unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), Error> {
         let motion = motion.checked()?;
+        if !motion.is_plausible() {
+            self.follow.hold(self.frames);
+            return Ok(());
+        }
         self.send_motion(motion)?;
-        if self.follow.set_motion(motion) {
-            let level_rms = self.stream.source_mut().set_motion(motion)?;
+        let felt = self.follow.is_felt(motion);
+        self.follow.set_contact(felt);
+        let is_new = !self
+            .asked
+            .is_some_and(|asked| asked.has_conditions_of(&motion));
+        if felt && is_new {
+            let source = self.stream.source_mut();
+            let located = source.motions().locate(motion);
+            let scaling = source.motions().bounded(&located, self.ceiling);
+            let level_rms = source.retune(motion, &located)?;
+            self.follow.scale(motion, scaling);
             self.level_rms.set((level_rms * self.follow.gain()) as f32);
         }
+        self.asked = Some(motion);
         Ok(())
     }
 
@@ -135,16 +158,15 @@ impl Voice {
     /// allocate.
     pub fn coverage(&self, motion: Motion) -> Coverage {
         let effects = self.follow.effects();
-        let mut coverage = self.stream.source().coverage(motion, effects);
+        let mut coverage = self.stream.source().motions().coverage(motion, effects);
         if self.follows_motion() {
             for reach in [&mut coverage.speed, &mut coverage.force] {
-                let beyond = matches!(reach, Reach::Clamped { .. } | Reach::Unknown);
+                let beyond = matches!(reach, Reach::Outside { .. } | Reach::Unknown);
                 *reach = if beyond { Reach::Followed } else { *reach };
             }
         }
-        if let Reach::Scaled { factor, .. } = &mut coverage.speed {
-            *factor = factor.min(self.follow.fastest());
-        }
+        let frequency = &mut coverage.scaling.frequency;
+        *frequency = frequency.min(self.follow.fastest());
         coverage
     }
 
@@ -155,7 +177,7 @@ impl Voice {
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
         let result = self.render_shape(out);
         self.level_rms.apply(out);
-        self.follow.apply_contact(out);
+        self.follow.apply_contact(out, self.frames);
         self.frames += out.len() as u64;
         if let Some(travel) = &mut self.travel {
             travel.advance(out.len());

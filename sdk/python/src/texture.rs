@@ -303,7 +303,7 @@ impl Texture {
 
     /// Makes a voice.
     #[pyo3(signature = (model=None, rate_hz=20_000.0, seed=0, speed_mm_s=None, force_n=None, position_mm=None,
-                        synthesis="streamed", *, speed_scaling=true, force_scaling=true, contact=true))]
+                        synthesis="streamed", *, frequency_scaling=true, level_scaling=true, contact=true))]
     #[allow(clippy::too_many_arguments)]
     fn voice(
         &self,
@@ -315,8 +315,8 @@ impl Texture {
         force_n: Option<f64>,
         position_mm: Option<f64>,
         synthesis: &str,
-        speed_scaling: bool,
-        force_scaling: bool,
+        frequency_scaling: bool,
+        level_scaling: bool,
         contact: bool,
     ) -> PyResult<Voice> {
         check_rate(rate_hz)?;
@@ -339,8 +339,8 @@ impl Texture {
             .with_synthesis(synthesis.parse::<Synthesis>().or_raise()?)
             .with_effects(
                 Effects::default()
-                    .with_speed_scaling(speed_scaling)
-                    .with_force_scaling(force_scaling)
+                    .with_frequency_scaling(frequency_scaling)
+                    .with_level_scaling(level_scaling)
                     .with_contact(contact),
             );
         options.model = model;

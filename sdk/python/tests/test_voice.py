@@ -33,7 +33,7 @@ def test_motion_synthesis_and_effects_are_those_of_the_command(texture: htex.Tex
     expected = played(place, "--model", "ar", "--speed", "130", "--force", "0.7")
     assert texture.voice("ar", speed_mm_s=130, force_n=0.7).render(N).tobytes() == expected.tobytes()
     expected = played(place, "--model", "ar", "--speed", "130", "--as-recorded")
-    off = {"speed_scaling": False, "force_scaling": False, "contact": False}
+    off = {"frequency_scaling": False, "level_scaling": False, "contact": False}
     assert texture.voice("ar", speed_mm_s=130, **off).render(N).tobytes() == expected.tobytes()
     for synthesis in ["loop:0.5", "filter:255"]:
         expected = played(place, "--model", "ar", "--quality", synthesis)

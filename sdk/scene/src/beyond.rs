@@ -49,8 +49,8 @@ fn motions(asset: &Asset, surface: &Surface) -> Result<Motions, htex_play::Error
 fn effects(scene: &Scene) -> Effects {
     let is_on = |effect| scene.effects.get(&effect) != Some(&Switch::Off);
     Effects::default()
-        .with_speed_scaling(is_on(Effect::SpeedScaling))
-        .with_force_scaling(is_on(Effect::ForceScaling))
+        .with_frequency_scaling(is_on(Effect::FrequencyScaling))
+        .with_level_scaling(is_on(Effect::LevelScaling))
 }
 
 /// The finger at the rows of a trace, or in constant motion; empty if the motion is live.

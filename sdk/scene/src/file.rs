@@ -223,10 +223,10 @@ fn is_default(measure: &ErrorMeasure) -> bool {
 pub enum Effect {
     /// Interpolation of parameters and level between exploration conditions as speed and force change.
     Interpolation,
-    /// Scaling of temporal frequencies with the speed, for assets with a single speed.
-    SpeedScaling,
-    /// Scaling of the level with the normal force, for assets with a single force.
-    ForceScaling,
+    /// Scaling of frequencies with the speed outside the recorded speeds, by the law of the asset.
+    FrequencyScaling,
+    /// Scaling of the level with speed and force outside the recorded motions, by the law of the asset.
+    LevelScaling,
     /// Cross-fades between surfaces, and fades at their edges.
     Crossfade,
     /// Compensation of the response of finger and display.
@@ -255,8 +255,8 @@ impl Effect {
     /// All effects, in the order of the chain.
     pub const ALL: [Self; 14] = [
         Self::Interpolation,
-        Self::SpeedScaling,
-        Self::ForceScaling,
+        Self::FrequencyScaling,
+        Self::LevelScaling,
         Self::Crossfade,
         Self::Compensation,
         Self::Resampling,
@@ -270,12 +270,12 @@ impl Effect {
         Self::Quantisation,
     ];
 
-    /// Name of the effect in a scene, such as `speed_scaling`.
+    /// Name of the effect in a scene, such as `frequency_scaling`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Interpolation => "interpolation",
-            Self::SpeedScaling => "speed_scaling",
-            Self::ForceScaling => "force_scaling",
+            Self::FrequencyScaling => "frequency_scaling",
+            Self::LevelScaling => "level_scaling",
             Self::Crossfade => "crossfade",
             Self::Compensation => "compensation",
             Self::Resampling => "resampling",

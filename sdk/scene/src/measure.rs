@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::Instant;
 
 use htex_device::{Capabilities, Quantity, Rates};
 use htex_dsp::fir::Fir;
 use htex_dsp::resample::UnusableRates;
 use htex_host::{Band, FitRequest, HostError, LoadedModel, Registry};
-use htex_play::{Explored, Recorded};
+use htex_play::{AtCondition, Condition, Contact, Law, Motions};
 
 use crate::cost::Costs;
 use crate::motion::Finger;
@@ -182,6 +183,23 @@ fn example_required() -> Requirements {
     }
 }
 
+/// One condition, with the law of a finger.
+fn example_motions() -> Motions {
+    let condition = Condition {
+        speed_mm_s: Some(80.0),
+        force_n: Some(0.4),
+        ..Condition::default()
+    };
+    let at = AtCondition {
+        condition: 0,
+        level_rms: 0.1,
+        quality: None,
+        left_out: None,
+    };
+    let law = Law::assumed(htex_format::Quantity::LateralForce, Contact::Finger);
+    Motions::new(&[at], &[condition], law)
+}
+
 fn example_surface() -> PlayedSurface {
     PlayedSurface {
         surface: 0,
@@ -189,16 +207,9 @@ fn example_surface() -> PlayedSurface {
         error_db: 0.0,
         known: 1,
         follows_motion: false,
-        explored: Explored {
-            speed: Recorded::One {
-                low: 80.0,
-                high: 80.0,
-            },
-            force: Recorded::One {
-                low: 0.4,
-                high: 0.4,
-            },
-        },
+        motions: Arc::new(example_motions()),
+        frequency: Span::ANY,
+        level: Span::ANY,
         speed_mm_s: Span::ANY,
         force_n: Span::ANY,
         always_touched: false,
@@ -210,7 +221,7 @@ fn example_surface() -> PlayedSurface {
         voice_top_hz: 1_000.0,
         top_hz: 2_000.0,
         fixed_ratio: 1.0,
-        fixed_force_gain: 1.0,
+        fixed_gain: 1.0,
         gain: 1.0,
         level_rms: 0.1,
     }

@@ -1,6 +1,6 @@
 //! The position and motion of the finger over the time of a scene.
 
-use htex_play::exploration::{MIN_SLIDING_MM_S, slides};
+use htex_play::exploration::{HOLD_S, MIN_SLIDING_MM_S, slides};
 
 use crate::file::{Constant, Motion, Region, Surface};
 use crate::trace::Trace;
@@ -44,6 +44,43 @@ impl Finger {
                 within(region.x_mm, x) && within(region.y_mm, y)
             }
             (Some(_), None) => false,
+        }
+    }
+}
+
+/// The readings of a finger: those that no finger has are replaced by the last good motion, for at most [`HOLD_S`].
+#[derive(Debug)]
+pub(crate) struct Readings {
+    last: Finger,
+    /// Control blocks for which a motion is held, and those for which it has been.
+    most: u64,
+    held: u64,
+}
+
+impl Readings {
+    /// Makes readings of one in each control block of a duration, seconds.
+    pub(crate) fn new(control_s: f64) -> Self {
+        Self {
+            last: Finger::AWAY,
+            most: (HOLD_S / control_s) as u64,
+            held: 0,
+        }
+    }
+
+    /// Takes a reading that holds for a number of control blocks; returns it, the held one at its place, or no contact.
+    pub(crate) fn take(&mut self, finger: Finger, blocks: u64) -> Finger {
+        if finger.motion().is_plausible() {
+            (self.last, self.held) = (finger, 0);
+            return finger;
+        }
+        self.held += blocks;
+        let known = match self.held <= self.most {
+            true => self.last,
+            false => Finger::AWAY,
+        };
+        Finger {
+            at_mm: finger.at_mm,
+            ..known
         }
     }
 }

@@ -310,7 +310,7 @@ impl<'a> Draft<'a> {
             let need = need(self.required, played);
             let decided = self.decide(entry, surface, need, played.mix_rate_hz, ns)?;
             effects.extend(decided.map(|neutral| (entry.effect, neutral)));
-            if entry.effect == Effect::SpeedScaling {
+            if entry.effect == Effect::FrequencyScaling {
                 let level_ns = self.costs.stage("level") * per_frame * played.oversampling;
                 let reason = "the model's samples have unit RMS; the asset gives the level";
                 self.push(

@@ -1,18 +1,21 @@
 //! A surface as it is played by one of its representations: its rates, its constant factors and its level.
 
+use std::sync::Arc;
+
 use htex_format::ErrorMeasure;
-use htex_play::{Explored, SampleSource, VoiceOptions};
+use htex_play::exploration::CEILING;
+use htex_play::{Motions, SampleSource, Scaling, VoiceOptions};
 
 use crate::SceneError;
 use crate::error::OfSurface;
 use crate::file::{Effect, Switch};
 use crate::load::LoadedScene;
-use crate::requirements::{Requirements, Span};
+use crate::requirements::{Requirements, Span, Touch};
 
 /// Largest frequency ratio that a live motion is prepared for.
 const LIVE_RATIO: f64 = 4.0;
-/// Largest force that a live motion is prepared for, relative to the recorded one.
-const LIVE_FORCE: f64 = 3.0;
+/// Largest factor of the level that a live motion is prepared for.
+const LIVE_GAIN: f64 = 3.0;
 /// Rate of a voice before a compensation, relative to the highest frequency.
 const FILTERED_OVERSAMPLING: f64 = 2.5;
 
@@ -25,8 +28,11 @@ pub(crate) struct PlayedSurface {
     pub(crate) error_db: f64,
     /// Number of known conditions.
     pub(crate) known: usize,
-    /// Known speeds and forces.
-    pub(crate) explored: Explored,
+    /// Known speeds and forces, and the law beyond them.
+    pub(crate) motions: Arc<Motions>,
+    /// Factors of frequencies and of the level that occur.
+    pub(crate) frequency: Span,
+    pub(crate) level: Span,
     /// The model follows the motion itself.
     pub(crate) follows_motion: bool,
     pub(crate) speed_mm_s: Span,
@@ -46,7 +52,8 @@ pub(crate) struct PlayedSurface {
     pub(crate) top_hz: f64,
     /// Constant frequency ratio at which the voice is read.
     pub(crate) fixed_ratio: f64,
-    pub(crate) fixed_force_gain: f64,
+    /// Constant factor of the level.
+    pub(crate) fixed_gain: f64,
     /// Factor on the asset's level.
     pub(crate) gain: f64,
     /// Largest RMS after compensation, in the asset's unit.
@@ -62,14 +69,17 @@ impl PlayedSurface {
         model: &str,
     ) -> Result<Self, SceneError> {
         let (asset, touch) = (&scene.assets[surface], &required.touches[surface]);
-        let (known, explored, error_db) = known(asset, model, scene.scene.budget.error);
+        let (known, error_db) = known(asset, model, scene.scene.budget.error);
+        let motions = asset.motions(Some(model)).of_surface(surface, scene)?;
         let loaded = asset.loaded_model(Some(model)).of_surface(surface, scene)?;
         let mut played = Self {
             surface,
             model: model.to_owned(),
             error_db,
             known,
-            explored,
+            motions: Arc::new(motions),
+            frequency: Span::NONE,
+            level: Span::NONE,
             follows_motion: loaded.follows_motion(),
             speed_mm_s: touch.speed_mm_s,
             force_n: touch.force_n,
@@ -82,12 +92,13 @@ impl PlayedSurface {
             voice_top_hz: asset.band().high_hz,
             top_hz: asset.band().high_hz,
             fixed_ratio: required.pitch,
-            fixed_force_gain: 1.0,
+            fixed_gain: 1.0,
             gain: scene.scene.surfaces[surface].gain,
             level_rms: 0.0,
         };
-        played.scale_speed(scene);
-        let force_gain = played.scale_force(scene);
+        played.find_factors(scene, touch);
+        played.scale_frequencies();
+        let most_gain = played.scale_level();
         let source = played.source(scene, required).of_surface(surface, scene)?;
         played.rate_hz = source.rate_hz();
         played.divide_rate(required.rate_hz);
@@ -96,7 +107,7 @@ impl PlayedSurface {
             .compensated(required, asset)
             .of_surface(surface, scene)?;
         played.level_rms =
-            loudest(asset, model, source.level_rms()) * played.gain * force_gain * shape;
+            loudest(asset, model, source.level_rms()) * played.gain * most_gain * shape;
         Ok(played)
     }
 
@@ -120,21 +131,39 @@ impl PlayedSurface {
         )
     }
 
-    /// Applies the speed to the rates: a constant one to the resampler, a changing one to the warp.
-    fn scale_speed(&mut self, scene: &LoadedScene) {
-        let off = scene.scene.effects.get(&Effect::SpeedScaling) == Some(&Switch::Off);
-        if off || self.follows_motion || !self.explored.speed.is_one() {
+    /// Finds the factors of all motions on the surface, as far as their effects are on.
+    fn find_factors(&mut self, scene: &LoadedScene, touch: &Touch) {
+        let is_on = |effect| scene.scene.effects.get(&effect) != Some(&Switch::Off);
+        let explored = self.motions.explored();
+        let follows = self.follows_motion;
+        let moves_frequencies =
+            is_on(Effect::FrequencyScaling) && !follows && explored.moves_frequencies();
+        let moves_level = is_on(Effect::LevelScaling) && !follows && explored.moves_level();
+        if touch.speed_mm_s == Span::ANY {
+            self.frequency = if moves_frequencies {
+                Span::ANY
+            } else {
+                Span::ONE
+            };
+            self.level = if moves_level { Span::ANY } else { Span::ONE };
             return;
         }
-        let ratio = |speed: f64| self.explored.speed_ratio(speed);
-        if !self.speed_mm_s.changes(&self.explored.speed) {
-            if self.speed_mm_s.low.is_finite() {
-                self.fixed_ratio *= ratio(self.speed_mm_s.low);
-            }
+        for motion in &touch.motions {
+            let Scaling { frequency, level } = self.motions.scaling(*motion, CEILING);
+            self.frequency
+                .take(if moves_frequencies { frequency } else { 1.0 });
+            self.level.take(if moves_level { level } else { 1.0 });
+        }
+    }
+
+    /// Applies the factor of frequencies to the rates: a constant one to the resampler, a changing one to the warp.
+    fn scale_frequencies(&mut self) {
+        if self.frequency.is_point() {
+            self.fixed_ratio *= self.frequency.only();
             return;
         }
-        let fastest = match self.speed_mm_s.high.is_finite() {
-            true => ratio(self.speed_mm_s.high),
+        let fastest = match self.frequency.high.is_finite() {
+            true => self.frequency.high,
             false => LIVE_RATIO,
         };
         self.oversampling = fastest.ceil().max(1.0);
@@ -150,22 +179,16 @@ impl PlayedSurface {
         }
     }
 
-    /// Applies a constant force to the gain; returns the largest gain of all forces.
-    fn scale_force(&mut self, scene: &LoadedScene) -> f64 {
-        let off = scene.scene.effects.get(&Effect::ForceScaling) == Some(&Switch::Off);
-        if off || self.follows_motion || !self.explored.force.is_one() {
+    /// Applies a constant factor of the level to the gain; returns the largest factor of a changing one.
+    fn scale_level(&mut self) -> f64 {
+        if self.level.is_point() {
+            self.fixed_gain = self.level.only();
+            self.gain *= self.fixed_gain;
             return 1.0;
         }
-        let changes = self.force_n.changes(&self.explored.force);
-        match self.force_n {
-            span if !changes && span.low.is_finite() => {
-                self.fixed_force_gain = self.explored.force_gain(span.low);
-                self.gain *= self.fixed_force_gain;
-                1.0
-            }
-            _ if !changes => 1.0,
-            span if span.high.is_finite() => self.explored.force_gain(span.high),
-            _ => LIVE_FORCE,
+        match self.level.high.is_finite() {
+            true => self.level.high,
+            false => LIVE_GAIN,
         }
     }
 
@@ -195,8 +218,8 @@ impl PlayedSurface {
     }
 }
 
-/// Number of conditions of a representation, their speeds and forces, and the largest error.
-fn known(asset: &htex_play::Asset, model: &str, measure: ErrorMeasure) -> (usize, Explored, f64) {
+/// Number of conditions of a representation, and the largest error.
+fn known(asset: &htex_play::Asset, model: &str, measure: ErrorMeasure) -> (usize, f64) {
     let manifest = asset.manifest();
     let found = manifest.representations.iter().find(|r| r.model == model);
     let at = found.map_or(&[][..], |r| &r.at);
@@ -205,7 +228,7 @@ fn known(asset: &htex_play::Asset, model: &str, measure: ErrorMeasure) -> (usize
         quality.and_then(|q| measure.of(q)).unwrap_or(f64::INFINITY)
     };
     let worst = at.iter().map(error).fold(0.0, f64::max);
-    (at.len(), Explored::new(at, &manifest.conditions), worst)
+    (at.len(), worst)
 }
 
 /// The largest level of a representation, in the asset's unit.

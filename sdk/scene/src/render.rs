@@ -4,7 +4,7 @@ use crate::SceneError;
 use crate::ahead::Ahead;
 use crate::file::{Effect, Surface};
 use crate::load::LoadedScene;
-use crate::motion::{Course, Finger, topmost};
+use crate::motion::{Course, Finger, Readings, topmost};
 use crate::path::Path;
 use crate::plan::{Mix, Plan, PlannedSurface};
 use crate::requirements::Requirements;
@@ -18,6 +18,7 @@ const PIECE: usize = 256;
 pub struct Renderer {
     surfaces: Vec<Surface>,
     course: Course,
+    readings: Readings,
     path: Path,
     timing: Timing,
     mixes: Vec<MixChain>,
@@ -76,6 +77,7 @@ impl Renderer {
         Ok(Self {
             surfaces: scene.scene.surfaces.clone(),
             path: Path::of(&course),
+            readings: Readings::new(required.control_s()),
             course,
             timing: Timing {
                 rate_hz: required.rate_hz,
@@ -243,6 +245,7 @@ impl Renderer {
     fn update(&mut self) {
         self.left = self.timing.control;
         let (finger, on_path) = self.finger();
+        let finger = self.readings.take(finger, 1);
         let context = Context {
             finger,
             level_rms: 0.0,

@@ -1,14 +1,14 @@
 //! The requirements of a scene, gathered from the scene, its assets and its device before anything is built.
 
 use htex_device::{Capabilities, Quantity};
-use htex_play::Recorded;
+use htex_play::Motion;
 use htex_play::exploration::CONTACT_RAMP_S;
 
 use crate::SceneError;
 use crate::device::quantity_misfit;
 use crate::file::Surface;
 use crate::load::LoadedScene;
-use crate::motion::{Course, Finger, topmost};
+use crate::motion::{Course, Finger, Readings, topmost};
 use crate::response::Inverse;
 
 /// Relative difference of speeds and forces that is attributed to rounding.
@@ -29,16 +29,20 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         low: f64::INFINITY,
         high: f64::NEG_INFINITY,
+    };
+    pub(crate) const ONE: Self = Self {
+        low: 1.0,
+        high: 1.0,
     };
     pub(crate) const ANY: Self = Self {
         low: 0.0,
         high: f64::INFINITY,
     };
 
-    fn take(&mut self, x: f64) {
+    pub(crate) fn take(&mut self, x: f64) {
         self.low = self.low.min(x);
         self.high = self.high.max(x);
     }
@@ -48,15 +52,15 @@ impl Span {
         self.low >= self.high - SAME * self.high.abs()
     }
 
-    /// Whether it requires more than one scaling factor for a texture recorded at `recorded`.
-    pub(crate) fn changes(&self, recorded: &Recorded) -> bool {
-        !self.is_point() && recorded.ratio(self.low) != recorded.ratio(self.high)
+    /// The value of a span of one; 1 if it contains none.
+    pub(crate) fn only(&self) -> f64 {
+        if self.low <= self.high { self.low } else { 1.0 }
     }
 
-    /// Whether it is the recorded value, within rounding.
-    pub(crate) fn is_as(&self, recorded: &Recorded) -> bool {
-        let near = |x: f64| (recorded.ratio(x) - 1.0).abs() <= SAME;
-        near(self.low) && near(self.high)
+    /// Whether it is 1, within rounding, or contains no value.
+    pub(crate) fn is_one(&self) -> bool {
+        let near = |x: f64| (x - 1.0).abs() <= SAME;
+        self.low > self.high || (near(self.low) && near(self.high))
     }
 
     pub(crate) fn text(&self, unit: &str) -> String {
@@ -98,7 +102,7 @@ pub(crate) struct Requirements {
 }
 
 /// How a surface is touched over the scene.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Touch {
     /// Fraction of the time, 0 to 1.
     pub(crate) share: f64,
@@ -107,6 +111,8 @@ pub(crate) struct Touch {
     pub(crate) force_n: Span,
     /// The finger at the first contact.
     pub(crate) first: Option<Finger>,
+    /// The motions in contact, each different from the one before.
+    pub(crate) motions: Vec<Motion>,
 }
 
 impl Requirements {
@@ -168,6 +174,7 @@ impl Requirements {
             speed_mm_s: Span::NONE,
             force_n: Span::NONE,
             first: None,
+            motions: Vec::new(),
         };
         self.touches = vec![untouched; surfaces.len()];
         if self.live {
@@ -188,9 +195,10 @@ impl Requirements {
         };
         let stride = controls.div_ceil(MOST_LOOKS);
         let looks = controls.div_ceil(stride);
+        let mut readings = Readings::new(self.control_s());
         for look in 0..looks {
             let frame = (look * stride) as f64 * self.control as f64;
-            let finger = course.at(frame / self.rate_hz);
+            let finger = readings.take(course.at(frame / self.rate_hz), stride);
             self.look(finger, surfaces);
         }
         for touch in &mut self.touches {
@@ -210,8 +218,16 @@ impl Requirements {
                 touch.speed_mm_s.take(finger.speed_mm_s.abs());
                 touch.force_n.take(finger.force_n);
                 touch.first.get_or_insert(finger);
+                if touch.motions.last() != Some(&finger.motion()) {
+                    touch.motions.push(finger.motion());
+                }
             }
         }
+    }
+
+    /// Duration of a control block, seconds.
+    pub(crate) fn control_s(&self) -> f64 {
+        self.control as f64 / self.rate_hz
     }
 
     /// Frames of the ramp at the end of a scene.

@@ -78,7 +78,7 @@ impl Track {
             }
         }
         // The level stage follows stages that change the rate and precedes stages that change the level.
-        let scaled = planned.effects.contains_key(&Effect::SpeedScaling);
+        let scaled = planned.effects.contains_key(&Effect::FrequencyScaling);
         let level = Level::new(played, synthesis.level_rms());
         let level = Slot::new("level", Some(played.surface), Box::new(level));
         chain.slots.insert(usize::from(scaled), level);

@@ -5,7 +5,9 @@ mod common;
 
 use common::{constant, file, grid, planned, rendered, scene, single};
 use htex_format::{AtCondition, Condition};
-use htex_play::{Effects, Explored, Reach, Recorded, Registry, Voice, VoiceOptions};
+use htex_play::{
+    Contact, Effects, Law, Motions, Quantity, Reach, Registry, Scaling, Voice, VoiceOptions,
+};
 use htex_scene::file::Motion;
 use htex_scene::{Finger, Renderer};
 
@@ -228,16 +230,17 @@ fn a_voice_reports_its_coverage_of_a_motion() {
     let beyond = all.coverage(htex_play::Motion::new(160.0, 0.2));
     assert_eq!(
         beyond.to_string(),
-        "160 mm/s, where 80 mm/s was recorded: frequencies are 2.000 times as high; \
-         0.2 N, where 0.4 N was recorded: the level is 0.500 times as high"
+        "160 mm/s, where 80 mm/s was recorded; 0.2 N, where 0.4 N was recorded: \
+         frequencies are 2.000 times as high, and the level is 0.500 times as high"
     );
     assert!(!beyond.is_inside() && !all.coverage(htex_play::Motion::new(0.0, 0.4)).slides);
     let none = voice("ar", None, Effects::NONE).coverage(htex_play::Motion::new(160.0, 0.0));
-    let as_recorded = Reach::Clamped {
+    let outside = Reach::Outside {
         asked: 160.0,
-        played: 80.0,
+        recorded: 80.0,
     };
-    assert!(none.slides && none.speed == as_recorded);
+    assert!(none.slides && none.speed == outside);
+    assert_eq!((none.scaling, none.excess()), (Scaling::NONE, 1.0));
 
     // A texture of 1 kHz at a rate of 4 kHz: at most twice as fast.
     let options = VoiceOptions::default().with_rate_hz(4_000.0);
@@ -253,15 +256,7 @@ fn a_voice_reports_its_coverage_of_a_motion() {
     };
     let ((faster, coverage), (twice, _)) = (low(320.0), low(160.0));
     assert!(faster == twice && faster != low(120.0).0);
-    assert_eq!(
-        coverage.speed,
-        Reach::Scaled {
-            asked: 320.0,
-            recorded: 80.0,
-            factor: 2.0
-        }
-    );
-    assert_eq!(coverage.excess(), 1.0);
+    assert_eq!(coverage.scaling.frequency, 2.0);
 
     // Four conditions, 60 and 120 mm/s by 0.3 and 0.6 N.
     let of = |motion: (f64, f64)| {
@@ -273,10 +268,12 @@ fn a_voice_reports_its_coverage_of_a_motion() {
     assert!(of((100.0, 0.4)).is_inside() && of((122.0, 0.6)).is_inside());
     let fast = of((240.0, 0.4));
     assert_eq!(fast.force, Reach::Inside);
-    assert_eq!(
-        fast.to_string(),
-        "240 mm/s is outside the recorded range, and is played as 120 mm/s"
-    );
+    let outside = Reach::Outside {
+        asked: 240.0,
+        recorded: 120.0,
+    };
+    assert_eq!(fast.speed, outside);
+    assert_eq!(fast.excess(), 0.0);
 }
 
 /// Forces within the tolerance of one setting count as one: each plays as recorded, and others are scaled.
@@ -299,13 +296,20 @@ fn forces_within_tolerance_count_as_one() {
         quality: None,
         left_out: None,
     });
-    let explored = Explored::new(&at, &conditions);
-    assert!(matches!(explored.speed, Recorded::Several { .. }) && explored.force.is_one());
-    assert!(
-        conditions
-            .iter()
-            .all(|c| explored.force_gain(c.force_n.unwrap()) == 1.0)
-    );
-    assert_eq!(explored.force_gain(0.8138), 2.0);
-    assert_eq!(explored.force_gain(0.2007), 0.5);
+    let law = Law::assumed(Quantity::LateralForce, Contact::Finger);
+    let motions = Motions::new(&at, &conditions, law);
+    let explored = motions.explored();
+    assert!(!explored.speed.is_one() && explored.force.is_one());
+    let level = |speed: f64, force: f64| {
+        let motion = htex_play::Motion::new(speed, force);
+        motions.scaling(motion, 4.0).level
+    };
+    for condition in &conditions {
+        let [speed, force] = [condition.speed_mm_s, condition.force_n].map(Option::unwrap);
+        assert_eq!(level(speed, force), 1.0);
+    }
+    assert_eq!(level(80.0, 0.8138), 2.0);
+    assert_eq!(level(80.0, 0.2007), 0.5);
+    // At most the ceiling, four times the strongest.
+    assert_eq!(level(80.0, 12.0), 4.0);
 }

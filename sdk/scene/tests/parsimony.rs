@@ -67,11 +67,11 @@ fn pair(effect: Effect) -> (Scene, Scene) {
             (scene(grid(), constant(90.0, 0.5), 0.5), file()),
             (strokes(grid(), 0.2), file()),
         ),
-        Effect::SpeedScaling => (
+        Effect::FrequencyScaling => (
             (strokes(single(), 0.0), file()),
             (strokes(single(), 0.2), file()),
         ),
-        Effect::ForceScaling => ((forces(0.0), file()), (forces(0.1), file())),
+        Effect::LevelScaling => ((forces(0.0), file()), (forces(0.1), file())),
         Effect::Crossfade => ((two(50.0), file()), (two(80.0), file())),
         Effect::Compensation => (
             (plain(), display()),
@@ -178,7 +178,7 @@ fn a_live_scene_includes_all_effects_of_motion() {
     let live = scene(single(), Motion::Live, 1.0);
     let plan = planned(&live, &file());
     let stages: Vec<&str> = plan.stages.iter().map(|s| s.name).collect();
-    for wanted in ["speed_scaling", "force_scaling", "direction", "contact"] {
+    for wanted in ["frequency_scaling", "level_scaling", "direction", "contact"] {
         assert!(stages.contains(&wanted), "{wanted}: {stages:?}");
     }
     assert!(!plan.constant);

@@ -177,7 +177,7 @@ export class Core {
   /** The options of a voice; see `VoiceOptions` in index.d.ts. */
   putVoiceOptions(take, options) {
     const { model, rate = 20_000, seed = 0, motion, synthesis } = options;
-    const { speedScaling = true, forceScaling = true, contact = true } = options;
+    const { frequencyScaling = true, levelScaling = true, contact = true } = options;
     const texts = [this.putText(take, model), this.putMotion(take, motion), this.putText(take, synthesis)];
     const at = take(VOICE_OPTIONS);
     const view = this.view();
@@ -188,8 +188,8 @@ export class Core {
     view.setBigUint64(at + 16, BigInt.asUintN(64, BigInt(seed)), true);
     view.setUint32(at + 24, texts[1], true);
     view.setUint32(at + 28, texts[2], true);
-    view.setUint32(at + 32, speedScaling ? 0 : 1, true);
-    view.setUint32(at + 36, forceScaling ? 0 : 1, true);
+    view.setUint32(at + 32, frequencyScaling ? 0 : 1, true);
+    view.setUint32(at + 36, levelScaling ? 0 : 1, true);
     view.setUint32(at + 40, contact ? 0 : 1, true);
     return at;
   }

@@ -40,9 +40,9 @@ export interface VoiceOptions {
   /** How samples are made. Default "streamed". */
   synthesis?: "streamed" | `loop:${number}` | `filter:${number}`;
   /** Whether frequencies follow speeds beyond the recorded ones. Default true. */
-  speedScaling?: boolean;
+  frequencyScaling?: boolean;
   /** Whether the level follows forces beyond the recorded ones. Default true. */
-  forceScaling?: boolean;
+  levelScaling?: boolean;
   /** Whether a finger that rests is silent. Default true. */
   contact?: boolean;
 }

@@ -41,7 +41,7 @@ pub(crate) fn manifest(model: &LoadedModel, conditions: usize) -> Manifest {
         left_out: None,
     };
     Manifest {
-        htex: htex_format::FIRST_VERSION.to_owned(),
+        htex: htex_format::VERSION.to_owned(),
         name: "fuzzed".to_owned(),
         license: Some("CC0-1.0".to_owned()),
         author: None,
@@ -51,6 +51,8 @@ pub(crate) fn manifest(model: &LoadedModel, conditions: usize) -> Manifest {
         doi: None,
         sensor: None,
         finger: None,
+        contact: Default::default(),
+        law: None,
         quantity: htex_format::Quantity::LateralForce,
         unit: htex_format::Quantity::LateralForce.unit().to_owned(),
         band: Band {

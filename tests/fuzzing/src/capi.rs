@@ -160,8 +160,8 @@ impl Calls<'_> {
                 &motion
             },
             synthesis: ways[usize::from(self.bytes.next()) % ways.len()],
-            no_speed_scaling: (self.bytes.next() % 2).into(),
-            no_force_scaling: 0,
+            no_frequency_scaling: (self.bytes.next() % 2).into(),
+            no_level_scaling: 0,
             no_contact: 1,
         };
         let mut voice = htex_voice { id: 0 };

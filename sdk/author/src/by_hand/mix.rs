@@ -26,7 +26,7 @@ impl MixedAsset<'_> {
 
 /// Mixes two textures: each model that describes both interpolates between their parameters, as it does between the conditions of one
 /// texture, and their levels are interpolated linearly. The conditions are those of both; at a condition of one alone, the other is what a
-/// player plays there. `weight` is the part of `b`, from 0 to 1.
+/// player plays there. The law is that of the larger weight, of `a` if they are equal. `weight` is the part of `b`, from 0 to 1.
 ///
 /// # Errors
 /// When no model describes both, their quantity or band differs, or a model cannot mix its parameters.
@@ -74,6 +74,11 @@ pub fn mix(
         blake3: part.blake3.to_owned(),
     };
     let manifest = a.asset.manifest();
+    let heavier = if weight > 0.5 {
+        b.asset.manifest()
+    } else {
+        manifest
+    };
     let frame = Frame {
         name: name.to_owned(),
         quantity: manifest.quantity,
@@ -84,6 +89,8 @@ pub fn mix(
             from: vec![ingredient(a, 1.0 - weight), ingredient(b, weight)],
         },
         conditions,
+        contact: heavier.contact,
+        law: heavier.law(),
     };
     let mut asset = frame.asset(mixed);
     let simulated = [a, b].map(|part| part.asset.manifest().provenance.simulated);

@@ -12,7 +12,7 @@ pub use mix::{MixedAsset, mix};
 pub use parameters::{ByHand, make};
 
 use htex_format::{
-    Asset, Condition, Made, Manifest, Provenance, Quantity, Representation, VERSION,
+    Asset, Condition, Contact, Law, Made, Manifest, Provenance, Quantity, Representation, VERSION,
 };
 use htex_host::Band;
 
@@ -24,13 +24,15 @@ struct Frame {
     tool: String,
     made: Made,
     conditions: Vec<Condition>,
+    contact: Contact,
+    law: Law,
 }
 
 impl Frame {
     /// Puts an asset together.
     fn asset(self, made: Vec<(Representation, Vec<Vec<f64>>)>) -> Asset {
         let (representations, parameters) = made.into_iter().unzip();
-        let mut manifest = Manifest {
+        let manifest = Manifest {
             htex: VERSION.to_owned(),
             name: self.name,
             license: None,
@@ -41,6 +43,7 @@ impl Frame {
             doi: None,
             sensor: None,
             finger: None,
+            contact: self.contact,
             quantity: self.quantity,
             unit: self.quantity.unit().to_owned(),
             band: self.band,
@@ -50,6 +53,7 @@ impl Frame {
                 ..Provenance::default()
             },
             conditions: self.conditions,
+            law: Some(self.law),
             representations,
             reference: None,
             plugins: Vec::new(),
@@ -57,7 +61,6 @@ impl Frame {
             extensions_required: Vec::new(),
             other: Default::default(),
         };
-        manifest.declare_version();
         Asset {
             manifest,
             parameters,

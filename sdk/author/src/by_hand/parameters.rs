@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use htex_format::{
-    Asset, AtCondition, Condition, How, Made, Quantity, Representation, round_parameters,
+    Asset, AtCondition, Condition, Contact, How, Law, Made, Quantity, Representation,
+    round_parameters,
 };
 use htex_host::{Band, Field, Kind, LoadedModel};
 
@@ -106,6 +107,8 @@ pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, ByHandError>
             from: Vec::new(),
         },
         conditions: vec![texture.condition],
+        contact: Contact::Unknown,
+        law: Law::assumed(texture.quantity, Contact::Unknown),
     };
     Ok(frame.asset(vec![(representation, vec![stored])]))
 }

@@ -1,9 +1,9 @@
 //! A texture's metadata.
 
-use super::SettingsError;
 use super::setting::settings;
+use super::{GivenLaw, SettingsError};
 use htex_finding::Severity;
-use htex_format::{Manifest, check_doi, check_license};
+use htex_format::{Contact, Manifest, check_doi, check_license};
 
 settings! {
     /// What a texture is, who made it, and how it was recorded. An absent entry leaves what is there; an empty text removes it.
@@ -70,6 +70,24 @@ settings! {
             help = "What slid over the surface, e.g. \"bare index finger\""
         ))]
         pub finger: Option<String>,
+
+        /// Whether a finger or a tool slid over the surface, which decides what is assumed of other motions.
+        #[cfg_attr(feature = "clap", arg(
+            long,
+            value_enum,
+            help = "Whether a finger or a tool slid over the surface: it decides how frequencies and level follow motions \
+                    that were not recorded, as far as neither recordings nor --law tell"
+        ))]
+        pub contact: Option<Contact>,
+
+        /// Exponents of the law outside the recorded motions.
+        #[cfg_attr(feature = "clap", arg(
+            long,
+            value_name = "NAME=X,…",
+            help = "How frequencies and level follow motions that were not recorded, in place of what is measured or assumed: \
+                    exponents of frequency-speed, level-speed and level-force, e.g. frequency-speed=0,level-speed=0.4"
+        ))]
+        pub law: Option<GivenLaw>,
     }
 }
 
@@ -131,6 +149,17 @@ impl Metadata {
                 *kept = Some(text.clone()).filter(|text| !text.is_empty());
             }
         }
-        manifest.declare_version();
+        self.apply_law(manifest);
+    }
+
+    /// Writes contact and law into a manifest. A stated law of another contact is assumed anew.
+    fn apply_law(&self, manifest: &mut Manifest) {
+        let (law, contact) = (manifest.law(), self.contact.unwrap_or(manifest.contact));
+        let law = law.reassumed(manifest.quantity, contact);
+        let given = self.law.map(|given| given.over(law));
+        if self.contact.is_some() || given.is_some() {
+            manifest.contact = contact;
+            manifest.law = Some(given.unwrap_or(law));
+        }
     }
 }

@@ -7,6 +7,7 @@
 mod choices;
 mod error;
 mod fit;
+mod law;
 mod metadata;
 mod one_or_more;
 mod reading;
@@ -14,6 +15,7 @@ mod setting;
 
 pub use error::SettingsError;
 pub use fit::{FitSettings, OptionSetting, named_models};
+pub use law::GivenLaw;
 pub use metadata::Metadata;
 pub use one_or_more::{OneOrMore, one_or_more};
 pub use reading::ReadingSettings;

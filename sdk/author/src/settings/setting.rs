@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use htex_format::Quantity;
+use htex_format::{Contact, Quantity};
 
-use super::OptionSetting;
+use super::{GivenLaw, OptionSetting};
 use crate::{Averaging, Level, SegmentChoice};
 
 /// A setting, which may be absent.
@@ -94,6 +94,8 @@ recorded! {
     Quantity: |quantity| unless_default(quantity, &quantity.name().replace('_', "-"));
     SegmentChoice: |choice| unless_default(choice, choice.name());
     Averaging: |averaging| unless_default(averaging, averaging.name());
+    Contact: |_contact| None;
+    GivenLaw: |_law| None;
     Level: |level| unless_default(level, level.name());
 }
 

@@ -98,7 +98,7 @@ namespace Htex
         public ulong Seed;
         public Motion? Motion;
         public string Synthesis;
-        public bool SpeedScaling = true, ForceScaling = true, Contact = true;
+        public bool FrequencyScaling = true, LevelScaling = true, Contact = true;
     }
 
     /// <summary>Options of opening an asset or a scene.</summary>
@@ -304,8 +304,8 @@ namespace Htex
                     Seed = options.Seed,
                     Motion = Native.Address(motion),
                     Synthesis = Native.Address(synthesis),
-                    NoSpeedScaling = options.SpeedScaling ? 0u : 1u,
-                    NoForceScaling = options.ForceScaling ? 0u : 1u,
+                    NoFrequencyScaling = options.FrequencyScaling ? 0u : 1u,
+                    NoLevelScaling = options.LevelScaling ? 0u : 1u,
                     NoContact = options.Contact ? 0u : 1u,
                 };
                 Native.Handle voice;
@@ -473,7 +473,7 @@ namespace Htex
             internal double RateHz;
             internal ulong Seed;
             internal IntPtr Motion, Synthesis;
-            internal uint NoSpeedScaling, NoForceScaling, NoContact;
+            internal uint NoFrequencyScaling, NoLevelScaling, NoContact;
         }
 
         [StructLayout(LayoutKind.Sequential)]

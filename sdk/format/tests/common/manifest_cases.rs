@@ -62,17 +62,21 @@ pub(super) fn manifests() -> Vec<Named> {
             m["quantity"] = json!("acceleration")
         }),
         ("doi_invalid", |m| {
-            m["htex"] = json!("1.1");
             m["doi"] = json!("https://doi.org/10.5281/zenodo.1234567");
         }),
         ("made_invalid", |m| {
-            m["htex"] = json!("1.2");
             let part = json!({ "name": "Vinyl", "weight": 1.5, "blake3": "0123" });
             m["provenance"]["made"] = json!({ "how": "mixed", "from": [part] });
         }),
         ("quality_invalid_left_out", |m| {
-            m["htex"] = json!("1.2");
             m["representations"][0]["at"][0]["left_out"] = json!({ "band_error_rms_db": -0.5 });
+        }),
+        ("law_invalid", |m| {
+            m["law"] = json!({
+                "frequency_speed": { "exponent": 0, "source": "assumed" },
+                "level_speed": { "exponent": 5, "source": "given" },
+                "level_force": { "exponent": 1, "source": "measured", "standard_error": -0.1 },
+            });
         }),
         ("license_invalid", |m| m["license"] = json!("CC BY 4.0")),
         ("license_unknown", |m| m["license"] = json!("CC-BY-9.0")),

@@ -26,7 +26,7 @@ pub fn asset(conditions: usize, fitted: Vec<Fitted>) -> Asset {
     let (representations, parameters) = fitted.into_iter().unzip();
     Asset {
         manifest: Manifest {
-            htex: FIRST_VERSION.to_owned(),
+            htex: VERSION.to_owned(),
             name: "Cotton, coarse weave".to_owned(),
             license: Some("CC-BY-4.0".to_owned()),
             author: Some("Haptics Laboratory, Example University".to_owned()),
@@ -36,6 +36,7 @@ pub fn asset(conditions: usize, fitted: Vec<Fitted>) -> Asset {
             doi: None,
             sensor: None,
             finger: None,
+            contact: Contact::Unknown,
             quantity: Quantity::LateralForce,
             unit: Quantity::LateralForce.unit().to_owned(),
             band: Band {
@@ -53,6 +54,7 @@ pub fn asset(conditions: usize, fitted: Vec<Fitted>) -> Asset {
                 ..Provenance::default()
             },
             conditions: (0..conditions).map(condition).collect(),
+            law: None,
             representations,
             reference: None,
             plugins: Vec::new(),

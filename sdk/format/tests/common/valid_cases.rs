@@ -43,7 +43,6 @@ pub(super) fn valid() -> Vec<Named> {
         (
             "valid_metadata",
             with_manifest(|m| {
-                m["htex"] = json!("1.1");
                 m["description"] = json!("Coarse cotton, plain weave, 12 threads per cm");
                 m["source"] = json!("Example University, touch laboratory");
                 m["doi"] = json!("10.5281/zenodo.1234567");
@@ -52,9 +51,21 @@ pub(super) fn valid() -> Vec<Named> {
             }),
         ),
         (
+            "valid_law",
+            with_manifest(|m| {
+                m["contact"] = json!("finger");
+                m["law"] = json!({
+                    "frequency_speed": { "exponent": 1, "source": "assumed" },
+                    "level_speed": {
+                        "exponent": 0.41, "source": "measured", "estimate": 0.62, "standard_error": 0.11
+                    },
+                    "level_force": { "exponent": 0.9, "source": "given" },
+                });
+            }),
+        ),
+        (
             "valid_grid",
             with_manifest(|m| {
-                m["htex"] = json!("1.2");
                 m["conditions"][0]["segments"] = json!(23);
                 m["representations"][0]["at"][0]["left_out"] = json!({
                     "band_error_rms_db": 0.8123,
@@ -65,7 +76,6 @@ pub(super) fn valid() -> Vec<Named> {
         (
             "valid_mixed",
             with_manifest(|m| {
-                m["htex"] = json!("1.2");
                 m["provenance"]["made"] = json!({
                     "how": "mixed",
                     "from": [

@@ -2,6 +2,8 @@
 
 use htex_format::Condition;
 
+use super::ON_SIDE;
+
 /// Largest coordinate, so that all computed numbers are finite.
 const FAR: f64 = 1e100;
 
@@ -44,6 +46,25 @@ impl Axis {
             group.place = 0.5 * (group.low + group.high) * scale;
         }
         Self { groups, scale }
+    }
+
+    /// Returns, of the values with a coordinate, the one that is nearest to `x`; beyond the recorded values, the last of them.
+    pub(super) fn value(&self, place: f64, x: f64) -> f64 {
+        let is_at = |group: &&Group| (group.place - place).abs() <= ON_SIDE;
+        if let Some(group) = self.groups.iter().find(is_at) {
+            return x.clamp(group.low, group.high);
+        }
+        let next = self.groups.partition_point(|group| group.place < place);
+        let before = next.checked_sub(1).map(|i| &self.groups[i]);
+        match (before, self.groups.get(next)) {
+            (Some(below), Some(above)) => {
+                let part = (place - below.place) / (above.place - below.place);
+                below.high + part * (above.low - below.high)
+            }
+            (None, Some(first)) => first.low,
+            (Some(last), None) => last.high,
+            (None, None) => x,
+        }
     }
 
     /// Returns the coordinate of a speed or force. Does not allocate.

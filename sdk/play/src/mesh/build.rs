@@ -26,7 +26,7 @@ pub(super) fn mesh(conditions: &[[f64; 2]]) -> Mesh {
         take_slivers(i, side, &mut faces, &edges, &places);
     }
     Mesh {
-        conditions: conditions.to_vec(),
+        only: places.first().copied().unwrap_or_default(),
         axes,
         faces,
         sides,

@@ -86,8 +86,8 @@ class Texture:
         position_mm: float | None = None,
         synthesis: str = "streamed",
         *,
-        speed_scaling: bool = True,
-        force_scaling: bool = True,
+        frequency_scaling: bool = True,
+        level_scaling: bool = True,
         contact: bool = True,
     ) -> Voice: ...
     def __reduce__(self) -> tuple[Any, ...]: ...

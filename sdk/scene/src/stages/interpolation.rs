@@ -1,7 +1,7 @@
 //! Interpolation of parameters and level between exploration conditions as speed and force change. It retunes
 //! the voice; no samples pass through this stage.
 
-use htex_play::{Explored, Recorded};
+use htex_play::Recorded;
 
 use super::{Entry, Need, StagePlace};
 use crate::file::Effect;
@@ -20,10 +20,10 @@ fn need(_: &Requirements, played: &PlayedSurface) -> Need {
         return Need::no("the asset has one exploration condition");
     }
     let varies = |span: &Span, recorded: Recorded| {
-        !span.is_point() && matches!(recorded, Recorded::Several { .. })
+        !span.is_point() && recorded.is_known() && !recorded.is_one()
     };
-    let Explored { speed, force } = played.explored;
-    if varies(&played.speed_mm_s, speed) || varies(&played.force_n, force) {
+    let explored = played.motions.explored();
+    if varies(&played.speed_mm_s, explored.speed) || varies(&played.force_n, explored.force) {
         return Need::yes(format!(
             "speed ({}) and force ({}) change between {known} conditions",
             played.speed_mm_s.text("mm/s"),

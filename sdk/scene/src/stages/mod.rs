@@ -1,8 +1,8 @@
 //! The stages of a chain: one file per effect, with the condition under which it is needed.
 //!
-//! An effect that is constant needs no stage: a constant speed is part of the resampler's ratio, a constant force of
-//! the level. Linear effects of a texture run at the model's rate, before the one resampling; speed scaling alone reads
-//! at a changing ratio there. An effect that a scene forces on without need is neutral, bit by bit or to 1e-6 of full
+//! An effect that is constant needs no stage: a constant factor of frequencies is part of the resampler's ratio, one of
+//! the level is part of the level. Linear effects of a texture run at the model's rate, before the one resampling; frequency
+//! scaling alone reads at a changing ratio there. An effect that a scene forces on without need is neutral, bit by bit or to 1e-6 of full
 //! scale (`sdk/scene/tests/equivalence.rs`): leaving it out is only an optimisation.
 
 mod carrier;
@@ -12,14 +12,14 @@ mod contact;
 mod crossfade;
 mod direction;
 mod dither;
-mod force_scaling;
+mod frequency_scaling;
 mod gain;
 mod interpolation;
 mod level;
+mod level_scaling;
 mod limiter;
 mod quantisation;
 mod resampling;
-mod speed_scaling;
 mod square_root;
 mod synthesis;
 
@@ -61,7 +61,7 @@ pub(crate) struct Context {
     pub(crate) ends_in: Option<u64>,
 }
 
-/// Reason to leave out the scaling by speed and by force.
+/// Reason to leave out the scaling of frequencies and of the level.
 pub(crate) const FOLLOWS: &str = "the model follows the motion itself";
 
 /// Counts of corrected samples.
@@ -130,8 +130,8 @@ pub(crate) struct Entry {
 /// All effects, in processing order.
 pub(crate) const EFFECTS: &[Entry] = &[
     interpolation::ENTRY,
-    speed_scaling::ENTRY,
-    force_scaling::ENTRY,
+    frequency_scaling::ENTRY,
+    level_scaling::ENTRY,
     crossfade::ENTRY,
     compensation::ENTRY,
     resampling::ENTRY,

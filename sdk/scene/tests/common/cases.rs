@@ -119,6 +119,8 @@ fn asset(quantity: Quantity, models: &[&str]) -> Vec<u8> {
             doi: None,
             sensor: None,
             finger: None,
+            contact: Default::default(),
+            law: None,
             quantity,
             unit: quantity.unit().to_owned(),
             band: Band {

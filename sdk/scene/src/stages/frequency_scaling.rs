@@ -1,8 +1,10 @@
-//! Scaling of temporal frequencies with the scanning speed, f ∝ v, as on a fixed surface under a faster
-//! finger, for assets with a single speed.
+//! Scaling of frequencies with the scanning speed outside the recorded speeds, by the law of the asset.
+
+use std::sync::Arc;
 
 use htex_dsp::warp::Warp;
-use htex_play::{Explored, Recorded};
+use htex_play::Motions;
+use htex_play::exploration::CEILING;
 
 use super::{Context, Entry, FOLLOWS, Need, Stage, StagePlace};
 use crate::file::Effect;
@@ -10,8 +12,8 @@ use crate::played::PlayedSurface;
 use crate::requirements::Requirements;
 
 pub(crate) const ENTRY: Entry = Entry {
-    effect: Effect::SpeedScaling,
-    name: "speed_scaling",
+    effect: Effect::FrequencyScaling,
+    name: "frequency_scaling",
     place: StagePlace::Surface {
         need,
         build: Some(build),
@@ -19,21 +21,23 @@ pub(crate) const ENTRY: Entry = Entry {
 };
 
 fn need(_: &Requirements, played: &PlayedSurface) -> Need {
-    let known = played.explored.speed;
-    match known {
+    let explored = played.motions.explored();
+    let (known, law) = (explored.speed, explored.law.frequency_speed);
+    match played.frequency {
         _ if played.follows_motion => Need::no(FOLLOWS),
-        Recorded::Unknown => Need::no("the asset does not state the speed of its recording"),
-        Recorded::Several { .. } => {
-            Need::no("the asset has several speeds, and is interpolated between them")
-        }
-        Recorded::One { .. } if played.speed_mm_s.changes(&known) => Need::yes(format!(
-            "the asset has the speed {known} mm/s only, and the speed is {}",
+        _ if !known.is_known() => Need::no("the asset does not state the speed of its recording"),
+        _ if !explored.moves_frequencies() => Need::no(format!(
+            "frequencies of the texture do not change with the speed (its law, {})",
+            law.source.name()
+        )),
+        span if !span.is_point() => Need::yes(format!(
+            "the recorded speed is {known} mm/s, and the speed is {}",
             played.speed_mm_s.text("mm/s")
         )),
-        Recorded::One { .. } if played.speed_mm_s.is_as(&known) => Need::no(format!(
-            "the speed is always the recorded one, {known} mm/s"
-        )),
-        Recorded::One { .. } => Need::no(format!(
+        span if span.is_one() => {
+            Need::no(format!("the speed is always a recorded one, {known} mm/s"))
+        }
+        _ => Need::no(format!(
             "the speed never changes: the resampler reads {:.3} times as fast",
             played.fixed_ratio
         )),
@@ -41,9 +45,9 @@ fn need(_: &Requirements, played: &PlayedSurface) -> Need {
 }
 
 fn build(_: &Requirements, played: &PlayedSurface, neutral: bool) -> Box<dyn Stage> {
-    let scales = played.explored.speed.is_one() && !neutral;
-    Box::new(SpeedScaling {
-        known: played.explored,
+    let scales = played.motions.explored().moves_frequencies() && !neutral;
+    Box::new(FrequencyScaling {
+        motions: Arc::clone(&played.motions),
         warp: match scales {
             true => Warp::new(played.voice_top_hz / played.rate_hz),
             false => Warp::through(),
@@ -54,8 +58,8 @@ fn build(_: &Requirements, played: &PlayedSurface, neutral: bool) -> Box<dyn Sta
     })
 }
 
-struct SpeedScaling {
-    known: Explored,
+struct FrequencyScaling {
+    motions: Arc<Motions>,
     scales: bool,
     warp: Warp,
     ratio: f64,
@@ -64,10 +68,13 @@ struct SpeedScaling {
     oversampling: f64,
 }
 
-impl Stage for SpeedScaling {
+impl Stage for FrequencyScaling {
     fn follow(&mut self, context: &Context) {
         if self.scales && context.finger.slides() {
-            self.ratio = self.known.speed_ratio(context.finger.speed_mm_s.abs());
+            self.ratio = self
+                .motions
+                .scaling(context.finger.motion(), CEILING)
+                .frequency;
         }
     }
 

@@ -1,0 +1,269 @@
+//! The law of a texture that was recorded at several motions: exponents with their standard errors.
+//!
+//! Levels: least squares of `ln L = k + b ln v + c ln F` over the conditions. A level of one recording is taken to be known
+//! within [`LEVEL_ERROR_DB`] at best, so that two conditions do not count as a sure exponent.
+//!
+//! Frequencies: the exponent at which the spectra, each shifted by `(v / v0)^a` on a logarithmic axis and without its level,
+//! differ least. Spectra change with the speed for other reasons, too: without lines that move, the best shift of recorded
+//! strokes was anywhere between -0.5 and 1.5, and lowered the squared difference to 0.25 to 0.9 of that without a shift. So an
+//! exponent is measured only where the difference falls to a quarter of that at the exponent that is assumed.
+
+use htex_format::{Condition, Contact, Exponent, ExponentSource, Law, Quantity};
+
+use crate::spectrum::TextureSpectrum;
+
+/// Least error of a recorded level, decibels.
+const LEVEL_ERROR_DB: f64 = 2.0;
+/// Most of the difference at the assumed exponent that is left at a measured one.
+const MOST_LEFT: f64 = 0.25;
+/// Points per octave at which spectra are compared, and half the width over which each is read, octaves.
+const POINTS: f64 = 24.0;
+const HALF_WIDTH: f64 = 1.0 / 12.0;
+/// Exponents of frequency that are tried, in hundredths.
+const TRIED: std::ops::RangeInclusive<i32> = -30..=130;
+/// Least length of the common axis, octaves.
+const LEAST_OCTAVES: f64 = 1.0;
+
+/// Estimates the law of conditions from their spectra; what they do not tell is assumed.
+pub(crate) fn law(conditions: &[Condition], spectra: &[TextureSpectrum], contact: Contact) -> Law {
+    let quantity = spectra.first().map_or(Quantity::default(), |s| s.quantity);
+    let mut law = Law::assumed(quantity, contact);
+    let [speeds, forces] = [speed, force].map(|of| logarithms(conditions, of));
+    let levels: Vec<f64> = spectra
+        .iter()
+        .map(|s| libm::log(htex_dsp::grid::level_rms(&s.magnitude)))
+        .collect();
+    for (exponent, estimate) in [&mut law.level_speed, &mut law.level_force]
+        .into_iter()
+        .zip(level_exponents(
+            &levels,
+            [speeds.as_deref(), forces.as_deref()],
+        ))
+    {
+        measured(exponent, estimate);
+    }
+    if let Some(speeds) = &speeds {
+        let assumed = law.frequency_speed.exponent;
+        measured(
+            &mut law.frequency_speed,
+            frequency_exponent(spectra, speeds, assumed),
+        );
+    }
+    law.reassumed(quantity, contact)
+}
+
+/// Keeps an estimate and its standard error.
+fn measured(exponent: &mut Exponent, estimate: Option<[f64; 2]>) {
+    if let Some([estimate, error]) = estimate {
+        exponent.source = ExponentSource::Measured;
+        (exponent.estimate, exponent.standard_error) = (Some(estimate), Some(error));
+    }
+}
+
+fn speed(condition: &Condition) -> Option<f64> {
+    condition.speed_mm_s
+}
+
+fn force(condition: &Condition) -> Option<f64> {
+    condition.force_n
+}
+
+/// Returns the logarithms of all speeds or forces, if all are known and not all are the same.
+fn logarithms(conditions: &[Condition], of: fn(&Condition) -> Option<f64>) -> Option<Vec<f64>> {
+    let known = |condition| of(condition).filter(|x| *x > 0.0);
+    let all: Option<Vec<f64>> = conditions.iter().map(known).collect();
+    let all = all?;
+    let [low, high] = [
+        all.iter().copied().fold(f64::INFINITY, f64::min),
+        all.iter().copied().fold(0.0, f64::max),
+    ];
+    let varies = high > 0.0 && !Condition::is_same(low, high);
+    varies.then(|| all.iter().map(|x| libm::log(*x)).collect())
+}
+
+/// Returns the exponents of the level over speed and force with their standard errors, as far as they can be told.
+fn level_exponents(levels: &[f64], axes: [Option<&[f64]>; 2]) -> [Option<[f64; 2]>; 2] {
+    let n = levels.len() as f64;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / n;
+    let centred = |values: &[f64]| {
+        let mean = mean(values);
+        values.iter().map(|x| x - mean).collect::<Vec<f64>>()
+    };
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let y = centred(levels);
+    if !y.iter().all(|x| x.is_finite()) {
+        return [None; 2];
+    }
+    let [v, f] = axes.map(|axis| centred(axis.unwrap_or(&vec![0.0; levels.len()])));
+    let (vv, ff, vf) = (product(&v, &v), product(&f, &f), product(&v, &f));
+    let (vy, fy) = (product(&v, &y), product(&f, &y));
+    let varies = axes.map(|axis| axis.is_some());
+    // The inverse of the normal equations; one unknown of a constant axis is left out.
+    let determinant = vv * ff - vf * vf;
+    let inverse = match varies {
+        [true, true] if determinant > 1e-6 * vv * ff => {
+            [ff / determinant, -vf / determinant, vv / determinant]
+        }
+        // Speed and force change together: neither can be told.
+        [true, true] | [false, false] => return [None; 2],
+        [true, false] => [1.0 / vv, 0.0, 0.0],
+        [false, true] => [0.0, 0.0, 1.0 / ff],
+    };
+    let b = inverse[0] * vy + inverse[1] * fy;
+    let c = inverse[1] * vy + inverse[2] * fy;
+    let unknowns = 1.0 + varies.iter().filter(|varies| **varies).count() as f64;
+    let rest = y.iter().zip(&v).zip(&f);
+    let squares: f64 = rest.map(|((y, v), f)| (y - b * v - c * f).powi(2)).sum();
+    let least = (LEVEL_ERROR_DB * std::f64::consts::LN_10 / 20.0).powi(2);
+    let variance = match n > unknowns {
+        true => (squares / (n - unknowns)).max(least),
+        false => least,
+    };
+    let error = |inverse: f64| (variance * inverse).sqrt();
+    [
+        varies[0].then(|| [b, error(inverse[0])]),
+        varies[1].then(|| [c, error(inverse[2])]),
+    ]
+}
+
+/// Returns the exponent of frequencies over the speed with its standard error, if the spectra tell it.
+fn frequency_exponent(
+    spectra: &[TextureSpectrum],
+    speeds: &[f64],
+    assumed: f64,
+) -> Option<[f64; 2]> {
+    let curves: Vec<Curve> = spectra.iter().map(Curve::new).collect();
+    let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
+    let octaves: Vec<f64> = speeds
+        .iter()
+        .map(|speed| (speed - mean) / std::f64::consts::LN_2)
+        .collect();
+    let differ = |a: f64| difference(&curves, &octaves, a);
+    let all: Vec<(f64, Difference)> = TRIED
+        .map(|hundredths| f64::from(hundredths) / 100.0)
+        .filter_map(|a| Some((a, differ(a)?)))
+        .collect();
+    let (best, least) = all
+        .iter()
+        .min_by(|x, y| x.1.mean_square.total_cmp(&y.1.mean_square))?;
+    let inside = *best > all.first()?.0 && *best < all.last()?.0;
+    if !inside || least.mean_square > MOST_LEFT * differ(assumed)?.mean_square {
+        return None;
+    }
+    // The curvature over a tenth on both sides.
+    let step = 0.1;
+    let around = differ(best - step)?.mean_square + differ(best + step)?.mean_square;
+    let curvature = (around - 2.0 * least.mean_square) / (step * step);
+    let error = (2.0 * least.mean_square / (least.count * curvature)).sqrt();
+    error.is_finite().then_some([*best, error])
+}
+
+/// A spectrum's logarithmic power over octaves, without its level.
+struct Curve {
+    low: f64,
+    values: Vec<f64>,
+}
+
+impl Curve {
+    fn new(spectrum: &TextureSpectrum) -> Self {
+        let band = spectrum.band;
+        let [low, high] = [band.low_hz, band.high_hz].map(libm::log2);
+        let grid = band.grid_hz();
+        let count = ((high - low) * POINTS) as usize + 1;
+        let value = |i: usize| {
+            let middle = low + i as f64 / POINTS;
+            let [from, to] = [middle - HALF_WIDTH, middle + HALF_WIDTH].map(libm::exp2);
+            let near = grid.partition_point(|f| *f < from)..grid.partition_point(|f| *f < to);
+            let near = match near.is_empty() {
+                true => near.start.min(grid.len() - 1)..near.start.min(grid.len() - 1) + 1,
+                false => near,
+            };
+            let power: f64 = spectrum.magnitude[near.clone()].iter().map(|m| m * m).sum();
+            libm::log(power / near.len() as f64)
+        };
+        Self {
+            low,
+            values: (0..count).map(value).collect(),
+        }
+    }
+
+    fn high(&self) -> f64 {
+        self.low + (self.values.len() - 1) as f64 / POINTS
+    }
+
+    /// Linear interpolation at an octave inside the curve.
+    fn at(&self, octave: f64) -> f64 {
+        let place = ((octave - self.low) * POINTS).max(0.0);
+        let i = (place as usize).min(self.values.len().saturating_sub(2));
+        let part = place - i as f64;
+        self.values[i] + part * (self.values[i + 1] - self.values[i])
+    }
+}
+
+/// How much shifted curves differ.
+struct Difference {
+    /// Mean square, in squared natural logarithms of power.
+    mean_square: f64,
+    /// Number of values that do not overlap.
+    count: f64,
+}
+
+/// Returns the difference of curves shifted by `a` times their octaves of speed, over the octaves that all have.
+fn difference(curves: &[Curve], octaves: &[f64], a: f64) -> Option<Difference> {
+    let shifted = || curves.iter().zip(octaves).map(|(curve, o)| (curve, a * o));
+    let low = shifted().map(|(c, s)| c.low + s).fold(f64::MIN, f64::max);
+    let high = shifted()
+        .map(|(c, s)| c.high() + s)
+        .fold(f64::MAX, f64::min);
+    let points = ((high - low) * POINTS).floor();
+    if points < LEAST_OCTAVES * POINTS || curves.len() < 2 {
+        return None;
+    }
+    let rows: Vec<Vec<f64>> = shifted()
+        .map(|(curve, shift)| {
+            let value = |i: usize| curve.at(low + i as f64 / POINTS - shift);
+            let row: Vec<f64> = (0..points as usize).map(value).collect();
+            let mean = row.iter().sum::<f64>() / points;
+            row.iter().map(|x| x - mean).collect()
+        })
+        .collect();
+    let others = curves.len() as f64 - 1.0;
+    let mut squares = 0.0;
+    for i in 0..points as usize {
+        let mean = rows.iter().map(|row| row[i]).sum::<f64>() / (others + 1.0);
+        squares += rows.iter().map(|row| (row[i] - mean).powi(2)).sum::<f64>();
+    }
+    let mean_square = squares / (others * points);
+    mean_square.is_finite().then_some(Difference {
+        mean_square,
+        count: others * (points / POINTS) / (2.0 * HALF_WIDTH),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A level that rises with the speed to the power of 0.6, and with the force to that of 0.9.
+    #[test]
+    fn exponents_of_levels_are_found_with_their_errors() {
+        let motions = [(20.0, 0.3), (40.0, 0.6), (80.0, 0.3), (160.0, 0.9)];
+        let speeds: Vec<f64> = motions.iter().map(|m: &(f64, f64)| m.0.ln()).collect();
+        let forces: Vec<f64> = motions.iter().map(|m| m.1.ln()).collect();
+        let levels: Vec<f64> = speeds
+            .iter()
+            .zip(&forces)
+            .map(|(v, f)| 0.6 * v + 0.9 * f - 3.0)
+            .collect();
+        let [b, c] = level_exponents(&levels, [Some(&speeds), Some(&forces)]);
+        let ([b, of_b], [c, of_c]) = (b.unwrap_or_default(), c.unwrap_or_default());
+        assert!((b - 0.6).abs() < 1e-9 && (c - 0.9).abs() < 1e-9);
+        // Two decibels in a level are a fifth of three octaves of speed.
+        assert!((0.1..0.3).contains(&of_b) && of_c > of_b, "{of_b}, {of_c}");
+        // Of speed and force that change together neither is told.
+        assert_eq!(
+            level_exponents(&levels, [Some(&speeds), Some(&speeds)]),
+            [None; 2]
+        );
+    }
+}

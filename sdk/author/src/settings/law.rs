@@ -1,0 +1,109 @@
+//! Exponents of a law that a person gives.
+
+use std::str::FromStr;
+
+use htex_format::{Exponent, Law, MOST_EXPONENT};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Exponents that a person gives; an absent one is measured or assumed.
+///
+/// ```
+/// use htex_author::settings::GivenLaw;
+/// let law: GivenLaw = "frequency-speed=0,level-speed=0.4".parse()?;
+/// assert_eq!((law.level_speed, law.level_force), (Some(0.4), None));
+/// # Ok::<(), String>(())
+/// ```
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields, try_from = "Exponents")]
+#[schemars(with = "Exponents")]
+pub struct GivenLaw {
+    /// Exponent of frequencies over the speed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frequency_speed: Option<f64>,
+    /// Exponent of the level over the speed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub level_speed: Option<f64>,
+    /// Exponent of the level over the normal force.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub level_force: Option<f64>,
+}
+
+/// Exponents as they are read, before they are checked.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+struct Exponents {
+    /// Exponent of frequencies over the speed.
+    #[schemars(range(min = -4, max = 4))]
+    frequency_speed: Option<f64>,
+    /// Exponent of the level over the speed.
+    #[schemars(range(min = -4, max = 4))]
+    level_speed: Option<f64>,
+    /// Exponent of the level over the normal force.
+    #[schemars(range(min = -4, max = 4))]
+    level_force: Option<f64>,
+}
+
+impl TryFrom<Exponents> for GivenLaw {
+    type Error = String;
+
+    fn try_from(read: Exponents) -> Result<Self, String> {
+        let law = Self {
+            frequency_speed: read.frequency_speed,
+            level_speed: read.level_speed,
+            level_force: read.level_force,
+        };
+        law.check()
+    }
+}
+
+impl GivenLaw {
+    /// Returns a law with the given exponents in place of its own.
+    #[must_use]
+    pub fn over(&self, law: Law) -> Law {
+        let given = |given: Option<f64>, own: Exponent| given.map_or(own, Exponent::given);
+        Law {
+            frequency_speed: given(self.frequency_speed, law.frequency_speed),
+            level_speed: given(self.level_speed, law.level_speed),
+            level_force: given(self.level_force, law.level_force),
+        }
+    }
+
+    fn check(self) -> Result<Self, String> {
+        let all = [self.frequency_speed, self.level_speed, self.level_force];
+        match all
+            .into_iter()
+            .flatten()
+            .find(|x| !(x.abs() <= MOST_EXPONENT))
+        {
+            Some(x) => Err(format!(
+                "{x} is not an exponent; write a number from -{MOST_EXPONENT} to {MOST_EXPONENT}"
+            )),
+            None => Ok(self),
+        }
+    }
+}
+
+impl FromStr for GivenLaw {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut law = Self::default();
+        for part in text.split(',') {
+            let form = || {
+                format!(
+                    "`{part}` is not an exponent of a law; write frequency-speed=X, level-speed=X or level-force=X"
+                )
+            };
+            let (name, value) = part.split_once('=').ok_or_else(form)?;
+            let kept = match &*name.trim().replace('_', "-") {
+                "frequency-speed" => &mut law.frequency_speed,
+                "level-speed" => &mut law.level_speed,
+                "level-force" => &mut law.level_force,
+                _ => return Err(form()),
+            };
+            *kept = Some(value.trim().parse().map_err(|_| form())?);
+        }
+        law.check()
+    }
+}

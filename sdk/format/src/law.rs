@@ -1,0 +1,272 @@
+//! The law of a texture: how its frequencies and its level follow a motion that was not recorded.
+//!
+//! From the nearest recorded motion (v0, F0) to a motion (v, F), frequencies are multiplied by `(v / v0)^a` and the level by
+//! `(v / v0)^b (F / F0)^c`. Exponents that are neither measured nor given are assumed for what slid over the surface and the
+//! quantity of the samples ([`Law::assumed`]).
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::Quantity;
+
+/// What slid over the surface.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Contact {
+    /// A bare or gloved finger, or a soft artificial fingertip.
+    Finger,
+    /// A rigid tool.
+    Tool,
+    /// Not known.
+    #[default]
+    Unknown,
+}
+
+impl Contact {
+    /// All kinds of contact.
+    pub const ALL: &[Self] = &[Self::Finger, Self::Tool, Self::Unknown];
+
+    /// Returns the name in a manifest.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Finger => "finger",
+            Self::Tool => "tool",
+            Self::Unknown => "unknown",
+        }
+    }
+
+    /// Returns the contact of a name in a manifest.
+    ///
+    /// ```
+    /// assert_eq!(htex_format::Contact::from_name("tool"), Some(htex_format::Contact::Tool));
+    /// ```
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|contact| contact.name() == name)
+    }
+
+    /// Returns whether it is not known.
+    pub fn is_unknown(&self) -> bool {
+        *self == Self::Unknown
+    }
+}
+
+#[cfg(feature = "clap")]
+impl clap::ValueEnum for Contact {
+    fn value_variants<'a>() -> &'a [Self] {
+        Self::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        Some(self.name().into())
+    }
+}
+
+/// How frequencies and level follow a motion outside the recorded ones.
+///
+/// ```
+/// use htex_format::{Contact, Law, Quantity};
+/// let law = Law::assumed(Quantity::LateralForce, Contact::Finger);
+/// assert_eq!((law.frequency_factor(2.0), law.level_factor(2.0, 0.5)), (2.0, 0.5));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Law {
+    /// Exponent a of frequencies over the speed.
+    pub frequency_speed: Exponent,
+    /// Exponent b of the level over the speed.
+    pub level_speed: Exponent,
+    /// Exponent c of the level over the normal force.
+    pub level_force: Exponent,
+}
+
+/// An exponent of a law, and where it comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Exponent {
+    /// The exponent that is played, -4 to 4.
+    #[schemars(range(min = -4, max = 4))]
+    pub exponent: f64,
+    /// Where it comes from.
+    pub source: ExponentSource,
+    /// The measurement before it was drawn to the assumed exponent by its error.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<f64>,
+    /// Standard error of the measurement, not negative.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
+    pub standard_error: Option<f64>,
+}
+
+/// Where an exponent of a law comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ExponentSource {
+    /// Recordings at several speeds or forces.
+    Measured,
+    /// A person.
+    Given,
+    /// What is usual for the quantity and the contact.
+    Assumed,
+}
+
+impl ExponentSource {
+    /// Returns the name in a manifest.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Given => "given",
+            Self::Assumed => "assumed",
+        }
+    }
+}
+
+/// Least weight of a measured exponent beside the assumed one.
+const LEAST_WEIGHT: f64 = 0.1;
+/// How much the exponents of surfaces differ, as standard deviations: frequency over speed, level over speed, level over force.
+const SPREAD: [f64; 3] = [0.5, 0.15, 0.3];
+/// Largest magnitude of an exponent.
+pub const MOST_EXPONENT: f64 = 4.0;
+
+impl Exponent {
+    /// Makes an exponent that is assumed.
+    pub const fn assumed(exponent: f64) -> Self {
+        Self::new(exponent, ExponentSource::Assumed)
+    }
+
+    /// Makes an exponent of a measurement with its standard error, drawn to the assumed one: the mean of both, weighted by
+    /// the inverse squares of the error and of `spread`, by which surfaces differ, within `bounds`. A measurement that would
+    /// have less than a tenth of the weight is not used.
+    ///
+    /// ```
+    /// use htex_format::{Exponent, ExponentSource};
+    /// let sure = Exponent::measured(0.6, 0.01, 0.75, 0.15, [0.0, 1.0]);
+    /// let unsure = Exponent::measured(3.0, 1.0, 0.75, 0.15, [0.0, 1.0]);
+    /// assert!((sure.exponent - 0.6).abs() < 0.001);
+    /// assert_eq!((unsure.exponent, unsure.source), (0.75, ExponentSource::Assumed));
+    /// ```
+    pub fn measured(
+        estimate: f64,
+        error: f64,
+        assumed: f64,
+        spread: f64,
+        bounds: [f64; 2],
+    ) -> Self {
+        let (own, others) = (spread * spread, error * error);
+        let weight = own / (own + others);
+        // Also for an error or an estimate that is not a number.
+        if !(weight >= LEAST_WEIGHT && estimate.is_finite()) {
+            return Self::assumed(assumed);
+        }
+        let drawn = weight * estimate + (1.0 - weight) * assumed;
+        Self {
+            exponent: drawn.clamp(bounds[0], bounds[1]),
+            source: ExponentSource::Measured,
+            estimate: Some(estimate),
+            standard_error: Some(error),
+        }
+    }
+
+    /// Makes an exponent that a person gives.
+    pub const fn given(exponent: f64) -> Self {
+        Self::new(exponent, ExponentSource::Given)
+    }
+
+    const fn new(exponent: f64, source: ExponentSource) -> Self {
+        Self {
+            exponent,
+            source,
+            estimate: None,
+            standard_error: None,
+        }
+    }
+
+    /// Returns whether its numbers are in range.
+    pub(crate) fn is_valid(&self) -> bool {
+        let finite = self.estimate.is_none_or(f64::is_finite);
+        let error = self
+            .standard_error
+            .is_none_or(|e| e.is_finite() && e >= 0.0);
+        self.exponent.abs() <= MOST_EXPONENT && finite && error
+    }
+}
+
+impl Law {
+    /// The law that is usual for a quantity and a contact.
+    ///
+    /// A tool: frequencies stay, as of 81 materials of the Penn Haptic Texture Toolkit (H. Culbertson, J. J. Lopez Delgado,
+    /// K. J. Kuchenbecker 2014), whose levels rise with `v^0.43 F^0.07` (medians). A bare finger: vibrations scale in time
+    /// with the speed (C. M. Greenspon, K. R. McLellan, J. D. Lieber, S. J. Bensmaia 2020; B. Delhaye, V. Hayward, P. Lefèvre,
+    /// J.-L. Thonnard 2012), so that velocity and acceleration rise with it and its square, and the friction force with the
+    /// normal force. Unknown: medians of recorded strokes of two materials, `v^0.75`, and half a power of the force.
+    pub const fn assumed(quantity: Quantity, contact: Contact) -> Self {
+        let [a, b, c] = match (contact, quantity) {
+            (Contact::Tool, _) => [0.0, 0.43, 0.07],
+            (Contact::Unknown, _) => [0.0, 0.75, 0.5],
+            (Contact::Finger, Quantity::Velocity) => [1.0, 1.0, 1.0],
+            (Contact::Finger, Quantity::Acceleration) => [1.0, 2.0, 1.0],
+            (Contact::Finger, _) => [1.0, 0.0, 1.0],
+        };
+        Self {
+            frequency_speed: Exponent::assumed(a),
+            level_speed: Exponent::assumed(b),
+            level_force: Exponent::assumed(c),
+        }
+    }
+
+    /// Returns this law for another quantity or contact: what is assumed is assumed anew, what is measured is drawn to it, and
+    /// what is given stays.
+    #[must_use]
+    pub fn reassumed(&self, quantity: Quantity, contact: Contact) -> Self {
+        let assumed = Self::assumed(quantity, contact);
+        let anew = |i: usize, exponent: Exponent, assumed: Exponent| {
+            let most = if i == 2 { 1.5 } else { 1.0 };
+            let bounds = [0.0, assumed.exponent.max(most)];
+            match (exponent.source, exponent.estimate, exponent.standard_error) {
+                (ExponentSource::Given, ..) => exponent,
+                (ExponentSource::Measured, Some(estimate), Some(error)) => {
+                    Exponent::measured(estimate, error, assumed.exponent, SPREAD[i], bounds)
+                }
+                _ => assumed,
+            }
+        };
+        Self {
+            frequency_speed: anew(0, self.frequency_speed, assumed.frequency_speed),
+            level_speed: anew(1, self.level_speed, assumed.level_speed),
+            level_force: anew(2, self.level_force, assumed.level_force),
+        }
+    }
+
+    /// Returns the exponents with their keys, in the order of the specification.
+    pub const fn exponents(&self) -> [(&'static str, Exponent); 3] {
+        [
+            ("frequency_speed", self.frequency_speed),
+            ("level_speed", self.level_speed),
+            ("level_force", self.level_force),
+        ]
+    }
+
+    /// Returns the factor of all frequencies at a speed relative to the recorded one.
+    pub fn frequency_factor(&self, speed_ratio: f64) -> f64 {
+        power(speed_ratio, self.frequency_speed.exponent)
+    }
+
+    /// Returns the factor of the level at a speed and a force relative to the recorded ones.
+    pub fn level_factor(&self, speed_ratio: f64, force_ratio: f64) -> f64 {
+        power(speed_ratio, self.level_speed.exponent)
+            * power(force_ratio, self.level_force.exponent)
+    }
+}
+
+/// `x^exponent`, exactly x for an exponent of 1, and 1 for one of 0.
+fn power(x: f64, exponent: f64) -> f64 {
+    if exponent == 0.0 || x == 1.0 {
+        1.0
+    } else if exponent == 1.0 {
+        x
+    } else {
+        libm::pow(x, exponent)
+    }
+}

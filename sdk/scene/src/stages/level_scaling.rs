@@ -1,0 +1,76 @@
+//! Scaling of the level with speed and normal force outside the recorded motions, by the law of the asset.
+
+use std::sync::Arc;
+
+use htex_dsp::glide::Glide;
+use htex_play::Motions;
+use htex_play::exploration::CEILING;
+
+use super::{Context, Entry, FOLLOWS, Need, Stage, StagePlace};
+use crate::file::Effect;
+use crate::played::PlayedSurface;
+use crate::requirements::Requirements;
+
+/// Duration of a change, seconds.
+const RAMP_S: f64 = 0.010;
+
+pub(crate) const ENTRY: Entry = Entry {
+    effect: Effect::LevelScaling,
+    name: "level_scaling",
+    place: StagePlace::Surface {
+        need,
+        build: Some(build),
+    },
+};
+
+fn need(_: &Requirements, played: &PlayedSurface) -> Need {
+    let explored = played.motions.explored();
+    let known = format!("{} mm/s and {} N", explored.speed, explored.force);
+    match played.level {
+        _ if played.follows_motion => Need::no(FOLLOWS),
+        _ if !(explored.speed.is_known() || explored.force.is_known()) => {
+            Need::no("the asset does not state the motion of its recording")
+        }
+        _ if !explored.moves_level() => {
+            Need::no("the level of the texture does not change with the motion (its law)")
+        }
+        span if !span.is_point() => Need::yes(format!(
+            "recorded are {known}; the speed is {}, and the force {}",
+            played.speed_mm_s.text("mm/s"),
+            played.force_n.text("N")
+        )),
+        span if span.is_one() => Need::no(format!("the motion is always a recorded one, {known}")),
+        _ => Need::no(format!(
+            "the motion never changes: the level is multiplied by {:.3}",
+            played.fixed_gain
+        )),
+    }
+}
+
+fn build(_: &Requirements, played: &PlayedSurface, neutral: bool) -> Box<dyn Stage> {
+    let ramp = (RAMP_S * played.rate_hz).ceil() as u32;
+    Box::new(LevelScaling {
+        motions: Some(Arc::clone(&played.motions)).filter(|_| !neutral),
+        gain: Glide::new(1.0, ramp),
+    })
+}
+
+struct LevelScaling {
+    motions: Option<Arc<Motions>>,
+    gain: Glide,
+}
+
+impl Stage for LevelScaling {
+    fn follow(&mut self, context: &Context) {
+        let Some(motions) = self.motions.as_ref().filter(|_| context.finger.slides()) else {
+            return;
+        };
+        let scaling = motions.scaling(context.finger.motion(), CEILING);
+        self.gain.set(scaling.level as f32);
+    }
+
+    fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        source(out);
+        self.gain.apply(out);
+    }
+}

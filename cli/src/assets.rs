@@ -6,7 +6,7 @@ use std::path::Path;
 use htex_author::{FeltError, GridReport, LosslessShare};
 use htex_finding::plain;
 use htex_format::{
-    AtCondition, Condition, How, Ingredient, LeftOut, Made, Measure, Quality, Quantity,
+    AtCondition, Condition, Contact, How, Ingredient, Law, LeftOut, Made, Measure, Quality, Quantity,
     Representation, StoredField,
 };
 use serde::Serialize;
@@ -39,6 +39,9 @@ pub(crate) struct AssetSummary {
     sensor: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     finger: Option<String>,
+    contact: Contact,
+    /// Stated, else assumed.
+    law: Law,
     simulated: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     made: Option<Made>,
@@ -123,6 +126,8 @@ impl AssetSummary {
             doi: manifest.doi.clone(),
             sensor: manifest.sensor.clone(),
             finger: manifest.finger.clone(),
+            contact: manifest.contact,
+            law: manifest.law(),
             simulated: manifest.provenance.simulated,
             made: manifest.provenance.made.clone(),
             quantity: manifest.quantity,
@@ -229,8 +234,23 @@ impl AssetSummary {
         let said = lines
             .into_iter()
             .filter_map(|(name, text)| Some((name, text.as_ref()?)));
-        said.map(|(name, text)| format!("{name}: {}\n", plain(text)))
-            .collect()
+        let mut said: String = said
+            .map(|(name, text)| format!("{name}: {}\n", plain(text)))
+            .collect();
+        let _ = writeln!(said, "contact: {}", self.contact.name());
+        said + &self.law_text()
+    }
+
+    /// How frequencies and level follow a motion outside the recorded ones.
+    fn law_text(&self) -> String {
+        let shown = self.law.exponents().map(|(key, exponent)| {
+            let name = key.replace('_', " over ");
+            let error = exponent.standard_error.zip(exponent.estimate);
+            let error = error.map(|(error, estimate)| format!(", {estimate:.2} ± {error:.2}"));
+            let (x, source) = (exponent.exponent, exponent.source.name());
+            format!("{name} ^{x:.2} ({source}{})", error.unwrap_or_default())
+        });
+        format!("law outside the recorded motions: {}\n", shown.join(", "))
     }
 }
 

@@ -6,7 +6,7 @@ use std::any::TypeId;
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, Args, Command};
-use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
+use htex_author::settings::{FitSettings, GivenLaw, Metadata, ReadingSettings};
 use htex_lab::response::ResponseSettings;
 use xtask::generated::file;
 
@@ -14,7 +14,7 @@ use xtask::generated::file;
 fn generated_settings_of_python_are_fresh() {
     let module = [
         "\"\"\"The settings of the command: generated from the definitions of the Rust sources by `cargo xtask generate`.\"\"\"\n\n\
-         from __future__ import annotations\n\nimport os\nfrom collections.abc import Sequence\n\
+         from __future__ import annotations\n\nimport os\nfrom collections.abc import Mapping, Sequence\n\
          from typing import Annotated, Literal, TypedDict\n"
             .to_owned(),
         // A response may be one that was measured, too.
@@ -60,6 +60,8 @@ fn python_type(flag: &Arg) -> String {
         "float".to_owned()
     } else if kind == TypeId::of::<usize>() {
         "int".to_owned()
+    } else if kind == TypeId::of::<GivenLaw>() {
+        "Mapping[str, float]".to_owned()
     } else if kind == TypeId::of::<PathBuf>() {
         "str | os.PathLike[str]".to_owned()
     } else {

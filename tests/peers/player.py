@@ -217,12 +217,57 @@ def bands(p, band, f):
 # Between conditions (section 11).
 
 
+def place(x, known, scale):
+    """Position of a value on an axis: of a group of the same values, the middle of its ends."""
+    for low, high in known:
+        if low <= x <= high:
+            return (low + high) / 2 / scale
+    below = [g for g in known if g[1] < x]
+    above = [g for g in known if g[0] > x]
+    if not below:
+        return place(above[0][0], known, scale) - (above[0][0] - x) / scale
+    if not above:
+        return place(below[-1][1], known, scale) + (x - below[-1][1]) / scale
+    a, b = below[-1][1], above[0][0]
+    from_, to = place(a, known, scale), place(b, known, scale)
+    return from_ + (x - a) / (b - a) * (to - from_)
+
+
+def value(at, x, known, scale):
+    """The value with a position that is nearest to x, none beyond the known ones."""
+    middles = [(low + high) / 2 / scale for low, high in known]
+    for (low, high), middle in zip(known, middles):
+        if abs(at - middle) <= 1e-9:
+            return min(max(x, low), high)
+    if at < middles[0]:
+        return known[0][0]
+    if at > middles[-1]:
+        return known[-1][1]
+    i = max(k for k, middle in enumerate(middles) if middle < at)
+    part = (at - middles[i]) / (middles[i + 1] - middles[i])
+    return known[i][1] + part * (known[i + 1][0] - known[i][1])
+
+
+def grouped(values):
+    """Ends of the groups of values that are the same within 5 %."""
+    groups = []
+    for x in sorted(values):
+        if groups and x - groups[-1][0] <= 0.05 * x:
+            groups[-1] = (groups[-1][0], x)
+        else:
+            groups.append((x, x))
+    return groups
+
+
 def weights_at(conditions, motion):
-    """Pairs of condition and weight."""
+    """Pairs of condition and weight, and the nearest known motion."""
     points = np.array([[c.get("speed_mm_s", 0.0), c.get("force_n", 0.0)] for c in conditions])
     scale = np.abs(points).max(axis=0)
     scale[scale == 0] = 1
-    points, q = points / scale, np.array(motion) / scale
+    axes = [grouped(points[:, axis]) for axis in (0, 1)]
+    placed = lambda point: [place(point[axis], axes[axis], scale[axis]) for axis in (0, 1)]
+    nearest = lambda at: [value(at[axis], motion[axis], axes[axis], scale[axis]) for axis in (0, 1)]
+    points, q = np.array([placed(point) for point in points]), np.array(placed(motion))
     edges = [(0, 0)]
     if len(points) > 2:
         mesh = spatial.Delaunay(points)
@@ -231,18 +276,45 @@ def weights_at(conditions, motion):
             w = np.linalg.solve(np.column_stack([b - a, c - a]), q - a)
             w = np.array([1 - w.sum(), *w])
             if (w >= -1e-12).all():
-                return [(i, x) for i, x in zip(corners, w) if x > 1e-12]
+                return [(i, x) for i, x in zip(corners, w) if x > 1e-12], list(motion)
         edges = mesh.convex_hull
     elif len(points) == 2:
         edges = [(0, 1)]
-    best = (np.inf, None)
+    best = (np.inf, None, None)
     for i, j in edges:
         along = points[j] - points[i]
         t = np.clip(np.dot(q - points[i], along) / max(np.dot(along, along), 1e-300), 0, 1)
-        away = np.linalg.norm(points[i] + t * along - q)
+        foot = points[i] + t * along
+        away = np.linalg.norm(foot - q)
         if away < best[0]:
-            best = (away, [(i, 1 - t), (j, t)])
-    return [(i, w) for i, w in best[1] if w > 0]
+            best = (away, [(i, 1 - t), (j, t)], foot)
+    return [(i, w) for i, w in best[1] if w > 0], nearest(best[2])
+
+
+# The law outside the conditions (sections 2 and 11).
+
+ASSUMED = {"tool": (0, 0.43, 0.07), "unknown": (0, 0.75, 0.5)}
+OF_A_FINGER = {"velocity": (1, 1, 1), "acceleration": (1, 2, 1)}
+
+
+def exponents(manifest):
+    """The exponents a, b and c that are stated, else assumed."""
+    if "law" in manifest:
+        keys = ("frequency_speed", "level_speed", "level_force")
+        return [manifest["law"][key]["exponent"] for key in keys]
+    finger = OF_A_FINGER.get(manifest["quantity"], (1, 0, 1))
+    return ASSUMED.get(manifest.get("contact", "unknown"), finger)
+
+
+def factors(manifest, conditions, motion, nearest):
+    """Factors of frequencies and of the level."""
+    ratios = []
+    for key, asked, known in zip(("speed_mm_s", "force_n"), motion, nearest):
+        stated = all(key in c for c in conditions) and any(c[key] > 0 for c in conditions)
+        ratios.append(asked / known if stated and known > 0 else 1.0)
+    (a, b, c), (speed, force) = exponents(manifest), ratios
+    speed = min(max(speed, 1 / 16), 8)
+    return min(max(speed**a, 1 / 16), 8), speed**b * force**c
 
 
 def linear(sets, weights):
@@ -342,8 +414,12 @@ def check(path, findings):
         sets = read_block(representation, blocks[case["model"]])
         at = representation["at"]
         conditions = [manifest["conditions"][a["condition"]] for a in at]
-        mixed = weights_at(conditions, (case["speed_mm_s"], case["force_n"]))
-        level = sum(w * at[i]["level_rms"] for i, w in mixed)
+        motion = (case["speed_mm_s"], case["force_n"])
+        mixed, nearest = weights_at(conditions, motion)
+        ratio, gain = factors(manifest, conditions, motion, nearest)
+        level = np.exp(sum(w * np.log(at[i]["level_rms"]) for i, w in mixed))
+        most = 4 * max(a["level_rms"] for a in at)
+        level = max(level, min(level * gain, most)) if gain > 1 else level * gain
         magnitude, mix = MODELS[case["model"]]
         chosen = [sets[i] for i, _ in mixed]
         parameters = chosen[0] if len(chosen) == 1 else mix(chosen, [w for _, w in mixed])
@@ -352,7 +428,10 @@ def check(path, findings):
             # The order in which lines of several sets stand is not told.
             differ(f"{what}, parameters", flat(representation, parameters), case["parameters"], findings)
         differ(f"{what}, level", level, case["level_rms"], findings)
-        m = level * magnitude(parameters, band, frequency)
+        differ(f"{what}, factor", ratio, case["frequency_factor"], findings)
+        m = level * magnitude(parameters, band, frequency / ratio)
+        if case["model"] != "org.htex.speak":
+            m = m / np.sqrt(ratio)
         rounding = ROUNDING.get(case["model"], 0.0)
         off = differ(f"{what}, magnitude", m, case["magnitude"], findings, rounding)
         worst[case["model"]] = max(worst.get(case["model"], 0.0), off)

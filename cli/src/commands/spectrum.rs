@@ -14,7 +14,7 @@ use crate::scenes::USUAL;
 /// Show the spectrum of one representation of an asset, 20 to 1000 Hz in steps of 5 Hz.
 ///
 /// Magnitudes are in the measure of `htex process`: what a long recording of the voice reads when
-/// segments are averaged by power.
+/// segments are averaged by power. Outside the recorded speeds and forces they follow the law of the asset, as a voice does.
 #[derive(Args)]
 pub(crate) struct Spectrum {
     /// The asset
@@ -26,6 +26,10 @@ pub(crate) struct Spectrum {
 
     #[command(flatten)]
     player: PlayerArgs,
+
+    /// Show the nearest recorded spectrum, without the law of the asset
+    #[arg(long)]
+    unscaled: bool,
 
     /// Print JSON instead of CSV
     #[arg(long)]
@@ -81,14 +85,21 @@ impl Spectrum {
         let asset = self.player.open(&self.asset)?;
         let grid = htex::Band::TACTILE.grid_hz();
         let motion = self.choice.motion(&asset);
-        let magnitude = asset
-            .magnitude(self.choice.model.as_deref(), motion, &grid)
-            .of(&self.asset)?;
-        let beyond = self.choice.beyond(&asset, htex::Effects::default());
+        let model = self.choice.model.as_deref();
+        let (magnitude, effects) = match self.unscaled {
+            true => (
+                asset.recorded_magnitude(model, motion, &grid),
+                htex::Effects::NONE,
+            ),
+            false => (
+                asset.magnitude(model, motion, &grid),
+                htex::Effects::default(),
+            ),
+        };
+        let magnitude = magnitude.of(&self.asset)?;
+        let beyond = self.choice.beyond(&asset, effects);
         if let Some(said) = beyond.of(&self.asset)? {
-            warn(&[format!(
-                "{said}; the spectrum is the one recorded, and a voice plays it so"
-            )]);
+            warn(&[said]);
         }
         let quantity = asset.quantity();
         if self.json {

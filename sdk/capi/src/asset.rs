@@ -211,8 +211,9 @@ pub unsafe extern "C" fn htex_asset_representation_model(
     })
 }
 
-/// [any thread; may load a model] Magnitudes of the texture spectrum at frequencies in Hz, in the asset's unit. `model` may be NULL (the
-/// representation of least error), and so may `at` (its first condition); between conditions it is interpolated.
+/// [any thread; may load a model] Magnitudes that a recording of the voice reads at frequencies in Hz, in the asset's unit. `model` may be
+/// NULL (the representation of least error), and so may `at` (its first condition). Between conditions it is interpolated, outside them
+/// it follows the law of the asset, and where the finger does not slide it is 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_magnitude(
     asset: htex_asset,
@@ -236,7 +237,7 @@ pub unsafe extern "C" fn htex_asset_magnitude(
     })
 }
 
-/// [any thread; may load a model] Level of a representation, RMS in the asset's unit. `model` and `at` as for htex_asset_magnitude.
+/// [any thread; may load a model] Level of the voice of a representation, RMS in the asset's unit. `model` and `at` as for htex_asset_magnitude.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_level_rms(
     asset: htex_asset,
@@ -248,7 +249,7 @@ pub unsafe extern "C" fn htex_asset_level_rms(
         let asset = ASSETS.shared(asset.id)?;
         // SAFETY: the pointers are the caller's.
         let (model, at) = unsafe { (text(model)?, motion(at)?) };
-        let (_, level_rms) = asset.parameters(model, at)?;
+        let level_rms = asset.level_rms(model, at)?;
         // SAFETY: the place is the caller's.
         *unsafe { place(out) }? = level_rms;
         Ok(())

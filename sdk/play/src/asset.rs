@@ -9,6 +9,7 @@ use std::sync::{Arc, OnceLock};
 use htex_format::{Manifest, Measure, Quantity, Representation};
 use htex_host::{Band, HostError, LoadedModel, RUNS_WASM, Registry, StillSound, Synthesis};
 
+use crate::exploration::{CEILING, Scaling};
 use crate::known::{Known, Motions};
 use crate::playable::{field_order, model_of};
 use crate::{Error, Motion, SampleSource, Voice, VoiceOptions};
@@ -232,9 +233,10 @@ impl Asset {
         )
     }
 
-    /// Returns the magnitudes of a representation at a motion (else its first condition) and at frequencies in
-    /// hertz, as a texture spectrum in the asset's unit. They are those recorded or interpolated, without the effects of a
-    /// motion ([`crate::Effects`]).
+    /// Returns the magnitudes that a long recording of the voice reads at a motion (else the first condition), at frequencies
+    /// in hertz and in the asset's unit: with the law of the asset outside the recorded conditions, and 0 where the finger does
+    /// not slide. At a ratio r of frequencies a noise of magnitude m(f) reads `m(f / r) / sqrt(r)`, and a sum of sinusoids
+    /// `m(f / r)`.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -244,8 +246,69 @@ impl Asset {
         motion: Option<Motion>,
         frequency_hz: &[f64],
     ) -> Result<Vec<f64>, Error> {
+        let loaded = self.loaded_model(model)?;
+        let ratio = match self.scaling(model, motion)? {
+            None => return Ok(vec![0.0; frequency_hz.len()]),
+            Some(scaling) => scaling.frequency,
+        };
+        let level_rms = self.level_rms(model, motion)?;
+        let (parameters, _) = self.parameters(model, motion)?;
+        let recorded_hz: Vec<f64> = frequency_hz.iter().map(|f| f / ratio).collect();
+        let shape = loaded.magnitude(&parameters, self.band(), &recorded_hz)?;
+        let spread = match loaded.descriptor().is_sum_of_sines() {
+            true => 1.0,
+            false => ratio.sqrt(),
+        };
+        Ok(shape.iter().map(|m| m * level_rms / spread).collect())
+    }
+
+    /// Returns the level of a voice at a motion, else at the first condition: RMS in the asset's unit, with the law of the asset
+    /// outside the recorded conditions, and 0 where the finger does not slide.
+    ///
+    /// # Errors
+    /// As [`Self::voice`].
+    pub fn level_rms(&self, model: Option<&str>, motion: Option<Motion>) -> Result<f64, Error> {
+        let Some(scaling) = self.scaling(model, motion)? else {
+            return Ok(0.0);
+        };
+        let (_, level_rms) = self.parameters(model, motion)?;
+        Ok(level_rms * scaling.level)
+    }
+
+    /// Returns the factors by which a representation is scaled at a motion; `None` where the finger does not slide.
+    fn scaling(
+        &self,
+        model: Option<&str>,
+        motion: Option<Motion>,
+    ) -> Result<Option<Scaling>, Error> {
+        let r = self.representation(model)?;
+        let Some(motion) = motion.filter(|_| !self.follows(r)) else {
+            return Ok(Some(Scaling::NONE));
+        };
+        let motion = motion.checked()?;
+        let slides = crate::exploration::slides(motion.speed_mm_s, motion.force_n);
+        Ok(slides.then(|| self.motions_of(r).scaling(motion, CEILING)))
+    }
+
+    /// Returns whether the model of a representation follows the motion itself.
+    fn follows(&self, representation: usize) -> bool {
+        let model = self.model(representation);
+        model.is_ok_and(|model| model.follows_motion())
+    }
+
+    /// Returns the magnitudes at a motion as they were recorded, or interpolated between recordings, without the law of the asset
+    /// and also where the finger does not slide: the counterpart of [`Self::magnitude`].
+    ///
+    /// # Errors
+    /// As [`Self::voice`].
+    pub fn recorded_magnitude(
+        &self,
+        model: Option<&str>,
+        motion: Option<Motion>,
+        frequency_hz: &[f64],
+    ) -> Result<Vec<f64>, Error> {
         let (parameters, level_rms) = self.parameters(model, motion)?;
-        let model = self.model(self.representation(model)?)?;
+        let model = self.loaded_model(model)?;
         let shape = model.magnitude(&parameters, self.band(), frequency_hz)?;
         Ok(shape.iter().map(|m| m * level_rms).collect())
     }
@@ -268,7 +331,7 @@ impl Asset {
     }
 
     /// Returns parameters (the flat array) and level (RMS, in the asset's unit) of a representation at a motion, else
-    /// at its first condition.
+    /// at its first condition, as recorded or interpolated between recordings.
     ///
     /// # Errors
     /// As [`Self::voice`].

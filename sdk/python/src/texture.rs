@@ -227,6 +227,27 @@ impl Texture {
         Ok(list)
     }
 
+    /// What slid over the surface: `finger`, `tool` or `unknown`.
+    #[getter]
+    fn contact(&self) -> &'static str {
+        self.asset.manifest().contact.name()
+    }
+
+    /// How frequencies and level follow a motion outside the recorded ones: exponents by name.
+    #[getter]
+    fn law<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let law = PyDict::new(py);
+        for (name, exponent) in self.asset.manifest().law().exponents() {
+            let fields = PyDict::new(py);
+            fields.set_item("exponent", exponent.exponent)?;
+            fields.set_item("source", exponent.source.name())?;
+            fields.set_item("estimate", exponent.estimate)?;
+            fields.set_item("standard_error", exponent.standard_error)?;
+            law.set_item(name, data(py, "Exponent", &fields)?)?;
+        }
+        Ok(law)
+    }
+
     /// Ids of the models of the representations.
     #[getter]
     fn models(&self) -> Vec<&str> {
@@ -254,10 +275,7 @@ impl Texture {
     #[pyo3(signature = (model=None, at=None))]
     fn level(&self, py: Python<'_>, model: Option<&str>, at: Option<At>) -> PyResult<f64> {
         let motion = self.motion(at);
-        let (_, level) = py
-            .detach(|| self.asset.parameters(model, motion))
-            .or_raise()?;
-        Ok(level)
+        py.detach(|| self.asset.level_rms(model, motion)).or_raise()
     }
 
     /// Returns the parameters of a representation at a condition, by their names.

@@ -154,6 +154,8 @@ impl Voice {
         fields.set_item("slides", coverage.slides)?;
         fields.set_item("excess", coverage.excess())?;
         fields.set_item("description", coverage.to_string())?;
+        fields.set_item("frequency_factor", coverage.scaling.frequency)?;
+        fields.set_item("level_factor", coverage.scaling.level)?;
         fields.set_item("speed", reach(py, coverage.speed)?)?;
         fields.set_item("force", reach(py, coverage.force)?)?;
         data(py, "Coverage", &fields)
@@ -174,20 +176,10 @@ fn reach(py: Python<'_>, reach: Reach) -> PyResult<Bound<'_, PyAny>> {
         Reach::Inside => "inside",
         Reach::Unknown => "unknown",
         Reach::Followed => "followed",
-        Reach::Scaled {
-            asked,
-            recorded,
-            factor,
-        } => {
+        Reach::Outside { asked, recorded } => {
             fields.set_item("asked", asked)?;
             fields.set_item("recorded", recorded)?;
-            fields.set_item("factor", factor)?;
-            "scaled"
-        }
-        Reach::Clamped { asked, played } => {
-            fields.set_item("asked", asked)?;
-            fields.set_item("played", played)?;
-            "clamped"
+            "outside"
         }
     };
     fields.set_item("kind", kind)?;

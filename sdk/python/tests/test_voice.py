@@ -82,7 +82,11 @@ def test_coverage_tells_how_a_motion_is_played(texture: htex.Texture) -> None:
     assert recorded.speed_mm_s is not None and recorded.force_n is not None
     assert voice.coverage(recorded.speed_mm_s, recorded.force_n).inside
     faster = voice.coverage(2 * recorded.speed_mm_s, recorded.force_n)
-    assert faster.speed.kind == "scaled" and faster.speed.factor == pytest.approx(2.0, rel=1e-3)
+    assert faster.speed.kind == "outside" and faster.frequency_factor == pytest.approx(2.0, rel=1e-3)
+    assert texture.contact == "finger" and texture.law["frequency_speed"].source == "assumed"
+    # What is stated is what plays.
+    level = texture.level(at=(recorded.speed_mm_s, 2 * recorded.force_n))
+    assert level == pytest.approx(2 * texture.level(), rel=0.05) and texture.level(at=(0.0, 0.4)) == 0.0
     assert not voice.coverage(0.0, 0.4).slides
 
 

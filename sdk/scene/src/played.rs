@@ -203,7 +203,7 @@ impl PlayedSurface {
         };
         let band = asset.band();
         let grid = band.grid_hz();
-        let magnitude = asset.magnitude(Some(&self.model), self.start, &grid)?;
+        let magnitude = asset.recorded_magnitude(Some(&self.model), self.start, &grid)?;
         let sum = |gain: &dyn Fn(f64) -> f64| {
             let one = |(m, f): (&f64, &f64)| (m * gain(*f)).powi(2);
             magnitude.iter().zip(&grid).map(one).sum::<f64>()

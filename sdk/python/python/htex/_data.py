@@ -74,16 +74,26 @@ class Spectrum:
 class Reach:
     """The relation of a speed or force to the recorded ones."""
 
-    kind: Literal["inside", "unknown", "scaled", "followed", "clamped"]
-    """How it is played."""
+    kind: Literal["inside", "unknown", "followed", "outside"]
+    """Where it lies. Outside the recorded values the texture follows its law from the nearest one."""
     asked: float | None = None
     """The requested value."""
     recorded: float | None = None
-    """The recorded value that the texture is scaled from."""
-    played: float | None = None
-    """The recorded value that is played instead."""
-    factor: float | None = None
-    """Factor of all frequencies for a speed, of the level for a force."""
+    """The nearest recorded value."""
+
+
+@dataclass(frozen=True)
+class Exponent:
+    """An exponent of a texture's law, and where it comes from."""
+
+    exponent: float
+    """The exponent that is played."""
+    source: Literal["measured", "given", "assumed"]
+    """Where it comes from."""
+    estimate: float | None = None
+    """The measurement, before it was drawn to the assumed exponent by its error."""
+    standard_error: float | None = None
+    """Standard error of the measurement."""
 
 
 @dataclass(frozen=True)
@@ -98,6 +108,10 @@ class Coverage:
     """Relative distance of the motion from the one that is played."""
     description: str
     """One sentence; empty if nothing differs from the recording."""
+    frequency_factor: float
+    """Factor of all frequencies."""
+    level_factor: float
+    """Factor of the level."""
     speed: Reach
     """Speed, mm/s."""
     force: Reach
@@ -304,7 +318,7 @@ def _reopen(
     return _htex.open(data, plugins=plugins, embedded=embedded, installed=installed)
 
 
-for _class in (Condition, Spectrum, Reach, Coverage, Agreement, Processed, Fit, Tradeoff, Comparison, Response, Simulation):
+for _class in (Condition, Exponent, Spectrum, Reach, Coverage, Agreement, Processed, Fit, Tradeoff, Comparison, Response, Simulation):
     # Evaluated here: `typing.get_type_hints` would look for the names in the module that is stated below.
     _class.__annotations__ = get_type_hints(_class)
     _class.__module__ = "htex"

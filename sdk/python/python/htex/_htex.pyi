@@ -6,7 +6,7 @@ from typing import Any, Protocol, final
 import numpy as np
 import numpy.typing as npt
 
-from ._data import Condition, Coverage, LibraryEntry, Quantity, Spectrum
+from ._data import Condition, Coverage, Exponent, LibraryEntry, Quantity, Spectrum
 
 __version__: str
 __all__ = [
@@ -64,6 +64,10 @@ class Texture:
     def manifest(self) -> dict[str, Any]: ...
     @property
     def conditions(self) -> list[Condition]: ...
+    @property
+    def contact(self) -> str: ...
+    @property
+    def law(self) -> dict[str, Exponent]: ...
     @property
     def models(self) -> list[str]: ...
     def spectrum(

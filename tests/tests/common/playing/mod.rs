@@ -18,6 +18,9 @@ struct Plan {
     /// Speed, mm/s, and force, newtons.
     conditions: &'static [[f64; 2]],
     motions: &'static [[f64; 2]],
+    contact: &'static str,
+    /// Exponents of frequency over speed, level over speed and level over force, where a law is stated.
+    law: Option<[f64; 3]>,
 }
 
 const TACTILE_HZ: [f64; 2] = [20.0, 1000.0];
@@ -26,18 +29,24 @@ const TACTILE_HZ: [f64; 2] = [20.0, 1000.0];
 const PLANS: [Plan; 5] = [
     Plan {
         name: "one_condition",
+        contact: "finger",
+        law: None,
         band_hz: TACTILE_HZ,
         conditions: &[[80.0, 0.4]],
-        motions: &[[160.0, 0.8]],
+        motions: &[[160.0, 0.8], [7.0, 0.1], [900.0, 19.0]],
     },
     Plan {
         name: "two_speeds",
+        contact: "tool",
+        law: None,
         band_hz: TACTILE_HZ,
         conditions: &[[40.0, 0.4], [160.0, 0.4]],
         motions: &[[70.0, 0.4], [100.0, 0.4], [20.0, 0.9], [400.0, 0.1]],
     },
     Plan {
         name: "three_conditions",
+        contact: "unknown",
+        law: Some([0.3, -0.6, 0.9]),
         band_hz: TACTILE_HZ,
         conditions: &[[50.0, 0.2], [150.0, 0.3], [90.0, 0.9]],
         motions: &[
@@ -50,12 +59,16 @@ const PLANS: [Plan; 5] = [
     },
     Plan {
         name: "narrow_band",
+        contact: "unknown",
+        law: None,
         band_hz: [32.5, 437.5],
         conditions: &[[50.0, 0.2], [170.0, 0.25], [60.0, 0.8], [140.0, 0.9]],
         motions: &[[100.0, 0.5], [75.0, 0.3], [130.0, 0.4], [200.0, 0.6]],
     },
     Plan {
         name: "five_conditions",
+        contact: "finger",
+        law: Some([1.0, 0.25, 0.0]),
         band_hz: TACTILE_HZ,
         conditions: &[
             [40.0, 0.2],
@@ -129,16 +142,23 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
         }));
         all.push(sets);
     }
-    let manifest = json!({
+    let mut manifest = json!({
         "htex": "1.0",
         "name": plan.name,
         "license": "CC0-1.0",
         "quantity": "lateral_force",
         "unit": "N",
         "band": {"low_hz": plan.band_hz[0], "high_hz": plan.band_hz[1]},
+        "contact": plan.contact,
         "conditions": conditions,
         "representations": representations,
     });
+    let given = |exponent: f64| json!({ "exponent": exponent, "source": "given" });
+    if let Some([a, b, c]) = plan.law {
+        manifest["law"] = json!({
+            "frequency_speed": given(a), "level_speed": given(b), "level_force": given(c),
+        });
+    }
     let asset = htex_format::Asset {
         manifest: serde_json::from_value(manifest).unwrap(),
         parameters: all,
@@ -158,13 +178,16 @@ fn numbers(plan: &Plan, asset: &Asset) -> String {
         let model = Some(&representation.model[..]);
         for motion in plan.conditions.iter().chain(plan.motions) {
             let motion = htex::Motion::new(motion[0], motion[1]);
-            let (parameters, level_rms) = asset.parameters(model, Some(motion)).unwrap();
+            let (parameters, _) = asset.parameters(model, Some(motion)).unwrap();
+            let motions = asset.motions(model).unwrap();
+            let level_rms = asset.level_rms(model, Some(motion)).unwrap();
             let magnitude = asset.magnitude(model, Some(motion), &frequency_hz);
             cases.push(json!({
                 "model": representation.model,
                 "speed_mm_s": motion.speed_mm_s,
                 "force_n": motion.force_n,
                 "parameters": parameters,
+                "frequency_factor": motions.scaling(motion, htex::exploration::CEILING).frequency,
                 "level_rms": level_rms,
                 "magnitude": rounded(&magnitude.unwrap()),
             }));

@@ -6,8 +6,8 @@ use std::path::Path;
 use htex_author::{FeltError, GridReport, LosslessShare};
 use htex_finding::plain;
 use htex_format::{
-    AtCondition, Condition, Contact, How, Ingredient, Law, LeftOut, Made, Measure, Quality, Quantity,
-    Representation, StoredField,
+    AtCondition, Condition, Contact, How, Ingredient, Law, LeftOut, Made, Measure, Quality,
+    Quantity, Representation, StoredField,
 };
 use serde::Serialize;
 use serde_json::{Map, Value};

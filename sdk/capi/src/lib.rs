@@ -34,7 +34,7 @@ pub use status::{htex_last_error, htex_status};
 pub use voice::*;
 
 /// Version of this interface, major and minor: 0x00010000 is 1.0. A minor version only adds.
-pub const HTEX_API_VERSION: u32 = 0x0001_0001;
+pub const HTEX_API_VERSION: u32 = 0x0001_0000;
 
 /// [any thread] Version of the interface of the library that is loaded, as HTEX_API_VERSION.
 #[unsafe(no_mangle)]

@@ -288,7 +288,6 @@ fn manifests() -> Vec<Seed> {
     all.extensions
         .insert("com.example.note/1".to_owned(), true.into());
     all.other.insert("later".to_owned(), 1.into());
-    all.htex = "1.2".to_owned();
     all.doi = Some("10.5281/zenodo.1234567".to_owned());
     for word in [
         &mut all.description,

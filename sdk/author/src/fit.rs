@@ -17,6 +17,7 @@ use crate::conditions::{Group, Grouped, group_takes};
 use crate::felt::FeltError;
 use crate::grid::{GridReport, group_grid, left_out};
 use crate::level::{Level, stored_level};
+use crate::recording_finding::RecordingFinding;
 use crate::request::{AssetRequest, ModelRequest};
 use crate::spectrum::SpectrumRef;
 use crate::stored::stored_fields;
@@ -39,6 +40,8 @@ pub struct FittedAsset {
     pub warnings: Vec<Notice>,
     /// Findings of the recordings below a warning: what was left out, and why.
     pub notes: Vec<Notice>,
+    /// All findings of the recordings, recording by recording.
+    pub findings: Vec<RecordingFinding>,
     /// The grid of the conditions, if one was requested.
     pub grid: Option<GridReport>,
 }
@@ -59,6 +62,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     };
     let mut warnings = std::mem::take(&mut grouped.warnings);
     let notes = std::mem::take(&mut grouped.notes);
+    let findings = std::mem::take(&mut grouped.findings);
     let mut fitted = Vec::new();
     let mut skipped = Vec::new();
     for choice in &request.models {
@@ -110,6 +114,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
         felt,
         warnings,
         notes,
+        findings,
         grid,
     })
 }

@@ -75,7 +75,7 @@ pub use reading::{Reading, read_take, validate_recording};
 pub use recording_finding::RecordingFinding;
 pub use rendered::{rendered_spectrum, spectrum_of_samples};
 pub use request::{AssetRequest, ModelRequest};
-pub use segments::{SegmentChoice, Segments, Sweep, Unread, choose_segments, segment_len};
+pub use segments::{SegmentChoice, Segments, Sweep, Unread, choose_segments, segment_len, sliding};
 pub use spectrum::{
     Averaging, SegmentSpectra, SpectrumOptions, SpectrumRef, TextureSpectrum, segment_spectra,
 };

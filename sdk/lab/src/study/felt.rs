@@ -248,6 +248,7 @@ impl Felt {
         Ok(Some(FeltFile {
             file: format!("{participant}/{FOLDER}/{}", file.to_string_lossy()),
             blake3: hash(&written.recording)?,
+            off_target: verdict.reasons,
         }))
     }
 

@@ -293,6 +293,101 @@ fn what_fails_is_reported_and_the_others_stand() {
     );
 }
 
+/// Cuts the lateral force of a recording off at 60 % of its largest value.
+fn clip(file: &Path) {
+    let text = fs::read_to_string(file).unwrap();
+    let (head, rows): (Vec<&str>, Vec<&str>) = text
+        .lines()
+        .partition(|line| !line.starts_with(|c: char| c.is_ascii_digit()));
+    let cells: Vec<Vec<f64>> = rows
+        .iter()
+        .map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let most = cells.iter().map(|row| row[1].abs()).fold(0.0, f64::max);
+    let clipped = cells.iter().map(|row| {
+        let mut row = row.clone();
+        row[1] = row[1].clamp(-0.6 * most, 0.6 * most);
+        row.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+    });
+    let lines: Vec<String> = head
+        .iter()
+        .map(ToString::to_string)
+        .chain(clipped)
+        .collect();
+    fs::write(file, lines.join("\n")).unwrap();
+    age(file, 60);
+}
+
+/// Recordings that clip are counted by the code of their finding wherever a build is told of, and gates leave them out.
+#[test]
+fn findings_are_counted_by_code_and_denied_by_gates() {
+    let place = place();
+    for name in ["vinyl_1", "sandpaper_2"] {
+        clip(&place.path(&format!("rec/{name}.csv")));
+    }
+    let run = place.run(&["build", "library.toml", "-o", "dist"]);
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let line = "RECORDING_CLIPPED (error): 2 textures, 2 in the library: sandpaper/2, vinyl/1\n";
+    assert!(run.text().contains(line), "{}", run.text());
+    let again = build(&place, "dist", &[]);
+    let clipped = &again["findings"]["RECORDING_CLIPPED"];
+    assert_eq!(
+        *clipped,
+        serde_json::json!({
+            "severity": "error", "textures": 2, "in_library": 2, "first": ["sandpaper/2", "vinyl/1"],
+        })
+    );
+    let report = |folder: &str| -> Value {
+        let file = place.path(folder).join("build-report.json");
+        serde_json::from_slice(&fs::read(file).unwrap()).unwrap()
+    };
+    let report_of_first = report("dist");
+    assert_eq!(report_of_first["findings"], again["findings"]);
+    let own = &report_of_first["textures"][3]["asset"]["findings"];
+    assert_eq!(report_of_first["textures"][3]["name"], "sandpaper/2");
+    assert!(
+        own.to_string()
+            .contains("\"recordings\":[\"sandpaper_2.csv\"]"),
+        "{own}"
+    );
+    let page = fs::read_to_string(place.path("dist/index.html")).unwrap();
+    assert!(
+        page.contains("\"code\":\"RECORDING_CLIPPED\""),
+        "the catalogue has it"
+    );
+    // Another gate fits nothing again.
+    let gated = |gate: &str| {
+        place.write("library.toml", RECIPE.replace("min_segments = 1", gate));
+        let run = place.run(&["build", "library.toml", "-o", "dist", "--json"]);
+        let built: Value = serde_json::from_str(&run.text()).unwrap();
+        let left_out = built["left_out"].as_array().unwrap().clone();
+        assert_eq!((run.code(), &built["fitted"]), (1, &0.into()), "{built}");
+        left_out
+    };
+    let left_out = gated("deny = [\"RECORDING_CLIPPED\"]");
+    let names: Vec<&Value> = left_out.iter().map(|texture| &texture["name"]).collect();
+    assert_eq!(names, ["sandpaper/2", "vinyl/1"]);
+    let reason = left_out[0]["missed"][0]["reason"].as_str().unwrap();
+    assert!(
+        left_out[0]["missed"][0]["gate"] == "deny"
+            && reason.starts_with("RECORDING_CLIPPED (sandpaper_2.csv): "),
+        "{reason}"
+    );
+    assert_eq!(
+        report("dist")["findings"]["RECORDING_CLIPPED"]["in_library"],
+        0
+    );
+    for (gate, value) in [
+        ("max_repeatability_db", "0.001"),
+        ("max_felt_error_db", "0.001"),
+        ("max_felt_error_db", "{ sbeta = 0.001 }"),
+    ] {
+        let left_out = gated(&format!("{gate} = {value}"));
+        assert_eq!(left_out.len(), 6, "{gate}");
+        assert_eq!(left_out[0]["missed"][0]["gate"], gate);
+    }
+}
+
 /// Wrong recipes say where and what, and write nothing.
 #[test]
 fn wrong_recipes_say_where() {
@@ -329,6 +424,11 @@ fn wrong_recipes_say_where() {
             "no texture has such a name",
         ),
         ("\"sbeta\"", "\"spline\"", "spline"),
+        (
+            "min_segments = 1",
+            "deny = [\"RECORDING_CLIPED\"]",
+            "gates.deny: no recording of an asset has a finding RECORDING_CLIPED; there are RECORDING_CLOCK_GAP",
+        ),
     ];
     for (from, to, expected) in cases {
         place.write("library.toml", RECIPE.replace(from, to));

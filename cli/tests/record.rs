@@ -117,6 +117,56 @@ fn a_take_through_the_card_is_repeated_until_it_keeps_to_its_target_and_is_fitte
     assert!(info.to_string().contains("sbeta"), "{info}");
 }
 
+/// A recording that clips is kept and said to clip, in the terminal and in JSON; what a take needs is said before it.
+#[test]
+fn findings_and_what_a_take_needs_are_said_in_the_terminal() {
+    let place = Place::new();
+    let rows = volts(&place, 1.0);
+    let rows: Vec<Vec<f64>> = rows
+        .iter()
+        .map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let most = rows.iter().map(|row| row[1].abs()).fold(0.0, f64::max);
+    let clipped = rows.iter().map(|row| {
+        let mut row = row.clone();
+        row[1] = row[1].clamp(-0.6 * most, 0.6 * most);
+        row.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+    });
+    place.write("volts.csv", clipped.collect::<Vec<_>>().join("\n"));
+    let output = command(&place, &["--json"]).output().unwrap();
+    let text = error(&output);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    let needs = "take 1: 4 s; it needs: on target 50 % or more, complete sweeps 1 or more";
+    assert!(text.contains(needs), "{text}");
+    assert!(
+        text.contains("vinyl-001.csv: kept") && text.contains("\n  RECORDING_CLIPPED: "),
+        "{text}"
+    );
+    let said: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let coverage = &said["kept"]["verdict"]["coverage"];
+    assert!(coverage["on_target"].as_f64().unwrap() > 0.6, "{coverage}");
+    // With more than it can have, the take is refused.
+    let output = command(
+        &place,
+        &[
+            "--min-sweeps",
+            "9",
+            "--min-on-target",
+            "0.95",
+            "--attempts",
+            "1",
+        ],
+    )
+    .output()
+    .unwrap();
+    let text = error(&output);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(
+        text.contains("at least 95 % is asked for") && text.contains("at least 9 asked for"),
+        "{text}"
+    );
+}
+
 /// A format without names and rates is read by the JSON beside it, and a recording of another kind by the flags.
 #[test]
 fn takes_in_any_format_are_compared_without_flags() {

@@ -189,7 +189,25 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     let rejected = beside("rejected/vinyl-001.json");
     let reason = rejected["verdict"]["reasons"][0].as_str().unwrap();
     assert!(reason.starts_with("force: mean 0."), "{reason}");
-    assert!(text(&mut browser, &tab, "takes").contains(&format!("Take 1 rejected{reason}")));
+    let takes = text(&mut browser, &tab, "takes");
+    assert!(
+        takes.contains(&format!("Take 1 rejected{reason}")),
+        "{takes}"
+    );
+    // What is said of its signals is shown, too.
+    let findings = rejected["verdict"]["findings"].as_array().unwrap();
+    assert!(!findings.is_empty(), "{rejected}");
+    assert!(
+        findings
+            .iter()
+            .all(|finding| takes.contains(finding.as_str().unwrap())),
+        "{takes}"
+    );
+    let hint = text(&mut browser, &tab, "hint");
+    assert!(
+        hint.contains("The take needs: on target 50 % or more, complete sweeps 3 or more."),
+        "{hint}"
+    );
     assert_eq!(
         text(&mut browser, &tab, "attempt"),
         "attempt 2 of at most 3"

@@ -349,10 +349,27 @@ fn a_person_answers_in_a_terminal_and_goes_on_another_day() {
         .collect();
     assert_eq!(gains, [-1.0, -5.0, -4.0, -4.0]);
     assert_eq!(
-        (&kept[5]["rating"], &kept[5]["gain_db"]),
+        (&kept[6]["rating"], &kept[6]["gain_db"]),
         (&4.into(), &(-4.0).into())
     );
     assert!(kept.iter().all(|line| line.get("simulated").is_none()));
+    // The session has its date, and the device as it was set.
+    assert_eq!(kept[1]["kind"], "session");
+    assert_eq!(kept[1]["device"], kept[0]["device"]);
+    assert_eq!(
+        kept[0]["device"]["settings"]["format"], "auto",
+        "{}",
+        kept[0]
+    );
+    let date = kept[1]["date"].as_str().unwrap();
+    assert!(
+        date.len() == 20 && date.starts_with("20") && date.ends_with('Z'),
+        "{date}"
+    );
+    assert_eq!(
+        kept[0]["begun"].as_str().map(|begun| &begun[..4]),
+        Some(&date[..4])
+    );
     let (code, error) = typed(&place, "\n2\n");
     assert_eq!(code, Some(0), "{error}");
     assert!(error.contains("[2/2] All trials are done"), "{error}");
@@ -558,6 +575,35 @@ fn a_source_that_fails_ends_the_session_and_the_trial_is_repeated() {
         error.contains("source") && error.contains("format"),
         "{error}"
     );
+    // Answers with another gain of the amplifier.
+    let before = answers(&place.path("whole"));
+    assert!(
+        before["Ann.jsonl"].contains("\"amplifier_gain\":\"50\"")
+            && before["Ann.jsonl"].contains("\"limit\":150")
+    );
+    let weaker = ["--participant", "Ann", "--set", "amplifier_gain=20"];
+    let weaker = on_card(&place, "whole", &weaker).output().unwrap();
+    let error = String::from_utf8_lossy(&weaker.stderr).into_owned();
+    assert_eq!(weaker.status.code(), Some(1), "{error}");
+    assert!(
+        error.contains(
+            "the device's setting amplifier_gain was 50, and is 20. Restore what was there"
+        ),
+        "{error}"
+    );
+    assert_eq!(answers(&place.path("whole")), before);
+    // A device that runs dry in every attempt.
+    let dry = on_card(&place, "dry", &ann)
+        .env("NIDAQMX_SIM_FAULT", "DAQmxWriteAnalogF64:3:error=-200290")
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&dry.stderr).into_owned();
+    assert_eq!(dry.status.code(), Some(1), "{error}");
+    assert!(
+        error.contains("the device ran dry, and gain-vinyl is played again")
+            && error.contains("the device ran dry in 3 attempts of the same trial"),
+        "{error}"
+    );
     let export = [
         "study",
         "export",
@@ -616,9 +662,10 @@ fn a_person_is_recorded_from_the_beginning_of_each_trial() {
         ("gain = { method = 'adjustment' }", ""),
     ]);
     let rows = |seconds: usize| {
-        let row = |i: usize| format!("{},{}\n", i as f64 / 1000.0, (i % 97) as f64 / 100.0);
-        let rows: String = (0..1000 * seconds).map(row).collect();
-        format!("time_s,lateral_N\n{rows}")
+        // 0.6 N, where the study has 0.4 N.
+        let row = |i: usize| format!("{},{},0.6\n", i as f64 / 2000.0, (i % 97) as f64 / 100.0);
+        let rows: String = (0..2000 * seconds).map(row).collect();
+        format!("time_s,lateral_N,normal_N\n{rows}")
     };
     place.write("felt.csv", rows(60));
     let run = |input: &str, source: &str| {
@@ -652,7 +699,10 @@ fn a_person_is_recorded_from_the_beginning_of_each_trial() {
         .collect();
     assert_eq!(lines[0]["source"]["name"], "file:felt.csv");
     assert_eq!(lines[0]["source"]["signals"][0][0], "lateral");
-    for line in &lines[1..] {
+    let answered = lines.iter().filter(|line| line["kind"] == "answer");
+    let answered: Vec<_> = answered.collect();
+    assert_eq!(answered.len(), 2);
+    for line in answered {
         let file = line["felt"]["file"].as_str().unwrap();
         let bytes = fs::read(place.path("answers").join(file)).unwrap();
         assert_eq!(
@@ -661,7 +711,7 @@ fn a_person_is_recorded_from_the_beginning_of_each_trial() {
         );
         assert_eq!(
             String::from_utf8(bytes).unwrap().lines().count(),
-            1 + 500,
+            1 + 1000,
             "{file}"
         );
         let beside = fs::read(place.path("answers").join(file).with_extension("json")).unwrap();
@@ -669,6 +719,72 @@ fn a_person_is_recorded_from_the_beginning_of_each_trial() {
         assert_eq!(beside["trial"]["speed_mm_s"], 80.0);
         assert_eq!(beside["trial"]["texture"], line["texture"]);
     }
+    // Each trial was off its target, which is said at once; its rating and its spectrum are exported all the same.
+    assert!(
+        error.contains("note: trial-0001 was off its target: force: mean 0.6000"),
+        "{error}"
+    );
+    let spectra = |more: &[&str]| {
+        let export = [
+            "study",
+            "export",
+            "answers",
+            "-o",
+            "r.csv",
+            "--spectra",
+            "s.csv",
+            "--json",
+        ];
+        let run = place.run(&[&export[..], &["--recorded", "vinyl=felt.csv"], more].concat());
+        assert_eq!(run.code(), 0, "{}", run.error());
+        let said: serde_json::Value = serde_json::from_str(&run.text()).unwrap();
+        let rows = |file: &str| {
+            fs::read_to_string(place.path(file))
+                .unwrap()
+                .lines()
+                .skip(1)
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        };
+        (said, rows("r.csv"), rows("s.csv"), run.error())
+    };
+    let (said, ratings, felt, warned) = spectra(&[]);
+    assert_eq!(
+        (&said["off_target"], &said["recordings"]),
+        (&2.into(), &2.into())
+    );
+    assert!(
+        ratings.len() == 2 && ratings.iter().all(|row| row.ends_with(",no,yes")),
+        "{ratings:?}"
+    );
+    assert_eq!(felt.len(), 2 + 1);
+    assert!(
+        warned.contains("Ann: 2 of 2 recorded trials were off"),
+        "{warned}"
+    );
+    let (said, ratings, felt, warned) = spectra(&["--off-target", "leave-out"]);
+    assert_eq!(
+        (&said["off_target"], &said["recordings"]),
+        (&2.into(), &0.into())
+    );
+    assert_eq!((ratings.len(), felt.len()), (2, 0));
+    assert!(
+        warned.contains("left out: there is no spectrum"),
+        "{warned}"
+    );
+    // What stops the spectra costs no rating.
+    fs::remove_file(place.path("r.csv")).unwrap();
+    let export = [
+        "study",
+        "export",
+        "answers",
+        "-o",
+        "r.csv",
+        "--spectra",
+        "s.csv",
+    ];
+    assert_eq!(place.run(&export).code(), 1);
+    assert!(place.path("r.csv").exists());
     fs::remove_dir_all(place.path("answers")).unwrap();
     place.write(
         "short.csv",

@@ -10,7 +10,7 @@ use std::fs;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-use browser::{Browser, fits_tablets, status};
+use browser::{Browser, Tab, fits_tablets, status};
 use common::Place;
 use serde_json::Value;
 
@@ -65,6 +65,12 @@ fn asked(place: &Place, study: &str, more: &[&str]) -> (Child, String) {
     (child, url)
 }
 
+/// Presses the space bar, later than what is shown takes no key.
+fn go(browser: &mut Browser, tab: &Tab) {
+    std::thread::sleep(Duration::from_millis(700));
+    browser.press(tab, " ", 0);
+}
+
 fn kept(place: &Place) -> Vec<Value> {
     let text = fs::read_to_string(place.path("answers/Ann.jsonl")).unwrap_or_default();
     let whole = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
@@ -102,7 +108,7 @@ fn one_press_is_one_answer_in_one_tab() {
     let tab = browser.open(&url);
     browser.shows(&tab, "A trial for practice");
     fits_tablets(&mut browser, &tab, "practice");
-    browser.press(&tab, " ", 0);
+    go(&mut browser, &tab);
     browser.shows(&tab, "How similar");
     fits_tablets(&mut browser, &tab, "question");
     std::thread::sleep(Duration::from_millis(400));
@@ -130,7 +136,7 @@ fn one_press_is_one_answer_in_one_tab() {
     wait_for(&place, &[3, 6]);
     // The gain is matched on the pad from the maximum down.
     browser.shows(&tab, "You will match its strength");
-    browser.press(&tab, " ", 0);
+    go(&mut browser, &tab);
     browser.shows(&tab, "it matches");
     fits_tablets(&mut browser, &tab, "descending-pad");
     browser.slide(&tab);
@@ -167,7 +173,7 @@ fn one_press_is_one_answer_in_one_tab() {
     browser.close(&tab);
     browser.shows(&second, "Begin");
     for trial in 0..2 {
-        browser.press(&second, " ", 0);
+        go(&mut browser, &second);
         browser.shows(&second, "How similar");
         std::thread::sleep(Duration::from_millis(400));
         browser.press(&second, "5", 0);
@@ -177,7 +183,12 @@ fn one_press_is_one_answer_in_one_tab() {
         if trial == 0 {
             browser.shows(&second, "Rest");
             fits_tablets(&mut browser, &second, "rest-over");
+            // A double press ends the rest, and begins no trial.
+            go(&mut browser, &second);
+            std::thread::sleep(Duration::from_millis(200));
             browser.press(&second, " ", 0);
+            browser.shows(&second, "Begin");
+            std::thread::sleep(Duration::from_millis(500));
             browser.shows(&second, "Begin");
         }
     }
@@ -237,7 +248,7 @@ fn matched(method: &str, buttons: &[&str], keys: &[(&str, Option<f64>)]) {
     let tab = browser.open(&url);
     browser.shows(&tab, "You will match its strength");
     fits_tablets(&mut browser, &tab, "ready");
-    browser.press(&tab, " ", 0);
+    go(&mut browser, &tab);
     browser.shows(&tab, "Compare it");
     fits_tablets(&mut browser, &tab, method);
     let shown = "[...document.querySelectorAll('button')].map((b) => b.dataset.key)";
@@ -270,7 +281,7 @@ fn matched(method: &str, buttons: &[&str], keys: &[(&str, Option<f64>)]) {
         .into_iter()
         .rfind(|line| line["kind"] == "gain");
     assert_eq!(found.unwrap()["found"], true);
-    browser.press(&tab, " ", 0);
+    go(&mut browser, &tab);
     browser.shows(&tab, "Feel it");
     fits_tablets(&mut browser, &tab, "playing");
     browser.shows(&tab, "How similar");
@@ -346,7 +357,7 @@ fn masking_noise_has_its_level_and_its_times() {
         heard = [0, 1].map((ear) => { const made = new AnalyserNode(this.context, { fftSize: 32768 }); connect.call(split, made, ear); return made; }); } \
         return connect.call(this, to, ...rest); }; true";
     assert_eq!(browser.value(&tab, listen), true);
-    browser.press(&tab, " ", 0);
+    go(&mut browser, &tab);
     browser.shows(&tab, "Compare it");
     // Level, decibels relative to full scale, and bands of an octave above the first, decibels relative to the mean power of a bin.
     let measure = "(async () => { for (let i = 0; i < 100 && audio.state !== 'running'; i++) await new Promise((r) => setTimeout(r, 50)); \
@@ -377,7 +388,7 @@ fn masking_noise_has_its_level_and_its_times() {
         "suspended",
         "between trials"
     );
-    browser.press(&tab, " ", 0);
+    go(&mut browser, &tab);
     browser.shows(&tab, "Feel it");
     let running = stopped.replace("suspended", "running");
     assert_eq!(browser.promised(&tab, &running), "running", "in a trial");
@@ -390,9 +401,9 @@ fn masking_noise_has_its_level_and_its_times() {
     std::thread::sleep(Duration::from_millis(400));
     browser.press(&tab, "4", 0);
     browser.shows(&tab, "Go on");
-    browser.press(&tab, " ", 0);
+    go(&mut browser, &tab);
     browser.shows(&tab, "Begin");
-    browser.press(&tab, " ", 0);
+    go(&mut browser, &tab);
     browser.shows(&tab, "Feel it");
     assert_eq!(browser.promised(&tab, &running), "running");
     child.kill().unwrap();
@@ -443,5 +454,9 @@ fn other_pages_and_programs_cannot_answer() {
     assert_eq!(post(&"x".repeat(100_000)), "409");
     child.kill().unwrap();
     child.wait().unwrap();
-    assert_eq!(kept(&place).len(), 1, "there is a header and no answer");
+    assert_eq!(
+        kept(&place).len(),
+        2,
+        "there are a header, a session and no answer"
+    );
 }

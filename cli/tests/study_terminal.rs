@@ -115,6 +115,46 @@ fn place() -> Place {
     place
 }
 
+/// Enter and the space bar, of which the second one comes when the next trial waits: the rest ends, and no trial begins.
+#[test]
+fn a_double_press_at_a_rest_begins_no_trial() {
+    let place = place();
+    let rests = STUDY
+        .replace(
+            "phases = ['gain', 'testing']",
+            "phases = ['testing']\nrests = { every = 1 }",
+        )
+        .replace("gain = { method = 'adjustment' }\n", "");
+    place.write("study.toml", rests);
+    for apart_ms in [0, 150, 300, 450] {
+        let mut session = Session::start(&place);
+        session.says("Enter to begin", 1);
+        session.press(b" ");
+        session.says("How similar", 1);
+        session.press(b"4");
+        session.says("How rough", 1);
+        session.press(b"2");
+        session.says("Rest; Enter to go on", 1);
+        session.press(b"\r");
+        std::thread::sleep(Duration::from_millis(apart_ms));
+        session.keyboard.write_all(b" ").unwrap();
+        session.says("Enter to begin", 2);
+        std::thread::sleep(APART);
+        assert_eq!(
+            session.said().matches("vinyl plays").count(),
+            1,
+            "{apart_ms} ms: {}",
+            session.said()
+        );
+        // A deliberate press begins it.
+        session.press(b" ");
+        session.says("vinyl plays", 2);
+        session.press(b"q");
+        assert!(session.child.wait().unwrap().success());
+        fs::remove_dir_all(place.path("answers")).unwrap();
+    }
+}
+
 fn kept(place: &Place, key: &str) -> Vec<serde_json::Value> {
     let text = fs::read_to_string(place.path("answers/Ann.jsonl")).unwrap();
     let lines = text

@@ -30,6 +30,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "htex-author",
             "htex-files",
+            "htex-finding",
             "htex-format",
             "htex-host",
             "htex-library",

@@ -6,8 +6,11 @@ use std::time::Instant;
 
 use clap::Args;
 use htex_author::LosslessShare;
-use htex_build::{Build as Recipe, BuildOptions, Built, Destination, Job, Status, TextureReport};
-use htex_finding::plain;
+use htex_build::{
+    Build as Recipe, BuildOptions, Built, Destination, FindingShare, Job, Report, Status,
+    TextureReport,
+};
+use htex_finding::{Severity, plain};
 use htex_storage::Location;
 use serde::Serialize;
 
@@ -75,6 +78,9 @@ struct Summary<'a> {
     recording_bytes: u64,
     seconds: f64,
     lossless: &'a BTreeMap<String, LosslessShare>,
+    findings: &'a BTreeMap<String, FindingShare>,
+    /// Textures with a warning that is no finding of a recording.
+    other_warnings: usize,
     left_out: Vec<&'a TextureReport>,
 }
 
@@ -152,6 +158,8 @@ impl Build {
             recording_bytes: work.bytes,
             seconds,
             lossless: &report.lossless,
+            findings: &report.findings,
+            other_warnings: other_warnings(report),
             left_out,
         };
         if self.json {
@@ -188,7 +196,42 @@ fn fit(build: &mut Recipe, work: &Work) -> Result<(), htex_build::BuildError> {
     ended
 }
 
+/// Counts the textures with a warning that is no finding of a recording.
+fn other_warnings(report: &Report) -> usize {
+    let assets = report.textures.iter().flat_map(|texture| &texture.asset);
+    assets.filter(|asset| asset.has_other_warnings()).count()
+}
+
 impl Summary<'_> {
+    /// A line for each code of a finding that is an error or a warning, errors first.
+    fn findings(&self) -> String {
+        let mut all: Vec<(&String, &FindingShare)> = self.findings.iter().collect();
+        all.retain(|(_, share)| share.severity != Severity::Info);
+        all.sort_by_key(|(code, share)| (share.severity, *code));
+        let line = |(code, share): &(&String, &FindingShare)| {
+            let more = if share.textures > share.first.len() {
+                ", …"
+            } else {
+                ""
+            };
+            format!(
+                "{code} ({}): {} textures, {} in the library: {}{more}\n",
+                share.severity,
+                share.textures,
+                share.in_library,
+                plain(&share.first.join(", "))
+            )
+        };
+        let mut text: String = all.iter().map(line).collect();
+        if self.other_warnings > 0 {
+            text += &format!(
+                "other warnings: {} textures; build-report.json has them\n",
+                self.other_warnings
+            );
+        }
+        text
+    }
+
     fn to_text(&self, results: &Location) -> String {
         let mut text = format!(
             "{}: {} textures, {} bytes; {} fitted, {} as they were\n",
@@ -219,6 +262,7 @@ impl Summary<'_> {
                 share.within_repeatability
             );
         }
+        text += &self.findings();
         text += &format!(
             "catalogue: {}\n",
             plain(&results.inside("index.html").to_string())

@@ -98,6 +98,15 @@ impl Guarded {
         let answer = answer.and_then(|(_, body)| Ok(serde_json::from_slice(&body)?));
         match answer {
             Ok(Answer::Failed(text)) => Err(DeviceError::Told(text)),
+            Ok(Answer::Dry {
+                device,
+                frames,
+                advice,
+            }) => Err(DeviceError::Underflow {
+                device,
+                frames,
+                advice,
+            }),
             Ok(answer) => Ok(answer),
             Err(_) => {
                 *held = None;

@@ -40,7 +40,7 @@ pub fn hold(
                 return;
             }
         };
-        let said = said.unwrap_or_else(|error| Answer::Failed(error.to_string()));
+        let said = said.unwrap_or_else(Answer::of_error);
         heard = answer(&mut to, &said);
     }
     // The app has ended: what was written is played and ends at zero. If that fails, dropping the device sets it to zero.

@@ -2,6 +2,7 @@
 
 use std::io::{Read, Write};
 
+use htex_device::DeviceError;
 use serde::{Deserialize, Serialize};
 
 /// Longest message, bytes: a second at a million samples a second.
@@ -22,6 +23,30 @@ pub(crate) enum Answer {
     Done(u64),
     Status([f64; 5]),
     Failed(String),
+    /// The device ran dry: [`DeviceError::Underflow`].
+    Dry {
+        device: String,
+        frames: u64,
+        advice: String,
+    },
+}
+
+impl Answer {
+    /// The reply of an error: its message, and of a device that ran dry, which may be tried again, all that is known.
+    pub(crate) fn of_error(error: DeviceError) -> Self {
+        match error {
+            DeviceError::Underflow {
+                device,
+                frames,
+                advice,
+            } => Self::Dry {
+                device,
+                frames,
+                advice,
+            },
+            error => Self::Failed(error.to_string()),
+        }
+    }
 }
 
 /// Requests of the app, a byte each; samples follow a time in milliseconds.

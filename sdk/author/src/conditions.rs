@@ -5,6 +5,7 @@ use htex_format::{Condition, Source};
 use htex_host::FitCondition;
 
 use crate::reading::read_take;
+use crate::recording_finding::RecordingFinding;
 use crate::spectrum::SegmentSpectra;
 use crate::take::{Take, source_of};
 use crate::warnings::Warnings;
@@ -24,6 +25,7 @@ pub(crate) struct Grouped {
     pub(crate) sources: Vec<Source>,
     pub(crate) warnings: Vec<Notice>,
     pub(crate) notes: Vec<Notice>,
+    pub(crate) findings: Vec<RecordingFinding>,
 }
 
 struct Gathering {
@@ -39,11 +41,16 @@ pub(crate) fn group_takes(
 ) -> Result<Grouped, AuthorError> {
     let (mut gatherings, mut sources) = (Vec::<Gathering>::new(), Vec::new());
     let (mut warnings, mut notes) = (Warnings::default(), Warnings::default());
+    let mut findings = Vec::new();
     for take in takes {
         let reading = read_take(take, options, strict)?;
         let (condition, part) = (reading.condition, reading.part);
         warnings.add(&take.recording.source, reading.warnings);
         notes.add(&take.recording.source, reading.notes);
+        findings.extend(RecordingFinding::all(
+            &take.recording.source,
+            reading.findings,
+        ));
         sources.push(source_of(take, part.spectra.len()));
         match gatherings.iter_mut().find(|g| same(g.condition, condition)) {
             Some(gathering) => gathering.parts.push(part),
@@ -91,6 +98,7 @@ pub(crate) fn group_takes(
         sources,
         warnings: warnings.into_notices(),
         notes: notes.into_notices(),
+        findings,
     })
 }
 

@@ -18,6 +18,7 @@ use crate::felt::FeltError;
 use crate::grid::{GridReport, group_grid, left_out};
 use crate::law::law;
 use crate::level::{Level, stored_level};
+use crate::recording_finding::RecordingFinding;
 use crate::request::{AssetRequest, ModelRequest};
 use crate::spectrum::SpectrumRef;
 use crate::stored::stored_fields;
@@ -40,6 +41,8 @@ pub struct FittedAsset {
     pub warnings: Vec<Notice>,
     /// Findings of the recordings below a warning: what was left out, and why.
     pub notes: Vec<Notice>,
+    /// All findings of the recordings, recording by recording.
+    pub findings: Vec<RecordingFinding>,
     /// The grid of the conditions, if one was requested.
     pub grid: Option<GridReport>,
 }
@@ -60,6 +63,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     };
     let mut warnings = std::mem::take(&mut grouped.warnings);
     let notes = std::mem::take(&mut grouped.notes);
+    let findings = std::mem::take(&mut grouped.findings);
     let mut fitted = Vec::new();
     let mut skipped = Vec::new();
     for choice in &request.models {
@@ -120,6 +124,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
         felt,
         warnings,
         notes,
+        findings,
         grid,
     })
 }

@@ -49,6 +49,7 @@ mod law;
 mod level;
 mod metrics;
 mod reading;
+mod recording_finding;
 mod rendered;
 mod request;
 mod segments;
@@ -72,9 +73,10 @@ pub use htex_recording::{Recording, SetupResponse, velocity};
 pub use level::{Level, stored_level};
 pub use metrics::{Agreement, agreement};
 pub use reading::{Reading, read_take, validate_recording};
+pub use recording_finding::RecordingFinding;
 pub use rendered::{rendered_spectrum, spectrum_of_samples};
 pub use request::{AssetRequest, ModelRequest};
-pub use segments::{SegmentChoice, Segments, Sweep, Unread, choose_segments, segment_len};
+pub use segments::{SegmentChoice, Segments, Sweep, Unread, choose_segments, segment_len, sliding};
 pub use spectrum::{
     Averaging, SegmentSpectra, SpectrumOptions, SpectrumRef, TextureSpectrum, segment_spectra,
 };

@@ -108,12 +108,9 @@ impl Segments {
 /// Chooses the segments of a recording. The result may be empty.
 pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments {
     let len = segment_len(recording.rate_hz);
-    let resultant = resultant(recording);
-    let samples = resultant.samples();
-    let threshold = resultant.mean(0, samples);
-    let half = (HALF_AVERAGE_S * recording.rate_hz).round() as usize;
-    let smooth = (0..samples).map(|at| resultant.mean_around(at, half));
-    let Scan { sweeps, sliding } = scan(smooth, threshold, len);
+    let friction = Friction::of(recording);
+    let samples = friction.samples();
+    let Scan { sweeps, sliding } = scan(&friction, len);
     let whole = || {
         let is_whole = |sweep: &&Sweep| sweep.start > 0 && sweep.end < samples;
         sweeps.iter().filter(is_whole)
@@ -147,8 +144,16 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
             sliding_s: sliding as f64 / recording.rate_hz,
         }),
         sweeps,
-        threshold,
+        threshold: friction.threshold,
     }
+}
+
+/// Returns for each sample whether the finger slides: the length of the signal's vector, averaged over 50 ms, is at least half of its
+/// mean over the recording.
+pub fn sliding(recording: &Recording) -> Vec<bool> {
+    let friction = Friction::of(recording);
+    let slides = |at| friction.slides(friction.smooth(at));
+    (0..friction.samples()).map(slides).collect()
 }
 
 /// Returns the samples of a segment at a rate: 4000 at 20 kHz.
@@ -171,18 +176,53 @@ fn resultant(recording: &Recording) -> Sums {
     Sums::of((0..recording.samples()).map(length))
 }
 
+/// The length of the signal's vector, and its mean, which separates sweeps.
+struct Friction {
+    resultant: Sums,
+    threshold: f64,
+    /// Half the length of the moving average, samples.
+    half: usize,
+}
+
+impl Friction {
+    fn of(recording: &Recording) -> Self {
+        let resultant = resultant(recording);
+        Self {
+            threshold: resultant.mean(0, resultant.samples()),
+            half: (HALF_AVERAGE_S * recording.rate_hz).round() as usize,
+            resultant,
+        }
+    }
+
+    fn samples(&self) -> usize {
+        self.resultant.samples()
+    }
+
+    /// Returns the average over 50 ms around a sample.
+    fn smooth(&self, at: usize) -> f64 {
+        self.resultant.mean_around(at, self.half)
+    }
+
+    /// Whether the finger slides at an average.
+    fn slides(&self, smooth: f64) -> bool {
+        smooth >= REST_LEVEL * self.threshold
+    }
+}
+
 /// The sweeps, and the number of samples in which the finger slides.
 struct Scan {
     sweeps: Vec<Sweep>,
     sliding: usize,
 }
 
-fn scan(smooth: impl Iterator<Item = f64>, threshold: f64, shortest: usize) -> Scan {
+/// `shortest` is the length of the shortest sweep, samples.
+fn scan(friction: &Friction, shortest: usize) -> Scan {
     let (mut sweeps, mut sliding) = (Vec::new(), 0);
     let mut start = None;
+    let smooth = (0..friction.samples()).map(|at| friction.smooth(at));
     for (i, r) in smooth.chain([f64::NEG_INFINITY]).enumerate() {
-        sliding += usize::from(r >= REST_LEVEL * threshold);
-        match (r > threshold, start) {
+        sliding += usize::from(friction.slides(r));
+        match (r > friction.threshold, start) {
             (true, None) => start = Some(i),
             (false, Some(from)) => {
                 start = None;

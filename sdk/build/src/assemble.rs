@@ -16,6 +16,7 @@ use crate::build::BuildOptions;
 use crate::catalogue::catalogue;
 use crate::dist::Dist;
 use crate::error::AtPlace;
+use crate::findings::shares;
 use crate::gates::missed;
 use crate::hashes::Stamp;
 use crate::job::Job;
@@ -93,6 +94,7 @@ pub(crate) fn assemble(
         program: options.program.clone(),
         library: library_report(plan, file, &packed, &textures),
         lossless: lossless(&textures),
+        findings: shares(&textures),
         textures,
     };
     let page = catalogue(&report, options.browser_package.is_some());

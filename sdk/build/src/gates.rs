@@ -2,7 +2,7 @@
 //!
 //! They are judged when the results are put together, so that changing one fits nothing again.
 
-use crate::recipe::{BandErrorGate, Gates};
+use crate::recipe::{Gates, ModelGate};
 use crate::report::{AssetReport, Missed};
 
 /// Returns the gates that an asset misses.
@@ -11,6 +11,15 @@ pub(crate) fn missed(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
     if let Some(gate) = &gates.max_band_error_db {
         missed.extend(band_errors(gate, asset));
     }
+    if let Some(gate) = &gates.max_felt_error_db {
+        missed.extend(felt_errors(gate, asset));
+    }
+    missed.extend(
+        gates
+            .max_repeatability_db
+            .and_then(|most| repeatability(most, asset)),
+    );
+    missed.extend(denied(gates, asset));
     if let Some(least) = gates.min_segments
         && asset.segments < least
     {
@@ -36,31 +45,93 @@ pub(crate) fn missed(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
     missed
 }
 
-/// The models whose error is above the gate, or that the gate names and the asset lacks.
-fn band_errors(gate: &BandErrorGate, asset: &AssetReport) -> Vec<Missed> {
-    let errors = &asset.band_error_rms_db;
-    let miss = |reason: String| Missed::new("max_band_error_db", reason);
+/// The findings of the recordings that the gate denies.
+fn denied(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
+    let codes = gates.deny.as_deref().unwrap_or_default();
+    let found = asset.findings.iter().filter(|f| codes.contains(&f.code));
+    let reason = |finding: &crate::FindingReport| {
+        format!(
+            "{} ({}): {}; record again, leave the recording out, or take the code from the gate",
+            finding.code,
+            finding.recordings.join(", "),
+            finding.message
+        )
+    };
+    found.map(|f| Missed::new("deny", reason(f))).collect()
+}
+
+/// A repeatability that is above the gate, or not known.
+fn repeatability(most: f64, asset: &AssetReport) -> Option<Missed> {
+    let reason = match asset.repeatability_rms_db {
+        None => {
+            "its repeatability is not known, since no condition has two segments; record longer"
+                .to_owned()
+        }
+        Some(found) if found <= most => return None,
+        Some(found) => format!(
+            "odd and even segments of a condition differ by {found:.2} dB (nine bands, RMS) and the gate allows {most}; record longer \
+             or more evenly, or raise the gate"
+        ),
+    };
+    Some(Missed::new("max_repeatability_db", reason))
+}
+
+/// The models whose error in nine bands is above the gate.
+fn band_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<Missed> {
+    let errors = asset.band_error_rms_db.iter();
+    let errors: Vec<(&str, f64)> = errors.map(|(id, error)| (&id[..], *error)).collect();
+    let above = |model: &str, error: f64, most: f64| {
+        format!(
+            "{model} is {error:.2} dB (nine bands, RMS) from the recording at its worst condition and the gate allows \
+             {most}; fit another model, or raise the gate"
+        )
+    };
+    by_model(gate, &errors, "max_band_error_db", &above)
+}
+
+/// The models of which more of the difference from the recording is felt than the gate allows.
+fn felt_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<Missed> {
+    let felt = asset.felt.iter();
+    let errors = felt.map(|(id, felt)| {
+        let largest = felt.largest_error_db.max(felt.total_error_db.abs());
+        (&id[..], largest)
+    });
+    let errors: Vec<(&str, f64)> = errors.collect();
+    let above = |model: &str, error: f64, most: f64| {
+        format!(
+            "of {model}, a difference of {error:.2} dB above the detection threshold is felt at its worst condition (a third-octave \
+             band, or all together) and the gate allows {most}; fit another model, or raise the gate"
+        )
+    };
+    by_model(gate, &errors, "max_felt_error_db", &above)
+}
+
+/// The models whose error is above the gate, or that the gate names and the asset lacks. `above` says what is wrong with a model, its
+/// error and the largest one that is allowed.
+fn by_model(
+    gate: &ModelGate,
+    errors: &[(&str, f64)],
+    key: &str,
+    above: &dyn Fn(&str, f64, f64) -> String,
+) -> Vec<Missed> {
     let compare = |model: &str, error: f64, most: f64| {
-        let above = error.is_nan() || error > most;
-        above.then(|| {
-            miss(format!(
-                "{model} is {error:.2} dB (nine bands, RMS) from the recording at its worst condition and the gate allows \
-                 {most}; fit another model, or raise the gate"
-            ))
-        })
+        let is_above = error.is_nan() || error > most;
+        is_above.then(|| Missed::new(key, above(model, error, most)))
     };
     match gate {
-        BandErrorGate::All(most) => {
+        ModelGate::All(most) => {
             let all = errors.iter();
             all.filter_map(|(model, error)| compare(model, *error, *most))
                 .collect()
         }
-        BandErrorGate::ByModel(by_model) => {
+        ModelGate::ByModel(by_model) => {
             let gates = by_model.iter().filter_map(|(name, most)| {
-                let found = errors.iter().find(|(id, _)| is_named(id, name));
-                match found {
+                match errors.iter().find(|(id, _)| is_named(id, name)) {
                     Some((model, error)) => compare(model, *error, *most),
-                    None => Some(miss(format!("{name} has a gate and was not fitted"))),
+                    None => Some(Missed::new(
+                        key,
+                        format!("{name} has a gate and was not fitted"),
+                    )),
                 }
             });
             gates.collect()

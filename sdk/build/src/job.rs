@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
 use crate::elsewhere::{Elsewhere, elsewhere, is_elsewhere, joined};
+use crate::findings::by_code;
 use crate::hashes::{Hashed, Hashes, Stamp, changed, hash_local};
 use crate::made::{Made, Outcome, Record};
 use crate::plan::PlannedTexture;
@@ -25,7 +26,7 @@ use crate::sound::sound;
 use crate::thumbnail::thumbnail;
 
 /// The meaning of jobs and of what is made of them. Another one makes everything again.
-const JOB: &str = "htex-job/2";
+const JOB: &str = "htex-job/3";
 
 /// What is felt of the difference from the recordings, of each model at its worst condition.
 fn felt(fitted: &FittedAsset) -> BTreeMap<String, FeltError> {
@@ -245,6 +246,7 @@ impl Job {
                     outcome: Outcome::Fitted,
                     segments: fitted.spectra.iter().map(|s| s.segments).collect(),
                     felt: felt(&fitted),
+                    findings: by_code(&fitted.findings),
                     thumbnail: fitted.spectra.first().map(thumbnail).unwrap_or_default(),
                 },
                 asset,

@@ -34,6 +34,7 @@ mod catalogue;
 mod dist;
 mod elsewhere;
 mod error;
+mod findings;
 mod gates;
 mod hashes;
 mod inputs;
@@ -51,13 +52,14 @@ mod thumbnail;
 pub use assemble::Built;
 pub use build::{Build, BuildOptions, hash_file, remember, unhashed};
 pub use error::BuildError;
+pub use findings::{FindingReport, FindingShare};
 pub use hashes::{Hashed, Stamp};
 pub use job::{Job, JobFile, JobRecording, Workbench};
 pub use made::{Made, Outcome, Record};
 pub use plan::{Plan, PlannedRecording, PlannedTexture};
 pub use publish::Destination;
 pub use recipe::{
-    At, BandErrorGate, Gates, LibraryPart, NumberOrTemplate, Override, Recipe, Settings, Textures,
+    At, Gates, LibraryPart, ModelGate, NumberOrTemplate, Override, Recipe, Settings, Textures,
 };
 pub use report::{
     AssetReport, LibraryReport, Missed, REPORT, RecordingReport, Report, Status, TextureReport,

@@ -6,6 +6,7 @@ use htex_author::FeltError;
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
+use crate::findings::FindingReport;
 use crate::thumbnail::Thumbnail;
 
 /// Longest first line, bytes.
@@ -30,6 +31,8 @@ pub struct Record {
     pub segments: Vec<usize>,
     /// What is felt of the difference from the recordings, at its worst condition, by model.
     pub felt: BTreeMap<String, FeltError>,
+    /// Findings of the recordings, by code.
+    pub findings: Vec<FindingReport>,
     /// The recorded spectrum of the first condition.
     pub thumbnail: Thumbnail,
 }
@@ -73,6 +76,7 @@ impl Made {
                 outcome,
                 segments: Vec::new(),
                 felt: BTreeMap::new(),
+                findings: Vec::new(),
                 thumbnail: Thumbnail::default(),
             },
             asset: Vec::new(),

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
 use crate::elsewhere::{Elsewhere, elsewhere, joined};
+use crate::findings::unknown_code;
 use crate::keys::check_keys;
 
 /// A recipe: recordings, and how a library is made of them.
@@ -138,7 +139,14 @@ pub enum NumberOrTemplate {
 #[serde(default, deny_unknown_fields)]
 pub struct Gates {
     /// Largest nine-band RMS error of every representation at every condition, decibels; or by model.
-    pub max_band_error_db: Option<BandErrorGate>,
+    pub max_band_error_db: Option<ModelGate>,
+    /// Largest difference from the recording that is felt of every representation at every condition, of a third-octave band or of all
+    /// together above the detection threshold, decibels; or by model. The difference threshold is 1.584 dB.
+    pub max_felt_error_db: Option<ModelGate>,
+    /// Largest difference between odd and even segments of a condition in nine bands, RMS, decibels.
+    pub max_repeatability_db: Option<f64>,
+    /// Codes of findings that recordings may not have, such as `RECORDING_CLIPPED`.
+    pub deny: Option<Vec<String>>,
     /// Fewest segments of 0.2 s at every condition.
     pub min_segments: Option<usize>,
     /// Whether recordings may have no findings that are errors or warnings: a steady motion on target, no clipping, …
@@ -149,10 +157,10 @@ pub struct Gates {
     pub max_bytes: Option<u64>,
 }
 
-/// The gate of band errors.
+/// A gate of errors of models, decibels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum BandErrorGate {
+pub enum ModelGate {
     /// Of all models.
     All(f64),
     /// Of single models, by short name or id.
@@ -163,10 +171,26 @@ impl Recipe {
     /// Reads a recipe's text.
     ///
     /// # Errors
-    /// When it is not TOML, or has other keys or values than a recipe.
+    /// When it is not TOML, or has other keys or values than a recipe, or a gate by a code that no finding has.
     pub fn parse(text: &str) -> Result<Self, BuildError> {
         check_keys(text, &toml::from_str(text)?)?;
-        Ok(toml::from_str(text)?)
+        let recipe: Self = toml::from_str(text)?;
+        recipe.check_codes()?;
+        Ok(recipe)
+    }
+
+    /// Refuses gates by codes that no finding has.
+    fn check_codes(&self) -> Result<(), BuildError> {
+        let textures = self.textures.iter().map(|textures| &textures.settings);
+        let overrides = self.overrides.iter().map(|over| &over.settings);
+        let settings = std::iter::once(&self.defaults)
+            .chain(textures)
+            .chain(overrides);
+        let mut codes = settings.flat_map(|settings| settings.gates.deny.iter().flatten());
+        match codes.find_map(|code| unknown_code(code)) {
+            None => Ok(()),
+            Some(problem) => Err(BuildError::Recipe(format!("gates.deny: {problem}"))),
+        }
     }
 
     /// Reads a recipe's file, a path or URI.
@@ -221,6 +245,9 @@ impl Gates {
     fn over(self, under: Self) -> Self {
         Self {
             max_band_error_db: self.max_band_error_db.or(under.max_band_error_db),
+            max_felt_error_db: self.max_felt_error_db.or(under.max_felt_error_db),
+            max_repeatability_db: self.max_repeatability_db.or(under.max_repeatability_db),
+            deny: self.deny.or(under.deny),
             min_segments: self.min_segments.or(under.min_segments),
             strict: self.strict.or(under.strict),
             license: self.license.or(under.license),

@@ -7,6 +7,7 @@ use htex_format::{Asset, Measure};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::findings::{FindingReport, FindingShare};
 use crate::job::Job;
 use crate::made::{Made, Outcome};
 use crate::recipe::Recipe;
@@ -27,6 +28,8 @@ pub struct Report {
     /// Of the textures of the library, by the id of a model, how many it keeps at all their conditions so that no difference is to be expected
     /// to be felt.
     pub lossless: BTreeMap<String, LosslessShare>,
+    /// By code of a finding of recordings, the textures that have it.
+    pub findings: BTreeMap<String, FindingShare>,
     /// All textures of the recipe, by name.
     pub textures: Vec<TextureReport>,
 }
@@ -134,7 +137,10 @@ pub struct AssetReport {
     /// What is felt of the difference from the recordings, of each model at its worst condition, by id.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub felt: BTreeMap<String, FeltError>,
-    /// Warnings of the fit.
+    /// Findings of its recordings, by code.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<FindingReport>,
+    /// Warnings of the fit, those of the findings among them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// The recorded spectrum of the first condition: 48 points evenly spaced in log frequency; 63 is the largest magnitude, 0 is 40 dB
@@ -204,9 +210,18 @@ impl AssetReport {
                 .reduce(f64::max),
             band_error_rms_db: errors.collect(),
             felt: made.record.felt.clone(),
+            findings: made.record.findings.clone(),
             warnings: manifest.provenance.warnings.clone(),
             spectrum: made.record.thumbnail.clone(),
         }
+    }
+}
+
+impl AssetReport {
+    /// Whether it has a warning that is no finding of a recording.
+    pub fn has_other_warnings(&self) -> bool {
+        let is_finding = |warning: &String| self.findings.iter().any(|f| warning.contains(&f.code));
+        self.warnings.iter().any(|warning| !is_finding(warning))
     }
 }
 

@@ -7,8 +7,8 @@ use std::fs;
 
 use htex_author::Exploration;
 use htex_author::recording::{ReadOptions, read_recording};
-use htex_lab::record::{Format, KnownTake, Outcome, RecordError};
-use recording::{RATE_HZ, Settings, record, sweeps};
+use htex_lab::record::{Format, Guidance, KnownTake, Outcome, RecordError, Required};
+use recording::{RATE_HZ, Settings, record, source, sweeps, take};
 
 #[test]
 fn a_take_that_leaves_its_target_is_set_aside_and_repeated() {
@@ -50,6 +50,62 @@ fn a_take_that_leaves_its_target_is_set_aside_and_repeated() {
         .parse()
         .unwrap();
     assert_eq!((recording.samples(), recording.axes[0][0]), (8_000, first));
+}
+
+/// The finger is lifted from 3.2 s of 10 s and moves on in the air: its three sweeps are on target, and the take is refused.
+#[test]
+fn a_take_in_which_the_finger_is_lifted_is_set_aside() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = take(0.4, 10.0);
+    let lifted = whole.iter().enumerate().map(|(at, row)| {
+        let cells: Vec<&str> = row.split(',').collect();
+        match at < (3.2 * RATE_HZ) as usize {
+            true => row.clone(),
+            false => format!("0,0,0,{},{}", cells[3], cells[4]),
+        }
+    });
+    let source = source(folder.path(), &[lifted.collect(), whole.clone()].concat());
+    let guidance = Guidance {
+        speed_mm_s: Some(80.0),
+        force_n: Some(0.4),
+        tolerance: 0.1,
+        stroke_mm: 80.0,
+    };
+    let required = Required {
+        on_target: Required::USUAL_ON_TARGET,
+        sweeps: Required::usual_sweeps(&guidance, 10.0),
+    };
+    assert_eq!(required.sweeps, 4);
+    let settings = Settings {
+        seconds: 10.0,
+        target: Exploration {
+            speed_mm_s: Some(80.0),
+            force_n: Some(0.4),
+        },
+        required,
+        ..Settings::default()
+    };
+    let kept = record(folder.path(), &source, &settings).unwrap();
+    assert_eq!((kept.outcome, kept.number), (Outcome::Kept, 2), "{kept:?}");
+    let coverage = kept.verdict.coverage.unwrap();
+    assert!(
+        coverage.on_target > 0.6 && coverage.sweeps >= 6,
+        "{coverage:?}"
+    );
+    let rejected = folder.path().join("rejected/take-001.json");
+    let rejected: serde_json::Value = serde_json::from_slice(&fs::read(rejected).unwrap()).unwrap();
+    let verdict = &rejected["verdict"];
+    let [share, sweeps] = [0, 1].map(|at| verdict["reasons"][at].as_str().unwrap());
+    // The sweeps themselves are on target.
+    assert_eq!(verdict["reasons"].as_array().unwrap().len(), 2, "{verdict}");
+    assert!(
+        share.starts_with("the finger slides on target in 2")
+            && share.contains("at least 50 % is asked for")
+            && share.ends_with("to 10.0 s)"),
+        "{share}"
+    );
+    assert_eq!(sweeps, "complete sweeps: 3, at least 4 asked for");
+    assert_eq!(rejected["take"]["required"]["sweeps"], 4);
 }
 
 #[test]

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use htex_finding::Findings;
 use htex_lab::study::{
-    DeviceUsed, GainKey, Header, Phase, Plan, Session, SimulatedParticipant, Step, Study,
-    StudyError, export, read_study,
+    DeviceUsed, GainKey, Header, Phase, Plan, Presented, Session, SimulatedParticipant, Step,
+    Study, StudyError, export, read_study,
 };
 use tempfile::TempDir;
 
@@ -55,9 +55,17 @@ impl Place {
     }
 
     fn header(&self, simulated: Option<u64>) -> Header {
+        self.header_with(simulated, [("amplifier_gain", "50"), ("limit_v", "150")])
+    }
+
+    fn header_with(&self, simulated: Option<u64>, settings: [(&str, &str); 2]) -> Header {
         let device = DeviceUsed {
             adapter: "file".to_owned(),
-            profile: String::new(),
+            settings: settings
+                .map(|(name, value)| (name.to_owned(), value.to_owned()))
+                .into(),
+            limit: Some(150.0),
+            ..DeviceUsed::default()
         };
         let own = &self.plan.participants[0];
         let header = Header::new(
@@ -84,7 +92,9 @@ impl Place {
 /// Does one step.
 fn act(session: &mut Session<'_>) -> bool {
     match session.step() {
-        Step::Rate(_, trial, _) => session.rate((trial.number % 7) as u8, 1, 2, None).unwrap(),
+        Step::Rate(_, trial, _) => session
+            .rate((trial.number % 7) as u8, 1, 2, Presented::default())
+            .unwrap(),
         Step::Match { matching, .. } => {
             let key = match matching.gain_db() < -2.0 {
                 true => GainKey::Accept,
@@ -168,6 +178,14 @@ fn versions_are_not_mixed() {
     let simulated = place.header(Some(1));
     let error = Session::open(&place.study, own, place.folder.path(), &simulated).unwrap_err();
     assert!(error.to_string().contains("those of a person"), "{error}");
+    let weaker = place.header_with(None, [("amplifier_gain", "20"), ("limit_v", "150")]);
+    let error = Session::open(&place.study, own, place.folder.path(), &weaker).unwrap_err();
+    assert!(
+        error.to_string().contains(
+            "the device's setting amplifier_gain was 50, and is 20. Restore what was there"
+        ),
+        "{error}"
+    );
     assert_eq!(fs::read(place.answers()).unwrap(), before);
     place.open().unwrap();
 }
@@ -244,10 +262,10 @@ fn ratings_are_exported_by_attribute() {
     assert_eq!((table.participants, table.ratings), (1, 3));
     assert_eq!(table.warnings, ["P01 is not complete: 6 of 8 ratings"]);
     let mut lines = table.csv.lines();
-    let head = "participant,texture,model,repetition,rating,attribute,hidden_reference,response_ms,gain_db,simulated";
+    let head = "participant,texture,model,repetition,rating,attribute,hidden_reference,response_ms,gain_db,simulated,off_target";
     assert_eq!(lines.next(), Some(head));
     assert!(
-        lines.next().unwrap().ends_with(",1,roughness,no,1,-3,no"),
+        lines.next().unwrap().ends_with(",1,roughness,no,1,-3,no,"),
         "{}",
         table.csv
     );

@@ -61,6 +61,7 @@ impl GuideArgs {
         if !self.page {
             return Ok(Guide::Screen(Box::new(Screen::new(
                 guidance,
+                setup.required,
                 setup.quantity,
                 rate_hz,
             ))));

@@ -9,7 +9,7 @@ use htex_author::Exploration;
 use htex_device::Source;
 use htex_finding::plain;
 use htex_lab::record::{
-    Moment, Next, Outcome, RecordError, Recorded, Session, Setup, Tare, recover,
+    Moment, Next, Outcome, RecordError, Recorded, Required, Session, Setup, Tare, recover,
 };
 use serde_json::json;
 
@@ -24,7 +24,7 @@ use crate::signals;
 
 use guide::{Guide, GuideArgs};
 
-/// Record a finger on a surface under guidance: takes that leave their target are set aside and repeated.
+/// Record a finger on a surface under guidance: takes that leave their target, or in which too little slides, are set aside and repeated.
 ///
 /// Takes are DIR/NAME-001.csv and so on, with all settings in JSON beside them and the tracker's rows in DIR/tracker; takes that left
 /// their target are in DIR/rejected, those that were cut short in DIR/incomplete. Each second is on disk before the next: a take that a
@@ -80,6 +80,16 @@ pub(crate) struct Record {
     #[arg(long, value_name = "PART", default_value_t = 0.1)]
     tolerance: f64,
 
+    /// Least part of a take in which the finger slides, at half of its target speed or more and with its target force, where there are
+    /// targets: a take with less is recorded again; 0 asks for nothing. The finger turns between sweeps
+    #[arg(long, value_name = "PART", default_value_t = Required::USUAL_ON_TARGET)]
+    min_on_target: f64,
+
+    /// Fewest complete sweeps of a take: one with fewer is recorded again; 0 asks for none [default: half of the strokes that the target
+    /// makes in a take but for the first and the last one, 4 in 10 s at 80 mm/s; without a target speed 0]
+    #[arg(long, value_name = "N")]
+    min_sweeps: Option<u32>,
+
     /// Most takes that are tried until one keeps to its target
     #[arg(long, value_name = "N", default_value_t = 10)]
     attempts: u32,
@@ -104,8 +114,11 @@ enum TareArg {
 
 impl Record {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let setup = self.setup();
+        let mut setup = self.setup();
         let guidance = self.guide.guidance(&setup)?;
+        setup.required.sweeps = self
+            .min_sweeps
+            .unwrap_or_else(|| Required::usual_sweeps(&guidance, setup.seconds));
         let recovered = recover(&self.output)?;
         for take in &recovered {
             tell!("htex: recovered {}", said(take));
@@ -167,6 +180,10 @@ impl Record {
                 force_n: self.target_force,
             },
             tolerance: self.tolerance,
+            required: Required {
+                on_target: self.min_on_target,
+                ..Required::NOTHING
+            },
             attempts: self.attempts,
             format: self.input.format.unwrap_or_default(),
             tool: tool(),
@@ -211,8 +228,15 @@ fn said(take: &Recorded) -> String {
         })
     };
     let verdict = &take.verdict;
+    let coverage = verdict.coverage.map_or(String::new(), |coverage| {
+        format!(
+            "; on target {:.0} %, complete sweeps {}",
+            100.0 * coverage.on_target,
+            coverage.sweeps
+        )
+    });
     format!(
-        "{file}: {what}{}{}; {} segments{}",
+        "{file}: {what}{}{}{coverage}; {} segments{}",
         measured("speed", "mm/s", verdict.speed_mm_s),
         measured("force", "N", verdict.force_n),
         verdict.segments,

@@ -5,7 +5,7 @@ use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
 use htex_format::Quantity;
-use htex_lab::record::{Force, Guidance, LiveSignal, LiveSpectrum, Moment, Phase};
+use htex_lab::record::{Force, Guidance, LiveSignal, LiveSpectrum, Moment, Phase, Required};
 
 use crate::output::tell;
 
@@ -23,6 +23,7 @@ const BAR_WIDTH: usize = 2;
 /// Draws on standard error if that is a terminal; elsewhere tells only what begins.
 pub(super) struct Screen {
     guidance: Guidance,
+    required: Required,
     signal: LiveSignal,
     is_terminal: bool,
     drawn: Option<Instant>,
@@ -32,9 +33,15 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    pub(super) fn new(guidance: Guidance, quantity: Quantity, rate_hz: f64) -> Self {
+    pub(super) fn new(
+        guidance: Guidance,
+        required: Required,
+        quantity: Quantity,
+        rate_hz: f64,
+    ) -> Self {
         Self {
             guidance,
+            required,
             signal: LiveSignal::new(quantity, rate_hz),
             is_terminal: std::io::stderr().is_terminal(),
             drawn: None,
@@ -49,7 +56,7 @@ impl Screen {
             self.begun = Some((moment.phase, moment.number));
             self.signal.clear();
             self.end();
-            tell!("{}", beginning(moment));
+            tell!("{}", beginning(moment, self.required));
         }
         self.signal.push(moment.texture);
         let motion_s = moment.phase.motion_s(moment.elapsed_s, moment.of_s);
@@ -78,13 +85,25 @@ impl Screen {
     }
 }
 
-fn beginning(moment: &Moment<'_>) -> String {
+fn beginning(moment: &Moment<'_>, required: Required) -> String {
     let Moment { number, of_s, .. } = *moment;
     match moment.phase {
         Phase::Lift => format!("take the finger off the surface within {of_s} s"),
         Phase::Tare => format!("tare: leave the surface alone for {of_s} s"),
-        Phase::Countdown => format!("take {number} begins in {of_s} s"),
-        Phase::Take => format!("take {number}: {of_s} s"),
+        Phase::Countdown => format!("take {number} begins in {of_s} s{}", asked(required)),
+        Phase::Take => format!("take {number}: {of_s} s{}", asked(required)),
+    }
+}
+
+/// What a take must have to be kept.
+fn asked(required: Required) -> String {
+    let Required { on_target, sweeps } = required;
+    let share = (on_target > 0.0).then(|| format!("on target {:.0} % or more", 100.0 * on_target));
+    let sweeps = (sweeps > 0).then(|| format!("complete sweeps {sweeps} or more"));
+    let all: Vec<String> = share.into_iter().chain(sweeps).collect();
+    match all.is_empty() {
+        true => String::new(),
+        false => format!("; it needs: {}", all.join(", ")),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use htex_lab::study::Clock;
+use htex_lab::study::{Clock, utc};
 
 pub(super) struct WallClock;
 
@@ -17,6 +17,10 @@ impl Clock for WallClock {
     }
 
     fn played(&mut self, _: Duration) {}
+
+    fn date(&self) -> Option<String> {
+        Some(utc(self.now_ms()))
+    }
 
     fn go_on_at(&mut self, _: u64) {}
 }
@@ -38,6 +42,10 @@ impl Clock for FastClock {
 
     fn played(&mut self, time: Duration) {
         self.now += time;
+    }
+
+    fn date(&self) -> Option<String> {
+        None
     }
 
     fn go_on_at(&mut self, ms: u64) {

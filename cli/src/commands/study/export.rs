@@ -14,8 +14,8 @@ use super::spectra::SpectraArgs;
 
 /// Write the ratings of all participants as a table, and the spectra of what they felt as another.
 ///
-/// The columns are participant, texture, model, repetition, rating, attribute, hidden_reference, response_ms, gain_db and simulated; of
-/// the spectra participant, texture, model, and a magnitude for 20, 25, …, 1000 Hz.
+/// The columns are participant, texture, model, repetition, rating, attribute, hidden_reference, response_ms, gain_db, simulated and
+/// off_target (whether speed or force left the study's by more than 10 %; empty without a recording); of the spectra participant, texture, model, and a magnitude for 20, 25, …, 1000 Hz.
 #[derive(Args)]
 pub(super) struct Export {
     /// The folder of answers that `htex study run` wrote
@@ -48,8 +48,9 @@ impl Export {
         }
         let table = export(&self.folder, self.attribute.as_deref())?;
         warn(&table.warnings);
-        let spectra = self.spectra.table(&self.folder)?;
+        // No problem of a recording costs the ratings.
         write_file(&self.output, table.csv.as_bytes())?;
+        let spectra = self.spectra.table(&self.folder)?;
         if let Some((file, spectra)) = &spectra {
             warn(&spectra.warnings);
             write_file(file, spectra.csv.as_bytes())?;
@@ -59,7 +60,8 @@ impl Export {
             print_json(&json!({
                 "participants": participants,
                 "ratings": ratings,
-                "incomplete": table.warnings,
+                "incomplete": table.incomplete,
+                "off_target": table.off_target,
                 "recordings": spectra.as_ref().map(|(_, spectra)| spectra.recordings),
             }))?;
         } else {

@@ -12,8 +12,6 @@ use rustix::termios::{
 
 /// A key that comes again within this time is held.
 const HELD: Duration = Duration::from_millis(700);
-/// A question takes no answer for this long: the press may have been meant for what was shown before.
-const GUARD: Duration = Duration::from_millis(300);
 
 /// A key of a keyboard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,7 +101,7 @@ impl Keys {
             let before = self.last;
             let press = self.pressed()?;
             let is_held = before.is_some_and(|(own, at)| own == press && at.elapsed() < HELD);
-            let is_early = matches!(view, View::Question { .. }) && self.shown.elapsed() < GUARD;
+            let is_early = self.shown.elapsed() < view.guard();
             if press == Press::End || !(is_held || is_early) {
                 return Some(press);
             }

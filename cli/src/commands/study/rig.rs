@@ -4,7 +4,8 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-use htex_device::SettingKind;
+use htex_device::{DeviceError, SettingKind};
+use htex_finding::plain;
 use htex_format::Measure;
 use htex_lab::study::{
     DeviceUsed, Felt, Played, Rig, Stimulus, Study, StudyError, scene_of, set_gain,
@@ -15,6 +16,7 @@ use htex_scene::{DeviceOverride, Finger, LoadedScene, Renderer, output_name};
 use crate::failure::Failure;
 use crate::motions::{Motions, Moved};
 use crate::of_file::ResultOfFile;
+use crate::output::tell;
 use crate::playing::Output;
 use crate::scenes::{Loader, Ready, costs};
 use crate::signals::interrupted;
@@ -64,9 +66,22 @@ impl StudyRig<'_> {
     pub(super) fn device_used(&self) -> Result<DeviceUsed, Failure> {
         let (first, model) = (&self.study.textures[0], &self.study.models[0]);
         let ready = self.load(&first.name(), model, "device")?;
+        let descriptor = ready.device.descriptor();
+        // A file's name is another one in each trial.
+        let is_file = |name: &str| {
+            let mut settings = descriptor.settings.iter();
+            settings.any(|setting| setting.name == name && setting.kind == SettingKind::Path)
+        };
+        let settings = ready.settings().iter();
+        let settings = settings.filter(|(name, _)| !is_file(name));
         Ok(DeviceUsed {
-            adapter: ready.device.descriptor().id.clone(),
+            adapter: descriptor.id.clone(),
             profile: self.device.profile.clone().unwrap_or_default(),
+            settings: settings
+                .map(|(name, value)| (name.to_owned(), value.to_owned()))
+                .collect(),
+            limit: ready.capabilities.limit,
+            quantity_gain: ready.scene.scene.device.quantity_gain,
         })
     }
 
@@ -112,54 +127,21 @@ impl Rig for StudyRig<'_> {
         stimulus: &Stimulus,
         ends: &mut dyn FnMut() -> bool,
     ) -> Result<Played, Failure> {
-        let (ready, drive_v) = self.begin(stimulus)?;
-        let plan = ready.plan(&costs())?;
-        let mut renderer = Renderer::new(&ready.scene, &plan).of(&self.path)?;
-        if ready.scene.scene.motion == Motion::Live {
-            renderer.set_motion(Finger::AWAY).of(&self.path)?;
-        }
         let mut felt = self.felt.take();
-        let recorded = felt.as_mut().zip(stimulus.felt.as_ref());
-        if let Some((felt, name)) = recorded {
-            let seconds = stimulus.seconds.unwrap_or(self.study.trial_s);
-            felt.begin(name, seconds).map_err(StudyError::from)?;
-        }
-        let mut output = Output::open(&ready, &plan)?;
-        if !self.is_fast && !ready.capabilities.paced {
-            output = output.paced();
-        }
-        let (mut stopped, mut left) = (false, false);
-        loop {
-            let goes_on = output.step(&mut renderer)?;
-            if let Some(felt) = felt.as_ref().filter(|felt| felt.waits()) {
-                felt.sounds(output.lead_s());
-            }
-            if !goes_on {
-                break;
-            }
-            if !stopped {
-                self.ended |= !self.follow(&mut renderer);
-                left = self.ended || interrupted() || ends();
-                stopped = left || felt.as_ref().is_some_and(Felt::has_failed);
-                if stopped {
-                    renderer.stop();
-                }
-            }
-        }
-        output.finish()?;
-        let mut played = Played {
-            drive_v,
-            reference_rms: plan.reference_rms,
-            felt: None,
-        };
-        if let Some(felt) = &mut felt {
-            match left {
-                true => felt.abort(),
-                false => played.felt = felt.finish(stimulus, &played)?,
-            }
+        let played = self.play_with(felt.as_mut(), stimulus, ends);
+        if let (Err(_), Some(felt)) = (&played, &mut felt) {
+            felt.abort();
         }
         self.felt = felt;
-        Ok(played)
+        played
+    }
+
+    fn ran_dry(error: &Failure) -> bool {
+        matches!(error, Failure::Device(DeviceError::Underflow { .. }))
+    }
+
+    fn tell(&self, notice: &str) {
+        tell!("note: {}", plain(notice));
     }
 
     fn band_error_db(&self, texture: &str, model: &str) -> Option<f64> {
@@ -180,5 +162,75 @@ impl Rig for StudyRig<'_> {
 
     fn is_interrupted(&self) -> bool {
         self.ended || interrupted()
+    }
+}
+
+impl StudyRig<'_> {
+    /// Plays, and records what is felt.
+    fn play_with(
+        &mut self,
+        mut felt: Option<&mut Felt>,
+        stimulus: &Stimulus,
+        ends: &mut dyn FnMut() -> bool,
+    ) -> Result<Played, Failure> {
+        let (ready, drive_v) = self.begin(stimulus)?;
+        let plan = ready.plan(&costs())?;
+        let mut renderer = Renderer::new(&ready.scene, &plan).of(&self.path)?;
+        if ready.scene.scene.motion == Motion::Live {
+            renderer.set_motion(Finger::AWAY).of(&self.path)?;
+        }
+        let recorded = felt.as_mut().zip(stimulus.felt.as_ref());
+        if let Some((felt, name)) = recorded {
+            let seconds = stimulus.seconds.unwrap_or(self.study.trial_s);
+            felt.begin(name, seconds).map_err(StudyError::from)?;
+        }
+        let mut output = Output::open(&ready, &plan)?;
+        if !self.is_fast && !ready.capabilities.paced {
+            output = output.paced();
+        }
+        let (mut stopped, mut left) = (false, false);
+        loop {
+            let goes_on = output.step(&mut renderer)?;
+            if let Some(felt) = felt.as_deref().filter(|felt| felt.waits()) {
+                felt.sounds(output.lead_s());
+            }
+            if !goes_on {
+                break;
+            }
+            if !stopped {
+                self.ended |= !self.follow(&mut renderer);
+                left = self.ended || interrupted() || ends();
+                stopped = left || felt.as_deref().is_some_and(Felt::has_failed);
+                if stopped {
+                    renderer.stop();
+                }
+            }
+        }
+        let underruns = output.device.status().underruns;
+        output.finish()?;
+        if underruns > 0 {
+            return Err(ran_dry(&ready).into());
+        }
+        let mut played = Played {
+            drive_v,
+            reference_rms: plan.reference_rms,
+            felt: None,
+        };
+        if let Some(felt) = felt {
+            match left {
+                true => felt.abort(),
+                false => played.felt = felt.finish(stimulus, &played)?,
+            }
+        }
+        Ok(played)
+    }
+}
+
+/// The error of a device that went on after it ran dry.
+fn ran_dry(ready: &Ready) -> DeviceError {
+    DeviceError::Underflow {
+        device: ready.device.descriptor().name.clone(),
+        frames: 0,
+        advice: "close other programs, or give it a larger buffer".to_owned(),
     }
 }

@@ -142,7 +142,12 @@ impl Run {
             .felt
             .open(study, &self.output, participant, self.fast)?;
         let device = rig.device_used()?;
+        let mut clock: Box<dyn Clock> = match self.fast {
+            true => Box::new(FastClock::default()),
+            false => Box::new(WallClock),
+        };
         let header = Header::new(study, &self.study, own, device, tool())?
+            .with_begun(clock.date())
             .with_source(rig.felt.as_ref().and_then(Felt::used))
             .with_simulated(simulated.as_ref().map(SimulatedParticipant::header));
         let mut session = Session::open(study, own, &self.output, &header)?;
@@ -152,10 +157,6 @@ impl Run {
             None => self.asking.open(study, participant)?,
         };
         rig.motions = asking.motions.take();
-        let mut clock: Box<dyn Clock> = match self.fast {
-            true => Box::new(FastClock::default()),
-            false => Box::new(WallClock),
-        };
         let ended = run(
             &mut session,
             &mut rig,

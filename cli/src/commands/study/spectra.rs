@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_author::settings::ReadingSettings;
-use htex_lab::study::{FeltSpectra, Reference, felt_spectra};
+use htex_lab::study::{FeltSpectra, OffTarget, Reference, felt_spectra};
 
 use super::felt::target;
 use super::open;
@@ -25,6 +25,17 @@ pub(super) struct SpectraArgs {
     /// The study, whose assets have the spectra of the real textures
     #[arg(long, value_name = "FILE", requires = "spectra")]
     study: Option<PathBuf>,
+
+    /// What becomes of recordings of trials whose speed or force was off the study's by more than 10 %: that is the rule for recordings of
+    /// textures, not for participants
+    #[arg(
+        long,
+        value_enum,
+        value_name = "WHAT",
+        requires = "spectra",
+        default_value = "keep"
+    )]
+    off_target: OffTarget,
 
     /// Response of the sensor during the study to divide out of what was felt: CSV as that of --frf
     #[arg(long, value_name = "CSV", requires = "spectra", value_parser = located::RECORDING)]
@@ -66,7 +77,7 @@ impl SpectraArgs {
             let reference = Reference::of_recording(&take, file, &options, self.reading.strict())?;
             recorded.insert(texture.to_owned(), reference);
         }
-        let spectra = felt_spectra(folder, &recorded, &felt)?;
+        let spectra = felt_spectra(folder, &recorded, &felt, self.off_target)?;
         Ok(Some((file, spectra)))
     }
 

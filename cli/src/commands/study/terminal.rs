@@ -2,6 +2,7 @@
 
 use std::io::IsTerminal;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::time::Instant;
 
 use htex_lab::study::{Asker, GainKey, GainMethod, Key, View};
 
@@ -13,6 +14,8 @@ use crate::output::tell;
 pub(super) struct Terminal {
     input: Input,
     view: View,
+    /// When it was shown.
+    shown: Instant,
 }
 
 enum Input {
@@ -31,6 +34,7 @@ impl Terminal {
         Self {
             input: input(),
             view: View::Done,
+            shown: Instant::now(),
         }
     }
 
@@ -67,12 +71,13 @@ impl Asker for Terminal {
         let goes_on = matches!((view, &self.view), (View::Rest { .. }, View::Rest { .. }));
         let is_countdown = goes_on && matches!(view, View::Rest { seconds } if *seconds > 0);
         match &mut self.input {
-            _ if goes_on => {}
+            _ if is_countdown => {}
             #[cfg(unix)]
             Input::Keys(keys) => keys.forget(),
             Input::Lines { lines, is_typed } => while *is_typed && lines.try_recv().is_ok() {},
         }
         self.view = view.clone();
+        self.shown = Instant::now();
         if !is_countdown {
             tell!("[{done}/{all}] {}", self.words(view));
         }
@@ -95,7 +100,8 @@ impl Asker for Terminal {
             } if matches!(self.view, View::Playing { .. }) => {
                 return None;
             }
-            Input::Lines { lines, .. } => match lines.try_recv() {
+            Input::Lines { lines, is_typed } => match lines.try_recv() {
+                Ok(_) if *is_typed && self.shown.elapsed() < self.view.guard() => return None,
                 Ok(line) => line,
                 Err(TryRecvError::Empty) => return None,
                 Err(TryRecvError::Disconnected) => return Some(Key::Quit),
@@ -136,7 +142,9 @@ fn text(view: &View, is_line: bool) -> String {
     match view {
         View::Ready { texture, .. } => format!("{texture}: Enter to begin, q to leave"),
         View::Playing { texture } => format!("{texture} plays"),
-        View::Question { attribute, scale } => format!(
+        View::Question {
+            attribute, scale, ..
+        } => format!(
             "{} {} {} to {} {}{}",
             attribute.question,
             scale.min,

@@ -28,6 +28,7 @@ pub use report::{CellStatus, GridCell, GridReport};
 pub use request::Grid;
 
 use crate::conditions::{Group, Grouped, four_digits};
+use crate::recording_finding::RecordingFinding;
 use crate::take::source_of;
 use crate::warnings::Warnings;
 use crate::{AuthorError, SpectrumOptions, Take, TextureSpectrum};
@@ -55,11 +56,16 @@ pub(crate) fn group_grid(
 ) -> Result<(Grouped, GridReport), AuthorError> {
     let (mut warnings, mut notes) = (Warnings::default(), Warnings::default());
     let (mut all, mut sources) = (Vec::<Steady>::new(), Vec::new());
+    let mut findings = Vec::new();
     for (index, take) in takes.iter().enumerate() {
         let mut steady = read_steady(index, take, options, strict)?;
         let source = &take.recording.source;
         warnings.add(source, std::mem::take(&mut steady.warnings));
         notes.add(source, std::mem::take(&mut steady.notes));
+        findings.extend(RecordingFinding::all(
+            source,
+            std::mem::take(&mut steady.findings),
+        ));
         sources.push(source_of(take, steady.windows.len()));
         all.push(steady);
     }
@@ -75,6 +81,7 @@ pub(crate) fn group_grid(
         sources,
         warnings: warnings.into_notices(),
         notes: notes.into_notices(),
+        findings,
     };
     for (cell, spectrum) in gathered.cells.iter().zip(gathered.spectra) {
         let Some(spectrum) = spectrum else {

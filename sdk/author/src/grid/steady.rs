@@ -26,6 +26,7 @@ pub(super) struct Steady {
     pub(super) looked_at: usize,
     pub(super) warnings: Vec<Notice>,
     pub(super) notes: Vec<Notice>,
+    pub(super) findings: Vec<Finding>,
 }
 
 /// Finds the half-overlapping windows of 0.2 s in which speed and force stay within 10 % of their means, and checks the
@@ -76,6 +77,7 @@ pub(super) fn read_steady(
         looked_at,
         warnings: noticed.chain(of(false)).collect(),
         notes: of(true).collect(),
+        findings,
         windows: steady,
     })
 }

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use crate::findings::FindingShare;
 use crate::report::{Report, TextureReport};
 
 const PAGE: &str = include_str!("page.html");
@@ -14,6 +15,7 @@ pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
     let data = json!({
         "library": report.library,
         "textures": textures,
+        "findings": findings(report),
         "browserPackage": browser_package,
     });
     // Inside a script, only `<` could end it.
@@ -24,6 +26,18 @@ pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
         .replace("@DATA@", &data)
 }
 
+/// Findings by code, the gravest first: code, severity, number of textures, first names.
+fn findings(report: &Report) -> Vec<Value> {
+    let mut all: Vec<_> = report.findings.iter().collect();
+    all.sort_by_key(|(code, share)| (share.severity, *code));
+    let line = |(code, share): (&String, &FindingShare)| {
+        json!({
+            "code": code, "severity": share.severity, "textures": share.textures, "inLibrary": share.in_library, "first": share.first,
+        })
+    };
+    all.into_iter().map(line).collect()
+}
+
 fn texture(texture: &TextureReport) -> Value {
     let missed: Vec<(&str, &str)> = texture
         .missed
@@ -32,7 +46,8 @@ fn texture(texture: &TextureReport) -> Value {
         .collect();
     let Some(asset) = &texture.asset else {
         return json!({
-            "name": texture.name, "tags": [], "license": "", "author": "", "errors": [], "levels": [], "missed": missed,
+            "name": texture.name, "tags": [], "license": "", "author": "", "errors": [], "levels": [], "findings": [],
+            "missed": missed,
         });
     };
     let errors = asset.band_error_rms_db.iter();
@@ -47,6 +62,7 @@ fn texture(texture: &TextureReport) -> Value {
         "repeatability": asset.repeatability_rms_db.map(hundredths),
         "bytes": asset.bytes,
         "levels": asset.spectrum,
+        "findings": asset.findings.iter().map(|f| (&f.code, f.severity, &f.message)).collect::<Vec<_>>(),
         "missed": missed,
     })
 }

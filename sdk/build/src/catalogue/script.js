@@ -1,4 +1,4 @@
-const { library, textures, browserPackage } = JSON.parse(document.getElementById("data").textContent);
+const { library, textures, findings, browserPackage } = JSON.parse(document.getElementById("data").textContent);
 const STEP = 200; // rows shown at a time
 const RATE = 8000; // of sounds that are made in the page, Hz
 const element = (id) => document.getElementById(id);
@@ -6,8 +6,9 @@ const element = (id) => document.getElementById(id);
 // What a texture is found and sorted by.
 for (const texture of textures) {
   texture.repeatability ??= undefined; // JSON's null
-  const { name, tags, license, author, errors, missed } = texture;
-  const words = [name, ...tags, license, author, ...errors.map(([model]) => model), ...missed.map(([gate]) => gate)];
+  const { name, tags, license, author, errors, missed, findings } = texture;
+  const words = [name, ...tags, license, author, ...errors.map(([model]) => model), ...missed.map(([gate]) => gate),
+    ...findings.map(([code]) => code)];
   texture.words = words.join("\n").toLowerCase();
   texture.error = errors.length ? Math.min(...errors.map(([, error]) => error)) : undefined;
 }
@@ -71,9 +72,12 @@ function spectrum(levels) {
 }
 
 function row(texture) {
-  const { name, tags, errors, repeatability, bytes, license, missed, levels } = texture;
+  const { name, tags, errors, repeatability, bytes, license, missed, levels, findings } = texture;
   const title = tag("td", {}, missed.length ? name : tag("a", { href: file("textures", name, "htex") }, name));
   if (tags.length) title.append(tag("span", { class: "tags" }, tags.join(", ")));
+  for (const [code, severity, message] of findings.filter(([, severity]) => severity !== "info")) {
+    title.append(tag("span", { class: `finding ${severity}`, title: message }, code));
+  }
   for (const [gate, reason] of missed) title.append(tag("span", { class: "reason" }, `left out (${gate}): ${reason}`));
   const each = errors.map(([model, error]) => {
     const below = repeatability !== undefined && error <= repeatability;
@@ -140,6 +144,16 @@ function show() {
 element("summary").textContent =
   `${library.textures} textures in ${library.file}, ${library.bytes.toLocaleString("en")} bytes` +
   (library.left_out ? `; ${library.left_out} left out` : "");
+for (const { code, severity, textures, inLibrary, first } of findings) {
+  const more = textures > first.length ? ", …" : "";
+  const find = tag("button", { type: "button" }, code);
+  find.addEventListener("click", () => {
+    element("search").value = code;
+    Object.assign(state, { query: code, shown: STEP });
+    show();
+  });
+  element("findings").append(tag("li", { class: severity }, find, ` (${severity}): ${textures} textures, ${inLibrary} in the library: ${first.join(", ")}${more}`));
+}
 element("search").value = state.query;
 element("left-out").checked = state.leftOut;
 element("search").addEventListener("input", (event) => {

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::record::coverage::Required;
 use crate::record::format::Format;
 use crate::record::names;
 use crate::record::setup::LONGEST_S;
@@ -57,6 +58,8 @@ pub struct TakeHeader {
     pub target_force_n: Option<f64>,
     /// Allowed relative difference from the target.
     pub tolerance: f64,
+    /// What the take must have to be kept.
+    pub required: Required,
     /// Format of the recording: see [`Format`].
     pub format: Format,
 }
@@ -171,6 +174,10 @@ impl TakeHeader {
             (
                 self.seconds > 0.0 && self.seconds <= LONGEST_S,
                 "its length is out of range",
+            ),
+            (
+                (0.0..=1.0).contains(&self.required.on_target),
+                "the share on target that it requires is out of range",
             ),
             (!self.signals.is_empty(), "it has no signals"),
             (

@@ -6,14 +6,13 @@ use htex_author::recording::RecordingError;
 use htex_author::{Exploration, Reading, Recording, SpectrumOptions, Take, read_take, velocity};
 use serde::{Deserialize, Serialize};
 
-use crate::record::data::{TakeData, texture_axes};
+use crate::record::coverage::{Coverage, Target};
+use crate::record::data::{TakeData, TakeHeader, texture_axes};
 
 /// Part of a take at its ends that a tracker may leave out, seconds.
 const UNTRACKED_S: f64 = 0.25;
 /// Longest time between two rows of a tracker, seconds, over which a position is interpolated.
 const GAP_S: f64 = 0.2;
-/// Rounding that is no difference, relative.
-const ROUNDING: f64 = 1e-9;
 
 /// A quantity over the sweeps of a take.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -29,7 +28,7 @@ pub struct Measured {
 /// The judgement of a take.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Verdict {
-    /// Whether it kept to its target; true without a target.
+    /// Whether it kept to its target and has what is required of it.
     pub kept: bool,
     /// What it did wrong, each a phrase.
     pub reasons: Vec<String>,
@@ -37,6 +36,8 @@ pub struct Verdict {
     pub speed_mm_s: Option<Measured>,
     /// Normal force, newtons.
     pub force_n: Option<Measured>,
+    /// How much of it is of use; absent if no texture can be read from it.
+    pub coverage: Option<Coverage>,
     /// Segments of 0.2 s that a texture would be read from.
     pub segments: usize,
     /// Problems of the signals, such as clipping, each a sentence with its code.
@@ -45,7 +46,8 @@ pub struct Verdict {
 
 /// Judges a take: mean, minimum and maximum of speed and normal force over the middles of its sweeps (as `htex fit` chooses
 /// them) must be within the tolerance of their targets. Minimum and maximum are those of means of 50 ms, as in
-/// [`htex_author::Spread`]: faster changes are the texture's, and between sweeps the finger turns.
+/// [`htex_author::Spread`]: faster changes are the texture's, and between sweeps the finger turns. The take must also have what its header
+/// requires ([`crate::record::Required`]).
 #[must_use]
 pub fn judge(data: &TakeData) -> Verdict {
     let header = &data.header;
@@ -53,14 +55,10 @@ pub fn judge(data: &TakeData) -> Verdict {
     match reading(data) {
         Ok((reading, recording)) => {
             measure(&mut verdict, &reading, &recording);
+            let [speed, force] = targets(header);
             let targets = [
-                (
-                    "speed",
-                    "mm/s",
-                    header.target_speed_mm_s,
-                    verdict.speed_mm_s,
-                ),
-                ("force", "N", header.target_force_n, verdict.force_n),
+                ("speed", "mm/s", speed, verdict.speed_mm_s),
+                ("force", "N", force, verdict.force_n),
             ];
             for (what, unit, target, measured) in targets {
                 let Some(target) = target else { continue };
@@ -68,10 +66,13 @@ pub fn judge(data: &TakeData) -> Verdict {
                     None => Some(format!(
                         "the {what} is not known: the tracker has sent no position"
                     )),
-                    Some(measured) => differs(what, unit, target, header.tolerance, measured),
+                    Some(measured) => differs(what, unit, target, measured),
                 };
                 verdict.reasons.extend(reason);
             }
+            let coverage = Coverage::of(&recording, &reading.part.segments, [speed, force]);
+            verdict.reasons.extend(coverage.lacks(header.required));
+            verdict.coverage = Some(coverage);
             if header.target_speed_mm_s.is_some() {
                 verdict.reasons.extend(untracked(data));
             }
@@ -86,6 +87,13 @@ pub fn judge(data: &TakeData) -> Verdict {
     }
     verdict.kept = verdict.reasons.is_empty();
     verdict
+}
+
+/// The targets of speed (mm/s) and force (N).
+fn targets(header: &TakeHeader) -> [Option<Target>; 2] {
+    let tolerance = header.tolerance;
+    [header.target_speed_mm_s, header.target_force_n]
+        .map(|target| target.map(|value| Target { value, tolerance }))
 }
 
 fn reading(data: &TakeData) -> Result<(Reading, Recording), Box<dyn Error>> {
@@ -194,33 +202,16 @@ fn measure(verdict: &mut Verdict, reading: &Reading, recording: &Recording) {
         .collect();
 }
 
-/// Whether a number is within a distance of a target; one that is not a number is not.
-fn is_within(value: f64, target: f64, allowed: f64) -> bool {
-    (value - target).abs() <= allowed
-}
-
 /// What differs from a target by more than the tolerance, if anything does.
-fn differs(
-    what: &str,
-    unit: &str,
-    target: f64,
-    tolerance: f64,
-    measured: Measured,
-) -> Option<String> {
-    let allowed = tolerance * target.abs() * (1.0 + ROUNDING);
+fn differs(what: &str, unit: &str, target: Target, measured: Measured) -> Option<String> {
     let Measured { mean, min, max } = measured;
     let values = [("mean", mean), ("minimum", min), ("maximum", max)];
-    let wrong = values
-        .iter()
-        .filter(|(_, value)| !is_within(*value, target, allowed));
+    let wrong = values.iter().filter(|(_, value)| !target.is_met(*value));
     let wrong: Vec<String> = wrong
         .map(|(name, value)| format!("{name} {value:.4}"))
         .collect();
     (!wrong.is_empty()).then(|| {
-        let (low, high) = (
-            target - tolerance * target.abs(),
-            target + tolerance * target.abs(),
-        );
+        let [low, high] = target.range();
         format!(
             "{what}: {} {unit}, allowed is {low:.4} to {high:.4} {unit}",
             wrong.join(", ")

@@ -3,7 +3,8 @@
 //! A take is recorded into a part file, to which each second is appended and flushed to disk: a program that is killed loses the
 //! current second at most, and [`recover`] makes a recording of the rest. A complete take is judged ([`judge`]): if the mean,
 //! minimum or maximum of speed or force differs from its target by more than the tolerance (10 % in the paper, Supplementary,
-//! "Texture recording"), it is set aside and recorded again. Results are files that `htex fit` reads, and JSON beside them.
+//! "Texture recording"), it is set aside and recorded again; so is one of which too little slides on target, or which has too few sweeps
+//! ([`Required`]). Results are files that `htex fit` reads, and JSON beside them.
 //!
 //! From a finger to a recording:
 //!
@@ -20,6 +21,7 @@
 
 mod beside;
 mod calibration;
+mod coverage;
 mod data;
 mod error;
 mod finish;
@@ -43,6 +45,7 @@ mod write;
 pub use beside::KnownTake;
 pub(crate) use beside::{header as header_beside, settings as settings_of};
 pub use calibration::{AXES, Calibration};
+pub use coverage::{Coverage, Required};
 pub use data::{TakeData, TakeHeader};
 pub use error::RecordError;
 pub use finish::{Recorded, recover};

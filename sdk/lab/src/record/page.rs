@@ -9,6 +9,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::page::{Content, LocalPage};
+use crate::record::coverage::Required;
 use crate::record::error::RecordError;
 use crate::record::finish::Recorded;
 use crate::record::format::Outcome;
@@ -46,6 +47,7 @@ struct Shown {
 struct About {
     title: String,
     attempts: u32,
+    required: Required,
     has_tare: bool,
     unit: &'static str,
     speed_mm_s: Option<f64>,
@@ -94,6 +96,8 @@ struct TakeLine {
     number: u32,
     outcome: Outcome,
     reasons: Vec<String>,
+    /// Problems of the signals.
+    findings: Vec<String>,
     speed_mm_s: Option<Measured>,
     force_n: Option<Measured>,
 }
@@ -136,6 +140,7 @@ impl GuidePage {
         let session = About {
             title: setup.name.clone(),
             attempts: setup.attempts,
+            required: setup.required,
             has_tare: setup.tare != Tare::Never,
             unit: setup.quantity.unit(),
             speed_mm_s: guidance.speed_mm_s,
@@ -219,6 +224,7 @@ impl GuidePage {
             number: take.number,
             outcome: take.outcome,
             reasons: take.verdict.reasons.clone(),
+            findings: take.verdict.findings.clone(),
             speed_mm_s: take.verdict.speed_mm_s,
             force_n: take.verdict.force_n,
         });

@@ -175,6 +175,7 @@ impl Session {
             target_speed_mm_s: setup.target.speed_mm_s,
             target_force_n: setup.target.force_n,
             tolerance: setup.tolerance,
+            required: setup.required,
             format: setup.format,
         }
     }

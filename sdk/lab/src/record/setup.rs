@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use htex_author::Exploration;
 use htex_format::Quantity;
 
+use crate::record::coverage::Required;
 use crate::record::error::RecordError;
 use crate::record::format::Format;
 use crate::record::names;
@@ -31,6 +32,8 @@ pub struct Setup {
     pub target: Exploration,
     /// Allowed relative difference of mean, minimum and maximum from the target; 0.1 in the paper.
     pub tolerance: f64,
+    /// What a take must have to be kept.
+    pub required: Required,
     /// Most takes that are tried.
     pub attempts: u32,
     pub format: Format,
@@ -84,6 +87,13 @@ pub(crate) fn check(setup: &Setup, rate_hz: f64) -> Result<(), RecordError> {
             "the tolerance",
             setup.tolerance,
             "it is above 0 and below 1, as in 0.1 for 10 %",
+        );
+    }
+    if !(0.0..=1.0).contains(&setup.required.on_target) {
+        return refuse(
+            "the share on target",
+            setup.required.on_target,
+            "it is 0 to 1, as in 0.5 for half of a take",
         );
     }
     let targets = [

@@ -19,14 +19,16 @@ pub enum View {
         /// What begins.
         phase: Phase,
         texture: String,
+        /// What happened before, such as a trial that is repeated.
+        notice: Option<String>,
     },
     /// A trial plays.
-    Playing {
-        texture: String,
-    },
+    Playing { texture: String },
     Question {
         attribute: Attribute,
         scale: Scale,
+        /// What happened in the trial, such as a motion off its target.
+        notice: Option<String>,
     },
     /// The texture plays, and its gain is matched.
     Matching {
@@ -44,6 +46,23 @@ pub enum View {
     Done,
 }
 
+/// A question or a matching takes no answer for this long: the second press of a key that answered the one before.
+const GUARD: Duration = Duration::from_millis(300);
+/// What begins a trial or ends a rest takes no key for this long: both begin by the same key, and a double press, of which the second
+/// one comes within 0.5 s, is to do one of them.
+const LONG_GUARD: Duration = Duration::from_millis(600);
+
+impl View {
+    /// Time after it is shown in which a press is no answer: it was meant for what was shown before.
+    pub fn guard(&self) -> Duration {
+        match self {
+            Self::Question { .. } | Self::Matching { .. } => GUARD,
+            Self::Ready { .. } | Self::Rest { seconds: 0 } => LONG_GUARD,
+            Self::Rest { .. } | Self::Playing { .. } | Self::Done => Duration::ZERO,
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Key {
     Digit(u8),
@@ -55,7 +74,7 @@ pub enum Key {
     Quit,
 }
 
-/// The one who is asked.
+/// The one who is asked. A key that a person presses within [`View::guard`] is none.
 pub trait Asker {
     /// Shows what there is now. Keys that were pressed before are forgotten. `done` of `all` trials are rated.
     fn show(&mut self, view: &View, done: usize, all: usize);
@@ -74,6 +93,9 @@ pub trait Clock {
     /// Something of this length was played, which a simulated clock has not noticed.
     fn played(&mut self, time: Duration);
 
+    /// Date and time in UTC, as [`crate::study::utc`] writes them; `None` of a simulated clock.
+    fn date(&self) -> Option<String>;
+
     /// A simulated clock goes on at this time; others do not.
     fn go_on_at(&mut self, ms: u64);
 }
@@ -91,7 +113,7 @@ pub struct Played {
 
 /// What plays: a renderer and a device.
 pub trait Rig {
-    type Error: From<StudyError>;
+    type Error: From<StudyError> + std::fmt::Display;
 
     /// Plays, and calls `ends` for each block; when that returns true, playing ends as soon as it can.
     ///
@@ -102,6 +124,12 @@ pub trait Rig {
         stimulus: &Stimulus,
         ends: &mut dyn FnMut() -> bool,
     ) -> Result<Played, Self::Error>;
+
+    /// Whether an error of [`Self::play`] is that of a device that ran dry, so that playing again may succeed.
+    fn ran_dry(error: &Self::Error) -> bool;
+
+    /// Tells the person who conducts the session what happened in a trial; the participant's view has the same notice.
+    fn tell(&self, notice: &str);
 
     /// The nine-band error of a representation, decibels, if its asset says it.
     fn band_error_db(&self, texture: &str, model: &str) -> Option<f64>;

@@ -31,7 +31,8 @@ pub enum StudyError {
     },
     /// The file was begun under other conditions, and results of two versions must not be mixed.
     #[error(
-        "{}: the answers there were begun with another version: {changed}. Restore what was there, or start anew in another folder (-o)",
+        "{}: the answers there were begun with another version: {changed}. Restore what was there (the earlier settings, in the case of a \
+         device), or start anew in another folder (-o)",
         .file.display()
     )]
     OtherVersion {
@@ -47,6 +48,17 @@ pub enum StudyError {
         "{texture}: the asset has no measured nine-band error for {model}, by which simulated participants rate; fit it again with `htex fit`"
     )]
     NoBandError { texture: String, model: String },
+    /// The device ran dry in every attempt of a trial.
+    #[error(
+        "the device ran dry in {times} attempts of the same trial; the last: {error}. Close other programs or give the device a larger \
+         buffer (in another folder, -o, since settings are not mixed); the trial is repeated when the same command is run again"
+    )]
+    RanDry {
+        /// Attempts.
+        times: u32,
+        /// The last error.
+        error: String,
+    },
     /// What was felt could not be recorded.
     #[error(
         "recording what is felt: {0}; the trial is repeated when the same command is run again"

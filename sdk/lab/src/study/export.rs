@@ -10,7 +10,7 @@ use crate::study::lines::{Answer, Header, Line};
 use crate::study::log;
 
 /// Columns of the table; the first five are those that analyses read.
-const COLUMNS: [&str; 10] = [
+const COLUMNS: [&str; 11] = [
     "participant",
     "texture",
     "model",
@@ -21,6 +21,7 @@ const COLUMNS: [&str; 10] = [
     "response_ms",
     "gain_db",
     "simulated",
+    "off_target",
 ];
 
 /// Ratings of all participants in a folder.
@@ -30,8 +31,23 @@ pub struct Export {
     pub csv: String,
     pub participants: usize,
     pub ratings: usize,
-    /// What an analysis must know: sessions that are not complete.
+    /// Trials whose motion was off the study's target, as the column `off_target` says.
+    pub off_target: usize,
+    /// What an analysis must know: sessions that are not complete, trials off their target, devices with different settings.
     pub warnings: Vec<String>,
+    /// Participants whose sessions are not complete, each a sentence, which the warnings have, too.
+    pub incomplete: Vec<String>,
+}
+
+/// What becomes of trials whose speed or force was off the study's target in the table of spectra. Their ratings are always exported.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum OffTarget {
+    /// They are averaged with the others, and counted.
+    #[default]
+    Keep,
+    /// They are left out, and counted.
+    LeaveOut,
 }
 
 /// Reads all answers in a folder. Training is left out. With several attributes, `attribute` names the one whose ratings are wanted.
@@ -102,7 +118,9 @@ fn same_study(sessions: &[Answers]) -> Result<(), StudyError> {
             format!("{name} is another one than for {first}")
         } else if header.simulated.is_some() != of_first.simulated.is_some() {
             format!("one of this and {first} is of a simulated participant")
-        } else if header.device != of_first.device {
+        } else if header.device.adapter != of_first.device.adapter
+            || header.device.profile != of_first.device.profile
+        {
             format!("the device is another one than for {first}")
         } else {
             continue;
@@ -132,17 +150,26 @@ fn chosen(all: &BTreeSet<String>, wanted: Option<&str>) -> Result<String, StudyE
 fn table(sessions: &[Answers], attribute: &str, folder: &Path) -> Result<Export, StudyError> {
     let mut csv = csv::WriterBuilder::new().from_writer(Vec::new());
     csv.write_record(COLUMNS).writing(folder)?;
-    let (mut ratings, mut warnings) = (0, Vec::new());
-    for Answers {
-        header, answers, ..
-    } in sessions
-    {
+    let (mut ratings, mut off_target) = (0, 0);
+    let (mut incomplete, mut warnings) = (Vec::new(), Vec::new());
+    for session in sessions {
+        let Answers {
+            header, answers, ..
+        } = session;
         if answers.len() < header.ratings {
-            warnings.push(format!(
+            incomplete.push(format!(
                 "{} is not complete: {} of {} ratings",
                 header.participant,
                 answers.len(),
                 header.ratings
+            ));
+        }
+        let (off, all) = session.off_target();
+        off_target += off;
+        if off > 0 {
+            warnings.push(format!(
+                "{}: {off} of {all} recorded trials were off the study's speed or force by more than 10 %; the column off_target marks them",
+                header.participant
             ));
         }
         for answer in answers.iter().filter(|a| a.attribute == attribute) {
@@ -155,8 +182,40 @@ fn table(sessions: &[Answers], attribute: &str, folder: &Path) -> Result<Export,
         csv: String::from_utf8_lossy(&bytes).into_owned(),
         participants: sessions.len(),
         ratings,
-        warnings,
+        off_target,
+        warnings: [incomplete.clone(), other_settings(sessions), warnings].concat(),
+        incomplete,
     })
+}
+
+/// Settings of the device in which participants differ from the first one.
+fn other_settings(sessions: &[Answers]) -> Vec<String> {
+    let Some((first, rest)) = sessions.split_first() else {
+        return Vec::new();
+    };
+    let differing = rest.iter().filter_map(|session| {
+        let differences = first.header.device.differences(&session.header.device);
+        (!differences.is_empty()).then(|| {
+            let (was, is) = (&first.header.participant, &session.header.participant);
+            format!("from {was} to {is}: {}", differences.join("; "))
+        })
+    });
+    differing.collect()
+}
+
+impl Answers {
+    /// Trials off their target, and trials that were recorded.
+    fn off_target(&self) -> (usize, usize) {
+        let recorded = self.answers.iter().filter_map(|answer| {
+            let felt = answer.felt.as_ref()?;
+            Some((answer.number, !felt.off_target.is_empty()))
+        });
+        let recorded: BTreeSet<(u32, bool)> = recorded.collect();
+        (
+            recorded.iter().filter(|(_, off)| *off).count(),
+            recorded.len(),
+        )
+    }
 }
 
 fn row(header: &Header, answer: &Answer) -> [String; COLUMNS.len()] {
@@ -172,5 +231,7 @@ fn row(header: &Header, answer: &Answer) -> [String; COLUMNS.len()] {
         answer.response_ms.to_string(),
         answer.gain_db.map_or(String::new(), |db| format!("{db}")),
         yes(answer.simulated || header.simulated.is_some()),
+        // Without a recording it is not known.
+        (answer.felt.as_ref()).map_or(String::new(), |felt| yes(!felt.off_target.is_empty())),
     ]
 }

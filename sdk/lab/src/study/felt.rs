@@ -18,8 +18,8 @@ use htex_format::Quantity;
 use serde_json::json;
 
 use crate::record::{
-    Format, Inputs, Reader, RecordError, Signals, TakeData, TakeHeader, TrackerRows, judge,
-    write_signals,
+    Format, Inputs, Reader, RecordError, Required, Signals, TakeData, TakeHeader, TrackerRows,
+    judge, write_signals,
 };
 use crate::study::asking::Played;
 use crate::study::error::StudyError;
@@ -184,6 +184,7 @@ impl Felt {
             target_speed_mm_s: setup.target.speed_mm_s.filter(|_| moves),
             target_force_n: setup.target.force_n.filter(|_| normal.is_some()),
             tolerance: TOLERANCE,
+            required: Required::NOTHING,
             format: setup.format,
         }
     }
@@ -247,6 +248,7 @@ impl Felt {
         Ok(Some(FeltFile {
             file: format!("{participant}/{FOLDER}/{}", file.to_string_lossy()),
             blake3: hash(&written.recording)?,
+            off_target: verdict.reasons,
         }))
     }
 

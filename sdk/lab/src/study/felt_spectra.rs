@@ -12,7 +12,7 @@ use htex_format::{Asset, Condition, Quantity};
 
 use crate::record::{TakeHeader, header_beside, settings_of};
 use crate::study::error::StudyError;
-use crate::study::export::sessions_of;
+use crate::study::export::{OffTarget, sessions_of};
 use crate::study::felt::hash;
 use crate::study::lines::FeltFile;
 
@@ -34,6 +34,8 @@ pub struct FeltSpectra {
     pub csv: String,
     /// Recordings that were read.
     pub recordings: usize,
+    /// Recordings of trials whose motion was off the study's target; [`OffTarget`] says whether they were read.
+    pub off_target: usize,
     /// What an analysis must know, each a sentence.
     pub warnings: Vec<String>,
 }
@@ -104,7 +106,7 @@ impl Reference {
 }
 
 /// The spectra of a folder of answers: for each participant, texture and model, the recordings of all its trials are read and averaged as
-/// `htex fit` reads recordings of one condition. `recorded` has the real textures by name.
+/// `htex fit` reads recordings of one condition; `off_target` says what becomes of trials off the study's target. `recorded` has the real textures by name.
 ///
 /// # Errors
 /// Those of [`crate::study::export()`]; [`StudyError::NotRecorded`]; [`StudyError::Content`] if a recording is not the one of its trial, or
@@ -113,10 +115,11 @@ pub fn felt_spectra(
     folder: &Path,
     recorded: &BTreeMap<String, Reference>,
     options: &SpectrumOptions,
+    off_target: OffTarget,
 ) -> Result<FeltSpectra, StudyError> {
     let mut rows = Vec::new();
     let (mut textures, mut quantities) = (BTreeSet::new(), BTreeSet::new());
-    let (mut recordings, mut warnings) = (0, Vec::new());
+    let (mut recordings, mut off, mut warnings) = (0, 0, Vec::new());
     for session in sessions_of(folder)? {
         let participant = &session.header.participant;
         // A trial with several questions has one recording, and the last answer names it.
@@ -129,7 +132,27 @@ pub fn felt_spectra(
         if conditions.is_empty() {
             warnings.push(format!("{participant} has no recordings of what was felt"));
         }
-        for ((texture, model), trials) in conditions {
+        for ((texture, model), mut trials) in conditions {
+            let all = trials.len();
+            let is_off = |felt: &FeltFile| !felt.off_target.is_empty();
+            let own_off = trials.values().filter(|felt| is_off(felt)).count();
+            off += own_off;
+            if off_target == OffTarget::LeaveOut {
+                trials.retain(|_, felt| !is_off(felt));
+            }
+            if own_off > 0 {
+                warnings.push(format!(
+                    "{participant}, {texture}, {model}: {own_off} of {all} recordings are off the study's target and {}",
+                    match (off_target, trials.is_empty()) {
+                        (OffTarget::Keep, _) => "kept",
+                        (OffTarget::LeaveOut, false) => "left out",
+                        (OffTarget::LeaveOut, true) => "left out: there is no spectrum",
+                    }
+                ));
+            }
+            if trials.is_empty() {
+                continue;
+            }
             let mut parts = Vec::new();
             for felt in trials.values() {
                 parts.push(part(folder, felt, options)?);
@@ -141,7 +164,7 @@ pub fn felt_spectra(
             textures.insert(texture);
         }
     }
-    if recordings == 0 {
+    if recordings + off == 0 {
         return Err(StudyError::NotRecorded {
             folder: folder.to_owned(),
         });
@@ -167,6 +190,7 @@ pub fn felt_spectra(
     Ok(FeltSpectra {
         csv: table(folder, &rows)?,
         recordings,
+        off_target: off,
         warnings,
     })
 }
@@ -208,16 +232,11 @@ fn part(
 fn take(file: &Path, header: &TakeHeader) -> Result<Take, Box<dyn Error>> {
     let options = settings_of(file, header).read_options(1)?;
     let options = options.into_iter().next().unwrap_or_default();
-    let recording = read_recording(file, &options)?;
-    let given = Exploration {
-        speed_mm_s: header
-            .target_speed_mm_s
-            .filter(|_| recording.speed_mm_s.is_some()),
-        force_n: header
-            .target_force_n
-            .filter(|_| recording.normal_n.is_some()),
-    };
-    Ok(Take { recording, given })
+    // Of a participant's motion all is read: the tolerance of 10 % is the rule for recordings of textures.
+    Ok(Take {
+        recording: read_recording(file, &options)?,
+        given: Exploration::default(),
+    })
 }
 
 fn row(participant: &str, texture: &str, model: &str, spectrum: &Reference) -> Vec<String> {

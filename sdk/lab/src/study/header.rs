@@ -35,11 +35,19 @@ impl Header {
             participant: plan.participant.clone(),
             files,
             device,
+            begun: None,
             ratings: plan.trials.len() * study.attributes.len(),
             source: None,
             tool,
             simulated: None,
         })
+    }
+
+    /// The same with the date and time at which the file is begun.
+    #[must_use]
+    pub fn with_begun(mut self, date: Option<String>) -> Self {
+        self.begun = date;
+        self
     }
 
     /// The same with a source of felt forces.

@@ -1,6 +1,6 @@
 //! Lines of a file of answers: JSON Lines, one line an answer.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use htex_format::Quantity;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,9 @@ pub(crate) const VERSION: &str = "1.0";
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Line {
     /// The first line.
-    Header(Header),
+    Header(Box<Header>),
+    /// A session begins; sessions with a simulated clock, which has no date, are not marked.
+    Session(Began),
     /// A rating in the training, which is not a result.
     Training(Answer),
     /// A key press of the gain matching.
@@ -44,6 +46,9 @@ pub struct Header {
     /// BLAKE3 hashes, hexadecimal, of the study's file and of all files that it names.
     pub files: BTreeMap<String, String>,
     pub device: DeviceUsed,
+    /// Date and time in UTC at which the file was begun (`2026-11-25T10:25:25Z`); absent with a simulated clock.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub begun: Option<String>,
     /// Ratings of a complete session.
     pub ratings: usize,
     /// The source from which the felt force is recorded; absent if it is not.
@@ -66,13 +71,75 @@ pub struct Simulated {
     pub rule: String,
 }
 
-/// The device of a session.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+/// The beginning of a session.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Began {
+    /// Date and time in UTC: `2026-11-25T10:25:25Z`.
+    pub date: String,
+    /// Time, milliseconds, as in ratings.
+    pub at_ms: u64,
+    pub device: DeviceUsed,
+    /// The program.
+    pub tool: String,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub simulated: bool,
+}
+
+/// The device of a session, as it was set.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeviceUsed {
     pub adapter: String,
     /// Its profile; empty if there is none.
     pub profile: String,
+    /// All its settings, such as the gain of an amplifier: given ones, those of the profile and defaults. Names of files that a trial is
+    /// played to are left out.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub settings: BTreeMap<String, String>,
+    /// Largest magnitude that it takes, in its unit (of a display volts); absent without a limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit: Option<f64>,
+    /// Units of the device for one of the assets' quantity, where they differ.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quantity_gain: Option<f64>,
+}
+
+impl DeviceUsed {
+    /// What differs in another one, each a phrase; this one was before.
+    pub(crate) fn differences(&self, now: &Self) -> Vec<String> {
+        let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+        let values = |of: &Self| -> BTreeMap<String, String> {
+            let own = [
+                ("adapter", of.adapter.clone()),
+                ("profile", of.profile.clone()),
+                ("limit", number(of.limit)),
+                ("quantity gain", number(of.quantity_gain)),
+            ];
+            let own = own.map(|(name, value)| (name.to_owned(), value));
+            let settings = of.settings.iter();
+            let settings = settings.map(|(name, value)| (format!("setting {name}"), value.clone()));
+            own.into_iter().chain(settings).collect()
+        };
+        let (was, is) = (values(self), values(now));
+        let names: BTreeSet<&String> = was.keys().chain(is.keys()).collect();
+        let shown = |of: &BTreeMap<String, String>, name: &String| {
+            let value = of.get(name).filter(|value| !value.is_empty());
+            value.map_or("not set".to_owned(), String::clone)
+        };
+        let differs = names
+            .into_iter()
+            .filter(|name| was.get(*name) != is.get(*name));
+        differs
+            .map(|name| {
+                format!(
+                    "the device's {name} was {}, and is {}",
+                    shown(&was, name),
+                    shown(&is, name)
+                )
+            })
+            .collect()
+    }
 }
 
 /// The source of a session's felt forces, and how they are recorded.
@@ -110,6 +177,9 @@ pub struct FeltFile {
     pub file: String,
     /// BLAKE3 hash of the recording, hexadecimal.
     pub blake3: String,
+    /// How speed or force left the study's motion by more than 10 %, each a phrase; absent if they did not, or have no target.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub off_target: Vec<String>,
 }
 
 /// A rating.
@@ -135,6 +205,9 @@ pub struct Answer {
     /// Gain that it was played with, decibels relative to the maximum; absent without gain matching.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_db: Option<f64>,
+    /// How often the trial was begun before and not felt to its end, because the device ran dry.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub repeats: u32,
     /// The recording of what was felt; absent without a source.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub felt: Option<FeltFile>,
@@ -164,11 +237,17 @@ pub struct Matched {
     pub simulated: bool,
 }
 
+#[allow(clippy::trivially_copy_pass_by_ref)] // As serde calls it.
+fn is_zero(count: &u32) -> bool {
+    *count == 0
+}
+
 impl Line {
     /// Time of the line, milliseconds; 0 for the header.
     pub fn at_ms(&self) -> u64 {
         match self {
             Self::Header(_) => 0,
+            Self::Session(began) => began.at_ms,
             Self::Training(answer) | Self::Answer(answer) => answer.at_ms,
             Self::Gain(matched) => matched.at_ms,
             Self::Rest { at_ms, .. } => *at_ms,

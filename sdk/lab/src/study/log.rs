@@ -97,7 +97,7 @@ fn text(line: &Line) -> std::io::Result<String> {
 fn begin(path: &Path, header: &Header) -> Result<(), StudyError> {
     let folder = path.parent().unwrap_or(Path::new("."));
     let begun = std::fs::create_dir_all(folder)
-        .and_then(|()| text(&Line::Header(header.clone())))
+        .and_then(|()| text(&Line::Header(Box::new(header.clone()))))
         .and_then(|text| htex_files::write_file(path, text.as_bytes()))
         .and_then(|()| File::open(path)?.sync_all());
     begun.writing(path)?;
@@ -125,11 +125,11 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), StudyError> {
     let rest = lines.take(count - 1).collect::<Result<Vec<Line>, _>>()?;
     match rest.iter().position(|line| matches!(line, Line::Header(_))) {
         Some(i) => Err(damaged(i + 2, "there is a second header".to_owned())),
-        None => Ok((header, rest)),
+        None => Ok((*header, rest)),
     }
 }
 
-/// Compares all of two headers but the program.
+/// Compares all of two headers but program and date.
 fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), StudyError> {
     let changed = if begun.htex_answers != now.htex_answers {
         format!("the file has version {}", begun.htex_answers)
@@ -144,11 +144,7 @@ fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), StudyEr
     } else if let Some(name) = other_file(begun, now) {
         format!("{name} has changed since")
     } else if begun.device != now.device {
-        let (was, is) = (&begun.device, &now.device);
-        format!(
-            "the device was {} {}, and is {} {}",
-            was.adapter, was.profile, is.adapter, is.profile
-        )
+        begun.device.differences(&now.device).join("; ")
     } else if begun.source != now.source {
         other_source(begun.source.as_ref(), now.source.as_ref())
     } else {

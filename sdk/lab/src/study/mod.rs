@@ -20,6 +20,7 @@
 
 mod asking;
 mod check;
+mod date;
 mod error;
 mod export;
 mod felt;
@@ -42,8 +43,9 @@ mod simulated;
 mod stimulus;
 
 pub use asking::{Asker, Clock, Key, Played, Rig, View};
+pub use date::utc;
 pub use error::StudyError;
-pub use export::{Export, export};
+pub use export::{Export, OffTarget, export};
 pub use felt::{Felt, FeltSetup, OpenSource};
 pub use felt_spectra::{FeltSpectra, Reference, felt_spectra};
 pub use file::{
@@ -51,7 +53,9 @@ pub use file::{
     Texture, Training, VERSION,
 };
 pub use gain::{GainKey, Match};
-pub use lines::{Answer, DeviceUsed, FeltFile, Header, Line, Matched, Simulated, SourceUsed};
+pub use lines::{
+    Answer, Began, DeviceUsed, FeltFile, Header, Line, Matched, Simulated, SourceUsed,
+};
 pub use log::{Log, participant_file};
 pub use page::{Page, PageOptions, Touched};
 pub use plan::{ParticipantPlan, Plan, Trial};
@@ -59,6 +63,6 @@ pub use progress::Step;
 pub use read::{check_files, files_of, read_study, study_schema};
 pub use rules::{RULES, findings_page};
 pub use run::{Ended, run};
-pub use session::Session;
+pub use session::{Presented, Session};
 pub use simulated::SimulatedParticipant;
 pub use stimulus::{Stimulus, scene_of, set_gain};

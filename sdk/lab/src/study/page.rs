@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -14,9 +14,6 @@ use crate::study::asking::{Asker, Key, View};
 use crate::study::error::StudyError;
 use crate::study::file::GainMethod;
 use crate::study::gain::GainKey;
-
-/// A question or a matching takes no answer for this long: the second press of a key that answered the one before.
-const GUARD: Duration = Duration::from_millis(300);
 
 /// What a page is for.
 #[derive(Debug, Clone, Default)]
@@ -73,18 +70,7 @@ impl Page {
     pub fn open(options: PageOptions) -> Result<Self, StudyError> {
         let port = options.port;
         let (sender, touched) = channel();
-        let asked = Arc::new(Asked(Mutex::new(State {
-            options,
-            step: 0,
-            view: View::Done,
-            shown: Instant::now(),
-            done: 0,
-            all: 0,
-            keys: VecDeque::new(),
-            answered: None,
-            seen: 0,
-            touched: sender,
-        })));
+        let asked = Arc::new(Asked(Mutex::new(State::new(options, sender))));
         Ok(Self {
             served: LocalPage::open(port, Arc::clone(&asked))?,
             asked,
@@ -104,12 +90,7 @@ impl Page {
 
 impl Asker for Page {
     fn show(&mut self, view: &View, done: usize, all: usize) {
-        let mut state = self.asked.lock();
-        state.step += 1;
-        state.view = view.clone();
-        state.shown = Instant::now();
-        (state.done, state.all) = (done, all);
-        state.keys.clear();
+        self.asked.lock().show(view, done, all);
     }
 
     fn key(&mut self) -> Option<Key> {
@@ -162,6 +143,29 @@ struct Shown<'a> {
 }
 
 impl State {
+    fn new(options: PageOptions, touched: Sender<Touched>) -> Self {
+        Self {
+            options,
+            step: 0,
+            view: View::Done,
+            shown: Instant::now(),
+            done: 0,
+            all: 0,
+            keys: VecDeque::new(),
+            answered: None,
+            seen: 0,
+            touched,
+        }
+    }
+
+    fn show(&mut self, view: &View, done: usize, all: usize) {
+        self.step += 1;
+        self.view = view.clone();
+        self.shown = Instant::now();
+        (self.done, self.all) = (done, all);
+        self.keys.clear();
+    }
+
     fn reply(&mut self) -> Value {
         self.seen = self.step;
         json!(Shown {
@@ -182,8 +186,7 @@ impl State {
         if step != Some(self.step) || self.answered == Some(self.step) {
             return;
         }
-        let is_guarded = matches!(self.view, View::Question { .. } | View::Matching { .. });
-        if is_guarded && self.shown.elapsed() < GUARD {
+        if self.shown.elapsed() < self.view.guard() {
             return;
         }
         if let Some(key) = key(name, &self.view) {
@@ -226,5 +229,39 @@ fn key(name: &str, view: &View) -> Option<Key> {
             is_taken.then_some(Key::Gain(key))
         }
         View::Playing { .. } | View::Rest { .. } | View::Done => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::study::file::Phase;
+
+    /// A double press, of which the second one comes 0.15 to 0.45 s after the first one: it ends the rest, and begins no trial.
+    #[test]
+    fn a_double_press_at_a_rest_begins_no_trial() {
+        let mut state = State::new(PageOptions::default(), channel().0);
+        let ready = View::Ready {
+            phase: Phase::Testing,
+            texture: "vinyl".to_owned(),
+            notice: None,
+        };
+        let pressed = |state: &mut State| {
+            state.press(&json!({ "step": state.step, "key": "go" }));
+            state.keys.pop_front()
+        };
+        for apart_ms in [150, 300, 450] {
+            state.show(&View::Rest { seconds: 0 }, 1, 2);
+            assert_eq!(pressed(&mut state), None, "before the message is read");
+            std::thread::sleep(View::Rest { seconds: 0 }.guard());
+            assert_eq!(pressed(&mut state), Some(Key::Go));
+            state.show(&ready, 1, 2);
+            std::thread::sleep(Duration::from_millis(apart_ms));
+            assert_eq!(pressed(&mut state), None, "{apart_ms} ms");
+            std::thread::sleep(ready.guard());
+            assert_eq!(pressed(&mut state), Some(Key::Go));
+        }
     }
 }

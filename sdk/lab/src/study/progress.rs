@@ -102,6 +102,9 @@ impl Progress {
         plan: &ParticipantPlan,
         line: &Line,
     ) -> Result<(), String> {
+        if matches!(line, Line::Session(_)) {
+            return Ok(());
+        }
         match (self.step(study, plan), line) {
             (Step::Rate(Phase::Training, trial, attribute), Line::Training(answer)) => {
                 belongs(&trial, &attribute.name, answer, study)?;

@@ -6,15 +6,17 @@ use crate::study::asking::{Asker, Clock, Key, Played, Rig, View};
 use crate::study::error::StudyError;
 use crate::study::file::{Attribute, Phase};
 use crate::study::gain::{GainKey, Match};
-use crate::study::lines::FeltFile;
 use crate::study::plan::Trial;
 use crate::study::progress::Step;
-use crate::study::session::Session;
+use crate::study::session::{Presented, Session};
 use crate::study::simulated::SimulatedParticipant;
 use crate::study::stimulus::Stimulus;
 
 /// Time between two looks at the keys while nothing plays.
 const LOOK: Duration = Duration::from_millis(5);
+/// How often something is played again after the device ran dry: another program takes the processor for a moment, seldom three times in
+/// a row; a buffer that is too small runs dry each time.
+const MOST_REPEATS: u32 = 2;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,6 +39,9 @@ pub fn run<R: Rig>(
     simulated: Option<&SimulatedParticipant>,
 ) -> Result<Ended, R::Error> {
     clock.go_on_at(session.last_ms());
+    if let Some(date) = clock.date() {
+        session.begin(date, clock.now_ms())?;
+    }
     let mut run = Run {
         session,
         rig,
@@ -44,7 +49,8 @@ pub fn run<R: Rig>(
         clock,
         simulated,
         felt: None,
-        recorded: None,
+        presented: Presented::default(),
+        notice: None,
     };
     loop {
         let goes_on = match run.session.step() {
@@ -70,8 +76,10 @@ struct Run<'r, 's, R: Rig> {
     simulated: Option<&'r SimulatedParticipant>,
     /// What was felt last: a trial before its questions, or a texture that is being matched.
     felt: Option<(Phase, String)>,
-    /// The recording of the trial that was felt last.
-    recorded: Option<FeltFile>,
+    /// How the trial that was felt last was played.
+    presented: Presented,
+    /// What is said in the next view.
+    notice: Option<String>,
 }
 
 impl<R: Rig> Run<'_, '_, R> {
@@ -104,7 +112,12 @@ impl<R: Rig> Run<'_, '_, R> {
             return true;
         }
         let texture = texture.to_owned();
-        self.show(&View::Ready { phase, texture });
+        let notice = self.notice.take();
+        self.show(&View::Ready {
+            phase,
+            texture,
+            notice,
+        });
         self.wait(|key| (key == Key::Go).then_some(())).is_some()
     }
 
@@ -112,7 +125,7 @@ impl<R: Rig> Run<'_, '_, R> {
         let stimulus = self.session.stimulus(phase, trial);
         let this = (phase, stimulus.file.clone());
         if self.felt.as_ref() != Some(&this) {
-            if !self.ready(phase, &trial.texture) || !self.play(&stimulus)? {
+            if !self.play(phase, &stimulus)? {
                 return Ok(false);
             }
             self.felt = Some(this);
@@ -121,25 +134,75 @@ impl<R: Rig> Run<'_, '_, R> {
             return Ok(false);
         };
         let at_ms = self.clock.now_ms();
-        let felt = self.recorded.clone();
-        self.session.rate(rating, response_ms, at_ms, felt)?;
+        let presented = self.presented.clone();
+        self.session.rate(rating, response_ms, at_ms, presented)?;
         Ok(true)
     }
 
-    /// Plays a trial to its end; false when the session is left.
-    fn play(&mut self, stimulus: &Stimulus) -> Result<bool, R::Error> {
-        let texture = stimulus.texture.clone();
-        self.show(&View::Playing { texture });
+    /// Plays a trial to its end, from its beginning when the device ran dry; false when the session is left.
+    fn play(&mut self, phase: Phase, stimulus: &Stimulus) -> Result<bool, R::Error> {
+        self.presented = Presented::default();
         let mut left = false;
-        let asker = &mut self.asker;
-        let mut ends = || {
-            left |= asker.key() == Some(Key::Quit);
-            left
+        let played = loop {
+            if !self.ready(phase, &stimulus.texture) {
+                return Ok(false);
+            }
+            let texture = stimulus.texture.clone();
+            self.show(&View::Playing { texture });
+            let mut ends = |asker: &mut dyn Asker| {
+                left |= asker.key() == Some(Key::Quit);
+                left
+            };
+            if let Some(played) = self.attempt(stimulus, &mut ends)? {
+                break played;
+            }
         };
-        self.recorded = self.rig.play(stimulus, &mut ends)?.felt;
         let seconds = stimulus.seconds.unwrap_or(0.0);
         self.clock.played(Duration::from_secs_f64(seconds));
+        self.presented.felt = played.felt;
+        self.tell_off_target(stimulus);
         Ok(!left && !self.rig.is_interrupted())
+    }
+
+    /// Plays once; `None` if the device ran dry, and it is to be played again. [`Presented::repeats`] counts.
+    fn attempt(
+        &mut self,
+        stimulus: &Stimulus,
+        ends: &mut dyn FnMut(&mut dyn Asker) -> bool,
+    ) -> Result<Option<Played>, R::Error> {
+        let asker = &mut *self.asker;
+        let error = match self.rig.play(stimulus, &mut || ends(&mut *asker)) {
+            Err(error) if R::ran_dry(&error) => error,
+            played => return played.map(Some),
+        };
+        if self.presented.repeats == MOST_REPEATS {
+            let (times, error) = (MOST_REPEATS + 1, error.to_string());
+            return Err(StudyError::RanDry { times, error }.into());
+        }
+        self.presented.repeats += 1;
+        self.say(format!(
+            "the device ran dry, and {} is played again ({error})",
+            stimulus.file
+        ));
+        Ok(None)
+    }
+
+    /// Says how a trial left its target.
+    fn tell_off_target(&mut self, stimulus: &Stimulus) {
+        let reasons = self.presented.felt.as_ref().map(|felt| &felt.off_target);
+        if let Some(reasons) = reasons.filter(|reasons| !reasons.is_empty()) {
+            self.say(format!(
+                "{} was off its target: {}",
+                stimulus.file,
+                reasons.join("; ")
+            ));
+        }
+    }
+
+    /// Says something to the person who conducts the session, and in the participant's next view.
+    fn say(&mut self, notice: String) {
+        self.rig.tell(&notice);
+        self.notice = Some(notice);
     }
 
     /// The rating and the time that it took, milliseconds.
@@ -150,6 +213,7 @@ impl<R: Rig> Run<'_, '_, R> {
         asked: &Attribute,
     ) -> Result<Option<(u8, u64)>, R::Error> {
         let scale = self.session.study().scale.clone();
+        let notice = self.notice.take();
         if let Some(simulated) = self.simulated {
             let (texture, model) = (&trial.texture, &trial.model);
             let error_db =
@@ -166,7 +230,11 @@ impl<R: Rig> Run<'_, '_, R> {
         }
         let attribute = asked.clone();
         let range = scale.min..=scale.max;
-        self.show(&View::Question { attribute, scale });
+        self.show(&View::Question {
+            attribute,
+            scale,
+            notice,
+        });
         let start_ms = self.clock.now_ms();
         let rating = self.wait(|key| match key {
             Key::Digit(digit) if range.contains(&digit) => Some(digit),
@@ -186,14 +254,19 @@ impl<R: Rig> Run<'_, '_, R> {
             self.felt = Some(this);
         }
         let stimulus = self.session.matching_stimulus(texture, matching);
+        self.presented = Presented::default();
         let (key, played) = match self.simulated {
             Some(simulated) => {
+                let seconds = self.session.study().trial_s;
                 let stimulus = Stimulus {
-                    seconds: Some(self.session.study().trial_s),
+                    seconds: Some(seconds),
                     ..stimulus
                 };
-                let played = self.rig.play(&stimulus, &mut || false)?;
-                let seconds = self.session.study().trial_s;
+                let played = loop {
+                    if let Some(played) = self.attempt(&stimulus, &mut |_| false)? {
+                        break played;
+                    }
+                };
                 self.clock.played(Duration::from_secs_f64(seconds));
                 let left = self.rig.is_interrupted();
                 let key = simulated.gain_key(texture, matching);
@@ -225,8 +298,7 @@ impl<R: Rig> Run<'_, '_, R> {
             gain_db: matching.gain_db(),
         });
         let (mut pressed, mut left) = (None, false);
-        let asker = &mut self.asker;
-        let mut ends = || {
+        let mut ends = |asker: &mut dyn Asker| {
             if left || pressed.is_some() {
                 return true;
             }
@@ -241,8 +313,10 @@ impl<R: Rig> Run<'_, '_, R> {
         };
         // A motion that is a trace ends before a person has decided, and begins anew.
         let played = loop {
-            let played = self.rig.play(stimulus, &mut ends)?;
-            if ends() || self.rig.is_interrupted() {
+            let Some(played) = self.attempt(stimulus, &mut ends)? else {
+                continue;
+            };
+            if ends(&mut *self.asker) || self.rig.is_interrupted() {
                 break played;
             }
         };

@@ -6,7 +6,7 @@ use crate::study::Study;
 use crate::study::error::StudyError;
 use crate::study::file::Phase;
 use crate::study::gain::{GainKey, Match};
-use crate::study::lines::{Answer, FeltFile, Header, Line, Matched};
+use crate::study::lines::{Answer, Began, DeviceUsed, FeltFile, Header, Line, Matched};
 use crate::study::log::{Log, participant_file};
 use crate::study::plan::{ParticipantPlan, Trial};
 use crate::study::progress::{Progress, Step};
@@ -21,6 +21,17 @@ pub struct Session<'a> {
     progress: Progress,
     is_simulated: bool,
     is_recorded: bool,
+    device: DeviceUsed,
+    tool: String,
+}
+
+/// How a trial was played before it was rated.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Presented {
+    /// The recording of what was felt, if there is one.
+    pub felt: Option<FeltFile>,
+    /// How often it was begun before, and ended because the device ran dry.
+    pub repeats: u32,
 }
 
 impl<'a> Session<'a> {
@@ -52,6 +63,8 @@ impl<'a> Session<'a> {
             progress,
             is_simulated: header.simulated.is_some(),
             is_recorded: header.source.is_some(),
+            device: header.device.clone(),
+            tool: header.tool.clone(),
         })
     }
 
@@ -127,7 +140,21 @@ impl<'a> Session<'a> {
         crate::study::random::Dice::new(self.study.seed, &purpose).bits()
     }
 
-    /// Records a rating of the present step, and the recording of what was felt before it.
+    /// Records that a session begins at a date ([`crate::study::utc`]), with which device.
+    ///
+    /// # Errors
+    /// [`StudyError::File`].
+    pub fn begin(&mut self, date: String, at_ms: u64) -> Result<(), StudyError> {
+        self.record(Line::Session(Began {
+            date,
+            at_ms,
+            device: self.device.clone(),
+            tool: self.tool.clone(),
+            simulated: self.is_simulated,
+        }))
+    }
+
+    /// Records a rating of the present step, and how its trial was played.
     ///
     /// # Errors
     /// [`StudyError::File`], and [`StudyError::Line`] if the present step takes no such rating.
@@ -136,7 +163,7 @@ impl<'a> Session<'a> {
         rating: u8,
         response_ms: u64,
         at_ms: u64,
-        felt: Option<FeltFile>,
+        presented: Presented,
     ) -> Result<(), StudyError> {
         let Step::Rate(phase, trial, attribute) = self.step() else {
             return Err(self.misplaced("no trial is rated now"));
@@ -152,7 +179,8 @@ impl<'a> Session<'a> {
             rating,
             response_ms,
             at_ms,
-            felt,
+            repeats: presented.repeats,
+            felt: presented.felt,
             simulated: self.is_simulated,
         };
         self.record(match phase {

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use htex_author::Exploration;
 use htex_format::Quantity;
 use htex_lab::record::{
-    Format, Moment, Next, RecordError, Recorded, Replay, Session, Setup, Signals, Tare, TrackerRows,
+    Format, Moment, Next, RecordError, Recorded, Replay, Required, Session, Setup, Signals, Tare,
+    TrackerRows,
 };
 use htex_simulate::{SimulationOptions, Surface, simulate};
 
@@ -20,6 +21,7 @@ pub struct Settings {
     pub seconds: f64,
     pub tare: Tare,
     pub target: Exploration,
+    pub required: Required,
     pub attempts: u32,
     pub format: Format,
     pub stop_after: usize,
@@ -32,6 +34,7 @@ impl Default for Settings {
             seconds: 4.0,
             tare: Tare::Never,
             target: Exploration::default(),
+            required: Required::NOTHING,
             attempts: 3,
             format: Format::Csv,
             stop_after: usize::MAX,
@@ -41,23 +44,34 @@ impl Default for Settings {
 
 /// A file of simulated takes of 4 s one after the other, each of this force (N) and of 80 mm/s.
 pub fn sweeps(folder: &Path, forces_n: &[f64]) -> PathBuf {
+    let takes = forces_n.iter().map(|force_n| take(*force_n, 4.0));
+    source(folder, &takes.collect::<Vec<_>>().concat())
+}
+
+/// A file that is recorded: rows of forces (N) and positions (mm).
+pub fn source(folder: &Path, rows: &[String]) -> PathBuf {
     let path = folder.join("source.csv");
-    let mut text = "fx_n,fy_n,fz_n,x_mm,y_mm\n".to_owned();
-    for force_n in forces_n {
-        let options = SimulationOptions::new(Surface::Vinyl)
-            .with_rate_hz(RATE_HZ)
-            .with_duration_s(4.0)
-            .with_force_n(*force_n);
-        let mut csv = Vec::new();
-        simulate(&options).unwrap().write_csv(&mut csv).unwrap();
-        let csv = String::from_utf8(csv).unwrap();
-        for line in csv.lines().skip(2) {
-            text += line.split_once(',').unwrap().1;
-            text += "\n";
-        }
-    }
+    let text = format!("fx_n,fy_n,fz_n,x_mm,y_mm\n{}\n", rows.join("\n"));
     fs::write(&path, text).unwrap();
     path
+}
+
+/// The rows of a simulated take of this force (N) and length (s), at 80 mm/s.
+pub fn take(force_n: f64, seconds: f64) -> Vec<String> {
+    let options = SimulationOptions::new(Surface::Vinyl)
+        .with_rate_hz(RATE_HZ)
+        .with_duration_s(seconds)
+        .with_force_n(force_n);
+    rows(&options)
+}
+
+/// The rows of a simulated take.
+pub fn rows(options: &SimulationOptions) -> Vec<String> {
+    let mut csv = Vec::new();
+    simulate(options).unwrap().write_csv(&mut csv).unwrap();
+    let csv = String::from_utf8(csv).unwrap();
+    let row = |line: &str| line.split_once(',').unwrap().1.to_owned();
+    csv.lines().skip(2).map(row).collect()
 }
 
 pub fn record(folder: &Path, source: &Path, settings: &Settings) -> Result<Recorded, RecordError> {
@@ -88,6 +102,7 @@ pub fn session(
         quantity: Quantity::LateralForce,
         target: settings.target,
         tolerance: 0.1,
+        required: settings.required,
         attempts: settings.attempts,
         format: settings.format,
         tool: "test".to_owned(),

@@ -1,0 +1,99 @@
+//! Findings of recordings by code: of a texture, and of all textures of a build.
+
+use std::collections::BTreeMap;
+
+use htex_author::RecordingFinding;
+use htex_author::findings::RULES;
+use htex_finding::Severity;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::report::{Status, TextureReport};
+
+/// Names of textures that a share lists.
+const NAMED: usize = 3;
+/// Codes that no recording of an asset has: the first two stop a fit, the last one stands for a reader's sentence.
+const NOT_OF_ASSETS: [&str; 3] = [
+    "RECORDING_UNREADABLE",
+    "RECORDING_UNUSABLE",
+    "RECORDING_NOTED",
+];
+
+/// The findings of one code in the recordings of a texture.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct FindingReport {
+    /// Code of the rule (`spec/recording-findings.md`).
+    pub code: String,
+    /// Severity.
+    pub severity: Severity,
+    /// Recordings that have it.
+    pub recordings: Vec<String>,
+    /// What was found in the first of them.
+    pub message: String,
+}
+
+/// Of the textures of a build that have an asset, those with a finding of one code.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct FindingShare {
+    /// Severity.
+    pub severity: Severity,
+    /// Number of textures.
+    pub textures: usize,
+    /// Number of them that are in the library.
+    pub in_library: usize,
+    /// Names of the first three of them.
+    pub first: Vec<String>,
+}
+
+/// Gathers the findings of a texture by code, in the order of their first occurrence.
+pub(crate) fn by_code(findings: &[RecordingFinding]) -> Vec<FindingReport> {
+    let mut reports: Vec<FindingReport> = Vec::new();
+    for RecordingFinding { recording, finding } in findings {
+        match reports.iter_mut().find(|r| r.code == finding.code) {
+            Some(report) if report.recordings.last() == Some(recording) => {}
+            Some(report) => report.recordings.push(recording.clone()),
+            None => reports.push(FindingReport {
+                code: finding.code.clone(),
+                severity: finding.severity,
+                recordings: vec![recording.clone()],
+                message: finding.message.clone(),
+            }),
+        }
+    }
+    reports
+}
+
+/// Counts, by code, the textures that have a finding.
+pub(crate) fn shares(textures: &[TextureReport]) -> BTreeMap<String, FindingShare> {
+    let mut shares: BTreeMap<String, FindingShare> = BTreeMap::new();
+    for texture in textures {
+        let assets = texture.asset.iter();
+        for finding in assets.flat_map(|asset| &asset.findings) {
+            let share = shares.entry(finding.code.clone());
+            let share = share.or_insert_with(|| FindingShare {
+                severity: finding.severity,
+                textures: 0,
+                in_library: 0,
+                first: Vec::new(),
+            });
+            share.textures += 1;
+            share.in_library += usize::from(texture.status == Status::Built);
+            if share.first.len() < NAMED {
+                share.first.push(texture.name.clone());
+            }
+        }
+    }
+    shares
+}
+
+/// Returns the problem of a code that the recordings of no asset can have, if it is one.
+pub(crate) fn unknown_code(code: &str) -> Option<String> {
+    let all = RULES.iter().map(|rule| rule.code);
+    let known: Vec<&str> = all.filter(|known| !NOT_OF_ASSETS.contains(known)).collect();
+    (!known.contains(&code)).then(|| {
+        format!(
+            "no recording of an asset has a finding {code}; there are {}",
+            known.join(", ")
+        )
+    })
+}

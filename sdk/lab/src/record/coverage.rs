@@ -1,0 +1,186 @@
+//! How much of a take is of use: the share in which the finger slides on its target, and its sweeps.
+//!
+//! The spectrum of a take is that of the middles of its sweeps, in which the finger may be on target although it was lifted for the
+//! rest. A finger that was lifted from 3.2 s of 10 s left three sweeps, whose middles kept to the target.
+
+use htex_author::recording::Sums;
+use htex_author::{Recording, Segments, sliding};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::record::guide::Guidance;
+
+/// Half the length of the means by which a take is judged (50 ms in all), seconds.
+const HALF_MEAN_S: f64 = 0.025;
+/// Lowest speed at which the finger moves on its target, as a part of it: it turns between sweeps, and in a stroke of minimum jerk
+/// (T. Flash, N. Hogan 1985, Journal of Neuroscience 5), as hands make them, the speed rises and falls all the time: at most 0.31 of the
+/// stroke are within 10 % of a target speed, and 0.57 above half of it.
+const LOWEST_SPEED: f64 = 0.5;
+/// Rounding that is no difference, relative.
+const ROUNDING: f64 = 1e-9;
+
+/// What a take must have to be kept, beside its target.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Required {
+    /// Least share of the take in which the finger slides on its target, 0 to 1 ([`Coverage::on_target`]); 0 asks for nothing.
+    pub on_target: f64,
+    /// Fewest complete sweeps; 0 asks for none.
+    pub sweeps: u32,
+}
+
+impl Required {
+    /// Nothing is asked for.
+    pub const NOTHING: Self = Self {
+        on_target: 0.0,
+        sweeps: 0,
+    };
+    /// The share that is asked for unless another one is given. Simulated takes of 10 s over 83 mm, of five surfaces with four seeds each,
+    /// had 0.65 (at 240 mm/s) to 0.95 (at 20 mm/s), and at most 0.47 when the finger was lifted for the second half.
+    pub const USUAL_ON_TARGET: f64 = 0.5;
+
+    /// The sweeps that are asked for unless another number is given: half of the strokes that the target makes in a take of this length
+    /// (seconds), but for the first and the last one, which its ends cut off; 0 without a target speed, where no strokes are shown.
+    #[must_use]
+    pub fn usual_sweeps(guidance: &Guidance, seconds: f64) -> u32 {
+        let strokes = guidance.turns(seconds).unwrap_or(0);
+        u32::try_from((strokes - 2) / 2).unwrap_or(0)
+    }
+}
+
+/// A target, and the tolerance around it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Target {
+    pub(crate) value: f64,
+    /// Allowed relative difference.
+    pub(crate) tolerance: f64,
+}
+
+impl Target {
+    /// Lowest and highest value that is allowed.
+    pub(crate) fn range(self) -> [f64; 2] {
+        let allowed = self.tolerance * self.value.abs();
+        [self.value - allowed, self.value + allowed]
+    }
+
+    /// The range of a speed at which the finger moves, not only in the middle of a sweep.
+    fn moving(self) -> [f64; 2] {
+        let [_, high] = self.range();
+        [LOWEST_SPEED * self.value.abs(), high]
+    }
+
+    /// Whether a number is within the tolerance; one that is not a number is not.
+    pub(crate) fn is_met(self, value: f64) -> bool {
+        (value - self.value).abs() <= self.tolerance * self.value.abs() * (1.0 + ROUNDING)
+    }
+}
+
+/// The use of a take. Shares are of its length, 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Coverage {
+    /// Share in which the finger slides on its target: with a friction of half the mean or more, at half of the target speed or more and
+    /// at most the tolerance above it, and with a force within the tolerance; each as a mean over 50 ms, where there is a target.
+    pub on_target: f64,
+    /// Share in which the finger slides.
+    pub sliding: f64,
+    /// Share in which the speed is so; absent without a target or a speed.
+    pub speed: Option<f64>,
+    /// Share in which the normal force is so; absent without a target or a force.
+    pub force: Option<f64>,
+    /// Complete sweeps.
+    pub sweeps: usize,
+    /// Begin and end of the longest time that is not on target, seconds; absent if all is.
+    pub longest_off_s: Option<[f64; 2]>,
+}
+
+impl Coverage {
+    /// Measures a recording; the targets are those of speed (mm/s) and force (N).
+    pub(crate) fn of(
+        recording: &Recording,
+        segments: &Segments,
+        [speed, force]: [Option<Target>; 2],
+    ) -> Self {
+        let half = (HALF_MEAN_S * recording.rate_hz).round() as usize;
+        let slides = sliding(recording);
+        let speed = within(
+            recording.speed_mm_s.as_deref(),
+            speed.map(Target::moving),
+            half,
+        );
+        let force = within(
+            recording.normal_n.as_deref(),
+            force.map(Target::range),
+            half,
+        );
+        let holds = |signal: &Option<Vec<bool>>, at: usize| signal.as_ref().is_none_or(|on| on[at]);
+        let all = (0..slides.len()).map(|at| slides[at] && holds(&speed, at) && holds(&force, at));
+        let all: Vec<bool> = all.collect();
+        let longest = longest_off(&all);
+        Self {
+            on_target: share(&all),
+            sliding: share(&slides),
+            speed: speed.as_deref().map(share),
+            force: force.as_deref().map(share),
+            sweeps: segments.sweeps.len() - segments.cut_off,
+            longest_off_s: longest.map(|ends| ends.map(|at| at as f64 / recording.rate_hz)),
+        }
+    }
+
+    /// What the take lacks, each a phrase.
+    pub(crate) fn lacks(&self, required: Required) -> Vec<String> {
+        let share = (self.on_target < required.on_target).then(|| self.share_lacking(required));
+        let sweeps = (self.sweeps < required.sweeps as usize).then(|| {
+            format!(
+                "complete sweeps: {}, at least {} asked for",
+                self.sweeps, required.sweeps
+            )
+        });
+        share.into_iter().chain(sweeps).collect()
+    }
+
+    fn share_lacking(&self, required: Required) -> String {
+        let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+        let mut parts = vec![format!("it slides in {}", percent(self.sliding))];
+        let known = [("speed", self.speed), ("force", self.force)];
+        parts.extend(known.into_iter().filter_map(|(what, share)| {
+            share.map(|share| format!("its {what} is on target in {}", percent(share)))
+        }));
+        let longest = self.longest_off_s.map_or(String::new(), |[from, to]| {
+            format!("; the longest time off is {from:.1} to {to:.1} s")
+        });
+        format!(
+            "the finger slides on target in {} of the take, at least {} is asked for ({}{longest})",
+            percent(self.on_target),
+            percent(required.on_target),
+            parts.join(", ")
+        )
+    }
+}
+
+/// Whether the mean over 50 ms around each sample is within a range; `None` without a range or values.
+fn within(values: Option<&[f64]>, range: Option<[f64; 2]>, half: usize) -> Option<Vec<bool>> {
+    let (values, [low, high]) = (values?, range?);
+    let means = Sums::of(values.iter().copied());
+    let is_within = |at| (low..=high).contains(&means.mean_around(at, half));
+    Some((0..values.len()).map(is_within).collect())
+}
+
+fn share(on: &[bool]) -> f64 {
+    on.iter().filter(|on| **on).count() as f64 / on.len().max(1) as f64
+}
+
+/// The first sample of the longest stretch that is off, and one past its last.
+fn longest_off(on: &[bool]) -> Option<[usize; 2]> {
+    let mut longest: Option<[usize; 2]> = None;
+    let mut begin = 0;
+    for (at, is_on) in on.iter().copied().chain([true]).enumerate() {
+        if is_on {
+            let is_longer = longest.is_none_or(|[from, to]| at - begin > to - from);
+            if at > begin && is_longer {
+                longest = Some([begin, at]);
+            }
+            begin = at + 1;
+        }
+    }
+    longest
+}

@@ -181,7 +181,7 @@ fn knobs_change_the_fit() {
                 "mfcc.bands=20",
             ],
         ),
-        ("speak", &["speak.phase=seed"]),
+        ("speak", &["speak.phase=zero", "speak.frequency=bin"]),
         (
             "sbeta",
             &["sbeta.points=20", "sbeta.jnd=0.4", "sbeta.error=decibel"],

@@ -4,6 +4,9 @@
 use htex_host::{Band, Fit, FitRequest, LoadedModel, Registry};
 use htex_tests::{Golden, smooth_spectrum};
 
+/// The paper's reading of sPeak.
+const PAPER_SPEAK: [(&str, &str); 2] = [("frequency", "bin"), ("phase", "zero")];
+
 fn model(name: &str) -> LoadedModel {
     Registry::builtin().find(name).unwrap().clone()
 }
@@ -59,7 +62,7 @@ fn speak_peaks_and_samples() {
     let speak = model("speak");
     for name in ["rippled", "few_peaks"] {
         let case = Golden::case("speak", name);
-        let fit = fit(&speak, &case.input("mag"), &[]);
+        let fit = fit(&speak, &case.input("mag"), &PAPER_SPEAK);
         let n = fit.parameters[0] as usize;
         case.hold("/f_hz", &fit.parameters[1..=n]);
         let amplitudes = &fit.parameters[n + 2..2 * n + 2];

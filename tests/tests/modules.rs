@@ -11,7 +11,7 @@ const BOUNDS: &[(&str, usize)] = &[
     ("bands", 28_600),
     ("mfcc", 31_500),
     ("sbeta", 30_100),
-    ("speak", 18_500),
+    ("speak", 19_800),
     ("sslope", 24_600),
 ];
 

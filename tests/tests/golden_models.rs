@@ -6,6 +6,9 @@ use htex_tests::{Golden, smooth_spectrum};
 
 /// The paper's reading of sPeak.
 const PAPER_SPEAK: [(&str, &str); 2] = [("frequency", "bin"), ("phase", "zero")];
+/// The paper's reading of sBeta.
+const PAPER_SBETA: [(&str, &str); 3] =
+    [("error", "magnitude"), ("lower_bound", "1"), ("bins", "0")];
 
 fn model(name: &str) -> LoadedModel {
     Registry::builtin().find(name).unwrap().clone()
@@ -118,7 +121,7 @@ fn sbeta_fits_of_ten_points() {
         let Some(spectrum) = spectrum_of_points(&case.input("f_hz"), &case.input("amp")) else {
             continue;
         };
-        let fit = fit(&sbeta, &spectrum, &[]);
+        let fit = fit(&sbeta, &spectrum, &PAPER_SBETA);
         case.hold("/alpha", &fit.parameters[..1]);
         case.hold("/beta", &fit.parameters[1..]);
         // The scale is in the level: newtons at a frequency over the density there.

@@ -140,8 +140,8 @@ fn a_fit_that_misses_its_bands_is_told_with_what_does_better() {
         let error = &fitted["representations"][0]["band_error_rms_db"];
         (error.as_f64().unwrap(), fitted["warnings"].to_string())
     };
-    let (by_magnitude_db, told) = fit(&[]);
-    let (by_decibel_db, silent) = fit(&["--option", "sbeta.error=decibel"]);
+    let (by_magnitude_db, told) = fit(&["--option", "sbeta.error=magnitude"]);
+    let (by_decibel_db, silent) = fit(&[]);
     println!("{by_magnitude_db:.1} dB, in decibels {by_decibel_db:.1} dB\n{told}");
     assert!(by_magnitude_db > 30.0 && by_decibel_db < 8.0);
     let advice = format!("sbeta.error=decibel with {by_decibel_db:.1} dB, the model bands with ");
@@ -181,10 +181,15 @@ fn knobs_change_the_fit() {
                 "mfcc.bands=20",
             ],
         ),
-        ("speak", &["speak.phase=seed"]),
+        ("speak", &["speak.phase=zero", "speak.frequency=bin"]),
         (
             "sbeta",
-            &["sbeta.points=20", "sbeta.jnd=0.4", "sbeta.error=decibel"],
+            &[
+                "sbeta.points=20",
+                "sbeta.jnd=0.4",
+                "sbeta.error=magnitude",
+                "sbeta.bins=0",
+            ],
         ),
         ("sslope", &["sslope.rounding_db_per_decade=5"]),
         (

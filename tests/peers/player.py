@@ -181,8 +181,20 @@ def speak(p, band, f):
         lobe = np.sinc(d) / (1 - d**2)
     lobe = np.where(np.abs(d - 1) < 1e-7, 0.5, lobe)
     lobe = np.where(d >= 2, 0.0, lobe)
-    m = np.sqrt(((a * lobe) ** 2).sum(axis=1)) / np.sqrt((a**2).sum() / 2)
+    m = np.sqrt(((a * lobe) ** 2).sum(axis=1)) / np.sqrt((a**2 * read_part(lines, band)).sum() / 2)
     return np.where(band.holds(f), m, 0.0)
+
+
+def read_part(lines, band):
+    """The part of each line's power that the band's bins read."""
+    d = np.subtract.outer(lines, band.grid) / 5
+    with np.errstate(divide="ignore", invalid="ignore"):
+        height = np.sinc(d) / (1 - d**2)
+    height = np.where(np.abs(np.abs(d) - 1) < 1e-7, 0.5, height)
+    near = np.abs(np.subtract.outer(np.round(lines / 5), np.round(band.grid / 5))) <= 4
+    part = (np.where(near, height, 0.0) ** 2).sum(axis=1) / 1.5
+    inside = (lines >= band.grid[0] + 20) & (lines <= band.grid[-1] - 20)
+    return np.where(inside, 1.0, part)
 
 
 @normed

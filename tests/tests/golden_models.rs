@@ -4,6 +4,12 @@
 use htex_host::{Band, Fit, FitRequest, LoadedModel, Registry};
 use htex_tests::{Golden, smooth_spectrum};
 
+/// The paper's reading of sPeak.
+const PAPER_SPEAK: [(&str, &str); 2] = [("frequency", "bin"), ("phase", "zero")];
+/// The paper's reading of sBeta.
+const PAPER_SBETA: [(&str, &str); 3] =
+    [("error", "magnitude"), ("lower_bound", "1"), ("bins", "0")];
+
 fn model(name: &str) -> LoadedModel {
     Registry::builtin().find(name).unwrap().clone()
 }
@@ -59,7 +65,7 @@ fn speak_peaks_and_samples() {
     let speak = model("speak");
     for name in ["rippled", "few_peaks"] {
         let case = Golden::case("speak", name);
-        let fit = fit(&speak, &case.input("mag"), &[]);
+        let fit = fit(&speak, &case.input("mag"), &PAPER_SPEAK);
         let n = fit.parameters[0] as usize;
         case.hold("/f_hz", &fit.parameters[1..=n]);
         let amplitudes = &fit.parameters[n + 2..2 * n + 2];
@@ -115,7 +121,7 @@ fn sbeta_fits_of_ten_points() {
         let Some(spectrum) = spectrum_of_points(&case.input("f_hz"), &case.input("amp")) else {
             continue;
         };
-        let fit = fit(&sbeta, &spectrum, &[]);
+        let fit = fit(&sbeta, &spectrum, &PAPER_SBETA);
         case.hold("/alpha", &fit.parameters[..1]);
         case.hold("/beta", &fit.parameters[1..]);
         // The scale is in the level: newtons at a frequency over the density there.

@@ -9,6 +9,8 @@ use proptest::prelude::*;
 
 const CASES: u32 = 10_000;
 const BAND: Band = Band::TACTILE;
+/// Place of the option `bins` of sBeta.
+const SBETA_BINS: usize = 4;
 
 /// A spectrum on the grid: straight between a few levels in decibels, with the noise of an average.
 /// About one in four is steep towards an edge, where fits end at a bound of their parameters.
@@ -89,13 +91,22 @@ fn off_db(level: f64, wanted: f64) -> f64 {
 
 /// The level of each model's fit by its definition, for the stored shape, computed in another way
 /// than by the model; one of them where a fit may end in several ways.
-fn wanted(model: &LoadedModel, grid: &[f64], magnitude: &[f64], stored: &Stored) -> Vec<f64> {
+fn wanted(
+    model: &LoadedModel,
+    options: &[f64],
+    grid: &[f64],
+    magnitude: &[f64],
+    stored: &Stored,
+) -> Vec<f64> {
     let bin = |hz: f64| (hz / 5.0) as usize - 4;
     match model.short_name() {
         "sbeta" => {
             let peaks = select_peaks(grid, magnitude, 10, 0.12);
             let peaks: Vec<usize> = peaks.iter().map(|peak| bin(peak.frequency_hz)).collect();
-            sbeta_levels(&stored.shape, grid, magnitude, &peaks)
+            match options[SBETA_BINS] as usize {
+                0 => sbeta_levels(&stored.shape, grid, magnitude, &peaks),
+                bins => sbeta_energy_levels(&stored.shape, grid, magnitude, &peaks, bins),
+            }
         }
         // The recording's magnitude at the peak.
         "sslope" => {
@@ -111,28 +122,54 @@ fn wanted(model: &LoadedModel, grid: &[f64], magnitude: &[f64], stored: &Stored)
     }
 }
 
-/// Least squares at the ten peaks; with bins all over the band as well, where the density would stand
-/// above twice the largest bin or there are too few peaks; or, if it still does, as high as that bin.
-fn sbeta_levels(shape: &[f64], grid: &[f64], magnitude: &[f64], peaks: &[usize]) -> Vec<f64> {
+/// Bins evenly spaced in log frequency, and the largest, which comes last.
+fn spread(count: usize, grid: &[f64], magnitude: &[f64]) -> Vec<usize> {
     let larger = |a: &usize, b: &usize| magnitude[*a].total_cmp(&magnitude[*b]);
     let largest = (0..grid.len()).max_by(larger).unwrap();
-    let mut spread: Vec<usize> = (0..10)
+    let mut spread: Vec<usize> = (0..count)
         .map(|i| {
-            let hz = 20.0 * 50f64.powf(f64::from(i) / 9.0);
+            let hz = 20.0 * 50f64.powf(i as f64 / (count - 1) as f64);
             grid.partition_point(|g| *g < hz).min(grid.len() - 1)
         })
         .collect();
     if !spread.contains(&largest) {
         spread.push(largest);
     }
-    let highest = shape.iter().copied().fold(0.0, f64::max);
+    spread
+}
+
+/// The level at which a shape is as high as the largest bin.
+fn as_high(shape: &[f64], magnitude: &[f64]) -> f64 {
+    let highest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    highest(magnitude) / highest(shape)
+}
+
+/// Least squares at the ten peaks; with bins all over the band as well, where the density would stand
+/// above twice the largest bin or there are too few peaks; or, if it still does, as high as that bin.
+fn sbeta_levels(shape: &[f64], grid: &[f64], magnitude: &[f64], peaks: &[usize]) -> Vec<f64> {
+    let spread = spread(10, grid, magnitude);
     let all = peaks.iter().chain(&spread).copied();
     vec![
         least_squares(shape, magnitude, peaks.iter().copied()),
         least_squares(shape, magnitude, all),
         least_squares(shape, magnitude, spread.iter().copied()),
-        magnitude[largest] / highest,
+        as_high(shape, magnitude),
     ]
+}
+
+/// The energy of the peaks and bins, or as high as the largest bin.
+fn sbeta_energy_levels(
+    shape: &[f64],
+    grid: &[f64],
+    magnitude: &[f64],
+    peaks: &[usize],
+    bins: usize,
+) -> Vec<f64> {
+    let spread = spread(bins, grid, magnitude);
+    let points = || peaks.iter().chain(&spread);
+    let energy = |values: &[f64]| points().map(|bin| values[*bin].powi(2)).sum::<f64>();
+    let level = (energy(magnitude) / energy(shape)).sqrt();
+    vec![level, as_high(shape, magnitude)]
 }
 
 fn hold(name: &str, options: &[(&str, &str)]) {
@@ -154,7 +191,7 @@ fn hold(name: &str, options: &[(&str, &str)]) {
             false => rms(&magnitude),
         };
         prop_assert!(off_db(rms(&played), recorded) < 0.02);
-        let wanted = wanted(&model, &grid, &magnitude, &stored);
+        let wanted = wanted(&model, &options, &grid, &magnitude, &stored);
         prop_assert!(
             wanted.iter().any(|wanted| off_db(stored.fitted_n, *wanted) < 0.02),
             "{:?}: {} N, and {wanted:?} N by least squares", stored.parameters, stored.fitted_n
@@ -180,6 +217,12 @@ fn speak() {
 #[test]
 fn sbeta() {
     hold("sbeta", &[]);
+}
+
+#[test]
+fn sbeta_as_in_the_paper() {
+    let paper = [("error", "magnitude"), ("lower_bound", "1"), ("bins", "0")];
+    hold("sbeta", &paper);
 }
 
 #[test]

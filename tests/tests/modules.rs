@@ -10,8 +10,8 @@ const BOUNDS: &[(&str, usize)] = &[
     ("ar", 41_700),
     ("bands", 28_600),
     ("mfcc", 31_500),
-    ("sbeta", 30_100),
-    ("speak", 18_500),
+    ("sbeta", 30_600),
+    ("speak", 19_800),
     ("sslope", 24_600),
 ];
 

@@ -10,6 +10,21 @@
 //! method. Stored is the curve and not the energies: a player solves no equations, and energies that no spectrum has
 //! (rounding causes them where bands share bins) are the fit's problem. The voice's spectrum is sharpened against the
 //! window's blur, so that it measures as stated.
+//!
+//! A fit of maximum likelihood to the bins (Whittle: the sum of `ln S + P / S` is least) was compared, computed in Python,
+//! on spectra that were not fitted: fitted to every other 0.2 s of 32 recordings by others, measured on the rest, both
+//! ways, knots in steps of 1 dB. Roughness is a penalty on second differences of the logarithm of power.
+//!
+//! | fit, knots | third octaves, dB | log-spectral distance, dB |
+//! |---|---|---|
+//! | energies, 30 | 2.25 | 3.00 |
+//! | likelihood, 30 | 2.24 | 2.97 |
+//! | energies, 40 | 2.23 | 2.95 |
+//! | likelihood, 40 | 2.24 | 2.93 |
+//! | likelihood, 40, roughness 0.1 | 2.20 | 2.88 |
+//!
+//! The gain is at most 4 %, for a third more knots; on 15 simulated recordings it is at most 2 %. The spectra of the two
+//! halves themselves differ by 2.23 dB and 3.22 dB.
 
 use alloc::vec::Vec;
 

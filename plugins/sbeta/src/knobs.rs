@@ -11,6 +11,9 @@ pub const KNOBS: Knobs = Knobs {
         Knob::new("lower_bound", &["1", "0"]),
         Knob::new("error", &["magnitude", "decibel"]),
     ],
-    alone: &[Knob::new("jnd", &["0.24", "0.12", "0.06", "0"])],
+    alone: &[
+        Knob::new("jnd", &["0.24", "0.12", "0.06", "0"]),
+        Knob::new("bins", &["0", "5", "10", "20", "40"]),
+    ],
     not_above: None,
 };

@@ -62,14 +62,23 @@ impl Model for SpectralBeta {
             "lower_bound",
             "1",
             (0.0, 1.0),
-            1.0,
-            "Smallest alpha and beta; below 1 the density may be infinite at an edge.",
+            0.5,
+            "Smallest alpha and beta; below 1 the density may be infinite at an edge (the paper names none; 1 is \
+             its reading here).",
         ),
         StaticOption::choice(
             "error",
-            &["magnitude", "decibel"],
-            "What is least at the points: the squared difference of magnitudes, which the strongest \
-             peaks decide, or that of decibels, to which all peaks count alike (the paper names none).",
+            &["decibel", "magnitude"],
+            "What is least at the points: the squared difference of decibels, to which all points count alike, or that \
+             of magnitudes, which the strongest peaks decide (the paper names none; `magnitude` is its reading here).",
+        ),
+        StaticOption::integer(
+            "bins",
+            (0, 64),
+            20,
+            "Bins, even in log frequency, fitted beside the peaks; 1 is the lowest. 0: peaks alone (paper), and where \
+             the fit is above twice the largest bin, a second one with as many bins as points; the nearer in decibels \
+             is kept.",
         ),
     ]);
 

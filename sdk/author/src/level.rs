@@ -1,9 +1,10 @@
 //! The level of stored representations.
 //!
 //! The level is the recording's, for the shape as stored. The levels of the models' own fits (`--level fitted`) differ
-//! by up to 6 dB from the recording on simulated surfaces: sBeta is fitted to the ten largest peaks and sSlope to the
-//! largest bin, which are too high in a noisy estimate, and MFCC averages logarithms, which is too low. A model whose
-//! level is one of the energies that it stores says so ([`htex_host::Descriptor::keeps_level`], Bands) and keeps it.
+//! by up to 6 dB from the recording on simulated surfaces: sBeta is fitted to the ten largest peaks, among other bins,
+//! and sSlope to the largest bin, which are too high in a noisy estimate, and MFCC averages logarithms, which is too
+//! low. A model whose level is one of the energies that it stores says so ([`htex_host::Descriptor::keeps_level`],
+//! Bands) and keeps it.
 //! sBeta and sSlope round their parameters as files do before they compute the level.
 
 use htex_dsp::grid::level_rms;

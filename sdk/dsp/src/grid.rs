@@ -70,7 +70,7 @@ impl Band {
 ///
 /// Over all bins the window measures 1.5 times a component's power; bins outside the band do not contribute.
 /// Noise that is to have a given level in the band is amplified to compensate.
-pub(crate) fn read_part(band: Band, frequency_hz: f64) -> f64 {
+pub fn read_part(band: Band, frequency_hz: f64) -> f64 {
     ReadPart::new(band).at(frequency_hz)
 }
 

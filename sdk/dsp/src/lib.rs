@@ -29,6 +29,7 @@ pub mod fidelity;
 pub mod fir;
 pub mod glide;
 pub mod grid;
+pub mod interpolated_peaks;
 pub mod inverse_fft;
 mod kernels;
 mod lanes;

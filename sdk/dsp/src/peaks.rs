@@ -2,7 +2,7 @@
 
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
-use core::cmp::{Ordering, Reverse};
+use core::cmp::Ordering;
 
 /// Just noticeable difference (JND) of vibration frequency, as a fraction of the lower frequency.
 pub const FREQUENCY_JND: f64 = 0.12;
@@ -55,16 +55,30 @@ pub fn select_peaks(
     jnd: f64,
 ) -> Vec<Peak> {
     let magnitude = &magnitude[..magnitude.len().min(frequency_hz.len())];
-    let mut candidates = strongest_first(magnitude);
+    let at_bin = |bin: usize| Peak {
+        frequency_hz: frequency_hz[bin],
+        magnitude: magnitude[bin],
+    };
+    select_distinct(
+        local_maxima(magnitude).into_iter().map(at_bin),
+        max_count,
+        jnd,
+    )
+}
+
+/// Selects the strongest peaks that are at least `jnd` apart, as [`select_peaks`] does.
+pub(crate) fn select_distinct(
+    peaks: impl Iterator<Item = Peak>,
+    max_count: usize,
+    jnd: f64,
+) -> Vec<Peak> {
+    // A heap has less code than a sort, and few of the peaks are needed.
+    let mut candidates: BinaryHeap<Candidate> = peaks.map(Candidate).collect();
     let mut kept: Vec<Peak> = Vec::new();
-    while let Some(Candidate(magnitude, Reverse(bin))) = candidates.pop() {
+    while let Some(Candidate(peak)) = candidates.pop() {
         if kept.len() == max_count {
             break;
         }
-        let peak = Peak {
-            frequency_hz: frequency_hz[bin],
-            magnitude,
-        };
         if kept.iter().all(|other| distinct(&peak, other, jnd)) {
             let place = kept.partition_point(|other| other.frequency_hz < peak.frequency_hz);
             kept.insert(place, peak);
@@ -73,9 +87,9 @@ pub fn select_peaks(
     kept
 }
 
-/// Magnitude and bin of a local maximum, ordered by magnitude; of equal magnitudes the lower bin is greater.
+/// A peak, ordered by magnitude; of equal magnitudes the lower frequency is greater.
 #[derive(PartialEq)]
-struct Candidate(f64, Reverse<usize>);
+struct Candidate(Peak);
 
 impl Eq for Candidate {}
 
@@ -86,16 +100,11 @@ impl PartialOrd for Candidate {
 }
 
 impl Ord for Candidate {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_magnitude = self.0.total_cmp(&other.0);
-        by_magnitude.then(self.1.cmp(&other.1))
+    fn cmp(&self, Self(other): &Self) -> Ordering {
+        let Self(own) = self;
+        let by_magnitude = own.magnitude.total_cmp(&other.magnitude);
+        by_magnitude.then(other.frequency_hz.total_cmp(&own.frequency_hz))
     }
-}
-
-/// A heap has less code than a sort, and few of the maxima are needed.
-fn strongest_first(magnitude: &[f64]) -> BinaryHeap<Candidate> {
-    let candidate = |bin| Candidate(magnitude[bin], Reverse(bin));
-    local_maxima(magnitude).into_iter().map(candidate).collect()
 }
 
 fn distinct(a: &Peak, b: &Peak, jnd: f64) -> bool {

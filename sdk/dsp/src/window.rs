@@ -15,6 +15,29 @@ pub fn hann_periodic(n: usize) -> Vec<f64> {
     (0..n).map(|i| sine_squared(i, n)).collect()
 }
 
+/// Height of the window's transform `bins` away from a sinusoid, within its main lobe, of two bins on either side: 1 at
+/// its centre, `sin(πd) / (πd (1 - d²))`, and 0 beyond.
+///
+/// ```
+/// use htex_dsp::window::hann_main_lobe;
+/// assert_eq!([0.0, 1.0, -1.0, 2.0].map(hann_main_lobe), [1.0, 0.5, 0.5, 0.0]);
+/// assert!((hann_main_lobe(0.5) - 0.8488).abs() < 1e-4);
+/// ```
+pub fn hann_main_lobe(bins: f64) -> f64 {
+    let d = bins.abs();
+    if d >= 2.0 {
+        return 0.0;
+    }
+    if d < 1e-6 {
+        return 1.0;
+    }
+    if (d - 1.0).abs() < 1e-6 {
+        return 0.5;
+    }
+    let a = PI * d;
+    crate::trig::sin(a) / (a * (1.0 - d * d))
+}
+
 /// `sin²(π i / period)`, computed by reflection at the middle, so that the window is exactly symmetric.
 fn sine_squared(i: usize, period: usize) -> f64 {
     let i = i.min(period - i);

@@ -2,7 +2,7 @@
 
 use htex_dsp::beta::BetaDensity;
 use htex_dsp::grid::level_rms;
-use htex_host::Band;
+use htex_host::{Band, Fit};
 
 use crate::big::{Big, big};
 use crate::seen::{fit_with, model, spectrum, told};
@@ -11,7 +11,8 @@ use crate::{Bound, Case, Section, failures, none, refused, within, worse};
 
 pub(crate) const SECTION: Section = Section {
     title: "Beta density",
-    about: "The density against 256 bits (ln Γ by Stirling's series), and sBeta with few, equal and extreme peaks.",
+    about: "The density against 256 bits (ln Γ by Stirling's series), and sBeta with few, equal and extreme peaks: fitted to \
+            peaks and bins in decibels, and to peaks alone by magnitudes.",
     cases: CASES,
 };
 
@@ -133,12 +134,22 @@ fn peaks(at: &[usize], floor: f64) -> Vec<f64> {
     magnitude
 }
 
-/// Whether spectra are fitted with each lower bound and played.
+/// To peaks and bins in decibels, which is the default, and to peaks alone by magnitudes.
+const WAYS: [[(&str, &str); 2]; 2] = [
+    [("error", "decibel"), ("bins", "20")],
+    [("error", "magnitude"), ("bins", "0")],
+];
+
+/// Whether spectra are fitted in both ways with each lower bound and played.
 fn fitted(spectra: &[Vec<f64>]) -> f64 {
     let sbeta = model("sbeta");
+    let bounds = || {
+        WAYS.into_iter()
+            .flat_map(|way| ["1", "0", "0.5"].map(|bound| (way, bound)))
+    };
     failures(spectra.iter().flat_map(|magnitude| {
-        ["1", "0", "0.5"].map(|bound| {
-            let options = [("lower_bound", bound)];
+        bounds().map(|(way, bound)| {
+            let options = [&way[..], &[("lower_bound", bound)]].concat();
             fit_with(&sbeta, magnitude, &[], &options).is_ok_and(|fit| {
                 let [alpha, beta] = [fit.parameters[0], fit.parameters[1]];
                 let least = bound.parse::<f64>().unwrap().max(1e-3);
@@ -151,6 +162,23 @@ fn fitted(spectra: &[Vec<f64>]) -> f64 {
             })
         })
     }))
+}
+
+/// The worst of a measure of fits of tones of 150, 500 and 747.5 Hz, in both ways with lower bounds 0.5 and 1.
+fn of_tones(off: impl Fn(f64, &Fit) -> f64) -> f64 {
+    let (sbeta, mut worst) = (model("sbeta"), 0.0);
+    for hz in [150.0, 500.0, 747.5] {
+        let magnitude = spectrum(&tone(hz));
+        for (way, bound) in WAYS
+            .iter()
+            .flat_map(|way| ["0.5", "1"].map(|bound| (way, bound)))
+        {
+            let options = [&way[..], &[("lower_bound", bound)]].concat();
+            let fitted = fit_with(&sbeta, &magnitude, &[], &options);
+            worst = worse(worst, fitted.map_or(f64::NAN, |fit| off(hz, &fit)));
+        }
+    }
+    worst
 }
 
 const CASES: &[Case] = &[
@@ -240,7 +268,7 @@ const CASES: &[Case] = &[
     within(
         "one peak, in the middle, next to an edge, on an edge",
         "sBeta",
-        "fit, lower bounds 0, 0.5, 1",
+        "fit in both ways, lower bounds 0, 0.5, 1",
         none("in range, played, and within 20 dB of its level"),
         || {
             fitted(&[
@@ -255,37 +283,28 @@ const CASES: &[Case] = &[
     within(
         "a tone of 1 N at 150, 500, 747.5 Hz",
         "sBeta",
-        "level of the fit",
+        "level of the fit, in both ways",
         Bound(12.1, "dB", "the tone's"),
-        || {
-            let off = [150.0, 500.0, 747.5].map(|hz| {
-                let fitted = crate::seen::fit(&model("sbeta"), &spectrum(&tone(hz)));
-                let level = fitted.map_or(f64::NAN, |fit| fit.level_rms);
-                20.0 * (level * 2f64.sqrt()).log10().abs()
-            });
-            off.into_iter().fold(0.0, worse)
-        },
+        || of_tones(|_, fit| 20.0 * (fit.level_rms * 2f64.sqrt()).log10().abs()),
     ),
     within(
         "a tone of 1 N at 150, 500, 747.5 Hz",
         "sBeta",
-        "the highest bin of the fit",
+        "the highest bin of the fit, in both ways",
         Bound(1.0, "octave", "the tone"),
         || {
-            let off = [150.0f64, 500.0, 747.5].map(|hz| {
-                let fitted = crate::seen::fit(&model("sbeta"), &spectrum(&tone(hz))).unwrap();
-                let shape = model("sbeta").magnitude(&fitted.parameters, BAND, &BAND.grid_hz());
+            of_tones(|hz, fit| {
+                let shape = model("sbeta").magnitude(&fit.parameters, BAND, &BAND.grid_hz());
                 let shape = shape.unwrap_or_default();
                 let highest = (0..shape.len()).max_by(|&a, &b| shape[a].total_cmp(&shape[b]));
                 highest.map_or(f64::NAN, |bin| (BAND.grid_hz()[bin] / hz).log2().abs())
-            });
-            off.into_iter().fold(0.0, worse)
+            })
         },
     ),
     within(
         "two peaks: far apart, nearer than can be told apart, side by side",
         "sBeta",
-        "fit, lower bounds 0, 0.5, 1",
+        "fit in both ways, lower bounds 0, 0.5, 1",
         none("in range, played, and within 20 dB of its level"),
         || {
             fitted(&[
@@ -298,7 +317,7 @@ const CASES: &[Case] = &[
     within(
         "ten equal peaks; a flat spectrum; a plateau",
         "sBeta",
-        "fit, lower bounds 0, 0.5, 1",
+        "fit in both ways, lower bounds 0, 0.5, 1",
         none("in range, played, and within 20 dB of its level"),
         || {
             let ten: Vec<usize> = (0..10).map(|i| 10 + 18 * i).collect();
@@ -314,7 +333,7 @@ const CASES: &[Case] = &[
     within(
         "a spectrum that rises to both edges",
         "sBeta",
-        "fit, lower bounds 0, 0.5, 1",
+        "fit in both ways, lower bounds 0, 0.5, 1",
         none("in range, played, and within 20 dB of its level"),
         || {
             let valley = |i: usize| (i as f64 - 98.0).powi(4) / 1e8 + 0.01 * (i % 2) as f64;

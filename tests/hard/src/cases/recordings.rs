@@ -1,6 +1,8 @@
 //! Recordings at which spectra degenerate, through every model of the registry.
 
-use crate::seen::{every_model, every_model_but, refusal, refusal_of_all};
+use crate::seen::{
+    every_model, every_model_but, fit_with, model, refusal, refusal_of_all, spectrum, told,
+};
 use crate::signals::{SAMPLES, far_apart, friction, impulse, noise, quantised, scaled, sum, tone};
 use crate::{Bound, Case, Section, refused, within};
 
@@ -22,7 +24,16 @@ const fn lives(input: &'static str, subject: &'static str, worst: fn() -> f64) -
 
 const ALL: &str = "every model";
 const NO_PEAK: &str = "CannotFit: the spectrum has no peak";
-const BUT_SPEAK: &str = "every model but sPeak";
+
+/// The refusals of sPeak's peaks at bins, if they are all the same.
+fn refusal_of_bins(signals: &[Vec<f64>]) -> String {
+    let at_bins = [("frequency", "bin")];
+    let refused =
+        |signal: &Vec<f64>| told(fit_with(&model("speak"), &spectrum(signal), &[], &at_bins));
+    let mut all: Vec<String> = signals.iter().map(refused).collect();
+    all.dedup();
+    all.join("; ")
+}
 
 fn one_bit() -> Vec<f64> {
     friction().iter().map(|x| x.signum()).collect()
@@ -35,35 +46,27 @@ const CASES: &[Case] = &[
     refused("a constant 3 N", "every model", "fit", "CannotFit", || {
         refusal_of_all(&[3.0; SAMPLES])
     }),
-    lives("one sample of 1 N", BUT_SPEAK, || {
+    lives("one sample of 1 N", "every model but sPeak", || {
         every_model_but(&["speak"], &impulse())
     }),
     refused("one sample of 1 N", "sPeak", "fit", NO_PEAK, || {
         refusal("speak", &impulse())
     }),
     lives("a tone of 500 Hz", ALL, || every_model(&tone(500.0))),
-    lives("a tone of 999 Hz", BUT_SPEAK, || {
-        every_model_but(&["speak"], &tone(999.0))
+    lives("a tone of 999 Hz", ALL, || every_model(&tone(999.0))),
+    lives("a tone of 20 Hz, the first bin", ALL, || {
+        every_model(&tone(20.0))
     }),
-    lives("a tone of 20 Hz, the first bin", BUT_SPEAK, || {
-        every_model_but(&["speak"], &tone(20.0))
-    }),
-    refused(
-        "a tone of 20 Hz, the first bin",
-        "sPeak",
-        "fit",
-        NO_PEAK,
-        || refusal("speak", &tone(20.0)),
-    ),
-    lives("a tone of 1000 Hz, the last bin", BUT_SPEAK, || {
-        every_model_but(&["speak"], &tone(1000.0))
+    lives("a tone of 21 Hz", ALL, || every_model(&tone(21.0))),
+    lives("a tone of 1000 Hz, the last bin", ALL, || {
+        every_model(&tone(1000.0))
     }),
     refused(
-        "a tone of 1000 Hz, the last bin",
-        "sPeak",
+        "tones of 20 Hz and of 1000 Hz",
+        "sPeak at bins",
         "fit",
         NO_PEAK,
-        || refusal("speak", &tone(1000.0)),
+        || refusal_of_bins(&[tone(20.0), tone(1000.0)]),
     ),
     lives("tones of 50 and 700 Hz, 120 dB apart", ALL, || {
         every_model(&far_apart())

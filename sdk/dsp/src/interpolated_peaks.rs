@@ -1,0 +1,83 @@
+//! Peaks of a spectrum between its bins: frequency and amplitude of the sinusoid whose line, read through the periodic
+//! Hann window, has the heights of a local maximum and its larger neighbour.
+//!
+//! Of a line `d` bins from the maximum the neighbour on its side is `(1 + d) / (2 - d)` times as high; averages of
+//! magnitudes over segments keep this ratio. The ratio of two bins was compared with a formula of three bins, `d = 2 (R -
+//! L) / (L + 2 C + R)`, and with a parabola through three logarithms; errors as RMS and largest, of averages of 10
+//! segments in power, from 60 Hz to 900 Hz:
+//!
+//! | spectrum | two bins | three bins | parabola |
+//! |---|---|---|---|
+//! | a sinusoid, every 0.5 Hz | 0.0000, 0.0001 Hz; 0.000, 0.000 dB | 0.0000, 0.0000 Hz; 0.000, 0.000 dB | 0.057, 0.080 Hz; 0.15, 0.32 dB |
+//! | with white noise as strong, 0 to 2 kHz | 0.059, 0.24 Hz; 0.13, 0.37 dB | 0.070, 0.24 Hz; 0.13, 0.35 dB | 0.076, 0.24 Hz; 0.20, 0.55 dB |
+//! | two equal sinusoids 15 Hz apart | 0.079, 0.16 Hz; 0.04, 0.09 dB | 0.15, 0.63 Hz; 0.19, 0.99 dB | 0.082, 0.20 Hz; 0.28, 2.06 dB |
+//! | 20 Hz apart | 0.027, 0.055 Hz; 0.01, 0.03 dB | 0.025, 0.086 Hz; 0.05, 0.18 dB | 0.060, 0.12 Hz; 0.17, 0.54 dB |
+//! | a sinusoid with a random walk of phase | 0.094, 0.23 Hz; 0.03, 0.06 dB | 0.099, 0.23 Hz; 0.05, 0.11 dB | 0.105, 0.30 Hz; 0.11, 0.29 dB |
+
+use alloc::vec::Vec;
+
+use crate::grid::GRID_HZ;
+use crate::peaks::{Peak, local_maxima, select_distinct};
+use crate::window::hann_main_lobe;
+
+/// Selects the strongest local maxima that are at least `jnd` apart, ascending in frequency, as
+/// [`select_peaks`](crate::peaks::select_peaks) does, by their frequencies and magnitudes between the bins.
+///
+/// An edge bin counts as a maximum where it is above its only neighbour: its peak is at the edge or inside. A spectrum of
+/// one value has no peak.
+///
+/// `frequency_hz` is the 5 Hz grid of a band, in hertz, and as long as `magnitude`; the longer slice is cut.
+///
+/// ```
+/// use htex_dsp::interpolated_peaks::select_interpolated_peaks;
+/// // A sinusoid of amplitude 1 at 102.5 Hz.
+/// let seen = [0.1698, 0.8488, 0.8488, 0.1698];
+/// let [peak] = select_interpolated_peaks(&[95.0, 100.0, 105.0, 110.0], &seen, 1, 0.12)[..] else { panic!() };
+/// assert!((peak.frequency_hz - 102.5).abs() < 1e-9 && (peak.magnitude - 1.0).abs() < 1e-4);
+/// ```
+pub fn select_interpolated_peaks(
+    frequency_hz: &[f64],
+    magnitude: &[f64],
+    max_count: usize,
+    jnd: f64,
+) -> Vec<Peak> {
+    let magnitude = &magnitude[..magnitude.len().min(frequency_hz.len())];
+    let maxima = maxima_with_edges(magnitude);
+    let peaks = maxima
+        .into_iter()
+        .map(|bin| peak_near(bin, frequency_hz, magnitude));
+    select_distinct(peaks, max_count, jnd)
+}
+
+/// Indices of the local maxima, as of values between zeros.
+fn maxima_with_edges(magnitude: &[f64]) -> Vec<usize> {
+    if magnitude.windows(2).all(|pair| pair[0] == pair[1]) {
+        return Vec::new();
+    }
+    let padded = [&[0.0], magnitude, &[0.0]].concat();
+    let maxima = local_maxima(&padded).into_iter();
+    maxima.map(|place| place - 1).collect()
+}
+
+/// The line of a local maximum, between its bin and the larger neighbour.
+fn peak_near(bin: usize, frequency_hz: &[f64], magnitude: &[f64]) -> Peak {
+    let neighbour = |at: Option<usize>| at.and_then(|at| magnitude.get(at)).copied().unwrap_or(0.0);
+    let (below, above) = (neighbour(bin.checked_sub(1)), neighbour(bin.checked_add(1)));
+    let distance_bins = if above > below {
+        line_distance_bins(above / magnitude[bin])
+    } else if below > above {
+        -line_distance_bins(below / magnitude[bin])
+    } else {
+        0.0
+    };
+    Peak {
+        frequency_hz: frequency_hz[bin] + GRID_HZ * distance_bins,
+        magnitude: magnitude[bin] / hann_main_lobe(distance_bins),
+    }
+}
+
+/// Distance of a line from the bin of a maximum towards a neighbour, from the neighbour's height over the maximum's; 0
+/// for a neighbour lower than half, as no line has two of.
+fn line_distance_bins(ratio: f64) -> f64 {
+    ((2.0 * ratio - 1.0) / (1.0 + ratio)).max(0.0)
+}

@@ -112,7 +112,7 @@ class Htex:
     def play(self, speed, force):
         """The spectrum of what plays at a motion."""
         motion = ("--speed", speed, "--force", force)
-        self.run("synth", "real.htex", "--model", "bands", *motion, "--duration", RENDERED_S, "-o", "played.wav")
+        self.run("synth", "real.htex", "--model", "bands", *motion, "--seconds", RENDERED_S, "-o", "played.wav")
         return power(*read_wav(self.folder / "played.wav"))
 
 

@@ -20,7 +20,7 @@
 /*
  Version of this interface, major and minor: 0x00010000 is 1.0. A minor version only adds.
  */
-#define HTEX_API_VERSION 65537
+#define HTEX_API_VERSION 65536
 
 /*
  Status of a call. Later versions may return further values; all but HTEX_STATUS_OK are errors.
@@ -325,11 +325,11 @@ typedef struct htex_voice_options {
     /*
      Not 0: frequencies do not follow speeds beyond the recorded ones.
      */
-    uint32_t no_speed_scaling;
+    uint32_t no_frequency_scaling;
     /*
      Not 0: the level does not follow forces beyond the recorded ones.
      */
-    uint32_t no_force_scaling;
+    uint32_t no_level_scaling;
     /*
      Not 0: a finger that rests is not silent.
      */
@@ -423,8 +423,9 @@ htex_status htex_asset_representation_model(struct htex_asset asset,
                                             size_t *length);
 
 /*
- [any thread; may load a model] Magnitudes of the texture spectrum at frequencies in Hz, in the asset's unit. `model` may be NULL (the
- representation of least error), and so may `at` (its first condition); between conditions it is interpolated.
+ [any thread; may load a model] Magnitudes that a recording of the voice reads at frequencies in Hz, in the asset's unit. `model` may be
+ NULL (the representation of least error), and so may `at` (its first condition). Between conditions it is interpolated, outside them
+ it follows the law of the asset, and where the finger does not slide it is 0.
  */
 htex_status htex_asset_magnitude(struct htex_asset asset,
                                  const char *model,
@@ -434,7 +435,7 @@ htex_status htex_asset_magnitude(struct htex_asset asset,
                                  size_t len);
 
 /*
- [any thread; may load a model] Level of a representation, RMS in the asset's unit. `model` and `at` as for htex_asset_magnitude.
+ [any thread; may load a model] Level of the voice of a representation, RMS in the asset's unit. `model` and `at` as for htex_asset_magnitude.
  */
 htex_status htex_asset_level_rms(struct htex_asset asset,
                                  const char *model,

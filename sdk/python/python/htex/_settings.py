@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Literal, TypedDict
 
 
@@ -43,6 +43,8 @@ class Metadata(TypedDict, total=False):
     doi: Annotated[str | None, "DOI of the recordings or of the paper that describes them, e.g. 10.5281/zenodo.1234567"]
     sensor: Annotated[str | None, "What measured the signal, e.g. \"six-axis force sensor, ATI Nano17\""]
     finger: Annotated[str | None, "What slid over the surface, e.g. \"bare index finger\""]
+    contact: Annotated[Literal["finger", "tool", "unknown"] | None, "Whether a finger or a tool slid over the surface: it decides how frequencies and level follow motions that were not recorded, as far as neither recordings nor `law` tell"]
+    law: Annotated[Mapping[str, float] | None, "How frequencies and level follow motions that were not recorded, in place of what is measured or assumed: exponents of frequency-speed, level-speed and level-force, e.g. frequency-speed=0,level-speed=0.4"]
 
 
 class ResponseSettings(TypedDict, total=False):

@@ -79,7 +79,8 @@ int64_t htex_model_descriptor(uint8_t *out, size_t capacity) {
         "{\"id\":\"org.example.bad\",\"name\":\"Bad\",\"version\":\"1.0.0\",\"summary\":\"Bad.\","
         "\"fields\":[" SHAPE("alpha") "," SHAPE("beta") "],\"options\":["
         OPTION("points", "3", "64", "10") "," OPTION("jnd", "0", "1", "0.12") ","
-        OPTION("lower_bound", "0", "1", "1") "," OPTION("error", "0", "1", "0") "]}";
+        OPTION("lower_bound", "0", "1", "0.5") "," OPTION("error", "0", "1", "0") ","
+        OPTION("bins", "0", "64", "20") "]}";
 #endif
 #if defined FAULT_DESCRIPTOR_JSON || defined FAULT_DESCRIPTOR_DEFAULT || defined FAULT_STORE
     size_t len = sizeof text - 1;

@@ -429,7 +429,7 @@ def check(path, findings):
         motion = (case["speed_mm_s"], case["force_n"])
         mixed, nearest = weights_at(conditions, motion)
         ratio, gain = factors(manifest, conditions, motion, nearest)
-        level = np.exp(sum(w * np.log(at[i]["level_rms"]) for i, w in mixed))
+        level = sum(w * at[i]["level_rms"] for i, w in mixed)
         most = 4 * max(a["level_rms"] for a in at)
         level = max(level, min(level * gain, most)) if gain > 1 else level * gain
         magnitude, mix = MODELS[case["model"]]

@@ -94,13 +94,11 @@ impl Motions {
         }
     }
 
-    /// Returns the level of weighted conditions: the weighted mean of the logarithms.
+    /// Returns the level of weighted conditions: the weighted mean. The mean of logarithms is farther from the truth of
+    /// simulated sandpaper, 1.2 dB in place of 0.4 (median third-octave error of a free motion).
     fn level_at(&self, weights: &Weights) -> f64 {
-        if weights.count == 1 {
-            return self.level_rms[weights.condition[0]];
-        }
-        let logarithm = |(i, weight): (usize, f64)| weight * libm::log(self.level_rms[i]);
-        libm::exp(weights.iter().map(logarithm).sum())
+        let level = |(i, weight): (usize, f64)| weight * self.level_rms[i];
+        weights.iter().map(level).sum()
     }
 }
 

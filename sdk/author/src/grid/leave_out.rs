@@ -29,8 +29,7 @@ pub(crate) fn left_out(
         let of = |k: &(usize, f64)| others[k.0];
         let sets: Vec<&[f64]> = weights.iter().map(|k| &parameters[of(k)][..]).collect();
         let parts: Vec<f64> = weights.iter().map(|k| k.1).collect();
-        let logarithm = |k: &(usize, f64)| k.1 * libm::log(level_rms[of(k)]);
-        let level = libm::exp(weights.iter().map(logarithm).sum());
+        let level: f64 = weights.iter().map(|k| k.1 * level_rms[of(k)]).sum();
         let reference = groups.get(i)?.spectrum.as_ref();
         let mixed = match &sets[..] {
             [only] => only.to_vec(),

@@ -253,13 +253,13 @@ fn several_conditions_of_one_texture() {
             .sum();
         sum.sqrt()
     };
-    // At a known condition, its level; between, between; outside, the hull's.
+    // At a known condition, its level; between, between; outside, that of the law.
     let known = fit["representations"][3]["at"][3]["level_rms"]
         .as_f64()
         .unwrap();
     assert!((level("120", "0.7") / known - 1.0).abs() < 1e-6);
     assert!(level("60", "0.3") < level("60", "0.5") && level("60", "0.5") < level("60", "0.7"));
-    assert_eq!(level("500", "9"), level("120", "0.7"));
+    assert!(level("500", "9") > level("120", "0.7"));
 }
 
 #[test]

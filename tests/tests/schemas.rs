@@ -33,6 +33,7 @@ const REFUSED: &[&str] = &[
     "json_type_object_as_word",
     "json_type_two_stores",
     "json_type_word_as_object",
+    "law_invalid",
     "level_invalid",
     "level_invalid_displacement",
     "made_invalid",

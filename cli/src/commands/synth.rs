@@ -26,8 +26,8 @@ pub(crate) struct Synth {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// Play the texture as it was recorded, whatever the speed and force. Without it, frequencies scale with the speed
-    /// and the level with the force where only one was recorded, and a resting finger feels nothing
+    /// Play the texture as it was recorded, whatever the speed and force. Without it, frequencies and level follow
+    /// the law of the asset outside the recorded motions, and a resting finger feels nothing
     #[arg(long)]
     as_recorded: bool,
 

@@ -57,7 +57,7 @@ pub fn seeds() -> Vec<Seed> {
 fn parts() -> Vec<Seed> {
     let header = |format: &str| {
         format!(
-            r#"{{"htex_take":1,"name":"seed","number":1,"tool":"htex","source":"file:a","map":null,"calibrations":[],"quantity":"lateral_force","rate_hz":200.0,"seconds":0.5,"signals":[["lateral","N"],["normal","N"]],"tare":[],"tracker":[["x","mm"]],"target_speed_mm_s":80.0,"target_force_n":0.4,"tolerance":0.1,"format":"{format}"}}"#
+            r#"{{"htex_take":1,"name":"seed","number":1,"tool":"htex","source":"file:a","map":null,"calibrations":[],"quantity":"lateral_force","rate_hz":200.0,"seconds":0.5,"signals":[["lateral","N"],["normal","N"]],"tare":[],"tracker":[["x","mm"]],"target_speed_mm_s":80.0,"target_force_n":0.4,"tolerance":0.1,"required":{{"on_target":0.5,"sweeps":1}},"format":"{format}"}}"#
         )
     };
     let row = |i: i32| [0.1 + 0.05 * (0.3 * f64::from(i)).sin(), 0.4];

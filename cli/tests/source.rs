@@ -144,6 +144,8 @@ fn the_ridges_are_recorded_and_fitted() {
             "ridges",
             "--seconds",
             "4",
+            "--min-sweeps",
+            "0",
             "--countdown",
             "0",
             "--target-speed",

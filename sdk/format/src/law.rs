@@ -156,8 +156,9 @@ impl Exponent {
     ) -> Self {
         let (own, others) = (spread * spread, error * error);
         let weight = own / (own + others);
-        // Also for an error or an estimate that is not a number.
-        if !(weight >= LEAST_WEIGHT && estimate.is_finite()) {
+        // An error that is not a number gives such a weight.
+        let usable = weight >= LEAST_WEIGHT && estimate.is_finite();
+        if !usable {
             return Self::assumed(assumed);
         }
         let drawn = weight * estimate + (1.0 - weight) * assumed;

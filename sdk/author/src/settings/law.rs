@@ -71,17 +71,17 @@ impl GivenLaw {
 
     fn check(self) -> Result<Self, String> {
         let all = [self.frequency_speed, self.level_speed, self.level_force];
-        match all
-            .into_iter()
-            .flatten()
-            .find(|x| !(x.abs() <= MOST_EXPONENT))
-        {
+        match all.into_iter().flatten().find(|x| !is_exponent(*x)) {
             Some(x) => Err(format!(
                 "{x} is not an exponent; write a number from -{MOST_EXPONENT} to {MOST_EXPONENT}"
             )),
             None => Ok(self),
         }
     }
+}
+
+fn is_exponent(x: f64) -> bool {
+    x.abs() <= MOST_EXPONENT
 }
 
 impl FromStr for GivenLaw {

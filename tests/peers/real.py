@@ -104,9 +104,8 @@ class Htex:
     def fit(self, recordings, *options):
         """An asset of (file, speed, force)."""
         files = [file for file, *_ in recordings]
-        speeds = [part for _, speed, _ in recordings for part in ("--speed", speed)]
-        forces = [part for *_, force in recordings for part in ("--force", force)]
-        self.run("fit", *files, *speeds, *forces, "--model", "bands", "--name", "real", "-o", "real.htex", *options)
+        at = [f"--at=speed={speed},force={force}" for _, speed, force in recordings]
+        self.run("fit", *files, *at, "--model", "bands", "--name", "real", "-o", "real.htex", *options)
         return json.loads(self.run("info", "real.htex", "--json"))
 
     def play(self, speed, force):
@@ -221,7 +220,7 @@ def hatt(htex, folder):
             target = faster[0]
             file = htex.folder / "node.wav"
             write_wav(file, scale * samples, 1000)
-            options = ("--quantity", "acceleration", "--unit", "m/s2", "--contact", "tool")
+            options = ("--quantity", "acceleration", "--contact", "tool")
             htex.fit([(file.name, speed, force)], *options)
             played = htex.play(target[0], target[1])
             truth, own = power(scale * target[2], 1000), power(scale * samples, 1000)

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use htex_dsp::grid::GRID_HZ;
+use htex_dsp::window::hann_main_lobe;
 use htex_host::Band;
 
 /// Rounds in which the filter's spectrum is compared with the stated one.
@@ -144,7 +145,7 @@ impl Bins {
         let at = |hz: &f64| {
             let (mut sum, mut weights) = (0.0, 0.0);
             for i in index(hz - reach)..=index(hz + reach) {
-                let weight = hann((design.hz(i) - hz) / self.spacing_hz).powi(2);
+                let weight = hann_main_lobe((design.hz(i) - hz) / self.spacing_hz).powi(2);
                 sum += weight * power.get(i).copied().unwrap_or(0.0);
                 weights += weight;
             }
@@ -164,22 +165,6 @@ impl Bins {
         let below = place as usize;
         at(below) + place.fract() * (at(below + 1) - at(below))
     }
-}
-
-/// The main lobe of the Hann window's transform; 1 at its centre.
-pub(crate) fn hann(bins: f64) -> f64 {
-    let d = bins.abs();
-    if d >= 2.0 {
-        return 0.0;
-    }
-    if d < 1e-6 {
-        return 1.0;
-    }
-    if (d - 1.0).abs() < 1e-6 {
-        return 0.5;
-    }
-    let a = PI * d;
-    a.sin() / (a * (1.0 - d * d))
 }
 
 /// Returns half of a Kaiser window, from its centre.

@@ -2,9 +2,9 @@
 
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db};
 use htex_dsp::grid::GRID_HZ;
+use htex_dsp::window::hann_main_lobe;
 use htex_host::Band;
 
-use crate::filter::hann;
 use crate::tones::Tone;
 
 /// Bands this far below the strongest, as energies, are not compared: 40 dB.
@@ -15,7 +15,7 @@ pub(crate) fn of_tones(tones: &[Tone], band: Band, ratio: f64) -> Vec<f64> {
     let at = |hz: f64| {
         let seen = tones
             .iter()
-            .map(|&(f, a)| a * hann((hz - f / ratio) / GRID_HZ));
+            .map(|&(f, a)| a * hann_main_lobe((hz - f / ratio) / GRID_HZ));
         seen.map(|m| m * m).sum::<f64>().sqrt()
     };
     band.grid_hz().into_iter().map(at).collect()

@@ -1,12 +1,12 @@
 //! The texture of a representation at any motion, with the effects of a motion as a voice has them.
 
 use htex_dsp::grid::GRID_HZ;
+use htex_dsp::window::hann_main_lobe;
 use htex_host::{Band, Descriptor, LoadedModel};
 use htex_play::exploration::CEILING;
 use htex_play::{Asset, Motion, Motions};
 
 use crate::BakeError;
-use crate::filter::hann;
 
 /// Points of a bin at which a magnitude is read.
 const IN_BIN: i32 = 8;
@@ -88,7 +88,7 @@ impl<'a> Texture<'a> {
         // Positions in the window's main lobe, in bins, and their weights.
         let place = |i: i32| f64::from(i) / f64::from(IN_BIN);
         let lobe: Vec<(f64, f64)> = (-2 * IN_BIN..=2 * IN_BIN)
-            .map(|i| (place(i), hann(place(i)).powi(2)))
+            .map(|i| (place(i), hann_main_lobe(place(i)).powi(2)))
             .collect();
         let mut dense = Vec::with_capacity(grid.len() * lobe.len());
         for hz in grid {

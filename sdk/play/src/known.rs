@@ -94,8 +94,9 @@ impl Motions {
         }
     }
 
-    /// Returns the level of weighted conditions: the weighted mean. The mean of logarithms is farther from the truth of
-    /// simulated sandpaper, 1.2 dB in place of 0.4 (median third-octave error of a free motion).
+    /// Returns the level of weighted conditions: the weighted mean. The mean of logarithms is 1.2 dB from the truth of simulated
+    /// sandpaper in place of 0.4 (median third-octave error of a free motion), and no nearer on recordings: of 398 nodes of the
+    /// Penn Haptic Texture Toolkit, each predicted from the others, 0.72 and 0.68 dB in the median.
     fn level_at(&self, weights: &Weights) -> f64 {
         let level = |(i, weight): (usize, f64)| weight * self.level_rms[i];
         weights.iter().map(level).sum()

@@ -122,7 +122,7 @@ htex_finding::rule_table! {
         "Shorten `duration_s`, or leave it out.";
     MOTION_BEYOND_RECORDED Warning:
         "A texture is played as if at another speed or force than the motion's.",
-        "The motion is outside the recorded speeds and forces, or outside the range to which a single one can be scaled.",
+        "The effects that follow the law of the asset are off, or the speed is not within 1/16 to 8 times the nearest recorded one.",
         "Stay within the recorded conditions (`htex info`), or record the texture at such a motion too.";
     RESPONSE_MISSING Error:
         "The response is missing.",

@@ -313,3 +313,59 @@ fn forces_within_tolerance_count_as_one() {
     // At most the ceiling, four times the strongest.
     assert_eq!(level(80.0, 12.0), 4.0);
 }
+
+/// A reading that no finger has is ignored for a tenth of a second, in voices and in scenes; after that there is silence.
+#[test]
+fn a_failed_reading_is_held_and_then_silent() {
+    let failed = (80.0, 12_050.0);
+    let mut held = voice("bands", Some(RECORDED), Effects::default());
+    let mut plain = voice("bands", Some(RECORDED), Effects::default());
+    held.set_motion(htex_play::Motion::new(failed.0, failed.1))
+        .unwrap();
+    let hold = (htex_play::exploration::HOLD_S * RATE_HZ) as usize;
+    assert_eq!(samples(&mut held, hold), samples(&mut plain, hold));
+    samples(&mut held, 400);
+    assert!(samples(&mut held, 1_000).iter().all(|x| *x == 0.0));
+    held.set_motion(htex_play::Motion::new(RECORDED.0, RECORDED.1))
+        .unwrap();
+    assert!(samples(&mut held, 1_000).iter().any(|x| *x != 0.0));
+
+    let scene = scene(single(), Motion::Live, 5.0);
+    let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
+    let mut play = |(speed_mm_s, force_n): (f64, f64), frames: usize| {
+        let finger = Finger {
+            speed_mm_s,
+            force_n,
+            at_mm: None,
+        };
+        renderer.set_motion(finger).unwrap();
+        let mut out = vec![0.0f32; frames];
+        renderer.render(&mut out);
+        out
+    };
+    let good = rms_db(&play(RECORDED, 20_000));
+    let held_db = rms_db(&play(failed, hold - 2 * CONTROL));
+    assert!((held_db - good).abs() < 3.0, "{good} and {held_db} dB");
+    play(failed, 2_000);
+    assert!(play(failed, 1_000).iter().all(|x| *x == 0.0));
+}
+
+/// A force of 20 N on a texture of 0.4 N would be 34 dB stronger by its law; it is four times as strong, or what is asked for.
+#[test]
+fn no_voice_is_louder_than_its_ceiling() {
+    let strong = |ceiling: f64| {
+        let options = VoiceOptions::default()
+            .with_model("bands")
+            .with_motion(htex_play::Motion::new(80.0, 20.0))
+            .with_ceiling(ceiling);
+        rms_db(&samples(&mut single().voice(&options).unwrap(), 80_000))
+    };
+    let recorded = rms_db(&samples(
+        &mut voice("bands", Some(RECORDED), Effects::default()),
+        80_000,
+    ));
+    for (ceiling, rise_db) in [(4.0, 12.04), (10.0, 20.0), (1_000.0, 33.98)] {
+        let rise = strong(ceiling) - recorded;
+        assert!((rise - rise_db).abs() < 0.1, "{ceiling}: {rise} dB");
+    }
+}

@@ -182,46 +182,45 @@ fn scene_refused(speed_mm_s: f64, force_n: f64) -> String {
     moved.map_or_else(|error| error.to_string(), |()| "it was done".to_owned())
 }
 
-const SLOW_AND_FAST: [(f64, f64); 5] =
-    [(0.0, 0.0), (1e9, 1e9), (0.0, 1e9), (1e9, 0.0), (80.0, 0.4)];
-const BEYOND_FLOATS: [(f64, f64); 4] =
-    [(80.0, 1e39), (80.0, 0.4), (1e300, 1e300), (5e-324, 5e-324)];
+/// The least and the most that counts as a reading of a finger.
+const ENDS: [(f64, f64); 6] = [
+    (0.0, 0.0),
+    (1_000.0, 20.0),
+    (0.0, 20.0),
+    (1_000.0, 0.0),
+    (5e-324, 5e-324),
+    (80.0, 0.4),
+];
+/// Readings of no finger, beyond `f32` and longer than one is held for.
+const BEYOND_FLOATS: [(f64, f64); 4] = [(80.0, 1e39), (1e9, 0.4), (1e300, 1e300), (80.0, 0.4)];
 
 const CASES: &[Case] = &[
     within(
-        "speeds and forces of 0 and 1e9, in turns",
+        "speeds of 0 and 1000 mm/s, forces of 0 and 20 N, in turns",
         "voices of every model, without effects",
         "move and render",
         Bound(12.0, "× RMS", "finite, and samples"),
-        || moved(&SLOW_AND_FAST, Effects::NONE),
+        || moved(&ENDS, Effects::NONE),
     ),
     within(
-        "speeds and forces of 1e39, 1e300, 5e-324, in turns",
+        "speeds and forces of 1e9, 1e39, 1e300, in turns",
         "voices of every model, without effects",
         "move and render",
         Bound(12.0, "× RMS", "finite, and samples"),
         || moved(&BEYOND_FLOATS, Effects::NONE),
     ),
     within(
-        "speeds and forces of 0 and 1e9, in turns, where one force is known",
+        "speeds of 0 and 1000 mm/s, forces of 0 and 20 N, in turns, where one force is known",
         "voices of every model",
         "move and render",
-        Bound(
-            1.2e7,
-            "× RMS (a gain of at most 1e6)",
-            "finite, and samples",
-        ),
-        || moved(&SLOW_AND_FAST, Effects::default()),
+        Bound(48.0, "× RMS (a gain of at most 4)", "finite, and samples"),
+        || moved(&ENDS, Effects::default()),
     ),
     within(
-        "speeds and forces of 1e39, 1e300, 5e-324, in turns, where one force is known",
+        "speeds and forces of 1e9, 1e39, 1e300, in turns, where one force is known",
         "voices of every model",
         "move and render",
-        Bound(
-            1.2e7,
-            "× RMS (a gain of at most 1e6)",
-            "finite, and samples",
-        ),
+        Bound(48.0, "× RMS (a gain of at most 4)", "finite, and samples"),
         || moved(&BEYOND_FLOATS, Effects::default()),
     ),
     refused(
@@ -246,19 +245,19 @@ const CASES: &[Case] = &[
         || motion_refused(80.0, f64::INFINITY),
     ),
     within(
-        "speeds and forces of 0 and 1e9, in turns, on a display on a carrier of 7 kHz",
+        "speeds of 0 and 1000 mm/s, forces of 0 and 20 N, in turns, on a display on a carrier of 7 kHz",
         "scene",
         "move and render",
         Bound(LIMIT_V, "V", "finite, and not silent for ever,"),
         || {
             felt(
                 &device(Quantity::DisplayVoltage, 20_000.0, Some(7_000.0)),
-                &SLOW_AND_FAST,
+                &ENDS,
             )
         },
     ),
     within(
-        "speeds and forces of 1e39, 1e300, 5e-324, in turns, on a display",
+        "speeds and forces of 1e9, 1e39, 1e300, in turns, on a display",
         "scene",
         "move and render",
         Bound(LIMIT_V, "V", "finite, and not silent for ever,"),
@@ -270,10 +269,10 @@ const CASES: &[Case] = &[
         },
     ),
     within(
-        "speeds and forces of 1e39, 1e300, 5e-324, in turns, on a device of newtons",
+        "speeds and forces of 1e9, 1e39, 1e300, in turns, on a device of newtons",
         "scene",
         "move and render",
-        Bound(1e6, "N", "finite, and not silent for ever,"),
+        Bound(1.0, "N", "finite, and not silent for ever,"),
         || {
             felt(
                 &device(Quantity::LateralForce, 20_000.0, None),
@@ -294,14 +293,14 @@ const CASES: &[Case] = &[
         },
     ),
     within(
-        "friction far beyond the drive's reach: forces of 1 to 1e6 N where 0.4 N is known",
+        "friction far beyond the drive's reach: forces of 1 to 20 N where 0.4 N is known",
         "scene",
         "square root",
         Bound(LIMIT_V, "V", "no radicand below 0, and the output"),
         || {
             felt(
                 &device(Quantity::DisplayVoltage, 20_000.0, None),
-                &[(60.0, 1.0), (60.0, 1e6), (60.0, 40.0)],
+                &[(60.0, 1.0), (60.0, 20.0), (60.0, 4.0)],
             )
         },
     ),
@@ -324,14 +323,14 @@ const CASES: &[Case] = &[
         scene_refused(80.0, -1.0)
     }),
     within(
-        "back strokes: speeds from -1e9 to 1e9",
+        "back strokes: speeds from -1000 to 1000 mm/s",
         "scene",
         "move and render",
         Bound(1.0, "N", "finite, and not silent for ever,"),
         || {
             felt(
                 &device(Quantity::LateralForce, 20_000.0, None),
-                &[(-1e9, 0.4), (1e9, 0.4), (-80.0, 0.4)],
+                &[(-1_000.0, 0.4), (1_000.0, 0.4), (-80.0, 0.4)],
             )
         },
     ),

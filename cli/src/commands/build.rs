@@ -214,8 +214,13 @@ impl Summary<'_> {
             } else {
                 ""
             };
+            let noun = if share.textures == 1 {
+                "texture"
+            } else {
+                "textures"
+            };
             format!(
-                "{code} ({}): {} textures, {} in the library: {}{more}\n",
+                "{code} ({}): {} {noun}, {} in the library: {}{more}\n",
                 share.severity,
                 share.textures,
                 share.in_library,

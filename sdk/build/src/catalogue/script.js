@@ -152,7 +152,7 @@ for (const { code, severity, textures, inLibrary, first } of findings) {
     Object.assign(state, { query: code, shown: STEP });
     show();
   });
-  element("findings").append(tag("li", { class: severity }, find, ` (${severity}): ${textures} textures, ${inLibrary} in the library: ${first.join(", ")}${more}`));
+  element("findings").append(tag("li", { class: severity }, find, ` (${severity}): ${textures} ${textures === 1 ? "texture" : "textures"}, ${inLibrary} in the library: ${first.join(", ")}${more}`));
 }
 element("search").value = state.query;
 element("left-out").checked = state.leftOut;

@@ -90,13 +90,16 @@ fn db(ratio: f64) -> f64 {
 #[test]
 fn a_copy_of_a_copy_plays_as_strong_as_the_recording() {
     let place = Place::new();
-    for surface in [
+    let all = [
+        "vinyl",
+        "corrugated-paper",
         "sandpaper",
         "fine-fabric",
         "coarse-fabric",
-        "corrugated-paper",
-        "vinyl",
-    ] {
+    ];
+    // The first two have most energy in the lowest bin.
+    let tried = if xtask::prove::whole() { 5 } else { 2 };
+    for surface in &all[..tried] {
         let csv = place.recording(surface);
         let magnitude = numbers(&place.json(&["process", &csv, "--json"])["magnitude"]);
         let recorded = (magnitude.iter().map(|m| m * m).sum::<f64>() / 3.0).sqrt();

@@ -7,7 +7,11 @@ use htex_format::round_parameters;
 use htex_host::{Band, Fit, FitRequest, LoadedModel, Registry};
 use proptest::prelude::*;
 
-const CASES: u32 = 10_000;
+/// Spectra of each property: a sample, unless all are asked for.
+fn count() -> u32 {
+    if xtask::prove::whole() { 10_000 } else { 2_000 }
+}
+
 const BAND: Band = Band::TACTILE;
 /// Place of the option `bins` of sBeta.
 const SBETA_BINS: usize = 4;
@@ -178,8 +182,8 @@ fn hold(name: &str, options: &[(&str, &str)]) {
     let grid = BAND.grid_hz();
     let config = ProptestConfig {
         failure_persistence: None,
-        max_global_rejects: CASES,
-        ..ProptestConfig::with_cases(CASES)
+        max_global_rejects: count(),
+        ..ProptestConfig::with_cases(count())
     };
     proptest!(config, |(magnitude in spectra())| {
         let stored = stored(&model, &options, &grid, &magnitude);

@@ -65,8 +65,11 @@ fn a_player_has_the_spectrum_of_the_host() {
     let mut failed = Vec::new();
     for model in Registry::builtin_names() {
         let baked = bake(&asset, Some(model), &grid, RATE_HZ, 0.2).unwrap();
-        // A recorded condition, and a motion between all of them.
-        for (speed, force) in [(120.0, 0.3), (87.0, 0.43)] {
+        // A motion between all recorded conditions, and one of them.
+        let motions = [(87.0, 0.43), (120.0, 0.3)];
+        let tried = if xtask::prove::whole() { 2 } else { 1 };
+        for (speed, force) in &motions[..tried] {
+            let (speed, force) = (*speed, *force);
             let motion = Motion::new(speed, force);
             let error = largest_db(
                 &of_host(&asset, model, motion),

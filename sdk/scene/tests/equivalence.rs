@@ -75,6 +75,11 @@ fn cases() -> impl Strategy<Value = Case> {
 
 const SECONDS: f64 = 0.2;
 
+/// Scenes that are tried: a sample, unless all are asked for.
+fn count() -> u32 {
+    if xtask::prove::whole() { 2_000 } else { 250 }
+}
+
 impl Case {
     fn scene(&self) -> LoadedScene {
         let asset = if self.grid { grid() } else { single() };
@@ -196,7 +201,7 @@ fn names(plan: &Plan) -> Vec<(&'static str, Option<usize>)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: count(), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn the_planned_chain_gives_the_samples_of_the_full_one(case in cases()) {

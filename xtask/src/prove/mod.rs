@@ -50,6 +50,23 @@ const PROOFS: &[Proof] = &[
         prove: |options| whole_test(options, &["-p", "htex-author", "--test", "grid"]),
     },
     Proof {
+        name: "levels",
+        takes: "",
+        proves: "stored, copied and baked textures keep their level and their spectrum, of all surfaces and at recorded motions, too; \
+                 tests take two surfaces and one motion",
+        prove: |options| {
+            whole_test(options, &["-p", "htex-tests", "--test", "levels"])?;
+            whole_test(options, &["-p", "htex-cli", "--test", "fit"])?;
+            whole_test(options, &["-p", "htex-bake", "--test", "voices"])
+        },
+    },
+    Proof {
+        name: "scenes",
+        takes: "",
+        proves: "the planned chain has the samples of the full one in 2,000 scenes; tests take 250",
+        prove: |options| whole_test(options, &["-p", "htex-scene", "--test", "equivalence"]),
+    },
+    Proof {
         name: "days",
         takes: "[--hours N]",
         proves: "voices of a day keep their power and phase, and do not repeat; tests take an hour",

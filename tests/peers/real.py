@@ -17,6 +17,7 @@ import itertools
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -238,7 +239,8 @@ def main():
     parser.add_argument("--htex", default="htex", help="the command [default: htex]")
     chosen = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
-        htex = Htex(chosen.htex, place)
+        # The command runs in a folder of its own.
+        htex = Htex(shutil.which(chosen.htex) or chosen.htex, place)
         for name, measure in (("speeds", speeds), ("hatt", hatt)):
             if (chosen.folder / name).is_dir():
                 measure(htex, chosen.folder / name)

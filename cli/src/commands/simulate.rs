@@ -4,7 +4,8 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 use htex_author::SetupResponse;
-use htex_simulate::{FreeMotion, SimulationOptions, Surface, simulate};
+use htex_author::settings::GivenLaw;
+use htex_simulate::{Departures, FreeMotion, SimulationOptions, Surface, simulate};
 
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -56,6 +57,24 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "N")]
     force: Option<Range>,
 
+    /// How the texture follows the motion, as exponents relative to 80 mm/s and 0.4 N: frequency-speed=X,level-speed=X,level-force=X;
+    /// those of a relief are 1, 0 and 1
+    #[arg(long, value_name = "LAW")]
+    law: Option<GivenLaw>,
+
+    /// Change of the texture's level in the course of the recording, dB per minute
+    #[arg(
+        long,
+        value_name = "DB",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    drift: f64,
+
+    /// Part of the time that the finger is off the surface, for 50 to 250 ms each, 0 to 0.8
+    #[arg(long, value_name = "PART", default_value_t = 0.0)]
+    lifted: f64,
+
     /// Where to write the true spectra of a free motion: JSON with the magnitudes at any speed and force
     #[arg(long, value_name = "JSON")]
     truth: Option<PathBuf>,
@@ -106,11 +125,22 @@ impl Simulate {
         Ok(Exit::SUCCESS)
     }
 
+    fn departures(&self) -> Departures {
+        let (usual, law) = (Departures::default(), self.law.unwrap_or_default());
+        usual
+            .with_frequency_speed(law.frequency_speed.unwrap_or(usual.frequency_speed))
+            .with_level_speed(law.level_speed.unwrap_or(usual.level_speed))
+            .with_level_force(law.level_force.unwrap_or(usual.level_force))
+            .with_drift_db_per_min(self.drift)
+            .with_lifted(self.lifted)
+    }
+
     fn options(&self) -> Result<SimulationOptions, Failure> {
         let options = SimulationOptions::new(self.surface)
             .with_seed(self.seed)
             .with_rate_hz(self.rate)
-            .with_duration_s(self.seconds);
+            .with_duration_s(self.seconds)
+            .with_departures(self.departures());
         if self.motion == MotionArg::Free {
             let mut free = FreeMotion::default();
             if let Some(Range(speed_mm_s)) = self.speed {

@@ -210,7 +210,7 @@ struct Difference {
 
 /// Returns the difference of curves shifted by `a` times their octaves of speed, over the octaves that all have.
 fn difference(curves: &[Curve], octaves: &[f64], a: f64) -> Option<Difference> {
-    let shifted = || curves.iter().zip(octaves).map(|(curve, o)| (curve, a * o));
+    let shifted = || curves.iter().zip(octaves).map(|(curve, o)| (curve, -a * o));
     let low = shifted().map(|(c, s)| c.low + s).fold(f64::MIN, f64::max);
     let high = shifted()
         .map(|(c, s)| c.high() + s)

@@ -201,15 +201,14 @@ impl Law {
     /// K. J. Kuchenbecker 2014), whose levels rise with `v^0.43 F^0.07` (medians). A bare finger: vibrations scale in time
     /// with the speed (C. M. Greenspon, K. R. McLellan, J. D. Lieber, S. J. Bensmaia 2020; B. Delhaye, V. Hayward, P. Lefèvre,
     /// J.-L. Thonnard 2012), so that velocity and acceleration rise with it and its square, and the friction force with the
-    /// normal force. Unknown: medians of recorded strokes of two materials, `v^0.75`, and half a power of the force.
+    /// normal force. Unknown: medians of recorded strokes of two materials, `v^0.75`, and half a power of the force. With another
+    /// exponent of frequencies, measured or given, the levels lie between those of a relief and of what keeps its frequencies.
     pub const fn assumed(quantity: Quantity, contact: Contact) -> Self {
-        let [a, b, c] = match (contact, quantity) {
-            (Contact::Tool, _) => [0.0, 0.43, 0.07],
-            (Contact::Unknown, _) => [0.0, 0.75, 0.5],
-            (Contact::Finger, Quantity::Velocity) => [1.0, 1.0, 1.0],
-            (Contact::Finger, Quantity::Acceleration) => [1.0, 2.0, 1.0],
-            (Contact::Finger, _) => [1.0, 0.0, 1.0],
+        let a = match contact {
+            Contact::Finger => 1.0,
+            Contact::Tool | Contact::Unknown => 0.0,
         };
+        let [b, c] = assumed_levels(a, quantity, contact);
         Self {
             frequency_speed: Exponent::assumed(a),
             level_speed: Exponent::assumed(b),
@@ -219,9 +218,12 @@ impl Law {
 
     /// Returns this law for another quantity or contact: what is assumed is assumed anew, what is measured is drawn to it, and
     /// what is given stays.
+    ///
+    /// The levels that are assumed are those of the frequencies that the law has: a surface that is measured to be read as a relief has
+    /// the level of one, whatever slid over it, and one whose frequencies stay does not.
     #[must_use]
     pub fn reassumed(&self, quantity: Quantity, contact: Contact) -> Self {
-        let assumed = Self::assumed(quantity, contact);
+        let mut assumed = Self::assumed(quantity, contact);
         let anew = |i: usize, exponent: Exponent, assumed: Exponent| {
             let most = if i == 2 { 1.5 } else { 1.0 };
             let bounds = [0.0, assumed.exponent.max(most)];
@@ -233,8 +235,12 @@ impl Law {
                 _ => assumed,
             }
         };
+        let frequency_speed = anew(0, self.frequency_speed, assumed.frequency_speed);
+        let [b, c] = assumed_levels(frequency_speed.exponent, quantity, contact);
+        assumed.level_speed = Exponent::assumed(b);
+        assumed.level_force = Exponent::assumed(c);
         Self {
-            frequency_speed: anew(0, self.frequency_speed, assumed.frequency_speed),
+            frequency_speed,
             level_speed: anew(1, self.level_speed, assumed.level_speed),
             level_force: anew(2, self.level_force, assumed.level_force),
         }
@@ -259,6 +265,25 @@ impl Law {
         power(speed_ratio, self.level_speed.exponent)
             * power(force_ratio, self.level_force.exponent)
     }
+}
+
+/// The exponents of the level that are assumed, over speed and force: those of surfaces whose frequencies stay, and those of a relief,
+/// mixed by the exponent of frequencies, 0 to 1.
+const fn assumed_levels(frequency_speed: f64, quantity: Quantity, contact: Contact) -> [f64; 2] {
+    let stays = match contact {
+        Contact::Tool => [0.43, 0.07],
+        Contact::Finger | Contact::Unknown => [0.75, 0.5],
+    };
+    let relief = match quantity {
+        Quantity::Velocity => [1.0, 1.0],
+        Quantity::Acceleration => [2.0, 1.0],
+        _ => [0.0, 1.0],
+    };
+    let part = frequency_speed.clamp(0.0, 1.0);
+    [
+        stays[0] + part * (relief[0] - stays[0]),
+        stays[1] + part * (relief[1] - stays[1]),
+    ]
 }
 
 /// `x^exponent`, exactly x for an exponent of 1, and 1 for one of 0.

@@ -1,6 +1,9 @@
 //! Simulated recordings.
 
-use htex_simulate::{FreeMotion, Simulation, SimulationError, SimulationOptions, Surface};
+use htex_author::settings::GivenLaw;
+use htex_simulate::{
+    Departures, FreeMotion, Simulation, SimulationError, SimulationOptions, Surface,
+};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -33,12 +36,14 @@ pub(crate) fn simulate<'py>(
     free: bool,
     speed_mm_s: Option<Range>,
     force_n: Option<Range>,
+    departures: (&str, f64, f64),
 ) -> PyResult<(Vec<Column<'py>>, Bound<'py, PyBytes>, Response)> {
     let surface = surface.parse::<Surface>().or_raise()?;
     let options = SimulationOptions::new(surface)
         .with_seed(seed)
         .with_rate_hz(rate_hz)
-        .with_duration_s(seconds);
+        .with_duration_s(seconds)
+        .with_departures(departing(departures)?);
     let options = moved(options, free, speed_mm_s, force_n)?;
     let (simulation, csv) = py.detach(|| written(&options))?;
     let response = options.setup_response().or_raise()?;
@@ -57,6 +62,19 @@ pub(crate) fn simulate<'py>(
         response.phase_rad,
     ];
     Ok((columns.into(), PyBytes::new(py, &csv), response))
+}
+
+/// The exponents of a law as JSON, the drift in decibels per minute, and the part of the time that the finger is off the surface.
+fn departing((law, drift_db_per_min, lifted): (&str, f64, f64)) -> PyResult<Departures> {
+    let law: GivenLaw =
+        serde_json::from_str(law).map_err(|error| option(format!("law: {error}")))?;
+    let usual = Departures::default();
+    Ok(usual
+        .with_frequency_speed(law.frequency_speed.unwrap_or(usual.frequency_speed))
+        .with_level_speed(law.level_speed.unwrap_or(usual.level_speed))
+        .with_level_force(law.level_force.unwrap_or(usual.level_force))
+        .with_drift_db_per_min(drift_db_per_min)
+        .with_lifted(lifted))
 }
 
 fn moved(

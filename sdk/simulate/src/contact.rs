@@ -4,9 +4,10 @@ use htex_dsp::biquad::{Biquad, Cascade};
 use htex_dsp::normal::Normal;
 use htex_dsp::spectrum::Complex;
 
+use super::departures::Departures;
 use super::filters::{low_pass, mode};
 use super::hand::Finger;
-use super::relief::Relief;
+use super::relief::{HALF_READ_MM, Relief};
 use super::surface::Parameters;
 use super::track::Track;
 use htex_recording::SetupResponse;
@@ -41,26 +42,33 @@ pub(super) struct Force {
 pub(super) struct Contact {
     friction: f64,
     material: Material,
+    departures: Departures,
+    step_s: f64,
     skin: [Cascade; 2],
 }
 
 /// Where the texture is read.
 pub(super) enum Material {
-    /// One piece, at the finger's position.
-    Piece(Relief),
-    /// Without end, along the path: one relief for each lateral axis, and the time of a step, s.
-    Endless(Box<[Track; 2]>, f64),
+    /// One piece, at the finger's position; and the path, mm, along which it is read where frequencies do not follow the speed.
+    Piece(Relief, f64),
+    /// Without end, along the path: one relief for each lateral axis.
+    Endless(Box<[Track; 2]>),
 }
 
 impl Material {
-    /// Returns the texture across and along the sweep at a finger.
-    fn read(&mut self, finger: &Finger) -> [f64; 2] {
+    /// Returns the texture across and along the sweep at a finger that moves on by a distance, mm; `as_it_lies` if that is the finger's
+    /// own.
+    fn read(&mut self, finger: &Finger, distance: f64, as_it_lies: bool) -> [f64; 2] {
         match self {
-            Self::Piece(relief) => {
-                [ACROSS.1, 0.0].map(|ahead| relief.at(finger.along_mm + ahead, finger.across_mm))
+            Self::Piece(relief, path) => {
+                *path += distance;
+                let along_mm = match as_it_lies {
+                    true => finger.along_mm,
+                    false => to_and_fro(*path),
+                };
+                [ACROSS.1, 0.0].map(|ahead| relief.at(along_mm + ahead, finger.across_mm))
             }
-            Self::Endless(tracks, step_s) => {
-                let distance = libm::hypot(finger.along_mm_s, finger.across_mm_s) * *step_s;
+            Self::Endless(tracks) => {
                 let [across, along] = &mut **tracks;
                 [across.advance(distance), along.advance(distance)]
             }
@@ -68,18 +76,32 @@ impl Material {
     }
 }
 
+/// Returns the place on a piece of material after a path that turns at its ends, mm; 0 is the middle.
+fn to_and_fro(path_mm: f64) -> f64 {
+    let length = 2.0 * HALF_READ_MM;
+    let along = path_mm % (2.0 * length);
+    along.min(2.0 * length - along) - HALF_READ_MM
+}
+
 impl Contact {
-    pub(super) fn new(parameters: &Parameters, rate_hz: f64, material: Material) -> Self {
+    pub(super) fn new(
+        parameters: &Parameters,
+        rate_hz: f64,
+        material: Material,
+        departures: Departures,
+    ) -> Self {
         let skin = Cascade::new(&[low_pass(SKIN.1, SKIN.0, rate_hz)]);
         Self {
             friction: parameters.friction,
             material,
+            departures,
+            step_s: 1.0 / rate_hz,
             skin: [skin.clone(), skin],
         }
     }
 
-    /// Computes Coulomb friction against the motion, modulated by the texture.
-    pub(super) fn tick(&mut self, finger: &Finger) -> Force {
+    /// Computes Coulomb friction against the motion, modulated by the texture times a factor.
+    pub(super) fn tick(&mut self, finger: &Finger, level: f64) -> Force {
         let speed = libm::hypot(finger.along_mm_s, finger.across_mm_s);
         let sliding = libm::tanh(finger.along_mm_s / TURN_MM_S);
         let slope = if speed > 0.0 {
@@ -89,7 +111,10 @@ impl Contact {
         };
         let slowness = speed / STRIBECK.1;
         let friction = self.friction * (1.0 + STRIBECK.0 * libm::exp(-slowness * slowness));
-        let texture = self.material.read(finger).map(|x| finger.contact * x);
+        let distance = self.departures.pace_mm_s(speed) * self.step_s;
+        let as_it_lies = self.departures.frequency_speed == 1.0;
+        let texture = self.material.read(finger, distance, as_it_lies);
+        let texture = texture.map(|x| finger.contact * level * x);
         let along = sliding * finger.normal_n * texture[1];
         let across = sliding * finger.normal_n * ACROSS.0 * texture[0];
         let steady = finger.normal_n * friction;

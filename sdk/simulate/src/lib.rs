@@ -6,7 +6,7 @@
 //!
 //! The hand's speed and force vary. The friction coefficient varies along the surface
 //! as a fixed relief read at the finger's position, so the spectrum's frequencies scale with the speed and
-//! its level with the force. Skin, rig and sensor follow.
+//! its level with the force, unless [`Departures`] say otherwise. Skin, rig and sensor follow.
 //!
 //! ```
 //! use htex_simulate::{SimulationOptions, Surface, simulate};
@@ -20,6 +20,7 @@
 //! ```
 
 mod contact;
+mod departures;
 mod filters;
 mod free;
 mod hand;
@@ -33,10 +34,12 @@ use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::normal::Normal;
 use thiserror::Error;
 
+pub use departures::Departures;
 pub use surface::Surface;
 pub use truth::Truth;
 
 use contact::{Contact, Force, Material, Rig, sense};
+use departures::Course;
 use free::FreeHand;
 use hand::{Finger, Hand};
 use htex_recording::SetupResponse;
@@ -76,6 +79,9 @@ pub enum SimulationError {
         "the true spectrum is known for a free motion only; sweeps run over one fixed piece of the material"
     )]
     NoTruth,
+    /// The spectrum changes in the course of the recording.
+    #[error("the true spectrum is known without drift and lifts only; leave them out")]
+    Unsteady,
 }
 
 /// The motion of the simulated hand.
@@ -144,6 +150,8 @@ pub struct SimulationOptions {
     pub force_n: f64,
     /// The motion; a free one has its own ranges of speed and force.
     pub motion: Motion,
+    /// What differs from a rigid relief under a steady hand.
+    pub departures: Departures,
 }
 
 impl SimulationOptions {
@@ -158,6 +166,7 @@ impl SimulationOptions {
             speed_mm_s: 80.0,
             force_n: 0.4,
             motion: Motion::Sweeps,
+            departures: Departures::default(),
         }
     }
 
@@ -196,6 +205,13 @@ impl SimulationOptions {
     #[must_use]
     pub fn with_free_motion(mut self, free: FreeMotion) -> Self {
         self.motion = Motion::Free(free);
+        self
+    }
+
+    /// Sets what differs from a rigid relief under a steady hand.
+    #[must_use]
+    pub fn with_departures(mut self, departures: Departures) -> Self {
+        self.departures = departures;
         self
     }
 
@@ -250,6 +266,7 @@ impl SimulationOptions {
         for (option, value, low, high) in ranges {
             check_range(option, value, low, high)?;
         }
+        self.departures.check()?;
         match &self.motion {
             Motion::Sweeps => Ok(()),
             Motion::Free(free) => free.check(),
@@ -275,10 +292,10 @@ impl SimulationOptions {
     fn material(&self, stream: impl Fn(u64) -> Normal) -> Material {
         let parameters = self.surface.parameters();
         match self.motion {
-            Motion::Sweeps => Material::Piece(Relief::new(parameters, &mut stream(1))),
+            Motion::Sweeps => Material::Piece(Relief::new(parameters, &mut stream(1)), 0.0),
             Motion::Free(_) => {
                 let tracks = [1, 3].map(|part| Track::new(parameters, stream(part)));
-                Material::Endless(Box::new(tracks), 1.0 / self.inner_hz())
+                Material::Endless(Box::new(tracks))
             }
         }
     }
@@ -396,13 +413,16 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationErr
     let (inner_steps, inner_hz) = (options.inner_steps(), options.inner_hz());
     let stream = |part: u64| stream(options.seed, 16 * parameters.label + part);
     let mut hand = options.hand(stream(0));
-    let mut contact = Contact::new(parameters, inner_hz, options.material(stream));
+    let material = options.material(stream);
+    let mut contact = Contact::new(parameters, inner_hz, material, options.departures);
+    let mut course = Course::new(options.departures, inner_hz, stream(4));
     let mut rig = Rig::new(inner_hz, options.rate_hz);
     let mut noise = stream(2);
     let mut simulation = Simulation::new(options, samples);
     for step in 0..samples * inner_steps {
-        let finger = hand.tick();
-        let force = rig.tick(contact.tick(&finger));
+        let mut finger = hand.tick();
+        let level = course.tick(&mut finger);
+        let force = rig.tick(contact.tick(&finger, level));
         if step % inner_steps == 0 {
             simulation.push(sense(force, options.rate_hz, &mut noise), &finger);
         }

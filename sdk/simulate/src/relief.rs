@@ -11,6 +11,8 @@ use super::surface::{Grain, Line, Parameters};
 pub(super) const POINTS_PER_MM: f64 = 100.0;
 /// Length of the surface with a margin, mm, centred on 0.
 const LENGTH_MM: f64 = 120.0;
+/// Half the length that a finger of its own pace reads, mm.
+pub(super) const HALF_READ_MM: f64 = 45.0;
 /// Standard deviation of the Gaussian over which one ridge's contact averages, mm: -3 dB at 6.6 periods
 /// per millimetre (530 Hz at 80 mm/s).
 const CONTACT_MM: f64 = 0.02;

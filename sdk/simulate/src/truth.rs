@@ -51,9 +51,13 @@ impl SimulationOptions {
     /// Returns the true spectrum of a steady part of a free motion as a function of speed and force.
     ///
     /// # Errors
-    /// When an option is out of its range, or the motion is not free: sweeps run over one fixed piece of the material.
+    /// When an option is out of its range, or the motion is not free: sweeps run over one fixed piece of the material; or the
+    /// level drifts or the finger lifts.
     pub fn truth(&self) -> Result<Truth, SimulationError> {
         self.check()?;
+        if !self.departures.is_steady() {
+            return Err(SimulationError::Unsteady);
+        }
         if !matches!(self.motion, Motion::Free(_)) {
             return Err(SimulationError::NoTruth);
         }
@@ -97,8 +101,17 @@ impl Truth {
         check_range("speed_mm_s", speed_mm_s, 1.0, 500.0)?;
         check_range("force_n", force_n, 0.01, 10.0)?;
         let per_newton = self.per_newton(speed_mm_s);
-        let magnitude = |one: f64| libm::sqrt((force_n * one).powi(2) + self.noise_power);
+        let force = self.force_power(force_n);
+        let magnitude = |one: f64| libm::sqrt((force * one).powi(2) + self.noise_power);
         Ok(per_newton.into_iter().map(magnitude).collect())
+    }
+
+    /// Returns the texture's factor at a force relative to that at 1 N.
+    fn force_power(&self, force_n: f64) -> f64 {
+        match self.options.departures.level_force {
+            1.0 => force_n,
+            exponent => libm::pow(force_n, exponent),
+        }
     }
 
     /// Returns the magnitudes of the texture at a force of 1 N, without the sensor's noise.
@@ -124,7 +137,9 @@ impl Truth {
     fn cell_powers(&self, speed_mm_s: f64) -> Vec<f64> {
         let parameters = self.options.surface.parameters();
         let unit = parameters.unit();
-        let width = self.cell_hz / speed_mm_s;
+        let departures = self.options.departures;
+        let width = self.cell_hz / departures.pace_mm_s(speed_mm_s);
+        let level = departures.level(speed_mm_s, 1.0);
         let kernel = contact_kernel();
         let noise: Vec<f64> = parameters.grains.iter().map(Grain::noise_power).collect();
         let both_axes = 1.0 + ACROSS.0 * ACROSS.0;
@@ -134,7 +149,7 @@ impl Truth {
                 return 0.0;
             }
             let relief = unit * unit * relief_power(parameters, &noise, per_mm, width);
-            relief * reading(&kernel, per_mm).powi(2) * filter * both_axes
+            level * level * relief * reading(&kernel, per_mm).powi(2) * filter * both_axes
         };
         self.filters.iter().enumerate().map(power).collect()
     }
@@ -157,8 +172,7 @@ impl Truth {
             surface: self.options.surface.name(),
             rate_hz: self.options.rate_hz,
             unit: "N",
-            rule: "magnitude = sqrt((force_n * per_newton)^2 + noise^2); per_newton is one list per speed, linear in \
-                   ln(speed_mm_s) between them",
+            rule: self.rule(),
             noise: libm::sqrt(self.noise_power),
             frequency_hz: self.frequency_hz(),
             per_newton: speeds.iter().map(|v| self.per_newton(*v)).collect(),
@@ -168,13 +182,27 @@ impl Truth {
     }
 }
 
+impl Truth {
+    /// Returns how the parts of a written truth are combined.
+    fn rule(&self) -> String {
+        let force = match self.options.departures.level_force {
+            1.0 => "force_n".to_owned(),
+            exponent => format!("force_n^{exponent}"),
+        };
+        format!(
+            "magnitude = sqrt(({force} * per_newton)^2 + noise^2); per_newton is one list per speed, linear in \
+             ln(speed_mm_s) between them"
+        )
+    }
+}
+
 #[derive(Serialize)]
 struct TruthText {
     simulated: bool,
     surface: &'static str,
     rate_hz: f64,
     unit: &'static str,
-    rule: &'static str,
+    rule: String,
     noise: f64,
     frequency_hz: Vec<f64>,
     speed_mm_s: Vec<f64>,

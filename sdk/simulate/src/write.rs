@@ -36,9 +36,10 @@ impl Simulation {
         };
         writeln!(
             out,
-            "# simulated recording, no finger and no sensor: surface {}, seed {}, {motion}, {} Hz, htex {}",
+            "# simulated recording, no finger and no sensor: surface {}, seed {}, {motion}{}, {} Hz, htex {}",
             options.surface,
             options.seed,
+            options.departures.told(),
             options.rate_hz,
             env!("CARGO_PKG_VERSION")
         )?;

@@ -11,7 +11,9 @@ use htex_author::{
 use htex_dsp::fidelity::third_octave_error_rms_db;
 use htex_recording::response_from_bytes;
 use htex_recording::{ReadOptions, read_recording};
-use htex_simulate::{FreeMotion, Simulation, SimulationOptions, Surface, simulate};
+use htex_simulate::{
+    Departures, FreeMotion, Simulation, SimulationError, SimulationOptions, Surface, simulate,
+};
 
 fn paper(surface: Surface) -> Simulation {
     simulate(&SimulationOptions::new(surface)).unwrap()
@@ -330,21 +332,27 @@ fn free_motion_fills_its_ranges_and_turns() {
     assert!(turns > 15, "{turns} turns");
 }
 
-/// A hand that keeps its speed and force has the true spectrum, over all surfaces.
+/// A hand that keeps its speed and force has the true spectrum, over all surfaces, and where a surface departs from a relief.
 #[test]
 fn a_steady_part_of_a_free_motion_has_the_true_spectrum() {
-    for (surface, speed, force) in [
-        (Surface::Sandpaper, 50.0, 0.3),
-        (Surface::FineFabric, 150.0, 1.0),
-        (Surface::CoarseFabric, 80.0, 3.0),
-        (Surface::CorrugatedPaper, 200.0, 0.5),
-        (Surface::Vinyl, 100.0, 0.2),
+    let relief = Departures::default();
+    let tool = relief.with_frequency_speed(0.0).with_level_speed(0.43);
+    let odd = relief.with_level_force(-0.3).with_frequency_speed(0.6);
+    for (surface, speed, force, departures) in [
+        (Surface::Sandpaper, 50.0, 0.3, relief),
+        (Surface::FineFabric, 150.0, 1.0, relief),
+        (Surface::CoarseFabric, 80.0, 3.0, relief),
+        (Surface::CorrugatedPaper, 200.0, 0.5, relief),
+        (Surface::Vinyl, 100.0, 0.2, relief),
+        (Surface::CorrugatedPaper, 200.0, 0.5, tool),
+        (Surface::Sandpaper, 40.0, 2.0, odd),
     ] {
         let steady = FreeMotion::default()
             .with_speed_mm_s([speed; 2])
             .with_force_n([force; 2]);
         let options = SimulationOptions::new(surface)
             .with_free_motion(steady)
+            .with_departures(departures)
             .with_duration_s(60.0);
         let recording = simulate(&options).unwrap().to_recording("steady").unwrap();
         let target = Exploration {
@@ -367,6 +375,79 @@ fn a_steady_part_of_a_free_motion_has_the_true_spectrum() {
         );
         assert!(error_db < 0.5, "{surface}: {error_db} dB");
     }
+}
+
+/// RMS of the force along the strokes above 20 Hz, newtons: of the difference to the mean of 50 ms around, at full speed.
+fn texture_n(simulation: &Simulation, from_s: f64, to_s: f64) -> f64 {
+    let [from, to] = [from_s, to_s].map(|s| (s * simulation.rate_hz) as usize);
+    let around = (0.05 * simulation.rate_hz) as usize;
+    let full_mm = 0.95 * 80.0 * 0.05;
+    let squares = (from..to - around).filter_map(|start| {
+        let moved = simulation.y_mm[start + around] - simulation.y_mm[start];
+        let part = &simulation.fy_n[start..start + around];
+        let mean = part.iter().sum::<f64>() / part.len() as f64;
+        (moved.abs() > full_mm).then(|| (part[around / 2] - mean).powi(2))
+    });
+    let squares: Vec<f64> = squares.collect();
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+/// A texture fades by its drift, a finger lifts for its part of the time, and a file says what departs.
+#[test]
+fn hands_drift_and_lift() {
+    let steady = FreeMotion::default()
+        .with_speed_mm_s([80.0; 2])
+        .with_force_n([0.4; 2]);
+    let with = |departures: Departures| {
+        let options = SimulationOptions::new(Surface::Sandpaper)
+            .with_free_motion(steady)
+            .with_rate_hz(4_000.0)
+            .with_duration_s(60.0)
+            .with_departures(departures);
+        (simulate(&options).unwrap(), options)
+    };
+    let (plain, _) = with(Departures::default());
+    let (fading, options) = with(Departures::default().with_drift_db_per_min(-12.0));
+    let lost_db = |from_s: f64, to_s: f64| {
+        20.0 * (texture_n(&fading, from_s, to_s) / texture_n(&plain, from_s, to_s)).log10()
+    };
+    // The middles of the first and the last 20 s.
+    let [early, late] = [lost_db(0.0, 20.0), lost_db(40.0, 60.0)];
+    println!("{early:.1} and {late:.1} dB");
+    assert!(
+        (early + 2.0).abs() < 0.7 && (late + 10.0).abs() < 0.7,
+        "{early} {late}"
+    );
+    assert_eq!(options.truth().unwrap_err(), SimulationError::Unsteady);
+
+    let (lifting, _) = with(Departures::default().with_lifted(0.3));
+    let off = lifting.fz_n.iter().filter(|force| **force < 0.02).count();
+    let part = off as f64 / lifting.fz_n.len() as f64;
+    assert!((0.22..0.36).contains(&part), "{part}");
+    let first_line = String::from_utf8(csv(&lifting)[..200].to_vec()).unwrap();
+    assert!(
+        first_line.contains(", lifted 0.3 of the time, 4000 Hz"),
+        "{first_line}"
+    );
+}
+
+/// Sweeps over one piece keep their frequencies where the surface says so.
+#[test]
+fn frequencies_of_sweeps_follow_the_speed_by_the_exponent() {
+    let line_hz = |speed: f64, exponent: f64| {
+        let departures = Departures::default().with_frequency_speed(exponent);
+        let options = SimulationOptions::new(Surface::CorrugatedPaper)
+            .with_speed_mm_s(speed)
+            .with_departures(departures);
+        let simulation = simulate(&options).unwrap();
+        let at = |hz: &i32| amplitude_n(&simulation, f64::from(*hz));
+        let strongest = (30..200).max_by(|a, b| at(a).total_cmp(&at(b))).unwrap();
+        f64::from(strongest)
+    };
+    let usual = line_hz(80.0, 1.0);
+    assert!((line_hz(120.0, 1.0) / usual - 1.5).abs() < 0.1);
+    assert!((line_hz(120.0, 0.0) / usual - 1.0).abs() < 0.1);
+    assert!((line_hz(40.0, 0.0) / usual - 1.0).abs() < 0.1);
 }
 
 /// Numbers from a NumPy program that evaluates the same physics on a grid of frequencies: autocorrelated phases as Lorentzians,
@@ -486,4 +567,13 @@ fn a_written_truth_states_any_speed_and_force() {
     }
     let sweeps = SimulationOptions::new(Surface::Vinyl);
     assert!(sweeps.truth().is_err() && truth.magnitude(f64::NAN, 1.0).is_err());
+    let bent = Departures::default().with_level_force(0.5);
+    let mut bytes = Vec::new();
+    let options = free(Surface::CoarseFabric).with_departures(bent);
+    options.truth().unwrap().write_json(&mut bytes).unwrap();
+    assert!(
+        String::from_utf8(bytes)
+            .unwrap()
+            .contains("force_n^0.5 * per_newton")
+    );
 }

@@ -3,7 +3,7 @@
 use super::setting::settings;
 use super::{GivenLaw, SettingsError};
 use htex_finding::Severity;
-use htex_format::{Contact, Manifest, check_doi, check_license};
+use htex_format::{Contact, Law, Manifest, check_doi, check_license};
 
 settings! {
     /// What a texture is, who made it, and how it was recorded. An absent entry leaves what is there; an empty text removes it.
@@ -155,8 +155,9 @@ impl Metadata {
     /// Writes contact and law into a manifest. A stated law of another contact is assumed anew.
     fn apply_law(&self, manifest: &mut Manifest) {
         let (law, contact) = (manifest.law(), self.contact.unwrap_or(manifest.contact));
-        let law = law.reassumed(manifest.quantity, contact);
-        let given = self.law.map(|given| given.over(law));
+        let of_contact = |law: Law| law.reassumed(manifest.quantity, contact);
+        let law = of_contact(law);
+        let given = self.law.map(|given| of_contact(given.over(law)));
         if self.contact.is_some() || given.is_some() {
             manifest.contact = contact;
             manifest.law = Some(given.unwrap_or(law));

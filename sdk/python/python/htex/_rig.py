@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -25,15 +25,23 @@ def simulate(
     motion: Literal["sweeps", "free"] = "sweeps",
     speed_mm_s: float | tuple[float, float] | None = None,
     force_n: float | tuple[float, float] | None = None,
+    law: Mapping[str, float] | None = None,
+    drift_db_per_min: float = 0.0,
+    lifted: float = 0.0,
 ) -> Simulation:
     """Simulate a recording of a finger that slides over a surface, as ``htex simulate`` does.
 
     It is not a measurement, and what is fitted to it says so. ``motion`` is to-and-fro sweeps at one speed (80 mm/s) and force (0.4 N), or
     strokes of random speed and force between two values (36 to 280 mm/s, 0.15 to 3.8 N). The same seed gives the same samples.
+
+    ``law`` says how the texture follows the motion: ``frequency_speed``, ``level_speed`` and ``level_force``, exponents relative to 80 mm/s
+    and 0.4 N; those of a relief are 1, 0 and 1. ``drift_db_per_min`` changes the texture's level in the course of the recording, and
+    ``lifted`` is the part of the time that the finger is off the surface, 0 to 0.8.
     """
     if motion not in ("sweeps", "free"):
         raise _errors.OptionError(f"motion is {motion!r}; known are sweeps, free")
-    found = _htex.simulate(surface, seed, seconds, rate_hz, motion == "free", speed_mm_s, force_n)
+    departures = (as_json(dict(law or {})), drift_db_per_min, lifted)
+    found = _htex.simulate(surface, seed, seconds, rate_hz, motion == "free", speed_mm_s, force_n, departures)
     columns, csv, (frequency_hz, magnitude, phase_rad) = found
     response = Response(np.array(frequency_hz), np.array(magnitude), np.array(phase_rad))
     return Simulation(columns, csv=csv, rate_hz=rate_hz, response=response)

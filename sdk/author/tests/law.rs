@@ -1,0 +1,131 @@
+//! Laws of simulated surfaces, of some that are a relief and of some that are not: what recordings tell, and what plays outside
+//! of them.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use htex_author::{AssetRequest, Exploration, ModelRequest, SpectrumOptions, Take, fit_asset};
+use htex_dsp::fidelity::third_octave_error_rms_db;
+use htex_format::{Contact, Law};
+use htex_host::Registry;
+use htex_play::{Asset, Motion};
+use htex_simulate::{Departures, FreeMotion, SimulationOptions, Surface, simulate};
+
+/// A free motion that keeps a speed and a force: its true spectrum is known.
+fn steady(surface: Surface, departures: Departures, motion: Motion) -> SimulationOptions {
+    let free = FreeMotion::default()
+        .with_speed_mm_s([motion.speed_mm_s; 2])
+        .with_force_n([motion.force_n; 2]);
+    SimulationOptions::new(surface)
+        .with_free_motion(free)
+        .with_departures(departures)
+        .with_rate_hz(5_000.0)
+}
+
+/// An asset of recordings at motions, with the rig's response divided out.
+fn recorded(
+    surface: Surface,
+    departures: Departures,
+    contact: Contact,
+    motions: &[Motion],
+) -> Asset {
+    let take = |motion: &Motion| {
+        let simulation = simulate(&steady(surface, departures, *motion)).unwrap();
+        let mut recording = simulation.to_recording("steady.csv").unwrap();
+        recording.simulated = contact == Contact::Finger;
+        let given = Exploration {
+            speed_mm_s: Some(motion.speed_mm_s),
+            force_n: Some(motion.force_n),
+        };
+        Take { recording, given }
+    };
+    let takes: Vec<Take> = motions.iter().map(take).collect();
+    let response = steady(surface, departures, motions[0]).setup_response();
+    let registry = Registry::builtin();
+    let request = AssetRequest::new("law")
+        .with_models([ModelRequest::new(registry.find("bands").unwrap())])
+        .with_spectrum(SpectrumOptions::default().with_response(response.unwrap()));
+    Asset::new(fit_asset(&takes, &request).unwrap().asset)
+}
+
+fn law(asset: &Asset) -> Law {
+    asset.manifest().law()
+}
+
+fn motions<const N: usize>(motions: [(f64, f64); N]) -> [Motion; N] {
+    motions.map(|(speed, force)| Motion::new(speed, force))
+}
+
+/// A relief, whose frequencies follow the speed and whose level follows the force, and a surface that keeps its frequencies; each with
+/// its exponents and a contact of which others are assumed.
+fn kinds() -> [(&'static str, Departures, [f64; 3], Contact); 2] {
+    let relief = Departures::default();
+    let other = relief
+        .with_frequency_speed(0.0)
+        .with_level_speed(0.5)
+        .with_level_force(0.3);
+    [
+        ("relief", relief, [1.0, 0.0, 1.0], Contact::Unknown),
+        ("other", other, [0.0, 0.5, 0.3], Contact::Finger),
+    ]
+}
+
+/// Three speeds and two forces tell the exponents, on every surface although others are assumed of the contact.
+#[test]
+fn exponents_of_simulated_surfaces_are_found() {
+    let recorded_at = motions([
+        (40.0, 0.3),
+        (80.0, 0.3),
+        (160.0, 0.3),
+        (40.0, 1.2),
+        (160.0, 1.2),
+    ]);
+    for surface in Surface::ALL {
+        for (kind, departures, [a, b, c], contact) in kinds() {
+            let law = law(&recorded(surface, departures, contact, &recorded_at));
+            println!("{surface}, {kind}, {contact:?}: {law:?}");
+            // Skin and sensor do not follow the speed.
+            assert!((law.frequency_speed.exponent - a).abs() < 0.17, "{a}");
+            let [level_speed, level_force] =
+                [law.level_speed, law.level_force].map(|x| x.estimate.unwrap());
+            assert!((level_speed - b).abs() < 0.17 && (level_force - c).abs() < 0.05);
+            // What plays is drawn to what is assumed beside these frequencies.
+            assert!((law.level_speed.exponent - b).abs() < 0.2);
+        }
+    }
+}
+
+/// Of two speeds, what plays an octave beyond them is nearer to the truth than the nearest recording, on both kinds.
+#[test]
+fn what_plays_outside_is_nearer_than_the_nearest_recording() {
+    let recorded_at = motions([(40.0, 0.4), (80.0, 0.4)]);
+    let beyond = Motion::new(160.0, 0.4);
+    for surface in Surface::ALL {
+        for (kind, departures, _, contact) in kinds() {
+            let options = steady(surface, departures, beyond);
+            let truth = options.truth().unwrap();
+            let (grid, rig) = (truth.frequency_hz(), options.setup_response().unwrap());
+            let there = truth.magnitude(beyond.speed_mm_s, beyond.force_n).unwrap();
+            let at_finger = there.iter().zip(&grid).map(|(magnitude, f)| {
+                let (re, im) = rig.at(*f);
+                magnitude / re.hypot(im)
+            });
+            let truth: Vec<f64> = at_finger.collect();
+            // What the recording at 80 mm/s has below 20 Hz is not known, and would be below 40 Hz here.
+            let known = grid.partition_point(|hz| *hz < 40.0);
+            let asset = recorded(surface, departures, contact, &recorded_at);
+            let of = |motion| asset.magnitude(None, Some(motion), &grid).unwrap();
+            let error_db = |played: Vec<f64>| {
+                third_octave_error_rms_db(&grid[known..], &truth[known..], &played[known..])
+            };
+            let follows = error_db(of(beyond)).unwrap();
+            let clamped = error_db(of(recorded_at[1])).unwrap();
+            println!(
+                "{surface}, {kind}, {contact:?}: {follows:.2} dB, the nearest recording {clamped:.2} dB"
+            );
+            assert!(
+                follows < 2.1 && follows < clamped - 0.5,
+                "{follows} {clamped}"
+            );
+        }
+    }
+}

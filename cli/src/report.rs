@@ -50,6 +50,11 @@ impl Reported<'_> {
             simulated: manifest.provenance.simulated,
             unit: manifest.quantity.unit().to_owned(),
             condition: motion_text(known),
+            law: format!(
+                "contact: {}; outside the recorded motions: {}",
+                manifest.contact.name(),
+                manifest.law()
+            ),
             recording_bytes: self.recording_bytes,
             asset_bytes: self.summary.bytes,
             repeatability_rms_db: known.repeatability_rms_db,

@@ -4,6 +4,8 @@
 //! `(v / v0)^b (F / F0)^c`. Exponents that are neither measured nor given are assumed for what slid over the surface and the
 //! quantity of the samples ([`Law::assumed`]).
 
+use std::fmt;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -264,6 +266,22 @@ impl Law {
     pub fn level_factor(&self, speed_ratio: f64, force_ratio: f64) -> f64 {
         power(speed_ratio, self.level_speed.exponent)
             * power(force_ratio, self.level_force.exponent)
+    }
+}
+
+/// As people read it: `frequency over speed ^1.00 (assumed), level over speed ^0.43 (measured, 0.40 ± 0.10), ...`.
+impl fmt::Display for Law {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, (key, exponent)) in self.exponents().into_iter().enumerate() {
+            let (name, source) = (key.replace('_', " over "), exponent.source.name());
+            let separator = if i == 0 { "" } else { ", " };
+            write!(f, "{separator}{name} ^{:.2} ({source}", exponent.exponent)?;
+            if let Some((estimate, error)) = exponent.estimate.zip(exponent.standard_error) {
+                write!(f, ", {estimate:.2} ± {error:.2}")?;
+            }
+            write!(f, ")")?;
+        }
+        Ok(())
     }
 }
 

@@ -81,6 +81,8 @@ fn texture(index: usize) -> Texture {
         simulated: true,
         unit: "N".to_owned(),
         condition: "80 mm/s, 0.40 N".to_owned(),
+        law: "contact: finger; outside the recorded motions: frequency over speed ^1.00 (assumed)"
+            .to_owned(),
         recording_bytes: 1_600_044 + 40_000 * index as u64,
         asset_bytes: 2_810 + 7 * index as u64,
         repeatability_rms_db: (index != 3).then_some(1.1 + 0.2 * index as f64),

@@ -73,6 +73,7 @@ fn hostile_report(values: &[f64]) -> TextureReport {
         simulated: values.len().is_multiple_of(2),
         unit: HOSTILE.to_owned(),
         condition: HOSTILE.to_owned(),
+        law: HOSTILE.to_owned(),
         repeatability_rms_db: values.first().copied(),
         frequency_hz: values.iter().map(|v| v.abs()).collect(),
         recorded: values.to_vec(),

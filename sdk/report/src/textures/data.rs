@@ -54,6 +54,8 @@ pub struct Texture {
     pub unit: String,
     /// Speed and force: `"80 mm/s, 0.40 N"`.
     pub condition: String,
+    /// What slid over it, and how frequencies and level follow a motion that was not recorded; empty if it is not said.
+    pub law: String,
     /// Size of the recording's file, bytes.
     pub recording_bytes: u64,
     /// Size of the asset's file, bytes.

@@ -65,7 +65,14 @@ fn row(texture: &Texture) -> Element {
     Element::new("section")
         .set("class", "row")
         .child(&row_heading(texture))
+        .children(law(texture))
         .child(&panels)
+}
+
+/// How the texture follows a motion that was not recorded.
+fn law(texture: &Texture) -> Option<Element> {
+    let said = (!texture.law.is_empty()).then_some(&texture.law)?;
+    Some(Element::new("p").set("class", "law").text(said))
 }
 
 fn row_heading(texture: &Texture) -> Element {

@@ -374,8 +374,12 @@ fn short_number(x: f64) -> String {
 /// Speed, force and repeatability of a condition, as far as they are known.
 fn condition_text(condition: &Condition) -> String {
     let mut text = motion_text(condition);
-    if let Some(segments) = condition.segments {
-        let _ = write!(text, ", {segments} segments");
+    match condition.segments {
+        Some(0) => text += ", computed between recorded speeds",
+        Some(segments) => {
+            let _ = write!(text, ", {segments} segments");
+        }
+        None => {}
     }
     if let Some(db) = condition.repeatability_rms_db {
         let _ = write!(text, ", the recording itself repeats within {db:.2} dB");

@@ -13,6 +13,7 @@ use htex_format::{
 use htex_host::{HostError, LoadedModel, Origin};
 
 use crate::alternatives::warning;
+use crate::between;
 use crate::conditions::{Group, Grouped, group_takes};
 use crate::felt::FeltError;
 use crate::grid::{GridReport, group_grid, left_out};
@@ -64,6 +65,14 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     let mut warnings = std::mem::take(&mut grouped.warnings);
     let notes = std::mem::take(&mut grouped.notes);
     let findings = std::mem::take(&mut grouped.findings);
+    let contact = contact(takes);
+    let law = {
+        let spectra: Vec<&TextureSpectrum> = grouped.groups.iter().map(|g| &g.spectrum).collect();
+        law(&grouped.conditions, &spectra, contact)
+    };
+    if grid.is_none() {
+        between::add(&mut grouped, &law);
+    }
     let mut fitted = Vec::new();
     let mut skipped = Vec::new();
     for choice in &request.models {
@@ -106,8 +115,6 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     let fit_ms = fitted.iter().map(|f| f.fit_ms).collect();
     let felt = fitted.iter_mut().map(|f| std::mem::take(&mut f.felt));
     let felt = felt.collect();
-    let contact = contact(takes);
-    let law = law(&grouped.conditions, &spectra, contact);
     let asset = assemble(
         request,
         provenance,
@@ -179,16 +186,21 @@ fn fit_model(
         fit_ms += start.elapsed().as_secs_f64() * 1e3;
         let stored = round_parameters(&fields, &fit.parameters)?;
         let level_rms = stored_level(model, &fit, &stored, reference, level)?;
-        let mut quality = measure(model, &stored, level_rms, reference)?;
-        let rounding = rounding_error_db(model, &fit.parameters, &stored, reference)?;
-        quality.rounding_error_db = Some(rounding);
+        let mut quality = None;
+        if group.spectrum.is_recorded() {
+            let rounding = rounding_error_db(model, &fit.parameters, &stored, reference)?;
+            quality = Some(Quality {
+                rounding_error_db: Some(rounding),
+                ..measure(model, &stored, level_rms, reference)?
+            });
+        }
         let magnitude = scaled_magnitude(model, &stored, level_rms, reference)?;
-        let nine_band_db = quality.get(Measure::NineBand);
+        let nine_band_db = quality.as_ref().and_then(|q| q.get(Measure::NineBand));
         felt.push(FeltError::new(&group.spectrum, &magnitude, nine_band_db));
         at.push(AtCondition {
             condition,
             level_rms,
-            quality: Some(quality),
+            quality,
             left_out: None,
         });
         parameters.push(stored);

@@ -6,7 +6,8 @@
 //! Frequencies: the exponent at which the spectra, each shifted by `(v / v0)^a` on a logarithmic axis and without its level,
 //! differ least. Spectra change with the speed for other reasons, too: without lines that move, the best shift of recorded
 //! strokes was anywhere between -0.5 and 1.5, and lowered the squared difference to 0.25 to 0.9 of that without a shift. So an
-//! exponent is measured only where the difference falls to a quarter of that at the exponent that is assumed.
+//! exponent is measured only where the difference falls to a quarter of that without a shift, or of that at the exponent that is
+//! assumed.
 
 use htex_format::{Condition, Contact, Exponent, ExponentSource, Law, Quantity};
 
@@ -14,7 +15,7 @@ use crate::spectrum::TextureSpectrum;
 
 /// Least error of a recorded level, decibels.
 const LEVEL_ERROR_DB: f64 = 2.0;
-/// Most of the difference at the assumed exponent that is left at a measured one.
+/// Most of the difference without a shift, or at the assumed exponent, that is left at a measured one.
 const MOST_LEFT: f64 = 0.25;
 /// Points per octave at which spectra are compared, and half the width over which each is read, octaves.
 const POINTS: f64 = 24.0;
@@ -25,7 +26,7 @@ const TRIED: std::ops::RangeInclusive<i32> = -30..=130;
 const LEAST_OCTAVES: f64 = 1.0;
 
 /// Estimates the law of conditions from their spectra; what they do not tell is assumed.
-pub(crate) fn law(conditions: &[Condition], spectra: &[TextureSpectrum], contact: Contact) -> Law {
+pub(crate) fn law(conditions: &[Condition], spectra: &[&TextureSpectrum], contact: Contact) -> Law {
     let quantity = spectra.first().map_or(Quantity::default(), |s| s.quantity);
     let mut law = Law::assumed(quantity, contact);
     let [speeds, forces] = [speed, force].map(|of| logarithms(conditions, of));
@@ -128,11 +129,11 @@ fn level_exponents(levels: &[f64], axes: [Option<&[f64]>; 2]) -> [Option<[f64; 2
 
 /// Returns the exponent of frequencies over the speed with its standard error, if the spectra tell it.
 fn frequency_exponent(
-    spectra: &[TextureSpectrum],
+    spectra: &[&TextureSpectrum],
     speeds: &[f64],
     assumed: f64,
 ) -> Option<[f64; 2]> {
-    let curves: Vec<Curve> = spectra.iter().map(Curve::new).collect();
+    let curves: Vec<Curve> = spectra.iter().map(|s| Curve::new(s)).collect();
     let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
     let octaves: Vec<f64> = speeds
         .iter()
@@ -147,7 +148,8 @@ fn frequency_exponent(
         .iter()
         .min_by(|x, y| x.1.mean_square.total_cmp(&y.1.mean_square))?;
     let inside = *best > all.first()?.0 && *best < all.last()?.0;
-    if !inside || least.mean_square > MOST_LEFT * differ(assumed)?.mean_square {
+    let [still, usual] = [0.0, assumed].map(|a| differ(a).map_or(0.0, |d| d.mean_square));
+    if !inside || least.mean_square > MOST_LEFT * still.max(usual) {
         return None;
     }
     // The curvature over a tenth on both sides.

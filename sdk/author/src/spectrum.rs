@@ -106,7 +106,7 @@ pub struct TextureSpectrum {
     pub frequency_hz: Vec<f64>,
     /// Magnitude at each frequency of the grid.
     pub magnitude: Vec<f64>,
-    /// Number of averaged segments.
+    /// Number of averaged segments; 0 if it was computed between two recorded speeds.
     pub segments: usize,
     /// Nine-band RMS difference between the odd and the even segments, decibels: the variation within the
     /// recording. `None` with fewer than two segments, or when half of them are silent.
@@ -126,6 +126,11 @@ pub struct SpectrumRef<'a> {
 }
 
 impl TextureSpectrum {
+    /// Whether it is of a recording; else it was computed between two by the law of the texture.
+    pub fn is_recorded(&self) -> bool {
+        self.segments > 0
+    }
+
     /// Averages segment spectra of one texture at one condition, from one or more recordings.
     ///
     /// # Errors

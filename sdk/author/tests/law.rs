@@ -94,6 +94,64 @@ fn exponents_of_simulated_surfaces_are_found() {
     }
 }
 
+/// The true magnitudes at a motion, the rig's response divided out, and their frequencies.
+fn true_spectrum(surface: Surface, departures: Departures, motion: Motion) -> (Vec<f64>, Vec<f64>) {
+    let options = steady(surface, departures, motion);
+    let truth = options.truth().unwrap();
+    let (grid, rig) = (truth.frequency_hz(), options.setup_response().unwrap());
+    let there = truth.magnitude(motion.speed_mm_s, motion.force_n).unwrap();
+    let at_finger = there.iter().zip(&grid).map(|(magnitude, f)| {
+        let (re, im) = rig.at(*f);
+        magnitude / re.hypot(im)
+    });
+    (grid.clone(), at_finger.collect())
+}
+
+/// The asset without the conditions that were computed between recorded ones.
+fn without_computed(asset: &Asset) -> Asset {
+    let mut data = asset.data().clone();
+    let recorded = |c: &&htex_format::Condition| c.segments != Some(0);
+    let count = data.manifest.conditions.iter().filter(recorded).count();
+    data.manifest.conditions.truncate(count);
+    for representation in &mut data.manifest.representations {
+        representation.at.truncate(count);
+    }
+    for parameters in &mut data.parameters {
+        parameters.truncate(count);
+    }
+    Asset::new(data)
+}
+
+/// Between recorded speeds the lines of a relief move instead of fading into each other, and nothing is computed where they stay.
+#[test]
+fn lines_move_between_recorded_speeds() {
+    let recorded_at = motions([(40.0, 0.4), (80.0, 0.4), (160.0, 0.4)]);
+    for surface in Surface::ALL {
+        for (kind, departures, [a, ..], contact) in kinds() {
+            let asset = recorded(surface, departures, contact, &recorded_at);
+            let plain = without_computed(&asset);
+            let count = |asset: &Asset| asset.manifest().conditions.len();
+            assert_eq!(
+                [count(&plain), count(&asset)],
+                [3, if a == 1.0 { 9 } else { 3 }]
+            );
+            for between in motions([(57.0, 0.4), (113.0, 0.4)]) {
+                let (grid, truth) = true_spectrum(surface, departures, between);
+                let error_db = |asset: &Asset| {
+                    let played = asset.magnitude(None, Some(between), &grid).unwrap();
+                    third_octave_error_rms_db(&grid, &truth, &played).unwrap()
+                };
+                let (moved, mixed) = (error_db(&asset), error_db(&plain));
+                let speed = between.speed_mm_s;
+                println!("{surface}, {kind}, {speed} mm/s: {moved:.2} dB, unmoved {mixed:.2} dB");
+                assert!(moved < 1.8 && moved < mixed + 1.3, "{moved} {mixed}");
+                let lines = surface == Surface::CorrugatedPaper || surface == Surface::CoarseFabric;
+                assert!(a == 0.0 || !lines || moved < mixed - 1.0, "{moved} {mixed}");
+            }
+        }
+    }
+}
+
 /// Of two speeds, what plays an octave beyond them is nearer to the truth than the nearest recording, on both kinds.
 #[test]
 fn what_plays_outside_is_nearer_than_the_nearest_recording() {
@@ -101,15 +159,7 @@ fn what_plays_outside_is_nearer_than_the_nearest_recording() {
     let beyond = Motion::new(160.0, 0.4);
     for surface in Surface::ALL {
         for (kind, departures, _, contact) in kinds() {
-            let options = steady(surface, departures, beyond);
-            let truth = options.truth().unwrap();
-            let (grid, rig) = (truth.frequency_hz(), options.setup_response().unwrap());
-            let there = truth.magnitude(beyond.speed_mm_s, beyond.force_n).unwrap();
-            let at_finger = there.iter().zip(&grid).map(|(magnitude, f)| {
-                let (re, im) = rig.at(*f);
-                magnitude / re.hypot(im)
-            });
-            let truth: Vec<f64> = at_finger.collect();
+            let (grid, truth) = true_spectrum(surface, departures, beyond);
             // What the recording at 80 mm/s has below 20 Hz is not known, and would be below 40 Hz here.
             let known = grid.partition_point(|hz| *hz < 40.0);
             let asset = recorded(surface, departures, contact, &recorded_at);

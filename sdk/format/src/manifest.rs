@@ -219,7 +219,7 @@ pub struct Condition {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub repeatability_rms_db: Option<f64>,
-    /// Number of segments that were averaged at this condition.
+    /// Number of segments that were averaged at this condition; 0 for one that was computed between recorded ones.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segments: Option<u64>,
 }

@@ -27,7 +27,7 @@ class Condition:
     repeatability_rms_db: float | None = None
     """RMS difference between odd and even segments of the recording in nine bands, decibels."""
     segments: int | None = None
-    """Number of segments that were averaged, where the asset states it."""
+    """Number of segments that were averaged, where the asset states it; 0 for a condition that was computed between recorded ones."""
 
 
 @dataclass(frozen=True)

@@ -69,6 +69,12 @@ fn a_folder_is_packed_listed_and_unpacked_byte_for_byte() {
     assert_eq!(vinyl["tags"], info["tags"]);
     let hash = blake3::hash(&example("vinyl.htex")).to_hex().to_string();
     assert_eq!(vinyl["blake3"], json!(hash));
+    assert_eq!(vinyl["contact"], info["contact"]);
+    for key in ["frequency_speed", "level_speed", "level_force"] {
+        for part in ["exponent", "source"] {
+            assert_eq!(vinyl["law"][key][part], info["law"][key][part]);
+        }
+    }
     let speed = &info["conditions"][0]["speed_mm_s"];
     assert_eq!(
         vinyl["conditions"]["speed_mm_s"],

@@ -91,6 +91,15 @@ def leaf(page, shared, payload):
         (bits,) = page.take(1)
         conditions = {"speed_mm_s": page.range(bits), "force_n": page.range(bits >> 1)}
         row["conditions"] = {k: {"min": v[0], "max": v[1]} for k, v in conditions.items() if v}
+    for row in rows:
+        (bits,) = page.take(1)
+        row["contact"] = ("finger", "tool", "unknown")[bits & 3]
+        row["law"] = {}
+        for place, key in enumerate(("frequency_speed", "level_speed", "level_force")):
+            source = ("measured", "given", "assumed")[bits >> (2 * place + 2) & 3]
+            (exponent,) = struct.unpack("<d", page.take(8))
+            assert abs(exponent) <= 4
+            row["law"][key] = {"exponent": exponent, "source": source}
     start = page.varint()
     owns = []
     for _ in rows:

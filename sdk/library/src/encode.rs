@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::entry::{Conditions, Entry, Interval};
-use crate::leaf::{FORCE, ONE_FORCE, ONE_SPEED, SPEED, length};
+use crate::leaf::{CONTACTS, FORCE, ONE_FORCE, ONE_SPEED, SOURCES, SPEED, length};
 use crate::page;
 use crate::wire::{common_prefix, put_following, put_text, put_varint, varint_bytes};
 
@@ -66,7 +66,13 @@ impl Pages {
         let words = new.map(|word| word.len() + 2).sum::<usize>() + 2 * words.count() + 2;
         let cuts = entry.place.cuts.iter();
         let cuts = cuts.map(|cut| varint_bytes(cut.object.end) * 2 + varint_bytes(cut.at));
-        name + words + 33 + varint_bytes(length(&entry.place.own)) + 2 + cuts.sum::<usize>() + 32
+        name + words
+            + 33
+            + varint_bytes(length(&entry.place.own))
+            + 2
+            + cuts.sum::<usize>()
+            + 32
+            + 25
     }
 
     /// Ends the index. Returns the packed root page and leaf pages, and the number of leaves.
@@ -121,6 +127,7 @@ fn leaf(entries: &[Entry]) -> Vec<u8> {
     entries
         .iter()
         .for_each(|e| put_conditions(&mut page, &e.conditions));
+    entries.iter().for_each(|e| put_law(&mut page, e));
     put_varint(&mut page, entries.first().map_or(0, |e| e.place.own.start));
     entries
         .iter()
@@ -155,6 +162,19 @@ fn put_conditions(page: &mut Vec<u8>, conditions: &Conditions) {
         if interval.min != interval.max {
             page.extend(interval.max.to_le_bytes());
         }
+    }
+}
+
+fn put_law(page: &mut Vec<u8>, entry: &Entry) {
+    fn number<T: PartialEq>(all: &[T], one: &T) -> u8 {
+        all.iter().position(|x| x == one).unwrap_or_default() as u8
+    }
+    let exponents = entry.law.exponents();
+    let sources = exponents.iter().enumerate();
+    let bits = sources.map(|(i, one)| number(&SOURCES, &one.source) << (2 * i + 2));
+    page.push(number(&CONTACTS, &entry.contact) | bits.fold(0, |all, bits| all | bits));
+    for one in exponents {
+        page.extend(one.exponent.to_le_bytes());
     }
 }
 

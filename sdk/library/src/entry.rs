@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use htex_format::{Contact, Exponent, ExponentSource, Law};
 use serde::{Serialize, Serializer};
 
 /// What the index states of a texture.
@@ -22,6 +23,10 @@ pub struct Entry {
     pub tags: Vec<String>,
     /// Range of the conditions at which the texture was recorded.
     pub conditions: Conditions,
+    /// What slid over the surface.
+    pub contact: Contact,
+    /// How frequencies and level follow a motion outside these conditions.
+    pub law: IndexedLaw,
     /// Ids of the models that describe the texture, in its order.
     pub models: Vec<String>,
     /// Bytes of the texture's `.htex` file.
@@ -42,6 +47,57 @@ pub struct Conditions {
     /// Normal forces, newtons; `None` when no force is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_n: Option<Interval>,
+}
+
+/// A law of motion ([`htex_format::Law`]) without its measurements.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct IndexedLaw {
+    /// Exponent of frequencies over the speed.
+    pub frequency_speed: IndexedExponent,
+    /// Exponent of the level over the speed.
+    pub level_speed: IndexedExponent,
+    /// Exponent of the level over the normal force.
+    pub level_force: IndexedExponent,
+}
+
+/// An exponent of a law and where it comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct IndexedExponent {
+    /// From -4 to 4.
+    pub exponent: f64,
+    pub source: ExponentSource,
+}
+
+impl IndexedLaw {
+    pub(crate) const fn new(exponents: [IndexedExponent; 3]) -> Self {
+        let [frequency_speed, level_speed, level_force] = exponents;
+        Self {
+            frequency_speed,
+            level_speed,
+            level_force,
+        }
+    }
+
+    /// The exponents in the order of the index.
+    pub(crate) const fn exponents(&self) -> [IndexedExponent; 3] {
+        [self.frequency_speed, self.level_speed, self.level_force]
+    }
+}
+
+impl From<Law> for IndexedLaw {
+    fn from(law: Law) -> Self {
+        // A sum with zero has no sign of zero.
+        let indexed = |(
+            _,
+            Exponent {
+                exponent, source, ..
+            },
+        ): (_, Exponent)| IndexedExponent {
+            exponent: exponent + 0.0,
+            source,
+        };
+        Self::new(law.exponents().map(indexed))
+    }
 }
 
 /// A closed interval of numbers that are finite and not negative.

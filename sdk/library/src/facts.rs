@@ -1,18 +1,20 @@
 //! What the index states of an asset, from its manifest.
 
-use htex_format::Manifest;
+use htex_format::{Contact, Manifest};
 
-use crate::entry::{Conditions, Interval};
+use crate::entry::{Conditions, IndexedLaw, Interval};
 
 /// Most tags, and most models, of a texture in the index.
 pub(crate) const MOST_WORDS: usize = 64;
 
-/// Tags, models and conditions of an asset.
+/// Tags, models, conditions and law of an asset.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Facts {
     pub tags: Vec<String>,
     pub models: Vec<String>,
     pub conditions: Conditions,
+    pub contact: Contact,
+    pub law: IndexedLaw,
 }
 
 impl Facts {
@@ -29,6 +31,8 @@ impl Facts {
                 speed_mm_s: Interval::of(speeds),
                 force_n: Interval::of(forces),
             },
+            contact: manifest.contact,
+            law: manifest.law().into(),
         }
     }
 }

@@ -3,7 +3,9 @@
 //! A page has columns: hashes take most of it and cannot be compressed, the rest can. Pages are cut before compression,
 //! so that their size is bounded without trying.
 
-use crate::entry::{Conditions, Cut, Entry, Interval, TexturePlace};
+use htex_format::{Contact, ExponentSource, MOST_EXPONENT};
+
+use crate::entry::{Conditions, Cut, Entry, IndexedExponent, IndexedLaw, Interval, TexturePlace};
 use crate::facts::MOST_WORDS;
 use crate::fault::{Fault, entry_place, leaf_place};
 use crate::header::{Header, MINOR};
@@ -13,8 +15,8 @@ use crate::root::Root;
 use crate::rules as rule;
 use crate::wire::{Cursor, Malformed};
 
-/// Least bytes of an entry: its hash and one byte in most columns.
-const LEAST_ENTRY_BYTES: usize = 32 + 2 + 5;
+/// Least bytes of an entry: its hash, three exponents, and one byte in most columns.
+const LEAST_ENTRY_BYTES: usize = 32 + 3 * 8 + 2 + 6;
 /// Most shared objects of a texture: the entries of its archive.
 pub(crate) const MOST_CUTS: usize = 256;
 
@@ -23,6 +25,14 @@ pub(crate) const SPEED: u8 = 1;
 pub(crate) const FORCE: u8 = 2;
 pub(crate) const ONE_SPEED: u8 = 4;
 pub(crate) const ONE_FORCE: u8 = 8;
+
+/// Contacts and sources of exponents by their numbers in the column of laws.
+pub(crate) const CONTACTS: [Contact; 3] = [Contact::Finger, Contact::Tool, Contact::Unknown];
+pub(crate) const SOURCES: [ExponentSource; 3] = [
+    ExponentSource::Measured,
+    ExponentSource::Given,
+    ExponentSource::Assumed,
+];
 
 pub(crate) struct LeafReader<'a> {
     pub leaf: usize,
@@ -37,6 +47,7 @@ struct Columns {
     tags: Vec<Vec<String>>,
     models: Vec<Vec<String>>,
     conditions: Vec<Conditions>,
+    laws: Vec<(Contact, IndexedLaw)>,
     places: Vec<TexturePlace>,
     hashes: Vec<[u8; 32]>,
 }
@@ -54,14 +65,18 @@ impl LeafReader<'_> {
             .into_iter()
             .zip(columns.tags)
             .zip(columns.models.into_iter().zip(columns.conditions))
+            .zip(columns.laws)
             .zip(columns.places.into_iter().zip(columns.hashes));
         let entries = rows.enumerate().map(|(i, row)| {
-            let (((name, tags), (models, conditions)), (place, blake3)) = row;
+            let ((((name, tags), (models, conditions)), law), (place, blake3)) = row;
+            let (contact, law) = law;
             let bytes = self.check_place(i, &name, &place)?;
             Ok(Entry {
                 name,
                 tags,
                 conditions,
+                contact,
+                law,
                 models,
                 bytes,
                 blake3,
@@ -82,6 +97,7 @@ impl LeafReader<'_> {
             tags: column(cursor, count, |c| chosen(c, &words))?,
             models: column(cursor, count, |c| chosen(c, &words))?,
             conditions: column(cursor, count, conditions)?,
+            laws: column(cursor, count, law)?,
             places: places(cursor, count)?,
             hashes: column(cursor, count, Cursor::array)?,
         };
@@ -203,6 +219,29 @@ fn conditions(cursor: &mut Cursor<'_>) -> Result<Conditions, Malformed> {
         speed_mm_s: interval(cursor, speed)?,
         force_n: interval(cursor, force)?,
     })
+}
+
+/// Reads a contact and a law: a byte with two bits for the contact and for the source of each exponent, and the exponents.
+fn law(cursor: &mut Cursor<'_>) -> Result<(Contact, IndexedLaw), Malformed> {
+    let bits = usize::from(cursor.byte()?);
+    let unknown = |cursor: &Cursor<'_>| cursor.malformed("a contact or a source does not exist");
+    let contact = CONTACTS.get(bits & 3).copied();
+    let contact = contact.ok_or_else(|| unknown(cursor))?;
+    let mut exponents = [IndexedExponent {
+        exponent: 0.0,
+        source: ExponentSource::Assumed,
+    }; 3];
+    let in_range = |x: f64| (-MOST_EXPONENT..=MOST_EXPONENT).contains(&x);
+    for (i, one) in exponents.iter_mut().enumerate() {
+        let source = SOURCES.get((bits >> (2 * i + 2)) & 3).copied();
+        one.source = source.ok_or_else(|| unknown(cursor))?;
+        one.exponent = f64::from_le_bytes(cursor.array()?);
+        let is_zero = one.exponent == 0.0 && one.exponent.is_sign_negative();
+        if !in_range(one.exponent) || is_zero {
+            return Err(cursor.malformed("an exponent is not a number from -4 to 4"));
+        }
+    }
+    Ok((contact, IndexedLaw::new(exponents)))
 }
 
 fn interval(

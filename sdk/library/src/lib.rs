@@ -63,7 +63,7 @@ mod wire;
 #[cfg(feature = "write")]
 mod writer;
 
-pub use entry::{Conditions, Entry, Interval};
+pub use entry::{Conditions, Entry, IndexedExponent, IndexedLaw, Interval};
 pub use error::LibraryError;
 pub use header::{EXTENSION, MAGIC};
 pub use index::Index;

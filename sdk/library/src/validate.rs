@@ -203,6 +203,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             ("tags", entry.tags == facts.tags),
             ("models", entry.models == facts.models),
             ("conditions", entry.conditions == facts.conditions),
+            ("contact", entry.contact == facts.contact),
+            ("exponents of the law", entry.law == facts.law),
         ] {
             self.findings
                 .require(is_same, rule::LIBRARY_ENTRY_WRONG, place, || {

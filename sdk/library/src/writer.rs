@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use htex_files::Unfinished;
-use htex_format::Asset;
+use htex_format::{Asset, Contact};
 
 use crate::encode::Pages;
-use crate::entry::{Conditions, Entry};
+use crate::entry::{Conditions, Entry, IndexedLaw};
 use crate::error::LibraryError;
 use crate::facts::{Facts, MOST_WORDS};
 use crate::header::{HEADER_BYTES, Header, MINOR};
@@ -55,6 +55,8 @@ struct Words {
 struct Added {
     words: Arc<Words>,
     conditions: Conditions,
+    contact: Contact,
+    law: IndexedLaw,
     blake3: [u8; 32],
     spooled: Spooled,
 }
@@ -123,6 +125,8 @@ impl Writer {
         let added = Added {
             words: self.common_words(facts.tags, facts.models),
             conditions: facts.conditions,
+            contact: facts.contact,
+            law: facts.law,
             blake3: *blake3::hash(asset).as_bytes(),
             spooled,
         };
@@ -219,6 +223,8 @@ fn index(name: &str, added: &BTreeMap<String, Added>, sharing: &Sharing) -> (Hea
             tags: texture.words.tags.clone(),
             models: texture.words.models.clone(),
             conditions: texture.conditions,
+            contact: texture.contact,
+            law: texture.law,
             bytes,
             blake3: texture.blake3,
             place,

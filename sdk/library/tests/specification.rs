@@ -38,7 +38,7 @@ fn the_example_is_what_the_writer_and_another_encoder_write() {
     let (_, file) = pack("One", &four()[..1]);
     assert_eq!(file[..128], example("header"));
     assert_eq!(unpacked(&file[128..146]), example("root"));
-    assert_eq!(unpacked(&file[146..244]), example("leaf"));
+    assert_eq!(unpacked(&file[146..252]), example("leaf"));
     let raw = Raw::of(&four()[..1], 1);
     assert_eq!(raw.page(1), example("leaf"));
     let kept = concat!(

@@ -189,6 +189,19 @@ fn entry_data<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyAny>
     fields.set_item("models", PyTuple::new(py, &entry.models)?)?;
     fields.set_item("speed_mm_s", range(entry.conditions.speed_mm_s))?;
     fields.set_item("force_n", range(entry.conditions.force_n))?;
+    fields.set_item("contact", entry.contact.name())?;
+    let law = PyDict::new(py);
+    for (name, one) in [
+        ("frequency_speed", entry.law.frequency_speed),
+        ("level_speed", entry.law.level_speed),
+        ("level_force", entry.law.level_force),
+    ] {
+        let exponent = PyDict::new(py);
+        exponent.set_item("exponent", one.exponent)?;
+        exponent.set_item("source", one.source.name())?;
+        law.set_item(name, data(py, "Exponent", &exponent)?)?;
+    }
+    fields.set_item("law", law)?;
     fields.set_item("bytes", entry.bytes)?;
     fields.set_item("blake3", entry.blake3_hex())?;
     data(py, "LibraryEntry", &fields)

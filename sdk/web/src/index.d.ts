@@ -113,6 +113,10 @@ export interface LibraryEntry {
   tags: string[];
   /** Recorded speeds, mm/s, and forces, N; absent if none is known. */
   conditions: { speed_mm_s?: Interval; force_n?: Interval };
+  /** What slid over the surface. */
+  contact: "finger" | "tool" | "unknown";
+  /** Exponents of the law by which frequencies and level follow a motion outside the recorded ones. */
+  law: Record<"frequency_speed" | "level_speed" | "level_force", { exponent: number; source: "measured" | "given" | "assumed" }>;
   /** Ids of the models of the representations. */
   models: string[];
   /** Bytes of the texture. */

@@ -76,8 +76,12 @@ impl Around {
 
 /// Two leaf pages of a texture each, `a` and `b`, of no bytes.
 pub(crate) fn leaves() -> [Vec<u8>; 2] {
-    // One entry, no words, its name, no tags, no models, no conditions, no bytes, no objects, a hash.
-    [b'a', b'b'].map(|name| page(&[&[1, 0, 0, 1, name, 0, 0, 0, 0, 0, 0][..], &[7; 32]].concat()))
+    // One entry, no words, its name, no tags, no models, no conditions, a law of zeros, no bytes, no objects, a hash.
+    [b'a', b'b'].map(|name| {
+        let before = [1, 0, 0, 1, name, 0, 0, 0];
+        let law = [0; 1 + 3 * 8];
+        page(&[&before[..], &law, &[0, 0, 0], &[7; 32]].concat())
+    })
 }
 
 /// Opens a library and reads it as far as an application would. One that is valid is packed again.
@@ -158,6 +162,7 @@ fn pack_again(library: &Library<&[u8]>) {
             entry.tags,
             entry.models,
             entry.conditions,
+            (entry.contact, entry.law),
             entry.blake3,
         )
     };

@@ -323,6 +323,18 @@ fn entries() -> Vec<Named> {
             changed(|raw| raw.leaves[0][0].forces = Some((1.0, f64::INFINITY))),
         ),
         (
+            "library_page_invalid_contact",
+            changed(|raw| raw.leaves[0][0].law.0 |= 3),
+        ),
+        (
+            "library_page_invalid_exponent",
+            changed(|raw| raw.leaves[0][0].law.1[1] = 4.5),
+        ),
+        (
+            "library_entry_wrong_law",
+            changed(|raw| raw.leaves[0][0].law.1[0] = 1.0),
+        ),
+        (
             "library_object_unused",
             changed(|raw| raw.shared = vec![1, 2, 3]),
         ),

@@ -34,6 +34,8 @@ pub struct Row {
     pub models: Vec<String>,
     pub speeds: Option<(f64, f64)>,
     pub forces: Option<(f64, f64)>,
+    /// Numbers of the contact and of the exponents' sources, and the exponents.
+    pub law: (u8, [f64; 3]),
     pub at: u64,
     pub own: u64,
     /// Own bytes before the last one, start, length.
@@ -62,6 +64,8 @@ impl Raw {
                     speeds.fold(0.0, f64::max),
                 )),
                 forces: Some((0.5, 0.5)),
+                // Nothing is stated: unknown, all assumed.
+                law: (0b10_10_10_10, [0.0, 0.75, 0.5]),
                 at: raw.payload.len() as u64,
                 own: bytes.len() as u64,
                 cuts: Vec::new(),
@@ -176,6 +180,10 @@ impl Raw {
             }
         }
         rows.iter().for_each(|row| conditions(&mut page, row));
+        for (bits, exponents) in rows.iter().map(|row| row.law) {
+            page.push(bits);
+            page.extend(exponents.iter().flat_map(|x| x.to_le_bytes()));
+        }
         varint(&mut page, rows.first().map_or(0, |row| row.at));
         rows.iter().for_each(|row| varint(&mut page, row.own));
         for row in rows {

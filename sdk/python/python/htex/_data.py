@@ -44,6 +44,10 @@ class LibraryEntry:
     """Least and greatest recorded speed, mm/s; ``None`` when none is known."""
     force_n: tuple[float, float] | None
     """Least and greatest recorded force, newtons; ``None`` when none is known."""
+    contact: str
+    """What slid over the surface: ``finger``, ``tool`` or ``unknown``."""
+    law: dict[str, Exponent]
+    """How frequencies and level follow a motion that was not recorded, as ``Texture.law``, without estimates."""
     bytes: int
     """Bytes of the texture's file."""
     blake3: str

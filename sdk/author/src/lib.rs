@@ -34,6 +34,7 @@
 #![forbid(unsafe_code)]
 
 mod alternatives;
+mod blocks;
 pub mod by_hand;
 mod compare;
 mod conditions;

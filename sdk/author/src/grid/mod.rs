@@ -27,6 +27,7 @@ pub(crate) use leave_out::left_out;
 pub use report::{CellStatus, GridCell, GridReport};
 pub use request::Grid;
 
+use crate::blocks::Span;
 use crate::conditions::{Group, Grouped, four_digits};
 use crate::recording_finding::RecordingFinding;
 use crate::take::source_of;
@@ -138,7 +139,12 @@ fn gather_densest(
             };
             let corrected = slopes::corrected(&mut paths, windows, cell, &used, band)?;
             let corrected: Vec<&[Complex<f64>]> = corrected.iter().map(Vec::as_slice).collect();
-            let spectrum = TextureSpectrum::of(quantity, band, &corrected, options.averaging);
+            let spans: Vec<Span> = used
+                .iter()
+                .map(|i| paths.span(&windows[*i], cell.at[0]))
+                .collect();
+            let spectrum =
+                TextureSpectrum::of(quantity, band, &corrected, &spans, options.averaging);
             spectra.push(Some(spectrum));
         }
         let error_db = blur::error_db(&lines, &spectra);

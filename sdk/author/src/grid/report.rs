@@ -35,7 +35,7 @@ pub struct GridCell {
     pub segments: usize,
     /// Number of windows that were averaged, with those of its neighbours; 0 if it is thin.
     pub averaged: usize,
-    /// Nine-band RMS difference between the odd and the even windows, decibels.
+    /// RMS over nine bands of the difference between odd and even blocks of the windows, over √2, decibels.
     pub repeatability_rms_db: Option<f64>,
     pub status: CellStatus,
     /// Index of its condition in the asset.

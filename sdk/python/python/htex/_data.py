@@ -25,7 +25,7 @@ class Condition:
     force_n: float | None = None
     """Normal force, newtons."""
     repeatability_rms_db: float | None = None
-    """RMS difference between odd and even segments of the recording in nine bands, decibels."""
+    """RMS over nine bands of the difference between odd and even blocks of time of the recording, over √2, decibels."""
     segments: int | None = None
     """Number of segments that were averaged, where the asset states it."""
 

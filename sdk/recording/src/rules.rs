@@ -81,6 +81,11 @@ htex_finding::rule_table! {
         "They are 12 dB or more above the median of all segments and dominate the average. Causes are knocks, spikes, \
          and windows over a recording that is mostly rest.",
         "Check the times in the message, and choose a range.";
+    GRID_NOT_BETTER Warning ("grid"):
+        "One condition for all motions predicts what was left out as well as the grid of conditions does.",
+        "Each quarter of the recordings is left out in turn and predicted from the rest. A grid that is not nearer than the mean of \
+         all its windows has too few windows for its conditions, or the texture changes more from stroke to stroke than with speed and force.",
+        "Fit without a grid, record for longer, or choose fewer lines.";
     RECORDING_NOTED Info:
         "The reader made an assumption, or the recording is limited.",
         "Examples are columns without a unit, columns that are not used, a band that ends below 1000 Hz.",

@@ -16,8 +16,8 @@ use levels::Levels;
 
 pub use htex_recording::rules::RULES;
 pub(crate) use htex_recording::rules::{
-    RECORDING_NOTED, RECORDING_OFF_TARGET, RECORDING_UNREADABLE, RECORDING_UNSTEADY,
-    RECORDING_UNUSABLE,
+    GRID_NOT_BETTER, RECORDING_NOTED, RECORDING_OFF_TARGET, RECORDING_UNREADABLE,
+    RECORDING_UNSTEADY, RECORDING_UNUSABLE,
 };
 pub use page::findings_page;
 pub(crate) use quantile::quantile;

@@ -16,7 +16,7 @@ use crate::spectrum::{SegmentReader, Trend, inverse_at};
 use crate::{AuthorError, SpectrumOptions, Take};
 
 /// Largest ratio of a window's speed to the line's that is compensated.
-const MOST: f64 = 1.5;
+pub(super) const MOST: f64 = 1.5;
 /// Steps of a window's length, in parts of 0.2 s: few lengths, of which each has tables.
 const STEPS: f64 = 100.0;
 

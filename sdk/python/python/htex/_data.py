@@ -169,7 +169,8 @@ class Fit:
     """What is felt of the difference from the recordings, of each model at each of its conditions."""
     grid: dict[str, Any] | None = None
     """The grid of the conditions, if one was requested: its lines, its cells with their segments, repeatability and status,
-    and the triangles between conditions."""
+    the triangles between conditions, and the errors of blocks of time that were left out: of the grid (``left_out_rms_db``) and of one condition
+    for all motions (``one_condition_rms_db``)."""
 
     @property
     def warnings(self) -> list[str]:

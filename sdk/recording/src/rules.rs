@@ -49,6 +49,12 @@ htex_finding::rule_table! {
         "The lateral force is more than ten times the normal force.",
         "Fingers do not reach this coefficient of friction; one of the two columns has another unit or quantity.",
         "Correct the scale of the column in the column map.";
+    RECORDING_FRICTION_COEFFICIENT Warning ("map"):
+        "The lateral force does not change with the normal force, as a friction coefficient does.",
+        "A coefficient of friction, which has no unit, is read as newtons: its texture is too strong or too weak by the normal force, \
+         and does not grow with it.",
+        "If it is a coefficient, multiply it by the normal force in the column map, as in lateral=friction*force,normal=force. If it is a force, check the \
+         sensor of the normal force.";
     RECORDING_SPEED_ZERO Error ("speed"):
         "According to its speed or position, the finger never moves.",
         "A texture is recorded while sliding, and the condition would have a speed of 0.",

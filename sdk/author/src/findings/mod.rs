@@ -1,5 +1,6 @@
 //! Findings of recordings, with stable codes.
 
+mod coefficient;
 mod levels;
 mod page;
 mod plausible;
@@ -47,6 +48,7 @@ pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     }
     if recording.quantity == Quantity::LateralForce {
         plausible::judge_friction(recording, &mut findings);
+        coefficient::judge(recording, &mut findings);
     }
     plausible::judge_speed(recording, &mut findings);
     let found = findings.into_list();

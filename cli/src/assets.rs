@@ -244,7 +244,7 @@ impl AssetSummary {
 }
 
 impl AssetSummary {
-    /// The leave-one-out errors of each model, where they are known: RMS and largest over the conditions.
+    /// The errors of blocks of time that were left out, of each model, where they are known: RMS and largest over the conditions.
     fn left_out_text(&self) -> String {
         let measures = LeftOut::measures().filter(|m| m.row().column.is_some());
         let mut text = String::new();

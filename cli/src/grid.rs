@@ -25,6 +25,12 @@ pub(crate) fn grid_text(grid: &GridReport) -> String {
         count(grid, |cell| cell.condition.is_some()),
         count(grid, |cell| cell.status == CellStatus::Thin),
     );
+    if let (Some(grid), Some(one)) = (grid.left_out_rms_db, grid.one_condition_rms_db) {
+        let _ = writeln!(
+            text,
+            "of blocks of time that were left out: {grid:.2} dB (third octaves, RMS); one condition for all motions: {one:.2} dB",
+        );
+    }
     text +=
         "segments, and repeatability in dB, by speed and force (+ with neighbours, - too thin):\n";
     let _ = write!(text, "  {:>10}", "mm/s");

@@ -73,6 +73,8 @@ fn a_free_recording_becomes_a_grid_that_is_shown_and_played() {
             .collect()
     };
     assert_eq!(place_of(&info), place_of(&fitted));
+    let grid = &fitted["grid"];
+    assert!(grid["left_out_rms_db"].is_f64() && grid["one_condition_rms_db"].is_f64());
     let at = info["representations"][0]["at"].as_array().unwrap();
     assert!(
         at.iter()

@@ -6,10 +6,13 @@ FOLDER has what it has of:
 
     speeds/NAME_vN.wav   one stroke a file, at the speeds of `SPEEDS`, N from 1 (jennafradin/textsense, exploration_speed)
     hatt/Models_*.xml    models of the Penn Haptic Texture Toolkit (H. Culbertson, J. J. Lopez Delgado, K. J. Kuchenbecker 2014)
+    free/*.csv           free motions of a finger at 1 kHz: speed (mm/s), force (N), friction (a coefficient) (CdpLab/MDTextHaptDisplay)
 
 None of it comes with htex; its licences do not allow it. For each pair of what was recorded and what was left out it fits an
 asset, renders 20 s at the speed that was left out, and compares the spectrum of the samples with that of the recording: the level
-and the third octaves, beside those of the nearest recorded speed as it is (`clamped`). Tables are in Markdown.
+and the third octaves, beside those of the nearest recorded speed as it is (`clamped`). Of a free motion it fits a grid to one half in time,
+and compares what plays at the motions of the other half with what was recorded there, beside the error that the asset states. Tables are in
+Markdown.
 """
 
 import argparse
@@ -32,6 +35,10 @@ SPEEDS = [20.0, 30.0, 50.0, 60.0]
 FORCE_N = 0.5
 BAND_HZ = (60.0, 1000.0)
 RENDERED_S = 20.0
+FREE_RATE = 1000
+# Windows of the other half are gathered within these ratios of speed and force, as many as these at least.
+GATHERED = (1.19, 2.0)
+FEWEST_WINDOWS = 4
 
 
 def read_wav(path):
@@ -153,6 +160,76 @@ def strokes(folder):
     return [Strokes(name, files) for name, files in materials.items()]
 
 
+def smooth(values, rate):
+    """The average over 50 ms, shrinking at the ends."""
+    kernel = np.ones(2 * round(rate / 40) + 1)
+    return np.convolve(values, kernel, "same") / np.convolve(np.ones(len(values)), kernel, "same")
+
+
+def steady_windows(recording):
+    """Logarithms of speed and force, and the power, of each window of 0.2 s in which both stay within 10 %."""
+    speed, force, lateral = recording
+    size, window = FREE_RATE // 5, np.hanning(FREE_RATE // 5 + 1)[:-1]
+    averages = [smooth(values, FREE_RATE) for values in (speed, force)]
+    for start in range(0, len(lateral) - size + 1, size // 2):
+        part = slice(start, start + size)
+        means = np.array([speed[part].mean(), force[part].mean()])
+        if means[0] < 1 or means[1] <= 0:
+            continue
+        if all(np.abs(average[part] - mean).max() <= 0.1 * mean for average, mean in zip(averages, means)):
+            spectrum = np.fft.rfft(signal.detrend(lateral[part]) * window)
+            yield np.log(means), (2 / window.sum() * np.abs(spectrum)) ** 2
+
+
+def gathered(recording):
+    """Mean speed and force, and the spectrum, of windows of about the same motion."""
+    cells = {}
+    for motion, of in steady_windows(recording):
+        cells.setdefault(tuple(np.round(motion / np.log(GATHERED))), []).append((motion, of))
+    for windows in cells.values():
+        if len(windows) >= FEWEST_WINDOWS:
+            motions, powers = zip(*windows)
+            frequency = np.arange(len(powers[0])) * 5.0
+            yield np.exp(np.mean(motions, axis=0)), (frequency, np.mean(powers, axis=0))
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else float("nan")
+
+
+def free_half(htex, known, other):
+    """Stated error of a grid of one half, and the errors at the motions of the other of the grid and of one condition."""
+    columns = dict(zip(("speed_mm_s", "fz_n", "lateral_n"), known))
+    table = np.column_stack(list(columns.values()))
+    np.savetxt(htex.folder / "half.csv", table, "%.6f", ",", header=",".join(columns), comments="")
+    truths = list(gathered(other))
+    row = {}
+    for key, options in (("grid", ("--grid", "auto")), ("one", ())):
+        arguments = ("--rate", FREE_RATE, "--model", "bands", "--name", "real", "-o", "real.htex")
+        htex.run("fit", "half.csv", *arguments, *options)
+        asset = json.loads(htex.run("info", "real.htex", "--json"))
+        if key == "grid":
+            left_out = [at["left_out"]["third_octave_error_rms_db"] for at in asset["representations"][0]["at"] if at.get("left_out")]
+            row |= {"conditions": len(asset["conditions"]), "stated": rms(left_out)}
+        row[key] = rms([third_octaves_db(htex.play(*motion), truth) for motion, truth in truths])
+    return row
+
+
+def free(htex, folder):
+    """Each half of a free motion from the other."""
+    global BAND_HZ
+    BAND_HZ = (20.0, 499.0)
+    print("\n## Free motions: each half in time from the other\n")
+    print("| material | half | conditions | stated, dB | measured, dB | one condition, dB |\n|---|---|---|---|---|---|")
+    for file in sorted(folder.glob("*.csv")):
+        data = np.genfromtxt(file, delimiter=",", names=True)
+        recording = np.array([data["speed"], data["force"], data["friction"] * data["force"]])
+        halves = np.array_split(recording, 2, axis=1)
+        for half in (0, 1):
+            r = free_half(htex, halves[half], halves[1 - half])
+            print(f"| {file.stem} | {half + 1} | {r['conditions']} | {r['stated']:.2f} | {r['grid']:.2f} | {r['one']:.2f} |")
+
+
 def median(rows, key):
     return float(np.median([abs(row[key]) for row in rows]))
 
@@ -241,7 +318,7 @@ def main():
     with tempfile.TemporaryDirectory() as place:
         # The command runs in a folder of its own.
         htex = Htex(shutil.which(chosen.htex) or chosen.htex, place)
-        for name, measure in (("speeds", speeds), ("hatt", hatt)):
+        for name, measure in (("speeds", speeds), ("hatt", hatt), ("free", free)):
             if (chosen.folder / name).is_dir():
                 measure(htex, chosen.folder / name)
     return 0

@@ -14,9 +14,9 @@ use htex_host::{HostError, LoadedModel, Origin};
 
 use crate::alternatives::warning;
 use crate::between;
-use crate::conditions::{Group, Grouped, group_takes};
+use crate::conditions::{Group, group_takes};
 use crate::felt::FeltError;
-use crate::grid::{GridReport, group_grid, left_out};
+use crate::grid::{GridReport, LeftOutBlock, group_grid, left_out};
 use crate::law::law;
 use crate::level::{Level, stored_level};
 use crate::recording_finding::RecordingFinding;
@@ -55,17 +55,18 @@ pub struct FittedAsset {
 /// # Errors
 /// When a recording is not usable, or no model could be fitted.
 pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, AuthorError> {
-    let (mut grouped, grid) = match &request.grid {
-        None => (group_takes(takes, &request.spectrum, request.strict)?, None),
+    let contact = contact(takes);
+    let (spectrum, strict) = (&request.spectrum, request.strict);
+    let (mut grouped, grid, left_out) = match &request.grid {
+        None => (group_takes(takes, spectrum, strict)?, None, Vec::new()),
         Some(grid) => {
-            let (grouped, report) = group_grid(takes, grid, &request.spectrum, request.strict)?;
-            (grouped, Some(report))
+            let gridded = group_grid(takes, grid, spectrum, strict, contact)?;
+            (gridded.grouped, Some(gridded.report), gridded.left_out)
         }
     };
     let mut warnings = std::mem::take(&mut grouped.warnings);
     let notes = std::mem::take(&mut grouped.notes);
     let findings = std::mem::take(&mut grouped.findings);
-    let contact = contact(takes);
     let law = {
         let spectra: Vec<&TextureSpectrum> = grouped.groups.iter().map(|g| &g.spectrum).collect();
         law(&grouped.conditions, &spectra, contact)
@@ -78,9 +79,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     for choice in &request.models {
         match fit_model(choice, &grouped.groups, request.level) {
             Ok(mut one) => {
-                if grid.is_some() {
-                    one.leave_out(&choice.model, &grouped);
-                }
+                one.leave_out(choice, &left_out, request.level);
                 let of_bands = band_error_warning(choice, &one, &grouped.groups, request);
                 let told = of_bands.into_iter().chain(origin_warning(&choice.model));
                 warnings.extend(told.map(Notice::from));
@@ -152,20 +151,43 @@ struct FittedModel {
 }
 
 impl FittedModel {
-    /// Adds the leave-one-out error of each condition that the others surround.
-    fn leave_out(&mut self, model: &LoadedModel, grouped: &Grouped) {
-        let level_rms: Vec<f64> = self
-            .representation
-            .at
-            .iter()
-            .map(|at| at.level_rms)
-            .collect();
-        let (conditions, groups) = (&grouped.conditions, &grouped.groups);
-        let errors = left_out(model, conditions, groups, &self.parameters, &level_rms);
-        for (at, error) in self.representation.at.iter_mut().zip(errors) {
+    /// Adds the errors of blocks of time that were left out.
+    fn leave_out(&mut self, choice: &ModelRequest, blocks: &[LeftOutBlock], level: Level) {
+        let at = &mut self.representation.at;
+        let fit = |group: &Group| {
+            let fit = fit_group(choice, group, level)?;
+            Ok((fit.stored, fit.level_rms))
+        };
+        let errors = left_out(&choice.model, at.len(), blocks, fit);
+        for (at, error) in at.iter_mut().zip(errors) {
             at.left_out = error;
         }
     }
+}
+
+/// A model fitted at one condition.
+struct GroupFit {
+    fitted: Vec<f64>,
+    /// The parameters as an asset stores them.
+    stored: Vec<f64>,
+    level_rms: f64,
+    fit_ms: f64,
+}
+
+fn fit_group(choice: &ModelRequest, group: &Group, level: Level) -> Result<GroupFit, AuthorError> {
+    let model = &choice.model;
+    let start = Instant::now();
+    let request = group.spectrum.fit_request(&choice.options);
+    let fit = model.fit_at(&request, group.condition)?;
+    let fit_ms = start.elapsed().as_secs_f64() * 1e3;
+    let stored = round_parameters(&stored_fields(model.descriptor()), &fit.parameters)?;
+    let level_rms = stored_level(model, &fit, &stored, group.spectrum.as_ref(), level)?;
+    Ok(GroupFit {
+        fitted: fit.parameters,
+        stored,
+        level_rms,
+        fit_ms,
+    })
 }
 
 fn fit_model(
@@ -178,17 +200,16 @@ fn fit_model(
     let (mut at, mut parameters, mut felt, mut fit_ms) = (Vec::new(), Vec::new(), Vec::new(), 0.0);
     for (condition, group) in groups.iter().enumerate() {
         let reference = group.spectrum.as_ref();
-        let start = Instant::now();
-        let fit = model.fit_at(
-            &group.spectrum.fit_request(&choice.options),
-            group.condition,
-        )?;
-        fit_ms += start.elapsed().as_secs_f64() * 1e3;
-        let stored = round_parameters(&fields, &fit.parameters)?;
-        let level_rms = stored_level(model, &fit, &stored, reference, level)?;
+        let GroupFit {
+            fitted,
+            stored,
+            level_rms,
+            fit_ms: own_ms,
+        } = fit_group(choice, group, level)?;
+        fit_ms += own_ms;
         let mut quality = None;
         if group.spectrum.is_recorded() {
-            let rounding = rounding_error_db(model, &fit.parameters, &stored, reference)?;
+            let rounding = rounding_error_db(model, &fitted, &stored, reference)?;
             quality = Some(Quality {
                 rounding_error_db: Some(rounding),
                 ..measure(model, &stored, level_rms, reference)?

@@ -9,6 +9,8 @@
 //! exponent is measured only where the difference falls to a quarter of that without a shift, or of that at the exponent that is
 //! assumed.
 
+use std::borrow::Borrow;
+
 use htex_format::{Condition, Contact, Exponent, ExponentSource, Law, Quantity};
 
 use crate::spectrum::TextureSpectrum;
@@ -26,7 +28,12 @@ const TRIED: std::ops::RangeInclusive<i32> = -30..=130;
 const LEAST_OCTAVES: f64 = 1.0;
 
 /// Estimates the law of conditions from their spectra; what they do not tell is assumed.
-pub(crate) fn law(conditions: &[Condition], spectra: &[&TextureSpectrum], contact: Contact) -> Law {
+pub(crate) fn law<S: Borrow<TextureSpectrum>>(
+    conditions: &[Condition],
+    spectra: &[S],
+    contact: Contact,
+) -> Law {
+    let spectra: Vec<&TextureSpectrum> = spectra.iter().map(Borrow::borrow).collect();
     let quantity = spectra.first().map_or(Quantity::default(), |s| s.quantity);
     let mut law = Law::assumed(quantity, contact);
     let [speeds, forces] = [speed, force].map(|of| logarithms(conditions, of));
@@ -47,7 +54,7 @@ pub(crate) fn law(conditions: &[Condition], spectra: &[&TextureSpectrum], contac
         let assumed = law.frequency_speed.exponent;
         measured(
             &mut law.frequency_speed,
-            frequency_exponent(spectra, speeds, assumed),
+            frequency_exponent(&spectra, speeds, assumed),
         );
     }
     law.reassumed(quantity, contact)

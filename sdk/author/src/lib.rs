@@ -35,6 +35,7 @@
 
 mod alternatives;
 mod between;
+mod blocks;
 pub mod by_hand;
 mod compare;
 mod conditions;

@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_dsp::fft::RealFft;
 use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321, magnitude};
@@ -11,6 +10,7 @@ use htex_host::FitRequest;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::blocks::{Span, repeatability_rms_db};
 use crate::segments::{SegmentChoice, Segments, choose_segments};
 use crate::{AuthorError, Recording, SetupResponse};
 use htex_recording::hertz;
@@ -108,8 +108,11 @@ pub struct TextureSpectrum {
     pub magnitude: Vec<f64>,
     /// Number of averaged segments; 0 if it was computed between two recorded speeds.
     pub segments: usize,
-    /// Nine-band RMS difference between the odd and the even segments, decibels: the variation within the
-    /// recording. `None` with fewer than two segments, or when half of them are silent.
+    /// Repeatability, decibels: the RMS over nine bands of the difference between the spectra of odd and even blocks of time, over √2.
+    ///
+    /// It is by how much two recordings like this one differ. What is read is cut into at least four equal blocks of 0.2 to 1 s that share no
+    /// sample; a segment in the middle of a sweep is a block. `None` if less is read than four segments that share none, or when half of the
+    /// blocks are silent.
     pub repeatability_rms_db: Option<f64>,
     /// The segments, windowed and overlap-added to one signal in the band.
     pub signal: Vec<f64>,
@@ -149,14 +152,17 @@ impl TextureSpectrum {
             .iter()
             .flat_map(|part| part.spectra.iter().map(Vec::as_slice))
             .collect();
-        Ok(Self::of(first.quantity, first.band, &all, averaging))
+        let spans: Vec<Span> = parts.iter().enumerate().flat_map(spans_of).collect();
+        let (quantity, band) = (first.quantity, first.band);
+        Ok(Self::of(quantity, band, &all, &spans, averaging))
     }
 
-    /// Averages spectra on the grid of a band.
+    /// Averages spectra on the grid of a band; `spans` says where each of them is from.
     pub(crate) fn of(
         quantity: Quantity,
         band: Band,
         all: &[&[Complex<f64>]],
+        spans: &[Span],
         averaging: Averaging,
     ) -> Self {
         let frequency_hz = band.grid_hz();
@@ -166,7 +172,7 @@ impl TextureSpectrum {
             band,
             magnitude: average(all, frequency_hz.len(), averaging),
             segments: all.len(),
-            repeatability_rms_db: repeatability(band, all, averaging),
+            repeatability_rms_db: repeatability_rms_db(band, all, spans, averaging),
             frequency_hz,
             signal,
             signal_rate_hz,
@@ -193,6 +199,17 @@ impl TextureSpectrum {
             magnitude: &self.magnitude,
         }
     }
+}
+
+/// Returns the places of the segments of a recording, which is the `take`th.
+fn spans_of((take, part): (usize, &SegmentSpectra)) -> impl Iterator<Item = Span> {
+    let len = part.segments.len as f64;
+    let starts = part.segments.starts.iter().take(part.spectra.len());
+    starts.map(move |&start| Span {
+        take,
+        from: start as f64 / len,
+        to: start as f64 / len + 1.0,
+    })
 }
 
 /// Cuts a recording into segments and computes their spectra.
@@ -426,7 +443,7 @@ fn without_line(segment: &[f64]) -> Vec<f64> {
     samples().map(|(i, x)| x - slope * place(i)).collect()
 }
 
-fn average(all: &[&[Complex<f64>]], bins: usize, averaging: Averaging) -> Vec<f64> {
+pub(crate) fn average(all: &[&[Complex<f64>]], bins: usize, averaging: Averaging) -> Vec<f64> {
     let n = all.len() as f64;
     (0..bins)
         .map(|k| {
@@ -438,20 +455,6 @@ fn average(all: &[&[Complex<f64>]], bins: usize, averaging: Averaging) -> Vec<f6
             }
         })
         .collect()
-}
-
-fn repeatability(band: Band, all: &[&[Complex<f64>]], averaging: Averaging) -> Option<f64> {
-    if all.len() < 2 {
-        return None;
-    }
-    let grid = band.grid_hz();
-    let bank = BandBank::new(BAND_COUNT, band, &grid);
-    let energies = |first: usize| {
-        let half: Vec<&[Complex<f64>]> = all.iter().skip(first).step_by(2).copied().collect();
-        bank.energies(&average(&half, grid.len(), averaging))
-    };
-    // If half of the segments are silent, the difference is not finite.
-    Some(rms(&band_error_db(&energies(0), &energies(1)))).filter(|rms_db| rms_db.is_finite())
 }
 
 /// Overlap-adds the half-overlapping windowed segments to one signal at four times the band's top.

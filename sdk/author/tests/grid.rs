@@ -99,6 +99,8 @@ fn one_free_recording_gives_the_truth_inside_the_mesh() {
             .all(|c| c.segments.is_some_and(|n| n >= 8))
     );
     assert!(!report.triangles.is_empty() && report.steady < report.windows);
+    assert!(fitted.findings.is_empty(), "{:?}", fitted.findings);
+    assert!(report.one_condition_rms_db.unwrap() > 2.0 * report.left_out_rms_db.unwrap());
     // Each cell names its condition, and the mesh spans most of the motions.
     for cell in report.cells.iter().filter(|c| c.status != CellStatus::Thin) {
         let condition = &conditions[cell.condition.unwrap()];
@@ -111,7 +113,7 @@ fn one_free_recording_gives_the_truth_inside_the_mesh() {
         fitted.asset.manifest.provenance.recordings[0].segments,
         report.steady as u64
     );
-    // The leave-one-out error, known without the truth, bounds what a player does.
+    // The left-out error, known without the truth, bounds what a player does.
     let at = &fitted.asset.manifest.representations[0].at;
     let left: Vec<f64> = at.iter().filter_map(left_out_db).collect();
     assert!(left.len() * 2 > at.len(), "{} of {}", left.len(), at.len());
@@ -127,6 +129,59 @@ fn one_free_recording_gives_the_truth_inside_the_mesh() {
         "{half}, {most}, {all} dB"
     );
     assert!(left_db < 1.2 && left_db > half);
+}
+
+/// Noise whose level follows the law that is assumed of an unknown contact and rises in time by some decibels, over a motion whose speed
+/// and force vary by a quarter.
+fn noise(seconds: f64, rise_db: f64) -> Take {
+    const RATE_HZ: f64 = 2000.0;
+    let times: Vec<f64> = (0..(seconds * RATE_HZ) as usize)
+        .map(|at| at as f64 / RATE_HZ)
+        .collect();
+    let speed = |t: &f64| 100.0 * (0.25 * (2.0 * t).sin()).exp();
+    let normal = |t: &f64| (0.25 * (2.7 * t).sin()).exp();
+    let mut random = Normal::new(5);
+    let force = |t: &f64| {
+        let gain = 10f64.powf(rise_db * t / seconds / 20.0);
+        0.1 * gain * (speed(t) / 100.0).powf(0.75) * normal(t).sqrt() * random.next_normal()
+    };
+    let lateral = times.iter().map(force).collect();
+    let recording = Recording::new("noise.csv", RATE_HZ, vec![lateral]).unwrap();
+    let recording = recording.with_speed(times.iter().map(speed).collect());
+    let recording = recording.unwrap();
+    Take {
+        recording: recording
+            .with_normal(times.iter().map(normal).collect())
+            .unwrap(),
+        given: Exploration::default(),
+    }
+}
+
+/// What is left out is another time, so a texture that drifts is further from it than noise alone is.
+#[test]
+fn what_drifts_is_in_the_left_out_error() {
+    let [still, drifting] = [0.0, 8.0].map(|rise_db| {
+        let fitted = fit(&[noise(40.0, rise_db)], &["bands"], Grid::default());
+        let at = &fitted.asset.manifest.representations[0].at;
+        root_mean_square(at.iter().filter_map(left_out_db))
+    });
+    println!("left out {still:.2} dB, with a drift {drifting:.2} dB");
+    assert!(still < 1.5 && drifting > 2.0, "{still} {drifting}");
+}
+
+#[test]
+fn a_grid_that_is_no_better_than_one_condition_is_found() {
+    let fitted = fit(&[noise(15.0, 0.0)], &["bands"], Grid::default());
+    let report = fitted.grid.unwrap();
+    let (grid, one) = (report.left_out_rms_db, report.one_condition_rms_db);
+    assert!(one.unwrap() <= grid.unwrap(), "{one:?} {grid:?}");
+    let found = fitted
+        .findings
+        .iter()
+        .find(|f| f.finding.code == "GRID_NOT_BETTER");
+    assert_eq!(found.unwrap().recording, "noise.csv");
+    let warnings = &fitted.asset.manifest.provenance.warnings;
+    assert!(warnings.iter().any(|w| w.contains("GRID_NOT_BETTER")));
 }
 
 #[test]

@@ -70,7 +70,8 @@ fn recordings_raise_the_code_they_are_named_after_and_every_code_has_one() {
     }
     let silent: Vec<_> = RULES
         .iter()
-        .filter(|rule| !raised.contains(rule.code))
+        // Those of grids are of fits (`grid.rs`).
+        .filter(|rule| !raised.contains(rule.code) && !rule.code.starts_with("GRID_"))
         .collect();
     assert!(silent.is_empty(), "{silent:?}");
 }

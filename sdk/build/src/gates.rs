@@ -64,12 +64,12 @@ fn denied(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
 fn repeatability(most: f64, asset: &AssetReport) -> Option<Missed> {
     let reason = match asset.repeatability_rms_db {
         None => {
-            "its repeatability is not known, since no condition has two segments; record longer"
+            "its repeatability is not known, since no condition has four blocks of 0.2 s that share no sample; record longer"
                 .to_owned()
         }
         Some(found) if found <= most => return None,
         Some(found) => format!(
-            "odd and even segments of a condition differ by {found:.2} dB (nine bands, RMS) and the gate allows {most}; record longer \
+            "two recordings of a condition like this one differ by {found:.2} dB (nine bands, RMS, between blocks of time) and the gate allows {most}; record longer \
              or more evenly, or raise the gate"
         ),
     };

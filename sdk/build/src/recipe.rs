@@ -143,7 +143,8 @@ pub struct Gates {
     /// Largest difference from the recording that is felt of every representation at every condition, of a third-octave band or of all
     /// together above the detection threshold, decibels; or by model. The difference threshold is 1.584 dB.
     pub max_felt_error_db: Option<ModelGate>,
-    /// Largest difference between odd and even segments of a condition in nine bands, RMS, decibels.
+    /// Largest repeatability of a condition: the RMS over nine bands of the difference between odd and even blocks of time, over √2,
+    /// decibels.
     pub max_repeatability_db: Option<f64>,
     /// Codes of findings that recordings may not have, such as `RECORDING_CLIPPED`.
     pub deny: Option<Vec<String>>,

@@ -129,7 +129,8 @@ pub struct AssetReport {
     pub force_n: Option<[f64; 2]>,
     /// Fewest segments of a condition.
     pub segments: usize,
-    /// Largest difference between odd and even segments of a condition in nine bands, RMS, decibels: what an error is compared with.
+    /// Largest repeatability of a condition, which an error is compared with: the RMS over nine bands of the difference between odd and even
+    /// blocks of time, over √2, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeatability_rms_db: Option<f64>,
     /// Largest nine-band RMS error over the conditions of each model, decibels, by id.

@@ -215,7 +215,8 @@ pub struct Condition {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub force_n: Option<f64>,
-    /// RMS difference between odd and even segments in nine bands, decibels.
+    /// RMS over nine bands of the difference between odd and even blocks of time, over √2, decibels: by how much two recordings like
+    /// this one differ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub repeatability_rms_db: Option<f64>,

@@ -122,8 +122,8 @@ impl Quality {
     }
 }
 
-/// Leave-one-out error: agreement with the recorded spectrum of what a player interpolates at a condition without its own
-/// parameters, by the measures whose row has `left_out`.
+/// Left-out error: agreement of blocks of time, near a condition, with what a player plays of a fit without them, by the measures whose row
+/// has `left_out`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeftOut(pub Measures);
 

@@ -49,6 +49,12 @@ htex_finding::rule_table! {
         "The lateral force is more than ten times the normal force.",
         "Fingers do not reach this coefficient of friction; one of the two columns has another unit or quantity.",
         "Correct the scale of the column in the column map.";
+    RECORDING_FRICTION_COEFFICIENT Warning ("map"):
+        "The lateral force does not change with the normal force, as a friction coefficient does.",
+        "A coefficient of friction, which has no unit, is read as newtons: its texture is too strong or too weak by the normal force, \
+         and does not grow with it.",
+        "If it is a coefficient, multiply it by the normal force in the column map, as in lateral=friction*force,normal=force. If it is a force, check the \
+         sensor of the normal force.";
     RECORDING_SPEED_ZERO Error ("speed"):
         "According to its speed or position, the finger never moves.",
         "A texture is recorded while sliding, and the condition would have a speed of 0.",
@@ -81,6 +87,11 @@ htex_finding::rule_table! {
         "They are 12 dB or more above the median of all segments and dominate the average. Causes are knocks, spikes, \
          and windows over a recording that is mostly rest.",
         "Check the times in the message, and choose a range.";
+    GRID_NOT_BETTER Warning ("grid"):
+        "One condition for all motions predicts what was left out as well as the grid of conditions does.",
+        "Each quarter of the recordings is left out in turn and predicted from the rest. A grid that is not nearer than the mean of \
+         all its windows has too few windows for its conditions, or the texture changes more from stroke to stroke than with speed and force.",
+        "Fit without a grid, record for longer, or choose fewer lines.";
     RECORDING_NOTED Info:
         "The reader made an assumption, or the recording is limited.",
         "Examples are columns without a unit, columns that are not used, a band that ends below 1000 Hz.",

@@ -1,5 +1,6 @@
 //! Findings of recordings, with stable codes.
 
+mod coefficient;
 mod levels;
 mod page;
 mod plausible;
@@ -16,8 +17,8 @@ use levels::Levels;
 
 pub use htex_recording::rules::RULES;
 pub(crate) use htex_recording::rules::{
-    RECORDING_NOTED, RECORDING_OFF_TARGET, RECORDING_UNREADABLE, RECORDING_UNSTEADY,
-    RECORDING_UNUSABLE,
+    GRID_NOT_BETTER, RECORDING_NOTED, RECORDING_OFF_TARGET, RECORDING_UNREADABLE,
+    RECORDING_UNSTEADY, RECORDING_UNUSABLE,
 };
 pub use page::findings_page;
 pub(crate) use quantile::quantile;
@@ -47,6 +48,7 @@ pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     }
     if recording.quantity == Quantity::LateralForce {
         plausible::judge_friction(recording, &mut findings);
+        coefficient::judge(recording, &mut findings);
     }
     plausible::judge_speed(recording, &mut findings);
     let found = findings.into_list();

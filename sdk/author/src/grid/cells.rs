@@ -39,20 +39,20 @@ impl Cell {
     }
 }
 
-/// Makes the cells of all crossings, by speed and then by force.
-pub(super) fn gather(lines: &Lines, motions: &[[f64; 2]]) -> Vec<Cell> {
+/// Makes the cells of all crossings, by speed and then by force, of the windows `among` all.
+pub(super) fn gather(lines: &Lines, motions: &[[f64; 2]], among: &[usize]) -> Vec<Cell> {
     let [speeds, forces] = &lines.axes;
     let mut cells = Vec::with_capacity(speeds.len() * forces.len());
     for i in 0..speeds.len() {
         for j in 0..forces.len() {
             let halves = [Lines::halves(speeds, i), Lines::halves(forces, j)];
-            cells.push(cell([speeds[i], forces[j]], halves, motions));
+            cells.push(cell([speeds[i], forces[j]], halves, motions, among));
         }
     }
     cells
 }
 
-fn cell(at: [f64; 2], halves: [[f64; 2]; 2], motions: &[[f64; 2]]) -> Cell {
+fn cell(at: [f64; 2], halves: [[f64; 2]; 2], motions: &[[f64; 2]], among: &[usize]) -> Cell {
     let widest = |halves: [f64; 2]| {
         let reach = libm::log(WIDENED_RATIO);
         halves.map(|half| (WIDENED[0] * half).max(reach))
@@ -63,10 +63,9 @@ fn cell(at: [f64; 2], halves: [[f64; 2]; 2], motions: &[[f64; 2]]) -> Cell {
         motions.iter().map(distance).collect()
     };
     let (inside, around) = (distances(halves), distances(wide));
-    let all = 0..motions.len();
-    let own: Vec<usize> = all.clone().filter(|i| inside[*i] < 1.0).collect();
-    let mut borrowed: Vec<usize> = all
-        .clone()
+    let all = || among.iter().copied();
+    let own: Vec<usize> = all().filter(|i| inside[*i] < 1.0).collect();
+    let mut borrowed: Vec<usize> = all()
         .filter(|i| inside[*i] >= 1.0 && around[*i] < 1.0)
         .collect();
     borrowed.sort_by(|a, b| around[*a].total_cmp(&around[*b]));
@@ -79,7 +78,7 @@ fn cell(at: [f64; 2], halves: [[f64; 2]; 2], motions: &[[f64; 2]]) -> Cell {
         at,
         own,
         borrowed,
-        around: all.filter(|i| around[*i] < SURROUNDINGS).collect(),
+        around: all().filter(|i| around[*i] < SURROUNDINGS).collect(),
     }
 }
 

@@ -1,47 +1,114 @@
-//! Leave-one-out error: each condition predicted from its neighbours, as a player interpolates.
+//! Left-out error: each block of time against what a player makes of the rest with a model.
 
-use htex_format::{Condition, LeftOut, Measure};
-use htex_host::LoadedModel;
-use htex_play::Mesh;
+use htex_dsp::bands::rms;
+use htex_format::{AtCondition, Condition, LeftOut, Measure, Measures};
+use htex_host::{HostError, LoadedModel};
+use htex_play::exploration::CEILING;
+use htex_play::{Mesh, Motion, Motions};
 
-use crate::agreement;
+use super::held_out::{Held, LeftOutBlock};
 use crate::conditions::Group;
+use crate::{AuthorError, agreement};
 
-/// Returns the error at each condition of the model's interpolation between the others, against the recorded spectrum
-/// there; `None` where the others do not surround the condition, or the model cannot mix its neighbours.
+/// Returns for each of `conditions` conditions the error of what a player makes, at the motions near it and without a block of
+/// time, of that block: RMS over the blocks. `None` where no block has windows enough near the condition, or the rest does
+/// not reach there. `fit` returns the stored parameters and the level of a group.
 pub(crate) fn left_out(
     model: &LoadedModel,
-    conditions: &[Condition],
-    groups: &[Group],
-    parameters: &[Vec<f64>],
-    level_rms: &[f64],
+    conditions: usize,
+    blocks: &[LeftOutBlock],
+    mut fit: impl FnMut(&Group) -> Result<(Vec<f64>, f64), AuthorError>,
 ) -> Vec<Option<LeftOut>> {
-    let points: Vec<[f64; 2]> = conditions.iter().map(motion).collect();
-    let one = |i: usize| {
-        let others: Vec<usize> = (0..points.len()).filter(|k| *k != i).collect();
-        let places: Vec<[f64; 2]> = others.iter().map(|k| points[*k]).collect();
-        let [speed, force] = points[i];
-        let mesh = (!places.is_empty()).then(|| Mesh::new(&places))?;
-        if !mesh.surrounds(speed, force) {
-            return None;
+    let mut errors: Vec<Vec<Measures>> = vec![Vec::new(); conditions];
+    for block in blocks {
+        let fits: Result<Vec<_>, _> = block.groups.iter().map(&mut fit).collect();
+        // A model that cannot be fitted to less of the recording has no error of this block.
+        let Some(played) = fits.ok().and_then(|fits| Played::new(model, block, fits)) else {
+            continue;
+        };
+        for held in &block.held {
+            let error = played.error(held);
+            if let (Some(error), Some(all)) = (error, errors.get_mut(held.cell)) {
+                all.push(error);
+            }
         }
-        let weights: Vec<(usize, f64)> = mesh.weights(speed, force).iter().collect();
-        let of = |k: &(usize, f64)| others[k.0];
-        let sets: Vec<&[f64]> = weights.iter().map(|k| &parameters[of(k)][..]).collect();
-        let parts: Vec<f64> = weights.iter().map(|k| k.1).collect();
-        let level: f64 = weights.iter().map(|k| k.1 * level_rms[of(k)]).sum();
-        let reference = groups.get(i)?.spectrum.as_ref();
+    }
+    let of_blocks = |all: &Vec<Measures>| {
+        let over = |measure: Measure| {
+            let of_block = all.iter().filter_map(|measures| measures.get(measure));
+            let of_block: Vec<f64> = of_block.filter(|error| error.is_finite()).collect();
+            (!of_block.is_empty()).then(|| rms(&of_block))
+        };
+        let measures = Measures::new(over).only(LeftOut::measures());
+        over(Measure::NineBand).map(|_| LeftOut(measures))
+    };
+    errors.iter().map(of_blocks).collect()
+}
+
+/// The conditions of a grid without a block of time, as a player plays them.
+struct Played<'a> {
+    model: &'a LoadedModel,
+    mesh: Mesh,
+    motions: Motions,
+    fits: Vec<(Vec<f64>, f64)>,
+}
+
+impl<'a> Played<'a> {
+    fn new(
+        model: &'a LoadedModel,
+        block: &LeftOutBlock,
+        fits: Vec<(Vec<f64>, f64)>,
+    ) -> Option<Self> {
+        let points: Vec<[f64; 2]> = block.conditions.iter().map(motion).collect();
+        let at = |(condition, fit): (usize, &(Vec<f64>, f64))| AtCondition {
+            condition,
+            level_rms: fit.1,
+            quality: None,
+            left_out: None,
+        };
+        let at: Vec<AtCondition> = fits.iter().enumerate().map(at).collect();
+        (!points.is_empty()).then(|| Self {
+            model,
+            mesh: Mesh::new(&points),
+            motions: Motions::new(&at, &block.conditions, block.law),
+            fits,
+        })
+    }
+
+    /// Returns the measures of what is played at the motion of left-out windows, against their spectrum.
+    fn error(&self, held: &Held) -> Option<Measures> {
+        let reference = held.spectrum.as_ref();
+        let magnitude = self.magnitude(held.motion, reference).ok()?;
+        let error = agreement(reference, &magnitude);
+        let is_finite = error.get(Measure::NineBand).is_some_and(f64::is_finite);
+        is_finite.then_some(error.measures)
+    }
+
+    /// Returns the magnitudes at a motion, as [`htex_play::Asset::magnitude`] does.
+    fn magnitude(
+        &self,
+        [speed, force]: [f64; 2],
+        reference: crate::SpectrumRef<'_>,
+    ) -> Result<Vec<f64>, HostError> {
+        let weights: Vec<(usize, f64)> = self.mesh.weights(speed, force).iter().collect();
+        let sets: Vec<&[f64]> = weights.iter().map(|(i, _)| &self.fits[*i].0[..]).collect();
+        let parts: Vec<f64> = weights.iter().map(|(_, weight)| *weight).collect();
+        let level: f64 = weights.iter().map(|(i, w)| w * self.fits[*i].1).sum();
         let mixed = match &sets[..] {
             [only] => only.to_vec(),
-            _ => model.interpolate(&sets, &parts).ok()?,
+            _ => self.model.interpolate(&sets, &parts)?,
         };
-        let shape = model.magnitude(&mixed, reference.band, reference.frequency_hz);
-        let magnitude: Vec<f64> = shape.ok()?.iter().map(|m| m * level).collect();
-        let error = agreement(reference, &magnitude);
-        let finite = error.get(Measure::NineBand).is_some_and(f64::is_finite);
-        finite.then(|| LeftOut(error.measures.only(LeftOut::measures())))
-    };
-    (0..points.len()).map(one).collect()
+        let scaling = self.motions.scaling(Motion::new(speed, force), CEILING);
+        let ratio = scaling.frequency;
+        let recorded_hz: Vec<f64> = reference.frequency_hz.iter().map(|f| f / ratio).collect();
+        let shape = self.model.magnitude(&mixed, reference.band, &recorded_hz)?;
+        let spread = match self.model.descriptor().is_sum_of_sines() {
+            true => 1.0,
+            false => ratio.sqrt(),
+        };
+        let gain = level * scaling.level / spread;
+        Ok(shape.iter().map(|m| m * gain).collect())
+    }
 }
 
 /// Returns speed and force of a condition, as a player reads them.

@@ -8,9 +8,6 @@ use crate::findings::quantile;
 pub(super) const FEWEST: usize = 8;
 /// Parts of the windows whose speeds, and forces, a chosen grid covers.
 const COVERED: [f64; 2] = [0.01, 0.99];
-/// Ratios of neighbouring speeds that are tried in turn: a quarter to a twelfth of an octave. Within 5 % a player treats speeds
-/// as one.
-pub(super) const SPEED_RATIOS: [f64; 3] = [1.19, 1.12, 1.06];
 /// Largest ratio of neighbouring forces that is chosen. The level changes smoothly with the force, and players
 /// interpolate it linearly.
 const FORCE_RATIO: f64 = 4.0;

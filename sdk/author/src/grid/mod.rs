@@ -3,48 +3,52 @@
 //! Recordings are cut into windows of 0.2 s; those with nearly constant speed and force (`steady`) are gathered in cells
 //! around the crossings of grid lines (`lines`, `cells`), and each cell with enough windows becomes a condition. Small
 //! differences between the windows' motions and the crossing are corrected: windows are read over equal paths (`paths`),
-//! and their energies by the texture's own dependence on speed and force (`slopes`). Lines of speed are as dense as
-//! interpolating between them needs (`blur`). A player interpolates in the Delaunay mesh of the conditions, as in the Penn Haptic Texture Toolkit
+//! and their energies by the texture's own dependence on speed and force (`slopes`). There are as many lines of speed as predict
+//! blocks of time best that were left out (`folds`, `held_out`, `search`). A player interpolates in the Delaunay mesh of the conditions, as in the Penn Haptic Texture Toolkit
 //! (Culbertson, Unwin and Kuchenbecker 2014), which fits segments of nearly constant motion and places the models in the
-//! plane of speed and force. `leave_out` measures that interpolation without a known truth.
+//! plane of speed and force. `leave_out` measures, without a known truth, what a player makes of the conditions with a model.
 
-mod blur;
 mod cells;
+mod folds;
+mod held_out;
 mod leave_out;
 mod lines;
 mod paths;
+mod played;
 mod report;
 mod request;
+mod search;
 mod slopes;
 mod steady;
 
 use htex_dsp::Band;
-use htex_dsp::spectrum::Complex;
-use htex_format::{Condition, Quantity};
+use htex_finding::{Findings, Notice};
+use htex_format::{Condition, Contact, Quantity};
 use htex_host::FitCondition;
 
+pub(crate) use held_out::LeftOutBlock;
 pub(crate) use leave_out::left_out;
 pub use report::{CellStatus, GridCell, GridReport};
 pub use request::Grid;
 
 use crate::conditions::{Group, Grouped, four_digits};
+use crate::findings::GRID_NOT_BETTER;
 use crate::recording_finding::RecordingFinding;
 use crate::take::source_of;
 use crate::warnings::Warnings;
-use crate::{AuthorError, SpectrumOptions, Take, TextureSpectrum};
-use cells::{Cell, are_full, gather};
-use lines::{Lines, SPEED_RATIOS};
-use paths::{Paths, Window};
+use crate::{AuthorError, SpectrumOptions, Take};
+use cells::Cell;
+use held_out::Kind;
+use paths::Window;
+use search::{Search, Searched};
 use steady::{Steady, read_steady};
 
-/// Error of the interpolation between lines of speed above which more lines are tried, decibels.
-const BLURRED_DB: f64 = 1.0;
-
-/// Cells and their spectra, for one choice of lines.
-struct Gathered {
-    lines: Lines,
-    cells: Vec<Cell>,
-    spectra: Vec<Option<TextureSpectrum>>,
+/// The conditions of a grid.
+pub(crate) struct Gridded {
+    pub(crate) grouped: Grouped,
+    pub(crate) report: GridReport,
+    /// The grid without each block of time, for the errors of models.
+    pub(crate) left_out: Vec<LeftOutBlock>,
 }
 
 /// Takes the spectra of the recordings' steady windows and averages those of each cell.
@@ -53,7 +57,8 @@ pub(crate) fn group_grid(
     grid: &Grid,
     options: &SpectrumOptions,
     strict: bool,
-) -> Result<(Grouped, GridReport), AuthorError> {
+    contact: Contact,
+) -> Result<Gridded, AuthorError> {
     let (mut warnings, mut notes) = (Warnings::default(), Warnings::default());
     let (mut all, mut sources) = (Vec::<Steady>::new(), Vec::new());
     let mut findings = Vec::new();
@@ -69,12 +74,17 @@ pub(crate) fn group_grid(
         sources.push(source_of(take, steady.windows.len()));
         all.push(steady);
     }
-    let kind = same_kind(&all)?;
+    let (quantity, band) = same_kind(&all)?;
+    let kind = Kind {
+        quantity,
+        band,
+        averaging: options.averaging,
+        contact,
+    };
     let looked_at = all.iter().map(|steady| steady.looked_at).sum();
     let windows: Vec<Window> = all.into_iter().flat_map(|steady| steady.windows).collect();
-    let gathered = gather_densest(takes, grid, options, &windows, kind)?;
-    let motions: Vec<[f64; 2]> = windows.iter().map(|window| window.motion).collect();
-    let mut report = GridReport::new(looked_at, &motions, &gathered.lines);
+    let searched = Search::new(takes, options, &windows, kind).best(grid)?;
+    let mut report = GridReport::new(looked_at, &windows, &searched);
     let mut grouped = Grouped {
         groups: Vec::new(),
         conditions: Vec::new(),
@@ -83,6 +93,9 @@ pub(crate) fn group_grid(
         notes: notes.into_notices(),
         findings,
     };
+    let Searched {
+        gathered, left_out, ..
+    } = searched;
     for (cell, spectrum) in gathered.cells.iter().zip(gathered.spectra) {
         let Some(spectrum) = spectrum else {
             report.add_thin(cell);
@@ -109,52 +122,41 @@ pub(crate) fn group_grid(
         });
     }
     report.add_mesh(&grouped.conditions);
-    Ok((grouped, report))
+    judge(&report, takes, &mut grouped);
+    Ok(Gridded {
+        grouped,
+        report,
+        left_out,
+    })
 }
 
-/// Gathers windows around the given lines, or around chosen ones: more and more lines of speed, until interpolating between
-/// them costs little, or the windows are too few for more.
-fn gather_densest(
-    takes: &[Take],
-    grid: &Grid,
-    options: &SpectrumOptions,
-    windows: &[Window],
-    (quantity, band): (Quantity, Band),
-) -> Result<Gathered, AuthorError> {
-    let motions: Vec<[f64; 2]> = windows.iter().map(|window| window.motion).collect();
-    let mut paths = Paths::new(takes, options, band);
-    let mut best = None;
-    for ratio in SPEED_RATIOS {
-        let lines = Lines::choose(grid, &motions, ratio)?;
-        let cells = gather(&lines, &motions);
-        if best.is_some() && !are_full(&cells) {
-            break;
-        }
-        let mut spectra = Vec::with_capacity(cells.len());
-        for cell in &cells {
-            let Some(used) = cell.used() else {
-                spectra.push(None);
-                continue;
-            };
-            let corrected = slopes::corrected(&mut paths, windows, cell, &used, band)?;
-            let corrected: Vec<&[Complex<f64>]> = corrected.iter().map(Vec::as_slice).collect();
-            let spectrum = TextureSpectrum::of(quantity, band, &corrected, options.averaging);
-            spectra.push(Some(spectrum));
-        }
-        let error_db = blur::error_db(&lines, &spectra);
-        best = Some(Gathered {
-            lines,
-            cells,
-            spectra,
-        });
-        let is_sharp = error_db.is_none_or(|error_db| error_db <= BLURRED_DB);
-        if is_sharp || grid.speed_mm_s.is_some() {
-            break;
-        }
+/// Adds a finding where one condition predicts what was left out as well as the grid does.
+fn judge(report: &GridReport, takes: &[Take], grouped: &mut Grouped) {
+    let (Some(grid_db), Some(one_db)) = (report.left_out_rms_db, report.one_condition_rms_db)
+    else {
+        return;
+    };
+    if one_db > grid_db {
+        return;
     }
-    best.ok_or(AuthorError::NoSegments {
-        source_name: String::new(),
-    })
+    let mut findings = Findings::default();
+    let conditions = grouped.conditions.len();
+    findings.add(
+        GRID_NOT_BETTER,
+        "",
+        format!(
+            "one condition for all motions predicts blocks of time that were left out within {one_db:.2} dB (third octaves, \
+             RMS), the {conditions} conditions of the grid within {grid_db:.2} dB; fit without a grid, or record for longer"
+        ),
+    );
+    let names: Vec<&str> = takes.iter().map(|t| t.recording.source.as_str()).collect();
+    let name = names.join(", ");
+    for finding in findings.into_list() {
+        let text = format!("{name}: {}: {}", finding.code, finding.message);
+        grouped.warnings.push(Notice::new(text, finding.hint));
+        let found = RecordingFinding::all(&name, vec![finding]);
+        grouped.findings.extend(found);
+    }
 }
 
 /// Returns speed and force of a cell's crossing, to four digits.

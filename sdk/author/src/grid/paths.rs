@@ -6,15 +6,17 @@
 //! are not blurred by the scatter of the speed within a cell; what does not follow the speed is blurred by as much.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use htex_dsp::Band;
 use htex_dsp::spectrum::Complex;
 
+use crate::blocks::Span;
 use crate::spectrum::{SegmentReader, Trend, inverse_at};
 use crate::{AuthorError, SpectrumOptions, Take};
 
 /// Largest ratio of a window's speed to the line's that is compensated.
-const MOST: f64 = 1.5;
+pub(super) const MOST: f64 = 1.5;
 /// Steps of a window's length, in parts of 0.2 s: few lengths, of which each has tables.
 const STEPS: f64 = 100.0;
 
@@ -58,10 +60,8 @@ impl<'a> Paths<'a> {
         log_speed: f64,
     ) -> Result<Vec<Complex<f64>>, AuthorError> {
         let recording = &self.takes[window.take].recording;
-        let len = self.length(window, log_speed);
-        let middle = window.start + window.len / 2;
-        let last = recording.samples().saturating_sub(len);
-        let start = middle.saturating_sub(len / 2).min(last);
+        let samples = self.samples(window, log_speed);
+        let (start, len) = (samples.start, samples.len());
         let band = self.band;
         let reader = self.readers.entry(len);
         let reader = reader.or_insert_with(|| SegmentReader::new(len, band, Trend::Linear));
@@ -77,7 +77,28 @@ impl<'a> Paths<'a> {
         Ok(bins)
     }
 
-    /// Returns the samples of the path of 0.2 s at a speed; those of 0.2 s if the recording's rate does not suffice for the
+    /// Returns the samples that are read of a window over the path of 0.2 s at a speed, given by its logarithm.
+    pub(super) fn samples(&self, window: &Window, log_speed: f64) -> Range<usize> {
+        let len = self.length(window, log_speed);
+        let middle = window.start + window.len / 2;
+        let samples = self.takes[window.take].recording.samples();
+        let start = middle.saturating_sub(len / 2);
+        let start = start.min(samples.saturating_sub(len));
+        start..start + len
+    }
+
+    /// Returns the place of what is read of a window, in segments of 0.2 s.
+    pub(super) fn span(&self, window: &Window, log_speed: f64) -> Span {
+        let samples = self.samples(window, log_speed);
+        let place = |sample: usize| sample as f64 / window.len as f64;
+        Span {
+            take: window.take,
+            from: place(samples.start),
+            to: place(samples.end),
+        }
+    }
+
+    /// Returns the number of samples of the path of 0.2 s at a speed; those of 0.2 s if the recording's rate does not suffice for the
     /// band then.
     fn length(&self, window: &Window, log_speed: f64) -> usize {
         let most = libm::log(MOST);

@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::cells::Cell;
 use super::leave_out::motion;
-use super::lines::Lines;
+use super::paths::Window;
+use super::search::Searched;
 use crate::TextureSpectrum;
 use crate::conditions::four_digits;
 
@@ -35,7 +36,7 @@ pub struct GridCell {
     pub segments: usize,
     /// Number of windows that were averaged, with those of its neighbours; 0 if it is thin.
     pub averaged: usize,
-    /// Nine-band RMS difference between the odd and the even windows, decibels.
+    /// RMS over nine bands of the difference between odd and even blocks of the windows, over √2, decibels.
     pub repeatability_rms_db: Option<f64>,
     pub status: CellStatus,
     /// Index of its condition in the asset.
@@ -54,6 +55,11 @@ pub struct GridReport {
     pub windows: usize,
     /// Number of steady windows.
     pub steady: usize,
+    /// RMS error of the third octaves of blocks of time that were left out, as players interpolate the recorded spectra of the rest, decibels.
+    /// `None` if the blocks have too few windows.
+    pub left_out_rms_db: Option<f64>,
+    /// The same of one condition for all motions, the mean of all steady windows, scaled by the law: what a grid must be better than.
+    pub one_condition_rms_db: Option<f64>,
     /// The cells, by speed and then by force.
     pub cells: Vec<GridCell>,
     /// Triangles between conditions, by their indices, between which players interpolate.
@@ -64,7 +70,8 @@ pub struct GridReport {
 }
 
 impl GridReport {
-    pub(super) fn new(windows: usize, motions: &[[f64; 2]], lines: &Lines) -> Self {
+    pub(super) fn new(looked_at: usize, windows: &[Window], searched: &Searched) -> Self {
+        let lines = &searched.gathered.lines;
         let natural = |axis: usize| {
             let values = lines.axes[axis].iter();
             values.map(|log| four_digits(libm::exp(*log))).collect()
@@ -72,11 +79,13 @@ impl GridReport {
         Self {
             speed_mm_s: natural(0),
             force_n: natural(1),
-            windows,
-            steady: motions.len(),
+            windows: looked_at,
+            steady: windows.len(),
+            left_out_rms_db: searched.left_out_rms_db,
+            one_condition_rms_db: searched.one_condition_rms_db,
             cells: Vec::new(),
             triangles: Vec::new(),
-            motions: motions.iter().map(|logs| logs.map(libm::exp)).collect(),
+            motions: windows.iter().map(|w| w.motion.map(libm::exp)).collect(),
         }
     }
 

@@ -33,6 +33,7 @@ impl Case {
             "recording_clock_gap" | "recording_stuck" | "recording_silent" => &["RECORDING_SPIKE"],
             "recording_uneven" => &["RECORDING_SPIKE"],
             "recording_force_outlier" | "recording_speed_zero" => &["RECORDING_UNSTEADY"],
+            "recording_friction_coefficient" => &["RECORDING_UNSTEADY"],
             _ => &[],
         };
         also.contains(&code)
@@ -165,6 +166,7 @@ pub fn cases() -> Vec<Case> {
             "recording_friction_implausible",
             short().map_lateral(|_, f| 120.0 * f).with_normal(),
         ),
+        case("recording_friction_coefficient", coefficient()),
         case("recording_speed_zero", speed(|_| 0.0)),
         case("recording_speed_implausible", speed(|v| 1e-3 * v)),
         case("recording_sweeps_cut_off", Columns::new(3.2).lateral()),
@@ -228,6 +230,18 @@ fn spikes() -> String {
     let at = [sample(0.6), sample(3.1)];
     let change = |n, force| if at.contains(&n) { force + 4.0 } else { force };
     columns.map_lateral(change).lateral()
+}
+
+/// The quotient of the forces, at a normal force that rises and falls by 40 %.
+fn coefficient() -> String {
+    let mut columns = Columns::new(9.0);
+    for (at, normal) in columns.normal_n.iter_mut().enumerate() {
+        columns.lateral_n[at] /= *normal;
+        *normal *= 1.0 + 0.4 * (2.0 * at as f64 / RATE_HZ).sin();
+    }
+    columns.text("t_s,friction,fz_n", |c, at| {
+        format!("{:.5},{:.4}", c.lateral_n[at], c.normal_n[at])
+    })
 }
 
 /// One reading of 36,870 N.

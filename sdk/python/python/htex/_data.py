@@ -25,7 +25,7 @@ class Condition:
     force_n: float | None = None
     """Normal force, newtons."""
     repeatability_rms_db: float | None = None
-    """RMS difference between odd and even segments of the recording in nine bands, decibels."""
+    """RMS over nine bands of the difference between odd and even blocks of time of the recording, over √2, decibels."""
     segments: int | None = None
     """Number of segments that were averaged, where the asset states it; 0 for a condition that was computed between recorded ones."""
 
@@ -173,7 +173,8 @@ class Fit:
     """What is felt of the difference from the recordings, of each model at each of its conditions."""
     grid: dict[str, Any] | None = None
     """The grid of the conditions, if one was requested: its lines, its cells with their segments, repeatability and status,
-    and the triangles between conditions."""
+    the triangles between conditions, and the errors of blocks of time that were left out: of the grid (``left_out_rms_db``) and of one condition
+    for all motions (``one_condition_rms_db``)."""
 
     @property
     def warnings(self) -> list[str]:

@@ -1,0 +1,76 @@
+//! Detection of a friction coefficient that is read as a force.
+
+use htex_finding::Findings;
+
+use crate::Recording;
+use crate::segments::{segment_len, sliding};
+use htex_recording::Sums;
+use htex_recording::rules::RECORDING_FRICTION_COEFFICIENT;
+
+/// Fewest windows of 0.2 s of sliding from which the dependence on the force is told.
+const FEWEST: usize = 20;
+/// Least standard deviation of the logarithm of the normal force: 5 %. Of recordings in which a finger keeps to a
+/// force it is 2 to 3 %.
+const LEAST_SPREAD: f64 = 0.05;
+/// Largest exponent of the normal force, with two standard errors, at which the lateral force does not change with
+/// it. Of forces it is 0.97 to 1.03 on simulated surfaces and on three free motions of a finger, of their coefficients -0.03 to 0.03;
+/// a finger whose friction is its area of contact has 2/3.
+const LARGEST_EXPONENT: f64 = 0.25;
+
+/// Regresses the logarithm of the lateral force on that of the normal force, over windows in which the finger slides.
+pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
+    let Some(line) = logarithms(recording).and_then(|windows| Line::through(&windows)) else {
+        return;
+    };
+    if line.slope.abs() + 2.0 * line.error > LARGEST_EXPONENT {
+        return;
+    }
+    findings.add(RECORDING_FRICTION_COEFFICIENT, "/lateral", format!(
+        "the lateral force does not change with the normal force, of which it is the power {:.2} (standard error {:.2}) while the normal force \
+         varies by {:.0} %; a friction coefficient does so: multiply it by the force, as in lateral=friction*force,normal=force",
+        line.slope,
+        line.error,
+        100.0 * line.spread
+    ));
+}
+
+/// Returns the logarithms of normal and lateral force, of each window of sliding.
+fn logarithms(recording: &Recording) -> Option<Vec<[f64; 2]>> {
+    let normal = recording.normal_n.as_ref()?;
+    let slides = sliding(recording);
+    let normal = Sums::of(normal.iter().copied());
+    let lateral = Sums::of((0..recording.samples()).map(|at| recording.magnitude_at(at)));
+    let len = segment_len(recording.rate_hz);
+    let starts = (0..recording.samples().saturating_sub(len)).step_by(len);
+    let windows = starts.filter(|from| slides[*from..from + len].iter().all(|slides| *slides));
+    let means = windows.map(|from| [&normal, &lateral].map(|of| of.mean(from, from + len)));
+    let positive = means.filter(|means| means.iter().all(|mean| *mean > 0.0));
+    Some(positive.map(|means| means.map(libm::log)).collect())
+}
+
+/// A line of least squares.
+struct Line {
+    slope: f64,
+    /// Standard error of the slope.
+    error: f64,
+    /// Standard deviation of the abscissae.
+    spread: f64,
+}
+
+impl Line {
+    /// Returns the line through points; `None` if they are too few or too near to each other.
+    fn through(points: &[[f64; 2]]) -> Option<Self> {
+        let count = points.len() as f64;
+        let mean = |of: &dyn Fn(&[f64; 2]) -> f64| points.iter().map(of).sum::<f64>() / count;
+        let [mx, my] = [mean(&|p| p[0]), mean(&|p| p[1])];
+        let xx = mean(&|p| (p[0] - mx).powi(2));
+        let slope = mean(&|p| (p[0] - mx) * (p[1] - my)) / xx;
+        let rest = mean(&|p| (p[1] - my - slope * (p[0] - mx)).powi(2));
+        let spread = xx.sqrt();
+        (points.len() >= FEWEST && spread >= LEAST_SPREAD).then(|| Self {
+            slope,
+            error: (rest / (xx * (count - 2.0))).sqrt(),
+            spread,
+        })
+    }
+}

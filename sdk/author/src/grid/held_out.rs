@@ -1,0 +1,120 @@
+//! Prediction of blocks of time that were left out: what a grid costs, known without a truth.
+
+use htex_dsp::Band;
+use htex_dsp::bands::rms;
+use htex_dsp::spectrum::Complex;
+use htex_format::{Condition, Contact, Law, Quantity};
+
+use super::cells::Cell;
+use super::folds::Fold;
+use super::paths::{Paths, Window};
+use super::played::{PlayedSpectra, levels_db};
+use crate::conditions::Group;
+use crate::{AuthorError, Averaging, TextureSpectrum};
+
+/// Fewest windows of a block that are compared with a prediction.
+const FEWEST: usize = 4;
+
+/// What all spectra of a grid share.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Kind {
+    pub(super) quantity: Quantity,
+    pub(super) band: Band,
+    pub(super) averaging: Averaging,
+    pub(super) contact: Contact,
+}
+
+/// The windows of a left-out block inside one cell.
+pub(crate) struct Held {
+    /// Index of the cell; in a [`LeftOutBlock`], of its condition.
+    pub(crate) cell: usize,
+    /// Their mean speed, mm/s, and force, N.
+    pub(crate) motion: [f64; 2],
+    pub(crate) spectrum: TextureSpectrum,
+}
+
+/// A grid without one block of time, and that block.
+pub(crate) struct LeftOutBlock {
+    /// The conditions that the rest of the time gives, with their cells.
+    pub(crate) conditions: Vec<Condition>,
+    pub(crate) groups: Vec<Group>,
+    pub(crate) held: Vec<Held>,
+    /// The law of those conditions.
+    pub(crate) law: Law,
+}
+
+/// Averages the windows of a block that was left out, cell by cell.
+pub(super) fn held(
+    paths: &mut Paths<'_>,
+    windows: &[Window],
+    fold: &Fold,
+    cells: &[Cell],
+    kind: Kind,
+) -> Result<Vec<Held>, AuthorError> {
+    let mut all = Vec::new();
+    for (index, cell) in cells.iter().enumerate() {
+        let is_held = |i: &&usize| fold.held.binary_search(i).is_ok();
+        let own: Vec<usize> = cell.own.iter().filter(is_held).copied().collect();
+        if own.len() < FEWEST {
+            continue;
+        }
+        let mean = |axis: usize| {
+            own.iter().map(|i| windows[*i].motion[axis]).sum::<f64>() / own.len() as f64
+        };
+        let motion = [mean(0), mean(1)];
+        all.push(Held {
+            cell: index,
+            motion: motion.map(libm::exp),
+            spectrum: averaged(paths, windows, &own, Some(motion[0]), kind)?,
+        });
+    }
+    Ok(all)
+}
+
+/// Averages windows over the path of 0.2 s at one speed, given by its logarithm, or each over its own 0.2 s.
+pub(super) fn averaged(
+    paths: &mut Paths<'_>,
+    windows: &[Window],
+    used: &[usize],
+    log_speed: Option<f64>,
+    kind: Kind,
+) -> Result<TextureSpectrum, AuthorError> {
+    let (mut spectra, mut spans) = (Vec::with_capacity(used.len()), Vec::new());
+    for window in used.iter().map(|i| &windows[*i]) {
+        let log_speed = log_speed.unwrap_or(window.motion[0]);
+        spectra.push(paths.read(window, log_speed)?);
+        spans.push(paths.span(window, log_speed));
+    }
+    let spectra: Vec<&[Complex<f64>]> = spectra.iter().map(Vec::as_slice).collect();
+    let Kind {
+        quantity,
+        band,
+        averaging,
+        ..
+    } = kind;
+    Ok(TextureSpectrum::of(
+        quantity, band, &spectra, &spans, averaging,
+    ))
+}
+
+/// Returns the differences in decibels, in third octaves, between blocks that were left out and what is played there.
+pub(super) fn errors_db(played: &PlayedSpectra, held: &[Held]) -> Vec<f64> {
+    let mut errors = Vec::new();
+    for one in held {
+        let truth = levels_db(&one.spectrum, 1.0, 1.0);
+        let played = played.third_octaves_db(one.motion);
+        errors.extend(
+            played
+                .iter()
+                .zip(&truth)
+                .map(|(played, truth)| played - truth),
+        );
+    }
+    errors.retain(|error| error.is_finite());
+    errors
+}
+
+/// Returns the RMS of errors in decibels; `None` if there are none.
+pub(super) fn rms_db(errors: &[f64]) -> Option<f64> {
+    (!errors.is_empty()).then(|| rms(errors))
+}

@@ -1,0 +1,93 @@
+//! Recorded spectra, played at other motions: what a player that loses nothing to a model makes of them.
+
+use htex_format::{AtCondition, Condition, Contact};
+use htex_play::exploration::CEILING;
+use htex_play::{Mesh, Motion, Motions};
+
+use super::slopes::third_octaves;
+use crate::TextureSpectrum;
+use crate::law::law;
+
+/// Conditions with their spectra, interpolated and scaled as players do.
+pub(super) struct PlayedSpectra {
+    mesh: Mesh,
+    motions: Motions,
+    spectra: Vec<TextureSpectrum>,
+    level_rms: Vec<f64>,
+}
+
+impl PlayedSpectra {
+    /// Takes spectra at their conditions; `None` if there are none.
+    pub(super) fn new(
+        conditions: &[Condition],
+        spectra: Vec<TextureSpectrum>,
+        contact: Contact,
+    ) -> Option<Self> {
+        let levels = spectra.iter();
+        let level_rms: Vec<f64> = levels
+            .map(|s| htex_dsp::grid::level_rms(&s.magnitude))
+            .collect();
+        let at = |(condition, level_rms): (usize, &f64)| AtCondition {
+            condition,
+            level_rms: *level_rms,
+            quality: None,
+            left_out: None,
+        };
+        let at: Vec<AtCondition> = level_rms.iter().enumerate().map(at).collect();
+        let points: Vec<[f64; 2]> = conditions.iter().map(super::leave_out::motion).collect();
+        (!points.is_empty()).then(|| Self {
+            mesh: Mesh::new(&points),
+            motions: Motions::new(&at, conditions, law(conditions, &spectra, contact)),
+            spectra,
+            level_rms,
+        })
+    }
+
+    /// Returns the energies of the third octaves at a motion, decibels.
+    pub(super) fn third_octaves_db(&self, [speed, force]: [f64; 2]) -> Vec<f64> {
+        let scaling = self.motions.scaling(Motion::new(speed, force), CEILING);
+        let weights: Vec<(usize, f64)> = self.mesh.weights(speed, force).iter().collect();
+        let level: f64 = weights.iter().map(|(i, w)| w * self.level_rms[*i]).sum();
+        let gain = level * scaling.level;
+        let shapes: Vec<Vec<f64>> = weights
+            .iter()
+            .map(|(i, _)| levels_db(&self.spectra[*i], scaling.frequency, self.level_rms[*i]))
+            .collect();
+        let bands = shapes.first().map_or(0, Vec::len);
+        let mixed = |band: usize| {
+            let parts = weights.iter().zip(&shapes);
+            let shape: f64 = parts.map(|((_, weight), db)| weight * db[band]).sum();
+            shape + 20.0 * libm::log10(gain)
+        };
+        (0..bands).map(mixed).collect()
+    }
+}
+
+/// Returns the energies of the third octaves of a noise, its frequencies multiplied by `ratio`, in decibels over a level.
+pub(super) fn levels_db(spectrum: &TextureSpectrum, ratio: f64, level_rms: f64) -> Vec<f64> {
+    let first = spectrum.band.first_bin() as f64;
+    let power = |bin: usize| {
+        let place = (first + bin as f64) / ratio - first;
+        let below = libm::floor(place);
+        let at = |k: f64| {
+            let inside = k >= 0.0;
+            let m = inside.then(|| spectrum.magnitude.get(k as usize)).flatten();
+            m.map_or(0.0, |m| m * m)
+        };
+        let part = place - below;
+        let above = if part > 0.0 {
+            part * at(below + 1.0)
+        } else {
+            0.0
+        };
+        ((1.0 - part) * at(below) + above) / ratio
+    };
+    let energy = |bins: std::ops::Range<usize>| {
+        let sum: f64 = bins.map(power).sum();
+        10.0 * libm::log10(sum / (level_rms * level_rms))
+    };
+    third_octaves(spectrum.band)
+        .into_iter()
+        .map(energy)
+        .collect()
+}

@@ -1,0 +1,246 @@
+//! Choice of a grid's lines: the fewest that predict best what was left out.
+
+use htex_format::Condition;
+
+use super::cells::{Cell, are_full, gather};
+use super::fit_condition;
+use super::folds::{Fold, folds};
+use super::held_out::{Held, Kind, LeftOutBlock, averaged, errors_db, held, rms_db};
+use super::lines::Lines;
+use super::paths::{Paths, Window};
+use super::played::PlayedSpectra;
+use super::request::Grid;
+use super::slopes::{Read, corrected, read_around};
+use crate::conditions::{Group, four_digits};
+use crate::findings::quantile;
+use crate::law::law;
+use crate::{AuthorError, SpectrumOptions, Take, TextureSpectrum};
+
+/// Ratios of neighbouring speeds that are tried: an octave to a twelfth of it. Within 5 % a player treats speeds as one.
+const SPEED_RATIOS: [f64; 5] = [2.0, 1.41, 1.19, 1.12, 1.06];
+/// Ratio of the lines between which left-out windows are gathered to compare all grids with, and below which lines are
+/// tried only where there are windows for them.
+const COMPARED_RATIO: f64 = 1.19;
+/// Decibels by which more lines must be nearer to what was left out.
+const WORTH_DB: f64 = 0.03;
+
+/// Cells and their spectra, for one choice of lines.
+pub(super) struct Gathered {
+    pub(super) lines: Lines,
+    pub(super) cells: Vec<Cell>,
+    pub(super) spectra: Vec<Option<TextureSpectrum>>,
+    /// The spectra without each block of time.
+    without: Vec<Vec<Option<TextureSpectrum>>>,
+}
+
+/// The chosen lines, and what they cost.
+pub(super) struct Searched {
+    pub(super) gathered: Gathered,
+    /// RMS error of what is played of left-out blocks, in third octaves, decibels.
+    pub(super) left_out_rms_db: Option<f64>,
+    /// The same of one condition for all motions.
+    pub(super) one_condition_rms_db: Option<f64>,
+    pub(super) left_out: Vec<LeftOutBlock>,
+}
+
+/// The windows of some recordings, from which grids are gathered.
+pub(super) struct Search<'a> {
+    paths: Paths<'a>,
+    windows: &'a [Window],
+    motions: Vec<[f64; 2]>,
+    folds: Vec<Fold>,
+    kind: Kind,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(
+        takes: &'a [Take],
+        options: &'a SpectrumOptions,
+        windows: &'a [Window],
+        kind: Kind,
+    ) -> Self {
+        Self {
+            paths: Paths::new(takes, options, kind.band),
+            windows,
+            motions: windows.iter().map(|window| window.motion).collect(),
+            folds: folds(takes, windows).into(),
+            kind,
+        }
+    }
+
+    /// Gathers windows around the given lines, or around those of speed that predict left-out blocks best. Where no block
+    /// can be left out, the lines are a quarter of an octave apart.
+    pub(super) fn best(mut self, grid: &Grid) -> Result<Searched, AuthorError> {
+        let lines = Lines::choose(grid, &self.motions, COMPARED_RATIO)?;
+        let all: Vec<usize> = (0..self.windows.len()).collect();
+        let cells = gather(&lines, &self.motions, &all);
+        let compared = self.all_held(&cells)?;
+        let one_condition_rms_db = self.one_condition_db(&compared)?;
+        let is_chosen = grid.speed_mm_s.is_none() && compared.iter().any(|held| !held.is_empty());
+        let ratios = match is_chosen {
+            true => &SPEED_RATIOS[..],
+            false => &[COMPARED_RATIO],
+        };
+        let mut best: Option<(Gathered, f64)> = None;
+        for ratio in ratios {
+            let lines = Lines::choose(grid, &self.motions, *ratio)?;
+            let cells = gather(&lines, &self.motions, &all);
+            if *ratio < COMPARED_RATIO && !are_full(&cells) {
+                break;
+            }
+            let gathered = self.gathered(lines, cells)?;
+            let error_db = self.error_db(&gathered, &compared);
+            let error_db = error_db.unwrap_or(f64::INFINITY);
+            let least = best.as_ref().map(|(_, least)| least - WORTH_DB);
+            if least.is_none_or(|least| error_db < least) {
+                best = Some((gathered, error_db));
+            } else if *ratio < COMPARED_RATIO {
+                break;
+            }
+        }
+        let (gathered, error_db) = best.ok_or(AuthorError::NoSegments {
+            source_name: String::new(),
+        })?;
+        Ok(Searched {
+            left_out: self.left_out(&gathered)?,
+            left_out_rms_db: Some(error_db).filter(|db| db.is_finite()),
+            gathered,
+            one_condition_rms_db,
+        })
+    }
+
+    /// Averages the left-out windows of each block, cell by cell.
+    fn all_held(&mut self, cells: &[Cell]) -> Result<Vec<Vec<Held>>, AuthorError> {
+        let (paths, windows, kind) = (&mut self.paths, self.windows, self.kind);
+        let folds = self.folds.iter();
+        folds
+            .map(|fold| held(paths, windows, fold, cells, kind))
+            .collect()
+    }
+
+    /// Averages the windows of all cells, of all the time and without each block.
+    fn gathered(&mut self, lines: Lines, cells: Vec<Cell>) -> Result<Gathered, AuthorError> {
+        let folds = self.folds.iter();
+        let cells_without: Vec<Vec<Cell>> = folds
+            .map(|fold| gather(&lines, &self.motions, &fold.known))
+            .collect();
+        let mut spectra = Vec::with_capacity(cells.len());
+        let mut without: Vec<Vec<_>> = cells_without.iter().map(|_| Vec::new()).collect();
+        for (i, cell) in cells.iter().enumerate() {
+            let reads = read_around(&mut self.paths, self.windows, cell)?;
+            spectra.push(self.spectrum(&reads, cell));
+            for (cells, spectra) in cells_without.iter().zip(&mut without) {
+                spectra.push(cells.get(i).and_then(|cell| self.spectrum(&reads, cell)));
+            }
+        }
+        Ok(Gathered {
+            lines,
+            cells,
+            spectra,
+            without,
+        })
+    }
+
+    /// Averages the windows of a cell, corrected to its crossing; `None` if they are too few.
+    fn spectrum(&self, reads: &[Read], cell: &Cell) -> Option<TextureSpectrum> {
+        let used = cell.used()?;
+        let kind = self.kind;
+        let corrected = corrected(reads, cell, &used, kind.band);
+        let spectra: Vec<_> = corrected.iter().map(Vec::as_slice).collect();
+        let span = |i: &usize| self.paths.span(&self.windows[*i], cell.at[0]);
+        let spans: Vec<_> = used.iter().map(span).collect();
+        let (quantity, band) = (kind.quantity, kind.band);
+        let averaging = kind.averaging;
+        Some(TextureSpectrum::of(
+            quantity, band, &spectra, &spans, averaging,
+        ))
+    }
+
+    /// Returns the error of a grid: of each block of time as it is played without it.
+    fn error_db(&self, gathered: &Gathered, compared: &[Vec<Held>]) -> Option<f64> {
+        let mut errors = Vec::new();
+        for (spectra, held) in gathered.without.iter().zip(compared) {
+            let fitted = gathered.cells.iter().zip(spectra);
+            let (conditions, spectra) = fitted
+                .filter_map(|(cell, spectrum)| Some((condition(cell), spectrum.clone()?)))
+                .unzip::<_, _, Vec<_>, Vec<_>>();
+            let played = PlayedSpectra::new(&conditions, spectra, self.kind.contact)?;
+            errors.extend(errors_db(&played, held));
+        }
+        rms_db(&errors)
+    }
+
+    /// Returns the error of one condition for all motions: the mean of all windows at their median motion.
+    fn one_condition_db(&mut self, compared: &[Vec<Held>]) -> Result<Option<f64>, AuthorError> {
+        let mut errors = Vec::new();
+        for (fold, held) in self.folds.iter().zip(compared) {
+            let known = &fold.known;
+            if known.is_empty() {
+                continue;
+            }
+            let spectrum = averaged(&mut self.paths, self.windows, known, None, self.kind)?;
+            let median = |axis: usize| {
+                quantile(0.5, known.len(), |i| self.motions[known[i]][axis]).map(libm::exp)
+            };
+            let condition = Condition {
+                speed_mm_s: median(0).map(four_digits),
+                force_n: median(1).map(four_digits),
+                ..Condition::default()
+            };
+            let played = PlayedSpectra::new(&[condition], vec![spectrum], self.kind.contact);
+            errors.extend(played.iter().flat_map(|played| errors_db(played, held)));
+        }
+        Ok(rms_db(&errors))
+    }
+
+    /// Returns the chosen grid without each block of time, and the blocks.
+    fn left_out(&mut self, gathered: &Gathered) -> Result<Vec<LeftOutBlock>, AuthorError> {
+        let all_held = self.all_held(&gathered.cells)?;
+        let blocks = gathered.without.iter().zip(all_held);
+        let block = |(spectra, held): (&Vec<Option<TextureSpectrum>>, Vec<Held>)| {
+            let mut conditions = Vec::new();
+            let mut groups = Vec::new();
+            for (cell, spectrum) in gathered.cells.iter().zip(spectra) {
+                let Some(spectrum) = spectrum.clone() else {
+                    continue;
+                };
+                conditions.push(condition(cell));
+                groups.push(Group {
+                    spectrum,
+                    condition: fit_condition(cell),
+                });
+            }
+            let spectra: Vec<TextureSpectrum> = groups.iter().map(|g| g.spectrum.clone()).collect();
+            LeftOutBlock {
+                law: law(&conditions, &spectra, self.kind.contact),
+                conditions,
+                groups,
+                held: of_conditions(held, gathered),
+            }
+        };
+        Ok(blocks.map(block).collect())
+    }
+}
+
+/// Keeps what was left out of cells that are conditions, and counts it by condition.
+fn of_conditions(held: Vec<Held>, gathered: &Gathered) -> Vec<Held> {
+    let spectra = &gathered.spectra;
+    let is_fitted = |cell: usize| spectra.get(cell).is_some_and(Option::is_some);
+    let before = |cell: usize| spectra.iter().take(cell).flatten().count();
+    let kept = held.into_iter().filter(|one| is_fitted(one.cell));
+    kept.map(|one| Held {
+        cell: before(one.cell),
+        ..one
+    })
+    .collect()
+}
+
+/// Returns the condition of a cell, by its motion alone.
+fn condition(cell: &Cell) -> Condition {
+    let motion = fit_condition(cell);
+    Condition {
+        speed_mm_s: motion.speed_mm_s,
+        force_n: motion.force_n,
+        ..Condition::default()
+    }
+}

@@ -85,6 +85,15 @@ fn a_device_is_found_by_its_bare_name() {
     );
 }
 
+/// The table of the specification lists the checks.
+#[test]
+fn the_guarantees_of_the_specification_are_those_that_are_checked() {
+    let checks = CHECKS
+        .iter()
+        .map(|check| (check.name, check.summary, check.needs));
+    native::guarantees_are_checked("spec/device-abi-1.md", checks);
+}
+
 #[test]
 fn sound_devices_pass() {
     let place = Place::new();

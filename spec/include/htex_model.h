@@ -20,7 +20,8 @@
  * Parameters are one flat array laid out by the descriptor's fields: a scalar takes one number, a
  * list its length and then its numbers.
  *
- * Units: frequencies and rates in hertz, levels and signals in newtons. A shape has unit RMS:
+ * Units: frequencies and rates in hertz, levels and signals in the unit of the asset's
+ * quantity, which a model is not told (newtons for a force). A shape has unit RMS:
  * sqrt(sum of magnitude^2 / 3) = 1 over the multiples of HTEX_GRID_HZ in the band.
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
@@ -111,10 +112,10 @@ int64_t htex_model_descriptor(uint8_t *out, size_t capacity);
 HTEX_EXPORT(htex_model_last_error)
 int64_t htex_model_last_error(uint8_t *out, size_t capacity);
 
-/* Fits the model to a spectrum of `bins` magnitudes, newtons, at ascending frequencies. `signal` is
- * the recording behind it, newtons, and may be empty. `options` has one value for each option of
+/* Fits the model to a spectrum of `bins` magnitudes, in the asset's unit, at ascending frequencies. `signal` is
+ * the recording behind it, in the same unit, and may be empty. `options` has one value for each option of
  * the descriptor. Writes the parameters, no more than `capacity`, and the level: RMS of the fitted
- * magnitude in the band, newtons. Answers how many parameters there are; the caller comes again
+ * magnitude in the band, in that unit. Answers how many parameters there are; the caller comes again
  * with more room if need be. [any thread] */
 HTEX_EXPORT(htex_model_fit)
 int64_t htex_model_fit(double band_low_hz, double band_high_hz, const double *frequency_hz,

@@ -5,6 +5,7 @@ Argument: the folder of assets and numbers. Exit status 1 and a line a differenc
 than 1e-8 of a number, and for MFCC by 2e-8 of the largest magnitude (-154 dB) besides.
 """
 
+import itertools
 import json
 import pathlib
 import struct
@@ -271,8 +272,47 @@ def grouped(values):
     return groups
 
 
+def turn(points, a, b, c):
+    """Twice the area of a triangle, positive counterclockwise."""
+    (ux, uy), (vx, vy) = points[b] - points[a], points[c] - points[a]
+    return ux * vy - uy * vx
+
+
+def on_a_circle(points, edge, c, d):
+    """Whether the angles at c and d opposite an edge sum to half a turn."""
+
+    def angle(at):
+        u, v = (points[i] - points[at] for i in edge)
+        return np.arctan2(abs(u[0] * v[1] - u[1] * v[0]), u @ v)
+
+    return abs(angle(c) + angle(d) - np.pi) <= 1e-9
+
+
+def triangulated(points):
+    """Delaunay's triangles; those of points on one circle are a fan from the first of them."""
+    mesh = spatial.Delaunay(points)
+    triangles = [frozenset(map(int, t)) for t in mesh.simplices if abs(turn(points, *t)) > 1e-12]
+    cells = {t: {t} for t in triangles}
+    for t, other in itertools.combinations(triangles, 2):
+        edge = sorted(t & other)
+        if len(edge) == 2 and on_a_circle(points, edge, *(t - other), *(other - t)):
+            joined = cells[t] | cells[other]
+            cells.update((member, joined) for member in joined)
+    fans = []
+    for cell in set(map(frozenset, cells.values())):
+        corners = sorted(frozenset().union(*cell), key=lambda i: tuple(points[i]))
+        middle = points[corners].mean(axis=0)
+        around = sorted(corners[1:], key=lambda i: np.arctan2(*(points[i] - middle)[::-1]))
+        # Counterclockwise from the first.
+        start = np.arctan2(*(points[corners[0]] - middle)[::-1])
+        first = sum(np.arctan2(*(points[i] - middle)[::-1]) < start for i in around)
+        around = around[first:] + around[:first]
+        fans += [(corners[0], b, c) for b, c in zip(around, around[1:])]
+    return fans, mesh.convex_hull
+
+
 def weights_at(conditions, motion):
-    """Pairs of condition and weight, and the nearest known motion."""
+    """Pairs of condition and weight, ascending by position, and the nearest known motion."""
     points = np.array([[c.get("speed_mm_s", 0.0), c.get("force_n", 0.0)] for c in conditions])
     scale = np.abs(points).max(axis=0)
     scale[scale == 0] = 1
@@ -280,16 +320,18 @@ def weights_at(conditions, motion):
     placed = lambda point: [place(point[axis], axes[axis], scale[axis]) for axis in (0, 1)]
     nearest = lambda at: [value(at[axis], motion[axis], axes[axis], scale[axis]) for axis in (0, 1)]
     points, q = np.array([placed(point) for point in points]), np.array(placed(motion))
+    ascending = lambda mixed: sorted(
+        ((int(i), w) for i, w in mixed if w > 1e-12), key=lambda part: tuple(points[part[0]])
+    )
     edges = [(0, 0)]
     if len(points) > 2:
-        mesh = spatial.Delaunay(points)
-        for corners in mesh.simplices:
-            a, b, c = points[corners]
+        triangles, edges = triangulated(points)
+        for corners in triangles:
+            a, b, c = points[list(corners)]
             w = np.linalg.solve(np.column_stack([b - a, c - a]), q - a)
             w = np.array([1 - w.sum(), *w])
             if (w >= -1e-12).all():
-                return [(i, x) for i, x in zip(corners, w) if x > 1e-12], list(motion)
-        edges = mesh.convex_hull
+                return ascending(zip(corners, w)), list(motion)
     elif len(points) == 2:
         edges = [(0, 1)]
     best = (np.inf, None, None)
@@ -300,7 +342,7 @@ def weights_at(conditions, motion):
         away = np.linalg.norm(foot - q)
         if away < best[0]:
             best = (away, [(i, 1 - t), (j, t)], foot)
-    return [(i, w) for i, w in best[1] if w > 0], nearest(best[2])
+    return ascending(best[1]), nearest(best[2])
 
 
 # The law outside the conditions (sections 2 and 11).
@@ -436,9 +478,7 @@ def check(path, findings):
         chosen = [sets[i] for i, _ in mixed]
         parameters = chosen[0] if len(chosen) == 1 else mix(chosen, [w for _, w in mixed])
         what = f"{path.stem} {case['model']} at {case['speed_mm_s']} mm/s, {case['force_n']} N"
-        if case["model"] != "org.htex.speak" or len(mixed) == 1:
-            # The order in which lines of several sets stand is not told.
-            differ(f"{what}, parameters", flat(representation, parameters), case["parameters"], findings)
+        differ(f"{what}, parameters", flat(representation, parameters), case["parameters"], findings)
         differ(f"{what}, level", level, case["level_rms"], findings)
         differ(f"{what}, factor", ratio, case["frequency_factor"], findings)
         m = level * magnitude(parameters, band, frequency / ratio)

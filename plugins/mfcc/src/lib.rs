@@ -35,7 +35,7 @@ const BANDS_OPTION: usize = 1;
 const INVERSE_OPTION: usize = 2;
 
 const MAX_BANDS: u32 = 128;
-/// Lower limit of band energies, newtons squared (numeric definitions: MFCC).
+/// Lower limit of band energies, the asset's unit squared (numeric definitions: MFCC).
 const FLOOR: f64 = 1e-20;
 
 const WHOLE: Store = Store::U8 {

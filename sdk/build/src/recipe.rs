@@ -61,7 +61,7 @@ pub struct LibraryPart {
 pub struct Textures {
     /// Files by glob, relative to the recipe: `rec/**/*.csv`.
     #[serde(default, deserialize_with = "one_or_more")]
-    #[schemars(with = "OneOrMore", extend("default" = null))]
+    #[schemars(with = "OneOrMore", extend("default" = []))]
     pub recordings: Vec<String>,
     /// A CSV with a row for each recording: the column `recording` is its file, relative to the table; other columns are fields of
     /// templates. `name`, `speed_mm_s` and `force_n` are used where the recipe says nothing else.

@@ -68,8 +68,6 @@ pub struct MeasureRow {
     pub required: bool,
     /// Whether assets store it in `left_out`, too.
     pub left_out: bool,
-    /// Whether the schema of `quality` states its range, beside the rule `QUALITY_INVALID`.
-    pub schema_range: bool,
     /// Heading of its column in text.
     pub column: Option<&'static str>,
     /// Heading of its column in text, of rendered samples.
@@ -93,7 +91,6 @@ const STORED_ERROR: MeasureRow = MeasureRow {
     stored: true,
     required: false,
     left_out: false,
-    schema_range: true,
     column: None,
     played: None,
     caption: None,
@@ -163,7 +160,6 @@ measures! {
         name: "third-octave error",
         short: "third octaves",
         left_out: true,
-        schema_range: false,
         column: Some("third-oct/dB"),
         caption: Some("Third-octave error of the {}, RMS in dB (0 is the best, light)"),
     }
@@ -174,7 +170,6 @@ measures! {
         lacking: Some("for a silent reference"),
         name: "log-spectral distance",
         short: "log-spectral",
-        schema_range: false,
         column: Some("log-sp/dB"),
         caption: Some("Log-spectral distance of the {}, RMS in dB (0 is the best, light)"),
     }

@@ -25,7 +25,6 @@ pub(crate) struct Entry<'a> {
     pub(crate) content: Content<'a>,
     required: bool,
     description: &'static str,
-    schema_range: bool,
 }
 
 pub(crate) enum Content<'a> {
@@ -65,7 +64,6 @@ impl Entries for Quality {
                     content: Content::Bands(&self.band_error_db),
                     required: true,
                     description: "Energy relative to the recording's in nine bands, decibels.",
-                    schema_range: true,
                 });
             }
             let (row, value) = (measure.row(), self.get(measure));
@@ -74,7 +72,6 @@ impl Entries for Quality {
                 content: Content::Number(value, row.judged),
                 required: row.required,
                 description: row.meaning,
-                schema_range: row.schema_range,
             });
         }
         for measure in Measure::stored() {
@@ -84,7 +81,6 @@ impl Entries for Quality {
                 content: Content::Number(self.samples(measure), row.judged),
                 required: false,
                 description,
-                schema_range: row.schema_range,
             }));
         }
         entries.push(Entry {
@@ -92,7 +88,6 @@ impl Entries for Quality {
             content: Content::Number(self.rounding_error_db, Judged::Error),
             required: false,
             description: "Nine-band RMS difference between the spectra of the fitted and of the stored parameters, decibels.",
-            schema_range: true,
         });
         entries
     }
@@ -124,7 +119,6 @@ impl Entries for LeftOut {
             content: Content::Number(self.0.get(measure), measure.row().judged),
             required: measure.row().required,
             description: measure.row().meaning,
-            schema_range: true,
         };
         Self::measures().map(entry).collect()
     }
@@ -187,7 +181,7 @@ fn schema<T: Entries>() -> Schema {
             Content::Number(_, Judged::Correlation) => {
                 json!({ "type": "number", "minimum": -1, "maximum": 1 })
             }
-            Content::Number(_, Judged::Error) if entry.schema_range => {
+            Content::Number(_, Judged::Error) => {
                 json!({ "type": "number", "minimum": 0 })
             }
             Content::Number(..) => json!({ "type": "number" }),

@@ -104,8 +104,16 @@ struct Typed<'de, 'w> {
 }
 
 impl<'de> Typed<'de, '_> {
-    /// Deserializes an integer, also if it is written as `1.0` or `1e0`.
+    /// Deserializes an integer up to 2^53, also if it is written as `1.0` or `1e0`.
     fn whole<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
+        let size = self
+            .value
+            .as_u64()
+            .or(self.value.as_i64().map(i64::unsigned_abs));
+        if let Some(size) = size.filter(|size| *size > EXACT as u64) {
+            let got = Unexpected::Unsigned(size);
+            return Err(de::Error::invalid_type(got, &"a whole number up to 2^53"));
+        }
         let number = self.value.as_number().filter(|number| number.is_f64());
         let whole = number
             .and_then(|number| number.as_f64())

@@ -84,7 +84,7 @@ fn any_asset() -> impl Strategy<Value = Asset> {
         "\\PC{0,20}",
         "[a-z]{1,9}",
     );
-    let numbers = (0.0..1e4f64, number(), any::<u64>(), any::<bool>());
+    let numbers = (0.0..1e4f64, number(), 0..=1u64 << 53, any::<bool>());
     let parts =
         (1usize..4).prop_flat_map(|c| (Just(c), representation(0, c), representation(1, c)));
     (parts, words, numbers).prop_map(|((conditions, first, second), words, numbers)| {

@@ -61,6 +61,13 @@ pub enum LibraryError {
     /// Two textures have the same name.
     #[error("two textures have the name {}; rename one", plain(.name))]
     Duplicate { name: String },
+    /// Two names differ in case alone.
+    #[error("{} and {} differ in case alone, and are one file on some systems; rename one", plain(.name), plain(.other))]
+    Alike {
+        name: String,
+        /// The name that was added before.
+        other: String,
+    },
     /// A texture to be added is not a valid asset.
     #[error("{}: {error}", plain(.name))]
     Asset {

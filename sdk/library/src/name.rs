@@ -2,9 +2,13 @@
 
 use crate::wire::TEXT_BYTES;
 
+/// Ending of a texture's file.
+const ENDING: &str = ".htex";
+/// Most bytes of a part: with [`ENDING`] the 255 that file systems allow in a file's name.
+const PART_BYTES: usize = 255 - ENDING.len();
 /// Names of devices of Windows, under which no file can be written.
-const DEVICES: [&str; 4] = ["CON", "PRN", "AUX", "NUL"];
-/// The same, followed by a digit.
+const DEVICES: [&str; 6] = ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$"];
+/// The same, followed by a digit or a superscript 1, 2 or 3, which Windows takes for digits.
 const NUMBERED_DEVICES: [&str; 2] = ["COM", "LPT"];
 
 /// Error: a text is not a name of a texture.
@@ -21,6 +25,12 @@ pub enum InvalidName {
     /// A part between slashes is empty, `.` or `..`.
     #[error("a part of it is empty, `.` or `..`; write the parts with one `/` between them")]
     Part,
+    /// A part is too long for the name of a file.
+    #[error("a part of it has {0} bytes and the most is 250; shorten it")]
+    LongPart(usize),
+    /// A folder has the name of a texture's file.
+    #[error("a part of it before a `/` ends in .htex, as a texture's file; rename it")]
+    Folder,
     /// A part ends in a space or a dot, which Windows removes.
     #[error("a part of it ends in a space or a dot; remove it")]
     End,
@@ -49,7 +59,17 @@ pub fn check_name(name: &str) -> Result<(), InvalidName> {
     if let Some(character) = name.chars().find(|c| is_refused(*c)) {
         return Err(InvalidName::Character(character));
     }
-    name.split('/').try_for_each(check_part)
+    name.split('/').try_for_each(check_part)?;
+    let mut folders = name.split('/').rev().skip(1);
+    match folders.any(|folder| caseless(folder).ends_with(&caseless(ENDING))) {
+        true => Err(InvalidName::Folder),
+        false => Ok(()),
+    }
+}
+
+/// Returns what names of one file have in common on systems that ignore case: each character's full upper case.
+pub(crate) fn caseless(name: &str) -> String {
+    name.to_uppercase()
 }
 
 /// Checks the name of a library: up to 255 bytes of UTF-8 without control characters; it may be empty.
@@ -72,21 +92,22 @@ fn check_part(part: &str) -> Result<(), InvalidName> {
     if part.ends_with([' ', '.']) {
         return Err(InvalidName::End);
     }
+    if part.len() > PART_BYTES {
+        return Err(InvalidName::LongPart(part.len()));
+    }
     if is_device(part) {
         return Err(InvalidName::Device);
     }
     Ok(())
 }
 
-/// Whether a part is a device of Windows, with or without an extension.
+/// Whether a part is a device of Windows, with or without an extension. Windows ignores spaces before the extension.
 fn is_device(part: &str) -> bool {
-    let stem = part.split('.').next().unwrap_or(part);
-    let is = |name: &&str| stem.eq_ignore_ascii_case(name);
-    let is_numbered = |name: &&str| {
-        let number = stem.len() == name.len() + 1 && stem.ends_with(|c: char| c.is_ascii_digit());
-        number && stem.as_bytes()[..name.len()].eq_ignore_ascii_case(name.as_bytes())
-    };
-    DEVICES.iter().any(is) || NUMBERED_DEVICES.iter().any(is_numbered)
+    let stem = part.split('.').next().unwrap_or(part).trim_end_matches(' ');
+    let is = |stem: &str, names: &[&str]| names.iter().any(|name| stem.eq_ignore_ascii_case(name));
+    let is_number = |c: char| c.is_ascii_digit() || matches!(c, '¹' | '²' | '³');
+    let numbered = stem.strip_suffix(is_number);
+    is(stem, &DEVICES) || numbered.is_some_and(|stem| is(stem, &NUMBERED_DEVICES))
 }
 
 #[cfg(test)]
@@ -95,7 +116,15 @@ mod tests {
 
     #[test]
     fn names_are_relative_paths_everywhere() {
-        for name in ["a", "wood/oak 2", "布/綿", "a..b/.c", "console/com10"] {
+        for name in [
+            "a",
+            "wood/oak 2",
+            "布/綿",
+            "a..b/.c",
+            "console/com10",
+            "com⁴",
+            "a.htex",
+        ] {
             assert_eq!(check_name(name), Ok(()), "{name}");
         }
         for (name, error) in [
@@ -113,9 +142,19 @@ mod tests {
             ("a ", InvalidName::End),
             ("x/con", InvalidName::Device),
             ("Lpt1.htex", InvalidName::Device),
+            ("a/COM².x", InvalidName::Device),
+            ("conin$", InvalidName::Device),
+            ("CONOUT$ .b/c", InvalidName::Device),
+            ("a.HTEX/b", InvalidName::Folder),
         ] {
             assert_eq!(check_name(name), Err(error), "{name:?}");
         }
         assert_eq!(check_name(&"é".repeat(128)), Err(InvalidName::TooLong(256)));
+        assert_eq!(check_name(&"é".repeat(125)), Ok(()));
+        assert_eq!(
+            check_name(&"a".repeat(251)),
+            Err(InvalidName::LongPart(251))
+        );
+        assert_eq!(caseless("Straße/σ"), caseless("STRASSE/ς"));
     }
 }

@@ -59,6 +59,10 @@ rule_table! {
         "A name is not allowed.",
         "Each name is a relative path of a file too, on every system: a name with `..` could write outside a folder.",
         "Rename the texture and pack the library again.";
+    LIBRARY_NAMES_ALIKE Error:
+        "Two names differ only in case.",
+        "On systems that ignore case both are one file, so that one texture would replace the other.",
+        "Rename one of the textures and pack the library again.";
     LIBRARY_ORDER_INVALID Error:
         "Names are not sorted, or one appears twice.",
         "A reader finds a texture by the order of the names.",

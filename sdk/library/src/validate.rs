@@ -1,6 +1,6 @@
 //! Validation of a whole library: the index, page by page, and every texture.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use htex_finding::{Findings, Report};
@@ -14,6 +14,7 @@ use crate::index::{assembled, changed};
 use crate::leaf::length;
 use crate::library::Library;
 use crate::limits::Limits;
+use crate::name::caseless;
 use crate::rules as rule;
 use crate::source::{LibrarySource, LocalFile};
 
@@ -56,6 +57,8 @@ struct Validation<'a, S> {
     next: Option<u64>,
     /// Shared objects: start and end.
     objects: BTreeMap<u64, u64>,
+    /// Hashes of the names so far, without their case: 128 bits each, however long a name is.
+    caseless: BTreeSet<[u8; 16]>,
     entries: u64,
     /// Bytes of all textures so far.
     total: u64,
@@ -71,6 +74,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             findings: Findings::default(),
             next: Some(0),
             objects: BTreeMap::new(),
+            caseless: BTreeSet::new(),
             entries: 0,
             total: 0,
             is_whole: true,
@@ -122,6 +126,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
                 self.findings.add(rule::LIBRARY_RATIO, place, message);
                 return Ok(false);
             }
+            self.check_name(entry, &place);
             self.check_gap(entry, &place);
             if !self.check_objects(entry, &place) {
                 return Ok(false);
@@ -129,6 +134,22 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             self.check_asset(entry, &place)?;
         }
         Ok(true)
+    }
+
+    /// Checks that no name before differs in case alone.
+    fn check_name(&mut self, entry: &Entry, place: &str) {
+        let mut hash = [0; 16];
+        let mut whole = blake3::Hasher::new();
+        whole.update(caseless(&entry.name).as_bytes());
+        whole.finalize_xof().fill(&mut hash);
+        let is_other = self.caseless.insert(hash);
+        self.findings
+            .require(is_other, rule::LIBRARY_NAMES_ALIKE, place, || {
+                format!(
+                    "{} differs from another name in case alone; rename one and pack the library again",
+                    entry.name
+                )
+            });
     }
 
     /// Checks that own bytes follow those of the texture before.

@@ -16,7 +16,7 @@ use crate::facts::{Facts, MOST_WORDS};
 use crate::header::{HEADER_BYTES, Header, MINOR};
 use crate::leaf::length;
 use crate::limits::Limits;
-use crate::name::{check_library_name, check_name};
+use crate::name::{caseless, check_library_name, check_name};
 use crate::sharing::Sharing;
 use crate::spool::{Spool, SpoolReader, Spooled};
 use crate::wire::TEXT_BYTES;
@@ -40,6 +40,8 @@ pub struct Writer {
     spool: Spool,
     /// The textures by name.
     added: BTreeMap<String, Added>,
+    /// Their names, by what names have in common where case does not count.
+    caseless: BTreeMap<String, String>,
     /// Different tags and models, which many textures have in common.
     words: BTreeSet<Arc<Words>>,
 }
@@ -95,6 +97,7 @@ impl Writer {
             target: Unfinished::create(path).unchanged(path)?,
             spool: Spool::beside(path).unchanged(path)?,
             added: BTreeMap::new(),
+            caseless: BTreeMap::new(),
             words: BTreeSet::new(),
         })
     }
@@ -102,7 +105,7 @@ impl Writer {
     /// Adds a texture: `asset` are the bytes of a `.htex` file, which is stored as it is.
     ///
     /// # Errors
-    /// When the name breaks a rule of [`check_name`] or was added before, the asset is not valid or has more tags or longer ones
+    /// When the name breaks a rule of [`check_name`] or was added before, in the same or another case, the asset is not valid or has more tags or longer ones
     /// than the index holds (64 of 255 bytes), or the bytes cannot be written.
     pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
         check_name(name).map_err(|problem| LibraryError::Name {
@@ -112,6 +115,12 @@ impl Writer {
         if self.added.contains_key(name) {
             return Err(LibraryError::Duplicate {
                 name: name.to_owned(),
+            });
+        }
+        if let Some(other) = self.caseless.get(&caseless(name)) {
+            return Err(LibraryError::Alike {
+                name: name.to_owned(),
+                other: other.clone(),
             });
         }
         let read = Asset::from_bytes(asset).map_err(|error| LibraryError::Asset {
@@ -131,6 +140,7 @@ impl Writer {
             spooled,
         };
         self.added.insert(name.to_owned(), added);
+        self.caseless.insert(caseless(name), name.to_owned());
         Ok(())
     }
 

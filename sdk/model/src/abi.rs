@@ -43,7 +43,7 @@ pub type AbiVersion = extern "C" fn() -> u32;
 pub type DescriptorJson = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
 /// Writes the text of the calling thread's last error; returns its length. `[any thread]`
 pub type LastError = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
-/// Fits; writes parameters and the level (RMS, newtons); returns how many parameters there are.
+/// Fits; writes parameters and the level (RMS, in the asset's unit); returns how many parameters there are.
 /// `[any thread]`
 pub type FitFn = unsafe extern "C" fn(
     band_low_hz: f64,

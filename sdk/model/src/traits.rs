@@ -13,9 +13,9 @@ pub struct FitInput<'a> {
     pub band: Band,
     /// Frequencies of the texture spectrum, ascending, hertz (the 5 Hz grid in the band).
     pub frequency_hz: &'a [f64],
-    /// Magnitudes at those frequencies, newtons, finite and not negative.
+    /// Magnitudes at those frequencies, in the unit of the asset's quantity, finite and not negative.
     pub magnitude: &'a [f64],
-    /// The recording's segments overlap-added to one signal, newtons, band-limited; may be empty.
+    /// The recording's segments overlap-added to one signal, in the same unit, band-limited; may be empty.
     pub signal: &'a [f64],
     /// Rate of `signal`, hertz.
     pub signal_rate_hz: f64,
@@ -37,7 +37,7 @@ pub struct FitInput<'a> {
 pub struct Fit {
     /// The flat array of parameters.
     pub parameters: Vec<f64>,
-    /// RMS of the fitted magnitude in the band, newtons: shape × level is the fitted spectrum.
+    /// RMS of the fitted magnitude in the band, in the unit of [`FitInput::magnitude`]: shape × level is the fitted spectrum.
     pub level_rms: f64,
 }
 

@@ -2,9 +2,10 @@
 //!
 //! Weights are barycentric in the Delaunay triangulation of the known (speed, force) points, each axis divided by
 //! its largest value. A motion outside the hull has the weights of the hull's nearest point. Measured conditions
-//! are not exactly aligned, so two rules apply:
+//! are not exactly aligned, and a grid has several triangulations, so these rules apply:
 //!
 //! - Speeds that are equal within [`htex_format::SAME_CONDITION`] are one value; the same holds for forces (`axis`).
+//! - Of several Delaunay triangulations, as of a grid, one is used (`cells`).
 //! - A condition that is equal to its projection on an edge of the hull, within that tolerance, lies on that edge. The
 //!   narrow triangle between them is not interpolated in: motions in it, and outside the hull next to it, have the
 //!   weights of their projections on the edge.
@@ -13,6 +14,7 @@
 
 mod axis;
 mod build;
+mod cells;
 #[cfg(test)]
 mod tests;
 
@@ -21,7 +23,10 @@ use axis::Axis;
 /// Largest distance from an edge, relative to the largest speed and force, that is attributed to rounding.
 const ON_SIDE: f64 = 1e-9;
 
-/// Weights of up to three conditions, summing to one.
+/// Weights up to which a condition is left out, so that a recorded condition is played without interpolation.
+const NO_WEIGHT: f64 = 1e-12;
+
+/// Weights of up to three conditions, summing to one, in ascending order of their speeds, then their forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
     pub(crate) condition: [usize; 3],
@@ -43,12 +48,14 @@ impl Weights {
         (0..self.count).map(|i| (self.condition[i], self.weight[i]))
     }
 
-    /// Removes conditions of weight 0, so that a recorded condition is played without interpolation.
-    fn without_zeros(self) -> Self {
+    /// Returns the weights above [`NO_WEIGHT`] in ascending order, by the numbers of the caller's conditions.
+    fn numbered(self, numbers: &[usize]) -> Self {
+        let mut parts = [0, 1, 2].map(|i| (self.condition[i], self.weight[i]));
+        parts[..self.count].sort_unstable_by_key(|(condition, _)| *condition);
         let mut kept = Self { count: 0, ..self };
-        for (condition, weight) in self.iter().filter(|(_, w)| *w > 0.0) {
-            kept.condition[kept.count] = condition;
-            kept.weight[kept.count] = weight;
+        for (condition, weight) in parts[..self.count].iter().filter(|(_, w)| *w > NO_WEIGHT) {
+            kept.condition[kept.count] = numbers.get(*condition).copied().unwrap_or_default();
+            kept.weight[kept.count] = *weight;
             kept.count += 1;
         }
         kept
@@ -67,6 +74,9 @@ impl Weights {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Mesh {
+    /// The caller's number of each condition. All other indices are those of conditions in ascending order of their
+    /// coordinates.
+    numbers: Vec<usize>,
     /// The place of the only condition of a mesh without sides.
     only: [f64; 2],
     axes: [Axis; 2],
@@ -112,11 +122,11 @@ impl Mesh {
         let q = [0, 1].map(|axis| self.axes[axis].place(asked[axis]));
         let inside = self.faces.iter().find_map(|face| self.within(face, q));
         if let Some(weights) = inside {
-            return (weights.without_zeros(), asked);
+            return (weights.numbered(&self.numbers), asked);
         }
         let (weights, place) = self.nearest(q);
         let nearest = [0, 1].map(|axis| self.axes[axis].value(place[axis], asked[axis]));
-        (weights.without_zeros(), nearest)
+        (weights.numbered(&self.numbers), nearest)
     }
 
     /// Returns whether a motion lies inside the mesh, or on its edge; a mesh on a line surrounds the motions on it.
@@ -130,7 +140,8 @@ impl Mesh {
 
     /// Iterates over the triangles, by the indices of their conditions.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
-        self.faces.iter().map(|face| face.corners)
+        let own = |corners: [usize; 3]| corners.map(|i| self.numbers[i]);
+        self.faces.iter().map(move |face| own(face.corners))
     }
 
     fn within(&self, face: &Face, q: [f64; 2]) -> Option<Weights> {

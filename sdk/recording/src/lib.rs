@@ -49,6 +49,7 @@ mod velocity;
 use std::path::Path;
 
 pub use columns::channel_table::{ChannelTable, read_channels};
+pub use columns::clock::clock_definition;
 pub use columns::expression::Expression;
 pub use columns::map::{ColumnMap, MapEntry, Role};
 pub use columns::motion::speed_mm_s;

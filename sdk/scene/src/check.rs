@@ -2,12 +2,9 @@
 
 use htex_finding::{Findings, Rule};
 
-use crate::file::{Budget, Constant, DeviceChoice, Motion, Region, Scene, Surface};
+use crate::file::{Budget, Constant, DeviceChoice, FAR_MM, Motion, Region, Scene, Surface};
 use crate::limits::Limits;
 use crate::rules as rule;
-
-/// Largest absolute coordinate, mm: a kilometre.
-const FAR_MM: f64 = 1e6;
 
 /// Checks a scene without its files and its device.
 pub(crate) fn check(scene: &Scene, limits: &Limits, findings: &mut Findings) {

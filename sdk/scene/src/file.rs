@@ -11,6 +11,9 @@ use serde_json::Value;
 /// Version of the format that this crate reads and writes.
 pub const VERSION: &str = "1.0";
 
+/// Largest absolute coordinate, mm: a kilometre.
+pub(crate) const FAR_MM: f64 = 1e6;
+
 /// A scene: surfaces, the motion of the finger over them, and the output device.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
@@ -81,8 +84,10 @@ impl Surface {
 #[schemars(deny_unknown_fields)]
 pub struct Region {
     /// Lower and upper x, mm.
+    #[schemars(inner(range(min = -FAR_MM, max = FAR_MM)))]
     pub x_mm: [f64; 2],
     /// Lower and upper y, mm.
+    #[schemars(inner(range(min = -FAR_MM, max = FAR_MM)))]
     pub y_mm: [f64; 2],
 }
 
@@ -111,6 +116,7 @@ pub struct Constant {
     pub force_n: f64,
     /// Start position, x and y, mm; optional only with a single surface without a region.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = -FAR_MM, max = FAR_MM)))]
     pub from_mm: Option<[f64; 2]>,
     /// Direction of the motion, degrees from the x axis towards the y axis.
     #[serde(default)]
@@ -160,6 +166,7 @@ pub struct DeviceChoice {
     /// With the levels `own`: the RMS that is mapped to the drive voltage or the preview level, in the
     /// assets' unit. Default: that of the strongest representation of all the scene's surfaces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1e-12, max = 1e6))]
     pub reference_rms: Option<f64>,
     /// Factor on all frequencies of a preview by ear.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use htex_device::{Devices, Settings};
 use htex_finding::{Finding, Findings, Report, Rule};
-use htex_format::Quantity;
+use htex_format::{Quantity, parse_json};
 use htex_play::{Asset, Registry, VoiceOptions};
 use htex_recording::{ReadError, ReadProblem};
 
@@ -67,6 +67,20 @@ pub enum LoadError {
     },
 }
 
+impl LoadError {
+    /// Shortens pointers to keys that the file leaves out, so that each refers to a value that is there.
+    fn pointing_into(mut self, bytes: &[u8]) -> Self {
+        if let (Self::Invalid { findings }, Ok(document)) = (&mut self, parse_json(bytes)) {
+            for Finding { pointer, .. } in findings {
+                while document.pointer(pointer).is_none() {
+                    pointer.truncate(pointer.rfind('/').unwrap_or_default());
+                }
+            }
+        }
+        self
+    }
+}
+
 impl LoadedScene {
     /// The files it was read from, except the scene file.
     pub fn inputs(&self) -> Vec<PathBuf> {
@@ -113,7 +127,7 @@ impl LoadedScene {
         let device = (device, &stem(path)[..]);
         let loaded =
             scene.and_then(|scene| load(scene, folder(path), around, device, &mut findings));
-        finish(loaded, findings)
+        finish(loaded, findings).map_err(|error| error.pointing_into(bytes))
     }
 
     /// Makes a scene with one surface that covers everything, without a file.

@@ -62,6 +62,12 @@ fn scenes_raise_the_code_they_are_named_after_and_every_rule_has_one() {
             "{name} gets {codes:?}"
         );
         raised.extend(codes.into_iter().map(str::to_owned));
+        // Of a file that cannot be read as JSON, findings concern the whole.
+        let scene: Value = serde_json::from_str(&case.text).unwrap_or_default();
+        for finding in findings {
+            let pointer = finding["pointer"].as_str().unwrap();
+            assert!(scene.pointer(pointer).is_some(), "{name}: {pointer}");
+        }
     }
     let silent = RULES.iter().filter(|rule| !raised.contains(rule.code));
     assert_eq!(

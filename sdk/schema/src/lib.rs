@@ -68,10 +68,37 @@ fn without_examples(schema: &mut Made) {
     transform_subschemas(&mut (without_examples as fn(&mut Made)), schema);
 }
 
-/// Removes formats such as `double` and `uint64`, which the standard does not have.
+/// Largest integer up to which every integer is exact in binary64; documents have none beyond.
+const EXACT: i64 = 1 << 53;
+
+/// Replaces formats such as `double` and `uint64`, which the standard does not have: those of integers by their ranges.
 fn without_formats(schema: &mut Made) {
-    schema.remove("format");
+    let format = schema.remove("format");
+    let range = match format.as_ref().and_then(Value::as_str) {
+        Some("int32") => Some((i32::MIN.into(), i32::MAX.into())),
+        Some("uint8") => Some((0, u8::MAX.into())),
+        Some("uint16") => Some((0, u16::MAX.into())),
+        Some("uint32") => Some((0, u32::MAX.into())),
+        Some("int" | "int64") => Some((-EXACT, EXACT)),
+        Some("uint" | "uint64") => Some((0, EXACT)),
+        _ => None,
+    };
+    let object = schema.ensure_object();
+    for (key, bound) in range
+        .into_iter()
+        .flat_map(|(least, most): (i64, i64)| [("minimum", least), ("maximum", most)])
+    {
+        object.entry(key).or_insert(json!(bound));
+    }
     transform_subschemas(&mut (without_formats as fn(&mut Made)), schema);
+}
+
+/// Removes keys with the value `null`.
+fn remove_null(value: &mut Value) {
+    if let Value::Object(map) = value {
+        map.retain(|_, value| !value.is_null());
+        map.values_mut().for_each(remove_null);
+    }
 }
 
 /// Removes `null` as an alternative to another type.
@@ -84,8 +111,10 @@ fn without_null(schema: &mut Made) {
             schema.insert("type".to_owned(), only);
         }
     }
-    if schema.get("default") == Some(&Value::Null) {
-        schema.remove("default");
+    match schema.get_mut("default") {
+        Some(Value::Null) => drop(schema.remove("default")),
+        Some(default) => remove_null(default),
+        None => {}
     }
     let Some(Value::Array(choices)) = schema.get_mut("anyOf") else {
         return;

@@ -17,8 +17,11 @@ class Remote {
   /** The bytes from `start` to `end`, fewer at the end of the file. */
   async read(start, end) {
     if (this.whole) return this.whole.subarray(start, end);
-    const response = await this.fetcher(this.url, { headers: { Range: `bytes=${start}-${end - 1}` } });
+    const headers = { Range: `bytes=${start}-${end - 1}`, ...this.condition() };
+    const response = await this.fetcher(this.url, { headers });
     if (response.status === 200) {
+      // After a range, the whole file is another version, or the server has changed its mind.
+      if (this.size !== undefined) throw this.changed();
       // A server without ranges sends the file.
       this.whole = new Uint8Array(await response.arrayBuffer());
       this.size = this.whole.length;
@@ -30,6 +33,18 @@ class Remote {
     return new Uint8Array(await response.arrayBuffer());
   }
 
+  /** The header that asks for a range of the known version only. From another origin it would take a request for permission each time: there
+   * the version is compared afterwards alone. */
+  condition() {
+    const page = globalThis.location?.origin;
+    const isOwn = page === undefined || page === this.url.origin;
+    return isOwn && this.version?.startsWith('"') ? { "If-Range": this.version } : {};
+  }
+
+  changed() {
+    return new HtexError(`${this.url}: the file has changed; open it again`, "io");
+  }
+
   /** Notes the length of the file and its version; both must stay. */
   check(response, start) {
     const [, first, size] = /^bytes (\d+)-\d+\/(\d+)$/.exec(response.headers.get("Content-Range") ?? "") ?? [];
@@ -38,7 +53,7 @@ class Remote {
     }
     const version = response.headers.get("ETag");
     if (this.size !== undefined && (this.size !== Number(size) || this.version !== version)) {
-      throw new HtexError(`${this.url}: the file has changed; open it again`, "io");
+      throw this.changed();
     }
     this.size = Number(size);
     this.version = version;

@@ -13,21 +13,27 @@ const { Library, open } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "in
 /** Serves a file by ranges, and notes them. `change` changes what is sent. */
 async function serve(file, change = {}) {
   const requests = [];
+  const conditions = [];
   const server = createServer((request, response) => {
     const [, start, end] = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range).map(Number);
     const part = file.subarray(start, end + 1);
     requests.push(part.length);
+    const version = change.versions || change.replaced ? `"${requests.length}"` : '"1"';
+    const condition = request.headers["if-range"];
+    conditions.push(condition);
+    // Of another version a server sends the whole file.
+    if (change.replaced && condition && condition !== version) return response.writeHead(200).end(file);
     if (change.whole) return response.writeHead(200).end(file);
     if (change.status) return response.writeHead(change.status).end();
     response.writeHead(206, {
       "Content-Range": `bytes ${start}-${start + part.length - 1}/${file.length}`,
-      ETag: change.versions ? `"${requests.length}"` : '"1"',
+      ETag: change.weak ? `W/${version}` : version,
     });
     response.end(change.damage && start > 0 ? Buffer.from(part.map((byte) => byte ^ 1)) : part);
   });
   await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
   const url = `http://127.0.0.1:${server.address().port}/many.htexlib`;
-  return { url, requests, end: () => new Promise((closed) => server.close(closed)) };
+  return { url, requests, conditions, end: () => new Promise((closed) => server.close(closed)) };
 }
 
 /** The names that the fixture's library has, in their order. */
@@ -52,6 +58,7 @@ test("opening a library and a texture takes three requests, and a texture of a k
   assert.equal(server.requests[2], (await bytes("vinyl.htex")).length);
   assert.deepEqual(await library.bytes("vinyl"), new Uint8Array(await bytes("vinyl.htex")));
   assert.equal(server.requests.length, 4);
+  assert.deepEqual(server.conditions, [undefined, '"1"', '"1"', '"1"']);
   await server.end();
 });
 
@@ -104,6 +111,8 @@ test("what is not a library, is damaged or changes is an error that says so", as
   for (const [change, expected] of [
     [{ status: 404 }, { code: "io", message: /404/ }],
     [{ versions: true }, { code: "io", message: /has changed/ }],
+    [{ versions: true, weak: true }, { code: "io", message: /has changed/ }],
+    [{ replaced: true }, { code: "io", message: /has changed/ }],
     [{ damage: true }, { code: "invalid-library", message: /LIBRARY_PAGE_CHECKSUM/ }],
   ]) {
     const server = await serve(file, change);

@@ -23,6 +23,19 @@ const FEWEST_VISITS: usize = 3;
 /// Least distance of a limit from zero, as a part of the mean magnitude; values closer to zero are rest.
 const REST: f64 = 0.5;
 
+/// Defines the findings of this module, for `spec/recording-findings.md`.
+pub(super) fn definition() -> String {
+    format!(
+        "- `RECORDING_COARSE`: an axis of at least one segment (0.2 s) has 2 to {} different values. Nothing else is then checked of it.\n\
+         - `RECORDING_CLIPPED`: on either side let *t* be the extreme value, and *b* the next value or *t* less {BESIDE} of the range from \
+         lowest to highest, whichever is further from *t*. The side is clipped if \\|*t*\\| is at least {REST} of the mean magnitude, at least \
+         {CLIPPED} of all samples have the value *t*, and these are at least {OVER_BESIDE} times as many as those from *b* to *t*, without *t*. \
+         The finding needs at least {FEWEST_VISITS} separate stretches at *t*, on both clipped sides together. An axis shorter than a segment, or of \
+         one value, is not checked.\n",
+        FEWEST_LEVELS - 1
+    )
+}
+
 /// Result of the check of an axis' values.
 pub(super) enum Levels {
     /// Too few different values for any other check.

@@ -2,7 +2,8 @@
 
 use htex_finding::rules_page;
 
-use super::RULES;
+use super::{RULES, levels, plausible, quantile, segments, spikes, stuck};
+use crate::exploration;
 
 const HEAD: &str = "\
 # Findings in recordings
@@ -31,5 +32,22 @@ number of steps over the time they take, `(n - 1) / span`. In an otherwise even 
 
 /// Generates the page of all rules for recordings: `spec/recording-findings.md`.
 pub fn findings_page() -> String {
-    rules_page(HEAD, RULES)
+    let definitions = [
+        quantile::definition(),
+        "\n".to_owned(),
+        htex_recording::clock_definition(),
+        levels::definition(),
+        stuck::definition(),
+        spikes::definition(),
+        plausible::definition(),
+        exploration::definition(),
+        segments::definition(),
+    ];
+    rules_page(
+        &format!(
+            "{HEAD}\n## Thresholds\n\n{}\n## Codes\n",
+            definitions.concat()
+        ),
+        RULES,
+    )
 }

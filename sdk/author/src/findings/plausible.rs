@@ -20,6 +20,17 @@ const HANDS_MM_S: [f64; 2] = [1.0, 2000.0];
 /// Quantile of the speed that is checked; slower samples may be turns and pauses.
 const SLIDING: f64 = 0.75;
 
+/// Defines the findings of this module, for `spec/recording-findings.md`.
+pub(super) fn definition() -> String {
+    let [slowest, largest] = HANDS_MM_S;
+    format!(
+        "- `RECORDING_FRICTION_IMPLAUSIBLE`: the median magnitude of the lateral force, the root of the sum of the squares of its axes, exceeds {LARGEST_FRICTION} times the median normal \
+         force, or 0 where that is negative.\n\
+         - `RECORDING_SPEED_ZERO`: no speed reaches {STILL_MM_S} mm/s. Else `RECORDING_SPEED_IMPLAUSIBLE`: the {SLIDING} quantile of the magnitude of the speed is \
+         outside {slowest} to {largest} mm/s.\n"
+    )
+}
+
 /// Compares the medians of lateral and normal force.
 pub(super) fn judge_friction(recording: &Recording, findings: &mut Findings) {
     let Some(normal) = recording.normal_n.as_deref().and_then(median) else {

@@ -3,6 +3,14 @@
 /// Most values that are sorted. Quantiles of so many evenly spaced samples scatter by less than a percent.
 const MOST: usize = 20_000;
 
+/// Defines a quantile, for `spec/recording-findings.md`.
+pub(super) fn definition() -> String {
+    format!(
+        "A quantile *p* of *n* sorted values is the one at `p (n - 1)`, counted from 0, rounded to the nearest, halves up; a median has *p* = 0.5. Of more than {MOST} \
+         values only each *k*-th counts, from the first on, *k* being *n* over {MOST} rounded up.\n"
+    )
+}
+
 /// Returns the quantile `part` (0 to 1) of the values; of long signals, of evenly spaced samples. `None` if there are
 /// no values.
 pub(crate) fn quantile(part: f64, len: usize, value: impl Fn(usize) -> f64) -> Option<f64> {

@@ -16,6 +16,14 @@ const EXCEPTION: usize = 4;
 /// Most places in a message.
 const NAMED: usize = 5;
 
+/// Defines the findings of this module, for `spec/recording-findings.md`.
+pub(super) fn definition() -> String {
+    format!(
+        "- `RECORDING_UNEVEN`: the level of a segment is the root of the sum of its squared magnitudes over the band's bins; segments above {LOUD} times the median \
+         level are loud. There is no finding if they are more than one in {EXCEPTION} of all.\n"
+    )
+}
+
 /// Reports left-out sweeps, the use of windows instead, and segments that are too loud.
 pub(crate) fn judge_segments(
     recording: &Recording,

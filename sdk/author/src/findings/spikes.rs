@@ -27,6 +27,16 @@ const NEIGHBOURS: usize = 2;
 /// Most places in a message.
 const NAMED: usize = 5;
 
+/// Defines the findings of this module, for `spec/recording-findings.md`.
+pub(super) fn definition() -> String {
+    format!(
+        "- `RECORDING_SPIKE` and `RECORDING_FORCE_OUTLIER`: the *corner* of a sample is the magnitude of its difference from the mean of both neighbours. Of each \
+         block of {BLOCK_S} s (at least 8 samples) the first sample of the largest corner is a spike if this exceeds {SPIKE} times the {USUAL} quantile of the blocks' \
+         largest corners; for the normal force, {SPIKE} times {FORCE_STEP} of its median too. Spikes of neighbouring blocks within {NEIGHBOURS} samples are one, the larger. \
+         There is no finding with more spikes than {RARE} of the whole blocks, rounded down, unless they are at most {FEW}.\n"
+    )
+}
+
 /// Reports spikes of an axis.
 pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Findings) {
     let values = &recording.axes[axis];

@@ -22,6 +22,18 @@ const RESTS: f64 = 0.1;
 /// forces and set points may stay constant.
 const LIVELY: f64 = 0.5;
 
+/// Defines the findings of this module, for `spec/recording-findings.md`.
+pub(super) fn definition() -> String {
+    format!(
+        "- `RECORDING_STUCK` and `RECORDING_SILENT` of an axis: a stretch of one value for at least {STUCK_S} s (rounded down to samples, \
+         at least 2), of a value at which the axis is not clipped. Where the speed is known and its mean magnitude above 0, the stretch is stuck if the mean magnitude of the speed in it exceeds \
+         {RESTS} of that of the recording, else it is no finding. Where it is not known, the stretch is stuck if the value exceeds {FRICTION} of the axis' mean \
+         magnitude, else silent if it lasts at least {SILENT_S} s.\n\
+         - `RECORDING_STUCK` of the normal force: stretches as above, if the force changes from one sample to the next more often than \
+         {LIVELY} of the number of samples outside of them.\n"
+    )
+}
+
 /// Finds stretches in which an axis is constant, except at the values at which it is clipped.
 pub(super) fn judge_axis(
     recording: &Recording,

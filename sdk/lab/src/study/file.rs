@@ -59,7 +59,7 @@ pub struct Study {
     pub repetitions: u32,
     /// Length of a trial, seconds.
     #[serde(default = "ten")]
-    #[schemars(range(max = 3600), extend("exclusiveMinimum" = 0))]
+    #[schemars(range(min = 0.01, max = 3600))]
     pub trial_s: f64,
     /// Order of the trials.
     #[serde(default)]
@@ -97,9 +97,15 @@ pub struct Study {
 #[schemars(untagged)]
 pub enum Participants {
     /// So many participants, named P01, P02, ….
-    Count(u32),
+    Count(#[schemars(range(min = 1, max = 1000))] u32),
     /// Names of letters, digits, `-` and `_`.
-    Names(Vec<String>),
+    Names(
+        #[schemars(
+            length(min = 1, max = 1000),
+            inner(regex(pattern = "^[A-Za-z0-9_-]{1,64}$"))
+        )]
+        Vec<String>,
+    ),
 }
 
 /// A texture.

@@ -272,6 +272,22 @@ fn entries() -> Vec<Named> {
             changed(|raw| raw.leaves[0][0].name = b"aux.felt".to_vec()),
         ),
         (
+            "library_name_invalid_superscript",
+            changed(|raw| raw.leaves[0][0].name = "com².felt".into()),
+        ),
+        (
+            "library_name_invalid_long",
+            changed(|raw| raw.leaves[0][0].name = vec![b'f'; 251]),
+        ),
+        (
+            "library_name_invalid_folder",
+            changed(|raw| raw.leaves[0][0].name = b"felt.htex/felt".to_vec()),
+        ),
+        (
+            "library_names_alike",
+            changed(|raw| raw.leaves[0][0].name = "WOOD/ÖLWEIDE".into()),
+        ),
+        (
             "library_page_invalid_utf8",
             changed(|raw| raw.leaves[0][0].name = b"\xff".to_vec()),
         ),

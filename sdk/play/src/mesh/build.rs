@@ -1,16 +1,16 @@
 //! Triangulation of the recorded conditions, and the edges of their hull.
 
+use std::cmp::Ordering;
+
 use htex_format::Condition;
 use spade::{DelaunayTriangulation, HierarchyHintGenerator, Point2, Triangulation};
 
 use super::axis::Axis;
+use super::cells::fanned;
 use super::{Face, Mesh, Side};
 
 pub(super) fn mesh(conditions: &[[f64; 2]]) -> Mesh {
-    let (mut axes, mut places) = placed(conditions, true);
-    if !are_apart(&places) {
-        (axes, places) = placed(conditions, false);
-    }
+    let (axes, numbers, places) = sorted(conditions);
     let (mut faces, mut sides) = match line(&places) {
         None => (vec![], vec![]),
         Some(line) => match triangulate(&places, &line) {
@@ -27,10 +27,31 @@ pub(super) fn mesh(conditions: &[[f64; 2]]) -> Mesh {
     }
     Mesh {
         only: places.first().copied().unwrap_or_default(),
+        numbers,
         axes,
         faces,
         sides,
     }
+}
+
+/// Returns both axes, and the numbers and coordinates of all conditions, in ascending order of their coordinates: what
+/// is made of them does not depend on their own order.
+fn sorted(conditions: &[[f64; 2]]) -> ([Axis; 2], Vec<usize>, Vec<[f64; 2]>) {
+    let (mut axes, mut places) = placed(conditions, true);
+    if !are_apart(&places) {
+        (axes, places) = placed(conditions, false);
+    }
+    let mut numbers: Vec<usize> = (0..conditions.len()).collect();
+    numbers.sort_by(|a, b| {
+        let by_motion = || ascends(&conditions[*a], &conditions[*b]);
+        ascends(&places[*a], &places[*b]).then_with(by_motion)
+    });
+    let places = numbers.iter().map(|i| places[*i]).collect();
+    (axes, numbers, places)
+}
+
+fn ascends(a: &[f64; 2], b: &[f64; 2]) -> Ordering {
+    a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
 }
 
 /// Returns both axes, and the coordinates of all conditions.
@@ -45,7 +66,7 @@ fn placed(conditions: &[[f64; 2]], merged: bool) -> ([Axis; 2], Vec<[f64; 2]>) {
 /// Returns whether all conditions have different coordinates.
 fn are_apart(places: &[[f64; 2]]) -> bool {
     let mut sorted = places.to_vec();
-    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    sorted.sort_by(ascends);
     sorted.windows(2).all(|pair| pair[0] != pair[1])
 }
 
@@ -55,8 +76,7 @@ type Delaunay = DelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGene
 
 /// Largest distance from a line that is attributed to rounding, relative to the largest speed and force.
 const ROUNDING: f64 = 1e-9;
-/// Most points that are triangulated in their own order: if four points lie on a circle, as in a grid, the order
-/// determines the diagonal.
+/// Most points that are inserted in ascending order.
 const FEW: usize = 1000;
 
 /// Returns the order in which points are inserted; `None` if all lie on the given line.
@@ -102,10 +122,11 @@ fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
         places: corners.map(|i| places[i]),
         side: None,
     };
-    let faces: Vec<Face> = mesh
+    let triangles: Vec<[usize; 3]> = mesh
         .inner_faces()
-        .map(|f| face(f.vertices().map(|v| index[v.fix().index()])))
+        .map(|f| f.vertices().map(|v| index[v.fix().index()]))
         .collect();
+    let faces: Vec<Face> = fanned(&triangles, places).into_iter().map(face).collect();
     let corner = |v: spade::handles::FixedVertexHandle| index[v.index()];
     let edges = mesh
         .convex_hull()

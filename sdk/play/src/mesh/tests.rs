@@ -145,6 +145,38 @@ fn of_many_places_three_that_span_a_triangle_go_first() {
     }
 }
 
+/// A square, four corners of a slanted one, and eight conditions on a circle: each has several Delaunay triangulations,
+/// of which the fan from the condition of least speed, then least force, is used.
+#[test]
+fn conditions_on_a_circle_are_fanned_from_the_lowest() {
+    let square: &[[f64; 2]] = &[[150.0, 0.8], [50.0, 0.8], [150.0, 0.2], [50.0, 0.2]];
+    let slanted: &[[f64; 2]] = &[[140.0, 1.0], [100.0, 0.2], [40.0, 0.5], [200.0, 0.7]];
+    let octagon: Vec<[f64; 2]> = [
+        [1, 4],
+        [4, 1],
+        [4, -1],
+        [-1, 4],
+        [-4, 1],
+        [-4, -1],
+        [1, -4],
+        [-1, -4],
+    ]
+    .map(|[x, y]| [f64::from(6 + x) * 20.0, f64::from(6 + y) * 0.1])
+    .to_vec();
+    for (points, apex, count) in [(square, 3, 2), (slanted, 2, 2), (&octagon, 5, 6)] {
+        let triangles: Vec<[usize; 3]> = Mesh::new(points).triangles().collect();
+        assert_eq!(triangles.len(), count);
+        assert!(triangles.iter().all(|t| t.contains(&apex)), "{triangles:?}");
+    }
+    // Not on a circle: the Delaunay triangulation decides.
+    let kite = [[150.0, 0.85], [50.0, 0.8], [150.0, 0.2], [50.0, 0.2]];
+    assert!(
+        Mesh::new(&kite)
+            .triangles()
+            .all(|t| t.contains(&1) && t.contains(&2))
+    );
+}
+
 /// Speeds or forces, each some tenths above the one before.
 fn axis(
     count: impl Into<proptest::collection::SizeRange>,
@@ -190,6 +222,15 @@ fn measured() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<f64>)> {
     })
 }
 
+/// Conditions as intended or as measured, some of them twice within the tolerance, in their order and in another.
+fn in_two_orders() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<usize>)> {
+    let points = prop_oneof![meant(), measured().prop_map(|(points, _)| points)];
+    points.prop_flat_map(|points| {
+        let order: Vec<usize> = (0..points.len()).collect();
+        (Just(points), Just(order).prop_shuffle())
+    })
+}
+
 /// Test motions: over the whole range, up to 50 % outside it, and close to each condition.
 fn motions() -> impl Strategy<Value = Vec<[f64; 2]>> {
     prop::collection::vec([0.0..1.0, 0.0..1.0], 24)
@@ -197,6 +238,20 @@ fn motions() -> impl Strategy<Value = Vec<[f64; 2]>> {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// The same conditions in another order have the same weights, to the bit.
+    #[test]
+    fn the_order_of_conditions_has_no_effect((points, order) in in_two_orders(), places in motions()) {
+        let shuffled: Vec<[f64; 2]> = order.iter().map(|i| points[*i]).collect();
+        let (mesh, other) = (Mesh::new(&points), Mesh::new(&shuffled));
+        let most = |axis: usize| points.iter().map(|p| p[axis]).fold(0.0, f64::max);
+        for [v, f] in places {
+            let motion = [1.2 * v * most(0), 1.2 * f * most(1)];
+            let theirs = at(&other, motion[0], motion[1]);
+            let theirs: Vec<(usize, f64)> = theirs.iter().map(|(i, w)| (order[*i], *w)).collect();
+            prop_assert_eq!(at(&mesh, motion[0], motion[1]), theirs, "at {:?}", motion);
+        }
+    }
 
     /// For all measured lines and grids: each condition is reproduced, has most of the weight close to it, and weights
     /// are continuous.

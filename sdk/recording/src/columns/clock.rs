@@ -23,6 +23,15 @@ const DISAGREE: f64 = 1e-3;
 /// Relative distance from an integer rate within which the integer is used: printed times are rounded.
 const WHOLE: f64 = 1e-5;
 
+/// Defines the findings of the time column, for `spec/recording-findings.md`.
+pub fn clock_definition() -> String {
+    format!(
+        "- `RECORDING_CLOCK_GAP`: a step of the time column exceeds {GAP} times the median of all steps, or {GAP_UNEVEN} times if the clock is uneven: if the distance \
+         of the quartiles of the steps exceeds {UNEVEN} of their median. A step of up to one millionth more is none.\n\
+         - `RECORDING_CLOCK_JITTER`: the standard deviation of the steps that are no gaps exceeds {JITTER} of their mean.\n"
+    )
+}
+
 /// Warnings of a reader, and findings of the time column.
 #[derive(Default)]
 pub(crate) struct Noticed {

@@ -292,6 +292,10 @@ pub fn cases() -> Vec<Case> {
         ),
         ("scene_json_type_motion", without("motion")),
         (
+            "scene_json_type_seed",
+            with(&[("/seed", json!((1u64 << 53) + 1))]),
+        ),
+        (
             "scene_unknown_key",
             with(&[
                 ("/surfaces/0/regoin", json!({})),

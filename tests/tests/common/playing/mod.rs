@@ -25,8 +25,9 @@ struct Plan {
 
 const TACTILE_HZ: [f64; 2] = [20.0, 1000.0];
 
-/// Conditions of an asset of three and more are far from a line and from a circle.
-const PLANS: [Plan; 5] = [
+/// Conditions of the assets of three to five are far from a line and from a circle. Those of `grid`, as measured by hand, are in
+/// neither order of a grid; those of `circle` have positions on one.
+const PLANS: [Plan; 7] = [
     Plan {
         name: "one_condition",
         contact: "finger",
@@ -84,6 +85,45 @@ const PLANS: [Plan; 5] = [
             [150.0, 0.6],
             [300.0, 2.0],
         ],
+    },
+    Plan {
+        name: "grid",
+        contact: "finger",
+        law: None,
+        band_hz: TACTILE_HZ,
+        conditions: &[
+            [161.0, 1.01],
+            [40.0, 1.0],
+            [80.0, 0.4],
+            [39.6, 0.41],
+            [79.0, 1.02],
+            [160.0, 0.4],
+        ],
+        motions: &[
+            [60.0, 0.7],
+            [50.0, 0.8],
+            [70.0, 0.5],
+            [120.0, 0.9],
+            [79.7, 0.405],
+            [320.0, 0.7],
+        ],
+    },
+    Plan {
+        name: "circle",
+        contact: "tool",
+        law: None,
+        band_hz: [32.5, 437.5],
+        conditions: &[
+            [140.0, 0.2],
+            [200.0, 0.7],
+            [40.0, 0.7],
+            [100.0, 1.0],
+            [40.0, 0.5],
+            [200.0, 0.5],
+            [100.0, 0.2],
+            [140.0, 1.0],
+        ],
+        motions: &[[120.0, 0.6], [60.0, 0.62], [150.0, 0.4], [110.0, 0.95]],
     },
 ];
 

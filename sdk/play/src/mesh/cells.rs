@@ -1,0 +1,107 @@
+//! One triangulation where there are several: conditions on one circle, as the corners of a grid's cells.
+//!
+//! Four points on a circle have two Delaunay triangulations. The edge between two triangles is undecided when its two
+//! opposite angles sum to half a turn; the triangles at undecided edges are one cell, which is fanned from its first
+//! condition. The angles do not depend on the order of the conditions, nor on which of the triangulations was found.
+
+use std::collections::BTreeMap;
+
+use super::area;
+
+/// Largest deviation of the sum of two opposite angles from half a turn, radians, that is attributed to rounding.
+const ON_CIRCLE: f64 = 1e-9;
+
+/// Corners of a triangle, counterclockwise.
+type Corners = [usize; 3];
+
+/// Returns the triangles with each cell fanned from its lowest index; places are in ascending order of their first
+/// coordinate, then their second.
+///
+/// A cell of which a fan would turn a triangle over keeps its triangles: this occurs only where rounding bends a line,
+/// on the hull, and such triangles are not interpolated in.
+pub(super) fn fanned(triangles: &[Corners], places: &[[f64; 2]]) -> Vec<Corners> {
+    let mut fanned = Vec::with_capacity(triangles.len());
+    for cell in cells(triangles, places).into_values() {
+        let own = || cell.iter().map(|i| triangles[*i]);
+        match fan(own(), places) {
+            Some(fan) => fanned.extend(fan),
+            None => fanned.extend(own()),
+        }
+    }
+    fanned
+}
+
+/// Returns the triangles of each cell, by the lowest of them.
+fn cells(triangles: &[Corners], places: &[[f64; 2]]) -> BTreeMap<usize, Vec<usize>> {
+    let mut parent: Vec<usize> = (0..triangles.len()).collect();
+    for [(a, i), (b, k)] in neighbours(triangles) {
+        let opposite = [(triangles[i], a), (triangles[k], b)].map(|(corners, edge)| {
+            let corner = corners.into_iter().find(|c| !edge.contains(c));
+            places[corner.unwrap_or(edge[0])]
+        });
+        if are_on_a_circle(a.map(|c| places[c]), opposite) {
+            let (i, k) = (root(&mut parent, i), root(&mut parent, k));
+            parent[i.max(k)] = i.min(k);
+        }
+    }
+    let mut cells: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for i in 0..triangles.len() {
+        cells.entry(root(&mut parent, i)).or_default().push(i);
+    }
+    cells
+}
+
+fn root(parent: &mut [usize], mut i: usize) -> usize {
+    while parent[i] != i {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    i
+}
+
+/// Directed edges of a triangle.
+fn edges([a, b, c]: Corners) -> [[usize; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
+/// Returns each edge between two triangles, as each of them directs it, with the triangle.
+fn neighbours(triangles: &[Corners]) -> Vec<[([usize; 2], usize); 2]> {
+    let directed = |(i, corners): (usize, &Corners)| edges(*corners).map(|edge| (edge, i));
+    let mut all: Vec<_> = triangles.iter().enumerate().flat_map(directed).collect();
+    all.sort_unstable_by_key(|([a, b], i)| ([*a.min(b), *a.max(b)], *i));
+    let pairs = all.windows(2);
+    pairs
+        .filter(|pair| pair[0].0 == [pair[1].0[1], pair[1].0[0]])
+        .map(|pair| [pair[0], pair[1]])
+        .collect()
+}
+
+/// Returns whether the angles of two triangles opposite their common edge sum to half a turn.
+fn are_on_a_circle(edge: [[f64; 2]; 2], opposite: [[f64; 2]; 2]) -> bool {
+    let angle = |at: [f64; 2], [from, to]: [[f64; 2]; 2]| {
+        let [u, v] = [from, to].map(|p| [p[0] - at[0], p[1] - at[1]]);
+        (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1])
+    };
+    let (sin_a, cos_a) = angle(opposite[0], edge);
+    let (sin_b, cos_b) = angle(opposite[1], [edge[1], edge[0]]);
+    let (sin, cos) = (sin_a * cos_b + cos_a * sin_b, cos_a * cos_b - sin_a * sin_b);
+    sin.abs() <= -ON_CIRCLE * cos
+}
+
+/// Returns the fan of a cell of several triangles; `None` if a triangle of it would be turned over.
+fn fan(cell: impl Iterator<Item = Corners>, places: &[[f64; 2]]) -> Option<Vec<Corners>> {
+    let all: Vec<[usize; 2]> = cell.flat_map(edges).collect();
+    let mut inner: Vec<[usize; 2]> = all.iter().map(|[a, b]| [*b, *a]).collect();
+    inner.sort_unstable();
+    let is_outer = |edge: &&[usize; 2]| inner.binary_search(edge).is_err();
+    let next: BTreeMap<usize, usize> = all.iter().filter(is_outer).map(|[a, b]| (*a, *b)).collect();
+    let apex = *next.keys().next()?;
+    let mut fan = Vec::with_capacity(next.len());
+    let mut from = *next.get(&apex)?;
+    while let Some(to) = next.get(&from).filter(|to| **to != apex) {
+        fan.push([apex, from, *to]);
+        from = *to;
+    }
+    let is_upright = |[a, b, c]: &Corners| area(places[*a], places[*b], places[*c]) > 0.0;
+    (3 * fan.len() == all.len() && fan.iter().all(is_upright)).then_some(fan)
+}

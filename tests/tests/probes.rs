@@ -1,0 +1,285 @@
+//! One range for each number: what a schema refuses, reading refuses, and the reverse. Every number of a document that has all keys is
+//! replaced by numbers around and beyond the ranges, and every key is left out.
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+
+#[path = "../../sdk/format/tests/common/raw_zip.rs"]
+#[allow(dead_code)]
+mod raw_zip;
+
+use std::fs;
+
+use htex_finding::{Finding, Findings};
+use htex_format::{Limits, manifest_json, validate};
+use htex_schema::Schema;
+use htex_tests::workspace;
+use serde_json::{Map, Value, json};
+
+/// Numbers on both sides of the ranges' ends, fractions among them.
+const PROBES: [f64; 38] = [
+    -1e300, -1e13, -1e10, -3e9, -2e6, -1e6, -4e3, -1e3, -121.0, -100.0, -81.0, -20.0, -5.0, -4.0,
+    -1.5, -1.0, -1e-10, 0.0, 1e-300, 1e-13, 1e-10, 0.004, 0.04, 0.5, 1.0, 1.5, 5.0, 15.0, 30.0,
+    55.0, 300.0, 1e3, 5e3, 2e4, 2e6, 2e9, 2e12, 1e300,
+];
+
+fn schema(stem: &str) -> Value {
+    let path = workspace().join(format!("spec/schemas/{stem}.json"));
+    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+}
+
+/// JSON pointers of a document's values for which `is` holds.
+fn pointers(value: &Value, at: &str, is: &dyn Fn(&Value) -> bool, out: &mut Vec<String>) {
+    if is(value) {
+        out.push(at.to_owned());
+    }
+    let escape = |key: &str| key.replace('~', "~0").replace('/', "~1");
+    match value {
+        Value::Object(map) => {
+            for (key, value) in map {
+                pointers(value, &format!("{at}/{}", escape(key)), is, out);
+            }
+        }
+        Value::Array(items) => {
+            for (i, value) in items.iter().enumerate() {
+                pointers(value, &format!("{at}/{i}"), is, out);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Compares a schema with the errors of reading, at every number of a document. `depends`: parts of pointers to numbers of which the
+/// range depends on other values, so that reading may refuse more than the schema.
+fn compare(stem: &str, document: &Value, depends: &[&str], read: &dyn Fn(&Value) -> Vec<Finding>) {
+    let schema = Schema::new(&schema(stem)).unwrap();
+    assert_eq!(schema.violations(document), [], "{stem}");
+    let errors = |document: &Value| -> Vec<Finding> {
+        let mut found = read(document);
+        found.retain(|finding| finding.severity == htex_finding::Severity::Error);
+        found
+    };
+    assert_eq!(errors(document), [], "{stem}");
+    let mut numbers = Vec::new();
+    pointers(document, "", &Value::is_number, &mut numbers);
+    assert!(numbers.len() >= 10, "{stem}: {numbers:?}");
+    let mut changes: Vec<(String, Value)> = Vec::new();
+    let mut change = |pointer: &str, what: &dyn std::fmt::Display, to: &dyn Fn(&mut Value)| {
+        let mut changed = document.clone();
+        to(&mut changed);
+        changes.push((format!("{pointer} {what}"), changed));
+    };
+    for pointer in &numbers {
+        for probe in PROBES {
+            // Whole numbers are written as such, where they have 64 bits.
+            let whole = probe.fract() == 0.0 && probe.abs() < 1e18;
+            let probe = if whole {
+                json!(probe as i64)
+            } else {
+                json!(probe)
+            };
+            change(pointer, &probe, &|all| {
+                *all.pointer_mut(pointer).unwrap() = probe.clone()
+            });
+        }
+    }
+    let mut objects = Vec::new();
+    pointers(document, "", &Value::is_object, &mut objects);
+    for pointer in &objects {
+        let keys = document
+            .pointer(pointer)
+            .unwrap()
+            .as_object()
+            .unwrap()
+            .keys();
+        for key in keys {
+            let without = |all: &mut Value| {
+                drop(
+                    all.pointer_mut(pointer)
+                        .unwrap()
+                        .as_object_mut()
+                        .unwrap()
+                        .remove(key),
+                )
+            };
+            change(&format!("{pointer}/{key}"), &"absent", &without);
+        }
+    }
+    let mut differ = Vec::new();
+    for (what, changed) in changes {
+        let by_schema = !schema.violations(&changed).is_empty();
+        let errors = errors(&changed);
+        let may_depend = depends.iter().any(|part| what.contains(part));
+        if by_schema != !errors.is_empty() && (by_schema || !may_depend) {
+            differ.push(format!(
+                "{what}: the schema refuses it: {by_schema}; reading: {errors:?}"
+            ));
+        }
+    }
+    assert!(
+        differ.is_empty(),
+        "{stem}: {} differ\n{}",
+        differ.len(),
+        differ.join("\n")
+    );
+}
+
+/// A value in TOML.
+fn toml(value: &Value) -> String {
+    let joined = |all: Vec<String>| all.join(", ");
+    match value {
+        Value::Object(map) => {
+            let pair = |(key, value): (&String, &Value)| format!("{key} = {}", toml(value));
+            format!("{{ {} }}", joined(map.iter().map(pair).collect()))
+        }
+        Value::Array(items) => format!("[{}]", joined(items.iter().map(toml).collect())),
+        other => other.to_string(),
+    }
+}
+
+/// A manifest with every key that holds a number.
+fn manifest() -> Value {
+    let bytes = fs::read(workspace().join("spec/conformance/valid_law.htex")).unwrap();
+    let mut manifest = manifest_json(&bytes, &Limits::default()).unwrap();
+    manifest["provenance"] = json!({
+        "recordings": [{ "file": "a.csv", "rate_hz": 20000, "segments": 8 }],
+        "made": { "how": "mixed", "from": [{ "name": "a", "weight": 0.5, "blake3": "0".repeat(64) }] },
+    });
+    manifest["conditions"] = json!([
+        { "speed_mm_s": 80, "force_n": 0.5, "repeatability_rms_db": 0.5, "segments": 8 },
+    ]);
+    let error = |estimate: f64| json!({ "exponent": 0.5, "source": "measured", "estimate": estimate, "standard_error": 0.1 });
+    manifest["law"] = json!({ "frequency_speed": error(0.5), "level_speed": error(0.6), "level_force": error(0.7) });
+    let keys = |name: &str| -> Map<String, Value> {
+        let schema = schema("manifest-1");
+        let all = schema["$defs"][name]["properties"].as_object().unwrap();
+        let value = |key: &str| {
+            if key == "band_error_db" {
+                json!(vec![0; 9])
+            } else {
+                json!(0.5)
+            }
+        };
+        all.keys().map(|key| (key.clone(), value(key))).collect()
+    };
+    let fields = json!([
+        { "name": "a", "store": { "u16": { "scale": 0.5, "offset": 1.0 } } },
+        { "name": "b", "store": { "u8": { "scale": 0.5, "offset": 1.0 } } },
+    ]);
+    manifest["representations"] = json!([{
+        "model": "org.example.model", "model_version": "1.0.0", "fields": fields, "parameters": "a.bin",
+        "at": [{ "condition": 0, "level_rms": 0.1, "quality": keys("Quality"), "left_out": keys("LeftOut") }],
+    }]);
+    for key in ["reference", "plugins", "extensions", "extensions_required"] {
+        manifest.as_object_mut().unwrap().remove(key);
+    }
+    manifest
+}
+
+#[test]
+fn manifests_have_the_ranges_of_their_schema() {
+    let read = |manifest: &Value| {
+        let entries = [
+            raw_zip::Entry::stored("mimetype", b"application/vnd.htex+zip"),
+            raw_zip::Entry::stored("manifest.json", manifest.to_string().as_bytes()),
+            raw_zip::Entry::stored("a.bin", &[0; 3]),
+        ];
+        validate(&raw_zip::archive(&entries), &Limits::default()).findings
+    };
+    compare(
+        "manifest-1",
+        &manifest(),
+        &["/band/", "/condition", "/store"],
+        &read,
+    );
+}
+
+#[test]
+fn scenes_have_the_ranges_of_their_schema() {
+    let scene = json!({
+        "htex_scene": "1.0",
+        "surfaces": [{
+            "asset": "a.htex", "region": { "x_mm": [-10, 10], "y_mm": [-10, 10] }, "layer": 1, "gain": 1,
+        }],
+        "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4, "from_mm": [0, 0], "direction_deg": 0 } },
+        "device": {
+            "rate_hz": 48000, "gain_db": 0, "quantity_gain": 1, "drive_v": 1, "level_dbfs": -18, "levels": "own", "reference_rms": 1,
+            "pitch": 1, "response_depth_db": 40,
+        },
+        "duration_s": 1,
+        "seed": 1,
+        "budget": { "ns_per_sample": 100, "max_error_db": 1 },
+    });
+    let read = |scene: &Value| {
+        let mut findings = Findings::default();
+        htex_scene::read_scene(
+            scene.to_string().as_bytes(),
+            &htex_scene::Limits::default(),
+            &mut findings,
+        );
+        findings.into_list()
+    };
+    compare("scene-1", &scene, &["/region/", "/from_mm absent"], &read);
+}
+
+#[test]
+fn studies_have_the_ranges_of_their_schema() {
+    let study = json!({
+        "htex_study": "1.0", "name": "Study", "participants": 2,
+        "textures": [{ "asset": "a.htex" }],
+        "models": ["ar"], "repetitions": 2, "trial_s": 1, "phases": ["training", "gain", "testing"],
+        "motion": "live",
+        "seed": 1,
+        "training": { "trials": 2 },
+        "gain": { "model": "ar", "step_db": 1, "large_step_db": 4, "lowest_db": -60, "reversals": 6 },
+        "scale": { "min": 0, "max": 6 },
+        "rests": { "every": 10, "seconds": 60 },
+        "masking_noise": { "level_dbfs": -30 },
+        "device": {},
+    });
+    let read = |study: &Value| {
+        let mut findings = Findings::default();
+        let keys = study.as_object().unwrap().iter();
+        let text: String = keys
+            .map(|(key, value)| format!("{key} = {}\n", toml(value)))
+            .collect();
+        htex_lab::study::read_study(text.as_bytes(), &mut findings);
+        findings.into_list()
+    };
+    // Motion and device are checked as those of a scene.
+    compare(
+        "study-1",
+        &study,
+        &["/scale/", "/repetitions", "/participants"],
+        &read,
+    );
+}
+
+/// The places of a schema that have a default, validated by the rest of the same place.
+#[test]
+fn every_default_is_a_value_of_its_own_schema() {
+    let mut checked = 0;
+    for entry in fs::read_dir(workspace().join("spec/schemas")).unwrap() {
+        let path = entry.unwrap().path();
+        let stem = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let root = schema(&stem);
+        let mut with_default = Vec::new();
+        let is = |value: &Value| {
+            value.get("default").is_some()
+                && (value.get("type").is_some()
+                    || value.get("$ref").is_some()
+                    || value.get("anyOf").is_some())
+        };
+        pointers(&root, "", &is, &mut with_default);
+        for pointer in with_default {
+            let mut own = root.pointer(&pointer).unwrap().clone();
+            let default = own["default"].clone();
+            own["$defs"] = root["$defs"].clone();
+            if root.get("$defs").is_none() {
+                own.as_object_mut().unwrap().remove("$defs");
+            }
+            let violations = Schema::new(&own).unwrap().violations(&default);
+            assert_eq!(violations, [], "{stem} {pointer}: {default}");
+            checked += 1;
+        }
+    }
+    assert!(checked >= 49, "{checked}");
+}

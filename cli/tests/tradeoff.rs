@@ -54,7 +54,8 @@ fn a_sweep_writes_a_page_and_its_points() {
         }
         for key in [
             "felt_error_rms_db",
-            "share_lossless",
+            "share_below_threshold",
+            "share_within_repeatability",
             "samples_felt_error_rms_db",
             "fit_ms",
             "spread",

@@ -226,7 +226,7 @@ fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
     let errors: Vec<Column> = errors().filter(has_column).map(column).collect();
     let others: Vec<Column> = others().filter(has_column).map(column).collect();
     let mut text = format!(
-        "{name}: the front against bytes, by {}\n  bytes{}  lossless{}  ns/sample  setting\n",
+        "{name}: the front against bytes, by {}\n  bytes{}  below threshold{}  ns/sample  setting\n",
         tradeoff.error,
         headings(&errors),
         headings(&others),
@@ -236,10 +236,10 @@ fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
     for p in front {
         let of = |column: Column| Some(p.get(By::Magnitude, column.measure()));
         text += &format!(
-            "  {:>5}{}  {:>6.0} %{}  {:>9.1}  {}\n",
+            "  {:>5}{}  {:>13.0} %{}  {:>9.1}  {}\n",
             p.bytes,
             cells(&errors, of),
-            100.0 * p.share_lossless,
+            100.0 * p.shares.below_threshold,
             cells(&others, of),
             p.ns_per_sample,
             p.name()

@@ -39,7 +39,7 @@ pub use front::front;
 pub use journal::Journal;
 pub use knee::{Knee, knee};
 pub use page::page;
-pub use point::{Played, Point, QUANTISED, RECORDING, errors, others};
+pub use point::{Played, Point, QUANTISED, RECORDING, Shares, errors, others};
 pub use request::{Model, Request};
 pub use setting::Setting;
 pub use subject::Subject;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use htex_format::{By, Measure, Measures};
 
-use crate::point::{Played, Point};
+use crate::point::{Played, Point, Shares};
 
 /// Returns a point for each setting that was measured on all of `recordings`, in the order of the first.
 pub(crate) fn medians(points: &[Point], recordings: usize) -> Vec<Point> {
@@ -45,8 +45,11 @@ fn median_of(same: &[&Point], name: &str) -> Point {
         bytes: of(&|p| p.bytes as f64) as usize,
         kept_bytes: of(&|p| p.kept_bytes as f64) as usize,
         by_magnitude: measures(By::Magnitude),
-        share_below_difference_threshold: mean(|p| p.share_below_difference_threshold),
-        share_lossless: mean(|p| p.share_lossless),
+        shares: Shares {
+            below_threshold: mean(|p| p.shares.below_threshold),
+            below_threshold_if_sensitive: mean(|p| p.shares.below_threshold_if_sensitive),
+            within_repeatability: mean(|p| p.shares.within_repeatability),
+        },
         by_samples: Played {
             measures: measures(By::Samples),
             band_error_spread_db: of(&|p| p.by_samples.band_error_spread_db),

@@ -67,9 +67,9 @@ fn reading(tradeoff: &Tradeoff) -> String {
          to see all its numbers. In the pictures and knees the error is the {}, in decibels ({own}): against \
          bytes by the model's own magnitudes, against time by rendered samples. The tables have the \
          nine-band error, third-octave error and log-spectral distance side by side, and what is felt of the difference: forces become \
-         displacements of the skin, of which what is above the detection threshold counts, in third octaves. Lossless is the share of the \
-         recordings whose difference is below the difference threshold in every band, or whose nine-band error is at or below \
-         the recording's own repeatability. Two baselines are \
+         displacements of the skin, of which what is above the detection threshold counts, in third octaves. Below threshold is the share of \
+         the recordings whose difference is below the difference threshold in every band; apart from that, repeats is the share whose \
+         nine-band error is at or below the recording's own repeatability, which says how well a recording repeats and not what is felt. Two baselines are \
          in every picture: the spectrum at one byte per bin, and the recording, whose error is the difference \
          between its odd and even strokes. Errors below that do not distinguish models.",
         tradeoff.error
@@ -153,7 +153,11 @@ fn columns() -> Vec<String> {
     };
     let mut columns = names(&["bytes"]);
     columns.extend(errors().map(Measure::heading));
-    columns.extend(names(&["lossless / %", "played / dB"]));
+    columns.extend(names(&[
+        "below threshold / %",
+        "repeats / %",
+        "played / dB",
+    ]));
     columns.extend(others().map(Measure::heading));
     columns.extend(names(&["ns a sample", "first sample / µs", "fit / ms"]));
     columns
@@ -164,7 +168,8 @@ fn cells(p: &Point) -> Vec<Cell> {
     let own = |measure| p.get(By::Magnitude, measure);
     let mut cells = vec![text(p.bytes.to_string())];
     cells.extend(errors().map(|error| Cell::Plain(own(error))));
-    cells.push(text(format!("{:.0}", 100.0 * p.share_lossless)));
+    let shares = [p.shares.below_threshold, p.shares.within_repeatability];
+    cells.extend(shares.map(|share| text(format!("{:.0}", 100.0 * share))));
     cells.push(Cell::Text(
         format!("{:.2}", p.get(By::Samples, Measure::NineBand)),
         format!("± {:.2}", p.by_samples.band_error_spread_db),

@@ -19,8 +19,9 @@ const METHOD: &str = "times are medians of interleaved runs on one core, with wa
     and of three renderings; `error` is the one used for fronts and knees. on_front: bytes \
     against the error by magnitudes, settings that play at their defaults; on_time_front: \
     ns_per_sample against the error by samples, settings with blocks and output rate at their defaults. The \
-    recording's error is the difference between its odd and even strokes. share_lossless: recordings whose difference by magnitudes is \
-    below the difference threshold, or whose nine-band error is at or below the recording's repeatability.";
+    recording's error is the difference between its odd and even strokes. share_below_threshold: recordings whose difference by magnitudes \
+    is below the difference threshold in every band; share_within_repeatability: recordings whose nine-band error is at or below their own \
+    repeatability, which says nothing about what is felt.";
 
 /// Most steps in a warning.
 const SHOWN_STEPS: usize = 3;

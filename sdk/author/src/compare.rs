@@ -5,7 +5,9 @@ use htex_format::{Measure, Quality, Quantity};
 use htex_host::HostError;
 use serde::Serialize;
 
-use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, felt, measure};
+use crate::{
+    AuthorError, Exploration, FeltError, TextureSpectrum, agreement, felt, measure, read_spectrum,
+};
 
 /// How a spectrum differs from that of a recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -119,8 +121,7 @@ pub fn compare(
             let id = Some(&representation.model[..]);
             let (parameters, level_rms) = asset.parameters(id, motion)?;
             let model = asset.loaded_model(id)?;
-            let shape = model.magnitude(&parameters, reference.band, &reference.frequency_hz)?;
-            let magnitude: Vec<f64> = shape.iter().map(|m| m * level_rms).collect();
+            let magnitude = read_spectrum(&model, &parameters, level_rms, reference.as_ref())?;
             let quality = measure(&model, &parameters, level_rms, reference.as_ref())?;
             Ok(ComparedModel {
                 model: representation.model.clone(),

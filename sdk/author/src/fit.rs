@@ -23,7 +23,7 @@ use crate::request::{AssetRequest, ModelRequest};
 use crate::spectrum::SpectrumRef;
 use crate::stored::stored_fields;
 use crate::take::Take;
-use crate::{AuthorError, TextureSpectrum, agreement, rendered_spectrum};
+use crate::{AuthorError, TextureSpectrum, agreement, read_spectrum, rendered_spectrum};
 
 /// A fitted asset with the results that its file does not hold.
 #[derive(Debug, Clone)]
@@ -182,7 +182,7 @@ fn fit_model(
         let mut quality = measure(model, &stored, level_rms, reference)?;
         let rounding = rounding_error_db(model, &fit.parameters, &stored, reference)?;
         quality.rounding_error_db = Some(rounding);
-        let magnitude = scaled_magnitude(model, &stored, level_rms, reference)?;
+        let magnitude = read_spectrum(model, &stored, level_rms, reference)?;
         let nine_band_db = quality.get(Measure::NineBand);
         felt.push(FeltError::new(&group.spectrum, &magnitude, nine_band_db));
         at.push(AtCondition {
@@ -238,7 +238,7 @@ fn band_error_warning(
     warning(choice, &qualities, groups, &models, request.level)
 }
 
-/// Measures the agreement of parameters and level with a recorded spectrum, by magnitude and by samples.
+/// Measures the agreement of parameters and level with a recorded spectrum: by magnitude, as a recording of the voice reads it, and by samples.
 ///
 /// # Errors
 /// When the model refuses the parameters.
@@ -248,7 +248,7 @@ pub fn measure(
     level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Quality, AuthorError> {
-    let magnitude = scaled_magnitude(model, parameters, level_rms, reference)?;
+    let magnitude = read_spectrum(model, parameters, level_rms, reference)?;
     let by_magnitude = agreement(reference, &magnitude);
     let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
     let by_samples = agreement(reference, &rendered).measures;
@@ -257,17 +257,6 @@ pub fn measure(
         by_samples: by_samples.only(of_both),
         ..Quality::from(by_magnitude)
     })
-}
-
-/// Returns the magnitudes of parameters at a level, on the reference's grid.
-fn scaled_magnitude(
-    model: &LoadedModel,
-    parameters: &[f64],
-    level_rms: f64,
-    reference: SpectrumRef<'_>,
-) -> Result<Vec<f64>, HostError> {
-    let shape = model.magnitude(parameters, reference.band, reference.frequency_hz)?;
-    Ok(shape.iter().map(|m| m * level_rms).collect())
 }
 
 /// Returns the nine-band RMS difference between the shapes of the fitted and the stored parameters, decibels.

@@ -34,6 +34,7 @@
 #![forbid(unsafe_code)]
 
 mod alternatives;
+mod blocks;
 pub mod by_hand;
 mod compare;
 mod conditions;
@@ -59,6 +60,7 @@ mod stored;
 mod take;
 mod warnings;
 
+pub use blocks::{OddAndEven, odd_and_even};
 pub use compare::{CompareError, ComparedModel, Difference, FeltDifference, compare};
 pub use edit::{EditError, edit};
 pub use embed::{EmbedError, embed_plugins};
@@ -74,7 +76,7 @@ pub use level::{Level, stored_level};
 pub use metrics::{Agreement, agreement};
 pub use reading::{Reading, read_take, validate_recording};
 pub use recording_finding::RecordingFinding;
-pub use rendered::{rendered_spectrum, spectrum_of_samples};
+pub use rendered::{read_spectrum, rendered_spectrum, spectrum_of_samples};
 pub use request::{AssetRequest, ModelRequest};
 pub use segments::{SegmentChoice, Segments, Sweep, Unread, choose_segments, segment_len, sliding};
 pub use spectrum::{

@@ -165,6 +165,7 @@ measures! {
         left_out: true,
         schema_range: false,
         column: Some("third-oct/dB"),
+        played: Some("played-3rd/dB"),
         caption: Some("Third-octave error of the {}, RMS in dB (0 is the best, light)"),
     }
     /// RMS over the bins of the difference of the magnitudes in decibels.
@@ -176,6 +177,7 @@ measures! {
         short: "log-spectral",
         schema_range: false,
         column: Some("log-sp/dB"),
+        played: Some("played-log/dB"),
         caption: Some("Log-spectral distance of the {}, RMS in dB (0 is the best, light)"),
     }
     /// Level in the band relative to the recording's, decibels.

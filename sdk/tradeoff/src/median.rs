@@ -31,6 +31,10 @@ fn median_of(same: &[&Point], name: &str) -> Point {
         let half = values.len() / 2;
         0.5 * (values[half] + values[(values.len() - 1) / 2])
     };
+    let all_of = |value: &dyn Fn(&Point) -> Option<f64>| {
+        let all = same.iter().all(|p| value(p).is_some());
+        all.then(|| of(&|p| value(p).unwrap_or(f64::NAN)))
+    };
     let measures = |by| Measures::new(|m| Some(of(&|p| p.get(by, m)))).only(Measure::of_both());
     let mean =
         |value: fn(&Point) -> f64| same.iter().map(|p| value(p)).sum::<f64>() / same.len() as f64;
@@ -44,6 +48,8 @@ fn median_of(same: &[&Point], name: &str) -> Point {
         spread: of(&|p| p.spread),
         bytes: of(&|p| p.bytes as f64) as usize,
         kept_bytes: of(&|p| p.kept_bytes as f64) as usize,
+        held_out_error: all_of(&|p| p.held_out_error),
+        held_out_error_db: all_of(&|p| p.held_out_error_db),
         by_magnitude: measures(By::Magnitude),
         shares: Shares {
             below_threshold: mean(|p| p.shares.below_threshold),

@@ -7,10 +7,10 @@ use htex_format::{By, Judged, Keyed, Measure, Measures};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 
-use crate::Setting;
 use crate::contender::{Contender, ContenderKind};
 use crate::measured::Measured;
 use crate::timing::Timed;
+use crate::{Setting, Subject};
 
 /// Name of the first baseline, in place of a model's: the spectrum, one byte per bin.
 pub const QUANTISED: &str = "quantised-spectrum";
@@ -45,6 +45,11 @@ pub struct Point {
     pub bytes: usize,
     /// Bytes of a loop or a filter that are kept while playing.
     pub kept_bytes: usize,
+    /// Error of the fit to the odd blocks, played, against the even blocks, in third octaves: in units of the difference between them,
+    /// where 1 is as good as a second recording. `None` if there are too few blocks.
+    pub held_out_error: Option<f64>,
+    /// The same in decibels.
+    pub held_out_error_db: Option<f64>,
     /// The measures of the model's magnitudes: [`Measure::of_both`].
     #[serde(flatten, serialize_with = "of_magnitudes")]
     pub by_magnitude: Measures,
@@ -149,7 +154,7 @@ impl Serialize for Played {
 
 impl Point {
     pub(crate) fn new(
-        recording: &str,
+        subject: &Subject,
         one: &Contender,
         measured: &Measured,
         timed: &Timed,
@@ -158,8 +163,10 @@ impl Point {
             ContenderKind::Model(model, _) => Some(model.descriptor()),
             _ => None,
         };
+        let floor_db = subject.held_out.as_ref().ok().map(|h| h.floor_db);
+        let of_floor = |(error, floor): (f64, f64)| error / floor;
         Self {
-            recording: recording.to_owned(),
+            recording: subject.name.clone(),
             model: one.model.clone(),
             knobs: one.setting.knobs(descriptor),
             setting: one.setting.words(),
@@ -172,6 +179,8 @@ impl Point {
             spread: timed.ns_per_sample.spread,
             bytes: measured.bytes,
             kept_bytes: measured.kept_bytes,
+            held_out_error: measured.held_out_error_db.zip(floor_db).map(of_floor),
+            held_out_error_db: measured.held_out_error_db,
             by_magnitude: measured.by_magnitude.measures,
             shares: Shares::new(&measured.by_magnitude.felt),
             by_samples: Played {

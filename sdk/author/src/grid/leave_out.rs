@@ -4,8 +4,8 @@ use htex_format::{Condition, LeftOut, Measure};
 use htex_host::LoadedModel;
 use htex_play::Mesh;
 
-use crate::agreement;
 use crate::conditions::Group;
+use crate::{agreement, read_spectrum};
 
 /// Returns the error at each condition of the model's interpolation between the others, against the recorded spectrum
 /// there; `None` where the others do not surround the condition, or the model cannot mix its neighbours.
@@ -35,8 +35,7 @@ pub(crate) fn left_out(
             [only] => only.to_vec(),
             _ => model.interpolate(&sets, &parts).ok()?,
         };
-        let shape = model.magnitude(&mixed, reference.band, reference.frequency_hz);
-        let magnitude: Vec<f64> = shape.ok()?.iter().map(|m| m * level).collect();
+        let magnitude = read_spectrum(model, &mixed, level, reference).ok()?;
         let error = agreement(reference, &magnitude);
         let finite = error.get(Measure::NineBand).is_some_and(f64::is_finite);
         finite.then(|| LeftOut(error.measures.only(LeftOut::measures())))

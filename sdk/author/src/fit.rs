@@ -179,10 +179,9 @@ fn fit_model(
         fit_ms += start.elapsed().as_secs_f64() * 1e3;
         let stored = round_parameters(&fields, &fit.parameters)?;
         let level_rms = stored_level(model, &fit, &stored, reference, level)?;
-        let mut quality = measure(model, &stored, level_rms, reference)?;
+        let (magnitude, mut quality) = read_and_measure(model, &stored, level_rms, reference)?;
         let rounding = rounding_error_db(model, &fit.parameters, &stored, reference)?;
         quality.rounding_error_db = Some(rounding);
-        let magnitude = read_spectrum(model, &stored, level_rms, reference)?;
         let nine_band_db = quality.get(Measure::NineBand);
         felt.push(FeltError::new(&group.spectrum, &magnitude, nine_band_db));
         at.push(AtCondition {
@@ -248,15 +247,28 @@ pub fn measure(
     level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Quality, AuthorError> {
-    let magnitude = read_spectrum(model, parameters, level_rms, reference)?;
-    let by_magnitude = agreement(reference, &magnitude);
+    Ok(read_and_measure(model, parameters, level_rms, reference)?.1)
+}
+
+/// As [`measure`], with the magnitudes as a recording of the voice reads them ([`read_spectrum`]).
+pub(crate) fn read_and_measure(
+    model: &LoadedModel,
+    parameters: &[f64],
+    level_rms: f64,
+    reference: SpectrumRef<'_>,
+) -> Result<(Vec<f64>, Quality), AuthorError> {
     let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
     let by_samples = agreement(reference, &rendered).measures;
+    let read = match model.reads_as_stated() {
+        true => rendered,
+        false => read_spectrum(model, parameters, level_rms, reference)?,
+    };
     let of_both = Measure::of_both().filter(|m| m.row().stored);
-    Ok(Quality {
+    let quality = Quality {
         by_samples: by_samples.only(of_both),
-        ..Quality::from(by_magnitude)
-    })
+        ..Quality::from(agreement(reference, &read))
+    };
+    Ok((read, quality))
 }
 
 /// Returns the nine-band RMS difference between the shapes of the fitted and the stored parameters, decibels.

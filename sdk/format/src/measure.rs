@@ -33,7 +33,7 @@ impl Judged {
 /// What a measure is taken of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
-    /// The model's own magnitudes.
+    /// The model's magnitudes, as a recording of its voice reads them.
     Magnitude,
     /// The spectrum of rendered samples.
     Samples,

@@ -14,8 +14,8 @@ const SECONDS: f64 = 20.0;
 const SEED: u64 = 1;
 
 /// Returns the magnitudes, on the reference's grid, that a recording of the voice reads: those of the model as a Hann window reads them
-/// ([`LoadedModel::read_magnitude`]), without chance. A model that states what its voice reads, sinusoids or energies, states it for the
-/// window's main lobe alone, so that its samples are read ([`rendered_spectrum`]).
+/// ([`LoadedModel::read_magnitude`]), without chance. Sinusoids state what is read for the
+/// window's main lobe alone, so that their samples are read ([`rendered_spectrum`]).
 ///
 /// # Errors
 /// When the model refuses the parameters, or renders samples that are not finite.
@@ -25,7 +25,7 @@ pub fn read_spectrum(
     level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Vec<f64>, AuthorError> {
-    if model.reads_as_stated() {
+    if model.descriptor().is_sum_of_sines() {
         return rendered_spectrum(model, parameters, level_rms, reference);
     }
     let shape = model.read_magnitude(parameters, reference.band)?;

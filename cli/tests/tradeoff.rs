@@ -88,6 +88,7 @@ fn a_sweep_writes_a_page_and_its_points() {
     assert!(number(&default(&told, "sslope"), "held_out_error") > 1.3);
     assert!(number(&told["recordings"][0], "blocks") >= 4.0);
     assert!(page.contains("held-out error / of a second recording"));
+    assert!(page.contains("floor: a second recording"));
     // Of times within their spreads, the best alone is on the front.
     let mut on_time: Vec<&Value> = points(&told)
         .iter()

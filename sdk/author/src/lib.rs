@@ -9,7 +9,7 @@
 //! 1. `segments`: complete sweeps by mean threshold, or half-overlapping windows, of 0.2 s. `findings`: problems of the
 //!    signals, with stable codes (`spec/recording-findings.md`). `reading` combines both.
 //! 2. `spectrum`: mean removed, Hann window, FFT, two axes folded into one, divided by the response of the setup,
-//!    averaged.
+//!    averaged. `blocks`: the odd and the even blocks of time, two readings that share no sample.
 //! 3. `conditions`: recordings with the same speed and force are averaged, others become further conditions. `grid`, on
 //!    request, takes many conditions from a free motion: windows of `steady` motion, `lines` of speed and force,
 //!    `cells` around their crossings, spectra over equal `paths`, corrected by `slopes`.

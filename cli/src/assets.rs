@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use htex_author::{FeltError, GridReport, LosslessShare};
+use htex_author::{FeltError, FeltShare, GridReport};
 use htex_finding::plain;
 use htex_format::{
     AtCondition, Condition, Contact, How, Ingredient, Law, LeftOut, Made, Measure, Quality,
@@ -309,8 +309,8 @@ impl RepresentationSummary {
         }
     }
 
-    /// Counts the conditions at which no difference is to be expected to be felt.
-    pub(crate) fn count(&self, share: &mut LosslessShare) {
+    /// Counts the conditions whose difference is below the difference threshold, and those within what their recording varies.
+    pub(crate) fn count(&self, share: &mut FeltShare) {
         let felt = self.all().iter().filter_map(|at| at.felt.as_ref());
         felt.for_each(|felt| share.count(felt));
     }

@@ -1,6 +1,6 @@
 //! The parts of a report about a fitted asset.
 
-use htex_author::{FittedAsset, LosslessShare};
+use htex_author::{FeltShare, FittedAsset};
 use htex_format::{By, Judged, Quality};
 use htex_host::Registry;
 use htex_report::{Measure, ModelResult, Share, Texture, model_color};
@@ -141,29 +141,28 @@ fn note(quality: Option<&Quality>) -> String {
     )
 }
 
-/// Of the textures at all their conditions, how many each model keeps so that no difference is to be expected to be felt.
+/// Of the textures at all their conditions, how many each model keeps below the difference threshold, and within what the recording varies.
 pub(crate) fn shares<'a>(summaries: impl IntoIterator<Item = &'a AssetSummary>) -> Vec<Share> {
-    let mut shares: Vec<(String, LosslessShare)> = Vec::new();
+    let mut shares: Vec<(String, FeltShare)> = Vec::new();
     for summary in summaries {
         for representation in &summary.representations {
             let model = short_name(&representation.model);
             let at = match shares.iter().position(|(known, _)| known == model) {
                 Some(at) => at,
                 None => {
-                    shares.push((model.to_owned(), LosslessShare::default()));
+                    shares.push((model.to_owned(), FeltShare::default()));
                     shares.len() - 1
                 }
             };
             representation.count(&mut shares[at].1);
         }
     }
-    let share = |(short_name, share): (String, LosslessShare)| Share {
+    let share = |(short_name, share): (String, FeltShare)| Share {
         short_name,
         textures: share.textures,
         below_difference_threshold: share.below_difference_threshold,
         below_if_sensitive: share.below_if_sensitive,
         within_repeatability: share.within_repeatability,
-        either: share.either,
     };
     shares.into_iter().map(share).collect()
 }

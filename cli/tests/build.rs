@@ -109,9 +109,14 @@ fn what_changed_is_built_and_nothing_else() {
         (&first["fitted"], &first["textures"]),
         (&6.into(), &6.into())
     );
-    // `bands` keeps what is felt of the simulated surfaces, two numbers do not.
-    let kept = |model: &str| first["lossless"][format!("org.htex.{model}")]["either"].as_u64();
-    assert!(kept("bands") > kept("sbeta"), "{}", first["lossless"]);
+    // `bands` keeps more surfaces below the threshold than two numbers do; what repeats is counted apart.
+    let shares = |model: &str| first["felt_shares"][format!("org.htex.{model}")].clone();
+    let below = |model: &str| shares(model)["below_difference_threshold"].as_u64();
+    assert!(below("bands") > below("sbeta"), "{}", first["felt_shares"]);
+    assert_eq!(shares("bands")["textures"], 6);
+    assert!(
+        shares("bands")["within_repeatability"].is_u64() && shares("bands")["either"].is_null()
+    );
     let built = results(&place.path("dist"));
     for file in [
         "surfaces.htexlib",

@@ -23,7 +23,9 @@ fn points(tradeoff: &Value) -> &Vec<Value> {
 fn a_sweep_writes_a_page_and_its_points() {
     let place = Place::new();
     let csv = place.recording("sandpaper");
-    let told = place.json(&quick(&csv, "ar,sslope", "report.html"));
+    // In windows, a recording of 4 s has blocks to hold out.
+    let windows = ["--segments", "windows"];
+    let told = place.json(&[&quick(&csv, "ar,sslope", "report.html")[..], &windows].concat());
     assert_eq!(
         entries(&place.path("")),
         ["report.csv", "report.html", "report.json", "sandpaper.csv"]
@@ -54,7 +56,8 @@ fn a_sweep_writes_a_page_and_its_points() {
         }
         for key in [
             "felt_error_rms_db",
-            "share_lossless",
+            "share_below_threshold",
+            "share_within_repeatability",
             "samples_felt_error_rms_db",
             "fit_ms",
             "spread",
@@ -65,19 +68,36 @@ fn a_sweep_writes_a_page_and_its_points() {
         }
         assert!(point["on_front"].is_boolean() && point["on_time_front"].is_boolean());
     }
-    // The spectrum at a byte a bin ends the front; the recording is no better than its repeats.
-    let front = points(&told).iter().filter(|p| p["on_front"] == true);
-    let last = front.max_by_key(|p| p["bytes"].as_u64()).unwrap();
-    assert_eq!(
-        (&last["model"], &last["bytes"]),
-        (&"quantised-spectrum".into(), &205.into())
-    );
-    assert!(number(last, "band_error_rms_db") < 0.1);
-    let recording = points(&told)
-        .iter()
-        .find(|p| p["model"] == "recording")
-        .unwrap();
+    // Graded by what is held out, where the spectrum at a byte a bin is no better than a second recording, whatever it is to itself.
+    assert_eq!(told["error"], "held_out");
+    let default = |tradeoff: &Value, model: &str| {
+        let own = |p: &&Value| p["model"] == model && p["setting"] == "default";
+        points(tradeoff).iter().find(own).unwrap().clone()
+    };
+    let recording = default(&told, "recording");
     assert_eq!(recording["bytes"], 4 * 2 * 80_000);
+    assert_eq!(number(&recording, "held_out_error"), 1.0);
+    let floor_db = number(&told["recordings"][0], "floor_db");
+    assert_eq!(number(&recording, "held_out_error_db"), floor_db);
+    let quantised = default(&told, "quantised-spectrum");
+    assert!(
+        (0.7..1.3).contains(&number(&quantised, "held_out_error")),
+        "{quantised}"
+    );
+    assert!(number(&quantised, "third_octave_error_rms_db") < 0.1 * floor_db);
+    assert!(number(&default(&told, "sslope"), "held_out_error") > 1.3);
+    assert!(number(&told["recordings"][0], "blocks") >= 4.0);
+    assert!(page.contains("held-out error / of a second recording"));
+    assert!(page.contains("floor: a second recording"));
+    // Of times within their spreads, the best alone is on the front.
+    let mut on_time: Vec<&Value> = points(&told)
+        .iter()
+        .filter(|p| p["on_time_front"] == true)
+        .collect();
+    on_time.sort_by(|a, b| number(a, "ns_per_sample").total_cmp(&number(b, "ns_per_sample")));
+    let falls =
+        |pair: &[&Value]| number(pair[1], "held_out_error") < number(pair[0], "held_out_error");
+    assert!(on_time.windows(2).all(falls), "{on_time:?}");
     // Twice the digits, twice the bytes, and no nearer.
     let ar = |setting: &str| {
         let own = |p: &&Value| p["model"] == "ar" && p["setting"] == setting;
@@ -88,6 +108,7 @@ fn a_sweep_writes_a_page_and_its_points() {
     // The same sweep by another error: fronts and knees go by it, and points stay as they were.
     let arguments = [
         &quick(&csv, "ar,sslope", "third.html")[..],
+        &windows,
         &["--error", "third-octave"],
     ]
     .concat();
@@ -105,6 +126,12 @@ fn a_sweep_writes_a_page_and_its_points() {
             .all(|w| number(w[1], key) <= number(w[0], key))
     };
     assert!(falls("third_octave_error_rms_db"));
+    // The spectrum at a byte a bin ends that front.
+    let last = front.last().unwrap();
+    assert_eq!(
+        (&last["model"], &last["bytes"]),
+        (&"quantised-spectrum".into(), &205.into())
+    );
     let error = |t: &Value| {
         points(t)
             .iter()
@@ -176,7 +203,24 @@ fn wrong_usage_writes_nothing() {
     let place = Place::new();
     let csv = place.recording("vinyl");
     place.write("text.csv", "this is\nno recording\n");
-    let cases: [(&[&str], i32, &str); 5] = [
+    let short = [
+        "tradeoff",
+        &csv,
+        "--from",
+        "1",
+        "--to",
+        "1.7",
+        "--segments",
+        "windows",
+        "--only",
+        "sslope",
+        "--quick",
+        "-o",
+        "short.html",
+    ];
+    let held_out = [&short[..], &["--error", "held-out"]].concat();
+    let cases: [(&[&str], i32, &str); 6] = [
+        (&held_out, 1, "fewer than four blocks"),
         (&["tradeoff", "-o", "r.html"], 2, "required"),
         (&["tradeoff", &csv, "-o", "r.json"], 2, "r.json"),
         (
@@ -205,6 +249,13 @@ fn wrong_usage_writes_nothing() {
         assert!(run.error().contains(said), "{arguments:?}: {}", run.error());
     }
     assert_eq!(entries(&place.path("")), ["text.csv", "vinyl.csv"]);
+    // By default it is then graded by what it was fitted to, which is said.
+    let found = place.json(&[&short[..], &["--json"]].concat());
+    assert_eq!(found["error"], "third_octave");
+    assert!(points(&found).iter().all(|p| p["held_out_error"].is_null()));
+    let warnings = found["warnings"].as_array().unwrap();
+    let is_said = |w: &Value| w.to_string().contains("fewer than four blocks");
+    assert!(warnings.iter().any(is_said), "{warnings:?}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use clap::Args;
-use htex_author::LosslessShare;
+use htex_author::FeltShare;
 use htex_build::{
     Build as Recipe, BuildOptions, Built, Destination, FindingShare, Job, Report, Status,
     TextureReport,
@@ -77,7 +77,7 @@ struct Summary<'a> {
     recordings: usize,
     recording_bytes: u64,
     seconds: f64,
-    lossless: &'a BTreeMap<String, LosslessShare>,
+    felt_shares: &'a BTreeMap<String, FeltShare>,
     findings: &'a BTreeMap<String, FindingShare>,
     /// Textures with a warning that is no finding of a recording.
     other_warnings: usize,
@@ -157,7 +157,7 @@ impl Build {
             recordings: work.recordings,
             recording_bytes: work.bytes,
             seconds,
-            lossless: &report.lossless,
+            felt_shares: &report.felt_shares,
             findings: &report.findings,
             other_warnings: other_warnings(report),
             left_out,
@@ -256,14 +256,14 @@ impl Summary<'_> {
                 megabytes / self.seconds
             );
         }
-        for (model, share) in self.lossless {
+        for (model, share) in self.felt_shares {
             text += &format!(
-                "{}: {} of {} textures without a difference that is to be expected to be felt ({} below the difference threshold, {} \
-                 within the recording's repeatability)\n",
+                "{}: {} of {} textures below the difference threshold ({} of a sensitive finger's); {} within the recording's \
+                 repeatability\n",
                 short_name(model),
-                share.either,
-                share.textures,
                 share.below_difference_threshold,
+                share.textures,
+                share.below_if_sensitive,
                 share.within_repeatability
             );
         }

@@ -4,10 +4,12 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use htex_author::recording::format_names;
 use htex_author::{AuthorError, Exploration, Take};
-use htex_format::{By, ErrorMeasure, Measure};
+use htex_format::{By, Measure};
 use htex_host::{LoadedModel, Origin, Registry};
 use htex_simulate::{SimulationOptions, Surface, simulate};
-use htex_tradeoff::{Journal, Model, Point, Request, Subject, csv, errors, others, page, sweep};
+use htex_tradeoff::{
+    ErrorAxis, Journal, Model, Point, Request, Subject, csv, errors, others, page, sweep,
+};
 
 use crate::columns::{Column, cells, headings};
 use crate::exit::Exit;
@@ -46,8 +48,11 @@ pub(crate) struct Tradeoff {
     quick: bool,
 
     /// The error that pictures, fronts and knees use
-    #[arg(long, value_parser = error_measure(), default_value = "nine-band")]
-    error: ErrorMeasure,
+    ///
+    /// held-out: fitted to the odd blocks of a recording, played, and compared with the even ones in third octaves, where 1 is as good
+    /// as a second recording; the others compare with what was fitted to [default: held-out; third-octave if a recording is too short]
+    #[arg(long, value_parser = error_axis())]
+    error: Option<ErrorAxis>,
 
     /// The page to write; points go beside it as .csv and .json
     #[arg(short, long, value_name = "HTML")]
@@ -64,12 +69,12 @@ pub(crate) struct Tradeoff {
     json: bool,
 }
 
-/// The measures by the first words of their names: `third-octave`.
-fn error_measure() -> impl TypedValueParser<Value = ErrorMeasure> {
-    let word = |measure: ErrorMeasure| measure.name().split(' ').next().unwrap_or_default();
-    let named = move |name: String| ErrorMeasure::ALL.into_iter().find(|m| word(*m) == name);
-    PossibleValuesParser::new(ErrorMeasure::ALL.map(word))
-        .map(move |name| named(name).unwrap_or_default())
+/// The errors by the first words of their names: `third-octave`.
+fn error_axis() -> impl TypedValueParser<Value = ErrorAxis> {
+    let name = |error: ErrorAxis| error.name().split(' ').next().unwrap_or_default();
+    let named = move |given: String| ErrorAxis::ALL.into_iter().find(|e| name(*e) == given);
+    PossibleValuesParser::new(ErrorAxis::ALL.map(name))
+        .map(move |given| named(given).unwrap_or_default())
 }
 
 impl Tradeoff {
@@ -94,6 +99,7 @@ impl Tradeoff {
         let request = Request {
             models: self.models()?,
             quick: self.quick,
+            error: self.error,
             // Without its path, a journal is continued by every build.
             program: std::env::current_exe().unwrap_or_default(),
         };
@@ -106,7 +112,7 @@ impl Tradeoff {
             bar.set_message(what.to_owned());
         })?;
         bar.finish_and_clear();
-        let tradeoff = htex_tradeoff::Tradeoff::new(&tool(), &subjects, swept, self.error);
+        let tradeoff = htex_tradeoff::Tradeoff::new(&tool(), &subjects, swept);
         let json = serde_json::to_vec(&tradeoff)?;
         write_file(&csv_file, csv(&tradeoff).as_bytes())?;
         write_file(&json_file, &json)?;
@@ -226,7 +232,7 @@ fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
     let errors: Vec<Column> = errors().filter(has_column).map(column).collect();
     let others: Vec<Column> = others().filter(has_column).map(column).collect();
     let mut text = format!(
-        "{name}: the front against bytes, by {}\n  bytes{}  lossless{}  ns/sample  setting\n",
+        "{name}: the front against bytes, by {}\n  bytes  held out{}  below threshold{}  ns/sample  setting\n",
         tradeoff.error,
         headings(&errors),
         headings(&others),
@@ -236,10 +242,11 @@ fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
     for p in front {
         let of = |column: Column| Some(p.get(By::Magnitude, column.measure()));
         text += &format!(
-            "  {:>5}{}  {:>6.0} %{}  {:>9.1}  {}\n",
+            "  {:>5}  {:>8.2}{}  {:>13.0} %{}  {:>9.1}  {}\n",
             p.bytes,
+            p.held_out_error.unwrap_or(f64::NAN),
             cells(&errors, of),
-            100.0 * p.share_lossless,
+            100.0 * p.shares.below_threshold,
             cells(&others, of),
             p.ns_per_sample,
             p.name()

@@ -29,6 +29,7 @@ use alloc::vec::Vec;
 use htex_dsp::exponential::exponentials;
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
 use htex_dsp::shaped_noise::ComponentsKey;
+use htex_dsp::sharpening::sharpen;
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
     Values, mix, text,
@@ -60,9 +61,6 @@ const STEP_RANGE_DB: (f64, f64) = (STEP_UNIT_DB, 6.0);
 /// Largest distance of a band from the loudest one and of a knot from the highest one, dB. A band without
 /// energy is 120 dB below, as in the band-error measure, which adds 1e-12 of the largest energy.
 pub const FLOOR_DB: f64 = 120.0;
-
-/// Rounds of sharpening of a voice's spectrum.
-const SHARPENINGS: usize = 2;
 
 const fn steps(scale: f64) -> Store {
     Store::U8 {
@@ -352,35 +350,5 @@ impl Curve for Spectrum {
         if let Some(places) = &self.places {
             places.read(&self.played, magnitude);
         }
-    }
-}
-
-/// Writes a power spectrum that approximately measures as `power` through the Hann window. The window
-/// distributes the power of noise over bins: two thirds in its own and a sixth in each neighbour. Sharpening
-/// inverts this by Richardson–Lucy steps.
-fn sharpen(power: &[f64], before: &mut [f64], sharp: &mut [f64]) {
-    let last = power.len() - 1;
-    sharp.copy_from_slice(power);
-    for _ in 0..SHARPENINGS {
-        before.copy_from_slice(sharp);
-        sharp[0] = sharpened(power[0], [before[0], before[0], before[last.min(1)]]);
-        sharp[last] = sharpened(
-            power[last],
-            [before[last.saturating_sub(1)], before[last], before[last]],
-        );
-        let inner = sharp.iter_mut().skip(1).zip(power.iter().skip(1));
-        for ((sharp, power), neighbours) in inner.zip(before.array_windows()) {
-            *sharp = sharpened(*power, *neighbours);
-        }
-    }
-}
-
-/// Power of a bin after a round; `[below, here, above]` is the power before in the bin and its neighbours.
-fn sharpened(power: f64, [below, here, above]: [f64; 3]) -> f64 {
-    let read = (below + 4.0 * here + above) / 6.0;
-    if read > 0.0 {
-        here * (power / read)
-    } else {
-        here
     }
 }

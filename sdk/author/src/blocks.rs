@@ -56,7 +56,7 @@ pub(crate) fn repeatability_rms_db(
 ///
 /// Each stretch of overlapping spans is cut into equal blocks of a quarter of what is read, but of 0.2 to 1 s. Sweeps, of which one
 /// segment is read, are a block each.
-fn blocks(spans: &[Span]) -> Option<Vec<Option<usize>>> {
+pub(crate) fn blocks(spans: &[Span]) -> Option<Vec<Option<usize>>> {
     let stretches = stretches(spans);
     let read: f64 = stretches.iter().map(|stretch| length(stretch)).sum();
     let longest = (read / FEWEST as f64).clamp(BLOCK[0], BLOCK[1]);

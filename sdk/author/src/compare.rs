@@ -5,7 +5,8 @@ use htex_format::{Measure, Quality, Quantity};
 use htex_host::HostError;
 use serde::Serialize;
 
-use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, felt, measure};
+use crate::fit::read_and_measure;
+use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, felt};
 
 /// How a spectrum differs from that of a recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -119,9 +120,8 @@ pub fn compare(
             let id = Some(&representation.model[..]);
             let (parameters, level_rms) = asset.parameters(id, motion)?;
             let model = asset.loaded_model(id)?;
-            let shape = model.magnitude(&parameters, reference.band, &reference.frequency_hz)?;
-            let magnitude: Vec<f64> = shape.iter().map(|m| m * level_rms).collect();
-            let quality = measure(&model, &parameters, level_rms, reference.as_ref())?;
+            let of = reference.as_ref();
+            let (magnitude, quality) = read_and_measure(&model, &parameters, level_rms, of)?;
             Ok(ComparedModel {
                 model: representation.model.clone(),
                 difference: Difference::new(reference, level_rms, &magnitude, quality),

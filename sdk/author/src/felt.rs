@@ -93,9 +93,10 @@ impl FeltError {
     }
 }
 
-/// Of some textures, how many a model keeps so that no difference is to be expected to be felt.
+/// Of some textures, how many a model keeps below the difference threshold of a listener; and, apart from that, how many within what the
+/// recording itself varies, which says nothing about what is felt: the worse a recording repeats, the more is within it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct LosslessShare {
+pub struct FeltShare {
     /// Number of textures.
     pub textures: usize,
     /// Those whose difference is below the difference threshold.
@@ -104,19 +105,15 @@ pub struct LosslessShare {
     pub below_if_sensitive: usize,
     /// Those whose nine-band error is at or below the recording's own repeatability.
     pub within_repeatability: usize,
-    /// Those for which one of both holds.
-    pub either: usize,
 }
 
-impl LosslessShare {
+impl FeltShare {
     /// Counts a texture.
     pub fn count(&mut self, felt: &FeltError) {
-        let within = felt.within_repeatability;
         self.textures += 1;
         self.below_difference_threshold += usize::from(felt.below_difference_threshold);
         self.below_if_sensitive += usize::from(felt.below_if_sensitive);
-        self.within_repeatability += usize::from(within);
-        self.either += usize::from(within || felt.below_difference_threshold);
+        self.within_repeatability += usize::from(felt.within_repeatability);
     }
 }
 

@@ -24,7 +24,7 @@ use crate::request::{AssetRequest, ModelRequest};
 use crate::spectrum::SpectrumRef;
 use crate::stored::stored_fields;
 use crate::take::Take;
-use crate::{AuthorError, TextureSpectrum, agreement, rendered_spectrum};
+use crate::{AuthorError, TextureSpectrum, agreement, read_spectrum, rendered_spectrum};
 
 /// A fitted asset with the results that its file does not hold.
 #[derive(Debug, Clone)]
@@ -207,15 +207,13 @@ fn fit_model(
             fit_ms: own_ms,
         } = fit_group(choice, group, level)?;
         fit_ms += own_ms;
-        let mut quality = None;
-        if group.spectrum.is_recorded() {
-            let rounding = rounding_error_db(model, &fitted, &stored, reference)?;
-            quality = Some(Quality {
-                rounding_error_db: Some(rounding),
-                ..measure(model, &stored, level_rms, reference)?
-            });
-        }
-        let magnitude = scaled_magnitude(model, &stored, level_rms, reference)?;
+        let (magnitude, measured) = read_and_measure(model, &stored, level_rms, reference)?;
+        let rounding = rounding_error_db(model, &fitted, &stored, reference)?;
+        // Nothing was recorded at a condition that was computed.
+        let quality = group.spectrum.is_recorded().then(|| Quality {
+            rounding_error_db: Some(rounding),
+            ..measured
+        });
         let nine_band_db = quality.as_ref().and_then(|q| q.get(Measure::NineBand));
         felt.push(FeltError::new(&group.spectrum, &magnitude, nine_band_db));
         at.push(AtCondition {
@@ -271,7 +269,7 @@ fn band_error_warning(
     warning(choice, &qualities, groups, &models, request.level)
 }
 
-/// Measures the agreement of parameters and level with a recorded spectrum, by magnitude and by samples.
+/// Measures the agreement of parameters and level with a recorded spectrum: by magnitude, as a recording of the voice reads it, and by samples.
 ///
 /// # Errors
 /// When the model refuses the parameters.
@@ -281,26 +279,28 @@ pub fn measure(
     level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Quality, AuthorError> {
-    let magnitude = scaled_magnitude(model, parameters, level_rms, reference)?;
-    let by_magnitude = agreement(reference, &magnitude);
-    let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
-    let by_samples = agreement(reference, &rendered).measures;
-    let of_both = Measure::of_both().filter(|m| m.row().stored);
-    Ok(Quality {
-        by_samples: by_samples.only(of_both),
-        ..Quality::from(by_magnitude)
-    })
+    Ok(read_and_measure(model, parameters, level_rms, reference)?.1)
 }
 
-/// Returns the magnitudes of parameters at a level, on the reference's grid.
-fn scaled_magnitude(
+/// As [`measure`], with the magnitudes as a recording of the voice reads them ([`read_spectrum`]).
+pub(crate) fn read_and_measure(
     model: &LoadedModel,
     parameters: &[f64],
     level_rms: f64,
     reference: SpectrumRef<'_>,
-) -> Result<Vec<f64>, HostError> {
-    let shape = model.magnitude(parameters, reference.band, reference.frequency_hz)?;
-    Ok(shape.iter().map(|m| m * level_rms).collect())
+) -> Result<(Vec<f64>, Quality), AuthorError> {
+    let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
+    let by_samples = agreement(reference, &rendered).measures;
+    let read = match model.descriptor().is_sum_of_sines() {
+        true => rendered,
+        false => read_spectrum(model, parameters, level_rms, reference)?,
+    };
+    let of_both = Measure::of_both().filter(|m| m.row().stored);
+    let quality = Quality {
+        by_samples: by_samples.only(of_both),
+        ..Quality::from(agreement(reference, &read))
+    };
+    Ok((read, quality))
 }
 
 /// Returns the nine-band RMS difference between the shapes of the fitted and the stored parameters, decibels.

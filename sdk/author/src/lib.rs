@@ -9,7 +9,7 @@
 //! 1. `segments`: complete sweeps by mean threshold, or half-overlapping windows, of 0.2 s. `findings`: problems of the
 //!    signals, with stable codes (`spec/recording-findings.md`). `reading` combines both.
 //! 2. `spectrum`: mean removed, Hann window, FFT, two axes folded into one, divided by the response of the setup,
-//!    averaged.
+//!    averaged. `blocks`: the odd and the even blocks of time, two readings that share no sample.
 //! 3. `conditions`: recordings with the same speed and force are averaged, others become further conditions. `grid`, on
 //!    request, takes many conditions from a free motion: windows of `steady` motion, `lines` of speed and force,
 //!    `cells` around their crossings, spectra over equal `paths`, corrected by `slopes`.
@@ -50,6 +50,7 @@ pub mod grid;
 mod law;
 mod level;
 mod metrics;
+mod odd_and_even;
 mod reading;
 mod recording_finding;
 mod rendered;
@@ -66,7 +67,7 @@ pub use edit::{EditError, edit};
 pub use embed::{EmbedError, embed_plugins};
 pub use error::AuthorError;
 pub use exploration::{Exploration, Spread};
-pub use felt::{DIFFERENCE_THRESHOLD_DB, Felt, FeltError, LosslessShare, felt};
+pub use felt::{DIFFERENCE_THRESHOLD_DB, Felt, FeltError, FeltShare, felt};
 pub use findings::recording_findings;
 pub use fit::{FittedAsset, fit_asset, measure};
 pub use grid::{CellStatus, Grid, GridCell, GridReport};
@@ -74,9 +75,10 @@ pub use htex_recording as recording;
 pub use htex_recording::{Recording, SetupResponse, velocity};
 pub use level::{Level, stored_level};
 pub use metrics::{Agreement, agreement};
+pub use odd_and_even::{OddAndEven, odd_and_even};
 pub use reading::{Reading, read_take, validate_recording};
 pub use recording_finding::RecordingFinding;
-pub use rendered::{rendered_spectrum, spectrum_of_samples};
+pub use rendered::{read_spectrum, rendered_spectrum, spectrum_of_samples};
 pub use request::{AssetRequest, ModelRequest};
 pub use segments::{SegmentChoice, Segments, Sweep, Unread, choose_segments, segment_len, sliding};
 pub use spectrum::{

@@ -13,6 +13,25 @@ use crate::{
 const SECONDS: f64 = 20.0;
 const SEED: u64 = 1;
 
+/// Returns the magnitudes, on the reference's grid, that a recording of the voice reads: those of the model as a Hann window reads them
+/// ([`LoadedModel::read_magnitude`]), without chance. Sinusoids state what is read for the
+/// window's main lobe alone, so that their samples are read ([`rendered_spectrum`]).
+///
+/// # Errors
+/// When the model refuses the parameters, or renders samples that are not finite.
+pub fn read_spectrum(
+    model: &LoadedModel,
+    parameters: &[f64],
+    level_rms: f64,
+    reference: SpectrumRef<'_>,
+) -> Result<Vec<f64>, AuthorError> {
+    if model.descriptor().is_sum_of_sines() {
+        return rendered_spectrum(model, parameters, level_rms, reference);
+    }
+    let shape = model.read_magnitude(parameters, reference.band)?;
+    Ok(shape.iter().map(|m| m * level_rms).collect())
+}
+
 /// Renders parameters at a level and measures the samples as a recording, RMS-averaged, because
 /// the magnitudes of a model are RMS values.
 ///

@@ -10,7 +10,7 @@ use crate::Recording;
 use htex_recording::Sums;
 
 /// Segments per second: texture spectra have a resolution of 5 Hz.
-const SEGMENTS_PER_S: f64 = 5.0;
+pub(crate) const SEGMENTS_PER_S: f64 = 5.0;
 /// Half the length of the moving average in which sweeps are detected (50 ms in all), seconds.
 const HALF_AVERAGE_S: f64 = 0.025;
 /// A recording has sweeps if its friction falls below this part of the threshold between them; above it

@@ -202,7 +202,7 @@ impl TextureSpectrum {
 }
 
 /// Returns the places of the segments of a recording, which is the `take`th.
-fn spans_of((take, part): (usize, &SegmentSpectra)) -> impl Iterator<Item = Span> {
+pub(crate) fn spans_of((take, part): (usize, &SegmentSpectra)) -> impl Iterator<Item = Span> {
     let len = part.segments.len as f64;
     let starts = part.segments.starts.iter().take(part.spectra.len());
     starts.map(move |&start| Span {

@@ -22,7 +22,7 @@ use crate::hashes::Stamp;
 use crate::job::Job;
 use crate::made::Made;
 use crate::plan::{Plan, PlannedTexture};
-use crate::report::{LibraryReport, REPORT, Report, Status, TextureReport, lossless};
+use crate::report::{LibraryReport, REPORT, Report, Status, TextureReport, felt_shares};
 
 const REPORT_FILE: &str = "build-report.json";
 
@@ -93,7 +93,7 @@ pub(crate) fn assemble(
         report: REPORT.to_owned(),
         program: options.program.clone(),
         library: library_report(plan, file, &packed, &textures),
-        lossless: lossless(&textures),
+        felt_shares: felt_shares(&textures),
         findings: shares(&textures),
         textures,
     };

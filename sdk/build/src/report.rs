@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use htex_author::{FeltError, LosslessShare};
+use htex_author::{FeltError, FeltShare};
 use htex_format::{Asset, Measure};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -25,9 +25,9 @@ pub struct Report {
     pub program: String,
     /// The library.
     pub library: LibraryReport,
-    /// Of the textures of the library, by the id of a model, how many it keeps at all their conditions so that no difference is to be expected
-    /// to be felt.
-    pub lossless: BTreeMap<String, LosslessShare>,
+    /// Of the textures of the library, by the id of a model, how many it keeps at all their conditions below the difference threshold,
+    /// and how many within what their recordings vary.
+    pub felt_shares: BTreeMap<String, FeltShare>,
     /// By code of a finding of recordings, the textures that have it.
     pub findings: BTreeMap<String, FindingShare>,
     /// All textures of the recipe, by name.
@@ -226,9 +226,9 @@ impl AssetReport {
     }
 }
 
-/// Counts, by model, the textures of which no difference is to be expected to be felt.
-pub(crate) fn lossless(textures: &[TextureReport]) -> BTreeMap<String, LosslessShare> {
-    let mut shares: BTreeMap<String, LosslessShare> = BTreeMap::new();
+/// Counts, by model, the textures whose difference is below the difference threshold, and those within what their recording varies.
+pub(crate) fn felt_shares(textures: &[TextureReport]) -> BTreeMap<String, FeltShare> {
+    let mut shares: BTreeMap<String, FeltShare> = BTreeMap::new();
     let built = textures.iter().filter(|t| t.status == Status::Built);
     for asset in built.filter_map(|texture| texture.asset.as_ref()) {
         for (model, felt) in &asset.felt {

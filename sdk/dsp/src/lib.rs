@@ -52,6 +52,7 @@ pub mod root;
 pub mod seam;
 pub mod shaped_noise;
 pub mod shared;
+pub mod sharpening;
 pub mod sine_bank;
 pub mod spectrum;
 pub mod triangles;

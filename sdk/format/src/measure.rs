@@ -33,7 +33,7 @@ impl Judged {
 /// What a measure is taken of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
-    /// The model's own magnitudes.
+    /// The model's magnitudes, as a recording of its voice reads them.
     Magnitude,
     /// The spectrum of rendered samples.
     Samples,
@@ -161,6 +161,7 @@ measures! {
         short: "third octaves",
         left_out: true,
         column: Some("third-oct/dB"),
+        played: Some("played-3rd/dB"),
         caption: Some("Third-octave error of the {}, RMS in dB (0 is the best, light)"),
     }
     /// RMS over the bins of the difference of the magnitudes in decibels.
@@ -171,6 +172,7 @@ measures! {
         name: "log-spectral distance",
         short: "log-spectral",
         column: Some("log-sp/dB"),
+        played: Some("played-log/dB"),
         caption: Some("Log-spectral distance of the {}, RMS in dB (0 is the best, light)"),
     }
     /// Level in the band relative to the recording's, decibels.

@@ -30,6 +30,7 @@ mod options;
 mod origin;
 mod own;
 mod raw;
+mod reading;
 mod registry;
 mod runtime;
 // Without modules the budget is not used.

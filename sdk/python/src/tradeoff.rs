@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use htex::format::ErrorMeasure;
 use htex_author::settings::named_models;
-use htex_tradeoff::{Journal, Model, Request, Subject, Tradeoff, sweep};
+use htex_tradeoff::{ErrorAxis, Journal, Model, Request, Subject, Tradeoff, sweep};
 use pyo3::prelude::*;
 
 use crate::errors::{OrRaise, of_file};
@@ -18,7 +17,7 @@ use crate::reading::{Reading, ReadingText, Source, unknown};
 pub(crate) struct Sweep {
     models: Vec<String>,
     quick: bool,
-    error: String,
+    error: Option<String>,
     plugins: Vec<PathBuf>,
     installed: bool,
     journal: Option<PathBuf>,
@@ -44,10 +43,11 @@ fn measured(
     request: &Sweep,
     program: PathBuf,
 ) -> PyResult<Tradeoff> {
-    let error = ErrorMeasure::find(&request.error).ok_or_else(|| {
-        let known = ErrorMeasure::ALL.map(ErrorMeasure::id).join(", ");
-        unknown("error", &request.error, &known)
-    })?;
+    let error_named = |name: &String| {
+        let known = ErrorAxis::ALL.map(ErrorAxis::id).join(", ");
+        ErrorAxis::find(name).ok_or_else(|| unknown("error", name, &known))
+    };
+    let error = request.error.as_ref().map(error_named).transpose()?;
     let registry = registry(&request.plugins, request.installed)?;
     let models = named_models(&registry, &request.models)
         .or_raise()?
@@ -58,6 +58,7 @@ fn measured(
     let swept = Request {
         models: models.collect(),
         quick: request.quick,
+        error,
         program,
     };
     let options = reading.spectrum_options()?;
@@ -77,5 +78,5 @@ fn measured(
     let swept = sweep(&subjects, &swept, &mut journal, &|_, _, _| {}).or_raise()?;
     journal.discard().or_raise()?;
     let tool = concat!("htex ", env!("CARGO_PKG_VERSION"));
-    Ok(Tradeoff::new(tool, &subjects, swept, error))
+    Ok(Tradeoff::new(tool, &subjects, swept))
 }

@@ -11,13 +11,18 @@ import htex
 
 def test_a_sweep_is_a_table(place: pathlib.Path) -> None:
     pandas = pytest.importorskip("pandas")
-    found = htex.tradeoff(place / "rec.csv", models="sbeta", quick=True)
+    found = htex.tradeoff(place / "rec.csv", models="sbeta", quick=True, segments="windows")
     table = pandas.DataFrame(found.columns)
     assert set(table["model"]) == {"sbeta", "quantised-spectrum", "recording"}
     assert (table["bytes"] > 0).all() and table["on_front"].any()
-    fit = htex.fit(place / "rec.csv", models="sbeta").table()
+    fit = htex.fit(place / "rec.csv", models="sbeta", segments="windows").table()
     error = table[(table["model"] == "sbeta")]["band_error_rms_db"]
     assert (abs(error - fit["band_error_rms_db"][0]) < 1e-3).any()
+    assert found.about["error"] == "held_out"
+    recording = table[table["model"] == "recording"]
+    assert (recording["held_out_error"] == 1.0).all()
+    floor_db = found.about["recordings"][0]["floor_db"]
+    assert (table["held_out_error_db"] / table["held_out_error"] - floor_db).abs().max() < 1e-9
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     from htex import plot

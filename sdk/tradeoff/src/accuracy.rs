@@ -15,7 +15,7 @@ pub(crate) struct Accuracy {
 
 /// Error in decibels used for silence, and when there is nothing to compare with, so that all errors
 /// are finite.
-const FAR_DB: f64 = 200.0;
+pub(crate) const FAR_DB: f64 = 200.0;
 
 pub(crate) fn accuracy(reference: &TextureSpectrum, magnitude: &[f64]) -> Accuracy {
     let found = agreement(reference.as_ref(), magnitude);

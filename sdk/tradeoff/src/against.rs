@@ -1,17 +1,19 @@
 //! Costs and error measures that are compared.
 
-use htex_format::{By, ErrorMeasure};
+use htex_format::By;
 use htex_report::Axis;
 
+use crate::error_axis::ErrorAxis;
+use crate::front::front;
 use crate::point::Point;
 use crate::setting::Keep;
 
 /// The cost that error is compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cost {
-    /// Bytes of stored parameters; the error is that of the magnitudes.
+    /// Bytes of stored parameters; an error of what was fitted to is that of the magnitudes.
     Bytes,
-    /// Nanoseconds per sample; the error is that of the samples.
+    /// Nanoseconds per sample; an error of what was fitted to is that of the samples.
     Time,
 }
 
@@ -19,7 +21,7 @@ pub enum Cost {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Against {
     pub cost: Cost,
-    pub error: ErrorMeasure,
+    pub error: ErrorAxis,
 }
 
 impl Cost {
@@ -45,10 +47,6 @@ impl Cost {
         }
     }
 
-    pub(crate) fn words(self, cost: f64, error: f64) -> String {
-        format!("{} at {error:.2} dB", self.amount(cost))
-    }
-
     pub(crate) fn axis(self) -> Axis {
         match self {
             Self::Bytes => Axis::log("stored parameters / bytes"),
@@ -58,12 +56,64 @@ impl Cost {
 }
 
 impl Against {
-    /// Returns cost and error of a point.
+    /// Returns cost and error of a point; an error that is not known is NaN.
     pub(crate) fn place(self, point: &Point) -> (f64, f64) {
-        let measure = self.error.measure();
-        match self.cost {
-            Cost::Bytes => (point.bytes as f64, point.get(By::Magnitude, measure)),
-            Cost::Time => (point.ns_per_sample, point.get(By::Samples, measure)),
+        let cost = match self.cost {
+            Cost::Bytes => point.bytes as f64,
+            Cost::Time => point.ns_per_sample,
+        };
+        let error = match (self.error, self.cost) {
+            (ErrorAxis::HeldOut, _) => point.held_out_error.unwrap_or(f64::NAN),
+            (ErrorAxis::Fitted(error), Cost::Bytes) => point.get(By::Magnitude, error.measure()),
+            (ErrorAxis::Fitted(error), Cost::Time) => point.get(By::Samples, error.measure()),
+        };
+        (cost, error)
+    }
+
+    /// Returns which points are on the front. Points of the front of time whose times differ by no more than their spreads count as one, that
+    /// with the least error.
+    pub(crate) fn on_front(self, points: &[&Point]) -> Vec<bool> {
+        let places: Vec<(f64, f64)> = points.iter().map(|p| self.place(p)).collect();
+        let mut on = front(&places);
+        if self.cost == Cost::Time {
+            let spread = |i: usize| points[i].spread * points[i].ns_per_sample;
+            let mut along: Vec<usize> = (0..points.len()).filter(|&i| on[i]).collect();
+            along.sort_by(|&a, &b| places[a].0.total_cmp(&places[b].0));
+            let tied = |a: usize, b: usize| places[b].0 - places[a].0 <= spread(a) + spread(b);
+            on = vec![false; points.len()];
+            for tie in ties(&along, tied) {
+                if let Some(&best) = tie.last() {
+                    on[best] = true;
+                }
+            }
         }
+        on
+    }
+}
+
+/// Cuts items in the order of their costs into runs that are tied with their first.
+fn ties(mut along: &[usize], tied: impl Fn(usize, usize) -> bool) -> Vec<&[usize]> {
+    let mut runs = Vec::new();
+    while let Some(&first) = along.first() {
+        let end = along.iter().position(|&i| !tied(first, i));
+        let (run, rest) = along.split_at(end.unwrap_or(along.len()).max(1));
+        runs.push(run);
+        along = rest;
+    }
+    runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_within_their_spreads_are_one_point() {
+        let ns = [2.0, 2.1, 2.3, 2.5, 9.0];
+        // Each 5 %: 2.0 and 2.1 are tied, 2.3 is not tied with 2.0, 2.5 is with 2.3.
+        let tied = |a: usize, b: usize| ns[b] - ns[a] <= 0.05 * (ns[a] + ns[b]);
+        assert_eq!(ties(&[0, 1, 2, 3, 4], tied), [&[0, 1][..], &[2, 3], &[4]]);
+        // A time that is not a number is tied with nothing, itself included.
+        assert_eq!(ties(&[0, 4], |_, _| false), [&[0][..], &[4]]);
     }
 }

@@ -1,6 +1,6 @@
 //! Contenders: what can be fitted to a recording, stored and played.
 
-use htex_author::{Level, stored_fields, stored_level};
+use htex_author::{Level, TextureSpectrum, stored_fields, stored_level};
 use htex_dsp::grid::level_rms;
 use htex_format::{StoredAs, StoredField, round_parameters, stored_bytes};
 use htex_host::{Fit, HostError, LoadedModel};
@@ -39,9 +39,8 @@ impl Contender {
         format!("{} {}", self.model, self.setting.words())
     }
 
-    /// Fits the model; for a baseline, computes the stored data.
-    pub(crate) fn fit(&self, subject: &Subject) -> Result<Fit, HostError> {
-        let spectrum = &subject.spectrum;
+    /// Fits the model to a spectrum; for a baseline, computes the stored data.
+    pub(crate) fn fit(&self, spectrum: &TextureSpectrum) -> Result<Fit, HostError> {
         match &self.kind {
             ContenderKind::Model(model, options) => model.fit(&spectrum.fit_request(options)),
             ContenderKind::Quantised => {
@@ -59,9 +58,13 @@ impl Contender {
         }
     }
 
-    /// Returns the data read back after storing a fit, and their size.
-    pub(crate) fn store(&self, subject: &Subject, fit: &Fit) -> Result<Stored, TradeoffError> {
-        let spectrum = &subject.spectrum;
+    /// Returns the data read back after storing a fit to a spectrum of the subject, and their size.
+    pub(crate) fn store(
+        &self,
+        subject: &Subject,
+        spectrum: &TextureSpectrum,
+        fit: &Fit,
+    ) -> Result<Stored, TradeoffError> {
         let (parameters, bytes) = match &self.kind {
             ContenderKind::Model(model, _) => {
                 let mut fields = stored_fields(model.descriptor());

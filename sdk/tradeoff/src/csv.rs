@@ -20,16 +20,14 @@ fn cells(p: &Point) -> Vec<(&'static str, String)> {
     add("bytes", p.bytes.to_string());
     add("kept_bytes", p.kept_bytes.to_string());
     let number = |(name, value): (_, Option<f64>)| (name, value.unwrap_or(f64::NAN).to_string());
-    let shares = [
-        (
-            "share_below_difference_threshold",
-            p.share_below_difference_threshold,
-        ),
-        ("share_lossless", p.share_lossless),
-    ];
-    let shares = shares.map(|(name, share)| (name, Some(share)));
+    let shares = p.shares.keyed().map(|(name, share)| (name, Some(share)));
     let by_magnitude = p.by_magnitude.keyed(By::Magnitude, Measure::of_both());
-    let numbers = by_magnitude.0.into_iter().chain(shares);
+    let held_out = [
+        ("held_out_error", p.held_out_error),
+        ("held_out_error_db", p.held_out_error_db),
+    ];
+    let by_magnitude = held_out.into_iter().chain(by_magnitude.0);
+    let numbers = by_magnitude.chain(shares);
     cells.extend(numbers.chain(p.by_samples.keyed().0).map(number));
     cells.push(("on_front", p.on_front.to_string()));
     cells.push(("on_time_front", p.on_time_front.to_string()));

@@ -23,6 +23,12 @@ pub enum TradeoffError {
         path: PathBuf,
         error: std::io::Error,
     },
+    /// A recording has nothing to hold out.
+    #[error("{recording}: {reason}, so that nothing can be held out: record for 10 s")]
+    NothingHeldOut {
+        recording: String,
+        reason: &'static str,
+    },
     /// A knob does not have this value.
     #[error("knob {name}: `{value}` is not one of its values")]
     Knob { name: String, value: String },

@@ -5,19 +5,16 @@ use htex_host::Registry;
 use htex_report::{Axis, Line, Plot, RECORDING_COLOR, Series, model_color};
 
 use crate::against::{Against, Cost};
-use crate::front::front;
 use crate::knee::along_front;
-use crate::point::{Point, QUANTISED, errors, others};
+use crate::point::{Point, QUANTISED, RECORDING, errors, others};
 
 pub(crate) fn mark_front(points: &mut [Point], against: Against) {
     let compared: Vec<usize> = (0..points.len())
         .filter(|&i| against.cost.compares(&points[i]))
         .collect();
-    let places: Vec<(f64, f64)> = compared
-        .iter()
-        .map(|&i| against.place(&points[i]))
-        .collect();
-    for (&i, on) in compared.iter().zip(front(&places)) {
+    let shown: Vec<&Point> = compared.iter().map(|&i| &points[i]).collect();
+    let on_front = against.on_front(&shown);
+    for (&i, on) in compared.iter().zip(on_front) {
         match against.cost {
             Cost::Bytes => points[i].on_front = on,
             Cost::Time => points[i].on_time_front = on,
@@ -26,7 +23,7 @@ pub(crate) fn mark_front(points: &mut [Point], against: Against) {
 }
 
 /// Plots error against cost: all settings as small dots, each model's own front as larger ones, both
-/// baselines, and the front of all models. Both axes are logarithmic.
+/// baselines, the front of all models, and the error of a second recording as the floor. Both axes are logarithmic.
 pub fn figure(title: &str, points: &[&Point], models: &[String], against: Against) -> Plot {
     let shown: Vec<&Point> = points
         .iter()
@@ -36,7 +33,7 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
     let mut plot = Plot::new(
         title,
         against.cost.axis(),
-        Axis::log(&format!("{} / dB", against.error)),
+        Axis::log(&format!("{} / {}", against.error, against.error.unit())),
     );
     // Narrow, so that text stays legible on a phone.
     (plot.width, plot.height) = (440.0, 380.0);
@@ -45,6 +42,7 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
     line.line_width_px = 2.0;
     line.hover = false;
     plot.series.push(line.colored("#b8b8b8"));
+    plot.series.extend(floor(&shown, against));
     let builtin = Registry::builtin_names();
     for model in models {
         let color = model_color(model, &builtin);
@@ -84,6 +82,24 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
     plot
 }
 
+/// The error of the recording against itself, over all costs: below it, errors do not distinguish models.
+fn floor(shown: &[&Point], against: Against) -> Option<Series> {
+    let recording = shown.iter().find(|p| p.model == RECORDING)?;
+    let error = against.place(recording).1;
+    let costs = || shown.iter().map(|p| against.place(p).0);
+    let ends = [
+        costs().fold(f64::INFINITY, f64::min),
+        costs().fold(0.0, f64::max),
+    ];
+    let line = Series::line(
+        "floor: a second recording",
+        ends.map(|x| (x, error)).to_vec(),
+    );
+    let mut line = line.colored(RECORDING_COLOR).behind();
+    line.line = Line::Dashed;
+    Some(line)
+}
+
 /// Converts a front to steps: an error is reached from its cost on.
 fn steps(front: &[&Point], against: Against) -> Vec<(f64, f64)> {
     let mut steps = Vec::new();
@@ -99,7 +115,9 @@ fn steps(front: &[&Point], against: Against) -> Vec<(f64, f64)> {
 
 fn note(p: &Point) -> String {
     let all = errors().chain(others());
-    let measures: Vec<String> = all.flat_map(|measure| measured(p, measure)).collect();
+    let held_out = p.held_out_error.map(|error| format!("held out {error:.2}"));
+    let fitted = all.flat_map(|measure| measured(p, measure));
+    let measures: Vec<String> = held_out.into_iter().chain(fitted).collect();
     format!(
         "{}: {} bytes, {:.1} ns a sample (±{:.0} %), first sample {:.0} µs, fit {:.2} ms; {}",
         p.name(),
@@ -125,6 +143,8 @@ fn measured(p: &Point, measure: Measure) -> impl Iterator<Item = String> {
         text.trim_end().to_owned()
     };
     let own = row.column.map(|_| words(row.short, By::Magnitude));
-    let played = row.played.map(|_| words("played", By::Samples));
+    let played = row
+        .played
+        .map(|_| words(&format!("played {}", row.short), By::Samples));
     own.into_iter().chain(played)
 }

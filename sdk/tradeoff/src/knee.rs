@@ -1,14 +1,13 @@
 //! Knees of fronts, beyond which more cost reduces the error less.
 
-use htex_format::ErrorMeasure;
 use serde::Serialize;
 
 use crate::against::{Against, Cost};
-use crate::front::front;
+use crate::error_axis::ErrorAxis;
 use crate::point::Point;
 
-/// Smallest error reduction of a step up, decibels.
-const STEP_DB: f64 = 0.05;
+/// Smallest error reduction of a step up, in the error's unit.
+const STEP: f64 = 0.05;
 
 /// The knee of a front, and the next step up.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -23,10 +22,10 @@ pub struct Knee {
     pub at: String,
     /// Its cost, bytes or ns per sample.
     pub cost: f64,
-    pub error: ErrorMeasure,
-    /// Its error, decibels.
-    pub error_db: f64,
-    /// Model and setting of the next step up, which is at least 0.05 dB better; `None` if there is none.
+    pub error: ErrorAxis,
+    /// Its error: decibels, or if it is held out, in units of a second recording's.
+    pub error_value: f64,
+    /// Model and setting of the next step up, whose error is at least 0.05 smaller; `None` if there is none.
     pub next: Option<String>,
     /// Description of the knee and of the next step's gain and cost, as a sentence.
     pub words: String,
@@ -56,7 +55,7 @@ pub(crate) fn knees(
     recording: &str,
     points: &[&Point],
     models: &[String],
-    error: ErrorMeasure,
+    error: ErrorAxis,
 ) -> Vec<Knee> {
     let mut knees = Vec::new();
     for cost in [Cost::Bytes, Cost::Time] {
@@ -84,16 +83,21 @@ fn knee_of(recording: &str, of: &str, against: Against, points: &[&Point]) -> Op
     let places: Vec<(f64, f64)> = along.iter().map(|p| against.place(p)).collect();
     let at = knee(&places)?;
     let (cost, error) = places[at];
-    let is_step = |i: &usize| error - places[*i].1 >= STEP_DB;
+    let is_step = |i: &usize| error - places[*i].1 >= STEP;
     let next = (at + 1..places.len()).find(is_step);
     let next = next.map(|i| (&places[i], along[i]));
-    let here = format!("{}, {}", along[at].name(), against.cost.words(cost, error));
+    let here = format!(
+        "{}, {} at {}",
+        along[at].name(),
+        against.cost.amount(cost),
+        against.error.amount(error)
+    );
     let words = match next {
         None => format!("{here}: no further step reduces the error"),
         Some((&(next_cost, next_error), next)) => format!(
-            "{here}; the next step up, {}, reduces the error by {:.2} dB for {} more ({:+.0} %)",
+            "{here}; the next step up, {}, reduces the error by {} for {} more ({:+.0} %)",
             next.name(),
-            error - next_error,
+            against.error.amount(error - next_error),
             against.cost.amount(next_cost - cost),
             100.0 * (next_cost / cost - 1.0)
         ),
@@ -105,7 +109,7 @@ fn knee_of(recording: &str, of: &str, against: Against, points: &[&Point]) -> Op
         at: along[at].name(),
         cost,
         error: against.error,
-        error_db: error,
+        error_value: error,
         next: next.map(|(_, point)| point.name()),
         words,
     })
@@ -114,7 +118,7 @@ fn knee_of(recording: &str, of: &str, against: Against, points: &[&Point]) -> Op
 /// Returns the points of a front by increasing cost; of equal ones the first.
 pub(crate) fn along_front<'a>(points: &[&'a Point], against: Against) -> Vec<&'a Point> {
     let places: Vec<(f64, f64)> = points.iter().map(|p| against.place(p)).collect();
-    let on = front(&places);
+    let on = against.on_front(points);
     let mut along: Vec<usize> = (0..points.len()).filter(|&i| on[i]).collect();
     along.sort_by(|&a, &b| places[a].0.total_cmp(&places[b].0));
     along.dedup_by(|b, a| places[*b] == places[*a]);

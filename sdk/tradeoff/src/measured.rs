@@ -1,8 +1,7 @@
 //! Accuracy of a contender, by its magnitudes and by rendered samples.
 
-use htex_author::spectrum_of_samples;
+use htex_author::{read_spectrum, spectrum_of_samples};
 use htex_format::Measure;
-use htex_host::HostError;
 use serde::{Deserialize, Serialize};
 
 use crate::accuracy::{Accuracy, accuracy};
@@ -24,28 +23,33 @@ pub(crate) struct Measured {
     pub(crate) kept_bytes: usize,
     pub(crate) by_magnitude: Accuracy,
     pub(crate) by_samples: Accuracy,
+    /// Third-octave difference of the fit to the odd blocks, played, from the even blocks, decibels.
+    pub(crate) held_out_error_db: Option<f64>,
     /// Half the range of the nine-band errors of the renderings, decibels.
     pub(crate) samples_spread_db: f64,
 }
 
 impl Contender {
-    /// Fits, stores and measures. `None` for a recording without a known repeatability.
+    /// Fits, stores and measures. `None` for a recording of too few blocks to be compared with itself.
     pub(crate) fn measure(
         &self,
         subject: &Subject,
         quick: bool,
     ) -> Result<Option<Measured>, TradeoffError> {
-        let stored = self.store(subject, &self.fit(subject)?)?;
+        let reference = &subject.spectrum;
+        let stored = self.store(subject, reference, &self.fit(reference)?)?;
+        let held_out_error_db = self.held_out_error_db(subject, quick)?;
         if matches!(self.kind, ContenderKind::Recording) {
-            return Ok(subject.repeats.map(|repeats| Measured {
+            let held_out = subject.held_out.as_ref().ok();
+            return Ok(held_out.map(|held_out| Measured {
                 bytes: stored.bytes,
                 kept_bytes: size_of::<f32>() * subject.samples.len(),
-                by_magnitude: repeats,
-                by_samples: repeats,
+                by_magnitude: held_out.repeats,
+                by_samples: held_out.repeats,
+                held_out_error_db,
                 samples_spread_db: 0.0,
             }));
         }
-        let reference = &subject.spectrum;
         let rendered = self.rendered(subject, &stored, quick)?;
         let errors = rendered.spectra.iter();
         let errors = errors.filter_map(|m| accuracy(reference, m).measures.get(Measure::NineBand));
@@ -56,12 +60,13 @@ impl Contender {
             kept_bytes: rendered.kept_bytes,
             by_magnitude: accuracy(reference, &self.magnitude(subject, &stored)?),
             by_samples: accuracy(reference, &rms_of(&rendered.spectra)),
+            held_out_error_db,
             samples_spread_db: 0.5 * (high - low),
         }))
     }
 
-    /// Returns the spectra of the renderings.
-    fn rendered(
+    /// Returns the spectra of the renderings, on the subject's grid.
+    pub(crate) fn rendered(
         &self,
         subject: &Subject,
         stored: &Stored,
@@ -91,13 +96,18 @@ impl Contender {
         Ok(rendered)
     }
 
-    fn magnitude(&self, subject: &Subject, stored: &Stored) -> Result<Vec<f64>, HostError> {
+    /// Returns the magnitudes as a recording of the voice reads them; of a baseline, its own.
+    fn magnitude(&self, subject: &Subject, stored: &Stored) -> Result<Vec<f64>, TradeoffError> {
         let spectrum = &subject.spectrum;
         match &self.kind {
             ContenderKind::Model(model, _) => {
-                let shape =
-                    model.magnitude(&stored.parameters, spectrum.band, &spectrum.frequency_hz)?;
-                Ok(shape.iter().map(|m| m * stored.level_rms).collect())
+                let reference = spectrum.as_ref();
+                Ok(read_spectrum(
+                    model,
+                    &stored.parameters,
+                    stored.level_rms,
+                    reference,
+                )?)
             }
             ContenderKind::Quantised => Ok(stored.parameters.clone()),
             ContenderKind::Recording => Ok(spectrum.magnitude.clone()),
@@ -105,13 +115,13 @@ impl Contender {
     }
 }
 
-struct Rendered {
-    spectra: Vec<Vec<f64>>,
+pub(crate) struct Rendered {
+    pub(crate) spectra: Vec<Vec<f64>>,
     kept_bytes: usize,
 }
 
 /// Returns the root of the mean power of several magnitudes, bin by bin.
-fn rms_of(spectra: &[Vec<f64>]) -> Vec<f64> {
+pub(crate) fn rms_of(spectra: &[Vec<f64>]) -> Vec<f64> {
     let bins = spectra.first().map_or(0, Vec::len);
     let power = |k: usize| spectra.iter().map(|m| m[k] * m[k]).sum::<f64>();
     let mean = |k: usize| (power(k) / spectra.len() as f64).sqrt();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use htex_format::{By, Measure, Measures};
 
-use crate::point::{Played, Point};
+use crate::point::{Played, Point, Shares};
 
 /// Returns a point for each setting that was measured on all of `recordings`, in the order of the first.
 pub(crate) fn medians(points: &[Point], recordings: usize) -> Vec<Point> {
@@ -31,6 +31,10 @@ fn median_of(same: &[&Point], name: &str) -> Point {
         let half = values.len() / 2;
         0.5 * (values[half] + values[(values.len() - 1) / 2])
     };
+    let all_of = |value: &dyn Fn(&Point) -> Option<f64>| {
+        let all = same.iter().all(|p| value(p).is_some());
+        all.then(|| of(&|p| value(p).unwrap_or(f64::NAN)))
+    };
     let measures = |by| Measures::new(|m| Some(of(&|p| p.get(by, m)))).only(Measure::of_both());
     let mean =
         |value: fn(&Point) -> f64| same.iter().map(|p| value(p)).sum::<f64>() / same.len() as f64;
@@ -44,9 +48,14 @@ fn median_of(same: &[&Point], name: &str) -> Point {
         spread: of(&|p| p.spread),
         bytes: of(&|p| p.bytes as f64) as usize,
         kept_bytes: of(&|p| p.kept_bytes as f64) as usize,
+        held_out_error: all_of(&|p| p.held_out_error),
+        held_out_error_db: all_of(&|p| p.held_out_error_db),
         by_magnitude: measures(By::Magnitude),
-        share_below_difference_threshold: mean(|p| p.share_below_difference_threshold),
-        share_lossless: mean(|p| p.share_lossless),
+        shares: Shares {
+            below_threshold: mean(|p| p.shares.below_threshold),
+            below_threshold_if_sensitive: mean(|p| p.shares.below_threshold_if_sensitive),
+            within_repeatability: mean(|p| p.shares.within_repeatability),
+        },
         by_samples: Played {
             measures: measures(By::Samples),
             band_error_spread_db: of(&|p| p.by_samples.band_error_spread_db),

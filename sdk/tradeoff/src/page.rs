@@ -4,6 +4,7 @@ use htex_format::{By, ErrorMeasure, Judged, Measure};
 use htex_report::{Cell, HeatScale, Page, Row, Table, figures, list, paragraph};
 
 use crate::against::Cost;
+use crate::error_axis::ErrorAxis;
 use crate::figure::figure;
 use crate::knee::{Knee, along_front};
 use crate::point::{errors, others};
@@ -55,24 +56,34 @@ pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
 }
 
 fn reading(tradeoff: &Tradeoff) -> String {
-    let own = match tradeoff.error {
-        ErrorMeasure::NineBand => {
-            "`bands` stores what the nine-band error is made of; no model is fitted to the other two"
+    let error = match tradeoff.error {
+        ErrorAxis::HeldOut => {
+            "held out: the setting is fitted to the odd blocks of what is read of the recording, stored and played, and compared with the \
+             even blocks in third octaves. 1 is as good as a second recording: the error of the odd blocks themselves, the dashed line"
+                .to_owned()
         }
-        _ => "no model is fitted to it",
+        ErrorAxis::Fitted(measure) => {
+            let own = match measure {
+                ErrorMeasure::NineBand => "`bands` stores what it is made of",
+                _ => "no model is fitted to it",
+            };
+            format!(
+                "the {measure} of what the setting was fitted to, in decibels ({own}): against bytes by the model's own magnitudes, against \
+                 time by rendered samples. The dashed line is the difference between odd and even blocks of the recording"
+            )
+        }
     };
     format!(
         "Each dot is a setting of a model; large dots are the model's own front, where no other of its \
-         settings has less error at the same or a lower cost. The grey line is the front of all models. Point at a large dot \
-         to see all its numbers. In the pictures and knees the error is the {}, in decibels ({own}): against \
-         bytes by the model's own magnitudes, against time by rendered samples. The tables have the \
-         nine-band error, third-octave error and log-spectral distance side by side, and what is felt of the difference: forces become \
-         displacements of the skin, of which what is above the detection threshold counts, in third octaves. Lossless is the share of the \
-         recordings whose difference is below the difference threshold in every band, or whose nine-band error is at or below \
-         the recording's own repeatability. Two baselines are \
-         in every picture: the spectrum at one byte per bin, and the recording, whose error is the difference \
-         between its odd and even strokes. Errors below that do not distinguish models.",
-        tradeoff.error
+         settings has less error at the same or a lower cost. The grey line is the front of all models; times that differ by no more than \
+         their spreads are one point of it. Point at a large dot to see all its numbers. In the pictures and knees the error is {error}. \
+         Errors below the dashed line do not distinguish models. The tables have the held-out error, and against \
+         what was fitted to the nine-band error, third-octave error and log-spectral distance, and what is felt of the difference: forces become \
+         displacements of the skin, of which what is above the detection threshold counts, in third octaves. Below threshold is the share of \
+         the recordings whose difference is below the difference threshold in every band; apart from that, repeats is the share whose \
+         nine-band error is at or below the recording's own repeatability, which says how well a recording repeats and not what is felt. Two \
+         baselines are in every picture: the spectrum at one byte per bin, and the recording, whose error is the difference \
+         between its odd and even blocks."
     )
 }
 
@@ -151,9 +162,13 @@ fn columns() -> Vec<String> {
             .map(|&name| name.to_owned())
             .collect::<Vec<_>>()
     };
-    let mut columns = names(&["bytes"]);
+    let mut columns = names(&["bytes", "held out"]);
     columns.extend(errors().map(Measure::heading));
-    columns.extend(names(&["lossless / %", "played / dB"]));
+    columns.extend(names(&[
+        "below threshold / %",
+        "repeats / %",
+        "played / dB",
+    ]));
     columns.extend(others().map(Measure::heading));
     columns.extend(names(&["ns a sample", "first sample / µs", "fit / ms"]));
     columns
@@ -163,8 +178,10 @@ fn cells(p: &Point) -> Vec<Cell> {
     let text = |text: String| Cell::Text(text, String::new());
     let own = |measure| p.get(By::Magnitude, measure);
     let mut cells = vec![text(p.bytes.to_string())];
+    cells.push(Cell::Plain(p.held_out_error.unwrap_or(f64::NAN)));
     cells.extend(errors().map(|error| Cell::Plain(own(error))));
-    cells.push(text(format!("{:.0}", 100.0 * p.share_lossless)));
+    let shares = [p.shares.below_threshold, p.shares.within_repeatability];
+    cells.extend(shares.map(|share| text(format!("{:.0}", 100.0 * share))));
     cells.push(Cell::Text(
         format!("{:.2}", p.get(By::Samples, Measure::NineBand)),
         format!("± {:.2}", p.by_samples.band_error_spread_db),

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use htex_author::LosslessShare;
+use htex_author::FeltError;
 use htex_format::{By, Judged, Keyed, Measure, Measures};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 
-use crate::Setting;
 use crate::contender::{Contender, ContenderKind};
 use crate::measured::Measured;
 use crate::timing::Timed;
+use crate::{Setting, Subject};
 
 /// Name of the first baseline, in place of a model's: the spectrum, one byte per bin.
 pub const QUANTISED: &str = "quantised-spectrum";
@@ -45,13 +45,17 @@ pub struct Point {
     pub bytes: usize,
     /// Bytes of a loop or a filter that are kept while playing.
     pub kept_bytes: usize,
+    /// Error of the fit to the odd blocks, played, against the even blocks, in third octaves: in units of the difference between them,
+    /// where 1 is as good as a second recording. `None` if there are too few blocks.
+    pub held_out_error: Option<f64>,
+    /// The same in decibels.
+    pub held_out_error_db: Option<f64>,
     /// The measures of the model's magnitudes: [`Measure::of_both`].
     #[serde(flatten, serialize_with = "of_magnitudes")]
     pub by_magnitude: Measures,
-    /// Share of the recordings whose difference from the model's magnitudes is below the difference threshold in every band; 0 or 1 for one recording.
-    pub share_below_difference_threshold: f64,
-    /// Share of the recordings for which that holds, or whose nine-band error is at or below the recording's own repeatability.
-    pub share_lossless: f64,
+    /// Shares of the recordings; 0 or 1 for one recording.
+    #[serde(flatten)]
+    pub shares: Shares,
     /// The measures of rendered samples.
     #[serde(flatten)]
     pub by_samples: Played,
@@ -61,6 +65,44 @@ pub struct Point {
     /// Whether it is on the front of time and sample error, among settings with blocks and output rate at their
     /// defaults.
     pub on_time_front: bool,
+}
+
+/// Shares of the recordings whose difference from the model's magnitudes is small, 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Shares {
+    /// Below the difference threshold in every third octave, and in all together.
+    #[serde(rename = "share_below_threshold")]
+    pub below_threshold: f64,
+    /// The same for a person with a sensitive finger and a soft skin.
+    #[serde(rename = "share_below_threshold_if_sensitive")]
+    pub below_threshold_if_sensitive: f64,
+    /// Within what the recording itself varies, which says nothing about what is felt.
+    #[serde(rename = "share_within_repeatability")]
+    pub within_repeatability: f64,
+}
+
+impl Shares {
+    /// Of one recording: each share is 0 or 1.
+    fn new(felt: &FeltError) -> Self {
+        let share = |is: bool| f64::from(u8::from(is));
+        Self {
+            below_threshold: share(felt.below_difference_threshold),
+            below_threshold_if_sensitive: share(felt.below_if_sensitive),
+            within_repeatability: share(felt.within_repeatability),
+        }
+    }
+
+    /// Returns the shares by their keys in JSON.
+    pub(crate) fn keyed(&self) -> [(&'static str, f64); 3] {
+        [
+            ("share_below_threshold", self.below_threshold),
+            (
+                "share_below_threshold_if_sensitive",
+                self.below_threshold_if_sensitive,
+            ),
+            ("share_within_repeatability", self.within_repeatability),
+        ]
+    }
 }
 
 /// Returns the errors of points.
@@ -112,7 +154,7 @@ impl Serialize for Played {
 
 impl Point {
     pub(crate) fn new(
-        recording: &str,
+        subject: &Subject,
         one: &Contender,
         measured: &Measured,
         timed: &Timed,
@@ -121,10 +163,10 @@ impl Point {
             ContenderKind::Model(model, _) => Some(model.descriptor()),
             _ => None,
         };
-        let mut lossless = LosslessShare::default();
-        lossless.count(&measured.by_magnitude.felt);
+        let floor_db = subject.held_out.as_ref().ok().map(|h| h.floor_db);
+        let of_floor = |(error, floor): (f64, f64)| error / floor;
         Self {
-            recording: recording.to_owned(),
+            recording: subject.name.clone(),
             model: one.model.clone(),
             knobs: one.setting.knobs(descriptor),
             setting: one.setting.words(),
@@ -137,9 +179,10 @@ impl Point {
             spread: timed.ns_per_sample.spread,
             bytes: measured.bytes,
             kept_bytes: measured.kept_bytes,
+            held_out_error: measured.held_out_error_db.zip(floor_db).map(of_floor),
+            held_out_error_db: measured.held_out_error_db,
             by_magnitude: measured.by_magnitude.measures,
-            share_below_difference_threshold: lossless.below_difference_threshold as f64,
-            share_lossless: lossless.either as f64,
+            shares: Shares::new(&measured.by_magnitude.felt),
             by_samples: Played {
                 measures: measured.by_samples.measures,
                 band_error_spread_db: measured.samples_spread_db,

@@ -1,11 +1,12 @@
 //! Recordings as the subjects of a sweep.
 
-use htex_author::{AuthorError, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, read_take};
+use htex_author::{AuthorError, SpectrumOptions, Take, TextureSpectrum, read_take};
 use htex_finding::Notice;
 
-use crate::accuracy::{Accuracy, accuracy};
+use crate::TradeoffError;
+use crate::held_out::HeldOut;
 
-/// A recording with its spectrum and repeatability.
+/// A recording with its spectrum and what it varies.
 #[derive(Debug, Clone)]
 pub struct Subject {
     /// File name, or name of a simulated surface.
@@ -16,8 +17,8 @@ pub struct Subject {
     pub spectrum: TextureSpectrum,
     /// Warnings, as sentences.
     pub warnings: Vec<Notice>,
-    /// Difference between odd and even strokes; `None` for a single stroke.
-    pub(crate) repeats: Option<Accuracy>,
+    /// Its odd and even blocks, or why it has none.
+    pub(crate) held_out: Result<HeldOut, &'static str>,
     /// The first lateral axis.
     pub(crate) samples: Vec<f32>,
     pub(crate) rate_hz: f64,
@@ -35,14 +36,14 @@ impl Subject {
         let recording = &take.recording;
         let reading = read_take(take, options, strict)?;
         let (part, warnings) = (reading.part, reading.warnings);
-        let repeats = repeats(&part, options)?;
+        let held_out = HeldOut::new(&part, options);
         let spectrum = TextureSpectrum::average(&[part], options.averaging)?;
         let axes = &recording.axes;
         let samples = |axis: &Vec<f64>| axis.iter().map(|&x| x as f32).collect();
         Ok(Self {
             name: recording.source.clone(),
             simulated: recording.simulated,
-            repeats,
+            held_out,
             samples: axes.first().map(samples).unwrap_or_default(),
             rate_hz: recording.rate_hz,
             bytes: axes.iter().map(|axis| size_of::<f32>() * axis.len()).sum(),
@@ -51,35 +52,17 @@ impl Subject {
             warnings,
         })
     }
-}
 
-/// Compares the odd strokes with the even ones.
-fn repeats(
-    part: &SegmentSpectra,
-    options: &SpectrumOptions,
-) -> Result<Option<Accuracy>, AuthorError> {
-    if part.spectra.len() < 2 {
-        return Ok(None);
+    /// Returns an error if it has nothing to hold out.
+    pub(crate) fn check_held_out(&self) -> Result<(), TradeoffError> {
+        match &self.held_out {
+            Ok(_) => Ok(()),
+            Err(reason) => Err(TradeoffError::NothingHeldOut {
+                recording: self.name.clone(),
+                reason,
+            }),
+        }
     }
-    let half = |first: usize| {
-        let spectra = part
-            .spectra
-            .iter()
-            .skip(first)
-            .step_by(2)
-            .cloned()
-            .collect();
-        let part = SegmentSpectra {
-            spectra,
-            ..part.clone()
-        };
-        TextureSpectrum::average(&[part], options.averaging)
-    };
-    let (even, odd) = (half(0)?, half(1)?);
-    let mut repeats = accuracy(&even, &odd.magnitude);
-    // The error is the repeatability itself.
-    repeats.felt.within_repeatability = true;
-    Ok(Some(repeats))
 }
 
 /// Returns a hash of everything that results depend on: the samples and their spectrum.

@@ -12,7 +12,7 @@ use crate::journal::{Entry, Journal, Outcome};
 use crate::lineup::{key, lineup};
 use crate::request::Request;
 use crate::timing::{Timed, time};
-use crate::{Point, Subject, TradeoffError};
+use crate::{ErrorAxis, Point, Subject, TradeoffError};
 
 /// A setting that could not be measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -25,6 +25,8 @@ pub struct LeftOut {
 
 #[derive(Debug, Clone, Default)]
 pub struct Swept {
+    /// The error that the points are graded by.
+    pub error: ErrorAxis,
     /// The points by recording, in the order of the table.
     pub points: Vec<Point>,
     /// Settings that could not be measured.
@@ -37,13 +39,15 @@ pub type Progress<'a> = &'a (dyn Fn(u64, u64, &str) + Sync);
 /// Measures every setting on every recording, on all cores, and times them on one.
 ///
 /// # Errors
-/// When the journal cannot be written, or no model can be fitted to a recording.
+/// When the journal cannot be written, no model can be fitted to a recording, or a recording has nothing to hold out and the error asked
+/// for is held out.
 pub fn sweep(
     subjects: &[Subject],
     request: &Request,
     journal: &mut Journal,
     progress: Progress<'_>,
 ) -> Result<Swept, TradeoffError> {
+    let error = request.error_of(subjects)?;
     let contenders = lineup(request)?;
     journal.open(&key(subjects, &contenders, request))?;
     // Timing a contender takes about as long as measuring it, and counts as as many steps.
@@ -53,7 +57,10 @@ pub fn sweep(
         let before = done.fetch_add(steps, Ordering::Relaxed);
         progress((before + steps) as u64, all as u64, what);
     };
-    let mut swept = Swept::default();
+    let mut swept = Swept {
+        error,
+        ..Swept::default()
+    };
     for (recording, subject) in subjects.iter().enumerate() {
         let measured = measure_all(
             recording,
@@ -79,7 +86,7 @@ pub fn sweep(
             match measured.get(&one.id()) {
                 Some(Outcome::Measured(measured)) => {
                     let timed = timed.get(&one.id());
-                    let point = timed.map(|timed| Point::new(&subject.name, one, measured, timed));
+                    let point = timed.map(|timed| Point::new(subject, one, measured, timed));
                     swept.points.extend(point);
                 }
                 Some(Outcome::Failed { reason }) => swept.left_out.push(LeftOut {
@@ -149,7 +156,7 @@ fn measure_all(
             let outcome = match one.measure(subject, quick) {
                 Ok(Some(measured)) => Outcome::Measured(Box::new(measured)),
                 Ok(None) => Outcome::Failed {
-                    reason: "the repeatability of a single stroke is not known".to_owned(),
+                    reason: "it has too few blocks to be compared with itself".to_owned(),
                 },
                 Err(error) => Outcome::Failed {
                     reason: error.to_string(),

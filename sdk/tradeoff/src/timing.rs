@@ -59,12 +59,13 @@ pub(crate) fn time(
     let rounds = if quick { QUICK } else { FULL };
     let fit_ms = turns(contenders, rounds.fit, |one| {
         let begun = Instant::now();
-        black_box(one.fit(subject)?);
+        black_box(one.fit(&subject.spectrum)?);
         Ok(1e3 * begun.elapsed().as_secs_f64())
     })?;
     let mut playing = Vec::new();
     for one in contenders {
-        let stored = one.store(subject, &one.fit(subject)?)?;
+        let spectrum = &subject.spectrum;
+        let stored = one.store(subject, spectrum, &one.fit(spectrum)?)?;
         let sound = one.sound(subject, &stored, 1)?;
         playing.push(Playing { one, stored, sound });
     }

@@ -1,29 +1,29 @@
 //! Evaluation of a sweep: fronts, knees, warnings.
 
 use htex_finding::Notice;
-use htex_format::ErrorMeasure;
 use serde::Serialize;
 
 use crate::Subject;
 use crate::against::{Against, Cost};
+use crate::error_axis::ErrorAxis;
 use crate::figure::mark_front;
-use crate::knee::{Knee, along_front, knees};
+use crate::knee::{Knee, knees};
 use crate::median::medians;
 use crate::point::Point;
 use crate::sweep::{LeftOut, Swept};
 
 /// Description of the numbers, for readers of the JSON.
 const METHOD: &str = "times are medians of interleaved runs on one core, with warm caches; every spread is half \
-    the interquartile range over the median. Errors are RMS over nine bands, over \
-    third-octave bands, and over the bins (log-spectral distance), and over third-octave bands of what is above a fingertip's detection threshold (felt), by the model's own magnitudes, \
-    and of three renderings; `error` is the one used for fronts and knees. on_front: bytes \
-    against the error by magnitudes, settings that play at their defaults; on_time_front: \
-    ns_per_sample against the error by samples, settings with blocks and output rate at their defaults. The \
-    recording's error is the difference between its odd and even strokes. share_lossless: recordings whose difference by magnitudes is \
-    below the difference threshold, or whose nine-band error is at or below the recording's repeatability.";
-
-/// Most steps in a warning.
-const SHOWN_STEPS: usize = 3;
+    the interquartile range over the median. held_out_error: fitted to the odd blocks of what is read of a recording, stored, played (three \
+    renderings), and compared with the even blocks in third octaves, over the difference between odd and even blocks (floor_db): 1 is as good \
+    as a second recording. The other errors are against what was fitted to: RMS over nine bands, over \
+    third-octave bands, and over the bins (log-spectral distance), and over third-octave bands of what is above a fingertip's detection \
+    threshold (felt), by the model's own magnitudes, and of three renderings; `error` is the one used for fronts and knees. on_front: bytes \
+    against the held-out error or the error by magnitudes, settings that play at their defaults; on_time_front: \
+    ns_per_sample against the held-out error or the error by samples, settings with blocks and output rate at their defaults; of times within \
+    their spreads, the one with the least error. The recording's errors are the difference between its odd and even blocks. \
+    share_below_threshold: recordings whose difference by magnitudes is below the difference threshold in every band; \
+    share_within_repeatability: recordings whose nine-band error is at or below their own repeatability, which says nothing about what is felt.";
 
 /// The machine on which a sweep ran.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -59,6 +59,12 @@ pub struct Recorded {
     pub simulated: bool,
     /// Its repeatability, nine-band RMS, dB.
     pub repeatability_rms_db: Option<f64>,
+    /// Number of blocks of what is read of it, of which the even ones are held out; `None` if there are too few.
+    pub blocks: Option<usize>,
+    /// Length of a block, seconds.
+    pub block_s: Option<f64>,
+    /// Third-octave difference between the odd and the even blocks, dB: the unit of the held-out error.
+    pub floor_db: Option<f64>,
 }
 
 /// The evaluated result of a sweep.
@@ -68,7 +74,7 @@ pub struct Tradeoff {
     pub tool: String,
     pub machine: Machine,
     /// The error measure of fronts and knees.
-    pub error: ErrorMeasure,
+    pub error: ErrorAxis,
     /// Description of the numbers.
     pub method: &'static str,
     pub recordings: Vec<Recorded>,
@@ -88,8 +94,9 @@ pub struct Tradeoff {
 
 impl Tradeoff {
     /// Marks the fronts of a sweep over `subjects` and finds their knees.
-    pub fn new(tool: &str, subjects: &[Subject], swept: Swept, error: ErrorMeasure) -> Self {
+    pub fn new(tool: &str, subjects: &[Subject], swept: Swept) -> Self {
         let Swept {
+            error,
             mut points,
             left_out,
         } = swept;
@@ -175,8 +182,13 @@ impl Tradeoff {
             .iter()
             .flat_map(|subject| subject.warnings.clone())
             .collect();
-        for recording in &self.recordings {
-            warnings.extend(self.close_steps(&recording.name).map(Notice::from));
+        let not_held_out = subjects.iter().find_map(|s| s.check_held_out().err());
+        if let (ErrorAxis::Fitted(_), Some(reason)) = (self.error, not_held_out) {
+            let what = format!(
+                "{reason}. The error is the {} of what was fitted to",
+                self.error
+            );
+            warnings.push(what.into());
         }
         if !self.left_out.is_empty() {
             warnings.push(
@@ -190,45 +202,23 @@ impl Tradeoff {
         }
         warnings
     }
-
-    /// Lists the steps along the front of time that are smaller than the spread of the times.
-    fn close_steps(&self, recording: &str) -> Option<String> {
-        let points: Vec<&Point> = self
-            .of(recording)
-            .into_iter()
-            .filter(|p| Cost::Time.compares(p))
-            .collect();
-        let along = along_front(&points, self.against(Cost::Time));
-        let ns = |p: &Point| p.spread * p.ns_per_sample;
-        let hidden: Vec<String> = along
-            .windows(2)
-            .filter(|w| w[1].ns_per_sample - w[0].ns_per_sample <= ns(w[0]) + ns(w[1]))
-            .map(|w| format!("{} to {}", w[0].name(), w[1].name()))
-            .collect();
-        let more = match hidden.len().saturating_sub(SHOWN_STEPS) {
-            0 => String::new(),
-            more => format!(", and at {more} more steps"),
-        };
-        (!hidden.is_empty()).then(|| {
-            format!(
-                "{recording}: on the front of time, the spread of the times exceeds the difference from {}{more}",
-                hidden[..hidden.len().min(SHOWN_STEPS)].join(", from ")
-            )
-        })
-    }
 }
 
 impl Recorded {
     fn new(subject: &Subject) -> Self {
+        let held_out = subject.held_out.as_ref().ok();
         Self {
             name: subject.name.clone(),
             simulated: subject.simulated,
             repeatability_rms_db: subject.spectrum.repeatability_rms_db,
+            blocks: held_out.map(|h| h.halves.blocks),
+            block_s: held_out.map(|h| h.halves.block_s),
+            floor_db: held_out.map(|h| h.floor_db),
         }
     }
 }
 
-fn mark(points: &mut [Point], error: ErrorMeasure) {
+fn mark(points: &mut [Point], error: ErrorAxis) {
     for cost in [Cost::Bytes, Cost::Time] {
         mark_front(points, Against { cost, error });
     }

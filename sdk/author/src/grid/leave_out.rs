@@ -2,13 +2,13 @@
 
 use htex_dsp::bands::rms;
 use htex_format::{AtCondition, Condition, LeftOut, Measure, Measures};
-use htex_host::{HostError, LoadedModel};
+use htex_host::LoadedModel;
 use htex_play::exploration::CEILING;
 use htex_play::{Mesh, Motion, Motions};
 
 use super::held_out::{Held, LeftOutBlock};
 use crate::conditions::Group;
-use crate::{AuthorError, agreement};
+use crate::{AuthorError, agreement, read_spectrum};
 
 /// Returns for each of `conditions` conditions the error of what a player makes, at the motions near it and without a block of
 /// time, of that block: RMS over the blocks. `None` where no block has windows enough near the condition, or the rest does
@@ -84,12 +84,13 @@ impl<'a> Played<'a> {
         is_finite.then_some(error.measures)
     }
 
-    /// Returns the magnitudes at a motion, as [`htex_play::Asset::magnitude`] does.
+    /// Returns the magnitudes at a motion, as a recording of the voice reads them; where frequencies are scaled, as
+    /// [`htex_play::Asset::magnitude`] states them.
     fn magnitude(
         &self,
         [speed, force]: [f64; 2],
         reference: crate::SpectrumRef<'_>,
-    ) -> Result<Vec<f64>, HostError> {
+    ) -> Result<Vec<f64>, AuthorError> {
         let weights: Vec<(usize, f64)> = self.mesh.weights(speed, force).iter().collect();
         let sets: Vec<&[f64]> = weights.iter().map(|(i, _)| &self.fits[*i].0[..]).collect();
         let parts: Vec<f64> = weights.iter().map(|(_, weight)| *weight).collect();
@@ -100,6 +101,9 @@ impl<'a> Played<'a> {
         };
         let scaling = self.motions.scaling(Motion::new(speed, force), CEILING);
         let ratio = scaling.frequency;
+        if ratio == 1.0 {
+            return read_spectrum(self.model, &mixed, level * scaling.level, reference);
+        }
         let recorded_hz: Vec<f64> = reference.frequency_hz.iter().map(|f| f / ratio).collect();
         let shape = self.model.magnitude(&mixed, reference.band, &recorded_hz)?;
         let spread = match self.model.descriptor().is_sum_of_sines() {

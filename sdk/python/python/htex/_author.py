@@ -98,7 +98,7 @@ def tradeoff(
     *,
     models: str | Iterable[str] = "all",
     quick: bool = True,
-    error: ErrorMeasure = "nine_band",
+    error: Literal["held_out"] | ErrorMeasure | None = None,
     plugins: Sequence[str | os.PathLike[str]] = (),
     installed: bool = False,
     journal: str | os.PathLike[str] | None = None,
@@ -106,6 +106,8 @@ def tradeoff(
 ) -> Tradeoff:
     """Measure accuracy against bytes and time over models and their options, as ``htex tradeoff`` does.
 
+    ``error`` is the error of fronts and knees: ``held_out``, in units of a second recording, or one of what was fitted to, in decibels. By
+    default it is ``held_out``, and ``third_octave`` if a recording is too short to hold anything out of it.
     ``journal`` is a file from which an interrupted sweep continues. ``models``, ``plugins`` and ``installed`` are those of ``fit``.
     """
     request = {

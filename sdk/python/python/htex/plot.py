@@ -59,7 +59,7 @@ def texture(
 
 
 def tradeoff(
-    tradeoff: Tradeoff, *, x: str = "bytes", y: str = "band_error_rms_db", ax: Axes | None = None
+    tradeoff: Tradeoff, *, x: str = "bytes", y: str = "held_out_error", ax: Axes | None = None
 ) -> Axes:
     """Draw one column of a trade-off over another, a colour for each model."""
     ax = _axes(ax)

@@ -9,7 +9,7 @@ pub struct TextureReport {
     pub measures: Vec<Measure>,
     /// The textures, in the order of the page.
     pub textures: Vec<Texture>,
-    /// Of the textures, how many each model keeps so that no difference is to be expected to be felt; may be empty.
+    /// Of the textures, how many each model keeps below the difference threshold; may be empty.
     pub shares: Vec<Share>,
     /// Further pictures, as SVG, before the spectra.
     pub pictures: Vec<String>,
@@ -17,7 +17,7 @@ pub struct TextureReport {
     pub command: String,
 }
 
-/// Of some textures, how many a model keeps so that no difference is to be expected to be felt.
+/// Of some textures, how many a model keeps below the difference threshold, and how many within what the recording varies.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Share {
     /// The model's short name.
@@ -29,8 +29,6 @@ pub struct Share {
     pub below_if_sensitive: usize,
     /// Those whose nine-band error is at or below the recording's repeatability.
     pub within_repeatability: usize,
-    /// Those for which one of both holds.
-    pub either: usize,
 }
 
 /// A measure of how close the models come: a table of textures by models.

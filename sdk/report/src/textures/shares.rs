@@ -1,14 +1,14 @@
-//! Table of the textures that a model keeps so that no difference is to be expected to be felt.
+//! Table of the textures that a model keeps below the difference threshold, and of those within what the recording varies.
 
 use super::data::{Share, TextureReport};
 use crate::page::paragraph;
 use crate::table::{Cell, HeatScale, Row, Table};
 
-const CAPTION: &str = "Textures whose difference is not to be expected to be felt";
+const CAPTION: &str = "Textures whose difference is below the difference threshold, and textures within what the recording varies";
 const NOTE: &str = "Below the difference threshold: what is above a fingertip's detection threshold differs by less than \
     1.6 dB (20 %) in every third octave, and in all together. Sensitive finger: the same for a threshold 10 dB lower and a skin that yields \
-    twice as far. Within repeatability: the nine-band error is at or below the difference between parts of the recording. None of them \
-    is a rating by a person.";
+    twice as far. Neither is a rating by a person. Within repeatability: the nine-band error is at or below the difference between parts \
+    of the recording, which says how well the recording repeats and not what is felt.";
 
 /// Returns the table with its explanation; nothing without shares.
 pub(super) fn table(report: &TextureReport) -> String {
@@ -19,7 +19,6 @@ pub(super) fn table(report: &TextureReport) -> String {
         "below the difference threshold",
         "the same, sensitive finger",
         "within repeatability",
-        "one of both",
     ];
     let table = Table {
         caption: CAPTION.to_owned(),
@@ -45,7 +44,6 @@ fn row(report: &TextureReport, share: &Share) -> Row {
         share.below_difference_threshold,
         share.below_if_sensitive,
         share.within_repeatability,
-        share.either,
     ];
     let cell = |count: usize| Cell::Text(format!("{count} of {}", share.textures), String::new());
     Row {

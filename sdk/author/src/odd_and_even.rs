@@ -1,0 +1,123 @@
+//! Odd and even blocks of time of what is read of recordings: two readings of a texture that share no sample.
+
+use htex_dsp::spectrum::Complex;
+
+use crate::blocks::{Span, blocks};
+use crate::segments::SEGMENTS_PER_S;
+use crate::spectrum::spans_of;
+use crate::{Averaging, SegmentSpectra, TextureSpectrum};
+
+/// The spectra of the odd and of the even blocks.
+#[derive(Debug, Clone)]
+pub struct OddAndEven {
+    /// The average over the first, the third, … block.
+    pub odd: TextureSpectrum,
+    /// The average over the second, the fourth, … block.
+    pub even: TextureSpectrum,
+    /// Number of blocks of both together.
+    pub blocks: usize,
+    /// Length of the longest block, 0.2 to 1 s.
+    pub block_s: f64,
+}
+
+/// Cuts what is read of recordings at one condition into the equal blocks of repeatability
+/// ([`TextureSpectrum::repeatability_rms_db`]), and averages the odd and the even ones.
+///
+/// `None` if there are fewer than four blocks, or quantities or bands differ.
+pub fn odd_and_even(parts: &[SegmentSpectra], averaging: Averaging) -> Option<OddAndEven> {
+    let first = parts.first()?;
+    let differs =
+        |part: &SegmentSpectra| (part.quantity, part.band) != (first.quantity, first.band);
+    if parts.iter().any(differs) {
+        return None;
+    }
+    let spans: Vec<Span> = parts.iter().enumerate().flat_map(spans_of).collect();
+    let of_spans = blocks(&spans)?;
+    let spectra = parts.iter().flat_map(|part| &part.spectra);
+    let all: Vec<(&[Complex<f64>], Span, usize)> = spectra
+        .zip(&spans)
+        .zip(&of_spans)
+        .filter_map(|((spectrum, span), block)| Some((spectrum.as_slice(), *span, (*block)?)))
+        .collect();
+    let half = |parity: usize| {
+        let own = all.iter().filter(|(.., block)| block % 2 == parity);
+        let (spectra, spans): (Vec<_>, Vec<_>) =
+            own.map(|(spectrum, span, _)| (*spectrum, *span)).unzip();
+        TextureSpectrum::of(first.quantity, first.band, &spectra, &spans, averaging)
+    };
+    let count = 1 + all.iter().map(|(.., block)| *block).max()?;
+    let longest = (0..count).map(|number| {
+        let own = all.iter().filter(move |(.., block)| *block == number);
+        let [from, to] = own.fold([f64::MAX, f64::MIN], |[from, to], (_, span, _)| {
+            [from.min(span.from), to.max(span.to)]
+        });
+        to - from
+    });
+    Some(OddAndEven {
+        odd: half(0),
+        even: half(1),
+        blocks: count,
+        block_s: longest.fold(0.0, f64::max) / SEGMENTS_PER_S,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Recording, SegmentChoice, SpectrumOptions, segment_spectra};
+
+    const RATE_HZ: f64 = 4000.0;
+
+    /// Noise that differs from second to second, read in windows.
+    fn read(seconds: f64) -> Result<SegmentSpectra, crate::AuthorError> {
+        let mut state = 1u32;
+        let sample = |_| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state) / f64::from(u32::MAX) - 0.5
+        };
+        let samples = (0..(seconds * RATE_HZ) as usize).map(sample).collect();
+        let recording = Recording::new("noise", RATE_HZ, vec![samples])?;
+        let options = SpectrumOptions::default().with_segments(SegmentChoice::Windows);
+        segment_spectra(&recording, &options)
+    }
+
+    #[test]
+    fn lengths_of_blocks() {
+        // Seconds read, blocks, and the length of each.
+        for (seconds, count, block_s) in [
+            (0.7, None, 0.0),
+            (0.8, Some(4), 0.2),
+            (2.0, Some(4), 0.5),
+            (10.0, Some(10), 1.0),
+        ] {
+            let part = read(seconds).unwrap_or_else(|e| panic!("{e}"));
+            let found = odd_and_even(std::slice::from_ref(&part), Averaging::Rms);
+            assert_eq!(found.as_ref().map(|f| f.blocks), count, "{seconds} s");
+            let found_s = found.map_or(0.0, |found| found.block_s);
+            assert!((found_s - block_s).abs() < 1e-9, "{found_s} for {block_s}");
+        }
+    }
+
+    /// Each half averages its own segments: the mean power of both together is that of all that are read.
+    #[test]
+    fn odd_and_even_are_two_readings() {
+        let part = read(0.8).unwrap_or_else(|e| panic!("{e}"));
+        let halves = odd_and_even(std::slice::from_ref(&part), Averaging::Rms);
+        let Some(OddAndEven { odd, even, .. }) = halves else {
+            panic!("four blocks of 0.2 s")
+        };
+        assert_eq!((odd.segments, even.segments), (2, 2));
+        let power = |segment: usize, k: usize| part.spectra[segment][k].norm_sqr();
+        for k in 0..odd.magnitude.len() {
+            // Windows of 0.2 s begin every 0.1 s: every second one is a block.
+            let expected = [
+                0.5 * (power(0, k) + power(4, k)),
+                0.5 * (power(2, k) + power(6, k)),
+            ];
+            let found = [&odd, &even].map(|half| half.magnitude[k].powi(2));
+            for (a, b) in found.iter().zip(expected) {
+                assert!((a / b - 1.0).abs() < 1e-9, "bin {k}");
+            }
+        }
+    }
+}

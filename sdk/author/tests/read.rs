@@ -1,0 +1,65 @@
+//! What a model states as a recording of its voice reads it, compared with its voice.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+use htex_author::{
+    SpectrumOptions, TextureSpectrum, agreement, read_spectrum, segment_spectra,
+    spectrum_of_samples,
+};
+use htex_format::Measure;
+use htex_host::{LoadedModel, Registry, Stream};
+use htex_simulate::{SimulationOptions, Surface, simulate};
+
+const SECONDS: f64 = 60.0;
+const RATE_HZ: f64 = 4000.0;
+
+fn spectrum(surface: Surface) -> TextureSpectrum {
+    let simulation = simulate(&SimulationOptions::new(surface)).unwrap();
+    let recording = simulation.to_recording("surface").unwrap();
+    let options = SpectrumOptions::default();
+    let part = segment_spectra(&recording, &options).unwrap();
+    TextureSpectrum::average(&[part], options.averaging).unwrap()
+}
+
+/// The spectrum of 60 s of a voice, with another seed than measures have.
+fn played(model: &LoadedModel, parameters: &[f64], of: &TextureSpectrum) -> Vec<f64> {
+    let mut samples = vec![0.0; (SECONDS * RATE_HZ) as usize];
+    let mut voice = Stream::new(model, parameters, of.band, RATE_HZ, 7).unwrap();
+    voice.render(&mut samples).unwrap();
+    spectrum_of_samples(&samples, RATE_HZ, 1.0, of.as_ref()).unwrap()
+}
+
+/// Errors against the recording, by magnitude and by 60 s of the voice, of fits at their defaults.
+#[test]
+fn measures_of_magnitudes_are_those_of_the_voice() {
+    let registry = Registry::builtin();
+    for surface in [Surface::Sandpaper, Surface::CorrugatedPaper] {
+        let spectrum = spectrum(surface);
+        let reference = spectrum.as_ref();
+        for model in registry.models() {
+            let options = model.descriptor().default_options();
+            let fit = model.fit(&spectrum.fit_request(&options)).unwrap();
+            let read = read_spectrum(model, &fit.parameters, 1.0, reference).unwrap();
+            let voice = played(model, &fit.parameters, &spectrum);
+            let at_level = |magnitude: &[f64]| -> Vec<f64> {
+                magnitude.iter().map(|m| m * fit.level_rms).collect()
+            };
+            let [stated, heard] = [read, voice].map(|m| agreement(reference, &at_level(&m)));
+            let name = model.short_name();
+            for measure in [
+                Measure::NineBand,
+                Measure::ThirdOctave,
+                Measure::LogSpectral,
+            ] {
+                let [stated, heard] = [&stated, &heard].map(|a| a.get(measure).unwrap());
+                println!("{surface} {name} {measure:?}: {stated:.3} {heard:.3} dB");
+                // 0.3 dB is chance and the edges of voices. Large errors are those of bands next to empty, where the voice is read
+                // through the side lobes of the window, too.
+                let tolerance_db = f64::max(0.3, 0.06 * heard);
+                assert!(
+                    (stated - heard).abs() < tolerance_db,
+                    "{surface} {name} {measure:?}: {stated} {heard}"
+                );
+            }
+        }
+    }
+}

@@ -162,6 +162,6 @@ mod tests {
             .chain(windows(0, 40.0, 9))
             .chain(windows(1, 0.0, 9))
             .collect();
-        assert_eq!(counts(&takes), Some(vec![3, 4, 3, 4, 3, 4]));
+        assert_eq!(counts(&takes), Some(vec![4; 6]));
     }
 }

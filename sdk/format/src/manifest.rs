@@ -347,7 +347,7 @@ pub struct AtCondition {
     /// Agreement with the recording.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quality: Option<Quality>,
-    /// Error of the interpolation between the other conditions at this one, leave-one-out.
+    /// Error at blocks of time near this condition, of a fit without them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_out: Option<LeftOut>,
 }

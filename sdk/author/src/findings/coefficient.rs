@@ -25,7 +25,8 @@ pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
     if line.slope.abs() + 2.0 * line.error > LARGEST_EXPONENT {
         return;
     }
-    findings.add(RECORDING_FRICTION_COEFFICIENT, "/lateral", format!(
+    let axis = format!("/{}", recording.axis_name(0));
+    findings.add(RECORDING_FRICTION_COEFFICIENT, axis, format!(
         "the lateral force does not change with the normal force, of which it is the power {:.2} (standard error {:.2}) while the normal force \
          varies by {:.0} %; a friction coefficient does so: multiply it by the force, as in lateral=friction*force,normal=force",
         line.slope,

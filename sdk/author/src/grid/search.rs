@@ -22,7 +22,7 @@ const SPEED_RATIOS: [f64; 5] = [2.0, 1.41, 1.19, 1.12, 1.06];
 /// tried only where there are windows for them.
 const COMPARED_RATIO: f64 = 1.19;
 /// Decibels by which more lines must be nearer to what was left out.
-const WORTH_DB: f64 = 0.03;
+const WORTH_DB: f64 = 0.02;
 
 /// Cells and their spectra, for one choice of lines.
 pub(super) struct Gathered {

@@ -1,5 +1,5 @@
 //! One range for each number: what a schema refuses, reading refuses, and the reverse. Every number of a document that has all keys is
-//! replaced by numbers around and beyond the ranges, and every key is left out.
+//! replaced by numbers around and beyond the ranges, texts by others, and every key is left out.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "../../sdk/format/tests/common/raw_zip.rs"]
@@ -20,6 +20,9 @@ const PROBES: [f64; 38] = [
     -1.5, -1.0, -1e-10, 0.0, 1e-300, 1e-13, 1e-10, 0.004, 0.04, 0.5, 1.0, 1.5, 5.0, 15.0, 30.0,
     55.0, 300.0, 1e3, 5e3, 2e4, 2e6, 2e9, 2e12, 1e300,
 ];
+
+/// Texts that are no names, or of another form.
+const TEXTS: [&str; 6] = ["", " ", "a", "a/b", "\u{7}é", "0123"];
 
 fn schema(stem: &str) -> Value {
     let path = workspace().join(format!("spec/schemas/{stem}.json"));
@@ -47,20 +50,10 @@ fn pointers(value: &Value, at: &str, is: &dyn Fn(&Value) -> bool, out: &mut Vec<
     }
 }
 
-/// Compares a schema with the errors of reading, at every number of a document. `depends`: parts of pointers to numbers of which the
-/// range depends on other values, so that reading may refuse more than the schema.
-fn compare(stem: &str, document: &Value, depends: &[&str], read: &dyn Fn(&Value) -> Vec<Finding>) {
-    let schema = Schema::new(&schema(stem)).unwrap();
-    assert_eq!(schema.violations(document), [], "{stem}");
-    let errors = |document: &Value| -> Vec<Finding> {
-        let mut found = read(document);
-        found.retain(|finding| finding.severity == htex_finding::Severity::Error);
-        found
-    };
-    assert_eq!(errors(document), [], "{stem}");
+/// Returns a document with one change each: a number or a text by another, or without a key.
+fn changes_of(document: &Value) -> Vec<(String, Value)> {
     let mut numbers = Vec::new();
     pointers(document, "", &Value::is_number, &mut numbers);
-    assert!(numbers.len() >= 10, "{stem}: {numbers:?}");
     let mut changes: Vec<(String, Value)> = Vec::new();
     let mut change = |pointer: &str, what: &dyn std::fmt::Display, to: &dyn Fn(&mut Value)| {
         let mut changed = document.clone();
@@ -79,6 +72,14 @@ fn compare(stem: &str, document: &Value, depends: &[&str], read: &dyn Fn(&Value)
             change(pointer, &probe, &|all| {
                 *all.pointer_mut(pointer).unwrap() = probe.clone()
             });
+        }
+    }
+    let mut texts = Vec::new();
+    pointers(document, "", &Value::is_string, &mut texts);
+    for pointer in &texts {
+        for probe in TEXTS {
+            let put = |all: &mut Value| *all.pointer_mut(pointer).unwrap() = json!(probe);
+            change(pointer, &format!("{probe:?}"), &put);
         }
     }
     let mut objects = Vec::new();
@@ -103,12 +104,28 @@ fn compare(stem: &str, document: &Value, depends: &[&str], read: &dyn Fn(&Value)
             change(&format!("{pointer}/{key}"), &"absent", &without);
         }
     }
+    changes
+}
+
+/// Compares a schema with the errors of reading, at every number of a document. `depends`: parts of pointers to numbers of which the
+/// range depends on other values, so that reading may refuse more than the schema.
+fn compare(stem: &str, document: &Value, depends: &[&str], read: &dyn Fn(&Value) -> Vec<Finding>) {
+    let schema = Schema::new(&schema(stem)).unwrap();
+    assert_eq!(schema.violations(document), [], "{stem}");
+    let errors = |document: &Value| -> Vec<Finding> {
+        let mut found = read(document);
+        found.retain(|finding| finding.severity == htex_finding::Severity::Error);
+        found
+    };
+    assert_eq!(errors(document), [], "{stem}");
+    let changes = changes_of(document);
+    assert!(changes.len() >= 100, "{stem}");
     let mut differ = Vec::new();
     for (what, changed) in changes {
         let by_schema = !schema.violations(&changed).is_empty();
         let errors = errors(&changed);
         let may_depend = depends.iter().any(|part| what.contains(part));
-        if by_schema != !errors.is_empty() && (by_schema || !may_depend) {
+        if by_schema == errors.is_empty() && (by_schema || !may_depend) {
             differ.push(format!(
                 "{what}: the schema refuses it: {by_schema}; reading: {errors:?}"
             ));
@@ -187,7 +204,14 @@ fn manifests_have_the_ranges_of_their_schema() {
     compare(
         "manifest-1",
         &manifest(),
-        &["/band/", "/condition", "/store"],
+        &[
+            "/band/",
+            "/condition",
+            "/store",
+            "/license",
+            "/parameters",
+            "/fields/1/name",
+        ],
         &read,
     );
 }
@@ -248,7 +272,60 @@ fn studies_have_the_ranges_of_their_schema() {
     compare(
         "study-1",
         &study,
-        &["/scale/", "/repetitions", "/participants"],
+        &["/scale/", "/repetitions", "/participants", "/asset"],
+        &read,
+    );
+}
+
+/// Samples as a file of NumPy, version 1.0 of its format.
+fn npy(samples: &[f32]) -> Vec<u8> {
+    let shape = samples.len();
+    let header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({shape},), }}");
+    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    bytes.extend(format!("{header:<117}\n").bytes());
+    bytes.extend(samples.iter().flat_map(|x| x.to_le_bytes()));
+    bytes
+}
+
+#[test]
+fn recipes_have_the_ranges_of_their_schema() {
+    let settings = json!({
+        "recordings": "a.npy", "rate_hz": 1000, "scale": 1, "at": { "speed_mm_s": 80, "force_n": 0.4 },
+    });
+    let recipe = json!({ "library": { "name": "x" }, "textures": [settings] });
+    let recording = npy(&[0.0; 2000]);
+    let tried = |recipe: &Value| -> Result<(), Box<dyn std::error::Error>> {
+        let keys = recipe.as_object().unwrap().iter();
+        let text: String = keys
+            .map(|(key, value)| format!("{key} = {}\n", toml(value)))
+            .collect();
+        let recipe = htex_build::Recipe::parse(&text)?;
+        for textures in recipe.textures {
+            let options = &textures.settings.reading.read_options(1)?[0];
+            htex_author::recording::recording_from_bytes("a.npy".as_ref(), &recording, options)?;
+            let number = |value| match value {
+                Some(htex_build::NumberOrTemplate::Number(number)) => Some(number),
+                _ => None,
+            };
+            let at = textures.settings.at;
+            let (speed_mm_s, force_n) = (number(at.speed_mm_s), number(at.force_n));
+            htex_author::Exploration {
+                speed_mm_s,
+                force_n,
+            }
+            .check()?;
+        }
+        Ok(())
+    };
+    let read = |recipe: &Value| {
+        let error = tried(recipe).err().map(|error| error.to_string());
+        let finding = |error: String| Finding::new(&htex_format::RULES[0], "", &error);
+        error.into_iter().map(finding).collect()
+    };
+    compare(
+        "recipe-1",
+        &recipe,
+        &["/recordings absent", "/rate_hz absent"],
         &read,
     );
 }

@@ -14,20 +14,25 @@ pub struct Capabilities {
     /// Rates it runs at.
     pub rates: Rates,
     /// Default rate, hertz.
+    #[cfg_attr(feature = "schemars", schemars(range(min = MIN_RATE_HZ, max = MAX_RATE_HZ)))]
     pub default_rate_hz: f64,
     /// Largest magnitude it takes, in the quantity's unit; absent: no limit. A voltage always has
     /// one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub limit: Option<f64>,
     /// Distance of two neighbouring values it can put out, in the quantity's unit; absent: floats.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub step: Option<f64>,
     /// Frequency of the carrier that an electrovibration display wants, hertz.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
     pub carrier_hz: Option<f64>,
     /// Whether a clock takes the samples; else they are taken as fast as they are made (a file).
     pub paced: bool,
     /// Preferred frames in a block.
+    #[cfg_attr(feature = "schemars", schemars(range(min = 1, max = MAX_BLOCK_FRAMES)))]
     pub block_frames: u32,
 }
 
@@ -175,12 +180,20 @@ impl Quantity {
 #[serde(rename_all = "snake_case")]
 pub enum Rates {
     /// These rates, ascending.
-    List(Vec<f64>),
+    List(
+        #[cfg_attr(
+            feature = "schemars",
+            schemars(length(min = 1), inner(range(min = MIN_RATE_HZ, max = MAX_RATE_HZ)))
+        )]
+        Vec<f64>,
+    ),
     /// All rates in a range, both ends included.
     Range {
         /// Lowest.
+        #[cfg_attr(feature = "schemars", schemars(range(min = MIN_RATE_HZ, max = MAX_RATE_HZ)))]
         min_hz: f64,
         /// Highest.
+        #[cfg_attr(feature = "schemars", schemars(range(min = MIN_RATE_HZ, max = MAX_RATE_HZ)))]
         max_hz: f64,
     },
 }

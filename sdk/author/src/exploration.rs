@@ -34,20 +34,25 @@ pub struct Exploration {
 }
 
 impl Exploration {
+    /// Greatest speed, mm/s.
+    pub const MOST_SPEED_MM_S: f64 = 1e4;
+    /// Greatest force, newtons.
+    pub const MOST_FORCE_N: f64 = 100.0;
+
     /// Checks the ranges of the known values.
     ///
     /// # Errors
     /// When a speed or force is negative or not finite, or beyond 10 m/s or 100 N.
     pub fn check(&self) -> Result<(), AuthorError> {
         let bad = |value: Option<f64>, max: f64| value.filter(|v| !(0.0..=max).contains(v));
-        if let Some(value) = bad(self.speed_mm_s, 1e4) {
+        if let Some(value) = bad(self.speed_mm_s, Self::MOST_SPEED_MM_S) {
             return Err(AuthorError::Condition {
                 what: "scanning speed",
                 value,
                 allowed: "0 to 10,000 mm/s is allowed",
             });
         }
-        match bad(self.force_n, 100.0) {
+        match bad(self.force_n, Self::MOST_FORCE_N) {
             None => Ok(()),
             Some(value) => Err(AuthorError::Condition {
                 what: "normal force",

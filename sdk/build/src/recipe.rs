@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use htex_author::Exploration;
 use htex_author::settings::{FitSettings, Metadata, OneOrMore, ReadingSettings, one_or_more};
 use htex_files::AtFile;
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
@@ -119,9 +120,24 @@ pub struct Settings {
 #[serde(default, deny_unknown_fields)]
 pub struct At {
     /// Speed, mm/s.
+    #[schemars(schema_with = "speed")]
     pub speed_mm_s: Option<NumberOrTemplate>,
     /// Normal force, newtons.
+    #[schemars(schema_with = "force")]
     pub force_n: Option<NumberOrTemplate>,
+}
+
+fn speed(_: &mut SchemaGenerator) -> Schema {
+    number_or_template(Exploration::MOST_SPEED_MM_S)
+}
+
+fn force(_: &mut SchemaGenerator) -> Schema {
+    number_or_template(Exploration::MOST_FORCE_N)
+}
+
+/// Returns the schema of a number from 0 to a largest one, or a template.
+fn number_or_template(most: f64) -> Schema {
+    json_schema!({ "anyOf": [{ "type": "number", "minimum": 0, "maximum": most }, { "type": "string" }] })
 }
 
 /// A number, or a template that stands for one.

@@ -183,7 +183,8 @@ pub struct Ingredient {
     /// Its part of the mixture, from 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub weight: f64,
-    /// BLAKE3 of the asset's file, hexadecimal.
+    /// BLAKE3 of the asset's file, 64 hexadecimal digits.
+    #[schemars(regex(pattern = "^[0-9A-Fa-f]{64}$"))]
     pub blake3: String,
 }
 

@@ -81,14 +81,13 @@ fn without_formats(schema: &mut Made) {
         Some("uint32") => Some((0, u32::MAX.into())),
         Some("int" | "int64") => Some((-EXACT, EXACT)),
         Some("uint" | "uint64") => Some((0, EXACT)),
-        _ => None,
+        _ => None::<(i64, i64)>,
     };
-    let object = schema.ensure_object();
-    for (key, bound) in range
-        .into_iter()
-        .flat_map(|(least, most): (i64, i64)| [("minimum", least), ("maximum", most)])
-    {
-        object.entry(key).or_insert(json!(bound));
+    // Schemas that are `true` or `false` stay so.
+    if let Some((least, most)) = range {
+        let object = schema.ensure_object();
+        object.entry("minimum").or_insert(json!(least));
+        object.entry("maximum").or_insert(json!(most));
     }
     transform_subschemas(&mut (without_formats as fn(&mut Made)), schema);
 }

@@ -39,8 +39,10 @@ impl SourceDescriptor {
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct SourceStream {
     /// Frames a second.
+    #[cfg_attr(feature = "schemars", schemars(range(min = MIN_RATE_HZ, max = MAX_RATE_HZ)))]
     pub rate_hz: f64,
     /// The channels, in the order of the samples of a frame.
+    #[cfg_attr(feature = "schemars", schemars(length(min = 1, max = MAX_CHANNELS)))]
     pub channels: Vec<Channel>,
 }
 

@@ -8,7 +8,7 @@ use super::setting::settings;
 use super::{SettingsError, one_or_more};
 use crate::{Averaging, SegmentChoice, SpectrumOptions};
 use htex_recording::read_response;
-use htex_recording::{ColumnMap, ReadOptions, Tracker};
+use htex_recording::{ColumnMap, MAX_RATE_HZ, ReadOptions, Tracker};
 
 settings! {
     /// Settings of reading recordings; an absent one has its default.
@@ -22,6 +22,7 @@ settings! {
     /// ```
     pub struct ReadingSettings {
         /// Sampling rate of the recordings, hertz, where the files do not say.
+        #[schemars(range(max = MAX_RATE_HZ), extend("exclusiveMinimum" = 0))]
         #[cfg_attr(feature = "clap", arg(
             value_name = "HZ",
             help = "Sampling rate; needed where the file does not say (NPY, CSV without a time column)"
@@ -68,7 +69,8 @@ settings! {
         ))]
         pub quantity: Option<Quantity> = "quantity",
 
-        /// Value of a full-scale sample, in the quantity's unit.
+        /// Value of a full-scale sample, in the quantity's unit; not 0.
+        #[schemars(extend("not" = { "const": 0 }))]
         #[cfg_attr(feature = "clap", arg(
             value_name = "UNITS",
             help = "What a full-scale sample in WAV, FLAC and NPY files is, in the quantity's unit"

@@ -47,7 +47,7 @@ pub struct Study {
     pub textures: Vec<Texture>,
     /// Models that play each texture, by short name or id.
     #[serde(default = "paper_models")]
-    #[schemars(length(min = 1, max = 64))]
+    #[schemars(length(min = 1, max = 64), inner(regex(pattern = NAME), length(max = 100)))]
     pub models: Vec<String>,
     /// A further model, the best there is (`bands`), which is played and rated like the others and marked in the results: participants who
     /// rate it low are unreliable.
@@ -114,6 +114,7 @@ pub enum Participants {
 pub struct Texture {
     /// Name in the results; default: the asset's file name without its extension.
     #[serde(default)]
+    #[schemars(regex(pattern = NAME), length(max = 100))]
     pub name: Option<String>,
     /// Path of the asset; relative paths start at the study's folder.
     pub asset: PathBuf,
@@ -223,11 +224,15 @@ pub struct Scale {
     pub high: String,
 }
 
+/// Pattern of a name in the results: not blank, without control characters.
+const NAME: &str = r"^[^\x00-\x1f\x7f-\x9f]*[^\s\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f]*$";
+
 /// What is rated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Attribute {
     /// Name in the results.
+    #[schemars(regex(pattern = NAME), length(max = 100))]
     pub name: String,
     /// The question.
     pub question: String,

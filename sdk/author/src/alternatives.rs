@@ -4,11 +4,11 @@
 use htex_format::{Measure, Quality};
 use htex_host::{FitOption, LoadedModel};
 
-use crate::agreement;
 use crate::conditions::Group;
 use crate::level::{Level, stored_level};
 use crate::request::ModelRequest;
 use crate::stored::stored_fields;
+use crate::{agreement, read_spectrum};
 
 /// Nine-band RMS error above which a warning is given, decibels.
 const LIMIT_DB: f64 = 12.0;
@@ -95,7 +95,7 @@ fn other_values(option: &FitOption) -> Vec<f64> {
     }
 }
 
-/// Returns the nine-band RMS error of a model's stored fit, from its magnitudes; `None` when it cannot be fitted.
+/// Returns the nine-band RMS error of a model's stored fit, from its magnitudes as they are read; `None` when it cannot be fitted.
 fn error_of(model: &LoadedModel, options: &[f64], group: &Group, level: Level) -> Option<f64> {
     let reference = group.spectrum.as_ref();
     let request = group.spectrum.fit_request(options);
@@ -103,8 +103,7 @@ fn error_of(model: &LoadedModel, options: &[f64], group: &Group, level: Level) -
     let fields = stored_fields(model.descriptor());
     let stored = htex_format::round_parameters(&fields, &fit.parameters).ok()?;
     let level_rms = stored_level(model, &fit, &stored, reference, level).ok()?;
-    let shape = model.magnitude(&stored, reference.band, reference.frequency_hz);
-    let magnitude: Vec<f64> = shape.ok()?.iter().map(|m| m * level_rms).collect();
+    let magnitude = read_spectrum(model, &stored, level_rms, reference).ok()?;
     let error = agreement(reference, &magnitude).get(Measure::NineBand);
     error.filter(|error| error.is_finite())
 }

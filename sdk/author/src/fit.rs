@@ -210,7 +210,7 @@ fn fit_model(
         let (magnitude, measured) = read_and_measure(model, &stored, level_rms, reference)?;
         let rounding = rounding_error_db(model, &fitted, &stored, reference)?;
         // Nothing was recorded at a condition that was computed.
-        let quality = group.spectrum.is_recorded().then(|| Quality {
+        let quality = group.spectrum.is_recorded().then_some(Quality {
             rounding_error_db: Some(rounding),
             ..measured
         });

@@ -20,7 +20,7 @@
 //! fit to peaks alone that is higher than twice the largest bin is therefore tried again with bins beside the peaks. Of
 //! both fits the one is kept that is nearer to peaks and bins in decibels, each at its own best scale.
 //!
-//! With `decibel` the level is that of the points' energy. A density that is still higher than twice the largest bin has
+//! With `decibel` the fit has a closed form ([`crate::decibels`]), and the level is that of the points' energy. A density that is still higher than twice the largest bin has
 //! the level at which it is as high as that bin.
 
 use alloc::vec::Vec;
@@ -31,6 +31,7 @@ use htex_dsp::peaks::{Peak, select_peaks};
 use htex_model::{Error, Fit, FitInput};
 
 use crate::Profile;
+use crate::decibels::nearest;
 
 const POINTS: usize = 0;
 const JND: usize = 1;
@@ -53,7 +54,7 @@ const HIGHEST: f64 = 2.0;
 /// points.
 const NOTHING_EXPLAINED: f64 = 0.99;
 /// Lower limit, relative to the largest, of points and densities compared in decibels.
-const FAINTEST: f64 = 1e-6;
+pub(crate) const FAINTEST: f64 = 1e-6;
 
 /// Measure minimised at the points, relative to their own size.
 #[derive(Clone, Copy)]
@@ -183,6 +184,15 @@ fn spread_bins(count: usize, input: &FitInput<'_>, magnitude: &[f64]) -> Vec<Pea
 
 /// Returns the alpha and beta, each at least `bound`, with the smallest distance to the points.
 fn fit_points(points: &[Peak], band: Band, bound: f64, distance: Distance) -> (f64, f64) {
+    let closed = match distance {
+        Distance::Decibel => nearest(points, band, [bound, LARGEST]),
+        Distance::Magnitude => None,
+    };
+    closed.unwrap_or_else(|| search_points(points, band, bound, distance))
+}
+
+/// As [`fit_points`], by a search from several starts.
+fn search_points(points: &[Peak], band: Band, bound: f64, distance: Distance) -> (f64, f64) {
     let shape = |x: f64| (bound + x * x).min(LARGEST);
     let profile = |x: &[f64; 2]| Profile::new(shape(x[0]), shape(x[1]), band);
     let cost = |x: &[f64; 2]| distance.best_scale(points, &profile(x)).1;
@@ -250,12 +260,16 @@ fn least_squares(points: &[Peak], profile: &Profile) -> (f64, f64) {
     (scale, residual / mm)
 }
 
-/// By the mean squared difference of natural logarithms. The band's edges, where a density may be 0 however
-/// well it fits elsewhere, are excluded.
+/// The points within the band; at its edges a density may be 0 however well it fits elsewhere.
+pub(crate) fn inside(points: &[Peak], band: Band) -> impl Iterator<Item = &Peak> {
+    let Band { low_hz, high_hz } = band;
+    let inside = move |p: &&Peak| low_hz < p.frequency_hz && p.frequency_hz < high_hz;
+    points.iter().filter(inside)
+}
+
+/// By the mean squared difference of natural logarithms, of the points within the band.
 fn least_decibels(points: &[Peak], profile: &Profile) -> (f64, f64) {
-    let Band { low_hz, high_hz } = profile.band;
-    let inside = |point: &&Peak| low_hz < point.frequency_hz && point.frequency_hz < high_hz;
-    let points = || points.iter().filter(inside);
+    let points = || inside(points, profile.band);
     let density = |point: &Peak| profile.at(point.frequency_hz);
     let least_density = FAINTEST * points().map(density).fold(0.0, f64::max);
     let least_magnitude = FAINTEST * points().map(|point| point.magnitude).fold(0.0, f64::max);
@@ -269,4 +283,53 @@ fn least_decibels(points: &[Peak], profile: &Profile) -> (f64, f64) {
     }
     let mean = sum / count;
     (libm::exp(mean), squares / count - mean * mean)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points whose levels wander by up to 60 dB over the band, some of them falling towards an edge.
+    fn points(seed: u32) -> Vec<Peak> {
+        let mut state = seed;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state) / f64::from(u32::MAX)
+        };
+        let (tilt, bend) = (next() - 0.5, next() - 0.5);
+        let point = |i: i32| {
+            let u = (f64::from(i) + 0.5) / 30.0;
+            let level_db = 60.0 * (tilt * u + bend * (2.0 * u - 1.0).powi(2)) + 6.0 * next();
+            Peak {
+                frequency_hz: 20.0 * libm::pow(50.0, u),
+                magnitude: libm::pow(10.0, level_db / 20.0),
+            }
+        };
+        (0..30).map(point).collect()
+    }
+
+    #[test]
+    fn the_closed_form_is_no_further_off_than_a_search() {
+        let band = Band::TACTILE;
+        let mut closed = 0;
+        for seed in 0..300 {
+            let (points, bound) = (points(seed), if seed % 2 == 0 { 0.5 } else { 1.0 });
+            let distance = |(alpha, beta)| {
+                let profile = Profile::new(alpha, beta, band);
+                least_decibels(&points, &profile).1
+            };
+            let Some(found) = nearest(&points, band, [bound, LARGEST]) else {
+                continue;
+            };
+            closed += 1;
+            assert!(found.0 >= bound && found.1 >= bound, "{found:?}");
+            let searched = search_points(&points, band, bound, Distance::Decibel);
+            let [own, other] = [distance(found), distance(searched)];
+            assert!(
+                own <= other + 1e-9,
+                "{seed}: {own} at {found:?}, {other} at {searched:?}"
+            );
+        }
+        assert!(closed > 290, "{closed}");
+    }
 }

@@ -6,6 +6,7 @@
 #[macro_use]
 extern crate alloc;
 
+mod decibels;
 mod fit;
 mod knobs;
 

@@ -107,7 +107,7 @@ fn the_demo_goes_the_whole_way() {
     let rows = run
         .text()
         .lines()
-        .filter(|line| line.split_whitespace().count() == 11)
+        .filter(|line| line.split_whitespace().count() == 13)
         .count();
     assert_eq!(rows, 31, "a header and 30 rows:\n{}", run.text());
     let surfaces = [

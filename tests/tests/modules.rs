@@ -10,7 +10,7 @@ const BOUNDS: &[(&str, usize)] = &[
     ("ar", 41_700),
     ("bands", 28_600),
     ("mfcc", 31_500),
-    ("sbeta", 30_600),
+    ("sbeta", 31_200),
     ("speak", 19_800),
     ("sslope", 24_600),
 ];

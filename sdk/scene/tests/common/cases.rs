@@ -293,7 +293,7 @@ pub fn cases() -> Vec<Case> {
         ("scene_json_type_motion", without("motion")),
         (
             "scene_json_type_seed",
-            with(&[("/seed", json!((1u64 << 53) + 1))]),
+            with(&[("/seed", json!((1u64 << 53) + 2))]),
         ),
         (
             "scene_unknown_key",

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use htex::format::write_file;
 use htex::{Asset, AssetData, Effects, Motion, Synthesis, VoiceOptions};
+use htex_author::{SpectrumRef, read_spectrum};
 use htex_host::Kind;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -269,6 +270,33 @@ impl Texture {
         let magnitude = py.detach(|| self.asset.magnitude(model, motion, &frequency_hz));
         let (quantity, band) = (self.asset.quantity(), self.asset.band());
         spectrum(py, quantity, band, frequency_hz, magnitude.or_raise()?)
+    }
+
+    /// Returns the magnitudes of a representation at a recorded condition as a recording of its voice reads them.
+    #[pyo3(signature = (model=None, condition=0))]
+    fn read_spectrum<'py>(
+        &self,
+        py: Python<'py>,
+        model: Option<&str>,
+        condition: usize,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let known = self.asset.manifest().conditions.get(condition);
+        let known =
+            known.ok_or_else(|| option(format!("condition is {condition}; there is none")))?;
+        let motion = known.speed_mm_s.zip(known.force_n);
+        let motion = motion.map(|(speed, force)| Motion::new(speed, force));
+        let (quantity, band) = (self.asset.quantity(), self.asset.band());
+        let (parameters, _) = self.asset.parameters(model, motion).or_raise()?;
+        let level = self.asset.level_rms(model, motion).or_raise()?;
+        let loaded = self.asset.loaded_model(model).or_raise()?;
+        let (frequency_hz, silent) = (band.grid_hz(), vec![0.0; band.bins()]);
+        let grid = SpectrumRef {
+            band,
+            frequency_hz: &frequency_hz,
+            magnitude: &silent,
+        };
+        let read = py.detach(|| read_spectrum(&loaded, &parameters, level, grid));
+        spectrum(py, quantity, band, frequency_hz.clone(), read.or_raise()?)
     }
 
     /// Returns the level of a representation at a condition: RMS in the band, in the unit of the samples.

@@ -125,7 +125,7 @@ def test_a_fit_is_a_table(place: pathlib.Path) -> None:
     table = pandas.DataFrame(fit.table())
     assert list(table["model"]) == ["org.htex.ar", "org.htex.bands"]
     for i, model in enumerate(table["model"]):
-        error = htex.agreement(fit.spectra[0], fit.texture.spectrum(model=model))
+        error = htex.agreement(fit.spectra[0], fit.texture.read_spectrum(model=model))
         assert table["band_error_rms_db"][i] == pytest.approx(error.band_error_rms_db, abs=1e-4)
 
 

@@ -76,7 +76,7 @@ fn each_fault_is_found_by_its_own_check() {
     let sound = checked(&place, &[&bad(&place, &good, "NONE")]);
     assert_eq!(count(&sound, "passed"), CHECKS.len(), "{sound:#}");
     // Most of the time is spent waiting for a source that keeps to the clock, or for one that has stopped.
-    for faults in FAULTS.chunks(4) {
+    for faults in FAULTS.chunks(8) {
         std::thread::scope(|scope| {
             for fault in faults {
                 scope.spawn(|| is_found_by_its_own_check(&place, &good, fault));

@@ -1,12 +1,21 @@
-//! Studies as a laboratory runs them.
+//! Studies as a laboratory runs them. They mostly wait, and so stand in one program, whose tests run at the same time.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
+#[path = "common/browser.rs"]
+mod browser;
 mod common;
 #[path = "../../renderer-adapters/daq/tests/simulated/library.rs"]
 mod simulated;
 #[path = "common/study.rs"]
 mod study;
+
+#[path = "study/felt.rs"]
+mod felt_trials;
+#[path = "study/page.rs"]
+mod page;
+#[path = "study/terminal.rs"]
+mod terminal;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -48,9 +57,9 @@ fn a_whole_study_has_the_same_bytes_however_often_it_is_killed() {
     assert_eq!(valid.code(), 0, "{}", valid.text());
     let plan = place.json(&["study", "plan", "study.toml", "--json"]);
     assert_eq!(plan["participants"].as_array().unwrap().len(), 14);
-    // Participants are independent: several run at the same time.
+    // Participants are independent: seven run at the same time.
     let names: Vec<String> = (1..=14).map(|i| format!("P{i:02}")).collect();
-    for some in names.chunks(5) {
+    for some in names.chunks(7) {
         let start = |name: &String| on_card(&place, "answers", &["--participant", name]).spawn();
         let running: Vec<_> = some.iter().map(start).collect();
         for child in running {

@@ -1,8 +1,4 @@
 //! Sessions of a study at a keyboard: a pseudo-terminal in place of the real one.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
-
-mod common;
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Write};
@@ -10,7 +6,7 @@ use std::process::{Child, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use common::Place;
+use crate::common::Place;
 use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{LocalModes, tcgetattr};

@@ -1,19 +1,11 @@
 //! Studies in which what is felt is recorded during each trial.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
-
-mod common;
-#[path = "../../renderer-adapters/daq/tests/simulated/library.rs"]
-mod simulated;
-#[path = "common/study.rs"]
-mod study;
 
 use std::fs;
 use std::io::Write;
 use std::process::Stdio;
 
-use common::Place;
-use study::*;
+use crate::common::Place;
+use crate::study::*;
 
 /// A study of one texture on the simulated card.
 fn on_card_short() -> Place {

@@ -1,17 +1,11 @@
 //! The page of a study in a browser.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
-
-#[path = "common/browser.rs"]
-mod browser;
-mod common;
 
 use std::fs;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-use browser::{Browser, Tab, fits_tablets, status};
-use common::Place;
+use crate::browser::{self, Browser, Tab, fits_tablets, status};
+use crate::common::Place;
 use serde_json::Value;
 
 const VINYL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes/vinyl.htex");

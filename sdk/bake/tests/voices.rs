@@ -3,6 +3,8 @@
 
 mod common;
 
+use std::sync::Mutex;
+
 use common::asset;
 use htex_author::{
     Averaging, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum, segment_spectra,
@@ -62,8 +64,8 @@ fn largest_db(host: &[f64], player: &[f64]) -> f64 {
 fn a_player_has_the_spectrum_of_the_host() {
     let asset = asset();
     let grid = Grid::new(vec![60.0, 120.0], vec![0.3, 0.6]).unwrap();
-    let mut failed = Vec::new();
-    for model in Registry::builtin_names() {
+    let failed = Mutex::new(Vec::new());
+    let model_by_model = |model: &str| {
         let baked = bake(&asset, Some(model), &grid, RATE_HZ, 0.2).unwrap();
         // A motion between all recorded conditions, and one of them.
         let motions = [(87.0, 0.43), (120.0, 0.3)];
@@ -77,10 +79,17 @@ fn a_player_has_the_spectrum_of_the_host() {
             );
             println!("{model} at {speed} mm/s, {force} N: {error:.3} dB");
             if error > WITHIN_DB {
-                failed.push(format!("{model} at {speed} mm/s, {force} N: {error:.3} dB"));
+                let line = format!("{model} at {speed} mm/s, {force} N: {error:.3} dB");
+                failed.lock().unwrap().push(line);
             }
         }
-    }
+    };
+    std::thread::scope(|scope| {
+        for model in Registry::builtin_names() {
+            scope.spawn(move || model_by_model(model));
+        }
+    });
+    let failed = failed.into_inner().unwrap();
     assert!(failed.is_empty(), "{failed:?}");
 }
 

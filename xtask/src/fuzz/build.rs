@@ -15,8 +15,8 @@ const COVERAGE: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-l
     -Cllvm-args=-sanitizer-coverage-pc-table \
     -Cllvm-args=-sanitizer-coverage-trace-compares --cfg fuzzing -Ccodegen-units=1";
 
-/// Builds all programs; returns their folder.
-pub(super) fn build(options: &Options) -> Result<PathBuf> {
+/// Builds the programs of targets; returns their folder.
+pub(super) fn build(options: &Options, targets: &[String]) -> Result<PathBuf> {
     let host = host()?;
     let (flags, place) = match options.address {
         true => (format!("{COVERAGE} -Zsanitizer=address"), "address"),
@@ -30,10 +30,10 @@ pub(super) fn build(options: &Options) -> Result<PathBuf> {
             "build",
             "--release",
             "--locked",
-            "--bins",
             "--target",
             &host,
         ])
+        .args(targets.iter().flat_map(|target| ["--bin", target]))
         .arg("--target-dir")
         .arg(&place)
         .env("RUSTFLAGS", flags)

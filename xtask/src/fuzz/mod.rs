@@ -24,7 +24,7 @@ use report::Outcome;
 /// When the programs cannot be built or run, or something was found.
 pub fn fuzz(options: &Options) -> Result<()> {
     let targets = chosen(&options.targets)?;
-    let programs = build::build(options)?;
+    let programs = build::build(options, &targets)?;
     println!("{}", report::HEAD);
     let outcomes = at_a_time(options.jobs, targets, |target| {
         let outcome = run::run(&programs, &target, options)?;

@@ -1,4 +1,4 @@
-//! The density that is nearest to points in decibels, in closed form.
+//! Distances of a density in decibels, and the density that is nearest to points, in closed form.
 //!
 //! `ln(density) = (α - 1) ln u + (β - 1) ln(1 - u) + scale` is linear in its three unknowns: least squares with two bounded unknowns. Where
 //! a density is so faint at a point that its decibels are cut off, the distance is another one, and a search takes over.
@@ -8,8 +8,9 @@ use htex_dsp::grid::Band;
 use htex_dsp::peaks::Peak;
 
 use crate::Profile;
-use crate::fit::{FAINTEST, inside};
 
+/// Lower limit, relative to the largest, of points and densities compared in decibels.
+const FAINTEST: f64 = 1e-6;
 /// Part of the squares below which the two axes are the same.
 const SAME: f64 = 1e-9;
 
@@ -103,4 +104,29 @@ impl Squares {
         a * a * self.xx + 2.0 * a * b * self.xy + b * b * self.yy
             - 2.0 * (a * self.xz + b * self.yz)
     }
+}
+
+/// The points within the band; at its edges a density may be 0 however well it fits elsewhere.
+fn inside(points: &[Peak], band: Band) -> impl Iterator<Item = &Peak> {
+    let Band { low_hz, high_hz } = band;
+    let inside = move |p: &&Peak| low_hz < p.frequency_hz && p.frequency_hz < high_hz;
+    points.iter().filter(inside)
+}
+
+/// By the mean squared difference of natural logarithms, of the points within the band.
+pub(crate) fn least_decibels(points: &[Peak], profile: &Profile) -> (f64, f64) {
+    let points = || inside(points, profile.band);
+    let density = |point: &Peak| profile.at(point.frequency_hz);
+    let least_density = FAINTEST * points().map(density).fold(0.0, f64::max);
+    let least_magnitude = FAINTEST * points().map(|point| point.magnitude).fold(0.0, f64::max);
+    let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    for point in points() {
+        let magnitude = point.magnitude.max(least_magnitude);
+        let ratio = libm::log(magnitude) - libm::log(density(point).max(least_density));
+        count += 1.0;
+        sum += ratio;
+        squares += ratio * ratio;
+    }
+    let mean = sum / count;
+    (libm::exp(mean), squares / count - mean * mean)
 }

@@ -31,7 +31,7 @@ use htex_dsp::peaks::{Peak, select_peaks};
 use htex_model::{Error, Fit, FitInput};
 
 use crate::Profile;
-use crate::decibels::nearest;
+use crate::decibels::{least_decibels, nearest};
 
 const POINTS: usize = 0;
 const JND: usize = 1;
@@ -53,8 +53,6 @@ const HIGHEST: f64 = 2.0;
 /// Residual, as part of the points' squared magnitude, from which a density counts as not matching the
 /// points.
 const NOTHING_EXPLAINED: f64 = 0.99;
-/// Lower limit, relative to the largest, of points and densities compared in decibels.
-pub(crate) const FAINTEST: f64 = 1e-6;
 
 /// Measure minimised at the points, relative to their own size.
 #[derive(Clone, Copy)]
@@ -258,31 +256,6 @@ fn least_squares(points: &[Peak], profile: &Profile) -> (f64, f64) {
         .map(|r| r * r)
         .sum();
     (scale, residual / mm)
-}
-
-/// The points within the band; at its edges a density may be 0 however well it fits elsewhere.
-pub(crate) fn inside(points: &[Peak], band: Band) -> impl Iterator<Item = &Peak> {
-    let Band { low_hz, high_hz } = band;
-    let inside = move |p: &&Peak| low_hz < p.frequency_hz && p.frequency_hz < high_hz;
-    points.iter().filter(inside)
-}
-
-/// By the mean squared difference of natural logarithms, of the points within the band.
-fn least_decibels(points: &[Peak], profile: &Profile) -> (f64, f64) {
-    let points = || inside(points, profile.band);
-    let density = |point: &Peak| profile.at(point.frequency_hz);
-    let least_density = FAINTEST * points().map(density).fold(0.0, f64::max);
-    let least_magnitude = FAINTEST * points().map(|point| point.magnitude).fold(0.0, f64::max);
-    let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
-    for point in points() {
-        let magnitude = point.magnitude.max(least_magnitude);
-        let ratio = libm::log(magnitude) - libm::log(density(point).max(least_density));
-        count += 1.0;
-        sum += ratio;
-        squares += ratio * ratio;
-    }
-    let mean = sum / count;
-    (libm::exp(mean), squares / count - mean * mean)
 }
 
 #[cfg(test)]

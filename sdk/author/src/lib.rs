@@ -34,6 +34,7 @@
 #![forbid(unsafe_code)]
 
 mod alternatives;
+mod averaging;
 mod between;
 mod blocks;
 pub mod by_hand;
@@ -62,6 +63,7 @@ mod stored;
 mod take;
 mod warnings;
 
+pub use averaging::Averaging;
 pub use compare::{CompareError, ComparedModel, Difference, FeltDifference, compare};
 pub use edit::{EditError, edit};
 pub use embed::{EmbedError, embed_plugins};
@@ -82,7 +84,7 @@ pub use rendered::{read_spectrum, rendered_spectrum, spectrum_of_samples};
 pub use request::{AssetRequest, ModelRequest};
 pub use segments::{SegmentChoice, Segments, Sweep, Unread, choose_segments, segment_len, sliding};
 pub use spectrum::{
-    Averaging, SegmentSpectra, SpectrumOptions, SpectrumRef, TextureSpectrum, segment_spectra,
+    SegmentSpectra, SpectrumOptions, SpectrumRef, TextureSpectrum, segment_spectra,
 };
 pub use stored::stored_fields;
 pub use take::Take;

@@ -7,9 +7,8 @@ use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321, magnitude};
 use htex_format::Quantity;
 use htex_host::FitRequest;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
+use crate::averaging::{Averaging, average};
 use crate::blocks::{Span, repeatability_rms_db};
 use crate::segments::{SegmentChoice, Segments, choose_segments};
 use crate::{AuthorError, Recording, SetupResponse};
@@ -24,34 +23,6 @@ const SMALLEST_RESPONSE: f64 = 1e-200;
 const FEWEST_BINS: usize = 3;
 /// Relative error of the grid's frequencies above which a warning is given.
 const GRID_TOLERANCE: f64 = 1e-3;
-
-/// Method of averaging segments.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Averaging {
-    /// Mean of the magnitudes: one reading of "averaged the FFTs" (paper, Texture processing). The mean of noise is
-    /// 1.05 dB, a factor of √π/2, below its RMS (Rayleigh distribution).
-    Magnitude,
-    /// Root of the mean power: the RMS of noise and tones.
-    #[default]
-    Rms,
-    /// Magnitude of the mean of the complex spectra: keeps only what is in phase in all segments.
-    Complex,
-}
-
-impl Averaging {
-    /// All methods, in the order of the command's help.
-    pub const ALL: &[Self] = &[Self::Magnitude, Self::Rms, Self::Complex];
-
-    /// Returns the name in a recipe and on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Magnitude => "magnitude",
-            Self::Rms => "rms",
-            Self::Complex => "complex",
-        }
-    }
-}
 
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
@@ -441,20 +412,6 @@ fn without_line(segment: &[f64]) -> Vec<f64> {
     let own: f64 = samples().map(|(i, _)| place(i) * place(i)).sum();
     let slope = if own > 0.0 { both / own } else { 0.0 };
     samples().map(|(i, x)| x - slope * place(i)).collect()
-}
-
-pub(crate) fn average(all: &[&[Complex<f64>]], bins: usize, averaging: Averaging) -> Vec<f64> {
-    let n = all.len() as f64;
-    (0..bins)
-        .map(|k| {
-            let column = all.iter().map(|spectrum| spectrum[k]);
-            match averaging {
-                Averaging::Magnitude => column.map(magnitude).sum::<f64>() / n,
-                Averaging::Rms => (column.map(|x| x.norm_sqr()).sum::<f64>() / n).sqrt(),
-                Averaging::Complex => magnitude(column.sum::<Complex<f64>>() / n),
-            }
-        })
-        .collect()
 }
 
 /// Overlap-adds the half-overlapping windowed segments to one signal at four times the band's top.

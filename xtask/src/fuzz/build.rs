@@ -26,13 +26,7 @@ pub(super) fn build(options: &Options, targets: &[String]) -> Result<PathBuf> {
     let mut cargo = cargo(options.address);
     // `--target` keeps the flags from build scripts and macros.
     cargo
-        .args([
-            "build",
-            "--release",
-            "--locked",
-            "--target",
-            &host,
-        ])
+        .args(["build", "--release", "--locked", "--target", &host])
         .args(targets.iter().flat_map(|target| ["--bin", target]))
         .arg("--target-dir")
         .arg(&place)

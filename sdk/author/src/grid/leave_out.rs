@@ -1,12 +1,13 @@
 //! Left-out error: each block of time against what a player makes of the rest with a model.
 
 use htex_dsp::bands::rms;
-use htex_format::{AtCondition, Condition, LeftOut, Measure, Measures};
+use htex_format::{AtCondition, LeftOut, Measure, Measures};
 use htex_host::LoadedModel;
 use htex_play::exploration::CEILING;
 use htex_play::{Mesh, Motion, Motions};
 
 use super::held_out::{Held, LeftOutBlock};
+use super::played::motion;
 use crate::conditions::Group;
 use crate::{AuthorError, agreement, read_spectrum};
 
@@ -113,9 +114,4 @@ impl<'a> Played<'a> {
         let gain = level * scaling.level / spread;
         Ok(shape.iter().map(|m| m * gain).collect())
     }
-}
-
-/// Returns speed and force of a condition, as a player reads them.
-pub(super) fn motion(condition: &Condition) -> [f64; 2] {
-    [condition.speed_mm_s, condition.force_n].map(|value| value.unwrap_or(0.0))
 }

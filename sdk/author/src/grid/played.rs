@@ -34,7 +34,7 @@ impl PlayedSpectra {
             left_out: None,
         };
         let at: Vec<AtCondition> = level_rms.iter().enumerate().map(at).collect();
-        let points: Vec<[f64; 2]> = conditions.iter().map(super::leave_out::motion).collect();
+        let points: Vec<[f64; 2]> = conditions.iter().map(motion).collect();
         (!points.is_empty()).then(|| Self {
             mesh: Mesh::new(&points),
             motions: Motions::new(&at, conditions, law(conditions, &spectra, contact)),
@@ -90,4 +90,9 @@ pub(super) fn levels_db(spectrum: &TextureSpectrum, ratio: f64, level_rms: f64) 
         .into_iter()
         .map(energy)
         .collect()
+}
+
+/// Returns speed and force of a condition, as a player reads them.
+pub(super) fn motion(condition: &Condition) -> [f64; 2] {
+    [condition.speed_mm_s, condition.force_n].map(|value| value.unwrap_or(0.0))
 }

@@ -5,8 +5,8 @@ use htex_play::Mesh;
 use serde::Serialize;
 
 use super::cells::Cell;
-use super::leave_out::motion;
 use super::paths::Window;
+use super::played::motion;
 use super::search::Searched;
 use crate::TextureSpectrum;
 use crate::conditions::four_digits;

@@ -68,7 +68,9 @@ fn freed_and_foreign_handles_are_refused() {
             HTEX_STATUS_BAD_HANDLE,
         );
         assert_eq!(htex_voice_free(voice), HTEX_STATUS_OK);
-        for id in [0, voice.id, asset.id, 1, u64::MAX, voice.id + 1] {
+        // Other tests have objects at the same time: the places of these handles are nobody else's.
+        let never = [0, 1, 1 << 20, u64::MAX];
+        for id in never.into_iter().chain([voice.id]) {
             let voice = htex_voice { id };
             is(
                 htex_voice_render(voice, block.as_mut_ptr(), 64),
@@ -79,7 +81,11 @@ fn freed_and_foreign_handles_are_refused() {
                 HTEX_STATUS_BAD_HANDLE,
             );
             is(htex_voice_free(voice), HTEX_STATUS_BAD_HANDLE);
+        }
+        for id in never.into_iter().chain([asset.id]) {
             is(htex_asset_free(htex_asset { id }), HTEX_STATUS_BAD_HANDLE);
+        }
+        for id in never {
             is(htex_scene_stop(htex_scene { id }), HTEX_STATUS_BAD_HANDLE);
         }
     }

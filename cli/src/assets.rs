@@ -155,7 +155,8 @@ impl AssetSummary {
         for (representation, felt) in self.representations.iter_mut().zip(felt) {
             representation.first.felt = felt.first().copied();
             for (at, felt) in representation.at.iter_mut().zip(felt) {
-                at.felt = Some(*felt);
+                // At a computed condition there is no recording to differ from.
+                at.felt = at.quality.is_some().then_some(*felt);
             }
         }
         self

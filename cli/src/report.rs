@@ -19,10 +19,12 @@ pub(crate) struct Reported<'a> {
 }
 
 impl Reported<'_> {
-    /// The texture at each of its conditions.
+    /// The texture at each of its recorded conditions.
     pub(crate) fn textures(&self) -> Result<Vec<Texture>, htex::Error> {
-        let conditions = 0..self.asset.manifest().conditions.len();
-        let mut textures: Vec<Texture> = conditions
+        let spectra = self.fitted.spectra.iter().enumerate();
+        let recorded = spectra.filter(|(_, spectrum)| spectrum.is_recorded());
+        let mut textures: Vec<Texture> = recorded
+            .map(|(condition, _)| condition)
             .map(|condition| self.texture(condition))
             .collect::<Result<_, _>>()?;
         if textures.len() > 1 {

@@ -111,11 +111,16 @@ impl Simulate {
             .chain(self.truth.as_deref());
         check_outputs(outputs, [])?;
         let options = self.options()?;
+        // Known to be there before anything is written.
+        let truth = self
+            .truth
+            .as_ref()
+            .map(|file| Ok::<_, Failure>((file, options.truth().or_usage()?)));
+        let truth = truth.transpose()?;
         let simulation = simulate(&options).or_usage()?;
         let write = |file: &mut std::fs::File| simulation.write_csv(&mut BufWriter::new(file));
         htex_format::replace_file(&self.output, write).writing(&self.output)?;
-        if let Some(file) = &self.truth {
-            let truth = options.truth().or_usage()?;
+        if let Some((file, truth)) = truth {
             let write = |file: &mut std::fs::File| truth.write_json(&mut BufWriter::new(file));
             htex_format::replace_file(file, write).writing(file)?;
         }

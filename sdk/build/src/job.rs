@@ -10,7 +10,8 @@ use std::sync::Arc;
 use htex_author::recording::{ReadError, ReadProblem, read_recording};
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
 use htex_author::{
-    AuthorError, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
+    AuthorError, Exploration, FeltError, FittedAsset, Take, TextureSpectrum, embed_plugins,
+    fit_asset,
 };
 use htex_files::{AtFile, FileError};
 use htex_host::{Registry, Search, WasmLimits};
@@ -28,13 +29,15 @@ use crate::thumbnail::thumbnail;
 /// The meaning of jobs and of what is made of them. Another one makes everything again.
 const JOB: &str = "htex-job/3";
 
-/// What is felt of the difference from the recordings, of each model at its worst condition.
+/// What is felt of the difference from the recordings, of each model at its worst recorded condition.
 fn felt(fitted: &FittedAsset) -> BTreeMap<String, FeltError> {
     let models = fitted.asset.manifest.representations.iter();
     let worst = models
         .zip(&fitted.felt)
         .filter_map(|(representation, felt)| {
-            let worst = felt.iter().copied().reduce(FeltError::worse)?;
+            let recorded = fitted.spectra.iter().map(TextureSpectrum::is_recorded);
+            let felt = felt.iter().zip(recorded).filter(|(_, recorded)| *recorded);
+            let worst = felt.map(|(felt, _)| *felt).reduce(FeltError::worse)?;
             Some((representation.model.clone(), worst))
         });
     worst.collect()

@@ -162,6 +162,8 @@ fn manifest() -> Value {
     });
     manifest["conditions"] = json!([
         { "speed_mm_s": 80, "force_n": 0.5, "repeatability_rms_db": 0.5, "segments": 8 },
+        { "speed_mm_s": 160, "force_n": 0.5 },
+        { "speed_mm_s": 80, "force_n": 1.5 },
     ]);
     let error = |estimate: f64| json!({ "exponent": 0.5, "source": "measured", "estimate": estimate, "standard_error": 0.1 });
     manifest["law"] = json!({ "frequency_speed": error(0.5), "level_speed": error(0.6), "level_force": error(0.7) });
@@ -183,7 +185,12 @@ fn manifest() -> Value {
     ]);
     manifest["representations"] = json!([{
         "model": "org.example.model", "model_version": "1.0.0", "fields": fields, "parameters": "a.bin",
-        "at": [{ "condition": 0, "level_rms": 0.1, "quality": keys("Quality"), "left_out": keys("LeftOut") }],
+        "at": [
+            { "condition": 0, "level_rms": 0.1, "quality": keys("Quality"), "left_out": keys("LeftOut") },
+            { "condition": 1, "level_rms": 0.1 },
+            { "condition": 2, "level_rms": 0.1 },
+        ],
+        "triangles": [[0, 1, 2]],
     }]);
     for key in ["reference", "plugins", "extensions", "extensions_required"] {
         manifest.as_object_mut().unwrap().remove(key);
@@ -197,7 +204,7 @@ fn manifests_have_the_ranges_of_their_schema() {
         let entries = [
             raw_zip::Entry::stored("mimetype", b"application/vnd.htex+zip"),
             raw_zip::Entry::stored("manifest.json", manifest.to_string().as_bytes()),
-            raw_zip::Entry::stored("a.bin", &[0; 3]),
+            raw_zip::Entry::stored("a.bin", &[0; 9]),
         ];
         validate(&raw_zip::archive(&entries), &Limits::default()).findings
     };
@@ -211,6 +218,7 @@ fn manifests_have_the_ranges_of_their_schema() {
             "/license",
             "/parameters",
             "/fields/1/name",
+            "/triangles/",
         ],
         &read,
     );

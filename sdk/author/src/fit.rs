@@ -229,6 +229,7 @@ fn fit_model(
         model_version: model.descriptor().version.clone(),
         fields,
         at,
+        triangles: Vec::new(),
         parameters: format!("parameters/{}.bin", model.short_name()),
     };
     Ok(FittedModel {

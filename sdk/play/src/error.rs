@@ -59,6 +59,13 @@ pub enum Error {
         /// Each field that differs, and its difference.
         problem: String,
     },
+    /// The stored triangles are none to interpolate in, in an asset that was not read from a file.
+    #[error("the triangles of {model} are invalid: {error}")]
+    Triangles {
+        model: String,
+        #[source]
+        error: htex_format::TrianglesError,
+    },
     /// A speed or force is negative or not finite.
     #[error(
         "invalid motion: {speed_mm_s} mm/s at {force_n} N; both must be finite and not negative"

@@ -38,7 +38,7 @@ pub use htex_finding::{Finding, Severity};
 pub use htex_format::Asset as AssetData;
 pub use htex_format::{
     AtCondition, Condition, Contact, Exponent, ExponentSource, Law, Limits, Manifest, Quantity,
-    ReadError, Representation,
+    ReadError, Representation, Triangle, TrianglesError, check_triangles,
 };
 pub use htex_format::{FieldOrder, SAME_CONDITION};
 /// The motion that models receive: with a signed speed and a known position.

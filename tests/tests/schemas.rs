@@ -19,6 +19,7 @@ const REFUSED: &[&str] = &[
     "condition_duplicate",
     "condition_index_duplicate",
     "condition_invalid",
+    "condition_invalid_with_triangles",
     "conditions_empty",
     "doi_invalid",
     "field_duplicate",

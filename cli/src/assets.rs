@@ -154,12 +154,11 @@ impl AssetSummary {
     }
 
     /// Adds what is felt of the differences, by representation and condition.
-    pub(crate) fn with_felt(mut self, felt: &[Vec<FeltError>]) -> Self {
+    pub(crate) fn with_felt(mut self, felt: &[Vec<Option<FeltError>>]) -> Self {
         for (representation, felt) in self.representations.iter_mut().zip(felt) {
-            representation.first.felt = felt.first().copied();
+            representation.first.felt = felt.first().copied().flatten();
             for (at, felt) in representation.at.iter_mut().zip(felt) {
-                // At a computed condition there is no recording to differ from.
-                at.felt = at.quality.is_some().then_some(*felt);
+                at.felt = *felt;
             }
         }
         self

@@ -93,8 +93,8 @@ pub struct DeviceUsed {
     pub adapter: String,
     /// Its profile; empty if there is none.
     pub profile: String,
-    /// All its settings, such as the gain of an amplifier: given ones, those of the profile and defaults. Names of files that a trial is
-    /// played to are left out.
+    /// All its settings, such as the gain of an amplifier: given ones, those of the profile and defaults. Left out are names of files that a
+    /// trial is played to, and `buffer_ms` where the motion is not live: then nobody feels how long samples wait.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
     /// Largest magnitude that it takes, in its unit (of a display volts); absent without a limit.

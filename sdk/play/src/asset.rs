@@ -156,8 +156,12 @@ impl Asset {
     ///
     /// # Errors
     /// When there is no such representation, its model is missing or not compatible, the model
-    /// refuses the parameters or the rate, or the synthesis is out of range.
+    /// refuses the parameters or the rate, or the synthesis or the ceiling is out of range.
     pub fn voice(&self, options: &VoiceOptions<'_>) -> Result<Voice, Error> {
+        let ceiling = options.ceiling;
+        if !(ceiling > 0.0 && ceiling.is_finite()) {
+            return Err(Error::Ceiling { ceiling });
+        }
         let still = self.still(options)?;
         let base = self.base_ratio(options)?;
         // The source is read `base` times as fast, so a lower rate of its samples suffices.

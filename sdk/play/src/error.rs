@@ -76,6 +76,22 @@ pub enum Error {
         /// Normal force, newtons.
         force_n: f64,
     },
+    /// The highest level of a voice is not above 0 or not finite.
+    #[error(
+        "invalid ceiling: {ceiling} times the strongest recorded level; it must be above 0 and finite"
+    )]
+    Ceiling {
+        /// Multiple of the strongest recorded level.
+        ceiling: f64,
+    },
+    /// A place is not finite.
+    #[error("invalid place: x {x_mm} mm, y {y_mm} mm; both must be finite")]
+    Place {
+        /// Place on the surface, mm.
+        x_mm: f64,
+        /// Place on the surface across `x_mm`, mm.
+        y_mm: f64,
+    },
     /// A position is not finite.
     #[error("invalid position: {position_mm} mm along the path; it must be finite")]
     Position {

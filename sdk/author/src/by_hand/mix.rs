@@ -155,9 +155,9 @@ fn is_same(a: &Condition, b: &Condition) -> bool {
 
 /// The triangles that a texture stores for a model.
 fn of_model<'a>(manifest: &'a Manifest, model: &str) -> &'a [Triangle] {
-    let all = manifest.representations.iter();
-    let own = all.filter(|r| r.model == model).map(|r| &r.triangles[..]);
-    own.last().unwrap_or_default()
+    let mut all = manifest.representations.iter();
+    let own = all.find(|r| r.model == model);
+    own.map_or(&[], |own| &own.triangles)
 }
 
 /// Returns the triangles that a texture stores for a mixed model, by the elements of the mixed `at`; none where the conditions are

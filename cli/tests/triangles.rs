@@ -93,7 +93,6 @@ fn a_voice_is_as_loud_as_its_ceiling() {
             "4",
             "-o",
             "a.wav",
-            "--at",
         ];
         place.run(&[&words[..], &["--speed", "900", "--force", "19"], more].concat())
     };

@@ -145,7 +145,10 @@ fn a_module_that_says_yes_must_have_all_of_it() {
         let error = load_within(&wat, &limits()).unwrap_err().to_string();
         assert!(error.contains(missing), "{error}");
     }
-    let wrong = SET.replace("(param i64 f64 f64 f64)", "(param i64 f64 f64 f64 f64)");
+    let wrong = SET.replace(
+        "(param i64 f64 f64 f64 f64 f64)",
+        "(param i64 f64 f64 f64 f64 f64 f64)",
+    );
     let wat = text("1.0.0", &[SAYS_YES], &format!("{wrong} {FIT}"));
     let error = load_within(&wat, &limits()).unwrap_err().to_string();
     assert!(error.contains("does not have the arguments"), "{error}");

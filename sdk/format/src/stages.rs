@@ -29,7 +29,7 @@ pub(crate) const TEXTURE: Stage = stage("the whole texture", false);
 pub(crate) const RECORDINGS: Stage = stage("recordings, in their order", false);
 pub(crate) const CONDITIONS: Stage = stage("conditions, in their order", false);
 pub(crate) const REPRESENTATIONS: Stage = stage(
-    "representations, in their order: the model, each field, each condition",
+    "representations, in their order: the model, each field, each condition, the triangles",
     false,
 );
 pub(crate) const PLUGINS: Stage = stage("plugins, in their order", false);

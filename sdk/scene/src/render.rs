@@ -237,6 +237,7 @@ impl Renderer {
             t_s,
             force_n: finger.force_n,
             point: self.path.at(t_s),
+            place_mm: finger.at_mm,
         };
         (finger, on_path)
     }

@@ -98,6 +98,7 @@ fn asset(quantity: Quantity, models: &[&str]) -> Vec<u8> {
             quality: None,
             left_out: None,
         }],
+        triangles: Vec::new(),
         parameters: format!("parameters/{model}.bin"),
     };
     let values = |model: &&str| vec![fields(model).iter().map(|(_, value)| *value).collect()];

@@ -16,12 +16,15 @@
 #![forbid(unsafe_code)]
 
 mod bake;
+mod compress;
 mod encode;
 mod error;
 mod filter;
 mod grid;
 mod interpolator;
+mod noise;
 mod reading;
+mod shape;
 mod source;
 mod texture;
 mod tones;

@@ -49,18 +49,37 @@ impl Noise {
 
     /// Starts a glide of `samples` to the filter of a motion; 0 sets it at once.
     pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) {
+        if samples == 0 {
+            self.silence();
+        }
         let half = self.half;
         let (mut centre, step) = (0.0, self.step.get_mut(..half).unwrap_or(&mut []));
         step.fill(0.0);
-        for (condition, weight) in target.weights.iter() {
-            let values = block.values(condition);
-            centre += weight * values.at(0);
-            let side = values.part(1, half);
+        for filter in 0..block.filters() {
+            let mut weight = 0.0;
+            for (condition, part) in target.weights.iter() {
+                weight += part * block.filter_weight(condition, filter);
+            }
+            let weight = weight * block.filter_scale(filter);
+            // Adding zeros changes no bit.
+            if weight == 0.0 {
+                continue;
+            }
+            let coefficients = block.filter(filter);
+            centre += weight * coefficients.at(0);
+            let side = coefficients.part(1, half);
             for (sum, c) in step.iter_mut().zip(side.iter()) {
                 *sum += weight * c;
             }
         }
-        let energy = centre * centre + 2.0 * step.iter().map(|c| c * c).sum::<f32>();
+        let mut sums = [0.0f32; 4];
+        for four in step.as_chunks::<4>().0 {
+            for i in 0..4 {
+                sums[i] += four[i] * four[i];
+            }
+        }
+        let side = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+        let energy = centre * centre + 2.0 * side;
         let gain = match energy > LEAST_ENERGY {
             true => target.level / libm::sqrtf(energy),
             false => 0.0,
@@ -72,6 +91,18 @@ impl Noise {
         }
         if samples == 0 {
             self.glide();
+        }
+    }
+
+    /// Starts a glide of `samples` to silence; 0 sets it at once.
+    pub(crate) fn fade(&mut self, samples: u32) {
+        let part = 1.0 / samples.max(1) as f32;
+        self.centre_step = -self.centre * part;
+        for (step, c) in self.step.iter_mut().zip(&self.side).take(self.half) {
+            *step = -c * part;
+        }
+        if samples == 0 {
+            self.silence();
         }
     }
 

@@ -5,6 +5,8 @@ use htex_dsp::grid::GRID_HZ;
 use htex_dsp::window::hann_main_lobe;
 use htex_host::Band;
 
+use crate::reading::Bands;
+
 /// Rounds in which the filter's spectrum is compared with the stated one.
 const ROUNDS: usize = 80;
 /// Relative correction of all bins at which the rounds end.
@@ -49,22 +51,28 @@ impl Design {
 
     /// Designs the centre and one side of a filter of unit energy by frequency sampling. `magnitude` is given at the
     /// design's frequencies; its spectrum, read as a recording's, is then compared with the `stated` one at the bins, the
-    /// magnitude is corrected, and the filter designed again.
+    /// magnitude is corrected, and the filter designed again. The one with the least error of the nine bands is returned.
     pub(crate) fn filter(&mut self, wanted: &Wanted, bins: &Bins, half: usize) -> Vec<f64> {
         let window = window(half);
         let mut magnitude = wanted.magnitude.clone();
         let mut side = self.sampled(&magnitude, &window);
-        for _ in 0..ROUNDS {
+        let mut best = (f64::INFINITY, side.clone());
+        for _ in 0..=ROUNDS {
             let read = bins.read(&self.response(&side));
             let rms = htex_dsp::grid::level_rms(&read);
             if !(rms > 0.0 && rms.is_finite()) {
                 break;
             }
+            let unit: Vec<f64> = read.iter().map(|m| m / rms).collect();
+            let error_db = wanted.bands.distance_db(wanted.stated, &unit);
+            if error_db < best.0 {
+                best = (error_db, side.clone());
+            }
             let ratio = |(stated, read): (&f64, &f64)| match *stated > 0.0 {
-                true => (stated * rms / read).clamp(0.5, 2.0),
+                true => (stated / read).clamp(0.5, 2.0),
                 false => 1.0,
             };
-            let corrections: Vec<f64> = wanted.stated.iter().zip(&read).map(ratio).collect();
+            let corrections: Vec<f64> = wanted.stated.iter().zip(&unit).map(ratio).collect();
             if corrections.iter().all(|c| (c - 1.0).abs() < SMALL) {
                 break;
             }
@@ -74,6 +82,7 @@ impl Design {
             }
             side = self.sampled(&magnitude, &window);
         }
+        let mut side = best.1;
         let energy = energy(&side);
         let scale = if energy > 0.0 {
             1.0 / energy.sqrt()
@@ -126,6 +135,8 @@ pub(crate) struct Wanted<'a> {
     pub(crate) magnitude: Vec<f64>,
     /// Magnitude of unit RMS at the bins.
     pub(crate) stated: &'a [f64],
+    /// The bands in which spectra are compared.
+    pub(crate) bands: &'a Bands,
 }
 
 /// The bins of a spectrum whose frequencies are multiplied by a ratio, as a Hann window reads them from a filter of a design.

@@ -64,6 +64,7 @@ impl Designer {
         let wanted = Wanted {
             magnitude: texture.magnitude(moment, &recorded)?,
             stated: &moment.stated,
+            bands: texture.bands(),
         };
         let filter = Rc::new(design.filter(&wanted, &bins, half));
         self.filters.borrow_mut().insert(key, Rc::clone(&filter));

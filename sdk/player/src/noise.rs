@@ -6,6 +6,8 @@ use crate::random::Random;
 
 /// Least energy of a mixed filter that is scaled to a level.
 const LEAST_ENERGY: f32 = 1e-9;
+/// Filters that are added to a mix in one pass.
+const AT_ONCE: usize = 4;
 
 /// Noise with the spectrum of a symmetrical filter, whose coefficients glide.
 #[derive(Debug, Clone)]
@@ -55,21 +57,25 @@ impl Noise {
         let half = self.half;
         let (mut centre, step) = (0.0, self.step.get_mut(..half).unwrap_or(&mut []));
         step.fill(0.0);
-        for filter in 0..block.filters() {
-            let mut weight = 0.0;
-            for (condition, part) in target.weights.iter() {
-                weight += part * block.filter_weight(condition, filter);
+        for first in (0..block.filters()).step_by(AT_ONCE) {
+            let mut weights = [0.0; AT_ONCE];
+            for (filter, weight) in (first..block.filters()).zip(&mut weights) {
+                for (condition, part) in target.weights.iter() {
+                    *weight += part * block.filter_weight(condition, filter);
+                }
+                *weight *= block.filter_scale(filter);
             }
-            let weight = weight * block.filter_scale(filter);
-            // Adding zeros changes no bit.
-            if weight == 0.0 {
-                continue;
+            // Adding a filter with the weight 0 changes no bit.
+            let filters: [usize; AT_ONCE] =
+                core::array::from_fn(|i| (first + i).min(block.filters() - 1));
+            let filters = filters.map(|filter| block.filter(filter));
+            for (weight, filter) in weights.iter().zip(&filters) {
+                centre += weight * filter.at(0);
             }
-            let coefficients = block.filter(filter);
-            centre += weight * coefficients.at(0);
-            let side = coefficients.part(1, half);
-            for (sum, c) in step.iter_mut().zip(side.iter()) {
-                *sum += weight * c;
+            let [w, x, y, z] = weights;
+            let [a, b, c, d] = filters.map(|filter| filter.part(1, half).iter());
+            for ((((sum, a), b), c), d) in step.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+                *sum = *sum + w * a + x * b + y * c + z * d;
             }
         }
         let mut sums = [0.0f32; 4];

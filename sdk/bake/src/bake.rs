@@ -4,10 +4,10 @@ use std::rc::Rc;
 
 use htex_dsp::grid::GRID_HZ;
 use htex_play::{Asset, Motion, Quantity};
-use htex_player::layout::{MOST_FILTERS, MOST_HALF, MOST_LEVEL};
+use htex_player::layout::{CHECKSUM, HEADER, MOST_FILTERS, MOST_HALF, MOST_LEVEL};
 use htex_player::{Block, Law};
 
-use crate::compress::Stored;
+use crate::compress::{Factors, Stored};
 use crate::encode::{Content, Encoded, encode};
 use crate::filter::Design;
 use crate::interpolator::Interpolator;
@@ -21,6 +21,10 @@ use crate::{BakeError, Grid};
 const TOLERANCE_DB: f64 = 0.1;
 /// Additional error at conditions for which filters are left out where the tolerance cannot be met, dB.
 const LEFT_OUT_DB: f64 = 0.01;
+/// The same for a block that would take more than [`WANTED_BYTES`] otherwise, dB.
+const MORE_LEFT_OUT_DB: f64 = 0.1;
+/// Bytes of a block for which accuracy is given up that is not within the tolerance anyway.
+const WANTED_BYTES: usize = 16 * 1024;
 /// Most conditions that are inserted between the wanted ones.
 const MOST_CONDITIONS: usize = 64;
 /// Lengths of one side of the filter that are tried.
@@ -189,9 +193,7 @@ impl Designed {
         for moment in &moments {
             check_level(moment)?;
         }
-        let ratios = || moments.iter().map(|m| m.ratio);
-        let fastest = ratios().fold(0.0, f64::max);
-        let slowest = ratios().fold(f64::INFINITY, f64::min);
+        let [slowest, fastest] = ratios(&moments);
         let interpolator = Interpolator::new(rate_hz, fastest * texture.band().high_hz)?;
         let shape = match texture.model().is_sum_of_sines() {
             true => {
@@ -231,11 +233,9 @@ impl Designed {
         let spectra = match self.shape.spectra.clone() {
             Spectra::Noise(designer, filters) => {
                 let sides: Vec<&[f64]> = filters.iter().map(|f| f.as_slice()).collect();
-                let factors = designer.factors(&sides, MOST_FILTERS);
-                let stored = self.compress(texture, &grid, within_db, &designer, |count| {
-                    factors.stored(count.min(factors.len()))
-                })?;
-                Encoded::Noise(stored)
+                let [slowest, fastest] = ratios(&self.moments);
+                let factors = designer.factors(&sides, slowest, fastest, MOST_FILTERS);
+                Encoded::Noise(self.compress(texture, &grid, within_db, &designer, &factors)?)
             }
             Spectra::Tones(tones, random_phase) => {
                 let internal_hz = self.interpolator.internal_hz;
@@ -286,7 +286,7 @@ impl Designed {
         })
     }
 
-    /// Finds the fewest filters within the tolerance at the conditions and `within_db` between them, or as accurate as all
+    /// Finds the fewest filters within the tolerance at the conditions and `within_db` between them, or nearly as accurate as all
     /// filters; shape and errors become theirs.
     fn compress(
         &mut self,
@@ -294,17 +294,28 @@ impl Designed {
         grid: &Grid,
         within_db: f64,
         designer: &Rc<Designer>,
-        stored: impl Fn(usize) -> Stored,
+        factors: &Factors,
     ) -> Result<Stored, BakeError> {
-        let at_conditions_db = TOLERANCE_DB.max(self.shape.at_conditions_db + LEFT_OUT_DB);
-        let between_db = within_db.max(self.between_db() + LEFT_OUT_DB);
-        let mut count = 1;
-        loop {
-            let stored = stored(count);
-            let is_last = stored.scales.len() < count || count == MOST_FILTERS;
-            let limits_db = match is_last {
-                true => [f64::INFINITY; 2],
-                false => [at_conditions_db, between_db],
+        let exact_db = [self.shape.at_conditions_db, self.between_db()];
+        // What is within a limit stays within it.
+        let limit = |limit_db: f64, exact_db: f64, left_out_db: f64| match exact_db <= limit_db {
+            true => limit_db,
+            false => exact_db + left_out_db,
+        };
+        let limits = |left_out_db: f64| {
+            [
+                limit(TOLERANCE_DB, exact_db[0], left_out_db),
+                limit(within_db, exact_db[1], left_out_db),
+            ]
+        };
+        for count in 1..=factors.len() {
+            let stored = factors.stored(count);
+            let fits = |count: usize| self.bytes(grid, &stored, count) <= WANTED_BYTES;
+            let is_last_that_fits = fits(count) && !fits(count + 1);
+            let limits_db = match (count == factors.len(), is_last_that_fits) {
+                (true, _) => [f64::INFINITY; 2],
+                (false, true) => limits(MORE_LEFT_OUT_DB),
+                (false, false) => limits(LEFT_OUT_DB),
             };
             let filters = stored.conditions().into_iter().map(Rc::new).collect();
             let spectra = Spectra::Noise(Rc::clone(designer), filters);
@@ -316,8 +327,19 @@ impl Designed {
                     return Ok(stored);
                 }
             }
-            count += 1;
         }
+        // The last count has no limit, and a filter is not zero.
+        Err(BakeError::Refused(htex_player::OpenError::Values))
+    }
+
+    /// Returns the length of a block of `count` filters as long as the stored ones.
+    fn bytes(&self, grid: &Grid, stored: &Stored, count: usize) -> usize {
+        let axes = grid.speeds_mm_s().len() + grid.forces_n().len();
+        let conditions = self.moments.len();
+        let words = axes + self.interpolator.rows.len() + conditions + count;
+        let length = stored.filters.first().map_or(0, Vec::len);
+        let integers = count * (conditions + length);
+        HEADER + 4 * words + (2 * integers).next_multiple_of(4) + CHECKSUM
     }
 
     /// Returns the level up to which the law raises that of the grid, as levels are stored.
@@ -343,6 +365,13 @@ impl Designed {
         let most = levels.map(|(i, level)| level * crest(i));
         most.fold(0.0, f64::max)
     }
+}
+
+/// Returns the least and the greatest factor of frequencies.
+fn ratios(moments: &[Rc<Moment>]) -> [f64; 2] {
+    let ratios = || moments.iter().map(|m| m.ratio);
+    let slowest = ratios().fold(f64::INFINITY, f64::min);
+    [slowest, ratios().fold(0.0, f64::max)]
 }
 
 fn largest(errors: &[(Motion, f64)]) -> f64 {

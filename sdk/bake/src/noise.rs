@@ -77,8 +77,16 @@ impl Designer {
         self.bins(ratio).read(&response)
     }
 
-    /// Factors the filters of conditions into at most `most` filters.
-    pub(crate) fn factors(&self, conditions: &[&[f64]], most: usize) -> Factors {
-        Factors::new(&mut self.design.borrow_mut(), conditions, most)
+    /// Factors the filters of conditions into at most `most` filters. The frequencies of the band are multiplied by at least
+    /// `slowest` and at most `fastest`.
+    pub(crate) fn factors(
+        &self,
+        conditions: &[&[f64]],
+        slowest: f64,
+        fastest: f64,
+        most: usize,
+    ) -> Factors {
+        let hz = slowest * self.band.low_hz..=fastest * self.band.high_hz;
+        Factors::new(&mut self.design.borrow_mut(), conditions, hz, most)
     }
 }

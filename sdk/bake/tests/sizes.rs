@@ -33,6 +33,14 @@ fn a_grid_takes_at_most_16_kilobytes() {
             "{model}: {bytes} bytes, {filters} filters of {taps}, {at_conditions_db:.3} dB, {between_db:.3} dB between"
         );
         assert!(bytes <= MOST_BYTES, "{model}: {bytes} bytes");
+        // A filter of 641 coefficients does not resolve Bands at a fourth of the highest speed.
+        let limits_db = if model == "bands" {
+            [0.45; 2]
+        } else {
+            [0.1, WITHIN_DB]
+        };
+        assert!(at_conditions_db <= limits_db[0], "{model}");
+        assert!(between_db <= limits_db[1], "{model}");
     }
 }
 

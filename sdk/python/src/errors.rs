@@ -99,6 +99,7 @@ impl IntoPyErr for htex::Error {
                 MotionError::new_err(self.to_string())
             }
             Self::Fields { .. } => AssetError::new_err(self.to_string()),
+            Self::Ceiling { .. } => option(self.to_string()),
             other => ModelError::new_err(other.to_string()),
         }
     }

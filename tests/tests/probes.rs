@@ -2,7 +2,7 @@
 //! replaced by numbers around and beyond the ranges, texts by others, and every key is left out.
 //!
 //! With `HTEX_PROBES_OUT` the documents are written to the file of that name, for another reader: lines of JSON with `kind`, `what`, `document` and
-//! `valid`.
+//! `valid`. Manifests are read in an archive with an entry `a.bin` of three zero bytes.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "../../sdk/format/tests/common/raw_zip.rs"]

@@ -18,8 +18,8 @@ message. A scene can be played when no finding is an error. Codes never change t
 
 Findings are in this order, and inside a part in the order of the checked values:
 
-1. the file, its JSON, its version, the first only (`SCENE_VERSION_NEWER` is followed by others); each unknown effect, by name; the first type. An error
-   among these ends the reading, and no other error does;
+1. the file, its JSON and its version, the first only (`SCENE_VERSION_NEWER` is no error, and others follow it); each unknown effect, by name; the first value of
+   a wrong type. An error among these ends the reading, and no other error does;
 2. unknown keys, depth first, the keys of an object in ascending order of their bytes;
 3. the number of surfaces, of which too many are not checked here; of each surface `gain`, `representation`, `x_mm`, `y_mm`; surfaces that overlap an earlier one, at the later;
 4. of a constant motion `speed_mm_s`, `force_n`, `from_mm`, `direction_deg`, a missing position;

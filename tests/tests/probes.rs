@@ -1,12 +1,18 @@
 //! One range for each number: what a schema refuses, reading refuses, and the reverse. Every number of a document that has all keys is
 //! replaced by numbers around and beyond the ranges, texts by others, and every key is left out.
+//!
+//! With `HTEX_PROBES_OUT` the documents are written to the file of that name, for another reader: lines of JSON with `kind`, `what`, `document` and
+//! `valid`. Manifests are read in an archive with an entry `a.bin` of three zero bytes.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "../../sdk/format/tests/common/raw_zip.rs"]
 #[allow(dead_code)]
 mod raw_zip;
 
-use std::fs;
+use std::env;
+use std::fs::{self, File};
+use std::io::Write;
+use std::sync::{Mutex, OnceLock};
 
 use htex_finding::{Finding, Findings};
 use htex_format::{Limits, manifest_json, validate};
@@ -22,7 +28,16 @@ const PROBES: [f64; 38] = [
 ];
 
 /// Texts that are no names, or of another form.
-const TEXTS: [&str; 6] = ["", " ", "a", "a/b", "\u{7}é", "0123"];
+const TEXTS: [&str; 8] = [
+    "",
+    " ",
+    "a",
+    "a/b",
+    "\u{7}é",
+    "0123",
+    "\u{85}\u{2003}",
+    "\u{feff}",
+];
 
 fn schema(stem: &str) -> Value {
     let path = workspace().join(format!("spec/schemas/{stem}.json"));
@@ -107,6 +122,24 @@ fn changes_of(document: &Value) -> Vec<(String, Value)> {
     changes
 }
 
+/// Writes changed documents with the verdicts of reading to the file that `HTEX_PROBES_OUT` names, if it is set.
+fn write_out(stem: &str, changes: &[(String, Value, Vec<Finding>)]) {
+    static OUT: OnceLock<Option<Mutex<File>>> = OnceLock::new();
+    let open =
+        || env::var_os("HTEX_PROBES_OUT").map(|path| Mutex::new(File::create(path).unwrap()));
+    let Some(out) = OUT.get_or_init(open) else {
+        return;
+    };
+    let kind = stem.strip_suffix("-1").unwrap_or(stem);
+    let line = |(what, document, errors): &(String, Value, Vec<Finding>)| {
+        let valid = errors.is_empty();
+        json!({ "kind": kind, "what": what, "document": document, "valid": valid }).to_string()
+            + "\n"
+    };
+    let lines: String = changes.iter().map(line).collect();
+    out.lock().unwrap().write_all(lines.as_bytes()).unwrap();
+}
+
 /// Compares a schema with the errors of reading, at every number of a document. `depends`: parts of pointers to numbers of which the
 /// range depends on other values, so that reading may refuse more than the schema.
 fn compare(stem: &str, document: &Value, depends: &[&str], read: &dyn Fn(&Value) -> Vec<Finding>) {
@@ -118,12 +151,16 @@ fn compare(stem: &str, document: &Value, depends: &[&str], read: &dyn Fn(&Value)
         found
     };
     assert_eq!(errors(document), [], "{stem}");
-    let changes = changes_of(document);
-    assert!(changes.len() >= 80, "{stem}");
-    let mut differ = Vec::new();
-    for (what, changed) in changes {
-        let by_schema = !schema.violations(&changed).is_empty();
+    let read = |(what, changed): (String, Value)| {
         let errors = errors(&changed);
+        (what, changed, errors)
+    };
+    let changes: Vec<_> = changes_of(document).into_iter().map(read).collect();
+    assert!(changes.len() >= 80, "{stem}");
+    write_out(stem, &changes);
+    let mut differ = Vec::new();
+    for (what, changed, errors) in changes {
+        let by_schema = !schema.violations(&changed).is_empty();
         let may_depend = depends.iter().any(|part| what.contains(part));
         if by_schema == errors.is_empty() && (by_schema || !may_depend) {
             differ.push(format!(
@@ -222,6 +259,31 @@ fn manifests_have_the_ranges_of_their_schema() {
         ],
         &read,
     );
+}
+
+#[test]
+fn names_of_entries_are_those_that_an_archive_may_have() {
+    let schema = Schema::new(&schema("manifest-1")).unwrap();
+    let names = [
+        "a", ".a", "..a", "...", "a.", "a..", "a/b", "a/.b", "-", "a b", "[]", "", ".", "..", "/a",
+        "a/", "a//b", "./a", "../a", "a/.", "a/..", "a/./b", "a/../b", "a\\b", "a:b", "é",
+        "\u{7f}",
+    ];
+    let mut safe = 0;
+    for name in names {
+        let mut manifest = manifest();
+        manifest["representations"][0]["parameters"] = json!(name);
+        manifest["reference"] = json!({ "file": name });
+        let entries = [raw_zip::Entry::stored(name, b"")];
+        let found = validate(&raw_zip::archive(&entries), &Limits::default()).findings;
+        let is_safe = found.iter().all(|f| f.code != "ENTRY_NAME_UNSAFE");
+        let violations = schema.violations(&manifest);
+        let at = |pointer: &str| violations.iter().all(|v| v.pointer != pointer);
+        assert_eq!(at("/representations/0/parameters"), is_safe, "{name:?}");
+        assert_eq!(at("/reference/file"), is_safe, "{name:?}");
+        safe += usize::from(is_safe);
+    }
+    assert_eq!(safe, 11);
 }
 
 #[test]

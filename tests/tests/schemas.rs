@@ -125,7 +125,7 @@ fn scenes() -> Documents {
         let bytes = fs::read(spec(&format!("scene-conformance/{stem}.scene.json"))).unwrap();
         let scene = htex_format::parse_json(&bytes).ok()?;
         let report = json_of(&spec(&format!("scene-conformance/{stem}.report.json")));
-        let newer = stem == "scene_version_newer";
+        let newer = stem.starts_with("scene_version_newer");
         (!newer).then(|| (stem, (scene, report["valid"] == true)))
     };
     let stems = stems("scene-conformance", ".scene.json");

@@ -133,10 +133,12 @@ fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
         .collect();
     let faces: Vec<Face> = fanned(&triangles, places).into_iter().map(face).collect();
     let corner = |v: spade::handles::FixedVertexHandle| index[v.index()];
-    let edges = mesh
+    let mut edges: Vec<[usize; 2]> = mesh
         .convex_hull()
         .map(|edge| [corner(edge.from().fix()), corner(edge.to().fix())])
         .collect();
+    // The first of two edges that could both take a narrow triangle takes it.
+    edges.sort_unstable_by_key(|ends| ascending(*ends));
     (!faces.is_empty()).then_some((faces, edges))
 }
 

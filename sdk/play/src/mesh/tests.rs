@@ -47,6 +47,28 @@ fn one_condition_and_conditions_on_a_line() {
     }
 }
 
+/// A narrow triangle beside two edges belongs to the edge of the lower conditions, in any order of the conditions.
+#[test]
+fn a_triangle_beside_two_edges_belongs_to_the_first() {
+    let places = [[10.0, 0.1], [97.0, 1.0], [100.0, 0.97]];
+    for order in [
+        [0, 1, 2],
+        [0, 2, 1],
+        [1, 0, 2],
+        [1, 2, 0],
+        [2, 0, 1],
+        [2, 1, 0],
+    ] {
+        let mesh = Mesh::new(&order.map(|i: usize| places[i]));
+        let mixed: Vec<usize> = at(&mesh, 55.0, 0.55)
+            .iter()
+            .map(|(i, _)| order[*i])
+            .collect();
+        // On the edge from the first condition to the second the third one lies between them.
+        assert_eq!(mixed, [0, 2], "{order:?}");
+    }
+}
+
 /// Conditions that are equal within the tolerance: each is still reproduced.
 #[test]
 fn conditions_that_are_the_same_stay_apart() {

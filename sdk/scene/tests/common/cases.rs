@@ -280,6 +280,13 @@ pub fn cases() -> Vec<Case> {
             with(&[("/htex_scene", json!("1.4")), ("/temperature_c", json!(20))]),
         ),
         (
+            "scene_version_newer_effect",
+            with(&[
+                ("/htex_scene", json!("1.4")),
+                ("/effects", json!({ "warmth": "on" })),
+            ]),
+        ),
+        (
             "effect_unknown",
             with(&[("/effects", json!({ "cross_fade": "on" }))]),
         ),

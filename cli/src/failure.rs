@@ -125,6 +125,12 @@ impl Failure {
     /// end only where this program ends them.
     pub(crate) fn to_lines(&self) -> Vec<String> {
         let text = self.to_string();
+        if self.has_lines() {
+            return text
+                .lines()
+                .map(|line| plain(&named(line)).into_owned())
+                .collect();
+        }
         let findings = self.findings();
         let first = match text.split_once('\n') {
             Some((first, _)) if !findings.is_empty() => first,
@@ -139,6 +145,19 @@ impl Failure {
         lines
             .map(|line| plain(&named(&line)).into_owned())
             .collect()
+    }
+
+    /// Whether the message has lines of its own: the place in a TOML file, under which a mark stands.
+    fn has_lines(&self) -> bool {
+        #[cfg(feature = "build")]
+        if let Self::Build {
+            error: htex_build::BuildError::Recipe(_),
+            ..
+        } = self
+        {
+            return true;
+        }
+        false
     }
 
     /// The findings that end the message, each in a line of its own.

@@ -4,7 +4,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use htex_files::AtFile;
@@ -14,13 +13,15 @@ use serde::{Deserialize, Serialize};
 use walkdir::WalkDir;
 
 use crate::BuildError;
-use crate::dist::Dist;
 use crate::elsewhere::elsewhere;
 use crate::error::AtPlace;
 use crate::hashes::{Stamp, hash_local};
+use crate::kept::Kept;
 
-/// The file of what was copied, in the folder of the results.
-const PUBLISHED: &str = ".htex-build/published.json";
+/// The file of what was copied, in the folder of what is kept.
+const PUBLISHED: &str = "published.json";
+/// Most bytes of that file: a few million files.
+const MOST_BYTES: u64 = 1 << 30;
 /// What is copied last, in this order, so that it names only what is there.
 const LAST: [&str; 2] = ["build-report.json", "index.html"];
 /// Copies at the same time; they wait for the network.
@@ -128,20 +129,23 @@ struct Publishing<'a> {
     folder: &'a Path,
     to: &'a Location,
     storage: Storage,
+    kept: Kept,
     before: Published,
 }
 
 impl<'a> Publishing<'a> {
     fn new(folder: &'a Path, to: &'a Location) -> Result<Self, BuildError> {
-        let kept = fs::read(folder.join(PUBLISHED)).ok();
-        let kept = kept.and_then(|bytes| serde_json::from_slice::<Published>(&bytes).ok());
+        let kept = Kept::new(folder)?;
+        let before = kept.get(PUBLISHED, MOST_BYTES);
+        let before = before.and_then(|bytes| serde_json::from_slice::<Published>(&bytes).ok());
         Ok(Self {
             folder,
             to,
             storage: Storage::from_environment()?,
-            before: kept
-                .filter(|kept| kept.to == to.to_string())
+            before: before
+                .filter(|before| before.to == to.to_string())
                 .unwrap_or_default(),
+            kept,
         })
     }
 
@@ -238,7 +242,6 @@ impl<'a> Publishing<'a> {
             to: self.to.to_string(),
             files: files.collect(),
         };
-        let json = serde_json::to_vec(&published).unwrap_or_default();
-        Dist::new(self.folder).put(&self.folder.join(PUBLISHED), &json)
+        self.kept.put(PUBLISHED, &serde_json::to_vec(&published)?)
     }
 }

@@ -191,13 +191,17 @@ pub struct Ingredient {
 /// A recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Source {
-    /// File name without its folder.
+    /// File name, with the folders before it that tell it from another recording of the asset.
     pub file: String,
     /// Sampling rate, hertz.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub rate_hz: f64,
     /// Number of segments that were averaged.
     pub segments: u64,
+    /// BLAKE3 of the recording's file, 64 hexadecimal digits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(regex(pattern = "^[0-9A-Fa-f]{64}$"))]
+    pub blake3: Option<String>,
 }
 
 /// An exploration condition; an absent value is unknown.

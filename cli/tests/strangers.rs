@@ -387,7 +387,7 @@ fn a_redirect_by_name_leads_nowhere_inside() {
             "HTTP/1.1 302 Found\r\nLocation: {to}\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"
         )
     });
-    let run = place.run(&["process", &format!("{url}/a.csv?sig=S3CR3T"), "-o", "a.csv"]);
+    let run = place.run(&["process", &format!("{url}/a.csv?sig=S3CR3T")]);
     assert_eq!(run.code(), 1);
     assert!(
         run.error().contains("machine or network"),
@@ -441,7 +441,7 @@ fn what_a_file_names_is_regular_and_bounded() {
     );
     // Nor does one beside a recording say how it is read, or one in the folder of results what was made.
     pipe(&place.path("rec/a.json"));
-    let run = bounded(&place, &["process", "rec/a.csv", "-o", "a.csv"]);
+    let run = bounded(&place, &["process", "rec/a.csv"]);
     assert_eq!(run.code(), 0, "{}", run.error());
     for kept in fs::read_dir(place.path("dist/.htex-build")).unwrap() {
         let kept = kept.unwrap().path();
@@ -488,18 +488,19 @@ fn many_recordings_of_one_texture_are_planned_soon() {
 fn a_line_without_an_end_is_an_error() {
     let place = place();
     place.write("signal.csv", fs::read(place.path("rec/a.csv")).unwrap());
+    let record = [
+        "record",
+        "--source",
+        "file:signal.csv",
+        "--tracker",
+        "lines:-",
+        "--seconds",
+        "1",
+        "-o",
+        "takes",
+    ];
     let mut child = place
-        .command(&[
-            "record",
-            "--source",
-            "file:signal.csv",
-            "--tracker",
-            "lines:-",
-            "--seconds",
-            "1",
-            "-o",
-            "takes",
-        ])
+        .command(&record)
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -557,20 +558,19 @@ fn a_line_break_in_a_variable_is_an_error() {
 fn recordings_of_participants_are_the_users_alone() {
     let place = place();
     place.write("signal.csv", fs::read(place.path("rec/a.csv")).unwrap());
-    let run = place.run(&[
+    let record = [
         "record",
         "--source",
         "file:signal.csv",
-        "--set",
-        "pace=fast",
+        "--fast",
         "--seconds",
         "1",
-        "--takes",
-        "1",
-        "--yes",
+        "--min-on-target",
+        "0",
         "-o",
         "takes",
-    ]);
+    ];
+    let run = place.run(&record);
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
     let folder = place.path("takes");
     assert!(folder.is_dir(), "{}", run.error());

@@ -43,9 +43,16 @@ impl Unpack {
             self.names.len() as u64
         };
         let bar = bar(count);
-        let (mut ratio, mut batch) = (library.ratio(), Batch::default());
+        // The index says how large all are, before anything is written.
+        let mut ratio = library.ratio();
+        if self.names.is_empty() {
+            library
+                .entries()
+                .try_for_each(|entry| ratio.add(&entry?))
+                .of(&file)?;
+        }
+        let mut batch = Batch::default();
         let mut write = |entry: Entry| {
-            ratio.add(&entry).of(&file)?;
             let bytes = library.read(&entry).of(&file)?;
             bar.inc(1);
             self.write(&mut batch, &entry.name, &bytes)

@@ -146,7 +146,7 @@ impl Traps {
 
     fn path(&self, random: &mut Random) -> String {
         // Mostly what is right, so that builds come far.
-        if !random.one_in(3) {
+        if !random.one_in(6) {
             return random.of(&["rec/a.csv", "rec/b.csv"]).to_owned();
         }
         if random.one_in(6) {
@@ -229,7 +229,7 @@ impl Traps {
     }
 
     fn name(random: &mut Random) -> &'static str {
-        if !random.one_in(3) {
+        if !random.one_in(6) {
             return random.of(&["{stem}", "{folder}/{stem}"]);
         }
         random.of(&[
@@ -257,7 +257,10 @@ impl Traps {
     fn recipe(&self, random: &mut Random) -> String {
         let mut text = format!(
             "[library]\nname = \"{}\"\n",
-            random.of(&["lib", "lib", "lib", "lib", "lib", "lib", "lib", "../lib", "a/b", "", "lib.part"])
+            match random.one_in(16) {
+                true => random.of(&["../lib", "a/b", "", "lib.part"]),
+                false => "lib",
+            }
         );
         if random.one_in(12) {
             text += &format!("plugins = [\"{}\"]\n", self.path(random));
@@ -268,8 +271,8 @@ impl Traps {
         for _ in 0..1 + random.below(3) / 2 {
             text += "[[textures]]\n";
             text += &match random.below(4) {
-                0 => format!("table = \"{}\"\n", self.path(random)),
-                1 => "table = \"table.csv\"\n".to_owned(),
+                0 if random.one_in(3) => format!("table = \"{}\"\n", self.path(random)),
+                0 | 1 => "table = \"table.csv\"\n".to_owned(),
                 _ => format!("recordings = \"{}\"\n", self.glob(random)),
             };
             let optional: [(&str, String); 9] = [
@@ -330,6 +333,8 @@ impl Traps {
             .of(&[
                 "recording,a,name\n",
                 "recording,a,name\n",
+                "recording,a,name\n",
+                "recording,a,b\n",
                 "recording,a,b\n",
                 "recording,a,b\n",
                 "recording,a\n",
@@ -359,7 +364,8 @@ impl Traps {
     /// A folder of results, with links in it.
     fn dist(&self, random: &mut Random) {
         let dist = self.place.path("work/dist");
-        if random.one_in(3) {
+        // Half of them stay as the build before left them.
+        if random.one_in(2) {
             return;
         }
         let _ = fs::remove_dir_all(&dist);
@@ -428,7 +434,7 @@ impl Traps {
 /// Flips bytes of a text.
 fn mutated(text: String, random: &mut Random) -> Vec<u8> {
     let mut bytes = text.into_bytes();
-    if random.one_in(8) && !bytes.is_empty() {
+    if random.one_in(16) && !bytes.is_empty() {
         for _ in 0..=random.below(4) {
             let at = random.below(bytes.len());
             bytes[at] = random.next() as u8;

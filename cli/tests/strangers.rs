@@ -580,3 +580,56 @@ fn recordings_of_participants_are_the_users_alone() {
         assert_eq!(mode(&path) & 0o077, 0, "{}", path.display());
     }
 }
+
+/// What quotes a file's name steers no terminal, in JSON either, and is the same text.
+#[test]
+fn json_steers_no_terminal() {
+    let place = place();
+    assert_eq!(build(&place, &[]).code(), 0);
+    let name = "a\u{9b}31m\u{202e}\u{2066}\u{200f}\u{2028}b.htex";
+    fs::copy(place.path("dist/textures/a.htex"), place.path(name)).unwrap();
+    let run = place.run(&["info", name, "--json"]);
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let steers =
+        |c: char| c.is_control() && c != '\n' || "\u{202e}\u{2066}\u{200f}\u{2028}".contains(c);
+    assert!(!run.text().contains(steers), "{:?}", run.text());
+    let json: Value = serde_json::from_str(&run.text()).unwrap();
+    assert_eq!(json["asset"], name);
+}
+
+/// The mistake in a recipe is shown below its line, and not as one line with escapes.
+#[test]
+fn a_mistake_in_toml_has_lines() {
+    let place = place();
+    place.write("library.toml", "[library]\nname = \"a\nmodels");
+    let error = build(&place, &[]).error();
+    assert!(
+        error.lines().count() > 2 && !error.contains("\\n"),
+        "{error}"
+    );
+}
+
+/// Where one asset is meant, a library is no riddle.
+#[test]
+fn a_library_in_place_of_an_asset_says_what_to_do() {
+    let place = place();
+    assert_eq!(build(&place, &[]).code(), 0);
+    let (asset, library) = ("dist/textures/a.htex", "dist/surfaces.htexlib");
+    for (arguments, said) in [
+        (&["info", library][..], "htex lib ls"),
+        (
+            &["edit", library, "--author", "A", "-o", "b.htex"],
+            "htex lib unpack",
+        ),
+        (&["compare", "rec/a.csv", library], "htex lib unpack"),
+        (&["compare", library, library], "htex lib diff"),
+        (&["compare", asset, asset], "give the recording first"),
+    ] {
+        let run = place.run(arguments);
+        assert!(
+            run.code() == 2 && run.error().contains(said),
+            "{arguments:?}: {}",
+            run.error()
+        );
+    }
+}

@@ -135,6 +135,9 @@ impl Build {
         if self.dry_run {
             return self.announce(&build, &work);
         }
+        if work.textures > 0 {
+            to.try_out().of(&self.recipe)?;
+        }
         fit(&mut build, &work).of(&self.recipe)?;
         let built = build.finish().of(&self.recipe)?;
         to.publish().of(&self.recipe)?;

@@ -4,6 +4,7 @@
 //! recurses, and so is the number of entries of folders that are looked at.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
 use globset::{GlobBuilder, GlobSet, GlobSetBuilder};
@@ -68,22 +69,30 @@ fn check(glob: &str) -> Result<(), String> {
     }
 }
 
-/// Whether a text is a glob. The `?` of a URL begins its query.
+/// Whether a text is a glob. The `?` of a URL begins its query, and a host may be in brackets.
 pub(crate) fn is_glob(text: &str) -> bool {
-    !is_url(text) && text.contains(GLOB)
+    let path = path_of(text);
+    text[path].contains(GLOB)
 }
 
-fn is_url(text: &str) -> bool {
-    let lower = text.get(..8).unwrap_or(text).to_ascii_lowercase();
-    lower.starts_with("http://") || lower.starts_with("https://")
+/// The part of a text that is a path: of a URI without its scheme and host, of a URL without its query.
+fn path_of(text: &str) -> Range<usize> {
+    let Some(host) = text.find("://").map(|at| at + 3) else {
+        return 0..text.len();
+    };
+    let start = text[host..].find('/').map_or(text.len(), |at| host + at);
+    let end = match text[..host].to_ascii_lowercase().starts_with("http") {
+        true => text[start..].find('?').map_or(text.len(), |at| start + at),
+        false => text.len(),
+    };
+    start..end
 }
 
 /// Splits a path or a URI before the first part that is a glob, else before the file's name: a folder, and a glob in it.
 pub(crate) fn split(text: &str) -> (&str, &str) {
-    let first = match is_url(text) {
-        true => text.find('?').unwrap_or(text.len()),
-        false => text.find(GLOB).unwrap_or(text.len()),
-    };
+    let path = path_of(text);
+    let first = text[path.clone()].find(GLOB);
+    let first = first.map_or(path.end, |at| path.start + at);
     match text[..first].rfind('/') {
         Some(0) => ("/", &text[1..]),
         Some(slash) => (&text[..slash], &text[slash + 1..]),
@@ -187,9 +196,11 @@ mod tests {
             ("s3://bucket/*.csv", "s3://bucket", "*.csv"),
             ("s3://bucket/a/b.csv", "s3://bucket/a", "b.csv"),
             ("https://h/a.csv?s=/x*", "https://h", "a.csv?s=/x*"),
+            ("http://[::1]:80/a/b.csv", "http://[::1]:80/a", "b.csv"),
         ] {
             assert_eq!(split(text), (folder, pattern), "{text}");
         }
+        assert!(!is_glob("http://[::1]/a.csv?x=*") && is_glob("https://h/*.csv"));
         assert_eq!(normalised("./a/../../b/.".as_ref()), Path::new("../b"));
         assert_eq!(normalised("/../b".as_ref()), Path::new("/b"));
     }

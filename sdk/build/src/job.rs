@@ -124,7 +124,7 @@ pub struct Job {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobRecording {
-    /// Its name in reports and in the asset: that of the file, with the folders that tell it from another recording of the texture.
+    /// Its name in reports and messages: that of the file, with the folders that tell it from another recording of the texture.
     pub name: String,
     pub file: JobFile,
     pub tracker: Option<JobFile>,
@@ -395,8 +395,11 @@ impl Job {
         plays.apply(&mut fitted.asset.manifest);
         for source in &mut fitted.asset.manifest.provenance.recordings {
             let mut recordings = self.recordings.iter();
-            let recording = recordings.find(|recording| recording.name == source.file);
-            source.blake3 = recording.map(|recording| recording.file.hashed.blake3.clone());
+            if let Some(recording) = recordings.find(|recording| recording.name == source.file) {
+                // A folder has no meaning on other machines; the hash tells recordings of one name apart.
+                source.file = recording.file.name();
+                source.blake3 = Some(recording.file.hashed.blake3.clone());
+            }
         }
         let travelling = self.plugins.len() - self.embedded.min(self.plugins.len());
         let files: Vec<PathBuf> = self.plugins[travelling..]

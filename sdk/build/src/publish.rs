@@ -22,6 +22,8 @@ use crate::kept::Kept;
 const PUBLISHED: &str = "published.json";
 /// Most bytes of that file: a few million files.
 const MOST_BYTES: u64 = 1 << 30;
+/// The file by which the URI is tried.
+const TRIED: &str = ".htex-build-tries";
 /// What is copied last, in this order, so that it names only what is there.
 const LAST: [&str; 2] = ["build-report.json", "index.html"];
 /// Copies at the same time; they wait for the network.
@@ -96,6 +98,20 @@ impl Destination {
     /// Returns the URI that the results are copied to.
     pub fn remote(&self) -> Option<&Location> {
         self.remote.as_ref()
+    }
+
+    /// Tries whether the URI, if there is one, can be listed, written and removed from, before hours of fitting: by a file that is removed
+    /// again.
+    ///
+    /// # Errors
+    /// When it cannot.
+    pub fn try_out(&self) -> Result<(), BuildError> {
+        let Some(to) = &self.remote else {
+            return Ok(());
+        };
+        let (storage, file) = (Storage::from_environment()?, to.inside(TRIED));
+        storage.write(&file, b"htex build tries whether it can write here\n")?;
+        Ok(storage.remove(&file)?)
     }
 
     /// Copies the results to the URI, if there is one: files that are not there as they are here, textures first, report and catalogue last. Files

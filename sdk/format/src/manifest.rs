@@ -191,14 +191,14 @@ pub struct Ingredient {
 /// A recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Source {
-    /// File name, with the folders before it that tell it from another recording of the asset.
+    /// File name without its folder.
     pub file: String,
     /// Sampling rate, hertz.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub rate_hz: f64,
     /// Number of segments that were averaged.
     pub segments: u64,
-    /// BLAKE3 of the recording's file, 64 hexadecimal digits.
+    /// BLAKE3 of the recording's file, 64 hexadecimal digits, by which recordings of one name are told apart.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "^[0-9A-Fa-f]{64}$"))]
     pub blake3: Option<String>,

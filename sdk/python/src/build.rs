@@ -65,7 +65,12 @@ impl Build {
     /// Does the pending jobs here.
     fn run(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| match &mut *self.lock() {
-            Some(build) => build.run(&|_| ()).map_err(raised),
+            Some(build) => {
+                if build.pending().len() > 0 {
+                    self.1.try_out().map_err(raised)?;
+                }
+                build.run(&|_| ()).map_err(raised)
+            }
             None => Err(finished()),
         })
     }

@@ -12,7 +12,7 @@ use tempfile::TempPath;
 use crate::{Readers, Target, folder, sync_folder, unfinished};
 
 /// Files of a group.
-const GROUP: usize = 4096;
+const GROUP: usize = 32_768;
 
 /// Files that are being written. Dropping it before [`Self::finish`] removes those that are not in their places yet.
 ///

@@ -14,8 +14,8 @@ use crate::globs;
 use crate::recipe::Textures;
 use crate::template::Fields;
 
-/// Most recordings of a rule.
-const MOST_RECORDINGS: usize = 1_000_000;
+/// Most recordings of a recipe. A texture takes about 3.5 kB of memory until it is put together, so that these take less than 512 MiB.
+pub(crate) const MOST_RECORDINGS: usize = 100_000;
 /// Most bytes of a table.
 const MOST_TABLE_BYTES: u64 = 64 << 20;
 
@@ -92,9 +92,9 @@ fn recordings(
     Ok(found)
 }
 
-fn too_many(place: &str) -> BuildError {
+pub(crate) fn too_many(place: &str) -> BuildError {
     let problem = format!(
-        "it names more than {MOST_RECORDINGS} recordings, which is the most of a rule; divide the recipe"
+        "it names more than {MOST_RECORDINGS} recordings, which is the most of a recipe; divide it into several"
     );
     BuildError::at(place, problem)
 }

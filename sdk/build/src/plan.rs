@@ -10,7 +10,7 @@ use crate::BuildError;
 use crate::elsewhere::Elsewhere;
 use crate::error::AtPlace;
 use crate::globs::glob_set;
-use crate::inputs::{Input, inputs, slashed};
+use crate::inputs::{Input, MOST_RECORDINGS, inputs, slashed, too_many};
 use crate::recipe::{Gates, NumberOrTemplate, Recipe, Settings, Textures};
 use crate::template::{Fields, fill};
 
@@ -248,6 +248,9 @@ fn check_once(
     place: &str,
 ) -> Result<(), BuildError> {
     for recording in &planned.recordings {
+        if known.len() == MOST_RECORDINGS {
+            return Err(too_many(place));
+        }
         let mut hasher = blake3::Hasher::new();
         hasher.update(&(planned.name.len() as u64).to_le_bytes());
         hasher.update(planned.name.as_bytes());

@@ -190,17 +190,33 @@ fn is_of_major_1(document: &Value, key: &str) -> bool {
     version.is_some_and(|version| version.starts_with("1."))
 }
 
+/// Most bytes of a TOML file whose kind is looked for: those of a recipe.
+#[cfg(feature = "build")]
+const MOST_TOML_BYTES: u64 = 1 << 20;
+
 /// Validates a recipe; what is wrong with it first is a finding.
 #[cfg(feature = "build")]
 fn validate_recipe(path: &Path) -> Result<Report, Failure> {
     use htex_build::{BuildError, BuildOptions, RECIPE_INVALID, check};
     let options = BuildOptions::new(crate::models::tool()).with_limits(WasmLimit::all(&[]));
+    let text = htex_files::read_regular_text(path, MOST_TOML_BYTES).unwrap_or_default();
+    let is_study = |line: &str| line.trim_start().starts_with("htex_study");
+    if text.lines().any(is_study) {
+        let file = crate::shown::shown(path);
+        return Err(Failure::Usage(format!(
+            "{file}: it is a study; check it by `htex study validate`"
+        )));
+    }
     let mut findings = Findings::default();
     match check(path, &options) {
         Ok(_) => {}
         // The recipe itself cannot be read.
         Err(BuildError::File(error)) if error.file == path => return Err(error.into()),
-        Err(error) => findings.add(RECIPE_INVALID, "", format!("{error}; correct it")),
+        Err(error) => {
+            let text = error.to_string();
+            let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
+            findings.add(RECIPE_INVALID, "", lines.join("; "));
+        }
     }
     Ok(findings.into_report())
 }

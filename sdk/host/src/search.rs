@@ -29,7 +29,7 @@ pub struct Search {
     /// Files of plugins; a file that cannot be loaded is an error.
     pub files: Vec<PathBuf>,
     /// Files that somebody else names, such as a recipe: WASM modules, which run in a sandbox. Anything else is an error and is not
-    /// loaded, since a native library runs with all rights of its user: a person names it in `files`. They precede `files`.
+    /// loaded, since a native library runs with all rights of its user: a person names it in `files`, which precede these.
     pub modules: Vec<PathBuf>,
     /// Folders of plugins; a folder that cannot be read is an error, a plugin in it that cannot be
     /// loaded is a [`Note`].
@@ -120,12 +120,12 @@ impl Search {
     /// See [`Registry::search`].
     pub(crate) fn run(&self) -> Result<Registry, HostError> {
         let mut registry = Registry::empty(&self.limits);
-        for path in &self.modules {
-            let model = LoadedModel::from_module_in(path, registry.sandbox())?;
-            registry.add(Rank::File, model);
-        }
         for path in &self.files {
             let model = LoadedModel::from_file_in(path, registry.sandbox())?;
+            registry.add(Rank::File, model);
+        }
+        for path in &self.modules {
+            let model = LoadedModel::from_module_in(path, registry.sandbox())?;
             registry.add(Rank::File, model);
         }
         for dir in &self.dirs {

@@ -389,7 +389,7 @@ impl Job {
         let mut fitted = fit_asset(&takes, &request)?;
         let plays = Metadata {
             contact: self.metadata.contact,
-            law: self.metadata.law.clone(),
+            law: self.metadata.law,
             ..Metadata::default()
         };
         plays.apply(&mut fitted.asset.manifest);

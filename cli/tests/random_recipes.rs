@@ -406,7 +406,7 @@ impl Traps {
         }
     }
 
-    /// All files but those of the results, with their bytes.
+    /// All files but those of the results and of the user's own folders, with their bytes.
     fn untouched(&self) -> BTreeMap<PathBuf, Vec<u8>> {
         let mut files = BTreeMap::new();
         let mut folders = vec![self.place.path("")];
@@ -414,7 +414,8 @@ impl Traps {
             for entry in fs::read_dir(&folder).unwrap() {
                 let path = entry.unwrap().path();
                 let is = path.symlink_metadata().unwrap();
-                if path == self.place.path("work/dist") || path == self.place.path("errors") {
+                let own = ["work/dist", "errors", "config", "cache"];
+                if own.iter().any(|own| path == self.place.path(own)) {
                     continue;
                 }
                 if is.is_dir() {
@@ -449,7 +450,8 @@ fn build(traps: &Traps, arguments: &[&str]) -> (common::measured::End, Duration)
         .current_dir(traps.place.path("work"))
         .stdin(std::process::Stdio::null())
         .env("HTEX_STORAGE_TIMEOUT_S", "5")
-        .env("HTEX_CONFIG_DIR", traps.place.path("config"));
+        .env("HTEX_CONFIG_DIR", traps.place.path("config"))
+        .env("HTEX_CACHE_DIR", traps.place.path("cache"));
     for proxy in [
         "HTTP_PROXY",
         "HTTPS_PROXY",

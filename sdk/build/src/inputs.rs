@@ -14,8 +14,9 @@ use crate::globs;
 use crate::recipe::Textures;
 use crate::template::Fields;
 
-/// Most recordings of a recipe. A texture takes about 3.5 kB of memory until it is put together, so that these take less than 512 MiB.
-pub(crate) const MOST_RECORDINGS: usize = 100_000;
+/// Most recordings of a recipe. A texture takes about 4.7 kB of memory until it is put together, and more with long names: these take
+/// less than 512 MiB.
+pub(crate) const MOST_RECORDINGS: usize = 50_000;
 /// Most bytes of a table.
 const MOST_TABLE_BYTES: u64 = 64 << 20;
 

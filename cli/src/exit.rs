@@ -11,6 +11,8 @@ impl Exit {
     pub(crate) const FAILURE: Self = Self(1);
     /// Wrong usage.
     pub(crate) const USAGE: Self = Self(2);
+    /// Made, with some left out.
+    pub(crate) const PART: Self = Self(3);
 
     /// Returns the status that the process ends with.
     pub(crate) fn code(self) -> u8 {

@@ -125,6 +125,9 @@ impl Failure {
     /// end only where this program ends them.
     pub(crate) fn to_lines(&self) -> Vec<String> {
         let text = self.to_string();
+        if self.has_lines() {
+            return text.lines().map(shown_line).collect();
+        }
         let findings = self.findings();
         let first = match text.split_once('\n') {
             Some((first, _)) if !findings.is_empty() => first,
@@ -136,9 +139,20 @@ impl Failure {
             with_hint(&line, finding.hint).into_owned()
         });
         let lines = std::iter::once(first.into_owned()).chain(of_finding);
-        lines
-            .map(|line| plain(&named(&line)).into_owned())
-            .collect()
+        lines.map(|line| shown_line(&line)).collect()
+    }
+
+    /// Whether the message has lines of its own: the place in a TOML file, under which a mark stands.
+    fn has_lines(&self) -> bool {
+        #[cfg(feature = "build")]
+        if let Self::Build {
+            error: htex_build::BuildError::Recipe(_),
+            ..
+        } = self
+        {
+            return true;
+        }
+        false
     }
 
     /// The findings that end the message, each in a line of its own.
@@ -166,6 +180,18 @@ impl Failure {
             }
             _ => flags,
         }
+    }
+}
+
+/// Most characters of a line that is shown; what a message quotes of a file may be longer.
+const MOST_SHOWN: usize = 8000;
+
+fn shown_line(line: &str) -> String {
+    let named = named(line);
+    let line = plain(&named);
+    match line.char_indices().nth(MOST_SHOWN) {
+        Some((end, _)) => format!("{}…", &line[..end]),
+        None => line.into_owned(),
     }
 }
 

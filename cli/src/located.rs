@@ -116,6 +116,8 @@ impl Elsewhere {
         }
         let folder = tempfile::Builder::new().prefix("htex-").tempdir()?;
         let path = folder.path().to_owned();
+        // The store may be private.
+        htex_files::private::close(&path)?;
         *FOLDER.lock().unwrap_or_else(PoisonError::into_inner) = Some(path.clone());
         self.folder = Some(folder);
         Ok(path)

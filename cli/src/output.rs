@@ -51,10 +51,25 @@ pub(crate) fn write_bytes(bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Writes a value as JSON, and a line end.
+/// Writes a value as JSON, and a line end. What would steer a terminal, or show text in another order than it has, is escaped as JSON
+/// escapes it: these characters are in strings alone.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+    use std::fmt::Write as _;
     let text = serde_json::to_string(value)?;
-    write(&(text + "\n"))
+    let mut escaped = String::with_capacity(text.len() + 1);
+    for c in text.chars() {
+        match steers(c) {
+            // All of them are in the basic plane.
+            true => drop(write!(escaped, "\\u{:04x}", u32::from(c))),
+            false => escaped.push(c),
+        }
+    }
+    write(&(escaped + "\n"))
+}
+
+/// Whether a character is a control character, or one that changes the direction of text or ends a line.
+fn steers(c: char) -> bool {
+    matches!(c, '\u{7F}'..='\u{9F}' | '\u{61C}' | '\u{200E}' | '\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
 }
 
 /// The value with control characters in its texts escaped.

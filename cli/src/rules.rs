@@ -8,6 +8,8 @@ const TABLES: &[&[Rule]] = &[
     htex_library::RULES,
     htex_scene::RULES,
     htex_author::findings::RULES,
+    #[cfg(feature = "build")]
+    htex_build::RULES,
     #[cfg(feature = "lab")]
     htex_lab::study::RULES,
 ];

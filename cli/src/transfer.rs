@@ -29,7 +29,10 @@ pub(crate) fn fetch() -> Result<(), Failure> {
             Role::Asset => Limits::default().file_bytes,
             Role::Recording => MOST_RECORDING_BYTES,
         };
-        let file = File::create(&local).writing(&local)?;
+        let mut options = File::options();
+        htex_files::private::only_user(&mut options);
+        let file = options.write(true).create_new(true).open(&local);
+        let file = file.writing(&local)?;
         storage.download(&location, file, most_bytes)?;
     }
     Ok(())

@@ -34,6 +34,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-format",
             "htex-host",
             "htex-library",
+            "htex-native",
             "htex-play",
             "htex-schema",
             "htex-storage",
@@ -65,7 +66,13 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("plugin", &["htex-dsp", "htex-model", "htex-shaped"]),
     (
         "htex-host",
-        &["htex-dsp", "htex-native", "htex-model", "plugin"],
+        &[
+            "htex-dsp",
+            "htex-files",
+            "htex-native",
+            "htex-model",
+            "plugin",
+        ],
     ),
     (
         "htex-author",

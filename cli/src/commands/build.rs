@@ -8,7 +8,7 @@ use clap::Args;
 use htex_author::FeltShare;
 use htex_build::{
     Build as Recipe, BuildOptions, Built, Destination, FindingShare, Job, Report, Status,
-    TextureReport,
+    TextureReport, Why,
 };
 use htex_finding::{Severity, plain};
 use htex_storage::Location;
@@ -27,7 +27,10 @@ use crate::wasm_limits::WasmLimit;
 ///
 /// Fits the recordings that the recipe names and writes DIR/NAME.htexlib, DIR/textures, DIR/build-report.json and the
 /// catalogue DIR/index.html. What has been fitted stays in DIR/.htex-build: a build that was killed goes on where it was, and one
-/// that is run again fits what changed. Recordings and other files of a recipe may be URIs, too. A texture that misses a gate of the recipe is left out, and the exit status is 1.
+/// that is run again fits what changed. Recordings and other files of a recipe may be URIs, too.
+///
+/// Exit status: 0 when every texture was made, 1 when none was, 3 when some were made and others left out (they miss a gate, or with
+/// --keep-going cannot be made), 2 for wrong usage.
 #[derive(Args)]
 pub(crate) struct Build {
     /// The recipe: library.toml, a path or URI (its JSON Schema: `htex schema recipe`)
@@ -49,9 +52,19 @@ pub(crate) struct Build {
     #[arg(long)]
     keep_going: bool,
 
-    /// Say what would be fitted, and fit nothing
+    /// Check the recipe, its files, plugins, options and gates, say what would be fitted and why, and fit nothing
     #[arg(long)]
     dry_run: bool,
+
+    /// A plugin to fit with: a WASM module (sandboxed) or a native library (it runs with all your rights: load only what you
+    /// trust); may be given several times. A recipe names WASM modules alone
+    #[arg(long, value_name = "FILE")]
+    plugin: Vec<PathBuf>,
+
+    /// Remove at once what was fitted and no texture uses any more; otherwise it stays for 30 days, so that a setting that is taken
+    /// back fits nothing again
+    #[arg(long)]
+    prune: bool,
 
     /// Folder of the browser package: the catalogue plays textures with a copy of it instead of short sounds
     #[arg(long, value_name = "DIR")]
@@ -92,12 +105,24 @@ struct Work {
 }
 
 impl Build {
+    /// Builds; an error is JSON on standard output, too, for who reads that.
     pub(crate) fn run(self) -> Result<Exit, Failure> {
+        let is_json = self.json;
+        let built = self.build();
+        if let (Err(failure), true) = (&built, is_json) {
+            print_json(&serde_json::json!({ "textures": 0, "error": failure.to_lines() }))?;
+        }
+        built
+    }
+
+    fn build(self) -> Result<Exit, Failure> {
         let start = Instant::now();
         let options = BuildOptions::new(tool())
             .with_jobs(self.jobs.map_or(0, usize::from))
             .with_keep_going(self.keep_going)
             .with_limits(WasmLimit::all(&self.wasm_limit))
+            .with_plugins(self.plugin.clone())
+            .with_prune(self.prune)
             .with_browser_package(self.browser_package.clone());
         let to = Destination::parse(&self.output, self.work.as_deref()).of(&self.recipe)?;
         if to.remote().is_none() && self.work.is_some() {
@@ -108,7 +133,10 @@ impl Build {
         let mut build = Recipe::open(&self.recipe, to.folder(), options).of(&self.recipe)?;
         let work = Work::of(&build);
         if self.dry_run {
-            return self.announce(&build);
+            return self.announce(&build, &work);
+        }
+        if work.textures > 0 {
+            to.try_out().of(&self.recipe)?;
         }
         fit(&mut build, &work).of(&self.recipe)?;
         let built = build.finish().of(&self.recipe)?;
@@ -116,16 +144,32 @@ impl Build {
         self.report(&built, &to, &work, start.elapsed().as_secs_f64())
     }
 
-    /// Prints what would be fitted.
-    fn announce(&self, build: &Recipe) -> Result<Exit, Failure> {
-        let names: Vec<&str> = build.pending().map(|(_, job)| &job.texture[..]).collect();
+    /// Checks the recipe, and prints what would be fitted and why.
+    fn announce(&self, build: &Recipe, work: &Work) -> Result<Exit, Failure> {
+        build.check().of(&self.recipe)?;
+        let to_fit = build.reasons();
+        let textures = build.plan().textures.len();
         if self.json {
-            print_json(
-                &serde_json::json!({ "to_fit": names, "textures": build.plan().textures.len() }),
-            )?;
+            let json = |(texture, why): &(&str, Why)| serde_json::json!({ "texture": texture, "why": why.to_string() });
+            let to_fit: Vec<_> = to_fit.iter().map(json).collect();
+            print_json(&serde_json::json!({
+                "to_fit": to_fit,
+                "textures": textures,
+                "as_they_were": textures - work.textures,
+                "recordings": work.recordings,
+                "recording_bytes": work.bytes,
+            }))?;
         } else {
-            let lines: String = names.iter().map(|name| format!("{name}\n")).collect();
-            print(&lines)?;
+            let line = |(texture, why): &(&str, Why)| format!("{}: {why}\n", plain(texture));
+            let mut text: String = to_fit.iter().map(line).collect();
+            let megabytes = work.bytes as f64 / 1e6;
+            text += &format!(
+                "{textures} textures: {} to fit from {} recordings ({megabytes:.1} MB), {} as they were\n",
+                work.textures,
+                work.recordings,
+                textures - work.textures
+            );
+            print(&text)?;
         }
         Ok(Exit::SUCCESS)
     }
@@ -144,9 +188,10 @@ impl Build {
             .iter()
             .filter(|texture| texture.status == Status::LeftOut)
             .collect();
-        let exit = match left_out.len() {
-            0 => Exit::SUCCESS,
-            _ => Exit::FAILURE,
+        let exit = match (report.library.textures, left_out.len()) {
+            (_, 0) => Exit::SUCCESS,
+            (0, _) => Exit::FAILURE,
+            _ => Exit::PART,
         };
         let summary = Summary {
             library: results.inside(&report.library.file).to_string(),
@@ -276,7 +321,9 @@ impl Summary<'_> {
             for missed in &texture.missed {
                 text += &format!(
                     "left out: {}: {}: {}\n",
-                    texture.name, missed.gate, missed.reason
+                    plain(&texture.name),
+                    missed.gate,
+                    plain(&missed.reason)
                 );
             }
         }

@@ -73,6 +73,7 @@ struct OtherRecording {
 
 impl Compare {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
+        self.check_kinds()?;
         let (spectrum, found, warnings) = self.spectrum(&self.recording)?;
         let mut comparison = Comparison {
             recording: self.recording.display().to_string(),
@@ -102,6 +103,28 @@ impl Compare {
             print(&comparison.to_text())?;
         }
         Ok(Exit::SUCCESS)
+    }
+
+    /// Says what to do with files of other kinds.
+    fn check_kinds(&self) -> Result<(), Failure> {
+        let advice = match (kind(&self.recording), kind(&self.other)) {
+            (Kind::Asset, Kind::Asset) => {
+                "both are assets, and a recording is compared with an asset or another recording; give the recording first, or see what each \
+                 holds with `htex info`"
+            }
+            (Kind::Asset, _) => "it is an asset; give the recording first, then the asset",
+            (Kind::Library, Kind::Library) => {
+                "both are libraries; compare them with `htex lib diff`"
+            }
+            (Kind::Library, _) | (_, Kind::Library) => {
+                "a library holds many textures; take one out with `htex lib unpack LIBRARY NAME -o DIR` and compare that"
+            }
+            _ => return Ok(()),
+        };
+        Err(Failure::Usage(format!(
+            "{}: {advice}",
+            shown(&self.recording)
+        )))
     }
 
     fn representations(

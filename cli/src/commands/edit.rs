@@ -9,6 +9,7 @@ use htex_author::{EditError, edit};
 
 use crate::assets::AssetSummary;
 use crate::bounded::read_asset;
+use crate::commands::validate::refuse_library;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
@@ -54,6 +55,7 @@ impl Edit {
             )));
         }
         check_outputs(self.output.as_deref(), [self.asset.as_path()])?;
+        refuse_library(&self.asset)?;
         checked(&metadata)?;
         let edited = edit(&read_asset(&self.asset)?, &metadata);
         let asset = edited.map_err(|error| match error {

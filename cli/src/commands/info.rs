@@ -4,6 +4,7 @@ use clap::Args;
 use htex_host::Registry;
 
 use crate::assets::AssetSummary;
+use crate::commands::validate::refuse_library;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
@@ -28,6 +29,7 @@ pub(crate) struct Info {
 
 impl Info {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
+        refuse_library(&self.asset)?;
         let asset = htex_format::Asset::open(&self.asset).of(&self.asset)?;
         let bytes = std::fs::metadata(&self.asset).map_or(0, |m| m.len());
         let mut summary = AssetSummary::new(&self.asset, bytes, &asset);

@@ -1,8 +1,8 @@
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_files::open_regular;
 use htex_finding::{Findings, Report, Severity};
 use htex_format::{DESCRIPTOR_INVALID, Limits, PLUGIN_UNUSABLE, Representation, validate_with};
 use htex_host::{Registry, Search, WasmLimits};
@@ -22,13 +22,13 @@ use crate::schemas::{ABSENT, ExtensionSchema, Named};
 use crate::validation::report;
 use crate::wasm_limits::WasmLimit;
 
-/// Check assets, libraries, scenes (*.json), descriptors of models and devices (*.json) and recordings against
+/// Check assets, libraries, scenes (*.json), descriptors of models and devices (*.json), recipes (*.toml) and recordings against
 /// their formats and JSON Schemas; exit status 1 if one is not valid.
 ///
 /// Each finding has a stable code (`htex explain CODE`), a severity, a JSON pointer into the
 /// document or the recording and, where a JSON Schema says the same, the rule of the schema. Fields of
-/// models that this program has are compared with the models'. A file that is neither called *.htex, *.htexlib or
-/// *.json nor begins as a ZIP archive or a library is read as a recording.
+/// models that this program has are compared with the models'. Of a recipe its keys, files, plugins, options and gates are checked. A
+/// file that is neither called *.htex, *.htexlib, *.json or *.toml nor begins as a ZIP archive or a library is read as a recording.
 #[derive(Args)]
 pub(crate) struct Validate {
     /// The files
@@ -80,6 +80,7 @@ impl Validate {
                 Kind::Asset => self.validate_asset(path, &schemas),
                 Kind::Library => check(path),
                 Kind::Document => validate_json(path),
+                Kind::Recipe => validate_recipe(path),
                 Kind::Recording => self.reading.validate(path),
             }?;
             refused |= self.reading.strict() && kind == Kind::Recording && !is_clean(&report);
@@ -99,16 +100,18 @@ impl Validate {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Asset,
     Library,
     /// A scene or a descriptor.
     Document,
+    /// A recipe of a library.
+    Recipe,
     Recording,
 }
 
 /// The kind of a file, by its name, else by its first bytes.
-pub(super) fn kind(path: &Path) -> Kind {
+pub(crate) fn kind(path: &Path) -> Kind {
     let called = |name: &str| {
         path.extension()
             .is_some_and(|e| e.eq_ignore_ascii_case(name))
@@ -116,14 +119,27 @@ pub(super) fn kind(path: &Path) -> Kind {
     let mut first = Vec::new();
     let most = MAGIC.len() as u64;
     // A file that cannot be read is an error where its contents are read.
-    let _ = File::open(path).and_then(|file| file.take(most).read_to_end(&mut first));
+    // The first bytes of a pipe are those of its contents, and are not taken here.
+    let _ = open_regular(path).and_then(|file| file.take(most).read_to_end(&mut first));
     let begins = |start: &[u8]| first.starts_with(start);
     match () {
         () if called("json") => Kind::Document,
+        () if called("toml") => Kind::Recipe,
         () if called(EXTENSION) || begins(&MAGIC) => Kind::Library,
         () if called("htex") || begins(b"PK") => Kind::Asset,
         () => Kind::Recording,
     }
+}
+
+/// Refuses a library where one asset is meant, and says what to do.
+pub(crate) fn refuse_library(path: &Path) -> Result<(), Failure> {
+    if kind(path) != Kind::Library {
+        return Ok(());
+    }
+    let file = crate::shown::shown(path);
+    Err(Failure::Usage(format!(
+        "{file}: it is a library, which holds many textures: `htex lib ls` lists them, and `htex lib unpack LIBRARY NAME -o DIR` takes one out"
+    )))
 }
 
 /// Whether `--strict` accepts the findings.
@@ -172,6 +188,44 @@ fn hold_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result
 fn is_of_major_1(document: &Value, key: &str) -> bool {
     let version = document.get(key).and_then(Value::as_str);
     version.is_some_and(|version| version.starts_with("1."))
+}
+
+/// Most bytes of a TOML file whose kind is looked for: those of a recipe.
+#[cfg(feature = "build")]
+const MOST_TOML_BYTES: u64 = 1 << 20;
+
+/// Validates a recipe; what is wrong with it first is a finding.
+#[cfg(feature = "build")]
+fn validate_recipe(path: &Path) -> Result<Report, Failure> {
+    use htex_build::{BuildError, BuildOptions, RECIPE_INVALID, check};
+    let options = BuildOptions::new(crate::models::tool()).with_limits(WasmLimit::all(&[]));
+    let text = htex_files::read_regular_text(path, MOST_TOML_BYTES).unwrap_or_default();
+    let is_study = |line: &str| line.trim_start().starts_with("htex_study");
+    if text.lines().any(is_study) {
+        let file = crate::shown::shown(path);
+        return Err(Failure::Usage(format!(
+            "{file}: it is a study; check it by `htex study validate`"
+        )));
+    }
+    let mut findings = Findings::default();
+    match check(path, &options) {
+        Ok(_) => {}
+        // The recipe itself cannot be read.
+        Err(BuildError::File(error)) if error.file == path => return Err(error.into()),
+        Err(error) => {
+            let text = error.to_string();
+            let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
+            findings.add(RECIPE_INVALID, "", lines.join("; "));
+        }
+    }
+    Ok(findings.into_report())
+}
+
+#[cfg(not(feature = "build"))]
+fn validate_recipe(path: &Path) -> Result<Report, Failure> {
+    let file = crate::shown::shown(path);
+    let words = "this program was built without recipes; build it with the feature `build`";
+    Err(Failure::Usage(format!("{file}: {words}")))
 }
 
 /// Validates a scene or a descriptor, told apart by their keys.

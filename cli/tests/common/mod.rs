@@ -67,6 +67,10 @@ impl Place {
 }
 
 impl Run {
+    pub fn of(output: Output) -> Self {
+        Self(output)
+    }
+
     pub fn code(&self) -> i32 {
         self.0.status.code().unwrap()
     }

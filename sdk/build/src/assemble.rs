@@ -20,14 +20,17 @@ use crate::findings::shares;
 use crate::gates::missed;
 use crate::hashes::Stamp;
 use crate::job::Job;
+use crate::kept::Kept;
 use crate::made::Made;
 use crate::plan::{Plan, PlannedTexture};
 use crate::report::{LibraryReport, REPORT, Report, Status, TextureReport, felt_shares};
 
 const REPORT_FILE: &str = "build-report.json";
+/// Most bytes of a report that is read: a few hundred thousand textures.
+const MOST_REPORT_BYTES: u64 = 1 << 30;
 
-/// The file of what is known of the library that was written last.
-const KEPT_LIBRARY: &str = ".htex-build/library.json";
+/// The file of what is known of the library that was written last, in the folder of what is kept.
+const KEPT_LIBRARY: &str = "library.json";
 
 /// A finished build.
 #[derive(Debug, Clone)]
@@ -42,26 +45,31 @@ pub(crate) fn assemble(
     plan: &Plan,
     jobs: &[(String, Job)],
     made: &(dyn Fn(&str) -> Option<Made> + Sync),
-    dist: &Dist,
+    (dist, kept): (&Dist, &Kept),
     options: &BuildOptions,
 ) -> Result<Built, BuildError> {
-    dist.remove_parts()?;
+    let parts = dist.empty_parts()?;
     let before = previous(dist);
     let file = format!("{}.htexlib", plan.library);
-    let path = dist.file(&file);
+    let path = dist.at(Path::new(&file))?;
     let found = |key: &str, texture: &PlannedTexture| {
         made(key).ok_or_else(|| {
             BuildError::Damaged(format!("{}: it was kept and is gone", texture.name))
         })
     };
+    let asset = |job: &Job, made: &Made| match &made.asset[..] {
+        [] => Ok(Vec::new()),
+        bytes => job.named(bytes),
+    };
     let library = path.display();
     let report = |((key, job), texture): (&(String, Job), &PlannedTexture)| {
-        let made = found(key, texture)?;
+        let mut made = found(key, texture)?;
+        made.asset = asset(job, &made)?;
         let report = judged(texture, key, job, &made)?;
         if report.status == Status::Built {
-            dist.put(&dist.texture(&texture.name), &made.asset)?;
+            dist.put(&Dist::texture(&texture.name), &made.asset)?;
             if options.browser_package.is_none() {
-                dist.put(&dist.sound(&texture.name), &made.sound)?;
+                dist.put(&Dist::sound(&texture.name), &made.sound)?;
             }
         }
         Ok(report)
@@ -69,21 +77,21 @@ pub(crate) fn assemble(
     let planned = jobs.par_iter().zip(&plan.textures);
     let textures: Vec<TextureReport> = planned.map(report).collect::<Result<_, BuildError>>()?;
     let contents = contents(plan, &textures);
-    let packed = match kept_library(dist, &path, &contents) {
+    let packed = match kept_library(kept, &path, &contents) {
         Some(packed) => packed,
         None => {
             // Beside it, a kill would leave the writer's files.
-            let written = dist.parts()?.join(&file);
-            let mut writer = Writer::create(&written, &plan.library).at(&library)?;
-            for (texture, report) in plan.textures.iter().zip(&textures) {
-                if report.status == Status::Built {
-                    let made = found(&report.key, texture)?;
-                    writer.add(&texture.name, &made.asset).at(&library)?;
-                }
+            let part = parts.join(&file);
+            let mut writer = Writer::create(&dist.at(&part)?, &plan.library).at(&library)?;
+            let planned = jobs.iter().zip(&plan.textures).zip(&textures);
+            for (((key, job), texture), _) in planned.filter(|(_, r)| r.status == Status::Built) {
+                let made = found(key, texture)?;
+                let bytes = asset(job, &made)?;
+                writer.add(&texture.name, &bytes).at(&library)?;
             }
             let packed = writer.finish().at(&library)?;
-            fs::rename(&written, &path).writing(&path)?;
-            keep_library(dist, &path, contents, &packed)?
+            dist.rename(&part, Path::new(&file))?;
+            keep_library(kept, &path, contents, &packed)?
         }
     };
     if let Some(package) = &options.browser_package {
@@ -98,8 +106,8 @@ pub(crate) fn assemble(
         textures,
     };
     let page = catalogue(&report, options.browser_package.is_some());
-    dist.put(&dist.file("index.html"), page.as_bytes())?;
-    dist.put(&dist.file(REPORT_FILE), &json(&report)?)?;
+    dist.put(Path::new("index.html"), page.as_bytes())?;
+    dist.put(Path::new(REPORT_FILE), &json(&report)?)?;
     remove_stale(before, &report, dist, options)?;
     Ok(Built { report })
 }
@@ -148,28 +156,27 @@ fn contents(plan: &Plan, textures: &[TextureReport]) -> String {
 }
 
 /// Returns the library that is there, if it has these contents and nobody wrote to it since.
-fn kept_library(dist: &Dist, path: &Path, contents: &str) -> Option<KeptLibrary> {
-    let bytes = fs::read(dist.file(KEPT_LIBRARY)).ok()?;
+fn kept_library(kept: &Kept, path: &Path, contents: &str) -> Option<KeptLibrary> {
+    let bytes = kept.get(KEPT_LIBRARY, MOST_REPORT_BYTES)?;
     let kept: KeptLibrary = serde_json::from_slice(&bytes).ok()?;
     let same = kept.contents == contents && Stamp::of(path).ok()? == kept.stamp;
     same.then_some(kept)
 }
 
 fn keep_library(
-    dist: &Dist,
+    kept: &Kept,
     path: &Path,
     contents: String,
     packed: &Packed,
 ) -> Result<KeptLibrary, BuildError> {
-    let kept = KeptLibrary {
+    let library = KeptLibrary {
         contents,
         stamp: Stamp::of(path).reading(path)?,
         bytes: packed.bytes,
         blake3: blake3::Hash::from_bytes(packed.blake3).to_hex().to_string(),
     };
-    let json = serde_json::to_vec(&kept).unwrap_or_default();
-    dist.put(&dist.file(KEPT_LIBRARY), &json)?;
-    Ok(kept)
+    kept.put(KEPT_LIBRARY, &serde_json::to_vec(&library)?)?;
+    Ok(library)
 }
 
 fn library_report(
@@ -204,7 +211,7 @@ fn copy_package(package: &Path, dist: &Dist) -> Result<(), BuildError> {
         if file.file_type().is_file() {
             let bytes = fs::read(file.path()).reading(file.path())?;
             let inside = file.path().strip_prefix(package).unwrap_or(file.path());
-            dist.put(&dist.file("browser").join(inside), &bytes)?;
+            dist.put(&Path::new("browser").join(inside), &bytes)?;
         }
     }
     Ok(())
@@ -217,7 +224,7 @@ fn json(report: &Report) -> Result<Vec<u8>, BuildError> {
 
 /// The report of the build before, if there is one.
 fn previous(dist: &Dist) -> Option<Report> {
-    let bytes = fs::read(dist.file(REPORT_FILE)).ok()?;
+    let bytes = dist.get(Path::new(REPORT_FILE), MOST_REPORT_BYTES)?;
     serde_json::from_slice(&bytes).ok()
 }
 
@@ -241,16 +248,16 @@ fn remove_stale(
         .filter(|name| htex_library::check_name(name).is_ok())
     {
         if !kept.contains(name) {
-            dist.remove(&dist.texture(name))?;
+            dist.remove(&Dist::texture(name))?;
         }
         if !kept.contains(name) || options.browser_package.is_some() {
-            dist.remove(&dist.sound(name))?;
+            dist.remove(&Dist::sound(name))?;
         }
     }
     let is_file =
         !before.library.file.contains(['/', '\\']) && before.library.file.ends_with(".htexlib");
     if is_file && before.library.file != now.library.file {
-        dist.remove(&dist.file(&before.library.file))?;
+        dist.remove(Path::new(&before.library.file))?;
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use htex_files::{AtFile, FileError};
+use htex_files::FileError;
 use htex_host::WasmLimits;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -15,21 +15,17 @@ use crate::BuildError;
 use crate::assemble::{Built, assemble};
 use crate::cache::Cache;
 use crate::dist::Dist;
-use crate::elsewhere::{Elsewhere, folder_of, joined};
+use crate::elsewhere::{Elsewhere, folder_of, joined, origin};
 use crate::error::AtPlace;
 use crate::hashes::{Hashed, Hashes, hash};
-use crate::job::{Job, Workbench};
+use crate::job::{Job, Named, Workbench};
+use crate::kept::Kept;
 use crate::made::{Made, Outcome};
 use crate::plan::{Plan, PlannedTexture};
+use crate::reasons::{Reasons, Why};
 use crate::recipe::Recipe;
 
-/// Folder of what a build keeps for the next one, in the folder of the results.
-const KEPT: &str = ".htex-build";
-
-/// The folder of copies of files elsewhere, in that folder.
-const COPIES: &str = "elsewhere";
-
-/// The file of hashes, in that folder.
+/// The file of hashes, in the folder of what is kept.
 const HASHES: &str = "files.json";
 
 #[derive(Debug, Clone)]
@@ -44,6 +40,11 @@ pub struct BuildOptions {
     pub program: String,
     /// Folder of the browser package, with which the catalogue plays textures; without it, the catalogue has short sounds.
     pub browser_package: Option<PathBuf>,
+    /// Plugins that a person names: WASM modules, or native libraries, which run with all rights of this program. A recipe names
+    /// modules alone.
+    pub plugins: Vec<PathBuf>,
+    /// Whether to remove at once what was fitted and no texture uses any more; otherwise it stays for 30 days.
+    pub prune: bool,
 }
 
 impl BuildOptions {
@@ -55,6 +56,8 @@ impl BuildOptions {
             limits: WasmLimits::default(),
             program: program.into(),
             browser_package: None,
+            plugins: Vec::new(),
+            prune: false,
         }
     }
 
@@ -78,6 +81,20 @@ impl BuildOptions {
         self
     }
 
+    /// Sets the plugins that a person names.
+    #[must_use]
+    pub fn with_plugins(mut self, plugins: Vec<PathBuf>) -> Self {
+        self.plugins = plugins;
+        self
+    }
+
+    /// Sets whether to remove at once what no texture uses any more.
+    #[must_use]
+    pub fn with_prune(mut self, prune: bool) -> Self {
+        self.prune = prune;
+        self
+    }
+
     /// Sets the folder of the browser package.
     #[must_use]
     pub fn with_browser_package(mut self, folder: impl Into<Option<PathBuf>>) -> Self {
@@ -95,6 +112,7 @@ pub struct Build {
     jobs: Vec<(String, Job)>,
     cache: Cache,
     dist: Dist,
+    kept: Arc<Kept>,
     /// Indices of jobs that an earlier build has not done.
     pending: Vec<usize>,
     /// What was made and is not kept for the next build.
@@ -114,41 +132,73 @@ impl Build {
     /// different settings; when a file cannot be read, the folder cannot be written, or another build uses it.
     pub fn open(recipe: &Path, output: &Path, options: BuildOptions) -> Result<Self, BuildError> {
         let Prepared {
-            recipe,
-            folder,
+            named,
             plan,
             hashes,
             elsewhere,
             kept,
             lock,
-        } = Prepared::new(recipe, output)?;
+        } = Prepared::new(recipe, output, &options.plugins)?;
         let pool = ThreadPoolBuilder::new().num_threads(options.jobs).build();
         let pool = pool.at("jobs")?;
         let job = |texture: &PlannedTexture| {
-            let plugins = &recipe.library.plugins;
-            let job = Job::new(texture, &folder, plugins, &options.program, &hashes)?;
+            let job = Job::new(texture, &named, &options.program, &hashes)?;
             Ok((job.key(), job))
         };
         let jobs: Result<Vec<_>, BuildError> =
             pool.install(|| plan.textures.par_iter().map(job).collect());
         let jobs = jobs?;
-        let dist = Dist::new(output);
-        dist.put(&kept.join(HASHES), &hashes.to_keep())?;
-        let cache = Cache::open(&kept.join("made"))?;
+        kept.put(HASHES, &hashes.to_keep())?;
+        let cache = Cache::open(kept.clone())?;
         let is_pending = |i: &usize| cache.get(&jobs[*i].0).is_none();
-        let pending = pool.install(|| (0..jobs.len()).into_par_iter().filter(is_pending).collect());
+        let mut pending: Vec<usize> =
+            pool.install(|| (0..jobs.len()).into_par_iter().filter(is_pending).collect());
+        // Textures of the same recordings and settings are one fit.
+        let mut keys = BTreeSet::new();
+        pending.retain(|i| keys.insert(&jobs[*i].0));
         Ok(Self {
             options,
             plan,
             jobs,
             cache,
-            dist,
+            dist: Dist::new(output),
+            kept,
             pending,
             unkept: BTreeMap::new(),
             elsewhere,
             pool,
             _lock: lock,
         })
+    }
+
+    /// Checks what is known before a fit: that the plugins can be loaded, the settings are those of models that there are, and gates
+    /// name models that are fitted.
+    ///
+    /// # Errors
+    /// What is wrong, with its place.
+    pub fn check(&self) -> Result<(), BuildError> {
+        let mut workbench = self.workbench();
+        let mut checked = BTreeSet::new();
+        for ((_, job), texture) in self.jobs.iter().zip(&self.plan.textures) {
+            if checked.insert(job.checked_by(&texture.gates)) {
+                job.check(&texture.gates, &mut workbench)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns why each of the pending jobs is to be done, by its texture.
+    pub fn reasons(&self) -> Vec<(&str, Why)> {
+        let before = Reasons::open(&self.kept);
+        let pending = self.pending.iter().map(|i| &self.jobs[*i]);
+        let why = pending.map(|(key, job)| (&job.texture[..], before.why(job, key, &self.cache)));
+        why.collect()
+    }
+
+    fn workbench(&self) -> Workbench {
+        let mut workbench = Workbench::new(self.options.limits.clone());
+        workbench.elsewhere = self.elsewhere.clone();
+        workbench
     }
 
     /// Returns the textures that the recipe asks for.
@@ -190,8 +240,7 @@ impl Build {
         let stopped = AtomicBool::new(false);
         let ended = Mutex::new((BTreeMap::new(), None));
         let work = |_: rayon::BroadcastContext<'_>| {
-            let mut workbench = Workbench::new(self.options.limits.clone());
-            workbench.elsewhere = self.elsewhere.clone();
+            let mut workbench = self.workbench();
             while !stopped.load(Ordering::Relaxed) {
                 let Some(i) = self.pending.get(next.fetch_add(1, Ordering::Relaxed)) else {
                     return;
@@ -264,10 +313,12 @@ impl Build {
             Some(made) => Some(made.clone()),
             None => self.cache.get(key),
         };
-        let assemble = || assemble(&self.plan, &self.jobs, &made, &self.dist, &self.options);
+        let put = (&self.dist, &*self.kept);
+        let assemble = || assemble(&self.plan, &self.jobs, &made, put, &self.options);
         let built = self.pool.install(assemble)?;
         let keys: BTreeSet<&str> = self.jobs.iter().map(|(key, _)| &key[..]).collect();
-        self.cache.keep(&keys)?;
+        self.cache.keep(&keys, self.options.prune)?;
+        Reasons::of(self.jobs.iter().map(|(_, job)| job)).keep(&self.kept)?;
         self.elsewhere.forget()?;
         Ok(built)
     }
@@ -279,26 +330,58 @@ impl Build {
 /// # Errors
 /// As [`Build::open`].
 pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError> {
-    let prepared = Prepared::new(recipe, output)?;
-    let textures = prepared
-        .plan
-        .textures
-        .iter()
-        .flat_map(PlannedTexture::files);
-    let files = textures.chain(&prepared.recipe.library.plugins);
-    let files: BTreeSet<PathBuf> = files.map(|file| joined(&prepared.folder, file)).collect();
+    let prepared = Prepared::new(recipe, output, &[])?;
+    let textures = prepared.plan.textures.iter();
+    let files = textures.flat_map(PlannedTexture::files);
+    let files = files.chain(&prepared.named.of_recipe);
+    let folder = &prepared.named.folder;
+    let files: BTreeSet<PathBuf> = files.map(|file| joined(folder, file)).collect();
     let unknown = files
         .into_iter()
         .filter(|file| !prepared.hashes.is_known(file));
     Ok(unknown.collect())
 }
 
-/// Hashes a file, of this machine or by URI.
+/// Checks a recipe without a build: its keys, that its recordings are there, that its plugins can be loaded, and its options and gates.
+/// Nothing is written. Returns the textures that it asks for.
 ///
 /// # Errors
-/// When it cannot be read, or changes meanwhile.
-pub fn hash_file(file: &Path) -> Result<Hashed, BuildError> {
-    hash(file, &Elsewhere::temporary())
+/// What is wrong, and where.
+pub fn check(recipe: &Path, options: &BuildOptions) -> Result<Plan, BuildError> {
+    let parsed = Recipe::open(recipe)?;
+    let folder = folder_of(recipe);
+    let origin = origin(recipe)?;
+    let elsewhere = Arc::new(Elsewhere::temporary(origin.clone()));
+    // No folder is that of its results.
+    let plan = Plan::new(&parsed, &folder, Path::new(""), &elsewhere)?;
+    let named = Named::new(&options.plugins, parsed.library.plugins, folder, origin)?;
+    let hashes = Hashes::new(elsewhere.clone());
+    let mut workbench = Workbench::new(options.limits.clone());
+    workbench.elsewhere = elsewhere;
+    let mut checked = BTreeSet::new();
+    for texture in &plan.textures {
+        for file in texture.recordings.iter().map(|recording| &recording.file) {
+            hashes.check(&joined(&named.folder, file))?;
+        }
+        // Its recordings are not read.
+        let without = PlannedTexture {
+            recordings: Vec::new(),
+            ..texture.clone()
+        };
+        let job = Job::new(&without, &named, &options.program, &hashes)?;
+        if checked.insert(job.checked_by(&texture.gates)) {
+            job.check(&texture.gates, &mut workbench)?;
+        }
+    }
+    Ok(plan)
+}
+
+/// Hashes a file of a recipe, of this machine or by URI.
+///
+/// # Errors
+/// When it cannot be read, or changes meanwhile; when it has an address that the recipe may not name.
+pub fn hash_file(recipe: &Path, file: &Path) -> Result<Hashed, BuildError> {
+    hash(file, &Elsewhere::temporary(origin(recipe)?))
 }
 
 /// Keeps hashes of files for the next build. A file whose size or times are others there is read again.
@@ -309,53 +392,39 @@ pub fn remember(
     output: &Path,
     hashed: impl IntoIterator<Item = (PathBuf, Hashed)>,
 ) -> Result<(), BuildError> {
-    let (kept, _lock) = claim(output)?;
-    let hashes = Hashes::open(&kept.join(HASHES), Arc::new(Elsewhere::temporary()));
+    let kept = Kept::new(output)?;
+    let _lock = kept.claim()?;
+    let hashes = Hashes::open(&kept, HASHES, Arc::new(Elsewhere::temporary(None)));
     hashes.add(hashed);
-    Dist::new(output).put(&kept.join(HASHES), &hashes.to_keep())
+    kept.put(HASHES, &hashes.to_keep())
 }
 
 /// A recipe with its plan and the hashes that are known.
 struct Prepared {
-    recipe: Recipe,
-    folder: PathBuf,
+    named: Named,
     plan: Plan,
     hashes: Hashes,
     elsewhere: Arc<Elsewhere>,
-    /// Folder of what is kept, and its lock.
-    kept: PathBuf,
+    kept: Arc<Kept>,
     lock: File,
 }
 
 impl Prepared {
-    fn new(recipe: &Path, output: &Path) -> Result<Self, BuildError> {
+    fn new(recipe: &Path, output: &Path, plugins: &[PathBuf]) -> Result<Self, BuildError> {
         let parsed = Recipe::open(recipe)?;
-        let (kept, lock) = claim(output)?;
+        let kept = Arc::new(Kept::new(output)?);
+        let lock = kept.claim()?;
         let folder = folder_of(recipe);
-        let elsewhere = Arc::new(Elsewhere::with_copies(kept.join(COPIES)));
+        let origin = origin(recipe)?;
+        let elsewhere = Arc::new(Elsewhere::with_copies(kept.own().clone(), origin.clone()));
+        let plan = Plan::new(&parsed, &folder, output, &elsewhere)?;
         Ok(Self {
-            plan: Plan::new(&parsed, &folder, output, &elsewhere)?,
-            recipe: parsed,
-            hashes: Hashes::open(&kept.join(HASHES), elsewhere.clone()),
+            named: Named::new(plugins, parsed.library.plugins, folder, origin)?,
+            plan,
+            hashes: Hashes::open(&kept, HASHES, elsewhere.clone()),
             elsewhere,
-            folder,
             kept,
             lock,
         })
-    }
-}
-
-/// Makes the folder of the results, and returns its folder of what is kept, locked for this build.
-fn claim(output: &Path) -> Result<(PathBuf, File), BuildError> {
-    let kept = output.join(KEPT);
-    std::fs::create_dir_all(&kept).writing(&kept)?;
-    let file = kept.join("lock");
-    let lock = File::create(&file).writing(&file)?;
-    match lock.try_lock() {
-        Ok(()) => Ok((kept, lock)),
-        Err(std::fs::TryLockError::WouldBlock) => Err(BuildError::Locked {
-            folder: output.to_owned(),
-        }),
-        Err(std::fs::TryLockError::Error(error)) => Err(FileError::writing(&file, error).into()),
     }
 }

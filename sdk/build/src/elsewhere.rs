@@ -5,25 +5,31 @@
 //! job on whichever machine it runs.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
-use htex_files::AtFile;
+use htex_files::{AtFile, OwnFolder};
 use htex_storage::{Location, Storage, StorageError, StorageProblem};
 use tempfile::TempDir;
 
 use crate::BuildError;
-use crate::hashes::{Hashed, Stamp};
+use crate::hashes::{Hashed, Stamp, hash_local};
+use crate::kept::inside;
 
 /// Most bytes of a file that is copied.
 const MOST_BYTES: u64 = 16 << 30;
 /// Most bytes of a recipe or a table.
 const MOST_TEXT_BYTES: u64 = 64 << 20;
 
+/// The folder of copies of files elsewhere, in that of what is kept.
+const COPIES: &str = "elsewhere";
+
 /// Files elsewhere, and their copies by content.
 #[derive(Debug)]
 pub(crate) struct Elsewhere {
+    /// Where the recipe is, whose server it may name.
+    origin: Option<Location>,
     storage: OnceLock<Storage>,
     /// Stamps of files that were listed.
     listed: Mutex<BTreeMap<PathBuf, Stamp>>,
@@ -33,7 +39,8 @@ pub(crate) struct Elsewhere {
 /// Where copies are kept.
 #[derive(Debug)]
 enum Copies {
-    Folder(PathBuf),
+    /// The folder of the results.
+    Folder(OwnFolder),
     Temporary(OnceLock<TempDir>),
 }
 
@@ -53,10 +60,35 @@ pub(crate) fn joined(folder: &Path, path: &Path) -> PathBuf {
     match (is_elsewhere(path), is_elsewhere(folder), folder.to_str()) {
         (true, ..) => path.to_owned(),
         (false, true, Some(folder)) if path.is_relative() => {
-            let slash = if folder.ends_with('/') { "" } else { "/" };
-            format!("{folder}{slash}{}", path.to_string_lossy()).into()
+            below(folder, &path.to_string_lossy()).into()
         }
-        _ => folder.join(path),
+        // `file://` is a path of this machine, too.
+        _ => match Location::parse(path.as_os_str()) {
+            Ok(location) => folder.join(location.local().unwrap_or(path)),
+            Err(_) => folder.join(path),
+        },
+    }
+}
+
+/// Returns the URI of a path in a folder elsewhere, in which `..` leads to the folder above, up to the bucket or host.
+fn below(folder: &str, path: &str) -> String {
+    let mut folder = folder.trim_end_matches('/').to_owned();
+    let mut path = path;
+    loop {
+        path = match (path.strip_prefix("./"), path.strip_prefix("../")) {
+            (Some(rest), _) => rest,
+            (_, Some(rest)) => {
+                let start = folder.find("://").map_or(0, |at| at + 3);
+                let end = folder[start..].rfind('/').map(|at| start + at);
+                folder.truncate(end.unwrap_or(folder.len()));
+                rest
+            }
+            _ => break,
+        };
+    }
+    match path {
+        "" | "." => folder,
+        path => format!("{folder}/{path}"),
     }
 }
 
@@ -76,18 +108,19 @@ pub(crate) fn folder_of(path: &Path) -> PathBuf {
 }
 
 impl Elsewhere {
-    /// With copies in a folder, which [`Self::forget`] removes.
-    pub(crate) fn with_copies(folder: PathBuf) -> Self {
-        Self::new(Copies::Folder(folder))
+    /// With copies in the folder of the results, which [`Self::forget`] removes; `origin` is where the recipe is.
+    pub(crate) fn with_copies(output: OwnFolder, origin: Option<Location>) -> Self {
+        Self::new(Copies::Folder(output), origin)
     }
 
     /// With copies that go with this value.
-    pub(crate) fn temporary() -> Self {
-        Self::new(Copies::Temporary(OnceLock::new()))
+    pub(crate) fn temporary(origin: Option<Location>) -> Self {
+        Self::new(Copies::Temporary(OnceLock::new()), origin)
     }
 
-    fn new(copies: Copies) -> Self {
+    fn new(copies: Copies, origin: Option<Location>) -> Self {
         Self {
+            origin,
             storage: OnceLock::new(),
             listed: Mutex::default(),
             copies,
@@ -132,11 +165,14 @@ impl Elsewhere {
         Ok(Hashed { blake3, stamp })
     }
 
-    /// Returns a copy of the contents with a hash, under the file's own name.
+    /// Returns a copy of the contents with a hash, under the file's own name. One that is there is used if it has the hash.
     pub(crate) fn copy(&self, location: &Location, blake3: &str) -> Result<PathBuf, BuildError> {
         let name = named(location)?;
-        let there = self.copies()?.join(blake3).join(&name);
-        if there.is_file() {
+        let copies = self.copies()?;
+        if let Ok(there) = copies.own.at(&copies.inside.join(blake3).join(&name))
+            && there.symlink_metadata().is_ok_and(|is| is.is_file())
+            && hash_local(&there).is_ok_and(|hashed| hashed.blake3 == blake3)
+        {
             return Ok(there);
         }
         let (found, copy) = self.fetch(location)?;
@@ -156,52 +192,68 @@ impl Elsewhere {
     /// Removes the copies.
     pub(crate) fn forget(&self) -> Result<(), BuildError> {
         match &self.copies {
-            Copies::Folder(folder) if folder.exists() => {
-                Ok(fs::remove_dir_all(folder).writing(folder)?)
+            Copies::Folder(own) => {
+                let removed = own.remove_folder(&inside(COPIES));
+                Ok(removed.writing(own.path().join(inside(COPIES)))?)
             }
-            _ => Ok(()),
+            Copies::Temporary(_) => Ok(()),
         }
     }
 
-    /// Downloads a file. Returns its hash and its copy.
+    /// Downloads a file. Returns its hash and its copy. Others may not read it: the store may be private.
     fn fetch(&self, location: &Location) -> Result<(String, PathBuf), BuildError> {
         let (copies, name) = (self.copies()?, named(location)?);
-        let part = tempfile::Builder::new().suffix(".part").tempfile_in(copies);
-        let part = part.writing(copies)?;
-        let file = part.reopen().writing(copies)?;
+        let folder = copies.own.path().join(&copies.inside);
+        let part = tempfile::Builder::new()
+            .suffix(".part")
+            .tempfile_in(&folder);
+        let part = part.writing(&folder)?;
+        let file = part.reopen().writing(&folder)?;
         self.storage()?.download(location, file, MOST_BYTES)?;
         let mut hasher = blake3::Hasher::new();
-        let written = File::open(part.path()).writing(copies)?;
-        hasher.update_reader(written).writing(copies)?;
+        let written = File::open(part.path()).writing(&folder)?;
+        hasher.update_reader(written).writing(&folder)?;
         let blake3 = hasher.finalize().to_hex().to_string();
-        let folder = copies.join(&blake3);
-        fs::create_dir_all(&folder).writing(copies)?;
-        let copy = folder.join(name);
+        let inside = copies.inside.join(&blake3);
+        let own = copies.own.make_folder(&inside).writing(&folder)?;
+        let copy = own.join(name);
         part.persist(&copy).writing(&copy)?;
         Ok((blake3, copy))
     }
 
+    /// What a recipe names is read under the rule for files: no address of this machine or network but that of the recipe's own
+    /// server.
     fn storage(&self) -> Result<&Storage, StorageError> {
         if let Some(storage) = self.storage.get() {
             return Ok(storage);
         }
-        let storage = Storage::from_environment()?;
+        let storage = Storage::from_environment()?.for_names_in_a_file(self.origin.as_ref());
         Ok(self.storage.get_or_init(|| storage))
     }
 
-    fn copies(&self) -> Result<&Path, BuildError> {
+    fn copies(&self) -> Result<CopiesIn, BuildError> {
         match &self.copies {
-            Copies::Folder(folder) => {
-                fs::create_dir_all(folder).writing(folder)?;
-                Ok(folder)
+            Copies::Folder(own) => {
+                let copies = inside(COPIES);
+                let made = own.make_folder(&copies);
+                let made = made.writing(own.path().join(&copies))?;
+                htex_files::private::close(&made).writing(&made)?;
+                Ok(CopiesIn {
+                    own: own.clone(),
+                    inside: copies,
+                })
             }
             Copies::Temporary(held) => {
-                if let Some(folder) = held.get() {
-                    return Ok(folder.path());
+                if held.get().is_none() {
+                    let folder = tempfile::Builder::new().prefix("htex-build-").tempdir();
+                    let folder = folder.writing(std::env::temp_dir())?;
+                    held.get_or_init(|| folder);
                 }
-                let folder = tempfile::Builder::new().prefix("htex-build-").tempdir();
-                let folder = folder.writing(std::env::temp_dir())?;
-                Ok(held.get_or_init(|| folder).path())
+                let folder = held.get().map(TempDir::path).unwrap_or(Path::new(""));
+                Ok(CopiesIn {
+                    own: OwnFolder::new(folder),
+                    inside: PathBuf::new(),
+                })
             }
         }
     }
@@ -209,6 +261,17 @@ impl Elsewhere {
     fn listed(&self) -> MutexGuard<'_, BTreeMap<PathBuf, Stamp>> {
         self.listed.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// The folder of copies: a folder in which nothing is followed, and the path in it.
+struct CopiesIn {
+    own: OwnFolder,
+    inside: PathBuf,
+}
+
+/// Where a recipe is, if it is elsewhere.
+pub(crate) fn origin(recipe: &Path) -> Result<Option<Location>, StorageError> {
+    elsewhere(recipe)
 }
 
 /// The file's name, which its copy has too: readers and provenance depend on it.

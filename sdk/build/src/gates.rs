@@ -144,3 +144,47 @@ fn is_named(id: &str, name: &str) -> bool {
     let short = id.rsplit('.').next().unwrap_or(id);
     id == name || short.eq_ignore_ascii_case(name)
 }
+
+/// Checks that gates name models that are fitted, and that their numbers can be met.
+pub(crate) fn check_gates(gates: &Gates, models: &[&str]) -> Result<(), String> {
+    for (key, gate) in [
+        ("max_band_error_db", &gates.max_band_error_db),
+        ("max_felt_error_db", &gates.max_felt_error_db),
+    ] {
+        let Some(gate) = gate else { continue };
+        for (name, most) in by_name(gate) {
+            if let Some(name) = name
+                && !models.iter().any(|id| is_named(id, name))
+            {
+                let models = models.join(", ");
+                return Err(format!(
+                    "gates.{key}: {name} is not fitted; there are {models}"
+                ));
+            }
+            check_number(key, most)?;
+        }
+    }
+    gates
+        .max_repeatability_db
+        .map_or(Ok(()), |most| check_number("max_repeatability_db", most))
+}
+
+/// The numbers of a gate, by model if it says so.
+fn by_name(gate: &ModelGate) -> Vec<(Option<&str>, f64)> {
+    match gate {
+        ModelGate::All(most) => vec![(None, *most)],
+        ModelGate::ByModel(by_model) => {
+            let named = by_model.iter();
+            named.map(|(name, most)| (Some(&name[..]), *most)).collect()
+        }
+    }
+}
+
+fn check_number(key: &str, most: f64) -> Result<(), String> {
+    match most >= 0.0 {
+        true => Ok(()),
+        false => Err(format!(
+            "gates.{key} is {most}, which no texture meets; give a number of decibels from 0"
+        )),
+    }
+}

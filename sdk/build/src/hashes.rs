@@ -1,21 +1,28 @@
 //! Hashes of files, kept from build to build as long as size and times of a file stay.
 
 use std::collections::BTreeMap;
-use std::fs::{File, Metadata};
+use std::fs::Metadata;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use htex_files::AtFile;
+use htex_files::{AtFile, FileError, check_regular_at, open_regular};
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
 use crate::elsewhere::{Elsewhere, elsewhere, is_elsewhere};
+use crate::kept::Kept;
 
 /// A file that changed this shortly before it was hashed may change again without a change of its time, since file systems keep
 /// times in steps of up to 2 s (FAT).
 const RACY: Duration = Duration::from_secs(2);
+
+/// Most bytes of the hashes of a build: a few million files.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// Most bytes of a file that a recipe names: those of the largest recording that is read.
+const MOST_FILE_BYTES: u64 = 4 << 30;
 
 /// Size and times of a file, by which a change is noticed without reading it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -102,14 +109,28 @@ pub(crate) struct Hashes {
 
 impl Hashes {
     /// Reads the hashes that an earlier build kept; a file that is absent or damaged holds none.
-    pub(crate) fn open(file: &Path, elsewhere: Arc<Elsewhere>) -> Self {
-        let known = std::fs::read(file).ok();
+    pub(crate) fn open(kept: &Kept, name: &str, elsewhere: Arc<Elsewhere>) -> Self {
+        let known = kept.get(name, MOST_BYTES);
         let known = known.and_then(|bytes| serde_json::from_slice(&bytes).ok());
         Self {
             known: known.unwrap_or_default(),
             elsewhere,
             used: Mutex::default(),
         }
+    }
+
+    /// Without hashes of an earlier build.
+    pub(crate) fn new(elsewhere: Arc<Elsewhere>) -> Self {
+        Self {
+            known: BTreeMap::new(),
+            elsewhere,
+            used: Mutex::default(),
+        }
+    }
+
+    /// Checks that a file is there, and a regular one, without reading it.
+    pub(crate) fn check(&self, path: &Path) -> Result<(), BuildError> {
+        self.stamp(path).map(drop)
     }
 
     /// Whether the hash of a file is known without reading it.
@@ -147,7 +168,15 @@ impl Hashes {
     fn stamp(&self, path: &Path) -> Result<Stamp, BuildError> {
         match elsewhere(path)? {
             Some(location) => Ok(self.elsewhere.stamp(path, &location)?),
-            None => Ok(Stamp::of(path).reading(path)?),
+            None => {
+                // What a recipe names may be a pipe or a device.
+                check_regular_at(path).reading(path)?;
+                let stamp = Stamp::of(path).reading(path)?;
+                if stamp.bytes > MOST_FILE_BYTES {
+                    return Err(FileError::reading(path, too_large(stamp.bytes)).into());
+                }
+                Ok(stamp)
+            }
         }
     }
 
@@ -178,7 +207,7 @@ pub(crate) fn hash(path: &Path, copies: &Elsewhere) -> Result<Hashed, BuildError
 
 /// Hashes a file that does not change meanwhile.
 pub(crate) fn hash_local(path: &Path) -> io::Result<Hashed> {
-    let mut file = File::open(path)?;
+    let mut file = open_regular(path)?;
     let before = Stamp::of_metadata(&file.metadata()?)?;
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(&mut file)?;
@@ -189,6 +218,13 @@ pub(crate) fn hash_local(path: &Path) -> io::Result<Hashed> {
         blake3: hasher.finalize().to_hex().to_string(),
         stamp: before,
     })
+}
+
+fn too_large(bytes: u64) -> io::Error {
+    io::Error::new(
+        io::ErrorKind::FileTooLarge,
+        format!("it has {bytes} bytes and the most is {MOST_FILE_BYTES}"),
+    )
 }
 
 pub(crate) fn changed() -> io::Error {

@@ -1,19 +1,24 @@
 //! The recordings of a rule, each with the fields that templates may name.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
-use globset::{GlobBuilder, GlobSet, GlobSetBuilder};
-use htex_files::{AtFile, FileError};
+use htex_files::{AtFile, read_regular};
 use htex_storage::Location;
 use regex::Regex;
-use walkdir::WalkDir;
 
 use crate::BuildError;
 use crate::elsewhere::{Elsewhere, folder_of, is_elsewhere, joined};
 use crate::error::AtPlace;
+use crate::globs;
 use crate::recipe::Textures;
 use crate::template::Fields;
+
+/// Most recordings of a recipe. A texture takes about 4.7 kB of memory until it is put together, and more with long names: these take
+/// less than 512 MiB.
+pub(crate) const MOST_RECORDINGS: usize = 50_000;
+/// Most bytes of a table.
+const MOST_TABLE_BYTES: u64 = 64 << 20;
 
 /// A recording, as a rule finds it.
 #[derive(Debug)]
@@ -62,20 +67,37 @@ fn recordings(
     (folder, output): (&Path, &Path),
     elsewhere: &Elsewhere,
 ) -> Result<Vec<Input>, BuildError> {
-    let globs = globs.iter().cloned();
-    let (away, here): (Vec<_>, Vec<_>) =
-        globs.partition(|glob| is_elsewhere(&joined(folder, Path::new(glob))));
-    let mut found = Vec::new();
-    if !here.is_empty() {
-        found = globbed(&here, place, folder, output)?;
+    let place = format!("{place}.recordings");
+    if globs.len() > MOST_RECORDINGS {
+        return Err(too_many(&place));
     }
-    let mut listed = BTreeMap::new();
-    for glob in &away {
-        let inputs = globbed_elsewhere(glob, place, folder, elsewhere)?;
-        listed.extend(inputs.into_iter().map(|input| (input.file.clone(), input)));
+    let (mut here, mut away) = (BTreeSet::new(), BTreeMap::new());
+    for glob in globs {
+        if is_elsewhere(&joined(folder, Path::new(glob))) {
+            let inputs = globbed_elsewhere(glob, &place, folder, elsewhere)?;
+            away.extend(inputs.into_iter().map(|input| (input.file.clone(), input)));
+        } else {
+            here.extend(globs::files(glob, &place, folder, output)?);
+        }
+        if here.len() + away.len() > MOST_RECORDINGS {
+            return Err(too_many(&place));
+        }
     }
-    found.extend(listed.into_values());
+    if here.is_empty() && away.is_empty() {
+        let globs = globs.join(", ");
+        let problem = format!("no file matches {globs} in {}", folder.display());
+        return Err(BuildError::at(place, problem));
+    }
+    let mut found: Vec<Input> = here.into_iter().map(input).collect();
+    found.extend(away.into_values());
     Ok(found)
+}
+
+pub(crate) fn too_many(place: &str) -> BuildError {
+    let problem = format!(
+        "it names more than {MOST_RECORDINGS} recordings, which is the most of a recipe; divide it into several"
+    );
+    BuildError::at(place, problem)
 }
 
 /// Returns the files elsewhere that match a glob: a URI, or a path relative to the folder of a recipe that lies elsewhere.
@@ -85,81 +107,29 @@ fn globbed_elsewhere(
     folder: &Path,
     elsewhere: &Elsewhere,
 ) -> Result<Vec<Input>, BuildError> {
-    let (folder, pattern) = match is_elsewhere(Path::new(glob)) {
-        true => glob_folder(glob),
-        false => (folder.to_string_lossy().into_owned(), glob.to_owned()),
+    let (below, pattern) = globs::split(glob);
+    let below = match is_elsewhere(Path::new(glob)) {
+        true => PathBuf::from(below),
+        false => joined(folder, Path::new(below)),
     };
-    if !pattern.contains(GLOB) {
-        let uri = joined(Path::new(&folder), Path::new(&pattern));
-        return Ok(vec![input_elsewhere(uri, Path::new(&pattern))]);
+    if !globs::is_glob(glob) {
+        let uri = joined(&below, Path::new(pattern));
+        let inside = match is_elsewhere(Path::new(glob)) {
+            true => pattern,
+            false => glob,
+        };
+        return Ok(vec![input_elsewhere(uri, Path::new(inside))]);
     }
-    let found = elsewhere.list(&Location::parse(folder.as_ref())?, &pattern)?;
+    let listed = elsewhere.list(&Location::parse(below.as_ref())?, "**/*")?;
+    let found = globs::matching(listed, pattern, place)?;
     if found.is_empty() {
-        let problem = format!("no file matches {pattern} in {folder}");
-        return Err(BuildError::at(format!("{place}.recordings"), problem));
+        let problem = format!("no file matches {pattern} in {}", below.display());
+        return Err(BuildError::at(place, problem));
     }
     let inputs = found
         .into_iter()
         .map(|(uri, inside)| input_elsewhere(uri, &inside));
     Ok(inputs.collect())
-}
-
-/// Characters of globs.
-const GLOB: [char; 3] = ['*', '?', '['];
-
-/// Splits a URI before the first part that is a glob, else before the file's name.
-fn glob_folder(uri: &str) -> (String, String) {
-    let first = uri.find(GLOB).unwrap_or(uri.len());
-    let slash = uri[..first].rfind('/').unwrap_or(0);
-    (uri[..slash].to_owned(), uri[slash + 1..].to_owned())
-}
-
-/// Returns the files of this machine that match globs.
-fn globbed(
-    globs: &[String],
-    place: &str,
-    folder: &Path,
-    output: &Path,
-) -> Result<Vec<Input>, BuildError> {
-    let place = format!("{place}.recordings");
-    let set = glob_set(globs, &place)?;
-    let mut files = Vec::new();
-    let output = output.canonicalize().ok();
-    let outside = |entry: &walkdir::DirEntry| {
-        let is_output = || output.is_some() && entry.path().canonicalize().ok() == output;
-        !(entry.file_type().is_dir() && is_output())
-    };
-    for entry in WalkDir::new(folder)
-        .follow_links(true)
-        .into_iter()
-        .filter_entry(outside)
-    {
-        let entry = entry.map_err(|error| {
-            let file = error.path().unwrap_or(folder).to_owned();
-            FileError::reading(file, error)
-        })?;
-        let file = entry.path().strip_prefix(folder).unwrap_or(entry.path());
-        if entry.file_type().is_file() && set.is_match(file) {
-            files.push(file.to_owned());
-        }
-    }
-    if files.is_empty() {
-        let globs = globs.join(", ");
-        let problem = format!("no file matches {globs} in {}", folder.display());
-        return Err(BuildError::at(place, problem));
-    }
-    files.sort();
-    Ok(files.into_iter().map(input).collect())
-}
-
-/// Compiles globs; `*` does not cross folders, `**` does.
-pub(crate) fn glob_set(globs: &[String], place: &str) -> Result<GlobSet, BuildError> {
-    let mut set = GlobSetBuilder::new();
-    for glob in globs {
-        let compiled = GlobBuilder::new(glob).literal_separator(true).build();
-        set.add(compiled.at(place)?);
-    }
-    set.build().at(place)
 }
 
 /// Returns the rows of a table.
@@ -173,7 +143,7 @@ fn tabulated(
     let shown = table.display();
     let text = match crate::elsewhere::elsewhere(table)? {
         Some(location) => elsewhere.text(&location)?.into_bytes(),
-        None => std::fs::read(table).reading(table)?,
+        None => read_regular(table, MOST_TABLE_BYTES).reading(table)?,
     };
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
@@ -188,6 +158,9 @@ fn tabulated(
     let beside = folder_of(table);
     let mut inputs = Vec::new();
     for row in reader.records() {
+        if inputs.len() == MOST_RECORDINGS {
+            return Err(too_many(&place));
+        }
         let row = row.at(&in_table)?;
         let cell = row.get(column).unwrap_or_default();
         let file = joined(&beside, Path::new(cell));
@@ -277,5 +250,9 @@ pub(crate) fn slashed(path: &Path) -> String {
         Component::ParentDir => Some("..".to_owned()),
         _ => None,
     });
-    parts.collect::<Vec<_>>().join("/")
+    let joined = parts.collect::<Vec<_>>().join("/");
+    match path.has_root() {
+        true => format!("/{joined}"),
+        false => joined,
+    }
 }

@@ -1,32 +1,40 @@
 //! A job: the fit of one texture, as data. Equal jobs give equal bytes, on any machine.
 //!
-//! Models that are installed on a machine are not used, and no path or time is part of a key.
+//! Models that are installed on a machine are not used, and no path or time is part of a key. Neither are a texture's name and its
+//! metadata but those that decide how it plays (`contact`, `law`): they are laid over what was fitted when it is put together
+//! ([`Job::named`]).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use htex_author::recording::{ReadError, ReadProblem, read_recording};
+use htex_author::recording::{ReadError, ReadProblem, Recording, read_recording};
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
 use htex_author::{
     AuthorError, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
 };
 use htex_files::{AtFile, FileError};
+use htex_format::Asset;
 use htex_host::{Registry, Search, WasmLimits};
+use htex_storage::Location;
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
 use crate::elsewhere::{Elsewhere, elsewhere, is_elsewhere, joined};
+use crate::error::AtPlace;
 use crate::findings::by_code;
+use crate::gates::check_gates;
 use crate::hashes::{Hashed, Hashes, Stamp, changed, hash_local};
+use crate::inputs::slashed;
 use crate::made::{Made, Outcome, Record};
 use crate::plan::PlannedTexture;
+use crate::recipe::Gates;
 use crate::sound::sound;
 use crate::thumbnail::thumbnail;
 
 /// The meaning of jobs and of what is made of them. Another one makes everything again.
-const JOB: &str = "htex-job/3";
+const JOB: &str = "htex-job/4";
 
 /// What is felt of the difference from the recordings, of each model at its worst recorded condition.
 fn felt(fitted: &FittedAsset) -> BTreeMap<String, FeltError> {
@@ -38,6 +46,53 @@ fn felt(fitted: &FittedAsset) -> BTreeMap<String, FeltError> {
             Some((representation.model.clone(), worst))
         });
     worst.collect()
+}
+
+/// The name of a texture until it is put together.
+const UNNAMED: &str = "texture";
+
+/// The plugins that a person and a recipe name, and where the recipe is.
+#[derive(Debug)]
+pub(crate) struct Named {
+    /// By a person: absolute paths.
+    by_person: Vec<PathBuf>,
+    /// By the recipe, and by no person.
+    pub(crate) of_recipe: Vec<PathBuf>,
+    /// The recipe's folder.
+    pub(crate) folder: PathBuf,
+    origin: Option<Location>,
+}
+
+impl Named {
+    /// # Errors
+    /// When a person names a URI, or a file that cannot be found.
+    pub(crate) fn new(
+        by_person: &[PathBuf],
+        of_recipe: Vec<PathBuf>,
+        folder: PathBuf,
+        origin: Option<Location>,
+    ) -> Result<Self, BuildError> {
+        let found = by_person.iter().map(|file| {
+            if is_elsewhere(file) {
+                let problem =
+                    "it is a URI; download it, see that it is what you want, and name the file";
+                return Err(BuildError::at("--plugin", problem));
+            }
+            Ok(file.canonicalize().reading(file)?)
+        });
+        let by_person = found.collect::<Result<Vec<_>, _>>()?;
+        let is_named = |file: &PathBuf| {
+            let path = joined(&folder, file).canonicalize();
+            path.is_ok_and(|path| by_person.contains(&path))
+        };
+        let of_recipe = of_recipe.into_iter().filter(|file| !is_named(file));
+        Ok(Self {
+            of_recipe: of_recipe.collect(),
+            by_person,
+            folder,
+            origin,
+        })
+    }
 }
 
 /// The fit of one texture.
@@ -54,12 +109,20 @@ pub struct Job {
     /// The setup's response.
     pub response: Option<JobFile>,
     pub plugins: Vec<JobFile>,
+    /// How many of them, the first ones, a person named. They may be native libraries; the others are WASM modules.
+    #[serde(default)]
+    pub named: usize,
     /// How many of them, the last ones, travel in the asset.
     pub embedded: usize,
+    /// Where the recipe is, if it is elsewhere: the one server of this machine or network that it may name.
+    #[serde(default)]
+    pub origin: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobRecording {
+    /// Its name in reports and messages: that of the file, with the folders that tell it from another recording of the texture.
+    pub name: String,
     pub file: JobFile,
     pub tracker: Option<JobFile>,
     /// Speed, mm/s, if it is given.
@@ -114,37 +177,42 @@ impl JobFile {
 }
 
 impl Job {
-    /// Returns the job of a texture whose recipe lies in `folder`; hashes its files.
+    /// Returns the job of a texture; hashes its files.
     pub(crate) fn new(
         texture: &PlannedTexture,
-        folder: &Path,
-        plugins: &[PathBuf],
+        named: &Named,
         program: &str,
         hashes: &Hashes,
     ) -> Result<Self, BuildError> {
+        let folder = &named.folder;
         let file = |path: PathBuf| {
             let hashed = hashes.of(&path)?;
             Ok::<_, BuildError>(JobFile { path, hashed })
         };
-        let recordings = texture.recordings.iter().map(|recording| {
-            Ok::<_, BuildError>(JobRecording {
-                file: file(joined(folder, &recording.file))?,
-                tracker: recording
-                    .tracker
-                    .as_ref()
-                    .map(|path| file(joined(folder, path)))
-                    .transpose()?,
-                speed_mm_s: recording.speed_mm_s,
-                force_n: recording.force_n,
-            })
-        });
+        let names = told_apart(texture);
+        let recordings = texture
+            .recordings
+            .iter()
+            .zip(names)
+            .map(|(recording, name)| {
+                Ok::<_, BuildError>(JobRecording {
+                    name,
+                    file: file(joined(folder, &recording.file))?,
+                    tracker: recording
+                        .tracker
+                        .as_ref()
+                        .map(|path| file(joined(folder, path)))
+                        .transpose()?,
+                    speed_mm_s: recording.speed_mm_s,
+                    force_n: recording.force_n,
+                })
+            });
         let reading = texture.settings.reading(folder);
-        let embedded = texture
-            .settings
-            .embed_plugins
-            .as_deref()
-            .unwrap_or_default();
-        let all = plugins.iter().chain(embedded);
+        let embedded = texture.settings.embed_plugins.as_deref();
+        let embedded = embedded.unwrap_or_default();
+        let of_recipe = named.of_recipe.iter().chain(embedded);
+        let of_recipe = of_recipe.map(|path| joined(folder, path));
+        let all = named.by_person.iter().cloned().chain(of_recipe);
         Ok(Self {
             program: program.to_owned(),
             texture: texture.name.clone(),
@@ -153,20 +221,26 @@ impl Job {
             reading,
             fit: texture.settings.fit(),
             metadata: texture.metadata.clone(),
-            plugins: all
-                .map(|path| file(joined(folder, path)))
-                .collect::<Result<_, _>>()?,
+            plugins: all.map(file).collect::<Result<_, _>>()?,
+            named: named.by_person.len(),
             embedded: embedded.len(),
+            origin: named.origin.as_ref().map(ToString::to_string),
         })
     }
 
     /// Returns the key of what this job makes: a hash of everything that its bytes depend on. Folders and times of files are no
     /// part of it, their names and contents are.
     pub fn key(&self) -> String {
+        let parts = serde_json::json!([JOB, self.parts()]);
+        hash_of(&parts)
+    }
+
+    /// Returns hashes of what the fit depends on, by name.
+    pub(crate) fn parts(&self) -> [(&'static str, String); 5] {
         let named = |file: &JobFile| (file.name(), file.hashed.blake3.clone());
         let recordings = self.recordings.iter().map(|r| {
             (
-                named(&r.file),
+                (&r.name, &r.file.hashed.blake3),
                 r.tracker.as_ref().map(named),
                 r.speed_mm_s,
                 r.force_n,
@@ -176,21 +250,65 @@ impl Job {
             response: None,
             ..self.reading.clone()
         };
-        let parts = serde_json::json!([
-            JOB,
-            self.program,
-            self.texture,
-            recordings.collect::<Vec<_>>(),
-            reading,
-            self.fit,
-            self.metadata,
-            self.response.as_ref().map(named),
-            self.plugins.iter().map(named).collect::<Vec<_>>(),
-            self.embedded,
-        ]);
-        blake3::hash(parts.to_string().as_bytes())
-            .to_hex()
-            .to_string()
+        let plays = (&self.metadata.contact, &self.metadata.law);
+        let response = self.response.as_ref().map(named);
+        let plugins = self.plugins.iter().map(named).collect::<Vec<_>>();
+        [
+            (
+                "recordings",
+                serde_json::json!(recordings.collect::<Vec<_>>()),
+            ),
+            ("reading", serde_json::json!([reading, response])),
+            ("options", serde_json::json!([self.fit, plays])),
+            ("plugins", serde_json::json!([plugins, self.embedded])),
+            ("program", serde_json::json!(self.program)),
+        ]
+        .map(|(name, part)| (name, hash_of(&part)))
+    }
+
+    /// What [`Self::check`] depends on.
+    pub(crate) fn checked_by(&self, gates: &Gates) -> String {
+        serde_json::json!([self.reading, self.fit, self.plugins, gates]).to_string()
+    }
+
+    /// Checks plugins, settings and gates as far as that is possible without a fit.
+    pub(crate) fn check(&self, gates: &Gates, workbench: &mut Workbench) -> Result<(), BuildError> {
+        let without = Self {
+            recordings: Vec::new(),
+            response: None,
+            ..self.clone()
+        };
+        let here = without.copied(&workbench.elsewhere)?;
+        let job = here.as_ref().unwrap_or(&without);
+        let registry = workbench.registry(job).at("plugins")?;
+        let reading = ReadingSettings {
+            response: None,
+            ..self.reading.clone()
+        };
+        let request = self
+            .fit
+            .request(registry, &reading, &self.texture, &self.program)
+            .at(&self.texture)?;
+        let models: Vec<&str> = request.models.iter().map(|m| m.model.id()).collect();
+        check_gates(gates, &models).at(&self.texture)
+    }
+
+    /// Returns an asset that this job made under the texture's own name and with its metadata.
+    ///
+    /// # Errors
+    /// When the bytes are not those of an asset.
+    pub(crate) fn named(&self, bytes: &[u8]) -> Result<Vec<u8>, BuildError> {
+        let damaged = |problem: String| BuildError::Damaged(format!("{}: {problem}", self.texture));
+        let mut asset = Asset::from_bytes(bytes).map_err(|error| damaged(error.to_string()))?;
+        asset.manifest.name.clone_from(&self.texture);
+        // Another name may have made it, with the same bytes but for what is laid over now.
+        let metadata = Metadata {
+            contact: None,
+            law: None,
+            ..self.metadata.clone()
+        };
+        metadata.apply(&mut asset.manifest);
+        asset.to_bytes().map_err(|error| damaged(error.to_string()))
     }
 
     /// Returns the size of the recordings, bytes.
@@ -262,11 +380,24 @@ impl Job {
         };
         let request = self
             .fit
-            .request(registry, &reading, &self.texture, &self.program)?;
+            .request(registry, &reading, UNNAMED, &self.program)?;
         let takes = self.recordings.iter().map(|recording| self.take(recording));
         let takes = takes.collect::<Result<Vec<Take>, _>>()?;
         let mut fitted = fit_asset(&takes, &request)?;
-        self.metadata.apply(&mut fitted.asset.manifest);
+        let plays = Metadata {
+            contact: self.metadata.contact,
+            law: self.metadata.law,
+            ..Metadata::default()
+        };
+        plays.apply(&mut fitted.asset.manifest);
+        for source in &mut fitted.asset.manifest.provenance.recordings {
+            let mut recordings = self.recordings.iter();
+            if let Some(recording) = recordings.find(|recording| recording.name == source.file) {
+                // A folder has no meaning on other machines; the hash tells recordings of one name apart.
+                source.file = recording.file.name();
+                source.blake3 = Some(recording.file.hashed.blake3.clone());
+            }
+        }
         let travelling = self.plugins.len() - self.embedded.min(self.plugins.len());
         let files: Vec<PathBuf> = self.plugins[travelling..]
             .iter()
@@ -294,7 +425,13 @@ impl Job {
         };
         let file = &recording.file.path;
         match read_recording(file, &options) {
-            Ok(recording) => Ok(Take { recording, given }),
+            Ok(read) => Ok(Take {
+                recording: Recording {
+                    source: recording.name.clone(),
+                    ..read
+                },
+                given,
+            }),
             Err(ReadError {
                 problem: ReadProblem::Io(error),
                 ..
@@ -359,7 +496,8 @@ pub struct Workbench {
     limits: WasmLimits,
     /// Files by URI, and their copies.
     pub(crate) elsewhere: Arc<Elsewhere>,
-    loaded: Option<(Vec<PathBuf>, Registry)>,
+    /// The plugins, how many of them a person named, and the models.
+    loaded: Option<(Vec<PathBuf>, usize, Registry)>,
 }
 
 impl Workbench {
@@ -367,28 +505,88 @@ impl Workbench {
     pub fn new(limits: WasmLimits) -> Self {
         Self {
             limits,
-            elsewhere: Arc::new(Elsewhere::temporary()),
+            elsewhere: Arc::new(Elsewhere::temporary(None)),
             loaded: None,
         }
+    }
+
+    /// Returns a workbench for a job of another process, whose recipe may name its own server.
+    ///
+    /// # Errors
+    /// When the job's origin is no location.
+    pub fn of_job(limits: WasmLimits, job: &Job) -> Result<Self, BuildError> {
+        let origin = job
+            .origin
+            .as_ref()
+            .map(|origin| Location::parse(origin.as_ref()));
+        Ok(Self {
+            elsewhere: Arc::new(Elsewhere::temporary(origin.transpose()?)),
+            ..Self::new(limits)
+        })
     }
 
     /// Returns the built-in models and the plugins of a job. Those that are installed on a machine are not used: a build is the
     /// same on all.
     fn registry(&mut self, job: &Job) -> Result<&Registry, Box<dyn Error>> {
         let files: Vec<PathBuf> = job.plugins.iter().map(|file| file.path.clone()).collect();
-        if self
-            .loaded
-            .as_ref()
-            .is_none_or(|(loaded, _)| *loaded != files)
-        {
+        let is_loaded = |(loaded, named, _): &(Vec<PathBuf>, usize, Registry)| {
+            *loaded == files && *named == job.named
+        };
+        if !self.loaded.as_ref().is_some_and(is_loaded) {
+            let (by_person, of_recipe) = files.split_at(job.named.min(files.len()));
             let search = Search::builtin()
                 .with_limits(self.limits.clone())
-                .with_files(files.clone());
-            self.loaded = Some((files, Registry::search(&search)?));
+                .with_files(by_person.to_vec())
+                .with_modules(of_recipe.to_vec());
+            self.loaded = Some((files, job.named, Registry::search(&search)?));
         }
         match &self.loaded {
-            Some((_, registry)) => Ok(registry),
+            Some((.., registry)) => Ok(registry),
             None => Err("no models are loaded".into()),
         }
     }
+}
+
+fn hash_of(value: &serde_json::Value) -> String {
+    blake3::hash(value.to_string().as_bytes())
+        .to_hex()
+        .to_string()
+}
+
+/// Returns the names of a texture's recordings: those of the files, with as many folders before each as tell all apart.
+fn told_apart(texture: &PlannedTexture) -> Vec<String> {
+    let paths = texture
+        .recordings
+        .iter()
+        .map(|r| slashed(&shown_path(&r.file)));
+    let paths: Vec<String> = paths.collect();
+    let deepest = paths.iter().map(|path| path.split('/').count()).max();
+    for parts in 1..deepest.unwrap_or(1) {
+        let names: Vec<&str> = paths.iter().map(|path| last_parts(path, parts)).collect();
+        let different: BTreeSet<&&str> = names.iter().collect();
+        if different.len() == names.len() {
+            return names.into_iter().map(str::to_owned).collect();
+        }
+    }
+    paths
+}
+
+/// The path of a recording, or of a URI without its query.
+fn shown_path(file: &Path) -> PathBuf {
+    match elsewhere(file) {
+        Ok(Some(location)) => {
+            let text = location.to_string();
+            let path = text.trim_end_matches("?…");
+            match (path.rsplit_once('/'), location.file_name()) {
+                (Some((folder, _)), Some(name)) => Path::new(folder).join(name),
+                _ => path.into(),
+            }
+        }
+        _ => file.to_owned(),
+    }
+}
+
+fn last_parts(path: &str, parts: usize) -> &str {
+    let slash = path.rmatch_indices('/').nth(parts - 1);
+    slash.map_or(path, |(at, _)| &path[at + 1..])
 }

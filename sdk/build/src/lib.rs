@@ -36,21 +36,25 @@ mod elsewhere;
 mod error;
 mod findings;
 mod gates;
+mod globs;
 mod hashes;
 mod inputs;
 mod job;
+mod kept;
 mod keys;
 mod made;
 mod plan;
 mod publish;
+mod reasons;
 mod recipe;
 mod report;
+mod rules;
 mod sound;
 mod template;
 mod thumbnail;
 
 pub use assemble::Built;
-pub use build::{Build, BuildOptions, hash_file, remember, unhashed};
+pub use build::{Build, BuildOptions, check, hash_file, remember, unhashed};
 pub use error::BuildError;
 pub use findings::{FindingReport, FindingShare};
 pub use hashes::{Hashed, Stamp};
@@ -58,6 +62,7 @@ pub use job::{Job, JobFile, JobRecording, Workbench};
 pub use made::{Made, Outcome, Record};
 pub use plan::{Plan, PlannedRecording, PlannedTexture};
 pub use publish::Destination;
+pub use reasons::Why;
 pub use recipe::{
     At, Gates, LibraryPart, ModelGate, NumberOrTemplate, Override, Recipe, Settings, Textures,
 };
@@ -65,4 +70,5 @@ pub use report::{
     AssetReport, LibraryReport, Missed, REPORT, RecordingReport, Report, Status, TextureReport,
     recipe_schema, report_schema,
 };
+pub use rules::{RECIPE_INVALID, RULES};
 pub use thumbnail::Thumbnail;

@@ -1,6 +1,6 @@
 //! The plan: the textures that a recipe asks for, each with its recordings and settings.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use globset::GlobSet;
@@ -9,7 +9,8 @@ use htex_author::settings::Metadata;
 use crate::BuildError;
 use crate::elsewhere::Elsewhere;
 use crate::error::AtPlace;
-use crate::inputs::{Input, glob_set, inputs, slashed};
+use crate::globs::glob_set;
+use crate::inputs::{Input, MOST_RECORDINGS, inputs, slashed, too_many};
 use crate::recipe::{Gates, NumberOrTemplate, Recipe, Settings, Textures};
 use crate::template::{Fields, fill};
 
@@ -86,11 +87,13 @@ impl Plan {
         }
         let overrides = Overrides::new(recipe)?;
         let mut textures: BTreeMap<String, PlannedTexture> = BTreeMap::new();
+        let mut known = HashSet::new();
         for (i, rule) in recipe.textures.iter().enumerate() {
             let place = format!("textures[{i}]");
             let settings = rule.settings.clone().over(recipe.defaults.clone());
             for input in inputs(rule, &place, folder, output, elsewhere)? {
                 let planned = planned(rule, &settings, &overrides, input, &place)?;
+                check_once(&mut known, &planned, &place)?;
                 gather(&mut textures, planned, &place)?;
             }
         }
@@ -238,6 +241,32 @@ fn filled(
     Ok(metadata)
 }
 
+/// Refuses a recording that the texture has already; `known` are hashes of textures with their recordings.
+fn check_once(
+    known: &mut HashSet<[u8; 32]>,
+    planned: &PlannedTexture,
+    place: &str,
+) -> Result<(), BuildError> {
+    for recording in &planned.recordings {
+        if known.len() == MOST_RECORDINGS {
+            return Err(too_many(place));
+        }
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&(planned.name.len() as u64).to_le_bytes());
+        hasher.update(planned.name.as_bytes());
+        hasher.update(recording.file.as_os_str().as_encoded_bytes());
+        if !known.insert(*hasher.finalize().as_bytes()) {
+            let problem = format!(
+                "{} is a recording of the texture {} twice; let one rule find it",
+                slashed(&recording.file),
+                planned.name
+            );
+            return Err(BuildError::at(place, problem));
+        }
+    }
+    Ok(())
+}
+
 /// Adds a recording's texture to those of the plan.
 fn gather(
     textures: &mut BTreeMap<String, PlannedTexture>,
@@ -248,20 +277,6 @@ fn gather(
         textures.insert(planned.name.clone(), planned);
         return Ok(());
     };
-    let twice = |recording: &PlannedRecording| {
-        known
-            .recordings
-            .iter()
-            .any(|other| other.file == recording.file)
-    };
-    if let Some(recording) = planned.recordings.iter().find(|recording| twice(recording)) {
-        let problem = format!(
-            "{} is a recording of the texture {} twice; let one rule find it",
-            slashed(&recording.file),
-            planned.name
-        );
-        return Err(BuildError::at(place, problem));
-    }
     let same = (&known.settings, &known.metadata, &known.gates)
         == (&planned.settings, &planned.metadata, &planned.gates);
     if !same {

@@ -4,7 +4,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use htex_files::AtFile;
@@ -14,13 +13,17 @@ use serde::{Deserialize, Serialize};
 use walkdir::WalkDir;
 
 use crate::BuildError;
-use crate::dist::Dist;
 use crate::elsewhere::elsewhere;
 use crate::error::AtPlace;
 use crate::hashes::{Stamp, hash_local};
+use crate::kept::Kept;
 
-/// The file of what was copied, in the folder of the results.
-const PUBLISHED: &str = ".htex-build/published.json";
+/// The file of what was copied, in the folder of what is kept.
+const PUBLISHED: &str = "published.json";
+/// Most bytes of that file: a few million files.
+const MOST_BYTES: u64 = 1 << 30;
+/// The file by which the URI is tried.
+const TRIED: &str = ".htex-build-tries";
 /// What is copied last, in this order, so that it names only what is there.
 const LAST: [&str; 2] = ["build-report.json", "index.html"];
 /// Copies at the same time; they wait for the network.
@@ -97,6 +100,20 @@ impl Destination {
         self.remote.as_ref()
     }
 
+    /// Tries whether the URI, if there is one, can be listed, written and removed from, before hours of fitting: by a file that is removed
+    /// again.
+    ///
+    /// # Errors
+    /// When it cannot.
+    pub fn try_out(&self) -> Result<(), BuildError> {
+        let Some(to) = &self.remote else {
+            return Ok(());
+        };
+        let (storage, file) = (Storage::from_environment()?, to.inside(TRIED));
+        storage.write(&file, b"htex build tries whether it can write here\n")?;
+        Ok(storage.remove(&file)?)
+    }
+
     /// Copies the results to the URI, if there is one: files that are not there as they are here, textures first, report and catalogue last. Files
     /// that an earlier build copied and this one has not made are removed. Returns the number of files that were copied.
     ///
@@ -128,20 +145,23 @@ struct Publishing<'a> {
     folder: &'a Path,
     to: &'a Location,
     storage: Storage,
+    kept: Kept,
     before: Published,
 }
 
 impl<'a> Publishing<'a> {
     fn new(folder: &'a Path, to: &'a Location) -> Result<Self, BuildError> {
-        let kept = fs::read(folder.join(PUBLISHED)).ok();
-        let kept = kept.and_then(|bytes| serde_json::from_slice::<Published>(&bytes).ok());
+        let kept = Kept::new(folder)?;
+        let before = kept.get(PUBLISHED, MOST_BYTES);
+        let before = before.and_then(|bytes| serde_json::from_slice::<Published>(&bytes).ok());
         Ok(Self {
             folder,
             to,
             storage: Storage::from_environment()?,
-            before: kept
-                .filter(|kept| kept.to == to.to_string())
+            before: before
+                .filter(|before| before.to == to.to_string())
                 .unwrap_or_default(),
+            kept,
         })
     }
 
@@ -238,7 +258,6 @@ impl<'a> Publishing<'a> {
             to: self.to.to_string(),
             files: files.collect(),
         };
-        let json = serde_json::to_vec(&published).unwrap_or_default();
-        Dist::new(self.folder).put(&self.folder.join(PUBLISHED), &json)
+        self.kept.put(PUBLISHED, &serde_json::to_vec(&published)?)
     }
 }

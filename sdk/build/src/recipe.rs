@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use htex_author::Exploration;
 use htex_author::settings::{FitSettings, Metadata, OneOrMore, ReadingSettings, one_or_more};
-use htex_files::AtFile;
+use htex_files::{AtFile, read_regular_text};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +13,9 @@ use crate::BuildError;
 use crate::elsewhere::{Elsewhere, elsewhere, joined};
 use crate::findings::unknown_code;
 use crate::keys::check_keys;
+
+/// Most bytes of a recipe.
+const MOST_BYTES: u64 = 1 << 20;
 
 /// A recipe: recordings, and how a library is made of them.
 ///
@@ -51,7 +54,8 @@ pub struct Recipe {
 pub struct LibraryPart {
     /// Name of the library and of its file.
     pub name: String,
-    /// Plugins of models to fit with: WASM modules, or native libraries, which run with all your rights. Relative to the recipe.
+    /// Plugins of models to fit with: WASM modules, which run in a sandbox. Relative to the recipe. A native library, which runs with all
+    /// rights, is named by a person alone: `htex build --plugin`.
     #[serde(default)]
     pub plugins: Vec<PathBuf>,
 }
@@ -216,8 +220,8 @@ impl Recipe {
     /// As [`Self::parse`], and when the file cannot be read.
     pub fn open(file: &Path) -> Result<Self, BuildError> {
         let text = match elsewhere(file)? {
-            Some(location) => Elsewhere::temporary().text(&location)?,
-            None => std::fs::read_to_string(file).reading(file)?,
+            Some(location) => Elsewhere::temporary(Some(location.clone())).text(&location)?,
+            None => read_regular_text(file, MOST_BYTES).reading(file)?,
         };
         Self::parse(&text)
     }

@@ -154,7 +154,7 @@ impl TextureReport {
     /// Reports a texture; `asset` is its asset if it has one.
     pub(crate) fn new(job: &Job, key: &str, made: &Made, asset: Option<&Asset>) -> Self {
         let recordings = job.recordings.iter().map(|recording| RecordingReport {
-            file: recording.file.name(),
+            file: recording.name.clone(),
             bytes: recording.file.hashed.stamp.bytes,
             blake3: recording.file.hashed.blake3.clone(),
         });

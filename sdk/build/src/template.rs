@@ -5,11 +5,19 @@ use std::collections::BTreeMap;
 /// What placeholders stand for, by name.
 pub(crate) type Fields = BTreeMap<String, String>;
 
+/// Most bytes of a filled text before its last placeholder.
+const MOST_BYTES: usize = 65_536;
+
 /// Fills the placeholders of a text; `{{` and `}}` stand for braces.
 pub(crate) fn fill(text: &str, fields: &Fields) -> Result<String, String> {
     let (mut filled, mut rest) = (String::new(), text);
     while let Some(at) = rest.find(['{', '}']) {
         filled.push_str(&rest[..at]);
+        if filled.len() > MOST_BYTES {
+            return Err(format!(
+                "it has more than {MOST_BYTES} bytes when it is filled; shorten it"
+            ));
+        }
         let brace = &rest[at..=at];
         rest = &rest[at + 1..];
         if let Some(after) = rest.strip_prefix(brace) {

@@ -1,4 +1,8 @@
-//! Atomic writing of files: a file is written beside its target and renamed into place, so that readers see it
+//! Files of others and of one's own: what is read of a file that somebody else names is regular and bounded ([`read_regular`]), a folder
+//! that somebody else may have filled is written without following links ([`OwnFolder`]), what is kept in one is authenticated (`Key`),
+//! and files are written whole.
+//!
+//! Atomic writing: a file is written beside its target and renamed into place, so that readers see it
 //! complete or not at all.
 //!
 //! A symbolic link is followed, and its target is replaced with the permissions that it had. A device or a pipe is
@@ -14,7 +18,14 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod batch;
 mod error;
+#[cfg(feature = "key")]
+mod key;
+mod lines;
+mod own_folder;
+pub mod private;
+mod regular;
 
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions, Permissions};
@@ -24,7 +35,13 @@ use std::sync::{Mutex, PoisonError};
 
 use tempfile::NamedTempFile;
 
+pub use batch::Batch;
 pub use error::{AtFile, ContentError, FileError, InFile};
+#[cfg(feature = "key")]
+pub use key::Key;
+pub use lines::bounded_lines;
+pub use own_folder::OwnFolder;
+pub use regular::{check_regular_at, open_regular, read_regular, read_regular_text};
 
 /// Files that this process is writing.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
@@ -56,12 +73,8 @@ enum Target {
     Direct(File),
 }
 
-impl Unfinished {
-    /// Creates the temporary file for the target `path`.
-    ///
-    /// # Errors
-    /// When `path` is a folder or a dangling link, its folder does not exist, or the system reports an error.
-    pub fn create(path: &Path) -> io::Result<Self> {
+impl Target {
+    fn of(path: &Path, readable_by: Readers) -> io::Result<Self> {
         let path = followed(path)?;
         let there = path.metadata().ok();
         if there.as_ref().is_some_and(std::fs::Metadata::is_dir) {
@@ -69,7 +82,7 @@ impl Unfinished {
         }
         if there.as_ref().is_some_and(|is| !is.is_file()) {
             let direct = OpenOptions::new().write(true).open(&path)?;
-            return Ok(Self(Target::Direct(direct)));
+            return Ok(Self::Direct(direct));
         }
         let folder = folder(&path);
         if !folder.is_dir() {
@@ -78,12 +91,30 @@ impl Unfinished {
                 "its folder does not exist; create it first",
             ));
         }
-        let beside = builder().tempfile_in(folder)?;
+        let beside = builder(readable_by).tempfile_in(folder)?;
         if let Some(there) = there {
             beside.as_file().set_permissions(there.permissions())?;
         }
         unfinished(|all| all.insert(beside.path().to_owned()));
-        Ok(Self(Target::Beside(beside, path)))
+        Ok(Self::Beside(beside, path))
+    }
+}
+
+impl Unfinished {
+    /// Creates the temporary file for the target `path`.
+    ///
+    /// # Errors
+    /// When `path` is a folder or a dangling link, its folder does not exist, or the system reports an error.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        Target::of(path, Readers::All).map(Self)
+    }
+
+    /// As [`Self::create`], for a file that only this user may read. One that is there keeps its permissions.
+    ///
+    /// # Errors
+    /// As [`Self::create`].
+    pub fn create_private(path: &Path) -> io::Result<Self> {
+        Target::of(path, Readers::User).map(Self)
     }
 
     /// Returns the file to write to.
@@ -138,9 +169,9 @@ impl Scratch {
         let path = followed(path)?;
         let is_special = path.metadata().is_ok_and(|is| !is.is_file());
         let file = if is_special {
-            builder().tempfile()?
+            builder(Readers::All).tempfile()?
         } else {
-            builder().tempfile_in(folder(&path))?
+            builder(Readers::All).tempfile_in(folder(&path))?
         };
         unfinished(|all| all.insert(file.path().to_owned()));
         Ok(Self(file))
@@ -179,6 +210,19 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     replace_file(path, |file| file.write_all(bytes))
 }
 
+/// Writes a file as [`replace_file`] does, which only this user may read.
+///
+/// # Errors
+/// As [`replace_file`].
+pub fn replace_private_file(
+    path: &Path,
+    write: impl FnOnce(&mut File) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut unfinished = Unfinished::create_private(path)?;
+    write(unfinished.file())?;
+    unfinished.keep()
+}
+
 fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -197,12 +241,23 @@ fn followed(path: &Path) -> io::Result<PathBuf> {
     }
 }
 
-/// Returns a builder of temporary files with the permissions of an ordinary file: readable and writable by all, less the
-/// process' mask.
-fn builder() -> tempfile::Builder<'static, 'static> {
+/// Who may read a new file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Readers {
+    /// All, less the process' mask.
+    All,
+    /// This user.
+    User,
+}
+
+/// Returns a builder of temporary files with the permissions of an ordinary file, readable and writable by all, less the
+/// process' mask; or with those of the library, for this user alone.
+fn builder(readable_by: Readers) -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".htex-").suffix(".part");
-    if let Some(permissions) = ordinary() {
+    if readable_by == Readers::All
+        && let Some(permissions) = ordinary()
+    {
         builder.permissions(permissions);
     }
     builder

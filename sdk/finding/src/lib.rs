@@ -16,6 +16,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod cell;
 mod finding;
 mod hint;
 mod page;
@@ -24,6 +25,7 @@ mod pointer;
 mod report;
 mod rule;
 
+pub use cell::as_text;
 pub use finding::{Finding, Severity, listed, summary};
 pub use hint::{Hint, Notice};
 pub use page::rules_page;

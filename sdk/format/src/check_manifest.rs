@@ -85,6 +85,13 @@ fn check_sources(manifest: &Manifest, findings: &mut Findings) {
             format_args!("{at}/rate_hz"),
             || format!("{rate} Hz is not a valid sampling rate; write the recording's rate"),
         );
+        let hash = source.blake3.as_deref();
+        findings.require(
+            hash.is_none_or(is_hash),
+            rule::SOURCE_INVALID,
+            format_args!("{at}/blake3"),
+            || not_a_hash(hash.unwrap_or_default()),
+        );
         let plain = !source.file.contains(['/', '\\']);
         findings.require(plain, rule::SOURCE_PATH, format_args!("{at}/file"), || {
             format!(
@@ -106,19 +113,22 @@ fn check_made(manifest: &Manifest, findings: &mut Findings) {
             format_args!("{at}/weight"),
             || format!("{weight} is not a part of a mixture; write a number from 0 to 1"),
         );
-        let is_hash = part.blake3.len() == 64 && part.blake3.bytes().all(|b| b.is_ascii_hexdigit());
         findings.require(
-            is_hash,
+            is_hash(&part.blake3),
             rule::MADE_INVALID,
             format_args!("{at}/blake3"),
-            || {
-                format!(
-                    "{:?} is not a hash; write the 64 hexadecimal digits of BLAKE3",
-                    part.blake3
-                )
-            },
+            || not_a_hash(&part.blake3),
         );
     }
+}
+
+/// Whether a text is a hash of a file.
+fn is_hash(text: &str) -> bool {
+    text.len() == 64 && text.bytes().all(|b| b.is_ascii_hexdigit())
+}
+
+fn not_a_hash(text: &str) -> String {
+    format!("{text:?} is not a hash; write the 64 hexadecimal digits of BLAKE3")
 }
 
 fn check_conditions(conditions: &[Condition], findings: &mut Findings) {

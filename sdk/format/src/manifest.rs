@@ -199,6 +199,10 @@ pub struct Source {
     pub rate_hz: f64,
     /// Number of segments that were averaged.
     pub segments: u64,
+    /// BLAKE3 of the recording's file, 64 hexadecimal digits, by which recordings of one name are told apart.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(regex(pattern = "^[0-9A-Fa-f]{64}$"))]
+    pub blake3: Option<String>,
 }
 
 /// An exploration condition; an absent value is unknown.

@@ -161,9 +161,9 @@ htex_finding::rule_table! {
         "It must satisfy 0 < low_hz < high_hz <= 20000 and contain a multiple of 5 Hz.",
         "Write the edges in hertz; touch perceives about 20 to 1000.";
     SOURCE_INVALID Error [RECORDINGS]:
-        "A recording's sampling rate is not a positive number.",
-        "Without it the asset cannot be reproduced.",
-        "Write the rate in hertz.";
+        "A recording's sampling rate is not a positive number, or its hash is none.",
+        "Without them the asset cannot be reproduced.",
+        "Write the rate in hertz, and the 64 hexadecimal digits of the file's BLAKE3 or nothing.";
     MADE_INVALID Error [RECORDINGS]:
         "An ingredient of a mixture has a wrong weight or hash.",
         "`weight` is from 0 to 1, and `blake3` the hash of the mixed asset's file.",

@@ -57,6 +57,12 @@ pub enum HostError {
     /// A file cannot be loaded as a model.
     #[error("cannot load {path}: {what}")]
     Load { path: String, what: String },
+    /// A file that somebody else names, such as a recipe, is no WASM module.
+    #[error(
+        "{path}: it is no WASM module; only a person names a native library, which runs with all their rights: if you trust it, give it \
+         yourself (`--plugin FILE`, `plugins` in Python)"
+    )]
+    NotModule { path: String },
     /// The model returned an error status.
     #[error("model {model}: {call}: {message}")]
     Call {

@@ -8,7 +8,7 @@ use htex_model::abi::{MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_RATE_HZ};
 use htex_model::{Descriptor, Fit, FitCondition, Kind, Knobs, Status, Values};
 
 use crate::descriptor::read_descriptor;
-use crate::error::plain;
+use crate::error::{Loading, plain};
 use crate::marker::check_marker;
 use crate::raw::{RawFit, RawModel};
 use crate::sandbox::Sandbox;
@@ -132,6 +132,17 @@ impl LoadedModel {
         }
         let raw = crate::native::load(path)?;
         Self::new(Origin::Native(path.to_owned()), Arc::new(raw))
+    }
+
+    /// Loads a model from a file that somebody else names, which is a WASM module whatever it is called: this is the one place that
+    /// decides what may be loaded for a file's word.
+    pub(crate) fn from_module_in(path: &Path, sandbox: &Sandbox) -> Result<Self, HostError> {
+        if !is_module(path).loading(path.display())? {
+            return Err(HostError::NotModule {
+                path: path.display().to_string(),
+            });
+        }
+        Self::from_wasm_file(path, sandbox)
     }
 
     #[cfg(feature = "wasm")]
@@ -457,4 +468,15 @@ fn no_wasm(origin: &str) -> HostError {
         what: "this program was built without the engine of WASM modules; build it with the Cargo feature `wasm`, which \
                is on by default".to_owned(),
     }
+}
+
+/// Whether a regular file begins as a WASM module does.
+fn is_module(path: &Path) -> std::io::Result<bool> {
+    use std::io::Read;
+    if !path.metadata()?.is_file() {
+        return Ok(false);
+    }
+    let mut first = Vec::new();
+    std::fs::File::open(path)?.take(4).read_to_end(&mut first)?;
+    Ok(first == b"\0asm")
 }

@@ -28,6 +28,9 @@ const FOLDER: &str = "htex/plugins";
 pub struct Search {
     /// Files of plugins; a file that cannot be loaded is an error.
     pub files: Vec<PathBuf>,
+    /// Files that somebody else names, such as a recipe: WASM modules, which run in a sandbox. Anything else is an error and is not
+    /// loaded, since a native library runs with all rights of its user: a person names it in `files`, which precede these.
+    pub modules: Vec<PathBuf>,
     /// Folders of plugins; a folder that cannot be read is an error, a plugin in it that cannot be
     /// loaded is a [`Note`].
     pub dirs: Vec<PathBuf>,
@@ -46,6 +49,7 @@ impl Default for Search {
     fn default() -> Self {
         Self {
             files: Vec::new(),
+            modules: Vec::new(),
             dirs: Vec::new(),
             env: true,
             user_dir: true,
@@ -69,6 +73,13 @@ impl Search {
     #[must_use]
     pub fn with_files(mut self, files: Vec<PathBuf>) -> Self {
         self.files = files;
+        self
+    }
+
+    /// Sets the modules that somebody else names.
+    #[must_use]
+    pub fn with_modules(mut self, modules: Vec<PathBuf>) -> Self {
+        self.modules = modules;
         self
     }
 
@@ -111,6 +122,10 @@ impl Search {
         let mut registry = Registry::empty(&self.limits);
         for path in &self.files {
             let model = LoadedModel::from_file_in(path, registry.sandbox())?;
+            registry.add(Rank::File, model);
+        }
+        for path in &self.modules {
+            let model = LoadedModel::from_module_in(path, registry.sandbox())?;
             registry.add(Rank::File, model);
         }
         for dir in &self.dirs {

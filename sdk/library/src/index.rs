@@ -11,6 +11,7 @@ use crate::header::{Header, MAJOR, MINOR};
 use crate::leaf::LeafReader;
 use crate::limits::Limits;
 use crate::page;
+use crate::ratio::Ratio;
 use crate::root::Root;
 use crate::rules as rule;
 
@@ -66,6 +67,10 @@ impl Index {
             findings.add(rule::LIBRARY_VERSION_NEWER, "/header", message);
         }
         findings.into_list()
+    }
+
+    pub(crate) fn ratio(&self) -> Ratio {
+        Ratio::new(self.header.payload.end, self.limits.ratio)
     }
 
     /// Returns the number of leaf pages.

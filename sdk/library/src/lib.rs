@@ -51,6 +51,7 @@ mod name;
 mod opening;
 mod page;
 mod query;
+mod ratio;
 mod root;
 mod rules;
 #[cfg(feature = "write")]
@@ -74,6 +75,7 @@ pub use located::Located;
 pub use name::{InvalidName, check_name};
 pub use opening::{FIRST_READ, Opening, Progress};
 pub use query::Query;
+pub use ratio::Ratio;
 pub use rules::{RULES, findings_page};
 pub use source::{LibrarySource, LocalFile};
 pub use validate::{validate, validate_source};

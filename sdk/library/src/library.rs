@@ -11,6 +11,7 @@ use crate::error::LibraryError;
 use crate::index::Index;
 use crate::limits::Limits;
 use crate::opening::{Opening, Progress};
+use crate::ratio::Ratio;
 use crate::source::{LibrarySource, LocalFile};
 
 /// A library of textures, each of which is read when it is asked for.
@@ -98,6 +99,22 @@ impl<S: LibrarySource> Library<S> {
     /// Returns findings that are not errors, such as a newer minor version.
     pub fn notes(&self) -> Vec<Finding> {
         self.index.notes()
+    }
+
+    /// Returns a count for reading many textures, by which a small file does not become a large folder.
+    ///
+    /// ```no_run
+    /// let library = htex_library::Library::open("cloth.htexlib".as_ref())?;
+    /// let mut ratio = library.ratio();
+    /// for entry in library.entries() {
+    ///     let entry = entry?;
+    ///     ratio.add(&entry)?;
+    ///     let bytes = library.read(&entry)?;
+    /// }
+    /// # Ok::<(), htex_library::LibraryError>(())
+    /// ```
+    pub fn ratio(&self) -> Ratio {
+        self.index.ratio()
     }
 
     pub fn index(&self) -> &Index {

@@ -15,6 +15,7 @@ use crate::leaf::length;
 use crate::library::Library;
 use crate::limits::Limits;
 use crate::name::caseless;
+use crate::ratio::Ratio;
 use crate::rules as rule;
 use crate::source::{LibrarySource, LocalFile};
 
@@ -61,7 +62,7 @@ struct Validation<'a, S> {
     caseless: BTreeSet<[u8; 16]>,
     entries: u64,
     /// Bytes of all textures so far.
-    total: u64,
+    ratio: Ratio,
     /// Whether all leaves could be read.
     is_whole: bool,
 }
@@ -76,7 +77,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             objects: BTreeMap::new(),
             caseless: BTreeSet::new(),
             entries: 0,
-            total: 0,
+            ratio: library.ratio(),
             is_whole: true,
         }
     }
@@ -116,14 +117,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         for (i, entry) in entries.iter().enumerate() {
             let place = entry_place(leaf, i);
             self.entries += 1;
-            self.total = self.total.saturating_add(entry.bytes);
-            let file_bytes = self.library.index().header().payload.end;
-            if self.total > file_bytes.saturating_mul(self.limits.ratio) {
-                let message = format!(
-                    "the textures up to {} have {} bytes and the file has {file_bytes}; the limit is a ratio of {}, raise it if you trust the file",
-                    entry.name, self.total, self.limits.ratio
-                );
-                self.findings.add(rule::LIBRARY_RATIO, place, message);
+            if let Err(fault) = self.ratio.count(entry, &place) {
+                fault.add_to(&mut self.findings);
                 return Ok(false);
             }
             self.check_name(entry, &place);

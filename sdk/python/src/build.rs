@@ -28,8 +28,11 @@ impl Build {
         output: OsString,
         keep_going: bool,
         work: Option<PathBuf>,
+        plugins: Vec<PathBuf>,
     ) -> PyResult<Self> {
-        let options = BuildOptions::new(TOOL).with_keep_going(keep_going);
+        let options = BuildOptions::new(TOOL)
+            .with_keep_going(keep_going)
+            .with_plugins(plugins);
         let to = Destination::parse(&output, work.as_deref()).map_err(raised)?;
         let build = py.detach(|| htex_build::Build::open(&recipe, to.folder(), options));
         Ok(Self(Mutex::new(Some(build.map_err(raised)?)), to))
@@ -62,7 +65,12 @@ impl Build {
     /// Does the pending jobs here.
     fn run(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| match &mut *self.lock() {
-            Some(build) => build.run(&|_| ()).map_err(raised),
+            Some(build) => {
+                if build.pending().len() > 0 {
+                    self.1.try_out().map_err(raised)?;
+                }
+                build.run(&|_| ()).map_err(raised)
+            }
             None => Err(finished()),
         })
     }
@@ -118,10 +126,11 @@ pub(crate) fn unhashed(
         .collect())
 }
 
-/// Hashes a file; returns the hash as JSON.
+/// Hashes a file of a recipe; returns the hash as JSON.
 #[pyfunction]
-pub(crate) fn hash_file(py: Python<'_>, file: PathBuf) -> PyResult<String> {
-    let hashed = py.detach(|| htex_build::hash_file(&file)).map_err(raised)?;
+pub(crate) fn hash_file(py: Python<'_>, recipe: PathBuf, file: PathBuf) -> PyResult<String> {
+    let hashed = py.detach(|| htex_build::hash_file(&recipe, &file));
+    let hashed = hashed.map_err(raised)?;
     serde_json::to_string(&hashed).map_err(|error| option(error.to_string()))
 }
 
@@ -153,7 +162,7 @@ pub(crate) fn run_job<'py>(py: Python<'py>, key: &str, job: &str) -> PyResult<Bo
         )));
     }
     let made = py.detach(|| {
-        let made = job.run(&mut Workbench::new(WasmLimits::default()))?;
+        let made = job.run(&mut Workbench::of_job(WasmLimits::default(), &job)?)?;
         made.to_bytes(key)
     });
     Ok(PyBytes::new(py, &made.map_err(raised)?))

@@ -217,9 +217,15 @@ def test_workers_read_recordings_by_uri(
     url, seen = served
     names = sorted(file.name for file in recipe.parent.glob("*.csv"))
     table = "recording\n" + "".join(f"{url}/{name}\n" for name in names)
-    (tmp_path / "all.csv").write_text(table)
-    away = tmp_path / "library.toml"
-    away.write_text(RECIPE.replace('recordings = "*.csv"', 'table = "all.csv"'))
+    # A recipe names the server that it is on itself, and no other of this machine.
+    (recipe.parent / "all.table").write_text(table)
+    (recipe.parent / "away.toml").write_text(RECIPE.replace('recordings = "*.csv"', 'table = "all.table"'))
+    away = f"{url}/away.toml"
+    beside = tmp_path / "library.toml"
+    beside.write_text(RECIPE.replace('recordings = "*.csv"', f'recordings = "{url}/{names[0]}"'))
+    with pytest.raises(htex.BuildError, match="machine or network"):
+        htex.build(beside, tmp_path / "none")
+    assert seen == []
     cluster.start_worker()
     with Client(cluster.address, timeout=60) as client:
         client.wait_for_workers(1, timeout=60)
@@ -227,7 +233,7 @@ def test_workers_read_recordings_by_uri(
         again = len(seen)
         htex.dask.build(away, client, tmp_path / "dist")
     assert results(tmp_path / "dist") == local
-    assert not any(line.startswith("GET") for line in seen[again:]), seen[again:]
+    assert not any(line.startswith("GET") and ".csv" in line for line in seen[again:]), seen[again:]
 
 
 def test_a_texture_of_a_library_is_read_by_uri(

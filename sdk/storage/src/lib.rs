@@ -67,6 +67,17 @@ pub struct Storage {
     settings: Settings,
     variables: Variables,
     clients: Arc<Clients>,
+    named: Named,
+}
+
+/// Who names the files.
+#[derive(Debug, Clone, Default)]
+enum Named {
+    /// A person, who may name any server.
+    #[default]
+    ByPerson,
+    /// A file, which may name servers of the world and the one that it is on itself.
+    InFileAt(Option<Location>),
 }
 
 impl Storage {
@@ -76,7 +87,16 @@ impl Storage {
             settings,
             variables,
             clients: Arc::default(),
+            named: Named::ByPerson,
         }
+    }
+
+    /// For locations that a file names, such as a recipe, which is at `origin` if it is elsewhere: of web servers those of the world
+    /// alone, and the one of `origin`. Stores are those of the variables, which a person sets.
+    #[must_use]
+    pub fn for_names_in_a_file(mut self, origin: Option<&Location>) -> Self {
+        self.named = Named::InFileAt(origin.cloned());
+        self
     }
 
     /// With the variables of the process: `AWS_*`, `GOOGLE_*`, `AZURE_*`, `HTEX_STORAGE_TIMEOUT_S`.
@@ -258,10 +278,11 @@ impl Storage {
     }
 
     fn store(&self, location: &Location, uri: &location::Uri) -> Result<Store, StorageError> {
-        Store::open(
-            location,
-            uri,
-            (&self.settings, &self.variables, &self.clients),
-        )
+        let is_of_person = match &self.named {
+            Named::ByPerson => true,
+            Named::InFileAt(origin) => origin.as_ref().is_some_and(|at| at.is_same_server(uri)),
+        };
+        let parts = (&self.settings, &self.variables, &*self.clients);
+        Store::open(location, uri, parts, is_of_person)
     }
 }

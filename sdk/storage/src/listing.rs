@@ -10,6 +10,8 @@ use crate::{Location, StorageError, StorageProblem};
 
 /// Most files of a list.
 pub(crate) const MOST_ENTRIES: usize = 1_000_000;
+/// Most files that are looked at for a list, whether they match or not.
+pub(crate) const MOST_LISTED: usize = 10 * MOST_ENTRIES;
 /// Most folders within each other.
 const MOST_DEPTH: usize = 64;
 
@@ -41,8 +43,9 @@ pub(crate) fn matches(pattern: &Pattern, relative: &str) -> bool {
 }
 
 pub(crate) fn too_many(location: &Location) -> StorageError {
-    let problem =
-        format!("more than {MOST_ENTRIES} files match; name a folder or pattern with fewer");
+    let problem = format!(
+        "there are too many files: at most {MOST_ENTRIES} that match, of {MOST_LISTED}; name a folder or pattern with fewer"
+    );
     StorageProblem::Uri { problem }.at(location)
 }
 
@@ -50,9 +53,14 @@ pub(crate) fn too_many(location: &Location) -> StorageError {
 pub(crate) fn of_folder(folder: &Path, pattern: &Pattern) -> Result<Vec<Entry>, StorageError> {
     let mut found = Vec::new();
     let mut open = vec![(folder.to_owned(), 0)];
+    let mut listed = 0;
     while let Some((path, depth)) = open.pop() {
         let shown = path.display();
         for entry in std::fs::read_dir(&path).at(&shown)? {
+            listed += 1;
+            if listed > MOST_LISTED {
+                return Err(too_many(&folder.to_owned().into()));
+            }
             let entry = entry.at(&shown)?;
             let (kind, path) = (entry.file_type().at(&shown)?, entry.path());
             if kind.is_dir() && depth < MOST_DEPTH {

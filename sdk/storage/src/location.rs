@@ -135,6 +135,16 @@ impl Location {
         }
     }
 
+    /// Whether a URI is of the same server.
+    pub(crate) fn is_same_server(&self, uri: &Uri) -> bool {
+        match &self.0 {
+            LocalOrRemote::Local(_) => false,
+            LocalOrRemote::Remote(own) => {
+                own.scheme == uri.scheme && own.authority.eq_ignore_ascii_case(&uri.authority)
+            }
+        }
+    }
+
     pub(crate) fn place(&self) -> &LocalOrRemote {
         &self.0
     }
@@ -168,6 +178,12 @@ impl Uri {
                 true => "the host is missing, as in https://HOST/PATH",
                 false => "the bucket is missing, as in s3://BUCKET/KEY",
             });
+        }
+        let is_bucket = |c: char| c.is_ascii_alphanumeric() || "-_.$".contains(c);
+        if !is_url && !authority.chars().all(is_bucket) {
+            return Err(
+                "the bucket's name has other characters than letters, digits, `-`, `_` and `.`; correct it",
+            );
         }
         Ok(Self {
             scheme,

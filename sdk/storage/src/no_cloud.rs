@@ -30,6 +30,7 @@ impl Store {
         location: &Location,
         _: &Uri,
         _: (&Settings, &Variables, &Clients),
+        _: bool,
     ) -> Result<Self, StorageError> {
         Err(StorageProblem::NoCloud.at(location))
     }

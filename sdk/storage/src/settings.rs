@@ -73,6 +73,24 @@ impl Variables {
         all.find_map(|(of, value)| (of == name).then_some(&value[..]))
     }
 
+    /// Refuses a value with a control character, which no header, host or key has, among the variables whose names begin with this.
+    ///
+    /// # Errors
+    /// A sentence with the variable's name.
+    #[cfg(feature = "cloud")]
+    pub(crate) fn check(&self, prefix: &str) -> Result<(), String> {
+        // A key as JSON has lines.
+        let is_text = |value: &str| !value.trim_start().starts_with('{');
+        let wrong =
+            |(_, value): &(&str, &str)| is_text(value) && value.chars().any(char::is_control);
+        match self.with_prefix(prefix).find(wrong) {
+            None => Ok(()),
+            Some((name, _)) => Err(format!(
+                "{name} has a line break or another control character; correct it"
+            )),
+        }
+    }
+
     /// Set variables whose names begin with this.
     #[cfg(feature = "cloud")]
     pub(crate) fn with_prefix<'a>(

@@ -86,6 +86,7 @@ fn a_redirect_leads_to_no_inner_address() {
     });
     assert_eq!(storage(&server).read(&uri, MOST).unwrap(), bytes);
     assert_eq!(server.requests().len(), 2);
+    assert!(server.requests().iter().all(|seen| seen.referer.is_none()));
     let port = server.url().rsplit(':').next().unwrap().to_owned();
     for to in [
         "http://169.254.169.254/latest/meta-data/".to_owned(),
@@ -108,7 +109,7 @@ fn a_redirect_leads_to_no_inner_address() {
             "{to}: {error:?}"
         );
         assert!(
-            said(error).contains("redirects to an address of this machine or network"),
+            said(error).contains("an address of this machine or network"),
             "{to}"
         );
         assert_eq!(server.requests().len(), 1, "{to}");
@@ -117,4 +118,25 @@ fn a_redirect_leads_to_no_inner_address() {
     server.fail(move |_, _| Fault::Redirect(again.clone()));
     assert!(said(storage(&server).read(&uri, MOST)).contains("more than five times"));
     assert_eq!(server.requests().len(), 6);
+}
+
+/// What a file names is of the world, or of the server that it is on itself; what a person names may be anywhere.
+#[test]
+fn a_file_names_no_inner_address() {
+    let (server, bytes) = server();
+    let uri = at(&format!("{}/web/a%20b.csv", server.url()));
+    let of_file = storage(&server).for_names_in_a_file(None);
+    let refused = of_file.read(&uri, MOST);
+    assert!(said(refused).contains("an address of this machine or network"));
+    let by_name = at(&server.url().replace("127.0.0.1", "localhost"));
+    assert!(
+        said(of_file.read(&by_name.inside("web/a%20b.csv"), MOST)).contains("machine or network")
+    );
+    assert!(server.requests().is_empty());
+    let recipe = at(&format!("{}/library.toml", server.url()));
+    let beside = storage(&server).for_names_in_a_file(Some(&recipe));
+    assert_eq!(beside.read(&uri, MOST).unwrap(), bytes);
+    let elsewhere = at("http://127.0.0.1:1/library.toml");
+    let other = storage(&server).for_names_in_a_file(Some(&elsewhere));
+    assert!(said(other.read(&uri, MOST)).contains("machine or network"));
 }

@@ -124,3 +124,40 @@ fn a_write_that_takes_too_long_leaves_nothing() {
     assert!(server.files().is_empty(), "{:?}", server.files());
     assert_eq!(server.requests().last().unwrap().method, "DELETE");
 }
+
+/// A browser opens what it gets by its media type, and compares a copy that it kept.
+#[test]
+fn a_file_has_its_media_type_in_a_store() {
+    let server = Server::start();
+    let storage = storage(&server);
+    for (name, media_type) in [
+        ("index.html", "text/html; charset=utf-8"),
+        ("textures/a.htex", "application/vnd.htex+zip"),
+        ("cloth.htexlib", "application/vnd.htexlib"),
+        ("sounds/a.wav", "audio/wav"),
+        ("build-report.json", "application/json"),
+        ("a", "application/octet-stream"),
+    ] {
+        storage
+            .write(&at(&format!("s3://shop/{name}")), b"x")
+            .unwrap();
+        let seen = server.requests().pop().unwrap();
+        assert_eq!(seen.content_type.as_deref(), Some(media_type), "{name}");
+        assert_eq!(seen.cache_control.as_deref(), Some("no-cache"), "{name}");
+    }
+    let large = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(large.path(), bytes(5 << 20)).unwrap();
+    storage
+        .write_file(&at("s3://shop/large.html"), large.path())
+        .unwrap();
+    let typed = |seen: &htex_object_server::Seen| {
+        seen.content_type.as_deref() == Some("text/html; charset=utf-8")
+    };
+    assert!(
+        server
+            .requests()
+            .iter()
+            .filter(|seen| seen.path.contains("large"))
+            .any(typed)
+    );
+}

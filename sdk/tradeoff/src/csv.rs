@@ -1,5 +1,6 @@
 //! The points as CSV.
 
+use htex_finding::as_text;
 use htex_format::{By, Measure};
 
 use crate::{Point, Tradeoff};
@@ -47,14 +48,9 @@ pub fn csv(tradeoff: &Tradeoff) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Formats a cell of text, quoted if necessary. A cell that a spreadsheet would take for a formula gets an apostrophe in
-/// front, which marks text.
+/// Formats a cell of text, quoted if necessary, and marked as text.
 fn text(text: &str) -> String {
-    let text = if text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
-        &format!("'{text}")
-    } else {
-        text
-    };
+    let text = &*as_text(text);
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

@@ -25,6 +25,7 @@ mod output;
 mod printed;
 mod promise;
 mod recipe;
+mod recipe_folder;
 mod recordings;
 mod response;
 mod scene;
@@ -47,6 +48,7 @@ pub use module::wasm_module;
 pub use output::output_name;
 pub use printed::printed_text;
 pub use recipe::recipe;
+pub use recipe_folder::recipe_folder;
 pub use recordings::{csv, npy, wav};
 pub use response::response_csv;
 pub use scene::scene;
@@ -96,6 +98,7 @@ pub const TARGETS: &[Target] = &[
     target("study", study),
     target("answers", answers),
     target("recipe", recipe),
+    target("recipe_folder", recipe_folder),
     target("take_part", take_part),
 ];
 

@@ -95,6 +95,7 @@ fn manifest() -> &'static Value {
             file: "fuzzed.csv".to_owned(),
             rate_hz: 1000.0,
             segments: 1,
+            blake3: None,
         };
         manifest.provenance.recordings = vec![source];
         serde_json::to_value(&manifest).expect("a manifest is JSON")

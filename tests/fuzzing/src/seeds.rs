@@ -86,10 +86,22 @@ fn parts() -> Vec<Seed> {
 /// A study, answers of its first participant, and a recipe.
 fn studies() -> Vec<Seed> {
     let recipe = "[library]\nname = 'vinyls'\n[[textures]]\nrecordings = 'rec/*.csv'\nmodels = ['bands', 'sbeta']\n";
+    let tabulated = recipe.replace("recordings = 'rec/*.csv'", "table = 'table.csv'");
     [
         ("study", "two", STUDY.to_owned()),
         ("answers", "begun", answered()),
         ("recipe", "vinyls", recipe.to_owned()),
+        ("recipe_folder", "vinyls", recipe.to_owned()),
+        (
+            "recipe_folder",
+            "table",
+            format!("{tabulated}\0recording,name\nrec/a.csv,one\nrec/../rec/a.csv,two\n"),
+        ),
+        (
+            "recipe_folder",
+            "server",
+            recipe.replace("rec/*.csv", "http://localhost:PORT/a.csv"),
+        ),
     ]
     .map(|(target, name, text)| (target, name.to_owned(), text.into_bytes()))
     .to_vec()

@@ -79,6 +79,11 @@ pub struct Seen {
     pub range: Option<String>,
     /// Whether it was signed.
     pub is_signed: bool,
+    /// The headers `Content-Type` and `Cache-Control` of what is written.
+    pub content_type: Option<String>,
+    pub cache_control: Option<String>,
+    /// The header `Referer`.
+    pub referer: Option<String>,
 }
 
 type Rule = Box<dyn Fn(usize, &Seen) -> Fault + Send + Sync>;
@@ -274,11 +279,18 @@ impl Shared {
     /// Records the request, and asks the rule.
     fn fault_of(&self, request: &Request<Incoming>) -> Fault {
         let range = request.headers().get("range");
+        let header = |name: &str| {
+            let value = request.headers().get(name);
+            value.map(|value| value.to_str().unwrap().to_owned())
+        };
         let seen = Seen {
             method: request.method().to_string(),
             path: request.uri().to_string(),
             range: range.map(|range| range.to_str().unwrap().to_owned()),
             is_signed: request.headers().contains_key("authorization"),
+            content_type: header("content-type"),
+            cache_control: header("cache-control"),
+            referer: header("referer"),
         };
         let (rule, count) = &mut *self.rule.lock().unwrap();
         let fault = rule(*count, &seen);

@@ -67,6 +67,13 @@ const PROOFS: &[Proof] = &[
         prove: |options| whole_test(options, &["-p", "htex-scene", "--test", "equivalence"]),
     },
     Proof {
+        name: "recipes",
+        takes: "",
+        proves: "10,000 random recipes and tables in a folder with traps touch nothing outside the folder of results and request nothing, \
+                 each within 512 MiB and 30 s; tests take 300",
+        prove: |options| whole_test(options, &["-p", "htex-cli", "--test", "random_recipes"]),
+    },
+    Proof {
         name: "days",
         takes: "[--hours N]",
         proves: "voices of a day keep their power and phase, and do not repeat; tests take an hour",

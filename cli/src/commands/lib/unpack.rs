@@ -1,14 +1,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_files::AtFile;
+use htex_files::{AtFile, Batch, OwnFolder};
 use htex_library::{Entry, LibraryError};
 
 use super::given::Given;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::of_file::{OfFile, ResultOfFile};
-use crate::output::{print, write_file};
+use crate::output::print;
 use crate::progress::bar;
 use crate::shown::shown;
 
@@ -43,10 +43,19 @@ impl Unpack {
             self.names.len() as u64
         };
         let bar = bar(count);
-        let write = |entry: Entry| {
+        // The index says how large all are, before anything is written.
+        let mut ratio = library.ratio();
+        if self.names.is_empty() {
+            library
+                .entries()
+                .try_for_each(|entry| ratio.add(&entry?))
+                .of(&file)?;
+        }
+        let mut batch = Batch::default();
+        let mut write = |entry: Entry| {
             let bytes = library.read(&entry).of(&file)?;
             bar.inc(1);
-            self.write(&entry.name, &bytes)
+            self.write(&mut batch, &entry.name, &bytes)
         };
         if self.names.is_empty() {
             library
@@ -58,22 +67,36 @@ impl Unpack {
             let absent = || LibraryError::Absent { name: name.clone() }.of(&file);
             write(entry.ok_or_else(absent)?)?;
         }
+        batch.finish().writing(&self.output)?;
         bar.finish_and_clear();
         print(&format!("{}: {count} files\n", shown(&self.output)))?;
         Ok(Exit::SUCCESS)
     }
 
-    /// Writes a texture. Its name was checked by the reader: it leads to a file inside the folder.
-    fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-        let path = self.output.join(format!("{name}.htex"));
-        if !self.force && path.symlink_metadata().is_ok() {
-            let path = shown(&path);
-            return Err(Failure::Other(format!(
-                "{path}: it is there already; unpack into another folder, or write over it with --force"
-            )));
+    /// Writes a texture. Its name was checked by the reader: it leads to a file inside the folder, where no link is followed.
+    fn write(&self, batch: &mut Batch, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+        let (own, inside) = (
+            OwnFolder::new(&self.output),
+            PathBuf::from(format!("{name}.htex")),
+        );
+        let path = self.output.join(&inside);
+        let above = inside.parent().unwrap_or(Path::new(""));
+        own.make_folder(above).writing(&path)?;
+        match path.symlink_metadata() {
+            Err(_) => {}
+            Ok(is) if self.force && is.is_file() => {}
+            Ok(_) if self.force => {
+                let problem =
+                    "it is there and no regular file; remove it, or unpack into another folder";
+                return Err(Failure::Other(format!("{}: {problem}", shown(&path))));
+            }
+            Ok(_) => {
+                let path = shown(&path);
+                return Err(Failure::Other(format!(
+                    "{path}: it is there already; unpack into another folder, or write over it with --force"
+                )));
+            }
         }
-        let folder = path.parent().unwrap_or(Path::new("."));
-        std::fs::create_dir_all(folder).writing(folder)?;
-        write_file(&path, bytes)
+        Ok(batch.write(&path, bytes).writing(&path)?)
     }
 }

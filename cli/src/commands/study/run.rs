@@ -144,7 +144,7 @@ impl Run {
         let device = rig.device_used()?;
         let mut clock: Box<dyn Clock> = match self.fast {
             true => Box::new(FastClock::default()),
-            false => Box::new(WallClock),
+            false => Box::new(WallClock::new()),
         };
         let header = Header::new(study, &self.study, own, device, tool())?
             .with_begun(clock.date())
@@ -190,7 +190,7 @@ impl Run {
             felt: None,
         };
         if rig.plays_to_files()? {
-            std::fs::create_dir_all(&rig.folder).writing(&rig.folder)?;
+            htex_files::private::make_folder(&rig.folder).writing(&rig.folder)?;
         }
         Ok(rig)
     }

@@ -51,6 +51,7 @@ pub fn asset(conditions: usize, fitted: Vec<Fitted>) -> Asset {
                     file: "cotton_take_1.csv".to_owned(),
                     rate_hz: 20_000.0,
                     segments: 48,
+                    blake3: None,
                 }],
                 ..Provenance::default()
             },

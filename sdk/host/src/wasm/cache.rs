@@ -4,23 +4,24 @@
 //! detects damaged files and files of other users. [`WasmCache`] documents who is trusted.
 //!
 //! The files are run as machine code. A folder that belongs to another user, or that others may write to, is not used,
-//! and a file without a tag by this user's key ([`super::key`]) is compiled again.
+//! and a file without a tag by this user's key ([`Key`]) is compiled again.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use htex_files::{Key, private};
 use wasmtime::{Engine, Module};
 
-use super::key::Key;
-use super::private;
 use crate::{WasmCache, folders};
 
 /// Most files in the cache.
 const MOST_FILES: usize = 64;
 const HASH: usize = blake3::OUT_LEN;
 const EXTENSION: &str = ".cwasm";
+/// Name of the key's file, in the user's folder of settings.
+const KEY: &str = "wasm.key";
 
 /// A folder of compiled modules that only this user can write to, and the key of its files.
 pub(super) struct Cache {
@@ -37,7 +38,7 @@ impl Cache {
             WasmCache::Off => return None,
         };
         private::folder(&folder).ok()?;
-        let key = Key::of(&folders::config()?).ok()?;
+        let key = Key::of(&folders::config()?, KEY).ok()?;
         Some(Self { folder, key })
     }
 
@@ -132,7 +133,7 @@ mod tests {
         fn cache(&self) -> Option<Cache> {
             let folder = self.folder();
             private::folder(&folder).ok()?;
-            let key = Key::of(&self.dir.path().join("config")).ok()?;
+            let key = Key::of(&self.dir.path().join("config"), KEY).ok()?;
             Some(Cache { folder, key })
         }
 

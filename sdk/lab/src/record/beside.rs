@@ -1,11 +1,10 @@
 //! How the recording of a take is read, from the JSON beside it.
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use htex_author::settings::ReadingSettings;
-use htex_files::ContentError;
+use htex_files::{ContentError, open_regular};
 use serde_json::Value;
 
 use crate::record::data::TakeHeader;
@@ -13,7 +12,7 @@ use crate::record::error::RecordError;
 use crate::record::write::reading;
 
 /// Longest JSON that is read, bytes; that of a take has a few thousand.
-const MOST_BYTES: u64 = 1 << 20;
+pub(crate) const MOST_BYTES: u64 = 1 << 20;
 
 /// A recording of `htex record` or of a study, with the settings that read it: columns, rate, quantity and the tracker's file.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,7 +77,7 @@ impl KnownTake {
 /// [`io::ErrorKind::InvalidData`].
 pub(crate) fn header(beside: &Path) -> io::Result<Option<TakeHeader>> {
     let mut bytes = Vec::new();
-    File::open(beside)?
+    open_regular(beside)?
         .take(MOST_BYTES)
         .read_to_end(&mut bytes)?;
     let mut json = serde_json::from_slice::<Value>(&bytes).unwrap_or_default();

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use htex_author::recording::read_recording;
 use htex_author::{Averaging, Exploration, SpectrumOptions, Take, TextureSpectrum, read_take};
+use htex_files::read_regular;
 use htex_format::Quantity;
 use serde::Deserialize;
 
-use crate::record::beside::settings as settings_of;
+use crate::record::beside::{MOST_BYTES, settings as settings_of};
 use crate::record::data::TakeHeader;
 use crate::record::format::Outcome;
 use crate::record::live::LiveSpectrum;
@@ -26,7 +27,8 @@ struct Beside {
 pub fn kept_spectrum(folder: &Path, name: &str, quantity: Quantity) -> Option<LiveSpectrum> {
     let number = names::kept_number(folder, name)?;
     let stem = names::stem(name, number);
-    let beside = std::fs::read(folder.join(format!("{stem}.json"))).ok()?;
+    let beside = folder.join(format!("{stem}.json"));
+    let beside = read_regular(&beside, MOST_BYTES).ok()?;
     let Beside { outcome, take } = serde_json::from_slice(&beside).ok()?;
     if outcome != Outcome::Kept || take.quantity != quantity {
         return None;

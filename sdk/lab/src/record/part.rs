@@ -42,7 +42,9 @@ impl PartFile {
     /// [`RecordError::File`].
     pub fn create(path: &Path, header: &TakeHeader) -> Result<Self, RecordError> {
         let begun = || -> std::io::Result<File> {
-            let mut file = OpenOptions::new().create_new(true).write(true).open(path)?;
+            let mut options = OpenOptions::new();
+            htex_files::private::only_user(&mut options);
+            let mut file = options.create_new(true).write(true).open(path)?;
             file.try_lock().map_err(std::io::Error::other)?;
             file.write_all((serde_json::to_string(header)? + "\n").as_bytes())?;
             file.sync_all()?;

@@ -59,7 +59,7 @@ impl Session {
                 advice: "map the channel of the normal force, as in normal=ai2:0.31",
             });
         }
-        std::fs::create_dir_all(&setup.folder).writing(&setup.folder)?;
+        htex_files::private::make_folder(&setup.folder).writing(&setup.folder)?;
         let inputs = Inputs { signals, tracker };
         let reader = Reader::new(source, inputs, setup.seconds);
         Ok(Self {

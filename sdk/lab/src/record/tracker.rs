@@ -2,10 +2,11 @@
 
 use std::io::BufRead;
 use std::path::Path;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Instant;
 
 use htex_author::recording::{ColumnMap, ReadOptions, Role, RowMap, read_channels};
+use htex_files::bounded_lines;
 
 use crate::record::error::RecordError;
 
@@ -89,6 +90,11 @@ impl TrackerRows for TableTracker {
     }
 }
 
+/// Most bytes of a line of a tracker: two numbers and what else it says.
+const MOST_LINE_BYTES: usize = 4096;
+/// Most lines that wait: a minute at 1 kHz.
+const MOST_LINES: usize = 60_000;
+
 /// A tracker that sends lines `x_mm y_mm`: a pipe, a serial port. Rows get the time of their arrival.
 #[derive(Debug)]
 pub struct LineTracker {
@@ -100,9 +106,11 @@ pub struct LineTracker {
 impl LineTracker {
     /// Reads lines in a thread of its own, which ends with the input.
     pub fn new(name: &str, input: impl BufRead + Send + 'static) -> Self {
-        let (sender, lines) = channel();
+        let (sender, lines) = sync_channel(MOST_LINES);
         std::thread::spawn(move || {
-            for (index, line) in input.lines().map_while(Result::ok).enumerate() {
+            for (index, line) in bounded_lines(input, MOST_LINE_BYTES).enumerate() {
+                // What is no line is not a position either, and says so.
+                let line = line.unwrap_or_else(|error| error.to_string());
                 if sender.send((Instant::now(), index + 1, line)).is_err() {
                     return;
                 }

@@ -58,9 +58,9 @@ pub(crate) fn write_signals(
 ) -> Result<Written, RecordError> {
     let header = &data.header;
     let recording = folder.join(format!("{stem}.{}", header.format.extension()));
-    let make = |folder: &Path| std::fs::create_dir_all(folder).writing(folder);
+    let make = |folder: &Path| htex_files::private::make_folder(folder).writing(folder);
     let put = |path: &Path, write: &dyn Fn(&mut File) -> io::Result<()>| {
-        htex_files::replace_file(path, write).writing(path)
+        htex_files::replace_private_file(path, write).writing(path)
     };
     make(folder)?;
     let mut fit = vec![recording.display().to_string()];

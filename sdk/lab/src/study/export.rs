@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use htex_files::AtFile;
+use htex_finding::as_text;
 
 use crate::study::error::StudyError;
 use crate::study::lines::{Answer, Header, Line};
@@ -221,12 +222,12 @@ impl Answers {
 fn row(header: &Header, answer: &Answer) -> [String; COLUMNS.len()] {
     let yes = |is: bool| if is { "yes" } else { "no" }.to_owned();
     [
-        header.participant.clone(),
-        answer.texture.clone(),
-        answer.model.clone(),
+        as_text(&header.participant).into_owned(),
+        as_text(&answer.texture).into_owned(),
+        as_text(&answer.model).into_owned(),
         answer.repetition.to_string(),
         answer.rating.to_string(),
-        answer.attribute.clone(),
+        as_text(&answer.attribute).into_owned(),
         yes(answer.hidden_reference),
         answer.response_ms.to_string(),
         answer.gain_db.map_or(String::new(), |db| format!("{db}")),

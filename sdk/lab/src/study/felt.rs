@@ -350,7 +350,7 @@ fn after(error: RecordError, data: &TakeData) -> RecordError {
 
 /// Makes a folder, and removes files in it that a program that was killed had not finished.
 fn remove_unfinished(folder: &Path) -> std::io::Result<()> {
-    std::fs::create_dir_all(folder)?;
+    htex_files::private::make_folder(folder)?;
     for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();

@@ -8,6 +8,7 @@ use htex_author::recording::read_recording;
 use htex_author::{Exploration, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, read_take};
 use htex_dsp::Band;
 use htex_files::{AtFile, ContentError, InFile};
+use htex_finding::as_text;
 use htex_format::{Asset, Condition, Quantity};
 
 use crate::record::{TakeHeader, header_beside, settings_of};
@@ -240,7 +241,7 @@ fn take(file: &Path, header: &TakeHeader) -> Result<Take, Box<dyn Error>> {
 }
 
 fn row(participant: &str, texture: &str, model: &str, spectrum: &Reference) -> Vec<String> {
-    let names = [participant, texture, model].map(str::to_owned);
+    let names = [participant, texture, model].map(|name| as_text(name).into_owned());
     let magnitudes = spectrum.magnitude.iter().map(|m| format!("{m}"));
     names.into_iter().chain(magnitudes).collect()
 }

@@ -96,9 +96,11 @@ fn text(line: &Line) -> std::io::Result<String> {
 /// Writes the header under a temporary name and renames it, so that no file is without.
 fn begin(path: &Path, header: &Header) -> Result<(), StudyError> {
     let folder = path.parent().unwrap_or(Path::new("."));
-    let begun = std::fs::create_dir_all(folder)
+    let begun = htex_files::private::make_folder(folder)
         .and_then(|()| text(&Line::Header(Box::new(header.clone()))))
-        .and_then(|text| htex_files::write_file(path, text.as_bytes()))
+        .and_then(|text| {
+            htex_files::replace_private_file(path, |file| file.write_all(text.as_bytes()))
+        })
         .and_then(|()| File::open(path)?.sync_all());
     begun.writing(path)?;
     // The name is on disk, too, where folders can be synced.

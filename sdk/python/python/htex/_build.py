@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Any
 
 from . import _htex
@@ -10,7 +11,14 @@ from . import _htex
 Path = str | os.PathLike[str]
 
 
-def build(recipe: Path, output: Path, *, keep_going: bool = False, work: Path | None = None) -> dict[str, Any]:
+def build(
+    recipe: Path,
+    output: Path,
+    *,
+    keep_going: bool = False,
+    work: Path | None = None,
+    plugins: Sequence[Path] = (),
+) -> dict[str, Any]:
     """Build a library of textures from a recipe, as ``htex build`` does.
 
     What has been fitted stays in ``output``: a build that was ended goes on where it was, and one that is run again fits what
@@ -21,6 +29,8 @@ def build(recipe: Path, output: Path, *, keep_going: bool = False, work: Path | 
         output: The folder of the results, or the URI of one (``s3://``, ``gs://``, ``az://``).
         keep_going: Leave out a texture that cannot be made instead of raising.
         work: The folder in which results for a URI are made; one of the user's cache when absent.
+        plugins: Plugins to fit with: WASM modules (sandboxed), or native libraries, which run with all your rights. A recipe names WASM
+            modules alone.
 
     Returns:
         The report, as in ``build-report.json``: ``report["library"]`` and ``report["textures"]``.
@@ -29,6 +39,6 @@ def build(recipe: Path, output: Path, *, keep_going: bool = False, work: Path | 
         BuildError: The recipe is wrong, or a texture cannot be made.
         OSError: A file cannot be read or written.
     """
-    planned = _htex.Build(os.fspath(recipe), os.fspath(output), keep_going, work)
+    planned = _htex.Build(os.fspath(recipe), os.fspath(output), keep_going, work, [os.fspath(plugin) for plugin in plugins])
     planned.run()
     return planned.finish()

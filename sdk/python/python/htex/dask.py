@@ -49,6 +49,7 @@ def build(
     *,
     keep_going: bool = False,
     work: Path | None = None,
+    plugins: Sequence[Path] = (),
     shard_bytes: int = 64_000_000,
     patience_s: float = 300.0,
     done: Callable[[str], None] | None = None,
@@ -65,6 +66,7 @@ def build(
         output: The folder of the results, or the URI of one.
         keep_going: Leave out a texture that cannot be made instead of raising.
         work: The folder in which results for a URI are made; one of the user's cache when absent.
+        plugins: Plugins to fit with, as for :func:`htex.build`, under the same paths on every worker.
         shard_bytes: Bytes of recordings that a worker gets at a time; a texture with more is given alone.
         patience_s: Longest time without scheduler or workers, seconds.
         done: Called with the key of each job that is done.
@@ -87,13 +89,14 @@ def build(
         with patience:
             try:
                 batches = [files[i : i + _FILES] for i in range(0, len(files), _FILES)]
-                for part in _results(client, _hash, batches):
+                for part in _results(client, _hash, [(source, batch) for batch in batches]):
                     hashed += part
                     patience.renew()
             finally:
                 _htex.remember(target, hashed)
             break  # What is still not known has just changed; it is read here.
-    planned = _htex.Build(source, os.fspath(output), keep_going, work)
+    named = [os.fspath(plugin) for plugin in plugins]
+    planned = _htex.Build(source, os.fspath(output), keep_going, work, named)
     while pending := planned.pending():
         with patience:
             for results in _results(client, _run, list(_shards(pending, shard_bytes))):
@@ -165,9 +168,10 @@ def _name(work: Callable[[Any], Any], part: Any) -> str:
     return f"htex{work.__name__}-{digest}"
 
 
-def _hash(files: Sequence[str]) -> list[tuple[str, str]]:
-    """Hash files on a worker."""
-    return [(file, _htex.hash_file(file)) for file in files]
+def _hash(of_recipe: tuple[str, Sequence[str]]) -> list[tuple[str, str]]:
+    """Hash files of a recipe on a worker."""
+    recipe, files = of_recipe
+    return [(file, _htex.hash_file(recipe, file)) for file in files]
 
 
 def _run(shard: list[tuple[str, str]]) -> list[tuple[str, bytes]]:

@@ -15,10 +15,12 @@ use http_body::{Body, Frame};
 use http_body_util::{BodyExt, Limited};
 use object_store::ClientOptions;
 use object_store::client::{
-    HttpClient, HttpConnector, HttpError, HttpRequest, HttpResponse, HttpResponseBody, HttpService,
+    HttpClient, HttpConnector, HttpError, HttpErrorKind, HttpRequest, HttpResponse,
+    HttpResponseBody, HttpService,
 };
 
-use super::client::NotFollowed;
+use super::addresses::NotFollowed;
+use super::redirects::Following;
 
 /// Most bytes that are read of a refusal, for its code.
 const MOST_REFUSAL_BYTES: usize = 65_536;
@@ -89,10 +91,37 @@ fn cause(error: &HttpError) -> Last {
     })
 }
 
+/// Most bytes of one answer to a list request; a page of 1,000 keys of 1,024 bytes has 3 MB at most with its escapes.
+const MOST_LIST_BYTES: usize = 16 << 20;
+
+/// How requests are sent.
+#[derive(Debug, Clone)]
+pub(crate) enum Client {
+    /// With credentials, to a store of the environment; redirects are not followed.
+    Store(reqwest::Client),
+    Web(Following),
+}
+
+impl Client {
+    async fn call(&self, request: HttpRequest) -> Result<HttpResponse, HttpError> {
+        match self {
+            Self::Store(client) => HttpService::call(client, request).await,
+            Self::Web(following) => following.call(request).await,
+        }
+        .map_err(|error| match cause(&error) {
+            // No retry leads elsewhere.
+            Last::NotFollowed(reason) => {
+                HttpError::new(HttpErrorKind::Unknown, NotFollowed(reason))
+            }
+            _ => error,
+        })
+    }
+}
+
 /// Connects a store to a client whose requests are logged.
 #[derive(Debug)]
 pub(crate) struct Connector {
-    pub(crate) client: reqwest::Client,
+    pub(crate) client: Client,
     pub(crate) log: Arc<Log>,
 }
 
@@ -107,21 +136,44 @@ impl HttpConnector for Connector {
 
 #[derive(Debug)]
 struct Logged {
-    client: reqwest::Client,
+    client: Client,
     log: Arc<Log>,
 }
+
+impl Logged {
+    /// Whether a request is for a list of a store, whose answer is read into memory: S3 and Google by `list-type`, Azure by `comp`.
+    fn is_list(&self, request: &HttpRequest) -> bool {
+        let query = request.uri().query().unwrap_or_default();
+        let is = |part: &str| part.starts_with("list-type=") || part == "comp=list";
+        matches!(self.client, Client::Store(_)) && query.split('&').any(is)
+    }
+}
+
+/// A body that ends with an error after as many bytes as a list has.
+fn bounded(body: HttpResponseBody) -> HttpResponseBody {
+    let limited = Limited::new(body, MOST_LIST_BYTES);
+    let too_long = |_| HttpError::new(HttpErrorKind::Decode, NotFollowed(LONG_LIST));
+    HttpResponseBody::new(limited.map_err(too_long))
+}
+
+const LONG_LIST: &str = "a page of its list has more than 16 MiB, which none has";
 
 #[async_trait]
 impl HttpService for Logged {
     async fn call(&self, request: HttpRequest) -> Result<HttpResponse, HttpError> {
         self.log.requests.fetch_add(1, Ordering::Relaxed);
-        let response = HttpService::call(&self.client, request).await;
+        let is_list = self.is_list(&request);
+        let response = self.client.call(request).await;
         let response = response.inspect_err(|error| self.log.failed(error))?;
         let (parts, body) = response.into_parts();
         let status = parts.status.as_u16();
         if parts.status.is_success() {
             self.log.ended(Last::Status { status, code: None });
             let log = Arc::clone(&self.log);
+            let body = match is_list {
+                true => bounded(body),
+                false => body,
+            };
             let body = HttpResponseBody::new(Counted { body, log });
             return Ok(HttpResponse::from_parts(parts, body));
         }

@@ -1,9 +1,11 @@
 //! Files elsewhere: object stores and web servers.
 
+mod addresses;
 mod client;
 mod explain;
 mod log;
 mod read;
+mod redirects;
 mod stores;
 mod write;
 
@@ -18,11 +20,13 @@ use tokio::runtime::{Builder, Runtime};
 pub(crate) use client::Clients;
 pub(crate) use read::Version;
 
-use crate::listing::{self, Entry, MOST_ENTRIES};
+use crate::listing::{self, Entry, MOST_ENTRIES, MOST_LISTED};
 use crate::location::Uri;
 use crate::{Location, Settings, Stat, StorageError, StorageProblem, Variables};
+use addresses::NamedBy;
 use explain::Fail;
-use log::{Connector, Log};
+use log::{Client, Connector, Log};
+use redirects::Following;
 use stores::Parts;
 
 /// Threads that wait for the network, for all files of the process.
@@ -45,15 +49,26 @@ impl Store {
         location: &Location,
         uri: &Uri,
         (settings, variables, clients): (&Settings, &Variables, &Clients),
+        is_of_person: bool,
     ) -> Result<Self, StorageError> {
         let problem = |problem| StorageProblem::Settings { problem }.at(location);
+        let of = |by| clients.of(by, settings).map_err(problem);
+        let by = match is_of_person {
+            true => NamedBy::Person,
+            false => NamedBy::Other,
+        };
+        // The server of a store is named in the environment.
         let client = match uri.scheme.is_read_only() {
-            true => clients.web(settings),
-            false => clients.stores(settings),
+            true => Client::Web(Following {
+                first: of(by)?,
+                world: of(NamedBy::Other)?,
+                by,
+            }),
+            false => Client::Store(of(NamedBy::Person)?),
         };
         let log = Arc::new(Log::default());
         let connector = Connector {
-            client: client.map_err(problem)?,
+            client,
             log: Arc::clone(&log),
         };
         let parts = Parts {
@@ -111,8 +126,13 @@ impl Store {
         self.run(async move {
             let mut found = Vec::new();
             let mut all = here.store.list(Some(&here.key));
+            let mut listed = 0;
             while let Some(meta) = all.next().await {
                 let meta = meta?;
+                listed += 1;
+                if listed > MOST_LISTED {
+                    return Err(Fail::Own(listing::too_many(&here.location)));
+                }
                 let name = meta.location.as_ref();
                 let prefix = here.key.as_ref();
                 let relative = name

@@ -62,6 +62,7 @@ impl Parts<'_> {
     }
 
     fn s3(self) -> Result<Opened, String> {
+        self.variables.check("AWS_")?;
         let mut builder = AmazonS3Builder::new();
         for (name, value) in self.variables.with_prefix("AWS_") {
             if let Ok(key) = name.to_ascii_lowercase().parse::<S3Key>() {
@@ -107,6 +108,7 @@ impl Parts<'_> {
     }
 
     fn gs(self) -> Result<Opened, String> {
+        self.variables.check("GOOGLE_")?;
         let mut builder = GoogleCloudStorageBuilder::new();
         for (name, value) in self.variables.with_prefix("GOOGLE_") {
             if let Ok(key) = name.to_ascii_lowercase().parse::<GsKey>() {
@@ -147,6 +149,7 @@ impl Parts<'_> {
     }
 
     fn az(self) -> Result<Opened, String> {
+        self.variables.check("AZURE_")?;
         let mut builder = MicrosoftAzureBuilder::new();
         for (name, value) in self.variables.with_prefix("AZURE_") {
             if let Ok(key) = name.to_ascii_lowercase().parse::<AzKey>() {

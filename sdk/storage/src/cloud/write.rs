@@ -5,7 +5,9 @@ use std::io::Read;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use object_store::{MultipartUpload, ObjectStoreExt, PutPayload};
+use object_store::{
+    Attribute, Attributes, MultipartUpload, PutMultipartOptions, PutOptions, PutPayload,
+};
 use tokio::task::JoinSet;
 
 use super::Store;
@@ -30,7 +32,8 @@ impl Store {
         let here = self.clone();
         self.run(async move {
             let payload = PutPayload::from(bytes);
-            here.store.put(&here.key, payload).await?;
+            let options = PutOptions::from(here.attributes());
+            here.store.put_opts(&here.key, payload, options).await?;
             Ok(())
         })
     }
@@ -52,10 +55,24 @@ impl Store {
         self.run_within(limit, self.clone().in_parts(file))
     }
 
+    /// What the store says of the file to who reads it: its media type, and that a copy is compared before it is used, since a file
+    /// is replaced under its name.
+    fn attributes(&self) -> Attributes {
+        let name = self.location.file_name().unwrap_or_default();
+        let media_type = media_type(&name);
+        [
+            (Attribute::ContentType, media_type),
+            (Attribute::CacheControl, "no-cache"),
+        ]
+        .into_iter()
+        .collect()
+    }
+
     /// Sends the parts and then completes the file, or takes the parts back.
     async fn in_parts(self, file: File) -> Result<(), Fail> {
         let begun = Instant::now();
-        let mut upload = self.store.put_multipart(&self.key).await?;
+        let options = PutMultipartOptions::from(self.attributes());
+        let mut upload = self.store.put_multipart_opts(&self.key, options).await?;
         let work = async {
             send(file, &mut *upload).await?;
             upload.complete().await?;
@@ -69,6 +86,23 @@ impl Store {
         };
         let _ = tokio::time::timeout(ABORT, upload.abort()).await;
         Err(fail)
+    }
+}
+
+/// The media type of a file, by the end of its name: of the formats' specifications, and what browsers open.
+fn media_type(name: &str) -> &'static str {
+    let end = name.rsplit_once('.').map_or("", |(_, end)| end);
+    match &*end.to_ascii_lowercase() {
+        "htex" => "application/vnd.htex+zip",
+        "htexlib" => "application/vnd.htexlib",
+        "html" => "text/html; charset=utf-8",
+        "json" => "application/json",
+        "js" | "mjs" => "text/javascript; charset=utf-8",
+        "wasm" => "application/wasm",
+        "wav" => "audio/wav",
+        "svg" => "image/svg+xml",
+        "csv" => "text/csv; charset=utf-8",
+        _ => "application/octet-stream",
     }
 }
 

@@ -75,7 +75,10 @@ class Analysis:
         """The files of :meth:`save`."""
         texts = {"report.html": self.to_html(command), "analysis.json": self.to_json(indent=2) + "\n"}
         texts.update(
-            {f"{name}.csv": frame.to_csv(index=False, lineterminator="\n") for name, frame in self.frames.items()}
+            {
+                f"{name}.csv": _marked(frame).to_csv(index=False, lineterminator="\n")
+                for name, frame in self.frames.items()
+            }
         )
         files = {name: text.encode() for name, text in texts.items()}
         for name, figure in self.figures.items():
@@ -95,6 +98,16 @@ class Analysis:
                 beside.write(data)
             os.chmod(beside.name, 0o644)
             os.replace(beside.name, path)
+
+
+def _marked(frame: pd.DataFrame) -> pd.DataFrame:
+    """Mark as text what a spreadsheet would take for a formula."""
+
+    def mark(cell: object) -> object:
+        is_formula = isinstance(cell, str) and cell.startswith(("=", "+", "-", "@", "\t", "\r"))
+        return f"'{cell}" if is_formula else cell
+
+    return frame.apply(lambda column: column.map(mark)).rename(columns=mark)
 
 
 def analyse(

@@ -8,20 +8,54 @@ use std::path::Path;
 ///
 /// # Errors
 /// When the folder cannot be created, belongs to another user, or is writable by others.
-pub(super) fn folder(path: &Path) -> io::Result<()> {
+pub fn folder(path: &Path) -> io::Result<()> {
+    make_folder(path)?;
+    check(&File::open(path)?.metadata()?, 0o022)
+}
+
+/// Creates a folder for this user alone, and those above it; one that is there stays as it is.
+///
+/// # Errors
+/// Those of the system.
+pub fn make_folder(path: &Path) -> io::Result<()> {
     let mut builder = DirBuilder::new();
     builder.recursive(true);
     #[cfg(unix)]
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
-    builder.create(path)?;
-    check(&File::open(path)?.metadata()?, 0o022)
+    builder.create(path)
+}
+
+/// Takes from others what they may do with a folder of this user.
+///
+/// # Errors
+/// Those of the system.
+#[cfg(unix)]
+pub fn close(folder: &Path) -> io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o700))
+}
+
+/// Elsewhere, folders in the user's home inherit its permissions.
+///
+/// # Errors
+/// None.
+#[cfg(not(unix))]
+pub fn close(_: &Path) -> io::Result<()> {
+    Ok(())
+}
+
+/// Makes that only this user may read and write what is created.
+pub fn only_user(options: &mut std::fs::OpenOptions) -> &mut std::fs::OpenOptions {
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(options, 0o600);
+    options
 }
 
 /// Opens a file that others may neither read nor write.
 ///
 /// # Errors
 /// When the file cannot be opened, belongs to another user, or is readable or writable by others.
-pub(super) fn file(path: &Path) -> io::Result<File> {
+pub fn file(path: &Path) -> io::Result<File> {
     let file = File::open(path)?;
     check(&file.metadata()?, 0o077)?;
     Ok(file)

@@ -1,0 +1,215 @@
+//! Files by glob: of this machine, and elsewhere.
+//!
+//! A glob comes from a recipe, which may be anybody's: its length and its braces are bounded, since the library that compiles them
+//! recurses, and so is the number of entries of folders that are looked at.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::path::{Component, Path, PathBuf};
+
+use globset::{GlobBuilder, GlobSet, GlobSetBuilder};
+use htex_files::FileError;
+use htex_storage::Location;
+use walkdir::WalkDir;
+
+use crate::BuildError;
+use crate::elsewhere::joined;
+use crate::error::AtPlace;
+
+/// Characters of globs.
+const GLOB: [char; 4] = ['*', '?', '[', '{'];
+/// Most bytes of a glob.
+const MOST_BYTES: usize = 4096;
+/// Most alternatives of a glob, and most within each other.
+const MOST_BRACES: usize = 64;
+const MOST_NESTED: usize = 8;
+/// Most globs of a list.
+const MOST_GLOBS: usize = 1024;
+/// Most entries of folders that are looked at for one glob.
+const MOST_ENTRIES: usize = 2_000_000;
+
+/// Compiles globs; `*` does not cross folders, `**` does.
+pub(crate) fn glob_set<S: AsRef<str>>(globs: &[S], place: &str) -> Result<GlobSet, BuildError> {
+    if globs.len() > MOST_GLOBS {
+        let problem = format!("it has {} globs and the most is {MOST_GLOBS}", globs.len());
+        return Err(BuildError::at(place, problem));
+    }
+    let mut set = GlobSetBuilder::new();
+    for glob in globs {
+        check(glob.as_ref()).at(place)?;
+        let compiled = GlobBuilder::new(glob.as_ref())
+            .literal_separator(true)
+            .build();
+        set.add(compiled.at(place)?);
+    }
+    set.build().at(place)
+}
+
+fn check(glob: &str) -> Result<(), String> {
+    if glob.len() > MOST_BYTES {
+        return Err(format!(
+            "a glob has {} bytes and the most is {MOST_BYTES}; shorten it",
+            glob.len()
+        ));
+    }
+    let (mut open, mut most, mut all) = (0_usize, 0, 0);
+    for c in glob.chars() {
+        match c {
+            '{' => (open, all) = (open + 1, all + 1),
+            '}' => open = open.saturating_sub(1),
+            _ => {}
+        }
+        most = open.max(most);
+    }
+    match all > MOST_BRACES || most > MOST_NESTED {
+        true => Err(format!(
+            "a glob has {all} braces, {most} within each other, and the most are {MOST_BRACES} and {MOST_NESTED}; write several globs"
+        )),
+        false => Ok(()),
+    }
+}
+
+/// Whether a text is a glob. The `?` of a URL begins its query, and a host may be in brackets.
+pub(crate) fn is_glob(text: &str) -> bool {
+    let path = path_of(text);
+    text[path].contains(GLOB)
+}
+
+/// The part of a text that is a path: of a URI without its scheme and host, of a URL without its query.
+fn path_of(text: &str) -> Range<usize> {
+    let Some(host) = text.find("://").map(|at| at + 3) else {
+        return 0..text.len();
+    };
+    let start = text[host..].find('/').map_or(text.len(), |at| host + at);
+    let end = match text[..host].to_ascii_lowercase().starts_with("http") {
+        true => text[start..].find('?').map_or(text.len(), |at| start + at),
+        false => text.len(),
+    };
+    start..end
+}
+
+/// Splits a path or a URI before the first part that is a glob, else before the file's name: a folder, and a glob in it.
+pub(crate) fn split(text: &str) -> (&str, &str) {
+    let path = path_of(text);
+    let first = text[path.clone()].find(GLOB);
+    let first = first.map_or(path.end, |at| path.start + at);
+    match text[..first].rfind('/') {
+        Some(0) => ("/", &text[1..]),
+        Some(slash) => (&text[..slash], &text[slash + 1..]),
+        None => ("", text),
+    }
+}
+
+/// Returns the files of this machine that match a glob of a recipe in `folder`: relative to the folder as the glob is, else absolute.
+/// Files in `output` are none of them.
+pub(crate) fn files(
+    glob: &str,
+    place: &str,
+    folder: &Path,
+    output: &Path,
+) -> Result<Vec<PathBuf>, BuildError> {
+    // `file://` is a path of this machine, too, and its escapes are resolved.
+    let location = Location::parse(glob.as_ref())?;
+    let path = location.local().map(Path::to_string_lossy);
+    let path = path.unwrap_or(glob.into());
+    let (base, pattern) = split(&path);
+    let base = normalised(Path::new(base));
+    let walked = joined(folder, &base);
+    if !walked.is_dir() {
+        return Ok(Vec::new());
+    }
+    let set = glob_set(&[pattern], place)?;
+    let output = output.canonicalize().ok();
+    let is_output = |entry: &walkdir::DirEntry| {
+        let is = || output.is_some() && entry.path().canonicalize().ok() == output;
+        entry.file_type().is_dir() && is()
+    };
+    let mut walk = WalkDir::new(&walked).follow_links(true);
+    if !pattern.contains("**") {
+        walk = walk.max_depth(pattern.split('/').count());
+    }
+    let (mut found, mut seen) = (Vec::new(), 0);
+    for entry in walk.into_iter().filter_entry(|entry| !is_output(entry)) {
+        seen += 1;
+        if seen > MOST_ENTRIES {
+            let problem = format!(
+                "{glob}: more than {MOST_ENTRIES} entries of folders to look at; name a folder with fewer"
+            );
+            return Err(BuildError::at(place, problem));
+        }
+        let entry = match entry {
+            // A link that leads nowhere, or to a folder above it, has no recordings.
+            Err(error) if error.path().is_some_and(Path::is_symlink) => continue,
+            Err(error) => {
+                let file = error.path().unwrap_or(folder).to_owned();
+                return Err(FileError::reading(file, error).into());
+            }
+            Ok(entry) => entry,
+        };
+        let inside = entry.path().strip_prefix(&walked).unwrap_or(entry.path());
+        if entry.file_type().is_file() && set.is_match(inside) {
+            found.push(base.join(inside));
+        }
+    }
+    Ok(found)
+}
+
+/// A path without `.`, and without what `..` takes back.
+fn normalised(path: &Path) -> PathBuf {
+    let mut parts: Vec<Component<'_>> = Vec::new();
+    for part in path.components() {
+        match (part, parts.last()) {
+            (Component::CurDir, _) => {}
+            (Component::ParentDir, Some(Component::Normal(_))) => drop(parts.pop()),
+            (Component::ParentDir, Some(Component::RootDir)) => {}
+            _ => parts.push(part),
+        }
+    }
+    parts.iter().collect()
+}
+
+/// Of the paths in a folder elsewhere, those that match a glob.
+pub(crate) fn matching(
+    paths: Vec<(PathBuf, PathBuf)>,
+    pattern: &str,
+    place: &str,
+) -> Result<Vec<(PathBuf, PathBuf)>, BuildError> {
+    let set = glob_set(&[pattern], place)?;
+    let mut seen = BTreeSet::new();
+    let matching = paths
+        .into_iter()
+        .filter(|(uri, inside)| set.is_match(inside) && seen.insert(uri.clone()));
+    Ok(matching.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn globs_are_split_before_their_first_glob() {
+        for (text, folder, pattern) in [
+            ("rec/*.csv", "rec", "*.csv"),
+            ("*.csv", "", "*.csv"),
+            ("../a/b{1,2}/*.csv", "../a", "b{1,2}/*.csv"),
+            ("/*.csv", "/", "*.csv"),
+            ("s3://bucket/*.csv", "s3://bucket", "*.csv"),
+            ("s3://bucket/a/b.csv", "s3://bucket/a", "b.csv"),
+            ("https://h/a.csv?s=/x*", "https://h", "a.csv?s=/x*"),
+            ("http://[::1]:80/a/b.csv", "http://[::1]:80/a", "b.csv"),
+        ] {
+            assert_eq!(split(text), (folder, pattern), "{text}");
+        }
+        assert!(!is_glob("http://[::1]/a.csv?x=*") && is_glob("https://h/*.csv"));
+        assert_eq!(normalised("./a/../../b/.".as_ref()), Path::new("../b"));
+        assert_eq!(normalised("/../b".as_ref()), Path::new("/b"));
+    }
+
+    #[test]
+    fn what_would_recurse_too_deep_is_refused() {
+        for glob in ["{".repeat(50_000), "{".repeat(9), "{a,b}".repeat(65)] {
+            assert!(glob_set(&[glob], "here").is_err());
+        }
+        assert!(glob_set(&["{a,{b,c}}*/**/[x-z]?.csv"], "here").is_ok());
+    }
+}

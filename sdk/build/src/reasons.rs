@@ -1,0 +1,81 @@
+//! Why a texture is to be fitted: what its fit depends on, compared with what the last finished build had.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::BuildError;
+use crate::cache::Cache;
+use crate::job::Job;
+use crate::kept::Kept;
+
+/// The file of what the fits of the last build depended on, in the folder of what is kept.
+const FILE: &str = "fits.json";
+/// Most bytes of that file: a few million textures.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// Why a texture is to be fitted.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Why {
+    /// No build of this user has fitted it in this folder.
+    New,
+    /// These are not what they were: `recordings`, `reading`, `options`, `plugins`, `program`, in this order.
+    Changed(Vec<&'static str>),
+    /// What was made is there and is damaged, or of another user.
+    Unusable,
+    /// What was made is gone.
+    Gone,
+}
+
+impl fmt::Display for Why {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::New => f.write_str("new"),
+            Self::Changed(what) => write!(f, "changed: {}", what.join(", ")),
+            Self::Unusable => f.write_str("what was made is damaged, or was not made by this user"),
+            Self::Gone => f.write_str("what was made is gone"),
+        }
+    }
+}
+
+/// What the fits of a build depend on, by texture: a hash of each part.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Reasons(BTreeMap<String, Vec<String>>);
+
+impl Reasons {
+    pub(crate) fn of<'a>(jobs: impl Iterator<Item = &'a Job>) -> Self {
+        let hashes = |job: &Job| job.parts().map(|(_, hash)| hash).to_vec();
+        Self(jobs.map(|job| (job.texture.clone(), hashes(job))).collect())
+    }
+
+    /// Reads those of the last finished build.
+    pub(crate) fn open(kept: &Kept) -> Self {
+        let bytes = kept.get(FILE, MOST_BYTES);
+        let read = bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+        read.unwrap_or_default()
+    }
+
+    pub(crate) fn keep(&self, kept: &Kept) -> Result<(), BuildError> {
+        kept.put(FILE, &serde_json::to_vec(self)?)
+    }
+
+    /// Why a job with this key is to be done.
+    pub(crate) fn why(&self, job: &Job, key: &str, cache: &Cache) -> Why {
+        if cache.has_file(key) {
+            return Why::Unusable;
+        }
+        let Some(before) = self.0.get(&job.texture) else {
+            return Why::New;
+        };
+        let parts = job.parts();
+        let changed = parts.iter().zip(before);
+        let changed = changed.filter(|((_, now), before)| now != *before);
+        let names: Vec<&'static str> = changed.map(|((name, _), _)| *name).collect();
+        match names.is_empty() {
+            true => Why::Gone,
+            false => Why::Changed(names),
+        }
+    }
+}

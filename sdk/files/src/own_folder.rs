@@ -1,0 +1,312 @@
+//! A folder that a program fills and that may come from somebody else: the results of an earlier build, unpacked from an archive.
+//!
+//! Whoever made it may have put links where the program writes and removes. Nothing in it is followed: below the folder itself, which
+//! a person names, a link is an error, a file is written to a new one and renamed, and what is removed is an entry, never what it
+//! leads to. The checks are made before each access. They hold against what is in the folder, not against a process that changes it
+//! at the same time.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Component, Path, PathBuf};
+
+use crate::read_regular;
+
+/// A folder in which nothing is followed.
+///
+/// ```
+/// let folder = tempfile::tempdir()?;
+/// let own = htex_files::OwnFolder::new(folder.path());
+/// own.write("made/a".as_ref(), b"kept")?;
+/// assert_eq!(own.read("made/a".as_ref(), 100)?, b"kept");
+/// # Ok::<(), std::io::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct OwnFolder(PathBuf);
+
+impl OwnFolder {
+    /// The folder at this path, which may itself be a link: a person named it.
+    pub fn new(folder: &Path) -> Self {
+        Self(folder.to_owned())
+    }
+
+    /// The path of the folder.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Returns the path of an entry, or the folder itself for an empty path, after a check that nothing above it is a link.
+    ///
+    /// # Errors
+    /// When a part above it is a link or no folder, or the path leads out of the folder.
+    pub fn at(&self, inside: &Path) -> io::Result<PathBuf> {
+        let mut path = self.0.clone();
+        let mut parts = inside.components().peekable();
+        while let Some(part) = parts.next() {
+            let Component::Normal(part) = part else {
+                let words = format!("{} leads out of the folder", inside.display());
+                return Err(io::Error::new(ErrorKind::InvalidInput, words));
+            };
+            path.push(part);
+            if parts.peek().is_some() {
+                check_folder(&path)?;
+            }
+        }
+        Ok(path)
+    }
+
+    /// Makes a folder and those above it; one that is there stays.
+    ///
+    /// # Errors
+    /// As [`Self::at`], when it is a link or no folder, and those of the system.
+    pub fn make_folder(&self, inside: &Path) -> io::Result<PathBuf> {
+        fs::create_dir_all(&self.0)?;
+        let mut folders: Vec<&Path> = inside.ancestors().collect();
+        folders.retain(|folder| *folder != Path::new(""));
+        for folder in folders.into_iter().rev() {
+            let path = self.at(folder)?;
+            match fs::create_dir(&path) {
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => check_folder(&path)?,
+                made => made?,
+            }
+        }
+        Ok(self.0.join(inside))
+    }
+
+    /// Reads a regular file of at most `most_bytes`.
+    ///
+    /// # Errors
+    /// As [`Self::at`] and [`read_regular`], and when it is a link.
+    pub fn read(&self, inside: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
+        let path = self.at(inside)?;
+        refuse_link(&path)?;
+        read_regular(&path, most_bytes)
+    }
+
+    /// Opens a file for writing, for a lock: one that is there keeps its contents.
+    ///
+    /// # Errors
+    /// As [`Self::at`], when it is a link or no regular file, and those of the system.
+    pub fn open_lock(&self, inside: &Path) -> io::Result<File> {
+        let path = self.at(inside)?;
+        refuse_link(&path)?;
+        if path.symlink_metadata().is_ok_and(|is| !is.is_file()) {
+            return Err(no_file(&path));
+        }
+        let mut options = OpenOptions::new();
+        options.write(true).create(true).truncate(false);
+        no_follow(&mut options);
+        options.open(&path)
+    }
+
+    /// Writes a file: a new one in the same folder, which is renamed into place. The folders above it are made. It is not flushed to
+    /// disk.
+    ///
+    /// # Errors
+    /// As [`Self::make_folder`], when a folder is in its place, and those of the system.
+    pub fn write(&self, inside: &Path, bytes: &[u8]) -> io::Result<()> {
+        let mut part = inside.as_os_str().to_owned();
+        part.push(PART);
+        self.write_by(Path::new(&part), inside, bytes)
+    }
+
+    /// As [`Self::write`], by a new file of this name elsewhere in the folder.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn write_by(&self, part: &Path, inside: &Path, bytes: &[u8]) -> io::Result<()> {
+        let (part, path) = (self.entry(part)?, self.entry(inside)?);
+        let mut file = self.create_new(&part)?;
+        let written = file.write_all(bytes);
+        drop(file);
+        let written = written.and_then(|()| fs::rename(&part, &path));
+        if written.is_err() {
+            let _ = fs::remove_file(&part);
+        }
+        written
+    }
+
+    /// Renames a file of this folder to an entry. The folders above it are made.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        let from = self.at(from)?;
+        fs::rename(from, self.entry(to)?)
+    }
+
+    /// Removes a file or a link, and then the folders above it that are empty; it is no error when there is none.
+    ///
+    /// # Errors
+    /// As [`Self::at`], when it is a folder, and those of the system.
+    pub fn remove(&self, inside: &Path) -> io::Result<()> {
+        let path = match self.at(inside) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+            path => path?,
+        };
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+            _ => {}
+        }
+        let above = path.ancestors().skip(1);
+        for folder in above.take_while(|folder| *folder != self.0) {
+            // A folder with files in it stays.
+            if fs::remove_dir(folder).is_err() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the names of the regular files of a folder, by name; none when it is not there.
+    ///
+    /// # Errors
+    /// As [`Self::at`], when it is a link, and those of the system.
+    pub fn files(&self, inside: &Path) -> io::Result<Vec<String>> {
+        let path = self.at(inside)?;
+        match check_folder(&path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+            checked => checked?,
+        }
+        let mut names = Vec::new();
+        for entry in fs::read_dir(path)? {
+            let entry = entry?;
+            if entry.file_type()?.is_file()
+                && let Ok(name) = entry.file_name().into_string()
+            {
+                names.push(name);
+            }
+        }
+        names.sort();
+        Ok(names)
+    }
+
+    /// Removes a folder with everything in it; links in it are removed and not followed. It is no error when there is none.
+    ///
+    /// # Errors
+    /// As [`Self::at`], when it is a link or no folder, and those of the system.
+    pub fn remove_folder(&self, inside: &Path) -> io::Result<()> {
+        let path = match self.at(inside) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+            path => path?,
+        };
+        match check_folder(&path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+            Err(error) => Err(error),
+            Ok(()) => fs::remove_dir_all(path),
+        }
+    }
+
+    /// The path of a file to write, whose folders are made.
+    fn entry(&self, inside: &Path) -> io::Result<PathBuf> {
+        self.make_folder(inside.parent().unwrap_or(Path::new("")))?;
+        self.at(inside)
+    }
+
+    /// Creates a file for writing. What a killed process left under its name is removed before.
+    fn create_new(&self, path: &Path) -> io::Result<File> {
+        let create = || OpenOptions::new().write(true).create_new(true).open(path);
+        match create() {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                fs::remove_file(path)?;
+                create()
+            }
+            other => other,
+        }
+    }
+}
+
+/// Ending of a file that is being written.
+const PART: &str = ".part";
+
+/// Refuses a link, and what is no folder.
+fn check_folder(path: &Path) -> io::Result<()> {
+    let is = path.symlink_metadata()?;
+    if is.is_dir() {
+        return Ok(());
+    }
+    Err(match is.is_symlink() {
+        true => link(path),
+        false => {
+            let words = format!("{} is in the place of a folder; remove it", path.display());
+            io::Error::new(ErrorKind::NotADirectory, words)
+        }
+    })
+}
+
+fn refuse_link(path: &Path) -> io::Result<()> {
+    match path.symlink_metadata() {
+        Ok(is) if is.is_symlink() => Err(link(path)),
+        _ => Ok(()),
+    }
+}
+
+fn link(path: &Path) -> io::Error {
+    let words = format!(
+        "{} is a symbolic link, and nothing is read or written through one here; remove it",
+        path.display()
+    );
+    io::Error::new(ErrorKind::PermissionDenied, words)
+}
+
+fn no_file(path: &Path) -> io::Error {
+    let words = format!("{} is no regular file; remove it", path.display());
+    io::Error::new(ErrorKind::InvalidInput, words)
+}
+
+#[cfg(unix)]
+fn no_follow(options: &mut OpenOptions) {
+    use std::os::unix::fs::OpenOptionsExt;
+    let flags = rustix::fs::OFlags::NOFOLLOW | rustix::fs::OFlags::NONBLOCK;
+    options.custom_flags(flags.bits().cast_signed());
+}
+
+#[cfg(not(unix))]
+fn no_follow(_: &mut OpenOptions) {}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    /// Links of every kind at every place: nothing outside is read, written or removed.
+    #[test]
+    fn nothing_is_followed() -> Result<(), Box<dyn std::error::Error>> {
+        let (outside, inside) = (tempfile::tempdir()?, tempfile::tempdir()?);
+        let victim = outside.path().join("victim");
+        fs::write(&victim, "precious")?;
+        symlink(outside.path(), inside.path().join("folder"))?;
+        symlink(&victim, inside.path().join("file"))?;
+        symlink(&victim, inside.path().join("new.part"))?;
+        let own = OwnFolder::new(inside.path());
+        for name in [
+            "folder/victim",
+            "folder/new",
+            "folder/deep/new",
+            "../victim",
+            "/victim",
+        ] {
+            let name = Path::new(name);
+            assert!(own.write(name, b"x").is_err(), "{}", name.display());
+            assert!(own.read(name, 100).is_err() && own.open_lock(name).is_err());
+            assert!(own.remove(name).is_err(), "{}", name.display());
+        }
+        let folder = Path::new("folder");
+        assert!(own.files(folder).is_err() && own.remove_folder(folder).is_err());
+        assert!(own.make_folder(folder).is_err());
+        let file = Path::new("file");
+        assert!(own.read(file, 100).is_err() && own.open_lock(file).is_err());
+        // A link in the place of a result, or of its part, is replaced.
+        own.write("new".as_ref(), b"x")?;
+        own.write(file, b"x")?;
+        assert!(inside.path().join("file").symlink_metadata()?.is_file());
+        own.remove(file)?;
+        assert_eq!(fs::read(&victim)?, b"precious");
+        assert_eq!(fs::read_dir(outside.path())?.count(), 1);
+        // The folder itself is the person's word.
+        let named = outside.path().join("named");
+        symlink(inside.path(), &named)?;
+        OwnFolder::new(&named).write("a/b".as_ref(), b"x")?;
+        assert_eq!(OwnFolder::new(inside.path()).files("a".as_ref())?, ["b"]);
+        Ok(())
+    }
+}

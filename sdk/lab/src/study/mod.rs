@@ -57,7 +57,7 @@ pub use lines::{
     Answer, Began, DeviceUsed, FeltFile, Header, Line, Matched, Simulated, SourceUsed,
 };
 pub use log::{Log, participant_file};
-pub use page::{Page, PageOptions, Touched};
+pub use page::{Page, PageOptions, Touch, Touched};
 pub use plan::{ParticipantPlan, Plan, Trial};
 pub use progress::Step;
 pub use read::{check_files, files_of, read_study, study_schema};

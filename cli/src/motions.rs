@@ -47,13 +47,13 @@ impl Motions {
         match self {
             Self::Queue(queue) => newest(queue),
             #[cfg(feature = "lab")]
-            Self::Page(touch, force_n) => Moved::To(touch.now().map_or(Finger::AWAY, |touched| {
-                Finger {
+            Self::Page(touch, force_n) => {
+                Moved::To(touch.now().map_or(Finger::AWAY, |touched| Finger {
                     speed_mm_s: touched.speed_mm_s,
                     force_n: *force_n,
                     at_mm: None,
-                }
-            })),
+                }))
+            }
         }
     }
 }
@@ -142,7 +142,10 @@ mod tests {
             let (sender, receiver) = RingBuffer::new(ROOM);
             read(line.as_bytes(), sender);
             let moved = Motions::Queue(receiver).look();
-            assert!(matches!(moved, Moved::To(finger) if !finger.is_reading()), "{line}");
+            assert!(
+                matches!(moved, Moved::To(finger) if !finger.is_reading()),
+                "{line}"
+            );
         }
     }
 }

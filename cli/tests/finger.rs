@@ -118,7 +118,12 @@ fn direct_voltage_goes_to_zero_whatever_produced_it() {
     // A person who says that the rig has no carrier, and does not say that it may have direct voltage.
     let bench = scene(json!({}));
     let mut play = bench.command(&["play"]);
-    let words = ["direct voltage", "100 ms", "dc_limit_v", "the output is at zero"];
+    let words = [
+        "direct voltage",
+        "100 ms",
+        "dc_limit_v",
+        "the output is at zero",
+    ];
     bench.fails(play.args(["--set", "carrier_hz=0"]), &words);
     let Volts { dc_v, .. } = volts(&bench.card_v(), RATE_HZ);
     println!("{dc_v:.3} V direct voltage");

@@ -342,7 +342,10 @@ fn other_pages_and_programs_neither_start_nor_stop_a_session() {
         let long = "x".repeat(100_000);
         assert_eq!(post(&format!("{path}{request}"), &host, &long), "413");
         // Whoever has the address may stop, whatever the body.
-        for body in ["", "{", "[1]", "{\"tab\":3}"].iter().filter(|_| request != "stop") {
+        for body in ["", "{", "[1]", "{\"tab\":3}"]
+            .iter()
+            .filter(|_| request != "stop")
+        {
             assert_eq!(post(&format!("{path}{request}"), &host, body), "409");
         }
     }

@@ -54,7 +54,7 @@ fn settings(dice: &mut Dice) -> Value {
     ];
     let mut settings = Map::new();
     for (name, values) in all {
-        if dice.once_in(4) {
+        if dice.once_in(10) {
             settings.insert(name.to_owned(), dice.one(values).into());
         }
     }
@@ -64,7 +64,7 @@ fn settings(dice: &mut Dice) -> Value {
 fn device(dice: &mut Dice) -> Value {
     let mut device = json!({ "adapter": "daq", "settings": settings(dice) });
     device["drive_v"] = dice.one(&[1.0, 75.0, 150.0]).into();
-    if dice.once_in(2) {
+    if dice.once_in(3) {
         let rates = [
             100.0, 3_500.0, 7_000.0, 7_001.0, 14_000.0, 17_500.0, 20_000.0, 20_999.0, 21_000.0,
             28_000.0, 35_000.0, 100_000.0,
@@ -82,20 +82,30 @@ fn motion(dice: &mut Dice) -> Value {
     match dice.once_in(4) {
         true => json!({ "trace": "hand.csv" }),
         false => json!({ "constant": {
-            "speed_mm_s": dice.one(&[0.0, 5.0, 80.0, 999.0, 10_000.0]),
-            "force_n": dice.one(&[0.0, 0.4, 19.0, 1_000.0]),
+            "speed_mm_s": dice.one(&[0.0, 5.0, 80.0, 80.0, 300.0, 999.0, 10_000.0]),
+            "force_n": dice.one(&[0.0, 0.4, 0.4, 3.0, 19.0, 1_000.0]),
         } }),
     }
 }
 
 fn effects(dice: &mut Dice) -> Value {
     let all = [
-        "carrier", "contact", "limiter", "square_root", "gain", "resampling", "quantisation", "level_scaling",
-        "frequency_scaling", "interpolation", "direction", "crossfade",
+        "carrier",
+        "contact",
+        "limiter",
+        "square_root",
+        "gain",
+        "resampling",
+        "quantisation",
+        "level_scaling",
+        "frequency_scaling",
+        "interpolation",
+        "direction",
+        "crossfade",
     ];
     let mut effects = Map::new();
     for name in all {
-        if dice.once_in(8) {
+        if dice.once_in(25) {
             effects.insert(name.to_owned(), dice.one(&["on", "off", "auto"]).into());
         }
     }
@@ -105,7 +115,7 @@ fn effects(dice: &mut Dice) -> Value {
 fn scene(dice: &mut Dice) -> Value {
     let surface = json!({
         "asset": dice.one(&["coarse-fabric.htex", "vinyl.htex"]),
-        "gain": dice.one(&[0.0, 1.0, 3.0, 1_000.0]),
+        "gain": dice.one(&[0.0, 1.0, 1.0, 3.0, 1_000.0]),
     });
     json!({ "surfaces": [surface], "device": device(dice), "motion": motion(dice), "effects": effects(dice), "seed": dice.below(1_000) })
 }
@@ -126,7 +136,10 @@ impl Worst {
             true => self.played += 1,
             false => self.refused += 1,
         }
-        assert!(card_v.last().is_none_or(|v| *v == 0.0), "not at zero: {what}");
+        assert!(
+            card_v.last().is_none_or(|v| *v == 0.0),
+            "not at zero: {what}"
+        );
         let Volts { dc_v, peak_v } = volts(card_v, rate_hz);
         assert!(dc_v <= 1.0, "{dc_v} V direct voltage: {what}");
         assert!(peak_v <= LIMIT_V * (1.0 + 1e-6), "{peak_v} V: {what}");
@@ -151,7 +164,10 @@ fn to_its_end(dice: &mut Dice, worst: &mut Worst) {
 /// Plays a scene in real time, and ends the player.
 fn interrupted(dice: &mut Dice, worst: &mut Worst) {
     let what = scene(dice);
-    let (bench, name) = (Bench::new(what.clone()), dice.one(&["-INT", "-TERM", "-KILL"]));
+    let (bench, name) = (
+        Bench::new(what.clone()),
+        dice.one(&["-INT", "-TERM", "-KILL"]),
+    );
     let mut play = bench.command(&["play"]);
     play.stderr(Stdio::null()).stdout(Stdio::null());
     let begun = Instant::now();
@@ -182,7 +198,10 @@ fn interrupted(dice: &mut Dice, worst: &mut Worst) {
 fn toml(value: &Value) -> String {
     match value {
         Value::Object(all) => {
-            let pairs: Vec<String> = all.iter().map(|(k, v)| format!("{k} = {}", toml(v))).collect();
+            let pairs: Vec<String> = all
+                .iter()
+                .map(|(k, v)| format!("{k} = {}", toml(v)))
+                .collect();
             format!("{{ {} }}", pairs.join(", "))
         }
         other => other.to_string(),
@@ -193,7 +212,10 @@ fn toml(value: &Value) -> String {
 fn studied(dice: &mut Dice, worst: &mut Worst) {
     let what = device(dice);
     let place = study::short(&[
-        ("device = { adapter = 'file' }", &format!("device = {}", toml(&what))),
+        (
+            "device = { adapter = 'file' }",
+            &format!("device = {}", toml(&what)),
+        ),
         ("trial_s = 0.05", "trial_s = 0.2"),
     ]);
     let driver = format!("driver={}", simulated::built().display());

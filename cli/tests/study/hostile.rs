@@ -52,7 +52,14 @@ impl Session {
         let study = STUDY.replace("TRIAL_S", &format!("{trial_s:?}"));
         place.write("study.toml", study.replace("MOTION", motion));
         let driver = format!("driver={}", simulated::built().display());
-        let run = ["study", "run", "study.toml", "--participant", "Ann", "--page"];
+        let run = [
+            "study",
+            "run",
+            "study.toml",
+            "--participant",
+            "Ann",
+            "--page",
+        ];
         let card = ["--profile", PAPER, "--set", &driver];
         let mut command = place.command(&[&run, &card[..], more].concat());
         let mut child = command
@@ -133,7 +140,10 @@ impl TabOf<'_> {
         let mut reply = String::new();
         stream.read_to_string(&mut reply).unwrap();
         let (head, body) = reply.split_once("\r\n\r\n").unwrap();
-        (head.split(' ').nth(1).unwrap().parse().unwrap(), body.to_owned())
+        (
+            head.split(' ').nth(1).unwrap().parse().unwrap(),
+            body.to_owned(),
+        )
     }
 
     fn state(&self) -> Value {
@@ -183,7 +193,10 @@ impl Crowd {
 
     fn start(host: &str, count: usize) -> Self {
         let at: SocketAddr = host.parse().unwrap();
-        let (ends, connected) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
+        let (ends, connected) = (
+            Arc::new(AtomicBool::new(false)),
+            Arc::new(AtomicUsize::new(0)),
+        );
         let threads = (0..Self::THREADS).map(|thread| {
             let (ends, connected) = (Arc::clone(&ends), Arc::clone(&connected));
             let kinds: Vec<usize> = (0..count).filter(|i| i % Self::THREADS == thread).collect();
@@ -199,7 +212,10 @@ impl Crowd {
                                 stream.set_nonblocking(true).unwrap();
                             }
                         }
-                        if stream.as_mut().is_some_and(|stream| !goes_on(*kind, stream, sent)) {
+                        if stream
+                            .as_mut()
+                            .is_some_and(|stream| !goes_on(*kind, stream, sent))
+                        {
                             *stream = None;
                         }
                     }
@@ -208,7 +224,11 @@ impl Crowd {
             })
         });
         let threads = threads.collect();
-        Self { ends, connected, threads }
+        Self {
+            ends,
+            connected,
+            threads,
+        }
     }
 
     fn end(self) -> usize {
@@ -284,12 +304,16 @@ fn hostile_programs_delay_nobody() {
     slowest = slowest.max(start.elapsed());
     session.ends();
     let connected = crowd.end();
-    println!("{count} programs, {connected} connections: the slowest reply to a press took {slowest:?}");
+    println!(
+        "{count} programs, {connected} connections: the slowest reply to a press took {slowest:?}"
+    );
     assert_eq!(session.ratings(), given, "all answers are kept");
     assert!(slowest <= MOST, "{slowest:?}");
     // They are not locked.
     assert!(connected >= count);
-    let again = session.place.run(&["study", "export", "answers"]);
+    let again = session
+        .place
+        .run(&["study", "export", "answers", "-o", "ratings.csv"]);
     assert_eq!(again.code(), 0, "{}", again.error());
 }
 
@@ -304,10 +328,15 @@ fn ctrl_c_ends_a_session_with_a_request_whose_body_never_comes() {
         sleep(Duration::from_millis(10));
     }
     let mut stuck = TcpStream::connect(tab.host).unwrap();
-    let head = format!("POST /x HTTP/1.1\r\nHost: {}\r\nContent-Length: 4000\r\n\r\n", tab.host);
+    let head = format!(
+        "POST /x HTTP/1.1\r\nHost: {}\r\nContent-Length: 4000\r\n\r\n",
+        tab.host
+    );
     stuck.write_all(head.as_bytes()).unwrap();
     let id = session.child.id().to_string();
-    let sent = std::process::Command::new("kill").args(["-INT", &id]).status();
+    let sent = std::process::Command::new("kill")
+        .args(["-INT", &id])
+        .status();
     assert!(sent.unwrap().success());
     session.ends();
 }
@@ -330,7 +359,10 @@ fn a_request_is_refused_by_its_head() {
     let start = Instant::now();
     let head = |path: &str| {
         let mut stream = TcpStream::connect(tab.host).unwrap();
-        let head = format!("POST /{path} HTTP/1.1\r\nHost: {}\r\nContent-Length: 99\r\n\r\n", tab.host);
+        let head = format!(
+            "POST /{path} HTTP/1.1\r\nHost: {}\r\nContent-Length: 99\r\n\r\n",
+            tab.host
+        );
         stream.write_all(head.as_bytes()).unwrap();
         let mut reply = String::new();
         stream.read_to_string(&mut reply).unwrap();
@@ -345,7 +377,11 @@ fn a_request_is_refused_by_its_head() {
 /// A finger that slides on the page, until the browser dies: after 300 ms of silence there is no contact.
 #[test]
 fn a_browser_that_dies_lifts_the_finger() {
-    let session = Session::start(6.0, "'live'", &["--motion", "page", "--set", "buffer_ms=200"]);
+    let session = Session::start(
+        6.0,
+        "'live'",
+        &["--motion", "page", "--set", "buffer_ms=200"],
+    );
     let tab = session.tab("a");
     tab.begins_a_trial();
     let start = Instant::now();

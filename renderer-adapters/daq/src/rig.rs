@@ -1,6 +1,8 @@
 //! Card, amplifier and limits, from the settings.
 
-use htex_device::{Capabilities, DIRECT_SETTING, DeviceError, Quantity, RATE_PER_CARRIER, Rates, Settings};
+use htex_device::{
+    Capabilities, DIRECT_SETTING, DeviceError, Quantity, RATE_PER_CARRIER, Rates, Settings,
+};
 
 use crate::driver::Driver;
 

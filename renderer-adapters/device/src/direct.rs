@@ -40,7 +40,11 @@ impl DirectVoltage {
     pub fn new(limit_v: f64, rate_hz: f64) -> Self {
         let frames = (DIRECT_WINDOW_S * rate_hz).round().max(1.0) as usize;
         Self {
-            limit_v: if limit_v.is_nan() { DIRECT_LIMIT_V } else { limit_v },
+            limit_v: if limit_v.is_nan() {
+                DIRECT_LIMIT_V
+            } else {
+                limit_v
+            },
             last_v: vec![0.0; frames],
             oldest: 0,
             sum_v: 0.0,
@@ -120,7 +124,11 @@ mod tests {
     fn the_mean_of_any_window_is_found_whatever_the_blocks() {
         let rate_hz = 1_000.0;
         let wave = |i: usize| {
-            let slow = if i > 700 { 0.02 * (i - 700) as f64 } else { 0.0 };
+            let slow = if i > 700 {
+                0.02 * (i - 700) as f64
+            } else {
+                0.0
+            };
             20.0 * (0.9 * i as f64).sin() + slow
         };
         let samples: Vec<f64> = (0..2_000).map(wave).collect();

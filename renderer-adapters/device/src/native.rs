@@ -9,8 +9,8 @@ use crate::crossing::{incoming, wait_ms};
 use crate::library::{Common, Table, Trouble};
 use crate::loaded::{Native, Opened};
 use crate::{
-    Adapter, Capabilities, Descriptor, DescriptorError, Device, DeviceError, DirectVoltage, Endpoint,
-    Quantity, Settings, Status, StreamFormat,
+    Adapter, Capabilities, Descriptor, DescriptorError, Device, DeviceError, DirectVoltage,
+    Endpoint, Quantity, Settings, Status, StreamFormat,
 };
 
 impl Table for DeviceTable {

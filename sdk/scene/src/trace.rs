@@ -149,7 +149,9 @@ fn readings(t_s: &[f64], is_good: impl Fn(usize) -> bool) -> Vec<Option<usize>> 
 /// The values of these rows; zero where there is none.
 fn taken<T: Copy + Default>(rows: &[Option<usize>], values: &[T]) -> Vec<T> {
     let value = |row: &Option<usize>| row.and_then(|row| values.get(row).copied());
-    rows.iter().map(|row| value(row).unwrap_or_default()).collect()
+    rows.iter()
+        .map(|row| value(row).unwrap_or_default())
+        .collect()
 }
 
 #[cfg(test)]
@@ -237,7 +239,11 @@ mod tests {
                 let held = made(bad, speed_mm_s, force_n);
                 for step in 0..4_000 {
                     let t_s = f64::from(step) / 2_000.0;
-                    assert_eq!(held.at(t_s), plain.at(t_s), "{speed_mm_s} {force_n} at {t_s}");
+                    assert_eq!(
+                        held.at(t_s),
+                        plain.at(t_s),
+                        "{speed_mm_s} {force_n} at {t_s}"
+                    );
                 }
             }
             let lost = made(100..200, speed_mm_s, force_n);

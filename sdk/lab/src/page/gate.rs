@@ -64,7 +64,9 @@ impl Gate {
         };
         match (&head.method, path) {
             (&Method::GET, "") => Ok(Asked::Page),
-            (&Method::POST, path) if requests.contains(&path) => Ok(Asked::Request(path.to_owned())),
+            (&Method::POST, path) if requests.contains(&path) => {
+                Ok(Asked::Request(path.to_owned()))
+            }
             _ => Err((StatusCode::NOT_FOUND, "there is no such page")),
         }
     }

@@ -218,10 +218,7 @@ impl<C: Content> Desk<C> {
         }
         let tab = body.get("tab").and_then(Value::as_str).unwrap_or_default();
         if !self.owner.admits(tab) {
-            return Err((
-                StatusCode::CONFLICT,
-                "the session is open in another tab",
-            ));
+            return Err((StatusCode::CONFLICT, "the session is open in another tab"));
         }
         match &name[..] {
             LEAVE => self.owner.leave(),

@@ -148,6 +148,13 @@ impl Worst {
     }
 }
 
+/// Played, or refused with an error: no panic, no end by a signal.
+fn ended_soundly(output: &Output, what: &Value) {
+    let code = output.status.code();
+    let is_sound = code == Some(0) || code == Some(1);
+    assert!(is_sound, "{code:?}, {}: {what}", text(output));
+}
+
 fn rate_of(device: &Value) -> f64 {
     device["rate_hz"].as_f64().unwrap_or(RATE_HZ)
 }
@@ -157,7 +164,7 @@ fn to_its_end(dice: &mut Dice, worst: &mut Worst) {
     let mut what = scene(dice);
     what["duration_s"] = dice.one(&[0.05, 0.3, 1.0]).into();
     let bench = Bench::new(what.clone());
-    bench.command(&["play"]).output().unwrap();
+    ended_soundly(&bench.command(&["play"]).output().unwrap(), &what);
     worst.take(&bench.card_v(), rate_of(&what["device"]), &what);
 }
 
@@ -222,7 +229,7 @@ fn studied(dice: &mut Dice, worst: &mut Worst) {
     let run = ["study", "run", "study.toml", "--simulated", "11", "--fast"];
     let card = ["--participant", "Ann", "--profile", PAPER, "--set", &driver];
     let mut command = place.command(&[&run[..], &card].concat());
-    recorded(&mut command, &place).output().unwrap();
+    ended_soundly(&recorded(&mut command, &place).output().unwrap(), &what);
     worst.take(&bench::card_v(&place), rate_of(&what), &what);
 }
 

@@ -7,7 +7,7 @@ use htex_author::{FeltError, FeltShare, GridReport};
 use htex_finding::plain;
 use htex_format::{
     AtCondition, Condition, Contact, How, Ingredient, Law, LeftOut, Made, Measure, Quality,
-    Quantity, Representation, StoredField,
+    Quantity, Representation, StoredField, Triangle,
 };
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -79,6 +79,9 @@ pub(crate) struct RepresentationSummary {
     pub(crate) payload_bytes: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) fit_ms: Option<f64>,
+    /// Those that are stored: players interpolate in them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    triangles: Vec<Triangle>,
     #[serde(flatten)]
     pub(crate) first: AtSummary,
     /// All conditions, where there are several.
@@ -151,12 +154,11 @@ impl AssetSummary {
     }
 
     /// Adds what is felt of the differences, by representation and condition.
-    pub(crate) fn with_felt(mut self, felt: &[Vec<FeltError>]) -> Self {
+    pub(crate) fn with_felt(mut self, felt: &[Vec<Option<FeltError>>]) -> Self {
         for (representation, felt) in self.representations.iter_mut().zip(felt) {
-            representation.first.felt = felt.first().copied();
+            representation.first.felt = felt.first().copied().flatten();
             for (at, felt) in representation.at.iter_mut().zip(felt) {
-                // At a computed condition there is no recording to differ from.
-                at.felt = at.quality.is_some().then_some(*felt);
+                at.felt = *felt;
             }
         }
         self
@@ -212,6 +214,7 @@ impl AssetSummary {
                 text += &row(r, at, self.quantity, &columns);
             }
         }
+        text += &self.triangles_text();
         text += &self.left_out_text();
         for line in self.warnings.iter().chain(&self.notes) {
             let _ = writeln!(text, "note: {}", plain(line));
@@ -241,6 +244,22 @@ impl AssetSummary {
         let _ = writeln!(said, "contact: {}", self.contact.name());
         let _ = writeln!(said, "law outside the recorded motions: {}", self.law);
         said
+    }
+}
+
+impl AssetSummary {
+    /// How many triangles each representation stores, of those that store them.
+    fn triangles_text(&self) -> String {
+        let stored = self.representations.iter();
+        let stored = stored.filter(|r| !r.triangles.is_empty());
+        let line = |r: &RepresentationSummary| {
+            let count = r.triangles.len();
+            format!(
+                "  {}: interpolated in {count} stored triangles\n",
+                short_name(&r.model)
+            )
+        };
+        stored.map(line).collect()
     }
 }
 
@@ -427,6 +446,7 @@ impl RepresentationSummary {
             model_version: r.model_version.clone(),
             payload_bytes,
             fit_ms: None,
+            triangles: r.triangles.clone(),
             first: at.first()?.clone(),
             at: if at.len() > 1 { at } else { Vec::new() },
         })

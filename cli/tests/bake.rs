@@ -112,6 +112,63 @@ fn sinusoids_and_rates() {
 }
 
 #[test]
+fn quantity_and_law_are_told_and_a_narrow_grid_is_warned_of() {
+    let place = Place::new();
+    let csv = place.recording("coarse-fabric");
+    let at = [
+        "--at",
+        "speed=80,force=0.4",
+        "--contact",
+        "finger",
+        "-o",
+        "t.htex",
+    ];
+    assert_eq!(place.run(&[&["fit", &csv][..], &at].concat()).code(), 0);
+    let bake = |more: &[&str]| place.run(&[&["bake", "t.htex", "-o", "t.bin"][..], more].concat());
+    let one = ["--at", "speed=80,force=0.4", "--model", "sslope"];
+    let run = bake(&one);
+    assert_eq!(run.code(), 0, "{}", run.error());
+    for words in [
+        "samples: lateral force, N, full scale",
+        "frequency over speed ^1.00, level over speed ^0.00, level over force ^1.00",
+        "dB at half the lowest and twice the highest speed",
+    ] {
+        assert!(run.text().contains(words), "{}", run.text());
+    }
+    assert!(
+        run.error().contains("keeps the frequencies"),
+        "{}",
+        run.error()
+    );
+    let wide = ["--grid", "speed=60:120:2,force=0.4", "--model", "sslope"];
+    assert!(!bake(&wide).error().contains("keeps the frequencies"));
+    let report = place.json(&[&["bake", "t.htex", "-o", "t.bin", "--json"][..], &one].concat());
+    assert!(
+        report["error_beyond_db"].as_f64().unwrap() > 1.0,
+        "{report}"
+    );
+    assert_eq!(
+        (&report["unit"], &report["quantity"]),
+        (&"N".into(), &"lateral_force".into())
+    );
+    assert_eq!(report["law"]["frequency_speed"], 1.0);
+    let block = bytes(&place, "t.bin");
+    let block = Block::open(&block).unwrap();
+    assert_eq!(
+        report["full_scale"].as_f64().unwrap() as f32,
+        block.full_scale()
+    );
+    // Sinusoids follow.
+    let tones = ["--at", "speed=80,force=0.4", "--model", "speak"];
+    let run = bake(&tones);
+    assert!(
+        !run.error().contains("keeps the frequencies"),
+        "{}",
+        run.error()
+    );
+}
+
+#[test]
 fn wrong_conditions_rates_and_names_are_explained() {
     let (place, _) = fitted();
     for (arguments, words) in [

@@ -53,6 +53,7 @@ const FAULTS: &[(&str, &str, Outcome)] = &[
     #[cfg(target_os = "linux")]
     ("RETUNE_ALLOCATES", "allocation", Outcome::Failed),
     ("ACCEPTS_MOTION", "motion", Outcome::Failed),
+    ("ACCEPTS_PLACE", "motion", Outcome::Failed),
     ("MOTION_BLOCKS", "motion", Outcome::Failed),
     #[cfg(target_os = "linux")]
     ("MOTION_ALLOCATES", "motion", Outcome::Failed),

@@ -86,6 +86,12 @@ fn a_folder_is_packed_listed_and_unpacked_byte_for_byte() {
         text.contains("red vinyl") && text.contains("speak"),
         "{text}"
     );
+    // Frequencies over the speed, level over speed and force, up to three decimals.
+    let exponent =
+        |key: &str| (vinyl["law"][key]["exponent"].as_f64().unwrap() * 1e3).round() / 1e3;
+    let keys = ["frequency_speed", "level_speed", "level_force"];
+    let [a, b, c] = keys.map(exponent);
+    assert!(text.contains(&format!("  f^{a} v^{b} F^{c}  ")), "{text}");
 
     let run = place.run(&["lib", "unpack", "all.htexlib", "-o", "out/here"]);
     assert_eq!(run.code(), 0, "{}", run.error());

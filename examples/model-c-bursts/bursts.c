@@ -465,7 +465,8 @@ int64_t htex_model_voice_free(int64_t voice)
     return HTEX_OK;
 }
 
-int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, double position_mm)
+int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, double position_mm, double x_mm,
+                          double y_mm)
 {
     struct slot *slot = find(voice);
     if (slot == NULL)
@@ -476,7 +477,10 @@ int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, doub
         return fail(HTEX_INVALID_ARGUMENT, "force_n: 0 to 10^6 N is allowed");
     if (!within(position_mm, -HTEX_MOTION_1_MAX_POSITION_MM, HTEX_MOTION_1_MAX_POSITION_MM))
         return fail(HTEX_INVALID_ARGUMENT, "position_mm: at most 10^12 mm is allowed");
-    /* Bursts depend on the distance only, so the position is not used. */
+    if (!within(x_mm, -HTEX_MOTION_1_MAX_POSITION_MM, HTEX_MOTION_1_MAX_POSITION_MM)
+        || !within(y_mm, -HTEX_MOTION_1_MAX_POSITION_MM, HTEX_MOTION_1_MAX_POSITION_MM))
+        return fail(HTEX_INVALID_ARGUMENT, "x_mm, y_mm: at most 10^12 mm is allowed");
+    /* Bursts depend on the distance only, so position and place are not used. */
     slot->voice.speed_mm_s = speed_mm_s;
     slot->voice.force_n = force_n;
     slot->voice.told = 1;

@@ -13,7 +13,7 @@
 #define HTEX_MOTION_1_MAX_SPEED_MM_S 1000000.0
 /* Largest normal force of a finger, newtons. */
 #define HTEX_MOTION_1_MAX_FORCE_N 1000000.0
-/* Largest distance of a finger from where its path begins, mm, in either direction. */
+/* Largest distance of a finger from where its path begins, and of its place from the origin, mm, in either direction. */
 #define HTEX_MOTION_1_MAX_POSITION_MM 1000000000000.0
 
 #ifdef __cplusplus
@@ -21,13 +21,14 @@ extern "C" {
 #endif
 
 /* Tells a voice the motion at its next sample: the speed along the finger's path (mm/s, negative while
- * the position falls), the normal force (newtons, not negative) and the position along the path (mm, of
- * either sign). Until the next call the finger goes on at this speed. Returns a status; after a negative
- * one the voice plays on as before. Infinities, NaN and numbers beyond the constants above are
+ * the position falls), the normal force (newtons, not negative), the position along the path and the place
+ * on the surface (mm, of either sign; where no place is known, x_mm is the position and y_mm is 0). Until the
+ * next call the finger goes on at this speed. Returns a status; after a negative one the voice plays on as before. Infinities, NaN and numbers beyond the constants above are
  * HTEX_INVALID_ARGUMENT.
  * [render thread, one at a time] */
 HTEX_EXPORT(htex_motion_1_set)
-int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, double position_mm);
+int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, double position_mm, double x_mm,
+                          double y_mm);
 
 /* As htex_model_fit, of a recording at a speed (mm/s) and a normal force (newtons), neither negative; NaN
  * where one is not known.

@@ -305,12 +305,17 @@ int64_t htex_voices_1_render(const int64_t *handles, size_t count, float *out, s
 
 #ifndef FAULT_MOTION_MISSING
 /* The good model ignores motions. */
-int64_t htex_motion_1_set(int64_t handle, double speed_mm_s, double force_n, double position_mm) {
+int64_t htex_motion_1_set(int64_t handle, double speed_mm_s, double force_n, double position_mm, double x_mm,
+                          double y_mm) {
     struct voice *voice = live(handle);
     if (!voice) return HTEX_BAD_HANDLE;
 #ifndef FAULT_ACCEPTS_MOTION
     if (!(fabs(speed_mm_s) <= HTEX_MOTION_1_MAX_SPEED_MM_S)) return HTEX_INVALID_ARGUMENT;
     if (!(fabs(position_mm) <= HTEX_MOTION_1_MAX_POSITION_MM)) return HTEX_INVALID_ARGUMENT;
+#ifndef FAULT_ACCEPTS_PLACE
+    if (!(fabs(x_mm) <= HTEX_MOTION_1_MAX_POSITION_MM)) return HTEX_INVALID_ARGUMENT;
+    if (!(fabs(y_mm) <= HTEX_MOTION_1_MAX_POSITION_MM)) return HTEX_INVALID_ARGUMENT;
+#endif
     if (!(force_n >= 0 && force_n <= HTEX_MOTION_1_MAX_FORCE_N)) return HTEX_INVALID_ARGUMENT;
 #endif
 #ifdef FAULT_MOTION_ALLOCATES

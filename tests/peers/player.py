@@ -311,29 +311,45 @@ def triangulated(points):
     return fans, mesh.convex_hull
 
 
-def weights_at(conditions, motion):
+def outer_edges(triangles):
+    """Edges of one triangle only."""
+    edges = [frozenset(edge) for t in triangles for edge in itertools.combinations(t, 2)]
+    return [tuple(sorted(edge)) for edge in edges if edges.count(edge) == 1]
+
+
+def weights_at(conditions, motion, stored):
     """Pairs of condition and weight, ascending by position, and the nearest known motion."""
     points = np.array([[c.get("speed_mm_s", 0.0), c.get("force_n", 0.0)] for c in conditions])
     scale = np.abs(points).max(axis=0)
     scale[scale == 0] = 1
+    if stored:
+        nearest = lambda at: list(at * scale)
+        meshed = stored, outer_edges(stored)
+        return weights_in(points / scale, np.array(motion) / scale, meshed, motion, nearest)
     axes = [grouped(points[:, axis]) for axis in (0, 1)]
     placed = lambda point: [place(point[axis], axes[axis], scale[axis]) for axis in (0, 1)]
     nearest = lambda at: [value(at[axis], motion[axis], axes[axis], scale[axis]) for axis in (0, 1)]
     points, q = np.array([placed(point) for point in points]), np.array(placed(motion))
+    meshed = [], [(0, 0)]
+    if len(points) > 2:
+        meshed = triangulated(points)
+    elif len(points) == 2:
+        meshed = [], [(0, 1)]
+    return weights_in(points, q, meshed, motion, nearest)
+
+
+def weights_in(points, q, meshed, motion, nearest):
+    """The mix at a position among triangles and the edges around them, and the nearest known motion."""
+    triangles, edges = meshed
     ascending = lambda mixed: sorted(
         ((int(i), w) for i, w in mixed if w > 1e-12), key=lambda part: tuple(points[part[0]])
     )
-    edges = [(0, 0)]
-    if len(points) > 2:
-        triangles, edges = triangulated(points)
-        for corners in triangles:
-            a, b, c = points[list(corners)]
-            w = np.linalg.solve(np.column_stack([b - a, c - a]), q - a)
-            w = np.array([1 - w.sum(), *w])
-            if (w >= -1e-12).all():
-                return ascending(zip(corners, w)), list(motion)
-    elif len(points) == 2:
-        edges = [(0, 1)]
+    for corners in triangles:
+        a, b, c = points[list(corners)]
+        w = np.linalg.solve(np.column_stack([b - a, c - a]), q - a)
+        w = np.array([1 - w.sum(), *w])
+        if (w >= -1e-12).all():
+            return ascending(zip(corners, w)), list(motion)
     best = (np.inf, None, None)
     for i, j in edges:
         along = points[j] - points[i]
@@ -469,7 +485,7 @@ def check(path, findings):
         at = representation["at"]
         conditions = [manifest["conditions"][a["condition"]] for a in at]
         motion = (case["speed_mm_s"], case["force_n"])
-        mixed, nearest = weights_at(conditions, motion)
+        mixed, nearest = weights_at(conditions, motion, representation.get("triangles"))
         ratio, gain = factors(manifest, conditions, motion, nearest)
         level = sum(w * at[i]["level_rms"] for i, w in mixed)
         most = 4 * max(a["level_rms"] for a in at)

@@ -71,7 +71,7 @@ fn the_extension_for_motion_is_frozen() {
             format!("{MAX_POSITION_MM:?}"),
         ),
     ];
-    hold_extension(&MOTION, "motion", 0x88de_3dcd_e71b_8f39, constants);
+    hold_extension(&MOTION, "motion", 0xeb11_2834_3004_91ce, constants);
 }
 
 /// Revision 1 of an extension: its listing by the hash, header and Rust side alike.

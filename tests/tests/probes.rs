@@ -1,12 +1,18 @@
 //! One range for each number: what a schema refuses, reading refuses, and the reverse. Every number of a document that has all keys is
 //! replaced by numbers around and beyond the ranges, texts by others, and every key is left out.
+//!
+//! With `HTEX_PROBES_OUT` the documents are written to the file of that name, for another reader: lines of JSON with `kind`, `what`, `document` and
+//! `valid`. Manifests are read in an archive with an entry `a.bin` of three zero bytes.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "../../sdk/format/tests/common/raw_zip.rs"]
 #[allow(dead_code)]
 mod raw_zip;
 
-use std::fs;
+use std::env;
+use std::fs::{self, File};
+use std::io::Write;
+use std::sync::{Mutex, OnceLock};
 
 use htex_finding::{Finding, Findings};
 use htex_format::{Limits, manifest_json, validate};
@@ -22,7 +28,16 @@ const PROBES: [f64; 38] = [
 ];
 
 /// Texts that are no names, or of another form.
-const TEXTS: [&str; 6] = ["", " ", "a", "a/b", "\u{7}é", "0123"];
+const TEXTS: [&str; 8] = [
+    "",
+    " ",
+    "a",
+    "a/b",
+    "\u{7}é",
+    "0123",
+    "\u{85}\u{2003}",
+    "\u{feff}",
+];
 
 fn schema(stem: &str) -> Value {
     let path = workspace().join(format!("spec/schemas/{stem}.json"));
@@ -107,6 +122,24 @@ fn changes_of(document: &Value) -> Vec<(String, Value)> {
     changes
 }
 
+/// Writes changed documents with the verdicts of reading to the file that `HTEX_PROBES_OUT` names, if it is set.
+fn write_out(stem: &str, changes: &[(String, Value, Vec<Finding>)]) {
+    static OUT: OnceLock<Option<Mutex<File>>> = OnceLock::new();
+    let open =
+        || env::var_os("HTEX_PROBES_OUT").map(|path| Mutex::new(File::create(path).unwrap()));
+    let Some(out) = OUT.get_or_init(open) else {
+        return;
+    };
+    let kind = stem.strip_suffix("-1").unwrap_or(stem);
+    let line = |(what, document, errors): &(String, Value, Vec<Finding>)| {
+        let valid = errors.is_empty();
+        json!({ "kind": kind, "what": what, "document": document, "valid": valid }).to_string()
+            + "\n"
+    };
+    let lines: String = changes.iter().map(line).collect();
+    out.lock().unwrap().write_all(lines.as_bytes()).unwrap();
+}
+
 /// Compares a schema with the errors of reading, at every number of a document. `depends`: parts of pointers to numbers of which the
 /// range depends on other values, so that reading may refuse more than the schema.
 fn compare(stem: &str, document: &Value, depends: &[&str], read: &dyn Fn(&Value) -> Vec<Finding>) {
@@ -118,12 +151,16 @@ fn compare(stem: &str, document: &Value, depends: &[&str], read: &dyn Fn(&Value)
         found
     };
     assert_eq!(errors(document), [], "{stem}");
-    let changes = changes_of(document);
-    assert!(changes.len() >= 100, "{stem}");
-    let mut differ = Vec::new();
-    for (what, changed) in changes {
-        let by_schema = !schema.violations(&changed).is_empty();
+    let read = |(what, changed): (String, Value)| {
         let errors = errors(&changed);
+        (what, changed, errors)
+    };
+    let changes: Vec<_> = changes_of(document).into_iter().map(read).collect();
+    assert!(changes.len() >= 80, "{stem}");
+    write_out(stem, &changes);
+    let mut differ = Vec::new();
+    for (what, changed, errors) in changes {
+        let by_schema = !schema.violations(&changed).is_empty();
         let may_depend = depends.iter().any(|part| what.contains(part));
         if by_schema == errors.is_empty() && (by_schema || !may_depend) {
             differ.push(format!(
@@ -162,6 +199,8 @@ fn manifest() -> Value {
     });
     manifest["conditions"] = json!([
         { "speed_mm_s": 80, "force_n": 0.5, "repeatability_rms_db": 0.5, "segments": 8 },
+        { "speed_mm_s": 160, "force_n": 0.5 },
+        { "speed_mm_s": 80, "force_n": 1.5 },
     ]);
     let error = |estimate: f64| json!({ "exponent": 0.5, "source": "measured", "estimate": estimate, "standard_error": 0.1 });
     manifest["law"] = json!({ "frequency_speed": error(0.5), "level_speed": error(0.6), "level_force": error(0.7) });
@@ -183,7 +222,12 @@ fn manifest() -> Value {
     ]);
     manifest["representations"] = json!([{
         "model": "org.example.model", "model_version": "1.0.0", "fields": fields, "parameters": "a.bin",
-        "at": [{ "condition": 0, "level_rms": 0.1, "quality": keys("Quality"), "left_out": keys("LeftOut") }],
+        "at": [
+            { "condition": 0, "level_rms": 0.1, "quality": keys("Quality"), "left_out": keys("LeftOut") },
+            { "condition": 1, "level_rms": 0.1 },
+            { "condition": 2, "level_rms": 0.1 },
+        ],
+        "triangles": [[0, 1, 2]],
     }]);
     for key in ["reference", "plugins", "extensions", "extensions_required"] {
         manifest.as_object_mut().unwrap().remove(key);
@@ -197,7 +241,7 @@ fn manifests_have_the_ranges_of_their_schema() {
         let entries = [
             raw_zip::Entry::stored("mimetype", b"application/vnd.htex+zip"),
             raw_zip::Entry::stored("manifest.json", manifest.to_string().as_bytes()),
-            raw_zip::Entry::stored("a.bin", &[0; 3]),
+            raw_zip::Entry::stored("a.bin", &[0; 9]),
         ];
         validate(&raw_zip::archive(&entries), &Limits::default()).findings
     };
@@ -211,9 +255,35 @@ fn manifests_have_the_ranges_of_their_schema() {
             "/license",
             "/parameters",
             "/fields/1/name",
+            "/triangles/",
         ],
         &read,
     );
+}
+
+#[test]
+fn names_of_entries_are_those_that_an_archive_may_have() {
+    let schema = Schema::new(&schema("manifest-1")).unwrap();
+    let names = [
+        "a", ".a", "..a", "...", "a.", "a..", "a/b", "a/.b", "-", "a b", "[]", "", ".", "..", "/a",
+        "a/", "a//b", "./a", "../a", "a/.", "a/..", "a/./b", "a/../b", "a\\b", "a:b", "é",
+        "\u{7f}",
+    ];
+    let mut safe = 0;
+    for name in names {
+        let mut manifest = manifest();
+        manifest["representations"][0]["parameters"] = json!(name);
+        manifest["reference"] = json!({ "file": name });
+        let entries = [raw_zip::Entry::stored(name, b"")];
+        let found = validate(&raw_zip::archive(&entries), &Limits::default()).findings;
+        let is_safe = found.iter().all(|f| f.code != "ENTRY_NAME_UNSAFE");
+        let violations = schema.violations(&manifest);
+        let at = |pointer: &str| violations.iter().all(|v| v.pointer != pointer);
+        assert_eq!(at("/representations/0/parameters"), is_safe, "{name:?}");
+        assert_eq!(at("/reference/file"), is_safe, "{name:?}");
+        safe += usize::from(is_safe);
+    }
+    assert_eq!(safe, 11);
 }
 
 #[test]
@@ -277,6 +347,75 @@ fn studies_have_the_ranges_of_their_schema() {
     );
 }
 
+#[test]
+fn takes_have_the_ranges_of_their_schema() {
+    let take = json!({
+        "htex_take": 1, "name": "vinyl", "number": 7, "tool": "htex", "source": "daq:Dev1/ai0:5", "map": "0=x",
+        "calibrations": [[1.0, 0.0], [0.0, 1.0]], "quantity": "lateral_force", "rate_hz": 10000, "seconds": 10,
+        "signals": [["lateral", "N"], ["normal", "N"]], "tare": [0.1, 0.2], "tracker": [["x", "mm"]],
+        "target_speed_mm_s": 80, "target_force_n": 0.4, "tolerance": 0.1,
+        "required": { "on_target": 0.5, "sweeps": 3 }, "format": "csv",
+    });
+    let read = |take: &Value| refused(htex_lab::record::TakeHeader::of_json(take.clone()));
+    compare("take-1", &take, &[], &read);
+}
+
+#[test]
+fn gains_have_the_ranges_of_their_schema() {
+    let gain = |device: &str| {
+        json!({
+            "person": "Ann", "texture": "vinyl by lab", "device": device, "profile": "lab", "file": "vinyl.htex",
+            "drive_v": 40.5, "reference_rms": 0.02, "recordings": ["a.csv"], "blake3": "0".repeat(64),
+        })
+    };
+    let gains = json!({ "gains": [gain("org.htex.daq"), gain("org.htex.audio")] });
+    let read = |gains: &Value| refused(htex_scene::Gains::from_json(gains.clone()));
+    compare("gains-1", &gains, &[], &read);
+}
+
+#[test]
+fn answers_have_the_ranges_of_their_schema() {
+    let device = json!({
+        "adapter": "org.htex.daq", "profile": "lab", "settings": { "limit_v": "150" }, "limit": 150, "quantity_gain": 2,
+    });
+    let signals = json!([["lateral", "N"], ["normal", "N"]]);
+    let source = json!({
+        "name": "daq:Dev1/ai0:5", "settings": { "rate_hz": "10000" }, "map": "0=x", "calibrations": [[1.0]],
+        "quantity": "lateral_force", "rate_hz": 10000, "signals": signals, "tracker": [["x", "mm"]], "format": "csv",
+    });
+    let lines = [
+        json!({
+            "kind": "header", "htex_answers": "1.0", "study": "s", "participant": "P01", "files": { "study.toml": "0" },
+            "device": device, "begun": "2026-11-25T10:25:25Z", "ratings": 25, "source": source, "tool": "htex",
+            "simulated": { "seed": 1, "rule": "r" },
+        }),
+        json!({
+            "kind": "session", "date": "2026-11-25T10:25:25Z", "at_ms": 1, "device": device, "tool": "htex", "simulated": true,
+        }),
+        json!({
+            "kind": "answer", "number": 1, "texture": "t", "model": "m", "repetition": 1, "hidden_reference": true, "attribute": "a",
+            "rating": 3, "response_ms": 500, "at_ms": 1, "gain_db": -3, "repeats": 1,
+            "felt": { "file": "f", "blake3": "0", "off_target": ["slow"] }, "simulated": true,
+        }),
+        json!({
+            "kind": "gain", "texture": "t", "key": "accept", "gain_db": -3, "found": true, "drive_v": 40, "reference_rms": 0.02,
+            "at_ms": 1, "simulated": true,
+        }),
+        json!({ "kind": "rest", "after": 10, "at_ms": 1, "simulated": true }),
+    ];
+    let read = |line: &Value| refused(htex_lab::study::Line::parse(line.to_string().as_bytes()));
+    for line in lines {
+        compare("answers-1", &line, &[], &read);
+    }
+}
+
+/// The error of reading a document, as a finding.
+fn refused<T>(read: Result<T, impl ToString>) -> Vec<Finding> {
+    let error = read.err().map(|error| error.to_string());
+    let finding = |error: String| Finding::new(&htex_format::RULES[0], "", &error);
+    error.into_iter().map(finding).collect()
+}
+
 /// Samples as a file of NumPy, version 1.0 of its format.
 fn npy(samples: &[f32]) -> Vec<u8> {
     let shape = samples.len();
@@ -317,11 +456,7 @@ fn recipes_have_the_ranges_of_their_schema() {
         }
         Ok(())
     };
-    let read = |recipe: &Value| {
-        let error = tried(recipe).err().map(|error| error.to_string());
-        let finding = |error: String| Finding::new(&htex_format::RULES[0], "", &error);
-        error.into_iter().map(finding).collect()
-    };
+    let read = |recipe: &Value| refused(tried(recipe));
     compare(
         "recipe-1",
         &recipe,

@@ -19,6 +19,7 @@ const REFUSED: &[&str] = &[
     "condition_duplicate",
     "condition_index_duplicate",
     "condition_invalid",
+    "condition_invalid_with_triangles",
     "conditions_empty",
     "doi_invalid",
     "field_duplicate",
@@ -124,7 +125,7 @@ fn scenes() -> Documents {
         let bytes = fs::read(spec(&format!("scene-conformance/{stem}.scene.json"))).unwrap();
         let scene = htex_format::parse_json(&bytes).ok()?;
         let report = json_of(&spec(&format!("scene-conformance/{stem}.report.json")));
-        let newer = stem == "scene_version_newer";
+        let newer = stem.starts_with("scene_version_newer");
         (!newer).then(|| (stem, (scene, report["valid"] == true)))
     };
     let stems = stems("scene-conformance", ".scene.json");
@@ -189,8 +190,19 @@ fn schemas_name_themselves_and_use_the_standards_words_alone() {
             schema["$schema"],
             "https://json-schema.org/draft/2020-12/schema"
         );
-        assert!(!schema.to_string().contains("\"format\""), "{stem}");
+        assert!(!has_format(&schema), "{stem}");
         Schema::new(&schema).unwrap_or_else(|error| panic!("{stem}: {error}"));
+    }
+}
+
+/// Whether a place of a schema has the keyword `format`, of which validators differ; documents may have a key of this name.
+fn has_format(schema: &Value) -> bool {
+    match schema {
+        Value::Object(map) => {
+            map.get("format").is_some_and(Value::is_string) || map.values().any(has_format)
+        }
+        Value::Array(items) => items.iter().any(has_format),
+        _ => false,
     }
 }
 
@@ -244,4 +256,17 @@ fn ajv_says_the_same_where_it_is() {
     ours.extend(refused("scene-1.json", &scenes));
     ours.sort_unstable();
     assert_eq!(told, ours);
+}
+
+/// Documents of a laboratory that other programs read: takes, answers, and gains of persons.
+#[test]
+fn generated_schemas_of_the_laboratory_are_fresh() {
+    for (name, schema) in [
+        ("take-1", htex_lab::record::take_schema()),
+        ("answers-1", htex_lab::study::answers_schema()),
+        ("gains-1", htex_scene::gains_schema()),
+    ] {
+        let text = format!("{schema:#}\n");
+        xtask::generated::file(&format!("spec/schemas/{name}.json"), text.as_bytes());
+    }
 }

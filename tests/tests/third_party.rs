@@ -132,6 +132,8 @@ fn follows_the_speed(model: &LoadedModel) {
                     speed_mm_s,
                     force_n,
                     position_mm,
+                    x_mm: 0.0,
+                    y_mm: 0.0,
                 })
                 .unwrap();
         }

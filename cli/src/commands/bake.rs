@@ -86,6 +86,7 @@ impl Bake {
                  (see --grid, --rate)"
             )]);
         }
+        warn_of_frequencies(&baked);
         match self.json {
             true => print_json(&report(&baked, self.rate))?,
             false => print(&text(&self.output, &baked, self.rate))?,
@@ -108,6 +109,27 @@ impl Bake {
             true => Ok(None),
             false => Grid::of_conditions(&motions).map(Some).of(&self.asset),
         }
+    }
+}
+
+/// Warns where the grid is narrower than the recorded speeds, or has one speed, though the law moves frequencies: a filter does not
+/// follow beyond the grid.
+fn warn_of_frequencies(baked: &Baked) {
+    let speeds = baked.grid.speeds_mm_s();
+    let (Some(beyond_db), [lowest, .., highest] | [lowest @ highest]) = (baked.beyond_db, speeds)
+    else {
+        return;
+    };
+    let is_narrow = match baked.recorded_speeds_mm_s {
+        Some((low, high)) => low < *lowest || high > *highest || lowest == highest,
+        None => lowest == highest,
+    };
+    if is_narrow {
+        warn(&[format!(
+            "beyond {lowest} to {highest} mm/s the player keeps the frequencies of this model, which the texture's law moves by the \
+             speed to the power {}: {beyond_db:.1} dB at half or twice the speed; bake all speeds that will be played (see --grid)",
+            baked.law.frequency_speed
+        )]);
     }
 }
 
@@ -199,38 +221,67 @@ fn report(baked: &Baked, rate_hz: f64) -> serde_json::Value {
     json!({
         "model": baked.model,
         "bytes": baked.bytes.len(),
+        "quantity": baked.quantity.name(),
+        "unit": baked.quantity.unit(),
+        "full_scale": baked.full_scale,
         "rate_hz": rate_hz,
         "internal_rate_hz": baked.internal_rate_hz,
         "taps": baked.taps,
+        "filters": baked.filters,
         "tones": baked.tones,
         "speeds_mm_s": baked.grid.speeds_mm_s(),
         "forces_n": baked.grid.forces_n(),
+        "law": {
+            "frequency_speed": baked.law.frequency_speed,
+            "level_speed": baked.law.level_speed,
+            "level_force": baked.law.level_force,
+        },
+        "ceiling": baked.ceiling,
         "error_at_conditions_db": baked.at_conditions_db,
         "error_between_db": baked.between_db,
+        "error_beyond_db": baked.beyond_db,
     })
 }
 
 fn text(output: &Path, baked: &Baked, rate_hz: f64) -> String {
     let Baked {
         model,
+        quantity,
+        law,
         at_conditions_db,
         between_db,
         ..
     } = baked;
-    let content = match baked.taps {
-        0 => format!("{} sinusoids", baked.tones),
-        taps => format!("a filter of {taps} coefficients"),
+    let content = match (baked.taps, baked.filters) {
+        (0, _) => format!("{} sinusoids", baked.tones),
+        (taps, 1) => format!("a filter of {taps} coefficients"),
+        (taps, filters) => format!("{filters} filters of {taps} coefficients"),
     };
     let conditions = baked.grid.motions().count();
     let between = match conditions {
         1 => String::new(),
         _ => format!(", {between_db:.2} dB midway between them"),
     };
+    let beyond = match baked.beyond_db {
+        Some(error) => format!(
+            ", {error:.1} dB at half the lowest and twice the highest speed, where frequencies do not follow"
+        ),
+        None => String::new(),
+    };
     format!(
         "{}: {} bytes, {model} at {rate_hz} Hz, {conditions} conditions, {content} at {:.1} Hz\n\
-         largest error of nine bands: {at_conditions_db:.2} dB at the conditions{between}\n",
+         samples: {}, {}, full scale {}\n\
+         beyond the grid: frequency over speed ^{:.2}, level over speed ^{:.2}, level over force ^{:.2}, level at most {}\n\
+         largest error of nine bands: {at_conditions_db:.2} dB at the conditions{between}{beyond}\n",
         shown(output),
         baked.bytes.len(),
         baked.internal_rate_hz,
+        quantity.words(),
+        quantity.unit(),
+        quantity.text(baked.full_scale),
+        law.frequency_speed,
+        law.level_speed,
+        law.level_force,
+        quantity.text(baked.ceiling),
     )
 }

@@ -30,6 +30,14 @@ enum What {
     /// JSON Schema of studies (`htex study`)
     #[cfg(feature = "lab")]
     Study,
+    /// JSON Schema of a line of a participant's answers (`htex study run`)
+    #[cfg(feature = "lab")]
+    Answers,
+    /// JSON Schema of the header of a take (`htex record`)
+    #[cfg(feature = "lab")]
+    Take,
+    /// JSON Schema of files of persons' gains (`htex gain`)
+    Gains,
     /// Each model's parameters and fit options, with units and ranges
     Models,
 }
@@ -46,6 +54,11 @@ impl Schema {
             What::BuildReport => Ok(htex_build::report_schema()),
             #[cfg(feature = "lab")]
             What::Study => Ok(htex_lab::study::study_schema()),
+            #[cfg(feature = "lab")]
+            What::Answers => Ok(htex_lab::study::answers_schema()),
+            #[cfg(feature = "lab")]
+            What::Take => Ok(htex_lab::record::take_schema()),
+            What::Gains => Ok(htex_scene::gains_schema()),
             What::Models => {
                 let registry = Registry::builtin();
                 let all: Vec<_> = registry.models().iter().map(|m| m.descriptor()).collect();

@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use htex::exploration::CEILING;
 use htex::{Effects, Synthesis, VoiceOptions};
 
 use crate::commands::spectrum::ChoiceArgs;
@@ -30,6 +31,10 @@ pub(crate) struct Synth {
     /// the law of the asset outside the recorded motions, and a resting finger feels nothing
     #[arg(long)]
     as_recorded: bool,
+
+    /// Highest level that a motion outside the recorded ones has, over the strongest recorded level: above 0 and finite
+    #[arg(long, default_value_t = CEILING, value_name = "TIMES", conflicts_with = "as_recorded")]
+    ceiling: f64,
 
     /// Length, s
     #[arg(long, default_value_t = 10.0, value_name = "S")]
@@ -61,6 +66,10 @@ impl Synth {
             let sentence = format!("--seconds {}: more than 0, at most 1e9", self.seconds);
             return Err(Failure::Usage(sentence));
         }
+        if !(self.ceiling > 0.0 && self.ceiling.is_finite()) {
+            let sentence = format!("--ceiling {}: a number above 0", self.ceiling);
+            return Err(Failure::Usage(sentence));
+        }
         check_outputs([self.output.as_path()], [self.asset.as_path()])?;
         let asset = self.player.open(&self.asset)?;
         let mut options = VoiceOptions::default()
@@ -68,6 +77,7 @@ impl Synth {
             .with_seed(self.seed)
             .with_motion(self.choice.motion(&asset))
             .with_synthesis(self.quality)
+            .with_ceiling(self.ceiling)
             .with_effects(match self.as_recorded {
                 true => Effects::NONE,
                 false => Effects::default(),

@@ -74,6 +74,8 @@ impl Path {
             speed_mm_s,
             force_n: 0.0,
             position_mm: self.at_mm(0.0),
+            x_mm: 0.0,
+            y_mm: 0.0,
         };
         self.tell(motion);
     }

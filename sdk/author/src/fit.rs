@@ -36,8 +36,9 @@ pub struct FittedAsset {
     pub skipped: Vec<(String, String)>,
     /// The texture spectrum of each condition.
     pub spectra: Vec<TextureSpectrum>,
-    /// What is felt of the difference from them, of each representation at each of its conditions.
-    pub felt: Vec<Vec<FeltError>>,
+    /// What is felt of the difference from them, of each representation at each of its conditions; `None` at a condition that was
+    /// computed between recorded ones, where there is no recording to differ from.
+    pub felt: Vec<Vec<Option<FeltError>>>,
     /// The warnings that the asset's provenance has, with what helps.
     pub warnings: Vec<Notice>,
     /// Findings of the recordings below a warning: what was left out, and why.
@@ -146,7 +147,7 @@ fn contact(takes: &[Take]) -> Contact {
 struct FittedModel {
     representation: Representation,
     parameters: Vec<Vec<f64>>,
-    felt: Vec<FeltError>,
+    felt: Vec<Option<FeltError>>,
     fit_ms: f64,
 }
 
@@ -214,8 +215,9 @@ fn fit_model(
             rounding_error_db: Some(rounding),
             ..measured
         });
-        let nine_band_db = quality.as_ref().and_then(|q| q.get(Measure::NineBand));
-        felt.push(FeltError::new(&group.spectrum, &magnitude, nine_band_db));
+        felt.push(quality.as_ref().map(|quality| {
+            FeltError::new(&group.spectrum, &magnitude, quality.get(Measure::NineBand))
+        }));
         at.push(AtCondition {
             condition,
             level_rms,
@@ -229,6 +231,7 @@ fn fit_model(
         model_version: model.descriptor().version.clone(),
         fields,
         at,
+        triangles: Vec::new(),
         parameters: format!("parameters/{}.bin", model.short_name()),
     };
     Ok(FittedModel {

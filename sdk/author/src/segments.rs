@@ -22,6 +22,21 @@ const REPRESENTED_S: f64 = 2.0;
 /// Least part of the sliding that the segments of sweeps must represent; otherwise windows are used.
 const REPRESENTED: f64 = 0.5;
 
+/// Defines what is read of a recording, for `spec/recording-findings.md`.
+pub(crate) fn definition() -> String {
+    format!(
+        "The *length* of a sample is the magnitude of the signal's vector over its axes; of quantities other than the lateral force, each axis' mean is taken from \
+         it first. The *threshold* is the mean length of all samples. Averages over {} s are over as many samples on either side as half of it has, rounded \
+         (halves up), and the sample itself, fewer at the ends. The finger *slides* at a sample whose average length is at least {REST_LEVEL} of the threshold. A \
+         *sweep* is a stretch of at least a segment in which the average exceeds the threshold; it is cut off if it begins with the recording or ends with it. A \
+         *segment* has the rate over {SEGMENTS_PER_S} samples, rounded. That of a sweep from sample *s* to before sample *e* begins at `(s + e) / 2`, rounded down, less half a segment, rounded \
+         down; sweeps that are cut off have none. Of the sliding, a sweep that is not cut off represents its length, at most {REPRESENTED_S} s. Where there are sweeps, a sample at \
+         which the finger does not slide, and sweeps represent at least {REPRESENTED} of the samples of sliding, the segments of sweeps are read. Else *windows* are: segments every half a segment, rounded up, from the \
+         first sample on.\n\n",
+        2.0 * HALF_AVERAGE_S
+    )
+}
+
 /// Method of choosing segments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]

@@ -44,7 +44,12 @@ fn recorded(
     let request = AssetRequest::new("law")
         .with_models([ModelRequest::new(registry.find("bands").unwrap())])
         .with_spectrum(SpectrumOptions::default().with_response(response.unwrap()));
-    Asset::new(fit_asset(&takes, &request).unwrap().asset)
+    let fitted = fit_asset(&takes, &request).unwrap();
+    // Of a condition that was computed nothing is said to be felt.
+    let conditions = fitted.asset.manifest.conditions.iter();
+    let is_recorded = conditions.map(|condition| condition.segments != Some(0));
+    assert!(is_recorded.eq(fitted.felt[0].iter().map(Option::is_some)));
+    Asset::new(fitted.asset)
 }
 
 fn law(asset: &Asset) -> Law {

@@ -1,24 +1,36 @@
 //! Baking a representation.
 
-use htex_dsp::grid::GRID_HZ;
-use htex_play::{Asset, Motion};
-use htex_player::Block;
-use htex_player::layout::{MOST_HALF, MOST_LEVEL};
+use std::rc::Rc;
 
-use crate::encode::{Condition, SpectraKind, encode};
-use crate::filter::{Bins, Design, Wanted};
+use htex_dsp::grid::GRID_HZ;
+use htex_play::{Asset, Motion, Quantity};
+use htex_player::layout::{CHECKSUM, HEADER, MOST_FILTERS, MOST_HALF, MOST_LEVEL};
+use htex_player::{Block, Law};
+
+use crate::compress::{Factors, Stored};
+use crate::encode::{Content, Encoded, encode};
+use crate::filter::Design;
 use crate::interpolator::Interpolator;
-use crate::reading::{distance_db, of_tones};
+use crate::noise::Designer;
+use crate::shape::{Shape, Spectra};
 use crate::texture::{Moment, Texture};
 use crate::tones::{self, Tone};
 use crate::{BakeError, Grid};
 
 /// Largest error of the nine bands at a condition up to which the shortest filter is taken, dB.
 const TOLERANCE_DB: f64 = 0.1;
+/// Additional error at conditions for which filters are left out where the tolerance cannot be met, dB.
+const LEFT_OUT_DB: f64 = 0.01;
+/// The same for a block that would take more than [`WANTED_BYTES`] otherwise, dB.
+const MORE_LEFT_OUT_DB: f64 = 0.1;
+/// Bytes of a block for which accuracy is given up that is not within the tolerance anyway.
+const WANTED_BYTES: usize = 16 * 1024;
 /// Most conditions that are inserted between the wanted ones.
 const MOST_CONDITIONS: usize = 64;
 /// Lengths of one side of the filter that are tried.
 const HALVES: [usize; 7] = [32, 64, 96, 128, 192, 256, MOST_HALF];
+/// Magnitude of noise that one of a million samples exceeds, in its level: the full scale of a block.
+const CREST: f64 = 5.0;
 
 #[derive(Debug, Clone)]
 #[non_exhaustive]
@@ -28,16 +40,31 @@ pub struct Baked {
     pub grid: Grid,
     /// The id of the baked model.
     pub model: String,
+    /// The quantity of the samples, which has their unit.
+    pub quantity: Quantity,
+    /// The law beyond the grid.
+    pub law: Law,
+    /// Level up to which the law raises that of the grid.
+    pub ceiling: f64,
+    /// A magnitude that samples of the grid rarely exceed.
+    pub full_scale: f64,
     /// Rate at which noise or sinusoids are computed, hertz.
     pub internal_rate_hz: f64,
     /// Coefficients of the noise filter; 0 for sinusoids.
     pub taps: usize,
+    /// Noise filters that conditions mix; 0 for sinusoids.
+    pub filters: usize,
     /// Sinusoids; 0 for noise.
     pub tones: usize,
     /// Largest error of the nine bands at the conditions, dB, among bands within 40 dB of the strongest.
     pub at_conditions_db: f64,
     /// The same midway between conditions, where the model mixes parameters and the player filters or sinusoids.
     pub between_db: f64,
+    /// The same at half the lowest speed and twice the highest, where the law moves the frequencies of the texture and cannot
+    /// move those of a filter; `None` where it moves none, and for sinusoids, which follow.
+    pub beyond_db: Option<f64>,
+    /// Recorded speeds, lowest and highest, mm/s, if the asset states them.
+    pub recorded_speeds_mm_s: Option<(f64, f64)>,
 }
 
 /// Bakes a representation, named by its id or short name, else the best one, at the conditions of a grid. The block plays at
@@ -54,64 +81,301 @@ pub fn bake(
     within_db: f64,
 ) -> Result<Baked, BakeError> {
     let texture = Texture::new(asset, model)?;
+    let mut designs = Designs::default();
     let mut grid = grid.clone();
     loop {
-        let (baked, worst) = bake_grid(&texture, &grid, rate_hz)?;
+        let designed = Designed::new(&texture, &grid, rate_hz, &mut designs)?;
+        let between_db = designed.between_db();
         // More conditions do not help where the filters themselves are less accurate.
-        let reachable_db = within_db.max(1.1 * baked.at_conditions_db);
-        let refined = grid.refined(&worst, reachable_db);
+        let reachable_db = within_db.max(1.1 * designed.shape.at_conditions_db);
+        let refined = grid.refined(&designed.between, reachable_db);
         let is_last = refined == grid || refined.motions().count() > MOST_CONDITIONS;
-        if baked.between_db <= within_db || is_last {
-            return Ok(baked);
+        if between_db <= within_db || is_last {
+            return designed.baked(&texture, grid, within_db);
         }
         grid = refined;
     }
 }
 
-/// Bakes the conditions of a grid; returns the errors midway between them, too.
-fn bake_grid(
-    texture: &Texture<'_>,
-    grid: &Grid,
-    rate_hz: f64,
-) -> Result<(Baked, Vec<(Motion, f64)>), BakeError> {
-    let moments: Vec<Moment> = grid
-        .motions()
-        .map(|motion| texture.at(motion))
-        .collect::<Result<_, _>>()?;
-    for moment in &moments {
-        check_level(moment)?;
+/// What is kept while conditions are inserted.
+#[derive(Default)]
+struct Designs {
+    designer: Option<Rc<Designer>>,
+    /// Index of the length of the filters.
+    length: usize,
+    /// Whether no length is within the tolerance, and the best one is taken.
+    is_best: bool,
+}
+
+impl Designs {
+    /// Returns the designer of a rate.
+    fn designer(&mut self, design: Design, texture: &Texture<'_>) -> Rc<Designer> {
+        match &self.designer {
+            Some(designer) if designer.is_of(&design) => Rc::clone(designer),
+            _ => {
+                let designer = Rc::new(Designer::new(design, texture.band()));
+                *self = Self {
+                    designer: Some(Rc::clone(&designer)),
+                    ..Self::default()
+                };
+                designer
+            }
+        }
     }
-    let fastest = moments.iter().map(|m| m.ratio).fold(0.0, f64::max);
-    let interpolator = Interpolator::new(rate_hz, fastest * texture.band().high_hz)?;
-    let shape = match texture.model().is_sum_of_sines() {
-        true => Shape::tones(texture, &moments)?,
-        false => Shape::noise(texture, &moments, &interpolator)?,
-    };
-    let mut between = Vec::new();
-    for (motion, mixed) in grid.midpoints() {
-        between.push((motion, shape.error_db(texture, motion, &mixed)?));
+
+    /// Returns the shortest filters within the tolerance, else the most accurate ones.
+    fn shape(
+        &mut self,
+        designer: &Rc<Designer>,
+        texture: &Texture<'_>,
+        moments: &[Rc<Moment>],
+    ) -> Result<Shape, BakeError> {
+        let with = |length: usize, within_db: f64| {
+            let filter = |m: &Rc<Moment>| designer.filter(texture, m, HALVES[length]);
+            let mut filters = Vec::new();
+            for (i, moment) in moments.iter().enumerate() {
+                filters.push(filter(moment)?);
+                // A condition alone may exceed the limit.
+                let spectra = Spectra::Noise(Rc::clone(designer), vec![Rc::clone(&filters[i])]);
+                let alone = std::slice::from_ref(moment);
+                if Shape::within(spectra, texture, alone, within_db)?.is_none() {
+                    return Ok::<_, BakeError>(None);
+                }
+            }
+            let spectra = Spectra::Noise(Rc::clone(designer), filters);
+            Shape::within(spectra, texture, moments, within_db)
+        };
+        let mut best: Option<(usize, Shape)> = None;
+        let lengths = match self.is_best {
+            true => self.length..self.length + 1,
+            false => self.length..HALVES.len(),
+        };
+        for length in lengths {
+            let least_db = best
+                .as_ref()
+                .map_or(f64::INFINITY, |(_, shape)| shape.at_conditions_db);
+            let Some(shape) = with(length, least_db)? else {
+                continue;
+            };
+            let is_within = shape.at_conditions_db <= TOLERANCE_DB;
+            best = Some((length, shape));
+            if is_within {
+                break;
+            }
+        }
+        // The first length has no limit.
+        let Some((length, shape)) = best else {
+            return Err(BakeError::Refused(htex_player::OpenError::Values));
+        };
+        self.is_best = shape.at_conditions_db > TOLERANCE_DB;
+        self.length = length;
+        Ok(shape)
     }
-    let conditions: Vec<Condition> = (0..moments.len())
-        .map(|i| shape.condition(i, interpolator.internal_hz))
-        .collect();
-    let (kind, size) = shape.kind();
-    let bytes = encode(kind, size, grid, &interpolator, &conditions);
-    Block::open(&bytes)?;
-    let (taps, tones) = match kind {
-        SpectraKind::Noise => (2 * size + 1, 0),
-        SpectraKind::Tones { .. } => (0, size),
-    };
-    let baked = Baked {
-        bytes,
-        grid: grid.clone(),
-        model: texture.id().to_owned(),
-        internal_rate_hz: interpolator.internal_hz,
-        taps,
-        tones,
-        at_conditions_db: shape.at_conditions_db,
-        between_db: between.iter().map(|(_, error)| *error).fold(0.0, f64::max),
-    };
-    Ok((baked, between))
+}
+
+/// The spectra of a grid, not compressed.
+struct Designed {
+    moments: Vec<Rc<Moment>>,
+    interpolator: Interpolator,
+    shape: Shape,
+    between: Vec<(Motion, f64)>,
+}
+
+impl Designed {
+    fn new(
+        texture: &Texture<'_>,
+        grid: &Grid,
+        rate_hz: f64,
+        designs: &mut Designs,
+    ) -> Result<Self, BakeError> {
+        let moments = grid.motions().map(|motion| texture.at(motion));
+        let moments: Vec<Rc<Moment>> = moments.collect::<Result<_, _>>()?;
+        for moment in &moments {
+            check_level(moment)?;
+        }
+        let [slowest, fastest] = ratios(&moments);
+        let interpolator = Interpolator::new(rate_hz, fastest * texture.band().high_hz)?;
+        let shape = match texture.model().is_sum_of_sines() {
+            true => {
+                let (tones, random) = tones::of_moments(&moments, texture.band())?;
+                let spectra = Spectra::Tones(tones, random);
+                Shape::within(spectra, texture, &moments, f64::INFINITY)?
+            }
+            false => {
+                let design = Design::new(interpolator.internal_hz, GRID_HZ * slowest);
+                let designer = designs.designer(design, texture);
+                Some(designs.shape(&designer, texture, &moments)?)
+            }
+        };
+        // Nothing exceeds an infinite limit.
+        let Some(shape) = shape else {
+            return Err(BakeError::Refused(htex_player::OpenError::Values));
+        };
+        Ok(Self {
+            between: shape.between(texture, grid, f64::INFINITY)?,
+            moments,
+            interpolator,
+            shape,
+        })
+    }
+
+    fn between_db(&self) -> f64 {
+        largest(&self.between)
+    }
+
+    /// Encodes the block, with as few filters as keep the accuracy.
+    fn baked(
+        mut self,
+        texture: &Texture<'_>,
+        grid: Grid,
+        within_db: f64,
+    ) -> Result<Baked, BakeError> {
+        let spectra = match self.shape.spectra.clone() {
+            Spectra::Noise(designer, filters) => {
+                let sides: Vec<&[f64]> = filters.iter().map(|f| f.as_slice()).collect();
+                let [slowest, fastest] = ratios(&self.moments);
+                let factors = designer.factors(&sides, slowest, fastest, MOST_FILTERS);
+                Encoded::Noise(self.compress(texture, &grid, within_db, &designer, &factors)?)
+            }
+            Spectra::Tones(tones, random_phase) => {
+                let internal_hz = self.interpolator.internal_hz;
+                let numbers = |&(hz, amplitude): &Tone| [hz / internal_hz, amplitude];
+                Encoded::Tones {
+                    count: tones.first().map_or(0, Vec::len),
+                    random_phase,
+                    numbers: tones.iter().flatten().flat_map(numbers).collect(),
+                }
+            }
+        };
+        let law = texture.law();
+        let content = Content {
+            quantity: texture.quantity(),
+            law,
+            ceiling: self.ceiling(texture),
+            full_scale: self.full_scale(),
+            levels: self.shape.levels.clone(),
+            spectra,
+        };
+        let bytes = encode(&grid, &self.interpolator, &content);
+        Block::open(&bytes)?;
+        let (taps, filters, tones) = match &content.spectra {
+            Encoded::Noise(stored) => (2 * stored.filters[0].len() - 1, stored.filters.len(), 0),
+            Encoded::Tones { count, .. } => (0, 0, *count),
+        };
+        let cannot_follow = law.frequency_speed != 0.0 && tones == 0;
+        let beyond_db = match cannot_follow {
+            true => Some(self.shape.beyond_db(texture, &grid)?),
+            false => None,
+        };
+        Ok(Baked {
+            bytes,
+            grid,
+            model: texture.id().to_owned(),
+            quantity: content.quantity,
+            law,
+            ceiling: content.ceiling,
+            full_scale: content.full_scale,
+            internal_rate_hz: self.interpolator.internal_hz,
+            taps,
+            filters,
+            tones,
+            at_conditions_db: self.shape.at_conditions_db,
+            between_db: self.between_db(),
+            beyond_db,
+            recorded_speeds_mm_s: texture.recorded_speeds_mm_s(),
+        })
+    }
+
+    /// Finds the fewest filters within the tolerance at the conditions and `within_db` between them, or nearly as accurate as all
+    /// filters; shape and errors become theirs.
+    fn compress(
+        &mut self,
+        texture: &Texture<'_>,
+        grid: &Grid,
+        within_db: f64,
+        designer: &Rc<Designer>,
+        factors: &Factors,
+    ) -> Result<Stored, BakeError> {
+        let exact_db = [self.shape.at_conditions_db, self.between_db()];
+        // What is within a limit stays within it.
+        let limit = |limit_db: f64, exact_db: f64, left_out_db: f64| match exact_db <= limit_db {
+            true => limit_db,
+            false => exact_db + left_out_db,
+        };
+        let limits = |left_out_db: f64| {
+            [
+                limit(TOLERANCE_DB, exact_db[0], left_out_db),
+                limit(within_db, exact_db[1], left_out_db),
+            ]
+        };
+        for count in 1..=factors.len() {
+            let stored = factors.stored(count);
+            let fits = |count: usize| self.bytes(grid, &stored, count) <= WANTED_BYTES;
+            let is_last_that_fits = fits(count) && !fits(count + 1);
+            let limits_db = match (count == factors.len(), is_last_that_fits) {
+                (true, _) => [f64::INFINITY; 2],
+                (false, true) => limits(MORE_LEFT_OUT_DB),
+                (false, false) => limits(LEFT_OUT_DB),
+            };
+            let filters = stored.conditions().into_iter().map(Rc::new).collect();
+            let spectra = Spectra::Noise(Rc::clone(designer), filters);
+            let shape = Shape::within(spectra, texture, &self.moments, limits_db[0])?;
+            if let Some(shape) = shape {
+                let between = shape.between(texture, grid, limits_db[1])?;
+                if largest(&between) <= limits_db[1] {
+                    (self.shape, self.between) = (shape, between);
+                    return Ok(stored);
+                }
+            }
+        }
+        // The last count has no limit, and a filter is not zero.
+        Err(BakeError::Refused(htex_player::OpenError::Values))
+    }
+
+    /// Returns the length of a block of `count` filters as long as the stored ones.
+    fn bytes(&self, grid: &Grid, stored: &Stored, count: usize) -> usize {
+        let axes = grid.speeds_mm_s().len() + grid.forces_n().len();
+        let conditions = self.moments.len();
+        let words = axes + self.interpolator.rows.len() + conditions + count;
+        let length = stored.filters.first().map_or(0, Vec::len);
+        let integers = count * (conditions + length);
+        HEADER + 4 * words + (2 * integers).next_multiple_of(4) + CHECKSUM
+    }
+
+    /// Returns the level up to which the law raises that of the grid, as levels are stored.
+    fn ceiling(&self, texture: &Texture<'_>) -> f64 {
+        let stated = self.moments.iter().map(|m| m.level_rms);
+        let pairs = self.shape.levels.iter().zip(stated);
+        let loudest = pairs.max_by(|a, b| a.0.total_cmp(b.0));
+        let raised = loudest.map_or(1.0, |(stored, stated)| stored / stated);
+        texture.ceiling_rms() * raised
+    }
+
+    /// Returns a magnitude that samples rarely, or of sinusoids never, exceed at the conditions.
+    fn full_scale(&self) -> f64 {
+        let crest = |i: usize| match &self.shape.spectra {
+            Spectra::Noise(..) => CREST,
+            Spectra::Tones(tones, _) => {
+                let amplitudes = || tones[i].iter().map(|(_, a)| a.abs());
+                let power: f64 = amplitudes().map(|a| 0.5 * a * a).sum();
+                amplitudes().sum::<f64>() / power.sqrt()
+            }
+        };
+        let levels = self.shape.levels.iter().enumerate();
+        let most = levels.map(|(i, level)| level * crest(i));
+        most.fold(0.0, f64::max)
+    }
+}
+
+/// Returns the least and the greatest factor of frequencies.
+fn ratios(moments: &[Rc<Moment>]) -> [f64; 2] {
+    let ratios = || moments.iter().map(|m| m.ratio);
+    let slowest = ratios().fold(f64::INFINITY, f64::min);
+    [slowest, ratios().fold(0.0, f64::max)]
+}
+
+fn largest(errors: &[(Motion, f64)]) -> f64 {
+    errors.iter().map(|(_, error)| *error).fold(0.0, f64::max)
 }
 
 fn check_level(moment: &Moment) -> Result<(), BakeError> {
@@ -133,174 +397,5 @@ fn check_level(moment: &Moment) -> Result<(), BakeError> {
             speed_mm_s,
             force_n,
         }),
-    }
-}
-
-/// The spectra of all conditions.
-struct Shape {
-    spectra: Spectra,
-    /// The level of each condition as it is stored.
-    levels: Vec<f64>,
-    at_conditions_db: f64,
-}
-
-enum Spectra {
-    /// The centre and one side of filters of unit energy.
-    Noise(Design, Vec<Vec<f64>>),
-    /// Sinusoids, and whether their phases are random.
-    Tones(Vec<Vec<Tone>>, bool),
-}
-
-impl Shape {
-    /// Designs the shortest filters within the tolerance.
-    fn noise(
-        texture: &Texture<'_>,
-        moments: &[Moment],
-        interpolator: &Interpolator,
-    ) -> Result<Self, BakeError> {
-        let slowest = moments
-            .iter()
-            .map(|m| m.ratio)
-            .fold(f64::INFINITY, f64::min);
-        let design = Design::new(interpolator.internal_hz, GRID_HZ * slowest);
-        let (hz, band) = (design.frequencies_hz(), texture.band());
-        let wanted = |moment: &Moment| {
-            let recorded: Vec<f64> = hz.iter().map(|hz| hz / moment.ratio).collect();
-            Ok(Wanted {
-                magnitude: texture.magnitude(moment, &recorded)?,
-                stated: texture.read(moment)?,
-            })
-        };
-        let wanted: Result<Vec<Wanted>, BakeError> = moments.iter().map(wanted).collect();
-        let wanted = wanted?;
-        let filters = |half: usize| {
-            let moments = moments.iter().map(|m| Bins::new(band, m.ratio));
-            let filter = |(wanted, bins): (&Wanted, Bins)| design.filter(wanted, &bins, half);
-            wanted.iter().zip(moments).map(filter).collect()
-        };
-        let mut best: Option<Self> = None;
-        for half in HALVES {
-            let spectra = Spectra::Noise(design.clone(), filters(half));
-            let tried = Self::of(spectra, texture, moments)?;
-            let is_within = tried.at_conditions_db <= TOLERANCE_DB;
-            best = match best {
-                Some(best) if best.at_conditions_db <= tried.at_conditions_db => Some(best),
-                _ => Some(tried),
-            };
-            if is_within {
-                break;
-            }
-        }
-        match best {
-            Some(best) => Ok(best),
-            None => Self::of(
-                Spectra::Noise(design.clone(), filters(MOST_HALF)),
-                texture,
-                moments,
-            ),
-        }
-    }
-
-    fn tones(texture: &Texture<'_>, moments: &[Moment]) -> Result<Self, BakeError> {
-        let (tones, random) = tones::of_moments(moments, texture.band())?;
-        Self::of(Spectra::Tones(tones, random), texture, moments)
-    }
-
-    /// Finds the levels, and measures the conditions.
-    fn of(spectra: Spectra, texture: &Texture<'_>, moments: &[Moment]) -> Result<Self, BakeError> {
-        let mut shape = Self {
-            spectra,
-            levels: vec![0.0; moments.len()],
-            at_conditions_db: 0.0,
-        };
-        for (i, moment) in moments.iter().enumerate() {
-            let read = shape.read(&[i], texture, moment.ratio);
-            let rms = htex_dsp::grid::level_rms(&read);
-            if !(rms > 0.0 && rms.is_finite()) {
-                return Err(BakeError::Silent {
-                    speed_mm_s: moment.motion.speed_mm_s,
-                    force_n: moment.motion.force_n,
-                });
-            }
-            shape.levels[i] = moment.level_rms / rms;
-            let error = shape.error_db(texture, moment.motion, &[i])?;
-            shape.at_conditions_db = shape.at_conditions_db.max(error);
-        }
-        Ok(shape)
-    }
-
-    /// Returns the magnitude on the band's grid of conditions mixed in equal parts, as the player mixes them, at unit power.
-    fn read(&self, mixed: &[usize], texture: &Texture<'_>, ratio: f64) -> Vec<f64> {
-        let band = texture.band();
-        let part = 1.0 / mixed.len() as f64;
-        match &self.spectra {
-            Spectra::Noise(design, filters) => {
-                let mut side = vec![0.0; filters[mixed[0]].len()];
-                for i in mixed {
-                    let filter = filters[*i].iter();
-                    side.iter_mut()
-                        .zip(filter)
-                        .for_each(|(sum, c)| *sum += part * c);
-                }
-                let energy = 2.0 * side.iter().map(|c| c * c).sum::<f64>() - side[0] * side[0];
-                let scale = 1.0 / energy.sqrt();
-                side.iter_mut().for_each(|c| *c *= scale);
-                Bins::new(band, ratio).read(design, &side)
-            }
-            Spectra::Tones(tones, _) => {
-                let mut sum = vec![(0.0, 0.0); tones[mixed[0]].len()];
-                for i in mixed {
-                    for ((hz, amplitude), (f, a)) in sum.iter_mut().zip(&tones[*i]) {
-                        *hz += part * f;
-                        *amplitude += part * a;
-                    }
-                }
-                let power: f64 = sum.iter().map(|(_, a)| 0.5 * a * a).sum();
-                let scale = 1.0 / power.sqrt();
-                sum.iter_mut().for_each(|(_, a)| *a *= scale);
-                of_tones(&sum, band, ratio)
-            }
-        }
-    }
-
-    /// Returns the largest error of the nine bands where conditions are mixed in equal parts, dB.
-    fn error_db(
-        &self,
-        texture: &Texture<'_>,
-        motion: Motion,
-        mixed: &[usize],
-    ) -> Result<f64, BakeError> {
-        let moment = texture.at(motion)?;
-        let level = mixed.iter().map(|i| self.levels[*i]).sum::<f64>() / mixed.len() as f64;
-        let mut read = self.read(mixed, texture, moment.ratio);
-        read.iter_mut().for_each(|m| *m *= level);
-        let band = texture.band();
-        let mut model = texture.read(&moment)?;
-        model.iter_mut().for_each(|m| *m *= moment.level_rms);
-        Ok(distance_db(&model, &read, band))
-    }
-
-    fn kind(&self) -> (SpectraKind, usize) {
-        match &self.spectra {
-            Spectra::Noise(_, filters) => (SpectraKind::Noise, filters[0].len() - 1),
-            Spectra::Tones(tones, random_phase) => {
-                let random_phase = *random_phase;
-                (SpectraKind::Tones { random_phase }, tones[0].len())
-            }
-        }
-    }
-
-    /// Returns the stored numbers of a condition. Frequencies are stored in cycles per sample.
-    fn condition(&self, i: usize, internal_hz: f64) -> Condition {
-        Condition {
-            level: self.levels[i],
-            values: match &self.spectra {
-                Spectra::Noise(_, filters) => filters[i].clone(),
-                Spectra::Tones(tones, _) => {
-                    let numbers = |&(hz, amplitude): &Tone| [hz / internal_hz, amplitude];
-                    tones[i].iter().flat_map(numbers).collect()
-                }
-            },
-        }
     }
 }

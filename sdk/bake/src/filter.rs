@@ -1,10 +1,11 @@
 //! Symmetrical filters with a magnitude.
 
-use std::f64::consts::PI;
-
+use htex_dsp::fft::RealFft;
 use htex_dsp::grid::GRID_HZ;
 use htex_dsp::window::hann_main_lobe;
 use htex_host::Band;
+
+use crate::reading::Bands;
 
 /// Rounds in which the filter's spectrum is compared with the stated one.
 const ROUNDS: usize = 80;
@@ -14,31 +15,34 @@ const SMALL: f64 = 0.003;
 const CORRECTION: (f64, f64) = (0.05, 20.0);
 /// Shape of the Kaiser window of the coefficients.
 const WINDOW: f64 = 2.0;
-/// Distance of the frequencies at which filters are designed, in bins.
+/// Most distance of the frequencies at which filters are designed, in bins.
 const SPACING: f64 = 0.25;
-/// Number of frequencies: at least four for each coefficient of the longest filter.
-const STEPS: (usize, usize) = (1280, 8192);
+/// Number of frequencies, a power of two: at least four for each coefficient of the longest filter.
+const STEPS: (usize, usize) = (2048, 8192);
 
 /// The frequencies at which filters of a rate are designed and read, evenly spaced from 0 to half the rate.
 #[derive(Clone)]
 pub(crate) struct Design {
     rate_hz: f64,
-    /// Cosines of a cycle divided by twice the number of frequencies.
-    cosine: Vec<f64>,
     steps: usize,
+    fft: RealFft,
 }
 
 impl Design {
     /// Makes a design for bins of at least `spacing_hz`.
     pub(crate) fn new(rate_hz: f64, spacing_hz: f64) -> Self {
-        let wanted = 0.5 * rate_hz / (SPACING * spacing_hz);
-        let steps = (wanted.ceil() as usize).clamp(STEPS.0, STEPS.1);
-        let cosine = (0..2 * steps).map(|i| (PI * i as f64 / steps as f64).cos());
+        let wanted = (0.5 * rate_hz / (SPACING * spacing_hz)).ceil() as usize;
+        let steps = wanted.next_power_of_two().clamp(STEPS.0, STEPS.1);
         Self {
             rate_hz,
-            cosine: cosine.collect(),
             steps,
+            fft: RealFft::new(2 * steps),
         }
+    }
+
+    /// Returns whether filters of another design are filters of this one.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        (self.rate_hz, self.steps) == (other.rate_hz, other.steps)
     }
 
     pub(crate) fn frequencies_hz(&self) -> Vec<f64> {
@@ -47,22 +51,28 @@ impl Design {
 
     /// Designs the centre and one side of a filter of unit energy by frequency sampling. `magnitude` is given at the
     /// design's frequencies; its spectrum, read as a recording's, is then compared with the `stated` one at the bins, the
-    /// magnitude is corrected, and the filter designed again.
-    pub(crate) fn filter(&self, wanted: &Wanted, bins: &Bins, half: usize) -> Vec<f64> {
+    /// magnitude is corrected, and the filter designed again. The one with the least error of the nine bands is returned.
+    pub(crate) fn filter(&mut self, wanted: &Wanted, bins: &Bins, half: usize) -> Vec<f64> {
         let window = window(half);
         let mut magnitude = wanted.magnitude.clone();
         let mut side = self.sampled(&magnitude, &window);
-        for _ in 0..ROUNDS {
-            let read = bins.read(self, &side);
+        let mut best = (f64::INFINITY, side.clone());
+        for _ in 0..=ROUNDS {
+            let read = bins.read(&self.response(&side));
             let rms = htex_dsp::grid::level_rms(&read);
             if !(rms > 0.0 && rms.is_finite()) {
                 break;
             }
+            let unit: Vec<f64> = read.iter().map(|m| m / rms).collect();
+            let error_db = wanted.bands.distance_db(wanted.stated, &unit);
+            if error_db < best.0 {
+                best = (error_db, side.clone());
+            }
             let ratio = |(stated, read): (&f64, &f64)| match *stated > 0.0 {
-                true => (stated * rms / read).clamp(0.5, 2.0),
+                true => (stated / read).clamp(0.5, 2.0),
                 false => 1.0,
             };
-            let corrections: Vec<f64> = wanted.stated.iter().zip(&read).map(ratio).collect();
+            let corrections: Vec<f64> = wanted.stated.iter().zip(&unit).map(ratio).collect();
             if corrections.iter().all(|c| (c - 1.0).abs() < SMALL) {
                 break;
             }
@@ -72,7 +82,8 @@ impl Design {
             }
             side = self.sampled(&magnitude, &window);
         }
-        let energy = side[0] * side[0] + 2.0 * side[1..].iter().map(|c| c * c).sum::<f64>();
+        let mut side = best.1;
+        let energy = energy(&side);
         let scale = if energy > 0.0 {
             1.0 / energy.sqrt()
         } else {
@@ -86,81 +97,96 @@ impl Design {
         0.5 * self.rate_hz * i as f64 / self.steps as f64
     }
 
-    fn cosine(&self, bin: usize, lag: usize) -> f64 {
-        self.cosine[bin * lag % (2 * self.steps)]
+    fn sampled(&mut self, magnitude: &[f64], window: &[f64]) -> Vec<f64> {
+        let mut bins = self.fft.make_bins();
+        for (bin, m) in bins.iter_mut().zip(magnitude) {
+            bin.re = *m;
+        }
+        let mut samples = vec![0.0; 2 * self.steps];
+        self.fft.inverse(&bins, &mut samples);
+        let scale = 0.5 / self.steps as f64;
+        let windowed = window.iter().zip(&samples);
+        windowed.map(|(w, x)| w * x * scale).collect()
     }
 
-    fn sampled(&self, magnitude: &[f64], window: &[f64]) -> Vec<f64> {
-        let last = self.steps;
-        let at = |lag: usize| {
-            let term = |bin: usize| magnitude[bin] * self.cosine(bin, lag);
-            let ends = 0.5 * (term(0) + term(last));
-            let audible = (1..last).filter(|&bin| magnitude[bin] > 0.0);
-            (ends + audible.map(term).sum::<f64>()) / last as f64
-        };
-        window
-            .iter()
-            .enumerate()
-            .map(|(lag, w)| w * at(lag))
-            .collect()
+    /// Returns the response of a filter at the design's frequencies.
+    pub(crate) fn response(&mut self, side: &[f64]) -> Vec<f64> {
+        let mut samples = vec![0.0; 2 * self.steps];
+        for (lag, c) in side.iter().enumerate() {
+            samples[lag] = *c;
+            let mirrored = (2 * self.steps - lag) % (2 * self.steps);
+            samples[mirrored] = *c;
+        }
+        let mut bins = self.fft.make_bins();
+        self.fft.forward(&samples, &mut bins);
+        bins.iter().map(|bin| bin.re).collect()
     }
+}
 
-    /// Returns the response of a filter at one of the design's frequencies.
-    fn response(&self, side: &[f64], bin: usize) -> f64 {
-        let pairs = side.iter().enumerate().skip(1);
-        side[0] + 2.0 * pairs.map(|(lag, c)| c * self.cosine(bin, lag)).sum::<f64>()
-    }
+/// Returns the energy of a filter of this centre and side.
+pub(crate) fn energy(side: &[f64]) -> f64 {
+    let sum: f64 = side.iter().map(|c| c * c).sum();
+    2.0 * sum - side.first().map_or(0.0, |centre| centre * centre)
 }
 
 /// What a filter is to be.
-pub(crate) struct Wanted {
+pub(crate) struct Wanted<'a> {
     /// Magnitude at the design's frequencies.
     pub(crate) magnitude: Vec<f64>,
     /// Magnitude of unit RMS at the bins.
-    pub(crate) stated: Vec<f64>,
+    pub(crate) stated: &'a [f64],
+    /// The bands in which spectra are compared.
+    pub(crate) bands: &'a Bands,
 }
 
-/// The bins of a spectrum whose frequencies are multiplied by a ratio, as a Hann window reads them.
+/// The bins of a spectrum whose frequencies are multiplied by a ratio, as a Hann window reads them from a filter of a design.
 pub(crate) struct Bins {
-    hz: Vec<f64>,
+    first_hz: f64,
     spacing_hz: f64,
+    /// The first of the design's frequencies in each bin's reach, and the weights of the power from there.
+    reaches: Vec<(usize, Vec<f64>)>,
 }
 
 impl Bins {
-    pub(crate) fn new(band: Band, ratio: f64) -> Self {
+    pub(crate) fn new(design: &Design, band: Band, ratio: f64) -> Self {
+        let spacing_hz = GRID_HZ * ratio;
+        let reach = 2.0 * spacing_hz;
+        let index = |hz: f64| (hz / design.hz(1)).clamp(0.0, design.steps as f64) as usize;
+        // A bin holds the power of its width, and the sum of squared magnitudes is three times the power.
+        let density = 3.0 * spacing_hz * 2.0 / design.rate_hz;
+        let at = |hz: f64| {
+            let first = index(hz - reach);
+            let range = first..=index(hz + reach);
+            let lobe = range.map(|i| hann_main_lobe((design.hz(i) - hz) / spacing_hz).powi(2));
+            let mut weights: Vec<f64> = lobe.collect();
+            let scale = density / weights.iter().sum::<f64>();
+            weights.iter_mut().for_each(|weight| *weight *= scale);
+            (first, weights)
+        };
+        let hz = band.grid_hz();
         Self {
-            hz: band.grid_hz().iter().map(|hz| hz * ratio).collect(),
-            spacing_hz: GRID_HZ * ratio,
+            first_hz: hz.first().map_or(0.0, |hz| hz * ratio),
+            spacing_hz,
+            reaches: hz.into_iter().map(|hz| at(hz * ratio)).collect(),
         }
     }
 
-    /// Returns the magnitude at the bins of unit white noise through a filter.
-    pub(crate) fn read(&self, design: &Design, side: &[f64]) -> Vec<f64> {
-        let step_hz = design.hz(1);
-        let reach = 2.0 * self.spacing_hz;
-        let index = |hz: f64| (hz / step_hz).clamp(0.0, design.steps as f64) as usize;
-        let last = self.hz.last().map_or(0, |hz| index(hz + reach));
-        let power = (0..=last).map(|i| design.response(side, i).powi(2));
-        let power: Vec<f64> = power.collect();
-        let at = |hz: &f64| {
-            let (mut sum, mut weights) = (0.0, 0.0);
-            for i in index(hz - reach)..=index(hz + reach) {
-                let weight = hann_main_lobe((design.hz(i) - hz) / self.spacing_hz).powi(2);
-                sum += weight * power.get(i).copied().unwrap_or(0.0);
-                weights += weight;
-            }
-            // A bin holds the power of its width, and the sum of squared magnitudes is three times the power.
-            let density = 2.0 / design.rate_hz * sum / weights;
-            (3.0 * self.spacing_hz * density).sqrt()
+    /// Returns the magnitude at the bins of unit white noise through a filter of this response.
+    pub(crate) fn read(&self, response: &[f64]) -> Vec<f64> {
+        let at = |(first, weights): &(usize, Vec<f64>)| {
+            let reached = response[*first..].iter().zip(weights);
+            reached
+                .map(|(r, weight)| weight * r * r)
+                .sum::<f64>()
+                .sqrt()
         };
-        self.hz.iter().map(at).collect()
+        self.reaches.iter().map(at).collect()
     }
 
     /// Returns the value at a frequency, interpolated between the bins and constant beyond them.
     fn between(&self, values: &[f64], hz: f64) -> f64 {
-        let first = self.hz.first().copied().unwrap_or(0.0);
         let last = (values.len().max(1) - 1) as f64;
-        let place = ((hz - first) / self.spacing_hz).clamp(0.0, last);
+        let place = ((hz - self.first_hz) / self.spacing_hz).clamp(0.0, last);
         let at = |i: usize| values.get(i).or(values.last()).copied().unwrap_or(1.0);
         let below = place as usize;
         at(below) + place.fract() * (at(below + 1) - at(below))

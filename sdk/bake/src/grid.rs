@@ -1,7 +1,9 @@
 //! The grid of baked conditions.
 
 use htex_play::Motion;
-use htex_player::layout::{MIN_SLIDING_MM_S, MOST_MOTION, MOST_ON_AXIS};
+use htex_player::layout::{
+    LEAST_FORCE_N, MIN_SLIDING_MM_S, MOST_FORCE_N, MOST_ON_AXIS, MOST_SPEED_MM_S,
+};
 
 use crate::BakeError;
 
@@ -20,18 +22,20 @@ pub struct Grid {
     forces_n: Vec<f64>,
 }
 
-/// Least force of a condition, newtons.
-const LEAST_FORCE_N: f64 = 1e-6;
-
 impl Grid {
     /// Makes a grid of speeds, mm/s, and forces, newtons, in any order. Values are rounded to single precision.
     ///
     /// # Errors
-    /// When an axis is empty or has more than 32 different values, or when the finger would not slide at one of them.
+    /// When an axis is empty or has more than 32 different values, or when no finger slides at one of them: below 0.5 mm/s or
+    /// 1e-6 N, above 1000 mm/s or 20 N.
     pub fn new(speeds_mm_s: Vec<f64>, forces_n: Vec<f64>) -> Result<Self, BakeError> {
         Ok(Self {
-            speeds_mm_s: axis("the speeds", f64::from(MIN_SLIDING_MM_S), speeds_mm_s)?,
-            forces_n: axis("the forces", LEAST_FORCE_N, forces_n)?,
+            speeds_mm_s: axis(
+                "the speeds",
+                [MIN_SLIDING_MM_S, MOST_SPEED_MM_S],
+                speeds_mm_s,
+            )?,
+            forces_n: axis("the forces", [LEAST_FORCE_N, MOST_FORCE_N], forces_n)?,
         })
     }
 
@@ -146,10 +150,10 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-fn axis(axis: &'static str, least: f64, values: Vec<f64>) -> Result<Vec<f64>, BakeError> {
-    let largest = f64::from(MOST_MOTION);
-    let in_range = values.iter().all(|x| (least..=largest).contains(x));
+fn axis(axis: &'static str, range: [f32; 2], values: Vec<f64>) -> Result<Vec<f64>, BakeError> {
     let mut rounded: Vec<f64> = values.iter().map(|x| f64::from(*x as f32)).collect();
+    let [least, largest] = range.map(f64::from);
+    let in_range = rounded.iter().all(|x| (least..=largest).contains(x));
     rounded.sort_by(f64::total_cmp);
     rounded.dedup();
     match in_range && (1..=MOST_ON_AXIS).contains(&rounded.len()) {

@@ -20,6 +20,8 @@ pub(crate) struct Interpolator {
     pub(crate) internal_hz: f64,
     pub(crate) up: usize,
     pub(crate) row: usize,
+    /// The highest frequency that passes, cycles per sample of the internal rate.
+    pub(crate) highest: f64,
     /// Phase after phase, each from the oldest input to the newest.
     pub(crate) rows: Vec<f64>,
 }
@@ -49,6 +51,7 @@ impl Interpolator {
             internal_hz,
             up,
             row,
+            highest: if up == 1 { 0.5 } else { top_hz / internal_hz },
             rows: phases.collect(),
         })
     }

@@ -1,10 +1,16 @@
 //! The texture of a representation at any motion, with the effects of a motion as a voice has them.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
 use htex_host::{Band, Descriptor, LoadedModel};
 use htex_play::exploration::CEILING;
-use htex_play::{Asset, Motion, Motions};
+use htex_play::{Asset, Motion, Motions, Quantity};
+use htex_player::Law;
 
 use crate::BakeError;
+use crate::reading::Bands;
 
 /// A representation of an asset.
 pub(crate) struct Texture<'a> {
@@ -12,6 +18,9 @@ pub(crate) struct Texture<'a> {
     model: LoadedModel,
     id: String,
     motions: Motions,
+    bands: Bands,
+    /// Moments by the bits of speed and force.
+    known: RefCell<BTreeMap<[u64; 2], Rc<Moment>>>,
 }
 
 /// A texture at one motion.
@@ -22,6 +31,16 @@ pub(crate) struct Moment {
     /// Factor of all frequencies.
     pub(crate) ratio: f64,
     pub(crate) motion: Motion,
+    /// Magnitude of unit RMS on the band's grid that a recording of the host's voice reads through a Hann window.
+    pub(crate) stated: Vec<f64>,
+}
+
+impl Moment {
+    /// Returns the bits of what determines the shape of the spectrum.
+    pub(crate) fn shape(&self) -> Vec<u64> {
+        let numbers = self.parameters.iter().chain([&self.ratio]);
+        numbers.map(|x| x.to_bits()).collect()
+    }
 }
 
 impl<'a> Texture<'a> {
@@ -35,12 +54,18 @@ impl<'a> Texture<'a> {
             asset,
             model: loaded,
             motions: asset.motions(Some(&id))?,
+            bands: Bands::new(asset.band()),
+            known: RefCell::default(),
             id,
         })
     }
 
     pub(crate) fn id(&self) -> &str {
         &self.id
+    }
+
+    pub(crate) fn quantity(&self) -> Quantity {
+        self.asset.quantity()
     }
 
     pub(crate) fn model(&self) -> &Descriptor {
@@ -51,25 +76,59 @@ impl<'a> Texture<'a> {
         self.asset.band()
     }
 
-    pub(crate) fn at(&self, motion: Motion) -> Result<Moment, BakeError> {
+    pub(crate) fn bands(&self) -> &Bands {
+        &self.bands
+    }
+
+    /// Returns the exponents that are played: 0 over a speed or a force that the asset does not state.
+    pub(crate) fn law(&self) -> Law {
+        let explored = self.motions.explored();
+        let law = explored.law;
+        let over = |is_known: bool, exponent: f64| if is_known { exponent as f32 } else { 0.0 };
+        let (speed, force) = (explored.speed.is_known(), explored.force.is_known());
+        Law {
+            frequency_speed: over(speed, law.frequency_speed.exponent),
+            level_speed: over(speed, law.level_speed.exponent),
+            level_force: over(force, law.level_force.exponent),
+        }
+    }
+
+    /// Returns the level up to which the law raises recorded ones.
+    pub(crate) fn ceiling_rms(&self) -> f64 {
+        let representations = &self.asset.manifest().representations;
+        let own = representations.iter().filter(|r| r.model == self.id);
+        let levels = own.flat_map(|r| r.at.iter().map(|at| at.level_rms));
+        CEILING * levels.fold(0.0, f64::max)
+    }
+
+    /// Returns the lowest and the highest recorded speed, mm/s, if it is known.
+    pub(crate) fn recorded_speeds_mm_s(&self) -> Option<(f64, f64)> {
+        match self.motions.explored().speed {
+            htex_play::Recorded::Between { low, high } => Some((low, high)),
+            htex_play::Recorded::Unknown => None,
+        }
+    }
+
+    pub(crate) fn at(&self, motion: Motion) -> Result<Rc<Moment>, BakeError> {
+        let key = [motion.speed_mm_s, motion.force_n].map(f64::to_bits);
+        if let Some(known) = self.known.borrow().get(&key) {
+            return Ok(Rc::clone(known));
+        }
         let (parameters, level_rms) = self.asset.parameters(Some(&self.id), Some(motion))?;
         let scaling = self.motions.scaling(motion, CEILING);
-        Ok(Moment {
+        let moment = Rc::new(Moment {
+            stated: self.model.read_magnitude(&parameters, self.band())?,
             parameters,
             level_rms: level_rms * scaling.level,
             ratio: scaling.frequency,
             motion,
-        })
+        });
+        self.known.borrow_mut().insert(key, Rc::clone(&moment));
+        Ok(moment)
     }
 
     /// Returns the magnitude of unit RMS at recorded frequencies, hertz: those before the moment's ratio.
     pub(crate) fn magnitude(&self, moment: &Moment, hz: &[f64]) -> Result<Vec<f64>, BakeError> {
         Ok(self.model.magnitude(&moment.parameters, self.band(), hz)?)
-    }
-
-    /// Returns the magnitude of unit RMS on the band's grid that a recording of the host's voice reads through a Hann
-    /// window.
-    pub(crate) fn read(&self, moment: &Moment) -> Result<Vec<f64>, BakeError> {
-        Ok(self.model.read_magnitude(&moment.parameters, self.band())?)
     }
 }

@@ -1,5 +1,7 @@
 //! The sinusoids of a model that is a sum of sines.
 
+use std::rc::Rc;
+
 use htex_host::Band;
 use htex_player::layout::MOST_TONES;
 
@@ -15,7 +17,7 @@ pub(crate) type Tone = (f64, f64);
 /// The sinusoids of conditions, as many for each, and whether phases are random. Conditions with the same number of
 /// sinusoids are matched by index, as the model does; others by frequency, with zero amplitude where one is absent.
 pub(crate) fn of_moments(
-    moments: &[Moment],
+    moments: &[Rc<Moment>],
     band: Band,
 ) -> Result<(Vec<Vec<Tone>>, bool), BakeError> {
     let read: Option<Vec<(Vec<Tone>, bool)>> = moments.iter().map(|m| read(m, band)).collect();

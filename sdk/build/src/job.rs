@@ -10,8 +10,7 @@ use std::sync::Arc;
 use htex_author::recording::{ReadError, ReadProblem, read_recording};
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
 use htex_author::{
-    AuthorError, Exploration, FeltError, FittedAsset, Take, TextureSpectrum, embed_plugins,
-    fit_asset,
+    AuthorError, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
 };
 use htex_files::{AtFile, FileError};
 use htex_host::{Registry, Search, WasmLimits};
@@ -35,9 +34,7 @@ fn felt(fitted: &FittedAsset) -> BTreeMap<String, FeltError> {
     let worst = models
         .zip(&fitted.felt)
         .filter_map(|(representation, felt)| {
-            let recorded = fitted.spectra.iter().map(TextureSpectrum::is_recorded);
-            let felt = felt.iter().zip(recorded).filter(|(_, recorded)| *recorded);
-            let worst = felt.map(|(felt, _)| *felt).reduce(FeltError::worse)?;
+            let worst = felt.iter().copied().flatten().reduce(FeltError::worse)?;
             Some((representation.model.clone(), worst))
         });
     worst.collect()

@@ -231,6 +231,15 @@ typedef struct htex_motion {
      it.
      */
     double position_mm;
+    /*
+     Place on the surface, x and y, mm, of either sign; NAN, either or both, if it is not known. Only models that are maps of
+     a surface use it.
+     */
+    double x_mm;
+    /*
+     As `x_mm`, across it.
+     */
+    double y_mm;
 } htex_motion;
 
 /*
@@ -334,6 +343,11 @@ typedef struct htex_voice_options {
      Not 0: a finger that rests is not silent.
      */
     uint32_t no_contact;
+    /*
+     Highest level that a motion outside the recorded ones has, as a multiple of the strongest recorded level; 0: 4. Otherwise above
+     0 and finite.
+     */
+    double ceiling;
 } htex_voice_options;
 
 /*

@@ -21,10 +21,10 @@ using Motion = htex_motion;
 using Finger = htex_finger;
 using Condition = htex_condition;
 
-/* A motion at an unknown position. */
+/* A motion at an unknown position and place. */
 inline Motion motion(double speed_mm_s, double force_n) noexcept
 {
-    return {speed_mm_s, force_n, NAN};
+    return {speed_mm_s, force_n, NAN, NAN, NAN};
 }
 
 /* A status and the text of its error, which is empty on success. */
@@ -109,6 +109,7 @@ struct VoiceOptions {
     bool frequency_scaling = true;
     bool level_scaling = true;
     bool contact = true;
+    double ceiling = 0.0;
 };
 
 /* A playing texture. [one thread at a time] */
@@ -197,6 +198,7 @@ public:
         c.no_frequency_scaling = !options.frequency_scaling;
         c.no_level_scaling = !options.level_scaling;
         c.no_contact = !options.contact;
+        c.ceiling = options.ceiling;
         htex_voice voice{};
         if (Status status = status_of(htex_voice_new(handle_.get(), &c, &voice)); !status)
             return status;

@@ -16,14 +16,23 @@ pub struct htex_motion {
     /// Position along the path, mm, of either sign; NAN if it is not known. Only models that follow the position use
     /// it.
     pub position_mm: f64,
+    /// Place on the surface, x and y, mm, of either sign; NAN, either or both, if it is not known. Only models that are maps of
+    /// a surface use it.
+    pub x_mm: f64,
+    /// As `x_mm`, across it.
+    pub y_mm: f64,
 }
 
 impl From<htex_motion> for Motion {
     fn from(motion: htex_motion) -> Self {
         let speed_and_force = Self::new(motion.speed_mm_s, motion.force_n);
-        match motion.position_mm.is_nan() {
+        let on_path = match motion.position_mm.is_nan() {
             true => speed_and_force,
             false => speed_and_force.with_position_mm(motion.position_mm),
+        };
+        match motion.x_mm.is_nan() || motion.y_mm.is_nan() {
+            true => on_path,
+            false => on_path.with_place_mm(motion.x_mm, motion.y_mm),
         }
     }
 }

@@ -62,6 +62,9 @@ pub struct htex_voice_options {
     pub no_level_scaling: u32,
     /// Not 0: a finger that rests is not silent.
     pub no_contact: u32,
+    /// Highest level that a motion outside the recorded ones has, as a multiple of the strongest recorded level; 0: 4. Otherwise above
+    /// 0 and finite.
+    pub ceiling: f64,
 }
 
 /// The first `size` bytes of a struct of options, with zeros for the rest.
@@ -166,6 +169,7 @@ pub(crate) unsafe fn voice_options<'a>(
         no_frequency_scaling: 0,
         no_level_scaling: 0,
         no_contact: 0,
+        ceiling: 0.0,
     };
     // SAFETY: as here.
     let options = unsafe { options(pointer, ZEROS) }?;
@@ -195,6 +199,9 @@ pub(crate) unsafe fn voice_options<'a>(
     }
     if options.rate_hz != 0.0 {
         voice = voice.with_rate_hz(options.rate_hz);
+    }
+    if options.ceiling != 0.0 {
+        voice = voice.with_ceiling(options.ceiling);
     }
     Ok(voice)
 }

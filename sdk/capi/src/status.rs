@@ -82,8 +82,11 @@ impl From<htex::Error> for Failure {
             Error::Read(ReadError::Io { .. }) => HTEX_STATUS_IO,
             Error::Read(_) => HTEX_STATUS_INVALID_ASSET,
             Error::NoRepresentation { .. } => HTEX_STATUS_NO_REPRESENTATION,
-            Error::Motion { .. } | Error::Position { .. } => HTEX_STATUS_INVALID_MOTION,
-            Error::Model(HostError::Synthesis { .. } | HostError::Rates { .. }) => {
+            Error::Motion { .. } | Error::Position { .. } | Error::Place { .. } => {
+                HTEX_STATUS_INVALID_MOTION
+            }
+            Error::Ceiling { .. }
+            | Error::Model(HostError::Synthesis { .. } | HostError::Rates { .. }) => {
                 HTEX_STATUS_INVALID_ARGUMENT
             }
             Error::Model(HostError::Call { .. } | HostError::Broken { .. }) => HTEX_STATUS_MODEL,

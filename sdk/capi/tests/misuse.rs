@@ -47,6 +47,8 @@ const MOTION: htex_motion = htex_motion {
     speed_mm_s: 80.0,
     force_n: 0.4,
     position_mm: f64::NAN,
+    x_mm: f64::NAN,
+    y_mm: f64::NAN,
 };
 
 #[test]
@@ -204,14 +206,27 @@ fn motions_out_of_range_leave_the_voice_as_it_was() {
                 );
             }
         }
-        let motion = htex_motion {
+        let place = |x_mm, y_mm| htex_motion {
+            x_mm,
+            y_mm,
+            ..MOTION
+        };
+        let far = htex_motion {
             position_mm: f64::INFINITY,
             ..MOTION
         };
-        is(
-            htex_voice_set_motion(voice, &motion),
-            HTEX_STATUS_INVALID_MOTION,
+        for motion in [far, place(f64::INFINITY, 0.0), place(0.0, f64::INFINITY)] {
+            is(
+                htex_voice_set_motion(voice, &motion),
+                HTEX_STATUS_INVALID_MOTION,
+            );
+        }
+        // A place of which one number is known is not known.
+        assert_eq!(
+            htex_voice_set_motion(voice, &place(f64::NAN, 1.0)),
+            HTEX_STATUS_OK
         );
+        assert_eq!(htex_voice_set_motion(twin, &MOTION), HTEX_STATUS_OK);
         for (voice, block) in [voice, twin].into_iter().zip(&mut blocks) {
             assert_eq!(
                 htex_voice_render(voice, block.as_mut_ptr(), 256),
@@ -239,6 +254,7 @@ fn options_are_checked_by_their_size() {
         no_frequency_scaling: 0,
         no_level_scaling: 0,
         no_contact: 0,
+        ceiling: 0.0,
     };
     let mut new = |options: &htex_voice_options| {
         // SAFETY: live pointers.
@@ -263,6 +279,14 @@ fn options_are_checked_by_their_size() {
     options.synthesis = null();
     options.rate_hz = f64::NAN;
     assert_ne!(new(&options), HTEX_STATUS_OK);
+    options.rate_hz = 0.0;
+    options.ceiling = 10.0;
+    assert_eq!(new(&options), HTEX_STATUS_OK);
+    for ceiling in [-1.0, f64::INFINITY, f64::NAN] {
+        options.ceiling = ceiling;
+        is(new(&options), HTEX_STATUS_INVALID_ARGUMENT);
+    }
+    options.ceiling = 0.0;
 
     // One compiled against a newer, longer struct, with an option that is not known here.
     #[repr(C)]

@@ -143,11 +143,11 @@ fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
                 findings.add(rule::CONDITION_INVALID, format!("{at}/{key}"), message);
             }
         }
-        // Adding zero makes -0 the same as 0.
-        let bits = |number: Option<f64>| number.map(|x| (x + 0.0).to_bits());
+        // An absent value counts as 0 where motions are compared. Adding zero makes -0 the same as 0.
+        let bits = |number: Option<f64>| (number.unwrap_or(0.0) + 0.0).to_bits();
         let new = seen.insert((bits(condition.speed_mm_s), bits(condition.force_n)));
         findings.require(new, rule::CONDITION_DUPLICATE, at, || {
-            "an earlier condition has the same speed and force; keep one".to_owned()
+            "an earlier condition has the same speed and force, of which an absent one counts as 0; keep one".to_owned()
         });
     }
 }

@@ -5,11 +5,12 @@ use std::fmt::Arguments;
 
 use htex_model::is_model_id;
 
-use crate::manifest::{AtCondition, Manifest, Representation, Steps, StoredAs};
+use crate::manifest::{AtCondition, Condition, Manifest, Representation, Steps, StoredAs};
 use crate::measure::Judged;
 use crate::quality_json::{BAND_COUNT, Content, Entries, Entry};
 use crate::quantity::Quantity;
 use crate::rules as rule;
+use crate::triangles::{TrianglesError, check_corners, check_triangles};
 use htex_finding::Findings;
 
 /// Smallest ratio of a step to the largest magnitude it is added to; below it, rounding can change the step.
@@ -36,7 +37,41 @@ pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings
         check_model(representation, at, findings);
         check_fields(representation, at, findings);
         check_conditions(representation, manifest, at, findings);
+        if let Err(error) = check_triangles_of(representation, &manifest.conditions) {
+            let triangle = error
+                .triangle()
+                .map(|i| format!("/{i}"))
+                .unwrap_or_default();
+            let pointer = format!("{at}/triangles{triangle}");
+            findings.add(rule::TRIANGLES_INVALID, pointer, error.to_string());
+        }
     }
+}
+
+/// Checks the triangles of a representation; of conditions that break a rule, only the corners.
+fn check_triangles_of(
+    representation: &Representation,
+    conditions: &[Condition],
+) -> Result<(), TrianglesError> {
+    let Representation { at, triangles, .. } = representation;
+    if triangles.is_empty() {
+        return Ok(());
+    }
+    check_corners(at.len(), triangles)?;
+    let mut places = Vec::with_capacity(at.len());
+    for (condition, fitted) in at.iter().enumerate() {
+        let Some(there) = conditions.get(fitted.condition) else {
+            return Ok(());
+        };
+        match (there.speed_mm_s, there.force_n) {
+            (Some(speed), Some(force)) if is_size(speed) && is_size(force) => {
+                places.push([speed, force]);
+            }
+            (Some(_), Some(_)) => return Ok(()),
+            _ => return Err(TrianglesError::Unknown { condition }),
+        }
+    }
+    check_triangles(&places, triangles)
 }
 
 fn check_model(representation: &Representation, at: Arguments<'_>, findings: &mut Findings) {

@@ -44,6 +44,7 @@ mod rounding;
 mod rules;
 mod schema_words;
 mod stages;
+mod triangles;
 mod typed;
 mod unpack;
 mod validate;
@@ -78,4 +79,5 @@ pub use rules::{
     DESCRIPTOR_INVALID, EXTENSION_SCHEMA_BROKEN, PLUGIN_UNUSABLE, RULES, SCHEMA_BROKEN,
 };
 pub use stages::{STAGES, rules_of};
+pub use triangles::{Triangle, TrianglesError, check_triangles};
 pub use validate::{manifest_json, validate, validate_with};

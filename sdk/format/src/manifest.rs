@@ -16,6 +16,7 @@ use crate::quality::{LeftOut, Quality};
 use crate::schema_words::{
     DOI, ENTRY_NAME, MODEL_ID, SEMANTIC_VERSION, open_variants, own_entries, quantities_and_units,
 };
+use crate::triangles::Triangle;
 
 /// The version of the format that this crate reads and writes.
 pub const VERSION: &str = "1.0";
@@ -35,7 +36,7 @@ pub struct Manifest {
     #[schemars(regex(pattern = r"^1\.(0|[1-9][0-9]*)$"))]
     pub htex: String,
     /// Name of the texture.
-    #[schemars(regex(pattern = r"\S"))]
+    #[schemars(regex(pattern = htex_schema::NOT_BLANK))]
     pub name: String,
     /// SPDX licence expression of the asset.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -260,6 +261,10 @@ pub struct Representation {
     /// The conditions at which the model is fitted, in the order of the parameter block.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub at: Vec<AtCondition>,
+    /// The triangles between conditions that a player interpolates in, by indices into `at`; none for those of the specification's
+    /// rules. [`crate::check_triangles`] says which are valid.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub triangles: Vec<Triangle>,
     /// Archive entry that holds the parameter block.
     #[schemars(regex(pattern = ENTRY_NAME), extend("not" = own_entries()))]
     pub parameters: String,

@@ -252,6 +252,10 @@ htex_finding::rule_table! {
         "A number of `quality` or `left_out` is out of range.",
         "There must be nine band errors; correlations are from -1 to 1; an RMS is finite and not negative.",
         "Measure again, or remove `quality` or `left_out`.";
+    TRIANGLES_INVALID Error [REPRESENTATIONS]:
+        "The triangles of a representation cannot be interpolated in.",
+        "A player has one mix at each motion, and it does not jump, only if they cover the hull of the representation's conditions once, without gaps and overlaps. Of each representation the first fault is reported.",
+        "Correct them at the pointer, or remove `triangles`: then a player finds triangles itself.";
     PARAMETERS_ENTRY_INVALID Error [BLOCKS, REFERENCE, MODULES]:
         "Two parts of the asset use the same entry, or one uses an entry of the container.",
         "Every block needs its own entry, other than `mimetype` and `manifest.json`.",

@@ -19,8 +19,11 @@ pub(crate) const SEMANTIC_VERSION: &str = concat!(
 /// Pattern of a DOI, as [`crate::check_doi`] checks it.
 pub(crate) const DOI: &str = r"^10\.[0-9]{4,9}(\.[0-9]+)*/[!-~]+$";
 
-/// Pattern of an entry's name: parts of ASCII characters from space to `~`, without `\\`, `:` and `/`.
-pub(crate) const ENTRY_NAME: &str = r"^[ -.0-9;-\[\]-~]+(/[ -.0-9;-\[\]-~]+)*$";
+/// Pattern of an entry's name: parts of ASCII characters from space to `~`, without `\\`, `:` and `/`, that are not `.` or `..`.
+pub(crate) const ENTRY_NAME: &str = concat!(
+    r"^(\.?[ -\-0-9;-\[\]-~][ -.0-9;-\[\]-~]*|\.\.[ -.0-9;-\[\]-~]+)",
+    r"(/(\.?[ -\-0-9;-\[\]-~][ -.0-9;-\[\]-~]*|\.\.[ -.0-9;-\[\]-~]+))*$"
+);
 
 /// Returns the names of the container's own entries.
 pub(crate) fn own_entries() -> Value {

@@ -26,10 +26,13 @@ pub(crate) const MANIFEST: Stage = stage(
 );
 pub(crate) const UNKNOWN_KEYS: Stage = stage("unknown keys, sorted by pointer", false);
 pub(crate) const TEXTURE: Stage = stage("the whole texture", false);
-pub(crate) const RECORDINGS: Stage = stage("recordings, in their order", false);
+pub(crate) const RECORDINGS: Stage = stage(
+    "recordings, in their order, of each its rate and then its name; then the parts of a mixture",
+    false,
+);
 pub(crate) const CONDITIONS: Stage = stage("conditions, in their order", false);
 pub(crate) const REPRESENTATIONS: Stage = stage(
-    "representations, in their order: the model, each field, each condition",
+    "representations, in their order: the model, each field, each condition, the triangles",
     false,
 );
 pub(crate) const PLUGINS: Stage = stage("plugins, in their order", false);
@@ -42,11 +45,19 @@ pub(crate) const FIELDS: Stage = stage(
     false,
 );
 pub(crate) const BLOCKS: Stage = stage(
-    "parameter blocks, in the order of representations; the first finding of each",
+    "parameter blocks, in the order of representations; the first finding of each: whether there is the entry, and then \
+             whether it is the container's own or was named before",
     false,
 );
-pub(crate) const REFERENCE: Stage = stage("the reference; the first finding only", false);
-pub(crate) const MODULES: Stage = stage("the plugins' modules, in their order", false);
+pub(crate) const REFERENCE: Stage = stage(
+    "the reference; the first finding only, its entry as above, its length before the number of its values; nothing but its \
+             entry if the band is invalid",
+    false,
+);
+pub(crate) const MODULES: Stage = stage(
+    "the plugins' modules, in their order, their entries as above",
+    false,
+);
 pub(crate) const UNREFERENCED: Stage =
     stage("unreferenced entries, in the directory's order", false);
 pub(crate) const SCHEMAS: Stage = stage(

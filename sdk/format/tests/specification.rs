@@ -3,8 +3,9 @@
 
 mod common;
 
+use common::parts::{manifest, with_text};
 use common::{asset, fitted};
-use htex_format::{Asset, Steps, StoredAs};
+use htex_format::{Asset, Limits, Steps, StoredAs, validate};
 
 const TEXT: &str = include_str!("../../../spec/htex-1.md");
 
@@ -59,5 +60,72 @@ fn the_text_names_every_limit_and_its_default() {
             TEXT.contains(&format!("| `{name}` | {value} |")),
             "{name} {value}"
         );
+    }
+}
+
+/// What the text says of licences.
+#[test]
+fn licences_have_the_grammar_of_the_text() {
+    let code = |license: &str| {
+        htex_format::check_license(license)
+            .err()
+            .map(|e| e.rule().code)
+    };
+    let valid = [
+        "MIT AND Apache-2.0",
+        "MIT and (Apache-2.0 or 0BSD)",
+        "Apache-2.0+",
+        "GPL-2.0",
+        "GPL-2.0-or-later WITH Classpath-exception-2.0",
+        "MIT WITH AdditionRef-x",
+        "DocumentRef-a:LicenseRef-b OR MIT with DocumentRef-a:AdditionRef-b",
+    ];
+    assert!(valid.iter().all(|license| code(license).is_none()));
+    for unlisted in ["mit", "Foo-1.0", "MIT OR Foo-1.0 OR Bar", "MIT WITH Foo"] {
+        assert_eq!(code(unlisted), Some("LICENSE_UNKNOWN"), "{unlisted}");
+    }
+    for invalid in [
+        "",
+        "MIT And 0BSD",
+        "Apache-2.0 +",
+        "GPL-2.0+",
+        "Foo-1.0+",
+        "a_b",
+        "MIT Foo",
+        "AND",
+    ] {
+        assert_eq!(code(invalid), Some("LICENSE_INVALID"), "{invalid}");
+    }
+}
+
+/// 2^53 and one above it, of digits alone and with a point.
+#[test]
+fn whole_numbers_are_compared_as_the_text_says() {
+    let codes = |number: &str| {
+        let segments = format!("\"segments\":{number}");
+        let text = manifest()
+            .to_string()
+            .replacen("\"segments\":48", &segments, 1);
+        assert!(text.contains(number));
+        let report = validate(&with_text(text.as_bytes()), &Limits::default());
+        report
+            .findings
+            .into_iter()
+            .map(|f| f.code)
+            .collect::<Vec<_>>()
+    };
+    for valid in [
+        "9007199254740992",
+        "9007199254740993.0",
+        "9007199254740993e0",
+    ] {
+        assert_eq!(codes(valid), [""; 0], "{valid}");
+    }
+    for refused in [
+        "9007199254740993",
+        "9007199254740995.0",
+        "18446744073709551616",
+    ] {
+        assert_eq!(codes(refused), ["JSON_TYPE"], "{refused}");
     }
 }

@@ -224,6 +224,8 @@ impl RawVoice for TableVoice {
                 motion.speed_mm_s,
                 motion.force_n,
                 motion.position_mm,
+                motion.x_mm,
+                motion.y_mm,
             )
         }
     }
@@ -330,6 +332,8 @@ mod tests {
             speed_mm_s: 80.0,
             force_n: 0.4,
             position_mm: 12.0,
+            x_mm: 12.0,
+            y_mm: 0.0,
         };
         let condition = FitCondition {
             speed_mm_s: Some(80.0),

@@ -12,11 +12,12 @@ const SAYS_YES: (&str, &str) = (
     "extension",
     "(i64.extend_i32_u (i32.eq (i32.load8_u offset=5 (local.get 0)) (i32.const 0x6d)))",
 );
-/// The first sample of a block is the position; above 100 mm an error is returned.
+/// The first sample of a block is the position plus x and twice y; above 100 mm an error is returned.
 const SET: &str = "(global $position (mut f64) (f64.const 7))
-    (func (export \"htex_motion_1_set\") (param i64 f64 f64 f64) (result i64)
+    (func (export \"htex_motion_1_set\") (param i64 f64 f64 f64 f64 f64) (result i64)
       (if (f64.gt (local.get 3) (f64.const 100)) (then (return (i64.const -1))))
-      (global.set $position (local.get 3))
+      (global.set $position (f64.add (local.get 3)
+        (f64.add (local.get 4) (f64.mul (f64.const 2) (local.get 5)))))
       (i64.const 0))";
 /// The parameter is the force, the level the speed; 0.25 and 2 if unknown.
 const FIT: &str = "(func (export \"htex_motion_1_fit\")
@@ -41,6 +42,8 @@ fn at(position_mm: f64) -> Motion {
         speed_mm_s: -80.0,
         force_n: 0.4,
         position_mm,
+        x_mm: 0.0,
+        y_mm: 0.0,
     }
 }
 
@@ -56,6 +59,16 @@ fn a_voice_is_told_where_the_finger_is() {
         out[0]
     };
     assert_eq!([next(0), next(1)], [42.0, 7.0], "each voice has its own");
+    let place = Motion {
+        x_mm: 10.0,
+        y_mm: -4.0,
+        ..at(42.0)
+    };
+    voices[0].set_motion(place).unwrap();
+    let mut out = [0.0];
+    voices[0].render(&mut out).unwrap();
+    assert_eq!(out[0], 44.0, "and in which place");
+    voices[0].set_motion(at(42.0)).unwrap();
     // The host refuses motions outside the ranges of the extension, and the model those that it does not accept.
     let refused = |error: HostError, words: &str| match error {
         HostError::Call {
@@ -68,6 +81,11 @@ fn a_voice_is_told_where_the_finger_is() {
     };
     for x in [f64::NAN, f64::INFINITY, 1e13] {
         refused(voices[0].set_motion(at(x)).unwrap_err(), "`position_mm` is");
+        let aside = Motion {
+            y_mm: x,
+            ..at(42.0)
+        };
+        refused(voices[0].set_motion(aside).unwrap_err(), "`y_mm` is");
     }
     refused(
         voices[0].set_motion(at(101.0)).unwrap_err(),
@@ -127,7 +145,10 @@ fn a_module_that_says_yes_must_have_all_of_it() {
         let error = load_within(&wat, &limits()).unwrap_err().to_string();
         assert!(error.contains(missing), "{error}");
     }
-    let wrong = SET.replace("(param i64 f64 f64 f64)", "(param i64 f64 f64 f64 f64)");
+    let wrong = SET.replace(
+        "(param i64 f64 f64 f64 f64 f64)",
+        "(param i64 f64 f64 f64 f64 f64 f64)",
+    );
     let wat = text("1.0.0", &[SAYS_YES], &format!("{wrong} {FIT}"));
     let error = load_within(&wat, &limits()).unwrap_err().to_string();
     assert!(error.contains("does not have the arguments"), "{error}");

@@ -13,15 +13,56 @@ const TEXT: &str = include_str!("../../../spec/htexlib-1.md");
 /// What `tests/peers/library.py`, a reader written from the specification alone, prints for the valid conformance files.
 const LISTED: &str = include_str!("../../../tests/golden/library.json");
 
-/// Bytes of the code block of this name.
-fn example(name: &str) -> Vec<u8> {
+/// Lines of the code block of this name: bytes and comment.
+fn lines(name: &str) -> Vec<(Vec<u8>, &'static str)> {
     let (_, rest) = TEXT.split_once(&format!("```hex {name}\n")).unwrap();
     let (block, _) = rest.split_once("```").unwrap();
-    let bytes = block.lines().map(|line| line.split('#').next().unwrap());
-    bytes
-        .flat_map(str::split_whitespace)
-        .map(|b| u8::from_str_radix(b, 16).unwrap())
+    let byte = |b: &str| u8::from_str_radix(b, 16).unwrap();
+    let line = |line: &'static str| {
+        let (bytes, comment) = line.split_once('#').unwrap_or((line, ""));
+        (bytes.split_whitespace().map(byte).collect(), comment)
+    };
+    block.lines().map(line).collect()
+}
+
+/// Bytes of the code block of this name.
+fn example(name: &str) -> Vec<u8> {
+    lines(name)
+        .into_iter()
+        .flat_map(|(bytes, _)| bytes)
         .collect()
+}
+
+/// The number of bytes that a line's comment states, if it does.
+fn stated(comment: &str) -> Option<u64> {
+    let words: Vec<&str> = comment.split_whitespace().filter(|w| *w != "own").collect();
+    let bytes = words.iter().rposition(|word| word.starts_with("bytes"))?;
+    words.get(bytes.checked_sub(1)?)?.parse().ok()
+}
+
+/// The unsigned integer in LEB128 that a line is, or the little-endian one of its last eight bytes.
+fn number(line: &[u8]) -> u64 {
+    match line.last_chunk::<8>() {
+        Some(last) => u64::from_le_bytes(*last),
+        None => line
+            .iter()
+            .rev()
+            .fold(0, |sum, byte| sum << 7 | u64::from(byte & 0x7f)),
+    }
+}
+
+#[test]
+fn the_example_states_its_numbers_of_bytes() {
+    let mut checked = 0;
+    for name in ["root", "leaf", "header"] {
+        for (line, comment) in lines(name) {
+            if let Some(stated) = stated(comment) {
+                assert_eq!(number(&line), stated, "{comment}");
+                checked += 1;
+            }
+        }
+    }
+    assert_eq!(checked, 5);
 }
 
 /// The contents of the page at a range of bytes, by the inflater that zlib has.

@@ -281,11 +281,15 @@ macro_rules! export_model {
                 speed_mm_s: f64,
                 force_n: f64,
                 position_mm: f64,
+                x_mm: f64,
+                y_mm: f64,
             ) -> i64 {
                 let motion = $crate::Motion {
                     speed_mm_s,
                     force_n,
                     position_mm,
+                    x_mm,
+                    y_mm,
                 };
                 // SAFETY: one thread a voice, by the extension.
                 unsafe { STATE.motion_set(voice, motion) }

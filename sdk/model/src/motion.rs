@@ -6,7 +6,7 @@ use crate::{Error, Voice, text};
 /// The motion of a finger at one sample. The speed is constant from there until the next motion is set.
 ///
 /// ```
-/// let back = htex_model::Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm: 12.5 };
+/// let back = htex_model::Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm: 12.5, x_mm: 10.0, y_mm: 7.5 };
 /// assert!(back.check().is_ok());
 /// let too_strong = htex_model::Motion { force_n: f64::MAX, ..back };
 /// assert!(too_strong.check().is_err() && too_strong.clamped().check().is_ok());
@@ -19,6 +19,10 @@ pub struct Motion {
     pub force_n: f64,
     /// Position along the finger's path, mm, of either sign.
     pub position_mm: f64,
+    /// Place on the surface, mm, of either sign; where it is not known, the position along the path.
+    pub x_mm: f64,
+    /// Place on the surface across `x_mm`, mm, of either sign; where it is not known, 0.
+    pub y_mm: f64,
 }
 
 impl Motion {
@@ -28,7 +32,7 @@ impl Motion {
     /// [`InvalidArgument`](crate::Status::InvalidArgument) for a number that is not finite or beyond its range.
     ///
     /// ```
-    /// let motion = htex_model::Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm: 12.5 };
+    /// let motion = htex_model::Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm: 12.5, x_mm: 10.0, y_mm: 7.5 };
     /// assert!(motion.check().is_ok());
     /// assert!(htex_model::Motion { force_n: -0.1, ..motion }.check().is_err());
     /// ```
@@ -39,11 +43,10 @@ impl Motion {
             (-MAX_SPEED_MM_S, MAX_SPEED_MM_S),
         )?;
         within("force_n", self.force_n, (0.0, MAX_FORCE_N))?;
-        within(
-            "position_mm",
-            self.position_mm,
-            (-MAX_POSITION_MM, MAX_POSITION_MM),
-        )
+        let far = (-MAX_POSITION_MM, MAX_POSITION_MM);
+        within("position_mm", self.position_mm, far)?;
+        within("x_mm", self.x_mm, far)?;
+        within("y_mm", self.y_mm, far)
     }
 }
 
@@ -51,10 +54,13 @@ impl Motion {
     /// Clamps the numbers to the ranges of the extension; NaN is kept.
     #[must_use]
     pub fn clamped(self) -> Self {
+        let near = |mm: f64| mm.clamp(-MAX_POSITION_MM, MAX_POSITION_MM);
         Self {
             speed_mm_s: self.speed_mm_s.clamp(-MAX_SPEED_MM_S, MAX_SPEED_MM_S),
             force_n: self.force_n.clamp(0.0, MAX_FORCE_N),
-            position_mm: self.position_mm.clamp(-MAX_POSITION_MM, MAX_POSITION_MM),
+            position_mm: near(self.position_mm),
+            x_mm: near(self.x_mm),
+            y_mm: near(self.y_mm),
         }
     }
 }

@@ -8,15 +8,21 @@
 pub const MAX_SPEED_MM_S: f64 = 1_000_000.0;
 /// Largest normal force of a finger, newtons.
 pub const MAX_FORCE_N: f64 = 1_000_000.0;
-/// Largest distance of a finger from the start of its path, mm, in either direction.
+/// Largest distance of a finger from the start of its path, and from the origin of its place, mm, in either direction.
 pub const MAX_POSITION_MM: f64 = 1_000_000_000_000.0;
 
 /// Sets the motion at a voice's next sample: the speed along the finger's path (mm/s, negative while the
-/// position decreases), the normal force (newtons, not negative) and the position along the path (mm, of either
-/// sign). The speed is constant until the next call. Returns a status; after a negative one the
+/// position decreases), the normal force (newtons, not negative), the position along the path and the place on the
+/// surface (mm, of either sign). The speed is constant until the next call. Returns a status; after a negative one the
 /// voice continues unchanged. `[render thread, no allocation; one thread at a time for one voice]`
-pub type MotionSetFn =
-    unsafe extern "C" fn(voice: i64, speed_mm_s: f64, force_n: f64, position_mm: f64) -> i64;
+pub type MotionSetFn = unsafe extern "C" fn(
+    voice: i64,
+    speed_mm_s: f64,
+    force_n: f64,
+    position_mm: f64,
+    x_mm: f64,
+    y_mm: f64,
+) -> i64;
 /// As `htex_model_fit`, of a recording at a speed (mm/s) and a normal force (newtons), neither negative; NaN
 /// means unknown. `[any thread]`
 pub type MotionFitFn = unsafe extern "C" fn(

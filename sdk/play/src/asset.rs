@@ -156,8 +156,12 @@ impl Asset {
     ///
     /// # Errors
     /// When there is no such representation, its model is missing or not compatible, the model
-    /// refuses the parameters or the rate, or the synthesis is out of range.
+    /// refuses the parameters or the rate, or the synthesis or the ceiling is out of range.
     pub fn voice(&self, options: &VoiceOptions<'_>) -> Result<Voice, Error> {
+        let ceiling = options.ceiling;
+        if !(ceiling > 0.0 && ceiling.is_finite()) {
+            return Err(Error::Ceiling { ceiling });
+        }
         let still = self.still(options)?;
         let base = self.base_ratio(options)?;
         // The source is read `base` times as fast, so a lower rate of its samples suffices.
@@ -181,7 +185,7 @@ impl Asset {
         let scales = options.effects.frequency_scaling && slides && !follows;
         Ok(match scales && motion.is_plausible() {
             true => {
-                self.motions_of(r)
+                self.motions_of(r)?
                     .scaling(motion, options.ceiling)
                     .frequency
             }
@@ -192,9 +196,9 @@ impl Asset {
     /// Returns the motions at which a representation was recorded. Loads no model.
     ///
     /// # Errors
-    /// When there is no such representation.
+    /// When there is no such representation, or its triangles are none to interpolate in.
     pub fn motions(&self, model: Option<&str>) -> Result<Motions, Error> {
-        Ok(self.motions_of(self.representation(model)?))
+        self.motions_of(self.representation(model)?)
     }
 
     /// Makes the sound of a voice that is not streamed.
@@ -287,7 +291,8 @@ impl Asset {
         };
         let motion = motion.checked()?;
         let slides = crate::exploration::slides(motion.speed_mm_s, motion.force_n);
-        Ok(slides.then(|| self.motions_of(r).scaling(motion, CEILING)))
+        let motions = self.motions_of(r)?;
+        Ok(slides.then(|| motions.scaling(motion, CEILING)))
     }
 
     /// Returns whether the model of a representation follows the motion itself.
@@ -411,7 +416,7 @@ impl Asset {
         let sets = self.data.parameters[representation].iter();
         let parameters: Result<_, _> = sets.map(|flat| order.arrange(flat)).collect();
         Ok(Known {
-            motions: self.motions_of(representation),
+            motions: self.motions_of(representation)?,
             parameters: parameters.map_err(|error| Error::Fields {
                 model: stored.model.clone(),
                 problem: error.to_string(),
@@ -419,10 +424,14 @@ impl Asset {
         })
     }
 
-    fn motions_of(&self, representation: usize) -> Motions {
+    fn motions_of(&self, representation: usize) -> Result<Motions, Error> {
         let manifest = &self.data.manifest;
-        let at = &manifest.representations[representation].at;
-        Motions::new(at, &manifest.conditions, manifest.law())
+        let stored = &manifest.representations[representation];
+        let motions = Motions::of(stored, &manifest.conditions, manifest.law());
+        motions.map_err(|error| Error::Triangles {
+            model: stored.model.clone(),
+            error,
+        })
     }
 
     fn first_condition(&self, representation: usize) -> Motion {

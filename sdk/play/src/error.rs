@@ -59,6 +59,13 @@ pub enum Error {
         /// Each field that differs, and its difference.
         problem: String,
     },
+    /// The stored triangles are none to interpolate in, in an asset that was not read from a file.
+    #[error("the triangles of {model} are invalid: {error}")]
+    Triangles {
+        model: String,
+        #[source]
+        error: htex_format::TrianglesError,
+    },
     /// A speed or force is negative or not finite.
     #[error(
         "invalid motion: {speed_mm_s} mm/s at {force_n} N; both must be finite and not negative"
@@ -68,6 +75,22 @@ pub enum Error {
         speed_mm_s: f64,
         /// Normal force, newtons.
         force_n: f64,
+    },
+    /// The highest level of a voice is not above 0 or not finite.
+    #[error(
+        "invalid ceiling: {ceiling} times the strongest recorded level; it must be above 0 and finite"
+    )]
+    Ceiling {
+        /// Multiple of the strongest recorded level.
+        ceiling: f64,
+    },
+    /// A place is not finite.
+    #[error("invalid place: x {x_mm} mm, y {y_mm} mm; both must be finite")]
+    Place {
+        /// Place on the surface, mm.
+        x_mm: f64,
+        /// Place on the surface across `x_mm`, mm.
+        y_mm: f64,
     },
     /// A position is not finite.
     #[error("invalid position: {position_mm} mm along the path; it must be finite")]

@@ -1,6 +1,6 @@
 //! Recorded conditions of a representation, with its parameters and levels.
 
-use htex_format::{AtCondition, Condition, Law};
+use htex_format::{AtCondition, Condition, Law, Representation, TrianglesError};
 use htex_host::LoadedModel;
 
 use crate::exploration::{Coverage, Effects, Explored, Scaling};
@@ -35,16 +35,29 @@ pub(crate) struct Located {
 }
 
 impl Motions {
-    /// Collects the conditions that a representation is fitted `at`.
+    /// Collects the conditions that a representation is fitted `at`, with no stored triangles.
     pub fn new(at: &[AtCondition], conditions: &[Condition], law: Law) -> Self {
-        let point = |at: &AtCondition| {
-            let known = conditions.get(at.condition).copied().unwrap_or_default();
-            [known.speed_mm_s, known.force_n].map(Option::unwrap_or_default)
-        };
-        let points: Vec<[f64; 2]> = at.iter().map(point).collect();
+        Self::in_mesh(Mesh::new(&points(at, conditions)), at, conditions, law)
+    }
+
+    /// Collects the conditions of a representation, with the triangles that it stores.
+    ///
+    /// # Errors
+    /// When its triangles are none to interpolate in: [`htex_format::check_triangles`].
+    pub fn of(
+        representation: &Representation,
+        conditions: &[Condition],
+        law: Law,
+    ) -> Result<Self, TrianglesError> {
+        let Representation { at, triangles, .. } = representation;
+        let mesh = Mesh::with_triangles(&points(at, conditions), triangles)?;
+        Ok(Self::in_mesh(mesh, at, conditions, law))
+    }
+
+    fn in_mesh(mesh: Mesh, at: &[AtCondition], conditions: &[Condition], law: Law) -> Self {
         let level_rms: Vec<f64> = at.iter().map(|at| at.level_rms).collect();
         Self {
-            mesh: Mesh::new(&points),
+            mesh,
             explored: Explored::new(at, conditions, law),
             strongest_rms: level_rms.iter().copied().fold(0.0, f64::max),
             level_rms,
@@ -101,6 +114,15 @@ impl Motions {
         let level = |(i, weight): (usize, f64)| weight * self.level_rms[i];
         weights.iter().map(level).sum()
     }
+}
+
+/// Returns speed and force of each condition that a representation is fitted at; 0 where one is not known.
+fn points(at: &[AtCondition], conditions: &[Condition]) -> Vec<[f64; 2]> {
+    let point = |at: &AtCondition| {
+        let known = conditions.get(at.condition).copied().unwrap_or_default();
+        [known.speed_mm_s, known.force_n].map(Option::unwrap_or_default)
+    };
+    at.iter().map(point).collect()
 }
 
 /// The recorded conditions of a representation, with the parameters at each.

@@ -38,11 +38,9 @@ pub use htex_finding::{Finding, Severity};
 pub use htex_format::Asset as AssetData;
 pub use htex_format::{
     AtCondition, Condition, Contact, Exponent, ExponentSource, Law, Limits, Manifest, Quantity,
-    ReadError, Representation,
+    ReadError, Representation, Triangle, TrianglesError, check_triangles,
 };
 pub use htex_format::{FieldOrder, SAME_CONDITION};
-/// The motion that models receive: with a signed speed and a known position.
-pub use htex_host::Motion as ModelMotion;
 pub use htex_host::{
     Band, Descriptor, DescriptorError, HostError, LoadedModel, Note, OptionError, Origin, Registry,
     Search, Synthesis, WasmCache, WasmCompiler, WasmLimits, WasmTotal,
@@ -53,4 +51,5 @@ pub use motion::Motion;
 pub use options::VoiceOptions;
 pub use playable::{field_order, model_of};
 pub use source::SampleSource;
+pub use travel::Finger;
 pub use voice::Voice;

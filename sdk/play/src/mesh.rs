@@ -11,14 +11,18 @@
 //!   weights of their projections on the edge.
 //!
 //! Weights are continuous in the motion, and at a recorded condition only its own weight is not zero.
+//!
+//! An asset may store triangles (`stored`): then weights are barycentric in them and no rule above applies.
 
 mod axis;
 mod build;
 mod cells;
+mod stored;
 #[cfg(test)]
 mod tests;
 
 use axis::Axis;
+use htex_format::{Triangle, TrianglesError};
 
 /// Largest distance from an edge, relative to the largest speed and force, that is attributed to rounding.
 const ON_SIDE: f64 = 1e-9;
@@ -108,6 +112,21 @@ impl Mesh {
     /// Makes a mesh of one or more points: speed, mm/s, and force, newtons, finite and not negative.
     pub fn new(conditions: &[[f64; 2]]) -> Self {
         build::mesh(conditions)
+    }
+
+    /// Makes a mesh of points and the triangles between them, as an asset stores them; of no triangles, as [`Self::new`].
+    ///
+    /// # Errors
+    /// When the triangles are none to interpolate in: [`htex_format::check_triangles`].
+    pub fn with_triangles(
+        conditions: &[[f64; 2]],
+        triangles: &[Triangle],
+    ) -> Result<Self, TrianglesError> {
+        if triangles.is_empty() {
+            return Ok(Self::new(conditions));
+        }
+        htex_format::check_triangles(conditions, triangles)?;
+        Ok(stored::mesh(conditions, triangles))
     }
 
     /// Returns the weights at a motion. Does not allocate.

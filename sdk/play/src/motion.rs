@@ -21,15 +21,18 @@ pub struct Motion {
     pub force_n: f64,
     /// Position along the path, mm; finite, of either sign. `None` if unknown.
     pub position_mm: Option<f64>,
+    /// Place on the surface, x and y, mm; finite, of either sign. `None` if unknown.
+    pub place_mm: Option<[f64; 2]>,
 }
 
 impl Motion {
-    /// Makes a motion of a scanning speed, mm/s, and a normal force, newtons, at an unknown position.
+    /// Makes a motion of a scanning speed, mm/s, and a normal force, newtons, at an unknown position and place.
     pub const fn new(speed_mm_s: f64, force_n: f64) -> Self {
         Self {
             speed_mm_s,
             force_n,
             position_mm: None,
+            place_mm: None,
         }
     }
 
@@ -42,10 +45,20 @@ impl Motion {
         }
     }
 
+    /// Sets the place on the surface, mm.
+    #[must_use]
+    pub const fn with_place_mm(self, x_mm: f64, y_mm: f64) -> Self {
+        Self {
+            place_mm: Some([x_mm, y_mm]),
+            ..self
+        }
+    }
+
     /// Returns the motion if its numbers are in range.
     ///
     /// # Errors
-    /// [`Error::Motion`] if the speed or the force is negative or not finite; [`Error::Position`] if the position is not finite.
+    /// [`Error::Motion`] if the speed or the force is negative or not finite; [`Error::Position`] if the position is not finite,
+    /// and [`Error::Place`] if the place is not.
     ///
     /// ```
     /// use htex::Motion;
@@ -60,8 +73,13 @@ impl Motion {
                 force_n: self.force_n,
             });
         }
-        match self.position_mm {
-            Some(position_mm) if !position_mm.is_finite() => Err(Error::Position { position_mm }),
+        if let Some(position_mm) = self.position_mm.filter(|mm| !mm.is_finite()) {
+            return Err(Error::Position { position_mm });
+        }
+        match self.place_mm {
+            Some([x_mm, y_mm]) if !(x_mm.is_finite() && y_mm.is_finite()) => {
+                Err(Error::Place { x_mm, y_mm })
+            }
             _ => Ok(self),
         }
     }

@@ -31,7 +31,8 @@ pub struct VoiceOptions<'a> {
     pub synthesis: Synthesis,
     /// Effects of a motion; [`Asset::source`](crate::Asset::source) has none.
     pub effects: Effects,
-    /// Highest level, as a multiple of the strongest recorded one; above 0.
+    /// Highest level that a motion outside the recorded ones has, as a multiple of the strongest recorded level; above 0 and finite.
+    /// A level that no motion raises is never reduced by it.
     pub ceiling: f64,
 }
 
@@ -86,7 +87,7 @@ impl<'a> VoiceOptions<'a> {
         self
     }
 
-    /// Sets the highest level, as a multiple of the strongest recorded one; above 0.
+    /// Sets the highest level, as a multiple of the strongest recorded one; above 0 and finite.
     #[must_use]
     pub fn with_ceiling(mut self, ceiling: f64) -> Self {
         self.ceiling = ceiling;

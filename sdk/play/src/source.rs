@@ -4,6 +4,7 @@ use htex_host::{Band, LoadedModel, ModelVoice, Motion as ModelMotion};
 
 use crate::known::{Known, Located, Motions};
 use crate::mesh::Weights;
+use crate::travel::Finger;
 use crate::{Error, Motion};
 
 /// Most conditions that are interpolated.
@@ -97,19 +98,25 @@ impl SampleSource {
 
     /// Sets the motion of the finger at `at_s` seconds after this source's first sample, for a model that follows the
     /// motion itself. The time may precede the samples rendered so far, because a resampler reads ahead. The speed is
-    /// negative while the position decreases; numbers are clamped to the ranges of the model ABI. Does nothing for other
+    /// negative while the position decreases; numbers are clamped to the ranges of the model ABI. The position is moved on by
+    /// the time that was rendered ahead; a known place is passed as it is, and an unknown one as a path along x. Does nothing for other
     /// models. Does not allocate, lock or do I/O if the model keeps to the ABI.
     ///
     /// # Errors
     /// When a number is not finite, or the model refuses the motion; the source then continues unchanged.
-    pub fn set_finger(&mut self, finger: ModelMotion, at_s: f64) -> Result<(), Error> {
+    pub fn set_finger(&mut self, finger: Finger, at_s: f64) -> Result<(), Error> {
         if !self.follows {
             return Ok(());
         }
         let ahead_s = self.rendered_s() - at_s;
+        let position_mm = finger.position_mm + ahead_s * finger.speed_mm_s;
+        let [x_mm, y_mm] = finger.place_mm.unwrap_or([position_mm, 0.0]);
         let motion = ModelMotion {
-            position_mm: finger.position_mm + ahead_s * finger.speed_mm_s,
-            ..finger
+            speed_mm_s: finger.speed_mm_s,
+            force_n: finger.force_n,
+            position_mm,
+            x_mm,
+            y_mm,
         };
         Ok(self.voice.set_motion(motion.clamped())?)
     }

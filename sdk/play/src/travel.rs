@@ -4,9 +4,20 @@
 //! ahead by parts of a block that differ from call to call, and the jitter would be audible. For a model that does not
 //! follow the motion itself, a motion costs one test of a `bool`.
 
-use htex_host::Motion as ModelMotion;
-
 use crate::Motion;
+
+/// The motion that models receive which follow it: with a signed speed and a position along the path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Finger {
+    /// Speed along the path, mm/s; negative while the position decreases.
+    pub speed_mm_s: f64,
+    /// Normal force, newtons, not negative.
+    pub force_n: f64,
+    /// Position along the path, mm, of either sign.
+    pub position_mm: f64,
+    /// Place on the surface, x and y, mm. Where it is unknown, models receive the position as x, and 0 as y.
+    pub place_mm: Option<[f64; 2]>,
+}
 
 /// The position and direction of a finger, for models that follow the motion themselves.
 #[derive(Debug, Clone)]
@@ -15,7 +26,7 @@ pub(crate) struct Travel {
     /// Frames since the last motion.
     frames: u64,
     /// The last motion.
-    motion: ModelMotion,
+    motion: Finger,
     /// Whether a motion was set.
     set: bool,
     /// The last given position, mm.
@@ -28,10 +39,11 @@ impl Travel {
         Self {
             rate_hz,
             frames: 0,
-            motion: ModelMotion {
+            motion: Finger {
                 speed_mm_s,
                 force_n: 0.0,
                 position_mm: 0.0,
+                place_mm: None,
             },
             set: false,
             given_mm: None,
@@ -46,16 +58,17 @@ impl Travel {
     /// Sets a checked motion; returns the motion for the model if it has changed.
     ///
     /// The finger moves backward if the position is less than the last given one, forward if it is greater, and keeps
-    /// its direction if the position is equal or unknown.
-    pub(crate) fn set(&mut self, motion: Motion) -> Option<ModelMotion> {
+    /// its direction if the position is equal or unknown. A place changes neither.
+    pub(crate) fn set(&mut self, motion: Motion) -> Option<Finger> {
         let Motion {
             speed_mm_s,
             force_n,
             position_mm,
+            place_mm,
         } = motion;
         let before = self.motion;
         let same = speed_mm_s == before.speed_mm_s.abs() && force_n == before.force_n;
-        if self.set && same && position_mm.is_none() {
+        if self.set && same && position_mm.is_none() && place_mm.is_none() {
             return None;
         }
         let on_mm = before.speed_mm_s * self.frames as f64 / self.rate_hz;
@@ -63,10 +76,11 @@ impl Travel {
             Some((now, before)) if now != before => now < before,
             _ => before.speed_mm_s.is_sign_negative(),
         };
-        self.motion = ModelMotion {
+        self.motion = Finger {
             speed_mm_s: if back { -speed_mm_s } else { speed_mm_s },
             force_n,
             position_mm: position_mm.unwrap_or(before.position_mm + on_mm),
+            place_mm,
         };
         self.given_mm = position_mm.or(self.given_mm);
         (self.frames, self.set) = (0, true);

@@ -27,6 +27,12 @@ int play(const uint8_t *block, size_t length, uint32_t *hash) {
         || htex_player_render(&player, 0, 1) != HTEX_PLAYER_POINTER) {
         return 100;
     }
+    int quantity = htex_player_quantity(&player);
+    const char *unit = htex_player_unit(&player);
+    if (quantity < HTEX_PLAYER_LATERAL_FORCE || quantity > HTEX_PLAYER_DISPLACEMENT || unit[0] != (quantity <= HTEX_PLAYER_NORMAL_FORCE ? 'N' : 'm')
+        || !(htex_player_full_scale(&player) > 0.0f) || htex_player_unit(0)[0] != 0) {
+        return 101;
+    }
     uint32_t sum = 0x811C9DC5u;
     for (int m = 0; m < 6; m++) {
         htex_player_set_motion(&player, motions[m][0], motions[m][1]);

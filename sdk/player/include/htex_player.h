@@ -25,7 +25,7 @@ enum {
     HTEX_PLAYER_CHECKSUM = 5,    /* the bytes were changed */
     HTEX_PLAYER_HEADER = 6,      /* a number of the header is out of range */
     HTEX_PLAYER_VALUES = 7,      /* a number after the header is out of range */
-    HTEX_PLAYER_AXES = 8,        /* speeds or forces do not ascend */
+    HTEX_PLAYER_AXES = 8,        /* speeds or forces do not ascend or are out of range */
     HTEX_PLAYER_POINTER = -1,    /* a pointer is null or misaligned */
     HTEX_PLAYER_MOTION = -2      /* speed or force is not finite */
 };
@@ -37,9 +37,28 @@ int htex_player_open(htex_player *player, const uint8_t *block, size_t length, u
 /* Returns the rate of the samples, hertz. */
 float htex_player_rate_hz(const htex_player *player);
 
-/* Sets speed (mm/s, of either sign) and normal force (newtons). Spectrum and level glide to it; a motion beyond the
-   baked conditions is clamped to them, and a finger that does not slide (below 0.5 mm/s, or without force) is silent.
-   Returns a status. */
+/* Quantities of samples. */
+enum {
+    HTEX_PLAYER_LATERAL_FORCE = 1, /* N */
+    HTEX_PLAYER_NORMAL_FORCE = 2,  /* N */
+    HTEX_PLAYER_ACCELERATION = 3,  /* m/s2 */
+    HTEX_PLAYER_VELOCITY = 4,      /* m/s */
+    HTEX_PLAYER_DISPLACEMENT = 5   /* m */
+};
+
+/* Returns the quantity of the samples. */
+int htex_player_quantity(const htex_player *player);
+
+/* Returns the symbol of their unit: "N", "m/s2", "m/s" or "m". */
+const char *htex_player_unit(const htex_player *player);
+
+/* Returns a magnitude that samples of the grid of motions rarely exceed, in their unit: for htex_player_render_i16. */
+float htex_player_full_scale(const htex_player *player);
+
+/* Sets speed (mm/s, of either sign) and normal force (newtons). Spectrum and level glide to it. Beyond the baked
+   conditions the level follows the law of the block, and so do the frequencies of sinusoids. A finger that does not slide
+   (below 0.5 mm/s, or without force) is silent. A reading above 1000 mm/s or 20 N is none of a finger: the last motion is
+   held for 0.1 s, then the player is silent until the next good one. Returns a status. */
 int htex_player_set_motion(htex_player *player, float speed_mm_s, float force_n);
 
 /* Writes the next `count` samples, in the asset's unit. Returns a status. */

@@ -1,13 +1,16 @@
 //! A validated block of bytes.
 
 use crate::crc::crc32;
+use crate::law::{Factors, Law};
 use crate::layout::{
-    CHECKSUM, HEADER, KIND_NOISE, KIND_TONES, MAGIC, MOST_GLIDE, MOST_HALF, MOST_LEVEL,
-    MOST_MOTION, MOST_ON_AXIS, MOST_ROW, MOST_TONES, MOST_UP, MOST_VALUE, RANDOM_PHASE, RATE_HZ,
-    VERSION,
+    CHECKSUM, HEADER, HOLD_S, KIND_NOISE, KIND_TONES, LEAST_FORCE_N, MAGIC, MIN_SLIDING_MM_S,
+    MOST_CEILING, MOST_EXPONENT, MOST_FILTERS, MOST_FORCE_N, MOST_GLIDE, MOST_HALF, MOST_LEVEL,
+    MOST_ON_AXIS, MOST_ROW, MOST_SCALE, MOST_SPEED_MM_S, MOST_TONES, MOST_UP, MOST_VALUE,
+    RANDOM_PHASE, RATE_HZ, VERSION,
 };
+use crate::quantity::Quantity;
 use crate::weights::Weights;
-use crate::words::Words;
+use crate::words::{Integers, Words};
 
 /// Reason why bytes are not a playable block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,7 +31,7 @@ pub enum OpenError {
     Header = 6,
     /// A number after the header is not finite or out of range.
     Values = 7,
-    /// The axes of the conditions do not ascend.
+    /// The axes of the conditions do not ascend, or are out of range.
     Axes = 8,
 }
 
@@ -42,20 +45,22 @@ impl core::fmt::Display for OpenError {
             Self::Checksum => "the checksum of the block does not match: copy or bake it again",
             Self::Header => "a number in the header of the block is out of range",
             Self::Values => "a number of the block is not finite or out of range",
-            Self::Axes => "the speeds or forces of the block do not ascend",
+            Self::Axes => "the speeds or forces of the block do not ascend or are out of range",
         })
     }
 }
 
 impl core::error::Error for OpenError {}
 
-/// What a block stores for each condition.
+/// What a block stores for its conditions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BlockKind {
-    /// A symmetrical filter for white noise, with `half` coefficients on each side of its centre.
+    /// Symmetrical filters for white noise, with `half` coefficients on each side of the centre. Each condition mixes them.
     Noise {
         /// Coefficients on one side.
         half: usize,
+        /// Filters that are mixed.
+        filters: usize,
     },
     /// Sinusoids.
     Tones {
@@ -65,20 +70,17 @@ pub enum BlockKind {
     },
 }
 
-impl BlockKind {
-    /// Returns the numbers stored for a condition after its level.
-    fn values(self) -> usize {
-        match self {
-            Self::Noise { half } => half + 1,
-            Self::Tones { count, .. } => 2 * count,
-        }
-    }
-}
-
 /// A baked texture, validated once and read in place.
 #[derive(Debug, Clone, Copy)]
 pub struct Block<'a> {
     kind: BlockKind,
+    quantity: Quantity,
+    law: Law,
+    /// Level up to which the law raises that of the grid.
+    ceiling: f32,
+    full_scale: f32,
+    /// Frequency up to which the law raises those of the grid, cycles per sample of the internal rate.
+    highest: f32,
     rate_hz: f32,
     up: usize,
     row: usize,
@@ -86,14 +88,43 @@ pub struct Block<'a> {
     speeds: Words<'a>,
     forces: Words<'a>,
     rows: Words<'a>,
-    conditions: Words<'a>,
+    levels: Words<'a>,
+    /// Of noise: the scales of the filters. Of sinusoids: those of each condition.
+    numbers: Words<'a>,
+    /// Of noise: the weights of the filters in each condition, and the filters.
+    integers: Integers<'a>,
 }
 
-/// A level and the conditions to mix.
+/// What to play at a motion.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Target {
     pub(crate) weights: Weights,
     pub(crate) level: f32,
+    /// Factor of the frequencies of sinusoids.
+    pub(crate) frequency: f32,
+}
+
+/// Numbers of each part after the header: of 32 bits, then of 16 bits.
+#[derive(Clone, Copy)]
+struct Parts {
+    speeds: usize,
+    forces: usize,
+    rows: usize,
+    levels: usize,
+    numbers: usize,
+    integers: usize,
+}
+
+impl Parts {
+    /// Returns the numbers of 32 bits.
+    fn words(&self) -> usize {
+        self.speeds + self.forces + self.rows + self.levels + self.numbers
+    }
+
+    /// Returns the length of all parts, bytes, with zeros up to a multiple of four.
+    fn bytes(&self) -> usize {
+        4 * self.words() + (2 * self.integers).next_multiple_of(4)
+    }
 }
 
 impl<'a> Block<'a> {
@@ -102,9 +133,10 @@ impl<'a> Block<'a> {
     /// # Errors
     /// When the bytes are not a complete block of version 1 with all numbers in range.
     pub fn open(bytes: &'a [u8]) -> Result<Self, OpenError> {
-        let (header, _) = bytes
-            .split_first_chunk::<HEADER>()
-            .ok_or(OpenError::TooShort)?;
+        let header = match bytes.split_first_chunk::<HEADER>() {
+            Some((header, rest)) if rest.len() >= CHECKSUM => header,
+            _ => return Err(OpenError::TooShort),
+        };
         if header[..4] != MAGIC {
             return Err(OpenError::NotABlock);
         }
@@ -120,27 +152,25 @@ impl<'a> Block<'a> {
         if crc32(summed) != sum {
             return Err(OpenError::Checksum);
         }
-        let block = Self::read_header(header, Words::new(payload)).ok_or(OpenError::Header)?;
-        let stored = [block.speeds, block.forces, block.rows, block.conditions];
-        let needed = [header[24], header[25]].map(usize::from);
-        let [speeds, forces] = needed;
-        let conditions = speeds * forces * block.stride();
-        let needed = [speeds, forces, block.up_words(), conditions];
-        let all: usize = needed.iter().sum();
-        if stored.map(Words::len) != needed || payload.len() != 4 * all {
+        let (block, parts) = Self::read_header(header).ok_or(OpenError::Header)?;
+        if payload.len() != parts.bytes() {
             return Err(OpenError::Length);
         }
-        block.checked()
+        block.with(payload, parts).checked(payload, parts)
     }
 
-    /// Reads the header; `None` if a number is out of range.
-    fn read_header(header: &[u8; HEADER], words: Words<'a>) -> Option<Self> {
+    /// Reads the header; `None` if a number is out of range. The parts are not read yet.
+    fn read_header(header: &[u8; HEADER]) -> Option<(Self, Parts)> {
         let size = usize::from(half_word(header, 20));
-        let kind = match (header[6], header[7]) {
-            (KIND_NOISE, 0) if size.is_multiple_of(4) && size <= MOST_HALF => {
-                BlockKind::Noise { half: size }
+        let filters = usize::from(header[26]);
+        let kind = match (header[6], header[7], filters) {
+            (KIND_NOISE, 0, 1..=MOST_FILTERS) if size.is_multiple_of(4) && size <= MOST_HALF => {
+                BlockKind::Noise {
+                    half: size,
+                    filters,
+                }
             }
-            (KIND_TONES, flags) if flags <= RANDOM_PHASE && size <= MOST_TONES => {
+            (KIND_TONES, flags, 0) if flags <= RANDOM_PHASE && size <= MOST_TONES => {
                 BlockKind::Tones {
                     count: size,
                     random_phase: flags == RANDOM_PHASE,
@@ -148,15 +178,19 @@ impl<'a> Block<'a> {
             }
             _ => return None,
         };
-        let rate_hz = f32::from_bits(word(header, 12));
+        let quantity = Quantity::of_code(header[27])?;
+        let number = |at| f32::from_bits(word(header, at));
+        let rate_hz = number(12);
         let [up, row] = [16, 18].map(|at| usize::from(half_word(header, at)));
         let glide = half_word(header, 22);
         let [speeds, forces] = [header[24], header[25]].map(usize::from);
+        let [a, b, c, ceiling, full_scale, highest] = [28, 32, 36, 40, 44, 48].map(number);
         let axis = 1..=MOST_ON_AXIS;
         let row_fits = match up {
             1 => row == 0,
             _ => row.is_multiple_of(4) && (4..=MOST_ROW).contains(&row),
         };
+        let exponents = -MOST_EXPONENT..=MOST_EXPONENT;
         let in_range = size > 0
             && (RATE_HZ.0..=RATE_HZ.1).contains(&rate_hz)
             && (1..=MOST_UP).contains(&up)
@@ -164,61 +198,105 @@ impl<'a> Block<'a> {
             && (1..=MOST_GLIDE).contains(&glide)
             && axis.contains(&speeds)
             && axis.contains(&forces)
-            && header[26..] == [0; 6];
-        let rows = up * row;
-        let from = speeds + forces + rows;
-        in_range.then(|| Self {
+            && [a, b, c].iter().all(|x| exponents.contains(x))
+            && (0.0..=MOST_CEILING).contains(&ceiling)
+            && (0.0..=MOST_CEILING).contains(&full_scale)
+            && full_scale > 0.0
+            && (0.0..=0.5).contains(&highest);
+        let conditions = speeds * forces;
+        let (numbers, integers) = match kind {
+            BlockKind::Noise { half, filters } => (filters, filters * (conditions + half + 1)),
+            BlockKind::Tones { count, .. } => (2 * count * conditions, 0),
+        };
+        let parts = Parts {
+            speeds,
+            forces,
+            rows: up * row,
+            levels: conditions,
+            numbers,
+            integers,
+        };
+        let none = Words::new(&[]);
+        let block = Self {
             kind,
+            quantity,
+            law: Law {
+                frequency_speed: a,
+                level_speed: b,
+                level_force: c,
+            },
+            ceiling,
+            full_scale,
+            highest,
             rate_hz,
             up,
             row,
             glide: u32::from(glide),
-            speeds: words.part(0, speeds),
-            forces: words.part(speeds, forces),
-            rows: words.part(speeds + forces, rows),
-            conditions: words.part(from, speeds * forces * (1 + kind.values())),
-        })
+            speeds: none,
+            forces: none,
+            rows: none,
+            levels: none,
+            numbers: none,
+            integers: Integers::new(&[]),
+        };
+        in_range.then_some((block, parts))
     }
 
-    fn up_words(&self) -> usize {
-        self.up * self.row
-    }
-
-    fn stride(&self) -> usize {
-        1 + self.kind.values()
+    /// Returns the block with its parts.
+    fn with(self, payload: &'a [u8], parts: Parts) -> Self {
+        let words = Words::new(payload);
+        let mut from = 0;
+        let mut next = |count: usize| {
+            let part = words.part(from, count);
+            from += count;
+            part
+        };
+        let integers = payload.get(4 * parts.words()..).unwrap_or(&[]);
+        Self {
+            speeds: next(parts.speeds),
+            forces: next(parts.forces),
+            rows: next(parts.rows),
+            levels: next(parts.levels),
+            numbers: next(parts.numbers),
+            integers: Integers::new(integers),
+            ..self
+        }
     }
 
     /// Returns the block if its numbers are in range.
-    fn checked(self) -> Result<Self, OpenError> {
-        let is_axis = |axis: Words<'_>| {
+    fn checked(self, payload: &[u8], parts: Parts) -> Result<Self, OpenError> {
+        let is_axis = |axis: Words<'_>, least: f32, most: f32| {
             let rises = axis.iter().zip(axis.iter().skip(1)).all(|(a, b)| a < b);
-            rises && axis.iter().all(|x| (0.0..=MOST_MOTION).contains(&x))
+            rises && axis.iter().all(|x| (least..=most).contains(&x))
         };
-        if !(is_axis(self.speeds) && is_axis(self.forces)) {
+        if !(is_axis(self.speeds, MIN_SLIDING_MM_S, MOST_SPEED_MM_S)
+            && is_axis(self.forces, LEAST_FORCE_N, MOST_FORCE_N))
+        {
             return Err(OpenError::Axes);
         }
         let values = -MOST_VALUE..=MOST_VALUE;
-        let conditions = 0..self.speeds.len() * self.forces.len();
+        let levels = 0.0..=MOST_LEVEL;
+        let end = payload.get(4 * parts.words() + 2 * parts.integers..);
         let sound = self.rows.iter().all(|c| values.contains(&c))
-            && conditions.into_iter().all(|i| {
-                (0.0..=MOST_LEVEL).contains(&self.level(i)) && self.are_sound(self.values(i))
-            });
+            && self.levels.iter().all(|level| levels.contains(&level))
+            && self.are_sound(self.numbers)
+            && end.is_some_and(|zeros| zeros.iter().all(|zero| *zero == 0));
         match sound {
             true => Ok(self),
             false => Err(OpenError::Values),
         }
     }
 
-    /// Returns whether the numbers of a condition are in range. Frequencies are at most half the internal rate.
-    fn are_sound(&self, values: Words<'_>) -> bool {
-        let is_tones = matches!(self.kind, BlockKind::Tones { .. });
-        values
-            .iter()
-            .enumerate()
-            .all(|(i, x)| match is_tones && i % 2 == 0 {
-                true => (0.0..=0.5).contains(&x),
-                false => (-MOST_VALUE..=MOST_VALUE).contains(&x),
-            })
+    /// Returns whether the numbers of the kind are in range. Frequencies are at most half the internal rate.
+    fn are_sound(&self, numbers: Words<'_>) -> bool {
+        let amplitudes = -MOST_VALUE..=MOST_VALUE;
+        match self.kind {
+            BlockKind::Noise { .. } => numbers.iter().all(|x| (0.0..=MOST_SCALE).contains(&x)),
+            BlockKind::Tones { .. } => numbers.iter().enumerate().all(|(i, x)| match i % 2 {
+                0 => (0.0..=0.5).contains(&x),
+                _ => amplitudes.contains(&x),
+            }),
+        }
     }
 
     /// Returns the rate of the samples, hertz.
@@ -231,9 +309,29 @@ impl<'a> Block<'a> {
         self.rate_hz / self.up as f32
     }
 
-    /// Returns what is stored for each condition.
+    /// Returns what is stored for the conditions.
     pub fn kind(&self) -> BlockKind {
         self.kind
+    }
+
+    /// Returns the quantity of the samples, which has their unit.
+    pub fn quantity(&self) -> Quantity {
+        self.quantity
+    }
+
+    /// Returns the law that a texture follows beyond the grid.
+    pub fn law(&self) -> Law {
+        self.law
+    }
+
+    /// Returns the level up to which the law raises that of the grid, in the asset's unit.
+    pub fn ceiling(&self) -> f32 {
+        self.ceiling
+    }
+
+    /// Returns a magnitude that samples of the grid rarely exceed, in the asset's unit: for [`crate::Player::render_i16`].
+    pub fn full_scale(&self) -> f32 {
+        self.full_scale
     }
 
     /// Returns the speeds of the grid of conditions, mm/s, ascending.
@@ -261,30 +359,94 @@ impl<'a> Block<'a> {
         self.glide
     }
 
+    /// Returns for how many samples a motion is held.
+    pub(crate) fn hold(&self) -> u32 {
+        (HOLD_S * self.rate_hz) as u32
+    }
+
     /// Returns the first condition of the grid.
     pub(crate) fn first(&self) -> (f32, f32) {
         (self.speeds.at(0), self.forces.at(0))
     }
 
-    fn level(&self, condition: usize) -> f32 {
-        self.conditions.at(condition * self.stride())
-    }
-
-    /// Returns the numbers of a condition after its level.
-    pub(crate) fn values(&self, condition: usize) -> Words<'a> {
-        let stride = self.stride();
-        self.conditions.part(condition * stride + 1, stride - 1)
-    }
-
-    /// Returns what to play at a motion, clamped to the grid.
-    pub(crate) fn target(&self, speed_mm_s: f32, force_n: f32) -> Target {
-        let weights = Weights::new(self.speeds, self.forces, speed_mm_s, force_n);
-        let levels = weights.iter().map(|(i, weight)| weight * self.level(i));
-        Target {
-            level: levels.sum(),
-            weights,
+    /// Returns the number of filters that are mixed.
+    pub(crate) fn filters(&self) -> usize {
+        match self.kind {
+            BlockKind::Noise { filters, .. } => filters,
+            BlockKind::Tones { .. } => 0,
         }
     }
+
+    /// Returns the weight of a filter in a condition, an integer.
+    pub(crate) fn filter_weight(&self, condition: usize, filter: usize) -> f32 {
+        self.integers.at(condition * self.filters() + filter)
+    }
+
+    /// Returns the factor between products of weights and coefficients, which are integers, and coefficients.
+    pub(crate) fn filter_scale(&self, filter: usize) -> f32 {
+        self.numbers.at(filter)
+    }
+
+    /// Returns the centre of a filter and one side, outwards, integers.
+    pub(crate) fn filter(&self, filter: usize) -> Integers<'a> {
+        let BlockKind::Noise { half, filters } = self.kind else {
+            return Integers::new(&[]);
+        };
+        let first = filters * self.levels.len();
+        self.integers.part(first + filter * (half + 1), half + 1)
+    }
+
+    /// Returns the frequencies and amplitudes of a condition, pairwise.
+    pub(crate) fn tones(&self, condition: usize) -> Words<'a> {
+        let BlockKind::Tones { count, .. } = self.kind else {
+            return Words::new(&[]);
+        };
+        self.numbers.part(condition * 2 * count, 2 * count)
+    }
+
+    /// Returns what to play at a motion: what the nearest motion of the grid is, scaled by the law.
+    pub(crate) fn target(&self, motion: (f32, f32)) -> Target {
+        let nearest = (
+            nearest_on(self.speeds, motion.0),
+            nearest_on(self.forces, motion.1),
+        );
+        let weights = Weights::new(self.speeds, self.forces, nearest.0, nearest.1);
+        let mut level = 0.0;
+        for (condition, weight) in weights.iter() {
+            level += weight * self.levels.at(condition);
+        }
+        let factors = match motion == nearest {
+            true => Factors::NONE,
+            false => self.law.factors(motion, nearest),
+        };
+        Target {
+            weights,
+            level: self.scaled(level, factors.level),
+            frequency: factors.frequency,
+        }
+    }
+
+    /// Returns a level times a factor. It is not raised above the ceiling.
+    fn scaled(&self, level: f32, factor: f32) -> f32 {
+        let scaled = level * factor;
+        match scaled > level && scaled > self.ceiling {
+            true => level.max(self.ceiling),
+            false => scaled,
+        }
+    }
+
+    /// Returns a factor of frequencies that raises none above the highest that is permitted.
+    pub(crate) fn limited(&self, factor: f32, highest: f32) -> f32 {
+        match factor > 1.0 && highest * factor > self.highest {
+            true => (self.highest / highest).max(1.0),
+            false => factor,
+        }
+    }
+}
+
+/// Returns the value within an axis that is nearest to a number.
+fn nearest_on(axis: Words<'_>, number: f32) -> f32 {
+    number.max(axis.at(0)).min(axis.last())
 }
 
 /// Returns the 16-bit number at a byte of the header.

@@ -2,7 +2,7 @@
 //!
 //! The caller owns the memory of a player and of its block; the functions check pointers for null and alignment only.
 
-use core::ffi::c_int;
+use core::ffi::{c_char, c_int};
 use core::slice;
 
 use crate::{Block, OpenError, Player};
@@ -66,6 +66,45 @@ pub unsafe extern "C" fn htex_player_rate_hz(player: *const Player<'static>) -> 
     }
     // SAFETY: The caller guarantees an opened player.
     unsafe { (*player).block().rate_hz() }
+}
+
+/// Returns the code of the quantity of the samples; 0 for an unusable pointer.
+///
+/// # Safety
+/// `player` was opened.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_player_quantity(player: *const Player<'static>) -> c_int {
+    if !usable(player) {
+        return 0;
+    }
+    // SAFETY: The caller guarantees an opened player.
+    unsafe { (*player).block().quantity() as c_int }
+}
+
+/// Returns the symbol of the unit of the samples; empty for an unusable pointer.
+///
+/// # Safety
+/// `player` was opened.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_player_unit(player: *const Player<'static>) -> *const c_char {
+    if !usable(player) {
+        return c"".as_ptr();
+    }
+    // SAFETY: The caller guarantees an opened player.
+    unsafe { (*player).block().quantity().unit_for_c().as_ptr() }
+}
+
+/// Returns the full scale of the block, in the unit of the samples; 0 for an unusable pointer.
+///
+/// # Safety
+/// `player` was opened.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_player_full_scale(player: *const Player<'static>) -> f32 {
+    if !usable(player) {
+        return 0.0;
+    }
+    // SAFETY: The caller guarantees an opened player.
+    unsafe { (*player).block().full_scale() }
 }
 
 /// Sets the motion; returns 0, or a negative status.

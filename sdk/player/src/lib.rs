@@ -9,7 +9,7 @@
 //! assert!(matches!(Block::open(b"not a block"), Err(OpenError::TooShort)));
 //! ```
 //!
-//! No operations are fused, cosines are a polynomial, the square root is `libm`'s. `sdk/bake/tests/board.rs` compares
+//! No operations are fused, cosines, logarithms and powers are polynomials, the square root is `libm`'s. `sdk/bake/tests/board.rs` compares
 //! the bits of an emulated Cortex-M4F with the host's; the linked C library has no panic.
 #![no_std]
 #![cfg_attr(not(feature = "c"), forbid(unsafe_code))]
@@ -18,9 +18,12 @@ mod block;
 #[cfg(feature = "c")]
 mod c;
 mod crc;
+mod law;
 pub mod layout;
 mod noise;
 mod player;
+mod power;
+mod quantity;
 mod random;
 mod tones;
 mod upsampler;
@@ -29,4 +32,6 @@ mod words;
 
 pub use block::{Block, BlockKind, OpenError};
 pub use crc::crc32;
+pub use law::Law;
 pub use player::Player;
+pub use quantity::Quantity;

@@ -6,6 +6,8 @@ use crate::random::Random;
 
 /// Least energy of a mixed filter that is scaled to a level.
 const LEAST_ENERGY: f32 = 1e-9;
+/// Filters that are added to a mix in one pass.
+const AT_ONCE: usize = 4;
 
 /// Noise with the spectrum of a symmetrical filter, whose coefficients glide.
 #[derive(Debug, Clone)]
@@ -49,18 +51,41 @@ impl Noise {
 
     /// Starts a glide of `samples` to the filter of a motion; 0 sets it at once.
     pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) {
+        if samples == 0 {
+            self.silence();
+        }
         let half = self.half;
         let (mut centre, step) = (0.0, self.step.get_mut(..half).unwrap_or(&mut []));
         step.fill(0.0);
-        for (condition, weight) in target.weights.iter() {
-            let values = block.values(condition);
-            centre += weight * values.at(0);
-            let side = values.part(1, half);
-            for (sum, c) in step.iter_mut().zip(side.iter()) {
-                *sum += weight * c;
+        for first in (0..block.filters()).step_by(AT_ONCE) {
+            let mut weights = [0.0; AT_ONCE];
+            for (filter, weight) in (first..block.filters()).zip(&mut weights) {
+                for (condition, part) in target.weights.iter() {
+                    *weight += part * block.filter_weight(condition, filter);
+                }
+                *weight *= block.filter_scale(filter);
+            }
+            // Adding a filter with the weight 0 changes no bit.
+            let filters: [usize; AT_ONCE] =
+                core::array::from_fn(|i| (first + i).min(block.filters() - 1));
+            let filters = filters.map(|filter| block.filter(filter));
+            for (weight, filter) in weights.iter().zip(&filters) {
+                centre += weight * filter.at(0);
+            }
+            let [w, x, y, z] = weights;
+            let [a, b, c, d] = filters.map(|filter| filter.part(1, half).iter());
+            for ((((sum, a), b), c), d) in step.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+                *sum = *sum + w * a + x * b + y * c + z * d;
             }
         }
-        let energy = centre * centre + 2.0 * step.iter().map(|c| c * c).sum::<f32>();
+        let mut sums = [0.0f32; 4];
+        for four in step.as_chunks::<4>().0 {
+            for i in 0..4 {
+                sums[i] += four[i] * four[i];
+            }
+        }
+        let side = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+        let energy = centre * centre + 2.0 * side;
         let gain = match energy > LEAST_ENERGY {
             true => target.level / libm::sqrtf(energy),
             false => 0.0,
@@ -72,6 +97,18 @@ impl Noise {
         }
         if samples == 0 {
             self.glide();
+        }
+    }
+
+    /// Starts a glide of `samples` to silence; 0 sets it at once.
+    pub(crate) fn fade(&mut self, samples: u32) {
+        let part = 1.0 / samples.max(1) as f32;
+        self.centre_step = -self.centre * part;
+        for (step, c) in self.step.iter_mut().zip(&self.side).take(self.half) {
+            *step = -c * part;
+        }
+        if samples == 0 {
+            self.silence();
         }
     }
 

@@ -1,7 +1,7 @@
 //! A playing texture.
 
 use crate::block::{Block, BlockKind};
-use crate::layout::MIN_SLIDING_MM_S;
+use crate::layout::{MIN_SLIDING_MM_S, MOST_FORCE_N, MOST_SPEED_MM_S};
 use crate::noise::Noise;
 use crate::tones::Tones;
 use crate::upsampler::Upsampler;
@@ -16,6 +16,12 @@ pub(crate) struct Memory {
     phase: usize,
     /// Remaining steps of the current glide.
     gliding: u32,
+    /// Speed and force of the last motion that sounded.
+    last: (f32, f32),
+    /// Samples until a held motion ends.
+    held: u32,
+    /// Whether the last reading was none of a finger.
+    is_held: bool,
     is_silent: bool,
     is_started: bool,
 }
@@ -27,6 +33,9 @@ impl Memory {
         upsampler: Upsampler::ZERO,
         phase: 0,
         gliding: 0,
+        last: (0.0, 0.0),
+        held: 0,
+        is_held: false,
         is_silent: false,
         is_started: false,
     };
@@ -64,14 +73,13 @@ impl<'a> Player<'a> {
     /// Starts to play; all numbers of the memory are zero before.
     pub(crate) fn start(&mut self, seed: u32) {
         match self.block.kind() {
-            BlockKind::Noise { half } => self.memory.noise.start(half, seed),
+            BlockKind::Noise { half, .. } => self.memory.noise.start(half, seed),
             BlockKind::Tones {
                 count,
                 random_phase,
             } => self.memory.tones.start(count, random_phase, seed),
         }
-        let (speed, force) = self.block.first();
-        self.retune(speed, force, false);
+        self.sound(self.block.first());
     }
 
     pub fn block(&self) -> &Block<'a> {
@@ -79,34 +87,73 @@ impl<'a> Player<'a> {
     }
 
     /// Sets the motion: speed in mm/s, of either sign, and normal force in newtons. Spectrum and level glide to it; before
-    /// the first sample they are set at once. A motion beyond the grid is clamped to it, and the player is silent while
-    /// the finger does not slide (below 0.5 mm/s, or without force). Returns false, without a change, if a number is not
-    /// finite.
+    /// the first sample they are set at once. Beyond the grid the level follows the law of the block from the nearest motion
+    /// of the grid, and so do the frequencies of sinusoids. The player is silent while the finger does not slide (below 0.5 mm/s, or without force). A
+    /// reading above 1000 mm/s or 20 N is none of a finger: the last motion is held for 0.1 s, then the player is silent until
+    /// the next good one. Returns false, without a change, if a number is not finite.
     pub fn set_motion(&mut self, speed_mm_s: f32, force_n: f32) -> bool {
         if !(speed_mm_s.is_finite() && force_n.is_finite()) {
             return false;
         }
         let speed = speed_mm_s.abs();
-        let is_silent = speed < MIN_SLIDING_MM_S || force_n <= 0.0;
-        self.retune(speed, force_n, is_silent);
+        if speed > MOST_SPEED_MM_S || force_n > MOST_FORCE_N {
+            self.hold();
+            return true;
+        }
+        self.memory.is_held = false;
+        match speed < MIN_SLIDING_MM_S || force_n <= 0.0 {
+            true => self.fade(),
+            false => self.follow((speed, force_n)),
+        }
         true
     }
 
-    fn retune(&mut self, speed: f32, force: f32, is_silent: bool) {
-        let mut target = self.block.target(speed, force);
-        if is_silent {
-            target.level = 0.0;
+    /// Holds the motion; a hold that goes on is not prolonged.
+    fn hold(&mut self) {
+        if !self.memory.is_held {
+            (self.memory.is_held, self.memory.held) = (true, self.block.hold());
         }
-        let samples = match self.memory.is_started {
-            true => self.block.glide(),
-            false => 0,
-        };
+    }
+
+    /// Follows a motion that sounds; that of before changes nothing.
+    fn follow(&mut self, motion: (f32, f32)) {
+        if self.memory.is_silent || self.memory.last != motion {
+            self.sound(motion);
+        }
+    }
+
+    fn sound(&mut self, motion: (f32, f32)) {
+        let target = self.block.target(motion);
+        let samples = self.start_glide(false);
+        self.memory.last = motion;
         let Memory { noise, tones, .. } = &mut self.memory;
         match self.block.kind() {
             BlockKind::Noise { .. } => noise.retune(&self.block, target, samples),
             BlockKind::Tones { .. } => tones.retune(&self.block, target, samples),
         }
+    }
+
+    /// Glides to silence, unless the player is silent.
+    fn fade(&mut self) {
+        if self.memory.is_silent {
+            return;
+        }
+        let samples = self.start_glide(true);
+        let Memory { noise, tones, .. } = &mut self.memory;
+        match self.block.kind() {
+            BlockKind::Noise { .. } => noise.fade(samples),
+            BlockKind::Tones { .. } => tones.fade(samples),
+        }
+    }
+
+    /// Returns the length of a glide that starts, samples at the internal rate.
+    fn start_glide(&mut self, is_silent: bool) -> u32 {
+        let samples = match self.memory.is_started {
+            true => self.block.glide(),
+            false => 0,
+        };
         (self.memory.gliding, self.memory.is_silent) = (samples, is_silent);
+        samples
     }
 
     /// Fills `out` with the next samples.
@@ -130,6 +177,7 @@ impl<'a> Player<'a> {
 
     fn tick(&mut self) -> f32 {
         self.memory.is_started = true;
+        self.count_held();
         if self.block.up() == 1 {
             return self.next();
         }
@@ -144,6 +192,17 @@ impl<'a> Player<'a> {
             false => 0,
         };
         self.memory.upsampler.at(row)
+    }
+
+    /// Counts a sample of a held motion; after the last one the player becomes silent.
+    fn count_held(&mut self) {
+        if !self.memory.is_held {
+            return;
+        }
+        match self.memory.held {
+            0 => self.fade(),
+            _ => self.memory.held -= 1,
+        }
     }
 
     /// Returns the next sample at the internal rate.

@@ -59,27 +59,47 @@ impl Tones {
     /// Starts a glide of `samples` to the sinusoids of a motion; 0 sets them at once.
     pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) {
         let part = 1.0 / samples.max(1) as f32;
-        let mut power = 0.0;
+        let (mut power, mut highest) = (0.0, 0.0f32);
         for (i, tone) in self.sounding().iter_mut().enumerate() {
             let (mut frequency, mut amplitude) = (0.0, 0.0);
             for (condition, weight) in target.weights.iter() {
-                let values = block.values(condition);
+                let values = block.tones(condition);
                 frequency += weight * values.at(2 * i);
                 amplitude += weight * values.at(2 * i + 1);
             }
             power += 0.5 * amplitude * amplitude;
-            tone.frequency_step = (frequency - tone.frequency) * part;
+            if amplitude != 0.0 {
+                highest = highest.max(frequency);
+            }
+            tone.frequency_step = frequency;
             tone.amplitude_step = amplitude;
+            if samples == 0 {
+                (tone.frequency, tone.amplitude) = (0.0, 0.0);
+            }
         }
         let gain = match power > LEAST_POWER {
             true => target.level / libm::sqrtf(power),
             false => 0.0,
         };
+        let factor = block.limited(target.frequency, highest);
         for tone in self.sounding() {
+            tone.frequency_step = (tone.frequency_step * factor - tone.frequency) * part;
             tone.amplitude_step = (tone.amplitude_step * gain - tone.amplitude) * part;
         }
         if samples == 0 {
             self.glide();
+        }
+    }
+
+    /// Starts a glide of `samples` to silence at the present frequencies; 0 sets it at once.
+    pub(crate) fn fade(&mut self, samples: u32) {
+        let part = 1.0 / samples.max(1) as f32;
+        for tone in self.sounding() {
+            tone.frequency_step = 0.0;
+            tone.amplitude_step = -tone.amplitude * part;
+        }
+        if samples == 0 {
+            self.silence();
         }
     }
 

@@ -9,7 +9,7 @@ pub(crate) struct Weights {
 }
 
 impl Weights {
-    /// Weighs the corners around a motion, which is clamped to the grid. Conditions are stored with speeds varying first.
+    /// Weighs the corners around a motion of the grid. Conditions are stored with speeds varying first.
     pub(crate) fn new(speeds: Words<'_>, forces: Words<'_>, speed: f32, force: f32) -> Self {
         let (s, u) = place(speeds, speed);
         let (f, v) = place(forces, force);

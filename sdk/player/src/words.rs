@@ -20,6 +20,11 @@ impl<'a> Words<'a> {
             .map_or(0.0, |word| f32::from_le_bytes(*word))
     }
 
+    /// Returns the last number; zero if there is none.
+    pub(crate) fn last(self) -> f32 {
+        self.at(self.len().saturating_sub(1))
+    }
+
     /// Returns `count` numbers from an index; none if they extend beyond the end.
     pub(crate) fn part(self, from: usize, count: usize) -> Self {
         let end = from.saturating_add(count);
@@ -34,5 +39,33 @@ impl<'a> Words<'a> {
     pub(crate) fn fours(self) -> impl Iterator<Item = [f32; 4]> + 'a {
         let fours = self.0.as_chunks::<4>().0.iter();
         fours.map(|four| four.map(f32::from_le_bytes))
+    }
+}
+
+/// Little-endian integers of 16 bits at any alignment, as numbers in single precision.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Integers<'a>(&'a [[u8; 2]]);
+
+impl<'a> Integers<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        Self(bytes.as_chunks::<2>().0)
+    }
+
+    /// Returns the number at an index; zero beyond the end.
+    pub(crate) fn at(self, index: usize) -> f32 {
+        self.0
+            .get(index)
+            .map_or(0.0, |integer| f32::from(i16::from_le_bytes(*integer)))
+    }
+
+    /// Returns `count` numbers from an index; none if they extend beyond the end.
+    pub(crate) fn part(self, from: usize, count: usize) -> Self {
+        let end = from.saturating_add(count);
+        Self(self.0.get(from..end).unwrap_or(&[]))
+    }
+
+    pub(crate) fn iter(self) -> impl ExactSizeIterator<Item = f32> + 'a {
+        let integers = self.0.iter();
+        integers.map(|integer| f32::from(i16::from_le_bytes(*integer)))
     }
 }

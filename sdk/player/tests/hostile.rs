@@ -8,7 +8,7 @@ use blocks::{Plan, noise, tones, with_checksum};
 use htex_player::{Block, OpenError, Player};
 use proptest::prelude::*;
 
-const MOTIONS: [(f32, f32); 8] = [
+const MOTIONS: [(f32, f32); 11] = [
     (60.0, 0.4),
     (f32::MAX, f32::MAX),
     (0.0, -1.0),
@@ -17,6 +17,9 @@ const MOTIONS: [(f32, f32); 8] = [
     (f32::NAN, 0.4),
     (f32::INFINITY, f32::NEG_INFINITY),
     (79.999, 0.4),
+    (1000.0, 20.0),
+    (0.5, 1e-45),
+    (999.0, 1e-6),
 ];
 
 /// Opens bytes, and plays them if they are a block.
@@ -75,6 +78,13 @@ fn each_error_has_its_reason() {
     assert_eq!(with(&|plan| plan.row = 0), header);
     assert_eq!(with(&|plan| plan.size = 0), header);
     assert_eq!(with(&|plan| plan.size = 324), header);
+    assert_eq!(with(&|plan| plan.filters = 0), header);
+    assert_eq!(with(&|plan| plan.filters = 65), header);
+    assert_eq!(with(&|plan| plan.quantity = 6), header);
+    assert_eq!(with(&|plan| plan.law[1] = 4.5), header);
+    assert_eq!(with(&|plan| plan.ceiling = f32::INFINITY), header);
+    assert_eq!(with(&|plan| plan.full_scale = 0.0), header);
+    assert_eq!(with(&|plan| plan.highest = 0.6), header);
     assert_eq!(with(&|plan| plan.glide = 0), header);
     assert_eq!(with(&|plan| plan.forces.clear()), header);
     assert_eq!(
@@ -85,29 +95,31 @@ fn each_error_has_its_reason() {
         with(&|plan| plan.forces[0] = f32::NAN),
         Err(OpenError::Axes)
     );
-    assert_eq!(
-        with(&|plan| plan.conditions[0] = -1.0),
-        Err(OpenError::Values)
-    );
-    assert_eq!(
-        with(&|plan| plan.conditions[3] = f32::INFINITY),
-        Err(OpenError::Values)
-    );
-    assert_eq!(
-        with(&|plan| plan.rows[0] = f32::NAN),
-        Err(OpenError::Values)
-    );
-    assert_eq!(
-        with(&|plan| plan.conditions.truncate(19)),
-        Err(OpenError::Length)
-    );
-    assert_eq!(
-        with(&|plan| plan.conditions.push(0.0)),
-        Err(OpenError::Length)
-    );
+    let axes = Err(OpenError::Axes);
+    assert_eq!(with(&|plan| plan.speeds[0] = 0.4), axes);
+    assert_eq!(with(&|plan| plan.speeds[1] = 1001.0), axes);
+    assert_eq!(with(&|plan| plan.forces[0] = 0.0), axes);
+    assert_eq!(with(&|plan| plan.forces[0] = 20.5), axes);
+    let values = Err(OpenError::Values);
+    assert_eq!(with(&|plan| plan.levels[0] = -1.0), values);
+    assert_eq!(with(&|plan| plan.numbers[1] = f32::INFINITY), values);
+    assert_eq!(with(&|plan| plan.numbers[0] = 1e-7), values);
+    assert_eq!(with(&|plan| plan.rows[0] = f32::NAN), values);
+    let length = Err(OpenError::Length);
+    assert_eq!(with(&|plan| plan.integers.truncate(19)), length);
+    assert_eq!(with(&|plan| plan.levels.push(0.0)), length);
     let mut frequency = tones();
-    frequency.conditions[1] = 0.6;
-    assert_eq!(play(&frequency.bytes()), Err(OpenError::Values));
+    frequency.numbers[0] = 0.6;
+    assert_eq!(play(&frequency.bytes()), values);
+    frequency.filters = 1;
+    assert_eq!(play(&frequency.bytes()), header);
+    let mut odd = noise();
+    (odd.filters, odd.numbers) = (1, vec![1e-9]);
+    odd.integers = vec![1; 11];
+    assert_eq!(play(&odd.bytes()), Ok(()));
+    let mut bytes = odd.content();
+    *bytes.last_mut().unwrap() = 1;
+    assert_eq!(play(&with_checksum(bytes)), values);
     let mut next = noise().bytes();
     next[4] = 2;
     assert_eq!(play(&next), Err(OpenError::Version));
@@ -118,11 +130,21 @@ fn each_error_has_its_reason() {
 #[test]
 fn extreme_numbers_stay_finite() {
     let mut loud = noise();
-    loud.conditions = [&[1e9][..], &[64.0; 9], &[1e9], &[-64.0; 9]].concat();
+    loud.levels = vec![1e9; 2];
+    loud.ceiling = 1e10;
+    loud.law = [4.0, 4.0, 4.0];
+    loud.forces = vec![1e-6];
     loud.rows = vec![64.0; 8];
+    loud.numbers = vec![1.0 / 16_777_216.0; 2];
+    loud.integers = vec![i16::MIN; 22];
     assert_eq!(play(&loud.bytes()), Ok(()));
-    loud.conditions = [&[1e9][..], &[1e-38; 9], &[1e9], &[0.0; 9]].concat();
+    loud.law = [-4.0; 3];
+    loud.numbers = vec![1e-45, 1e-38];
     assert_eq!(play(&loud.bytes()), Ok(()));
+    let mut tones = tones();
+    (tones.law, tones.forces) = ([4.0; 3], vec![1e-6]);
+    tones.numbers = vec![0.5, 64.0, 0.5, 64.0, 1e-45, -64.0, 0.0, 1e-4];
+    assert_eq!(play(&tones.bytes()), Ok(()));
 }
 
 proptest! {
@@ -151,9 +173,13 @@ proptest! {
         mild in any::<bool>(),
     ) {
         let mut plan = if is_tones { tones() } else { noise() };
-        for (x, word) in plan.conditions.iter_mut().zip(words) {
-            let random = f32::from_bits(word);
-            *x = if mild { (word as f32 / u32::MAX as f32) * 0.5 } else { random };
+        let all = plan.levels.iter_mut().chain(&mut plan.numbers);
+        for (x, word) in all.zip(&words) {
+            let random = f32::from_bits(*word);
+            *x = if mild { (*word as f32 / u32::MAX as f32) * 5e-8 } else { random };
+        }
+        for (x, word) in plan.integers.iter_mut().zip(words) {
+            *x = word as i16;
         }
         let result = play(&plan.bytes());
         prop_assert!(!mild || result.is_ok());

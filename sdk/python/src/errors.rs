@@ -95,8 +95,11 @@ impl IntoPyErr for htex::Error {
             Self::Read(error) => error.into_py_err(),
             Self::Model(error) => error.into_py_err(),
             Self::Library(error) => error.into_py_err(),
-            Self::Motion { .. } | Self::Position { .. } => MotionError::new_err(self.to_string()),
+            Self::Motion { .. } | Self::Position { .. } | Self::Place { .. } => {
+                MotionError::new_err(self.to_string())
+            }
             Self::Fields { .. } => AssetError::new_err(self.to_string()),
+            Self::Ceiling { .. } => option(self.to_string()),
             other => ModelError::new_err(other.to_string()),
         }
     }

@@ -46,6 +46,28 @@ impl Series {
     }
 }
 
+/// A motion with what is known of where the finger is.
+///
+/// # Errors
+/// When of a place only one number is given.
+pub(crate) fn located(
+    motion: Motion,
+    position_mm: Option<f64>,
+    [x_mm, y_mm]: [Option<f64>; 2],
+) -> PyResult<Motion> {
+    let motion = match position_mm {
+        Some(position) => motion.with_position_mm(position),
+        None => motion,
+    };
+    match (x_mm, y_mm) {
+        (Some(x), Some(y)) => Ok(motion.with_place_mm(x, y)),
+        (None, None) => Ok(motion),
+        _ => Err(option(
+            "a place is two numbers: give x_mm and y_mm, or neither",
+        )),
+    }
+}
+
 /// The motions of a path, all of them valid.
 pub(crate) struct Path {
     pub(crate) motions: Vec<Motion>,
@@ -58,16 +80,16 @@ impl Path {
         speed_mm_s: &Series,
         force_n: &Series,
         position_mm: Option<&Series>,
+        place_mm: [Option<&Series>; 2],
         block: usize,
     ) -> PyResult<Self> {
-        let given = [Some(speed_mm_s), Some(force_n), position_mm];
+        let [x, y] = place_mm;
+        let given = [Some(speed_mm_s), Some(force_n), position_mm, x, y];
         let count = count(&given, block)? / block;
         let motion = |i: usize| {
             let motion = Motion::new(speed_mm_s.at(i), force_n.at(i));
-            let motion = match position_mm {
-                Some(position) => motion.with_position_mm(position.at(i)),
-                None => motion,
-            };
+            let at = |series: Option<&Series>| series.map(|series| series.at(i));
+            let motion = located(motion, at(position_mm), place_mm.map(at))?;
             let checked = motion.checked();
             checked.map_err(|error| MotionError::new_err(format!("block {i}: {error}")))
         };

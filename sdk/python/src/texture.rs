@@ -12,6 +12,7 @@ use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
 
 use crate::errors::{OrRaise, of_file, option};
 use crate::models::registry;
+use crate::path::located;
 use crate::python::{data, from_json, spectrum};
 use crate::voice::Voice;
 
@@ -349,7 +350,8 @@ impl Texture {
 
     /// Makes a voice.
     #[pyo3(signature = (model=None, rate_hz=20_000.0, seed=0, speed_mm_s=None, force_n=None, position_mm=None,
-                        synthesis="streamed", *, frequency_scaling=true, level_scaling=true, contact=true))]
+                        synthesis="streamed", *, x_mm=None, y_mm=None, frequency_scaling=true, level_scaling=true,
+                        contact=true, ceiling=4.0))]
     #[allow(clippy::too_many_arguments)]
     fn voice(
         &self,
@@ -361,28 +363,32 @@ impl Texture {
         force_n: Option<f64>,
         position_mm: Option<f64>,
         synthesis: &str,
+        x_mm: Option<f64>,
+        y_mm: Option<f64>,
         frequency_scaling: bool,
         level_scaling: bool,
         contact: bool,
+        ceiling: f64,
     ) -> PyResult<Voice> {
         check_rate(rate_hz)?;
         let motion = self.motion(Some(At {
             speed_mm_s,
             force_n,
         }));
-        let motion = match (motion, position_mm) {
-            (Some(motion), Some(position)) => Some(motion.with_position_mm(position)),
-            (None, Some(_)) => {
-                let text = "a position needs a motion: give speed_mm_s, force_n or both";
+        let motion = match motion {
+            Some(motion) => Some(located(motion, position_mm, [x_mm, y_mm])?),
+            None if [position_mm, x_mm, y_mm].iter().any(Option::is_some) => {
+                let text = "a position or a place needs a motion: give speed_mm_s, force_n or both";
                 return Err(option(text));
             }
-            (motion, None) => motion,
+            None => None,
         };
         let mut options = VoiceOptions::default()
             .with_rate_hz(rate_hz)
             .with_seed(seed)
             .with_motion(motion)
             .with_synthesis(synthesis.parse::<Synthesis>().or_raise()?)
+            .with_ceiling(ceiling)
             .with_effects(
                 Effects::default()
                     .with_frequency_scaling(frequency_scaling)

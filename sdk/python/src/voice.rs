@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::OrRaise;
-use crate::path::{Path, Series};
+use crate::path::{Path, Series, located};
 use crate::python::{data, zeros};
 
 /// A voice: an endless stream of samples in the texture's unit, which follows the motion of the finger.
@@ -101,24 +101,24 @@ impl Voice {
     }
 
     /// Sets the motion of the following samples.
-    #[pyo3(signature = (speed_mm_s, force_n, position_mm=None))]
+    #[pyo3(signature = (speed_mm_s, force_n, position_mm=None, *, x_mm=None, y_mm=None))]
     fn set_motion(
         &self,
         py: Python<'_>,
         speed_mm_s: f64,
         force_n: f64,
         position_mm: Option<f64>,
+        x_mm: Option<f64>,
+        y_mm: Option<f64>,
     ) -> PyResult<()> {
         let motion = Motion::new(speed_mm_s, force_n);
-        let motion = match position_mm {
-            Some(position) => motion.with_position_mm(position),
-            None => motion,
-        };
+        let motion = located(motion, position_mm, [x_mm, y_mm])?;
         py.detach(|| self.lock().set_motion(motion).or_raise())
     }
 
     /// Returns the samples of a path: one motion for each block of samples.
-    #[pyo3(signature = (speed_mm_s, force_n, position_mm=None, block=64))]
+    #[pyo3(signature = (speed_mm_s, force_n, position_mm=None, block=64, *, x_mm=None, y_mm=None))]
+    #[allow(clippy::too_many_arguments)]
     fn render_path<'py>(
         &self,
         py: Python<'py>,
@@ -126,9 +126,12 @@ impl Voice {
         force_n: Series,
         position_mm: Option<Series>,
         block: usize,
+        x_mm: Option<Series>,
+        y_mm: Option<Series>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let samples = py.detach(|| {
-            let path = Path::new(&speed_mm_s, &force_n, position_mm.as_ref(), block)?;
+            let place = [x_mm.as_ref(), y_mm.as_ref()];
+            let path = Path::new(&speed_mm_s, &force_n, position_mm.as_ref(), place, block)?;
             let mut samples = path.buffer()?;
             let mut voice = self.lock();
             for (motion, block) in path.motions.iter().zip(samples.chunks_mut(path.block)) {

@@ -72,7 +72,8 @@ def test_a_path_is_its_motions_in_turn(texture: htex.Texture) -> None:
         voice.set_motion(x, 0.5)
         parts.append(voice.render(64))
     assert by_path.tobytes() == np.concatenate(parts).tobytes()
-    assert len(voice.render_path([80.0], [0.4], [1.0], block=10)) == 10
+    assert len(voice.render_path([80.0], [0.4], [1.0], block=10, x_mm=[3.0], y_mm=-2.0)) == 10
+    voice.set_motion(80.0, 0.4, x_mm=3.0, y_mm=-2.0)
     assert len(voice.render_path([], [], block=10)) == 0
 
 
@@ -133,6 +134,9 @@ def test_unusable_options_are_refused(texture: htex.Texture) -> None:
         ({"synthesis": "granular"}, htex.OptionError),
         ({"speed_mm_s": np.nan}, htex.MotionError),
         ({"position_mm": 1.0}, htex.OptionError),
+        ({"ceiling": 0.0}, htex.OptionError),
+        ({"x_mm": 1.0, "y_mm": 2.0}, htex.OptionError),
+        ({"speed_mm_s": 80.0, "force_n": 0.4, "x_mm": 1.0}, htex.OptionError),
         ({"seed": -1}, OverflowError),
     ]:
         with pytest.raises(error):

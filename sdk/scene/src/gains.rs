@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use htex_format::Manifest;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 /// Size limit of a gains file, bytes.
 const MAX_BYTES: u64 = 16 << 20;
@@ -41,10 +42,12 @@ pub struct Gain {
     /// Name of the file it was adjusted with, for display.
     pub file: String,
     /// Largest voltage of the drive, volts: V_g times sqrt(2).
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub drive_v: f64,
     /// Reference level of this drive voltage, RMS in the assets' unit; other representations are scaled
     /// relative to it if levels are not normalised.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub reference_rms: Option<f64>,
     /// Names of the texture's recordings; they distinguish textures of the same name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -60,6 +63,11 @@ pub struct Gain {
 pub struct Gains {
     /// All gains; keys are unique.
     pub gains: Vec<Gain>,
+}
+
+/// The JSON Schema of files of gains: `spec/schemas/gains-1.json`.
+pub fn gains_schema() -> Value {
+    htex_schema::crossing::<Gains>("gains-1.json", "gains of persons of htex 1")
 }
 
 /// Identifier that all assets of one texture share, whenever and however they were fitted: the name and, if
@@ -117,9 +125,25 @@ impl Gains {
             }
             Ok(_) => fs::read(path)?,
         };
-        let document = serde_json::from_slice(&bytes)?;
+        Self::from_json(serde_json::from_slice(&bytes)?)
+    }
+
+    /// Reads the contents of a gains file.
+    ///
+    /// # Errors
+    /// If they are not those of a gains file, or have keys that would be lost when it is written again.
+    pub fn from_json(document: Value) -> io::Result<Self> {
         htex_schema::check_keys::<Self>(&document).map_err(io::Error::other)?;
-        Ok(serde_json::from_value(document)?)
+        let gains: Self = serde_json::from_value(document)?;
+        let is_sound =
+            |gain: &Gain| gain.drive_v > 0.0 && gain.reference_rms.is_none_or(|rms| rms > 0.0);
+        match gains.gains.iter().find(|gain| !is_sound(gain)) {
+            None => Ok(gains),
+            Some(gain) => Err(io::Error::other(format!(
+                "the gain of {:?} for {:?} has a voltage or a reference level that is not above 0; adjust it again",
+                gain.key.person, gain.key.texture
+            ))),
+        }
     }
 
     /// Reads the file, applies `change`, and replaces the file atomically; concurrent programs wait for each

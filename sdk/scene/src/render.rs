@@ -245,6 +245,7 @@ impl Renderer {
             t_s,
             force_n: finger.force_n,
             point,
+            place_mm: finger.at_mm,
         };
         (finger, on_path)
     }

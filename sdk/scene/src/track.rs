@@ -37,11 +37,13 @@ struct Follower {
     skipped: u64,
 }
 
-/// Force and path position of the finger at one time of the scene.
+/// Force, path position and place of the finger at one time of the scene.
 pub(crate) struct FingerOnPath {
     pub(crate) t_s: f64,
     pub(crate) force_n: f64,
     pub(crate) point: PathPoint,
+    /// Where it is known, mm.
+    pub(crate) place_mm: Option<[f64; 2]>,
 }
 
 /// Number of runs of a stage outside the chain, and their total time.
@@ -127,17 +129,18 @@ impl Track {
         });
     }
 
-    /// Passes motion and position to a model that follows the motion itself, while its surface is audible. Position and
-    /// time are in the voice's time, so both are multiplied by the pitch.
+    /// Passes motion, position and place to a model that follows the motion itself, while its surface is audible. Position and
+    /// time are in the voice's time, so both are multiplied by the pitch; a place stays where it is on the surface.
     pub(crate) fn set_finger(&mut self, finger: &FingerOnPath) {
         let Some(follower) = self.follower.as_ref().filter(|_| self.sounds) else {
             return;
         };
         let skipped_s = follower.skipped as f64 / follower.rate_hz;
-        let motion = htex_play::ModelMotion {
+        let motion = htex_play::Finger {
             speed_mm_s: finger.point.speed_mm_s,
             force_n: finger.force_n,
             position_mm: finger.point.position_mm * follower.pitch,
+            place_mm: finger.place_mm,
         };
         let at_s = finger.t_s * follower.pitch - skipped_s;
         self.synthesis.set_finger(motion, at_s);

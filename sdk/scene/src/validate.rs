@@ -35,8 +35,10 @@ pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Opt
         findings.add(rule::SCENE_FILE_TOO_LARGE, "", message);
         return None;
     }
-    let opened = DOCUMENT.open(bytes, limits.json_depth, findings)?;
-    if !opened.newer {
+    let mut opened = DOCUMENT.open(bytes, limits.json_depth, findings)?;
+    if opened.newer {
+        remove_unknown_effects(&mut opened.value);
+    } else {
         check_effect_names(&opened.value, findings)?;
     }
     let (scene, unknown) = DOCUMENT.typed::<Scene>(&opened, findings)?;
@@ -50,13 +52,24 @@ pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Opt
     Some(scene)
 }
 
+fn is_effect(name: &str) -> bool {
+    Effect::ALL.iter().any(|effect| effect.name() == name)
+}
+
+/// Removes the effects of a newer version from a scene.
+fn remove_unknown_effects(scene: &mut Value) {
+    let effects = scene.get_mut("effects").and_then(Value::as_object_mut);
+    if let Some(effects) = effects {
+        effects.retain(|name, _| is_effect(name));
+    }
+}
+
 /// Checks the names of effects; `None` if one is unknown.
 fn check_effect_names(scene: &Value, findings: &mut Findings) -> Option<()> {
     let effects = scene.get("effects").and_then(Value::as_object);
-    let known = |name: &String| Effect::ALL.iter().any(|effect| effect.name() == name);
     let mut all_known = Some(());
     for name in effects.into_iter().flat_map(|map| map.keys()) {
-        if !known(name) {
+        if !is_effect(name) {
             let names: Vec<&str> = Effect::ALL.iter().map(|effect| effect.name()).collect();
             let message = format!(
                 "unknown effect {name}; the effects are {}",

@@ -1,5 +1,5 @@
 //! The conformance scenes of `spec/` with their reports, the page of findings and the schema.
-#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "common/cases.rs"]
 mod cases;
@@ -9,6 +9,8 @@ use std::fs;
 use std::path::Path;
 
 use cases::{cases, files, plain};
+use htex_device::{Adapter, SettingKind};
+use htex_device_file::FileAdapter;
 use htex_finding::Findings;
 use htex_scene::{Limits, RULES, findings_page, read_scene, scene_schema};
 use serde_json::Value;
@@ -83,6 +85,86 @@ fn generated_page_and_schema_are_fresh() {
     file_with("spec/schemas/scene-1.json", schema.as_bytes(), |kept| {
         serde_json::from_slice::<Value>(kept).unwrap() == scene_schema()
     });
+}
+
+#[test]
+fn the_text_has_every_setting_of_the_adapter_file() {
+    let text = fs::read_to_string(spec().join("scene-1.md")).unwrap();
+    for setting in &FileAdapter.descriptor().settings {
+        let values = match &setting.kind {
+            SettingKind::Number { min, max } => format!("{min} to {max}"),
+            SettingKind::Choice { values } => format!("`{}`", values.join("`, `")),
+            _ => "a file".to_owned(),
+        };
+        let default = setting.default.as_ref();
+        let default = default.map_or(String::new(), |default| format!("`{default}` "));
+        let row = format!("\n| `{}` | {values} | {default}| ", setting.name);
+        assert!(text.contains(&row), "{row}");
+    }
+}
+
+/// Cells of the rows of a table of the text, without code marks.
+fn rows<'t>(text: &'t str, head: &str) -> Vec<Vec<&'t str>> {
+    let (_, rest) = text.split_once(head).unwrap();
+    let lines = rest
+        .lines()
+        .skip(2)
+        .take_while(|line| line.starts_with('|'));
+    let cells = |line: &'t str| line.trim_matches('|').split('|').map(str::trim).collect();
+    lines.map(cells).collect()
+}
+
+#[test]
+fn the_columns_of_traces_have_the_names_and_units_of_the_text() {
+    let text = fs::read_to_string(spec().join("scene-1.md")).unwrap();
+    let rows = rows(&text, "| column | other names | other units |");
+    let usual: Vec<&str> = rows.iter().map(|row| row[0].trim_matches('`')).collect();
+    let read = |column: usize, name: &str| {
+        let mut header = usual.clone();
+        header[column] = name;
+        let csv = format!("{}\n0,0,0,1,80\n1,80,0,1,80\n", header.join(","));
+        htex_recording::trace_from_bytes("hand.csv", csv.as_bytes())
+    };
+    let mut tried = 0;
+    for (column, row) in rows.iter().enumerate() {
+        let (base, unit) = usual[column].split_once('_').unwrap();
+        let listed = |cell: &str| -> Vec<String> {
+            // The names of the axis y are those of x.
+            let x = rows[1][1].replace('x', "y");
+            let cell = if cell.starts_with('`') { cell } else { &x };
+            cell.split(", ")
+                .map(|name| name.trim_matches('`').to_owned())
+                .collect()
+        };
+        let names = listed(row[1]).into_iter().flat_map(|name| {
+            let bracketed = [
+                format!("{name} [{unit}]"),
+                format!("{}({unit})", name.to_uppercase()),
+            ];
+            bracketed
+                .into_iter()
+                .chain([format!("{name}_{unit}"), name])
+        });
+        let units = listed(row[2])
+            .into_iter()
+            .map(|unit| format!("{base}_{unit}"));
+        for name in names.chain(units) {
+            let found = read(column, &name).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let is_assumed = found
+                .warnings
+                .iter()
+                .any(|warning| warning.contains("assumed"));
+            assert_eq!(
+                found.warnings.len(),
+                usize::from(is_assumed),
+                "{name}: {:?}",
+                found.warnings
+            );
+            assert_eq!(is_assumed, listed(row[1]).contains(&name), "{name}");
+            tried += 1;
+        }
+    }
+    assert_eq!(tried, 132);
 }
 
 #[test]

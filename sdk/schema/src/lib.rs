@@ -35,6 +35,17 @@ use serde_json::{Value, json};
 /// Prefix of the schemas' ids; nothing is downloaded from there.
 const BASE: &str = "https://htex.org/schemas/";
 
+/// The characters of Unicode's property `White_Space`, for the brackets of a pattern: readers of schemas differ in what `\s` is.
+#[macro_export]
+macro_rules! white_space {
+    () => {
+        r"\u0009-\u000D\u0020\u0085\u00A0\u1680\u2000-\u200A\u2028\u2029\u202F\u205F\u3000"
+    };
+}
+
+/// Pattern of a text with a character that is not white space.
+pub const NOT_BLANK: &str = concat!("[^", white_space!(), "]");
+
 /// Returns the schema of a document in which unknown values are absent, never `null`; `file` is its
 /// name in `spec/schemas`.
 pub fn document<T: JsonSchema>(file: &str, title: &str) -> Value {

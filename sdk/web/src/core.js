@@ -36,7 +36,7 @@ export class HtexError extends Error {
 
 /** Sizes of structs: htex_open_options, htex_voice_options, htex_bytes. */
 const OPEN_OPTIONS = 28;
-const VOICE_OPTIONS = 48;
+const VOICE_OPTIONS = 56;
 const BYTES = 8;
 /** Bytes for results, at the start of each call. */
 const RESULTS = 64;
@@ -151,8 +151,8 @@ export class Core {
 
   putMotion(take, motion) {
     if (!motion) return 0;
-    const { speed = 0, force = 0, position = NaN } = motion;
-    return this.putNumbers(take, [speed, force, position]);
+    const { speed = 0, force = 0, position = NaN, x = NaN, y = NaN } = motion;
+    return this.putNumbers(take, [speed, force, position, x, y]);
   }
 
   /** The options of opening; see `OpenOptions` in index.d.ts. */
@@ -176,7 +176,7 @@ export class Core {
 
   /** The options of a voice; see `VoiceOptions` in index.d.ts. */
   putVoiceOptions(take, options) {
-    const { model, rate = 20_000, seed = 0, motion, synthesis } = options;
+    const { model, rate = 20_000, seed = 0, motion, synthesis, ceiling = 0 } = options;
     const { frequencyScaling = true, levelScaling = true, contact = true } = options;
     const texts = [this.putText(take, model), this.putMotion(take, motion), this.putText(take, synthesis)];
     const at = take(VOICE_OPTIONS);
@@ -191,6 +191,7 @@ export class Core {
     view.setUint32(at + 32, frequencyScaling ? 0 : 1, true);
     view.setUint32(at + 36, levelScaling ? 0 : 1, true);
     view.setUint32(at + 40, contact ? 0 : 1, true);
+    view.setFloat64(at + 48, ceiling, true);
     return at;
   }
 

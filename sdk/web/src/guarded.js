@@ -10,8 +10,8 @@ let keys = 0;
 /** What a worklet or a worker needs to make a voice. */
 export function describe(texture, options, rate) {
   texture.key ??= `texture ${(keys += 1)}`;
-  const { model, seed, synthesis, frequencyScaling, levelScaling, contact, motion } = options;
-  const voice = { model, seed, synthesis, frequencyScaling, levelScaling, contact, motion, rate };
+  const { model, seed, synthesis, frequencyScaling, levelScaling, contact, ceiling, motion } = options;
+  const voice = { model, seed, synthesis, frequencyScaling, levelScaling, contact, ceiling, motion, rate };
   const module = texture.core.module;
   return { module, key: texture.key, bytes: texture.bytes, open: texture.options, voice };
 }

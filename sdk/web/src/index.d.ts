@@ -19,6 +19,9 @@ export interface Motion {
   force?: number;
   /** Position along the path, mm, for models that follow it. */
   position?: number;
+  /** Place on the surface, mm, for models that are maps of it; both or none. */
+  x?: number;
+  y?: number;
 }
 
 export interface OpenOptions {
@@ -45,6 +48,9 @@ export interface VoiceOptions {
   levelScaling?: boolean;
   /** Whether a finger that rests is silent. Default true. */
   contact?: boolean;
+  /** Highest level that a motion outside the recorded ones has, as a multiple of the strongest recorded level: above 0 and finite.
+   * Default 4. */
+  ceiling?: number;
 }
 
 export interface At {
@@ -83,14 +89,21 @@ export class Texture {
 /** A playing texture. */
 export class Voice {
   private constructor();
-  /** Sets the motion: mm/s, N, and mm along the path. Spectrum and level glide to it. */
-  setMotion(speed: number, force: number, position?: number): void;
+  /** Sets the motion: mm/s, N, mm along the path, and the place in mm. Spectrum and level glide to it. */
+  setMotion(speed: number, force: number, position?: number, x?: number, y?: number): void;
   /** Renders the next samples, in the texture's unit. They do not depend on the lengths of the blocks. */
   render(frames: number): Float32Array;
   /** As before, to an array, without allocating. */
   render(out: Float32Array): Float32Array;
   /** Renders a block of `frames` samples at each motion. */
-  renderPath(speeds: ArrayLike<number>, forces: ArrayLike<number>, frames: number, positions?: ArrayLike<number>): Float32Array;
+  renderPath(
+    speeds: ArrayLike<number>,
+    forces: ArrayLike<number>,
+    frames: number,
+    positions?: ArrayLike<number>,
+    xs?: ArrayLike<number>,
+    ys?: ArrayLike<number>,
+  ): Float32Array;
   /** How the voice plays a motion, and whether that is within the recorded conditions, as English text. */
   coverage(motion: Motion): string;
   /** Frees the memory of the voice. */

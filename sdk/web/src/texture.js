@@ -105,13 +105,16 @@ export class Voice extends Handle {
     super(core, id, "htex_voice_free");
   }
 
-  /** Sets the motion of the finger: speed in mm/s, force in N, and the position along the path in mm if it is known. */
-  setMotion(speed, force, position = NaN) {
+  /** Sets the motion of the finger: speed in mm/s, force in N, and, in mm, the position along the path and the place on the
+   * surface, if they are known. */
+  setMotion(speed, force, position = NaN, x = NaN, y = NaN) {
     const { core } = this;
     const view = core.view();
     view.setFloat64(core.results, speed, true);
     view.setFloat64(core.results + 8, force, true);
     view.setFloat64(core.results + 16, position, true);
+    view.setFloat64(core.results + 24, x, true);
+    view.setFloat64(core.results + 32, y, true);
     core.call("htex_voice_set_motion", this.id, core.results);
   }
 
@@ -130,17 +133,19 @@ export class Voice extends Handle {
     return out;
   }
 
-  /** Renders a block of `frames` samples at each motion: arrays of speeds, forces and, optionally, positions. */
-  renderPath(speeds, forces, frames, positions) {
+  /** Renders a block of `frames` samples at each motion: arrays of speeds, forces and, optionally, positions and places (x and
+   * y). */
+  renderPath(speeds, forces, frames, positions, xs, ys) {
     const { core } = this;
     const count = speeds.length;
-    if (forces.length !== count || (positions && positions.length !== count)) {
+    if ([forces, positions, xs, ys].some((numbers) => numbers && numbers.length !== count)) {
       throw new HtexError("the arrays of the motion differ in length", "invalid-argument");
     }
     return core.scope((take) => {
-      const motions = core.putNumbers(take, new Float64Array(3 * count));
-      const view = new Float64Array(core.exports.memory.buffer, motions, 3 * count);
-      for (let i = 0; i < count; i++) view.set([speeds[i], forces[i], positions ? positions[i] : NaN], 3 * i);
+      const given = [speeds, forces, positions, xs, ys];
+      const all = new Float64Array(given.length * count);
+      for (let i = 0; i < count; i++) all.set(given.map((numbers) => (numbers ? numbers[i] : NaN)), given.length * i);
+      const motions = core.putNumbers(take, all);
       const out = take(Math.max(4 * count * frames, 8));
       core.call("htex_voice_render_path", this.id, motions, count, out, frames);
       return new Float32Array(core.exports.memory.buffer, out, count * frames).slice();

@@ -66,6 +66,7 @@ pub(crate) fn manifest(model: &LoadedModel, conditions: usize) -> Manifest {
             model_version: model.descriptor().version.clone(),
             fields: stored_fields(model.descriptor()),
             at: (0..conditions).map(at).collect(),
+            triangles: Vec::new(),
             parameters: "parameters.bin".to_owned(),
         }],
         reference: None,

@@ -86,6 +86,8 @@ impl Calls<'_> {
             speed_mm_s: self.number(),
             force_n: self.number(),
             position_mm: self.number(),
+            x_mm: self.number(),
+            y_mm: self.number(),
         }
     }
 
@@ -163,6 +165,7 @@ impl Calls<'_> {
             no_frequency_scaling: (self.bytes.next() % 2).into(),
             no_level_scaling: 0,
             no_contact: 1,
+            ceiling: [0.0, self.number()][usize::from(self.bytes.next()) % 2],
         };
         let mut voice = htex_voice { id: 0 };
         // SAFETY: live pointers.

@@ -1,7 +1,7 @@
 //! Lists of entries: lines of a table, or a JSON array, written while the index is read.
 
 use htex_finding::plain;
-use htex_library::{Entry, Interval};
+use htex_library::{Entry, IndexedLaw, Interval};
 
 use crate::assets::short_name;
 use crate::failure::Failure;
@@ -65,14 +65,22 @@ fn row(entry: &Entry) -> String {
     let models: Vec<&str> = entry.models.iter().map(|id| short_name(id)).collect();
     let (speed, force) = (entry.conditions.speed_mm_s, entry.conditions.force_n);
     format!(
-        "{:32} {:>7} B  {:>12}  {:>10}  {}  {}\n",
+        "{:32} {:>7} B  {:>12}  {:>10}  {:16}  {}  {}\n",
         plain(&entry.name),
         entry.bytes,
         range(speed, "mm/s"),
         range(force, "N"),
+        law(&entry.law),
         plain(&models.join(" ")),
         plain(&entry.tags.join(", "))
     )
+}
+
+/// The exponents of the law, of frequencies over the speed and of the level over speed and force.
+fn law(law: &IndexedLaw) -> String {
+    let [a, b, c] = [law.frequency_speed, law.level_speed, law.level_force]
+        .map(|exponent| number(exponent.exponent));
+    format!("f^{a} v^{b} F^{c}")
 }
 
 fn range(interval: Option<Interval>, unit: &str) -> String {

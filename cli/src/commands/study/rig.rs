@@ -21,6 +21,9 @@ use crate::playing::Output;
 use crate::scenes::{Loader, Ready, costs};
 use crate::signals::interrupted;
 
+/// The setting of devices for how long samples wait before they are output.
+const BUFFER: &str = "buffer_ms";
+
 /// What plays a study.
 pub(super) struct StudyRig<'a> {
     pub(super) study: &'a Study,
@@ -72,8 +75,11 @@ impl StudyRig<'_> {
             let mut settings = descriptor.settings.iter();
             settings.any(|setting| setting.name == name && setting.kind == SettingKind::Path)
         };
+        // How long samples wait is felt only as the delay of a live motion; a buffer that ran dry can be made longer in a session.
+        let is_live = matches!(self.study.motion, Motion::Live);
+        let is_unfelt = |name: &str| is_file(name) || (name == BUFFER && !is_live);
         let settings = ready.settings().iter();
-        let settings = settings.filter(|(name, _)| !is_file(name));
+        let settings = settings.filter(|(name, _)| !is_unfelt(name));
         Ok(DeviceUsed {
             adapter: descriptor.id.clone(),
             profile: self.device.profile.clone().unwrap_or_default(),

@@ -1,7 +1,8 @@
 //! A texture between two others.
 
 use htex_format::{
-    Asset, AtCondition, Condition, How, Ingredient, Made, Representation, round_parameters,
+    Asset, AtCondition, Condition, How, Ingredient, Made, Manifest, Representation, Triangle,
+    round_parameters,
 };
 use htex_host::LoadedModel;
 use htex_play::Motion;
@@ -26,7 +27,8 @@ impl MixedAsset<'_> {
 
 /// Mixes two textures: each model that describes both interpolates between their parameters, as it does between the conditions of one
 /// texture, and their levels are interpolated linearly. The conditions are those of both; at a condition of one alone, the other is what a
-/// player plays there. The law is that of the larger weight, of `a` if they are equal. `weight` is the part of `b`, from 0 to 1.
+/// player plays there. The law is that of the larger weight, of `a` if they are equal, and so are the triangles that it stores, if the
+/// conditions of its representation are all of them; else they are left out, with a warning. `weight` is the part of `b`, from 0 to 1.
 ///
 /// # Errors
 /// When no model describes both, their quantity or band differs, or a model cannot mix its parameters.
@@ -59,7 +61,7 @@ pub fn mix(
             let model = a.asset.loaded_model(Some(&id))?;
             mixed(&model, (a, b), weight, &conditions)
         });
-    let mixed = mixed.collect::<Result<Vec<_>, ByHandError>>()?;
+    let mut mixed = mixed.collect::<Result<Vec<_>, ByHandError>>()?;
     if mixed.is_empty() {
         let problem = format!(
             "no model describes both ({} and {}); fit them with the same model",
@@ -74,11 +76,15 @@ pub fn mix(
         blake3: part.blake3.to_owned(),
     };
     let manifest = a.asset.manifest();
-    let heavier = if weight > 0.5 {
-        b.asset.manifest()
-    } else {
-        manifest
-    };
+    let heavier = if weight > 0.5 { b } else { a }.asset.manifest();
+    let warnings = mixed.iter_mut().filter_map(|(made, _)| {
+        made.triangles = triangles(heavier, made, &conditions);
+        let stored =
+            |part: MixedAsset<'_>| !of_model(part.asset.manifest(), &made.model).is_empty();
+        let lost = made.triangles.is_empty() && (stored(a) || stored(b));
+        lost.then(|| triangles_warning(&made.model))
+    });
+    let warnings: Vec<String> = warnings.collect();
     let frame = Frame {
         name: name.to_owned(),
         quantity: manifest.quantity,
@@ -93,6 +99,7 @@ pub fn mix(
         law: heavier.law(),
     };
     let mut asset = frame.asset(mixed);
+    asset.manifest.provenance.warnings = warnings;
     let simulated = [a, b].map(|part| part.asset.manifest().provenance.simulated);
     asset.manifest.provenance.simulated = simulated.contains(&true);
     Ok(asset)
@@ -146,6 +153,42 @@ fn is_same(a: &Condition, b: &Condition) -> bool {
     same(a.speed_mm_s, b.speed_mm_s) && same(a.force_n, b.force_n)
 }
 
+/// The triangles that a texture stores for a model.
+fn of_model<'a>(manifest: &'a Manifest, model: &str) -> &'a [Triangle] {
+    let mut all = manifest.representations.iter();
+    let own = all.find(|r| r.model == model);
+    own.map_or(&[], |own| &own.triangles)
+}
+
+/// Returns the triangles that a texture stores for a mixed model, by the elements of the mixed `at`; none where the conditions are
+/// others than its own.
+fn triangles(from: &Manifest, mixed: &Representation, conditions: &[Condition]) -> Vec<Triangle> {
+    let own = from.representations.iter().find(|r| r.model == mixed.model);
+    let Some(own) = own.filter(|own| own.at.len() == mixed.at.len()) else {
+        return Vec::new();
+    };
+    let motion = |c: &Condition| (c.speed_mm_s, c.force_n);
+    let place = |element: usize| {
+        let condition = from.conditions.get(own.at.get(element)?.condition)?;
+        conditions
+            .iter()
+            .position(|other| motion(other) == motion(condition))
+    };
+    let moved = |corners: &Triangle| {
+        let [a, b, c] = corners.map(place);
+        Some([a?, b?, c?])
+    };
+    let all: Option<Vec<Triangle>> = own.triangles.iter().map(moved).collect();
+    all.unwrap_or_default()
+}
+
+fn triangles_warning(model: &str) -> String {
+    format!(
+        "the stored triangles of {model} are left out, because the mixture has other conditions: it is interpolated in the triangles \
+         that a player finds"
+    )
+}
+
 /// Mixes one model's parameters at all conditions.
 fn mixed(
     model: &LoadedModel,
@@ -180,6 +223,7 @@ fn mixed(
         model_version: model.descriptor().version.clone(),
         fields,
         at,
+        triangles: Vec::new(),
         parameters: format!("parameters/{}.bin", model.short_name()),
     };
     Ok((representation, parameters))

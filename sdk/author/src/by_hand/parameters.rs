@@ -95,6 +95,7 @@ pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, ByHandError>
             quality: None,
             left_out: None,
         }],
+        triangles: Vec::new(),
         parameters: format!("parameters/{}.bin", model.short_name()),
     };
     let frame = Frame {

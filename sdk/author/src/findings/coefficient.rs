@@ -17,6 +17,16 @@ const LEAST_SPREAD: f64 = 0.05;
 /// a finger whose friction is its area of contact has 2/3.
 const LARGEST_EXPONENT: f64 = 0.25;
 
+/// Defines the finding of this module, for `spec/recording-findings.md`.
+pub(super) fn definition() -> String {
+    format!(
+        "- `RECORDING_FRICTION_COEFFICIENT`: of the consecutive segments from the first sample on in which the finger slides at every sample (the last whole \
+         segment is left out if it ends with the recording), *x* is the logarithm of the mean normal force and *y* that of the mean length; segments whose means are not both \
+         above 0 are left out. There are at least {FEWEST}, and the standard deviation of *x* (over their number) is at least {LEAST_SPREAD}. With *k* the slope of the line of least squares, and its \
+         standard error *e*, the root of the mean squared residual over `(n - 2)` times the variance of *x*, `abs(k) + 2 e` is at most {LARGEST_EXPONENT}.\n"
+    )
+}
+
 /// Regresses the logarithm of the lateral force on that of the normal force, over windows in which the finger slides.
 pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
     let Some(line) = logarithms(recording).and_then(|windows| Line::through(&windows)) else {

@@ -19,8 +19,9 @@ const NAMED: usize = 5;
 /// Defines the findings of this module, for `spec/recording-findings.md`.
 pub(super) fn definition() -> String {
     format!(
-        "- `RECORDING_UNEVEN`: the level of a segment is the root of the sum of its squared magnitudes over the band's bins; segments above {LOUD} times the median \
-         level are loud. There is no finding if they are more than one in {EXCEPTION} of all.\n"
+        "- `RECORDING_UNEVEN`: the level of a segment is the root of the sum of its squared magnitudes over the band's bins, of the segment less its mean times a periodic Hann window; segments above {LOUD} times the median \
+         level are loud. There is no finding if they are more than one in {EXCEPTION} of all.\n\
+         - `GRID_NOT_BETTER`: the error of one condition for all motions in what was left out is at most that of the grid.\n"
     )
 }
 

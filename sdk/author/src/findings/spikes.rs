@@ -32,7 +32,7 @@ pub(super) fn definition() -> String {
     format!(
         "- `RECORDING_SPIKE` and `RECORDING_FORCE_OUTLIER`: the *corner* of a sample is the magnitude of its difference from the mean of both neighbours. Of each \
          block of {BLOCK_S} s (at least 8 samples) the first sample of the largest corner is a spike if this exceeds {SPIKE} times the {USUAL} quantile of the blocks' \
-         largest corners; for the normal force, {SPIKE} times {FORCE_STEP} of its median too. Spikes of neighbouring blocks within {NEIGHBOURS} samples are one, the larger. \
+         largest corners; for the normal force, {SPIKE} times {FORCE_STEP} of its median too. A shorter last block is searched too. Spikes of neighbouring blocks within {NEIGHBOURS} samples are one, the larger. \
          There is no finding with more spikes than {RARE} of the whole blocks, rounded down, unless they are at most {FEW}.\n"
     )
 }

@@ -54,12 +54,17 @@ namespace Htex
         public double ForceN;
         /// <summary>Position along the path, mm; NaN if it is not known.</summary>
         public double PositionMm;
+        /// <summary>Place on the surface, mm; NaN if it is not known.</summary>
+        public double XMm, YMm;
 
-        public Motion(double speedMmS, double forceN, double positionMm = double.NaN)
+        public Motion(
+            double speedMmS, double forceN, double positionMm = double.NaN, double xMm = double.NaN, double yMm = double.NaN)
         {
             SpeedMmS = speedMmS;
             ForceN = forceN;
             PositionMm = positionMm;
+            XMm = xMm;
+            YMm = yMm;
         }
     }
 
@@ -99,6 +104,8 @@ namespace Htex
         public Motion? Motion;
         public string Synthesis;
         public bool FrequencyScaling = true, LevelScaling = true, Contact = true;
+        /// <summary>Highest level of a motion outside the recorded ones, over the strongest recorded level; 0: 4.</summary>
+        public double Ceiling;
     }
 
     /// <summary>Options of opening an asset or a scene.</summary>
@@ -307,6 +314,7 @@ namespace Htex
                     NoFrequencyScaling = options.FrequencyScaling ? 0u : 1u,
                     NoLevelScaling = options.LevelScaling ? 0u : 1u,
                     NoContact = options.Contact ? 0u : 1u,
+                    Ceiling = options.Ceiling,
                 };
                 Native.Handle voice;
                 Native.Check(Native.htex_voice_new(asset.Id, ref c, out voice));
@@ -474,6 +482,7 @@ namespace Htex
             internal ulong Seed;
             internal IntPtr Motion, Synthesis;
             internal uint NoFrequencyScaling, NoLevelScaling, NoContact;
+            internal double Ceiling;
         }
 
         [StructLayout(LayoutKind.Sequential)]

@@ -16,6 +16,8 @@ const MOTION: Motion = Motion {
     speed_mm_s: 80.0,
     force_n: 0.5,
     position_mm: 3.0,
+    x_mm: 2.0,
+    y_mm: -1.0,
 };
 
 /// Checks the guarantees of `htex.motion/1`.
@@ -69,6 +71,8 @@ fn bad_motions_are_refused(case: &Case, parameters: &[f64]) -> Result<(), Findin
                     ..MOTION
                 },
             ),
+            ("x_mm", Motion { x_mm: x, ..MOTION }),
+            ("y_mm", Motion { y_mm: x, ..MOTION }),
         ];
         for (name, motion) in bad {
             refused(told.set_any_motion(motion), &format!("{name} of {x}"))?;
@@ -166,6 +170,8 @@ fn there_and_back(voice: &mut ModelVoice, samples: usize) -> Result<(), Finding>
             speed_mm_s: 100.0 * angle.cos(),
             force_n: 0.5 + 0.5 * (0.7 * angle).sin(),
             position_mm: 10.0 * angle.sin(),
+            x_mm: 8.0 * angle.sin(),
+            y_mm: 6.0 * (0.5 * angle).cos(),
         })?;
         voice.render(&mut out)?;
     }
@@ -173,6 +179,8 @@ fn there_and_back(voice: &mut ModelVoice, samples: usize) -> Result<(), Finding>
         speed_mm_s: 0.0,
         force_n: 0.0,
         position_mm: 0.0,
+        x_mm: 0.0,
+        y_mm: 0.0,
     })?;
     Ok(voice.render(&mut out)?)
 }

@@ -380,16 +380,19 @@ int64_t htex_model_extension(const uint8_t *id, size_t id_len)
 #if FOLLOWS_MOTION
 
 /* What the voice makes of the motion, to begin with: the faster the finger, the stronger the texture, as it was
- * recorded at 100 mm/s. The position is where a model comes in that is tied to the place. */
-int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, double position_mm)
+ * recorded at 100 mm/s. Position and place are where a model comes in that is tied to them. */
+int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, double position_mm, double x_mm,
+                          double y_mm)
 {
     struct slot *slot = find(voice);
     if (slot == NULL)
         return fail(HTEX_BAD_HANDLE, "no such voice; it may have been freed");
     if (!within(speed_mm_s, -HTEX_MOTION_1_MAX_SPEED_MM_S, HTEX_MOTION_1_MAX_SPEED_MM_S)
         || !within(force_n, 0.0, HTEX_MOTION_1_MAX_FORCE_N)
-        || !within(position_mm, -HTEX_MOTION_1_MAX_POSITION_MM, HTEX_MOTION_1_MAX_POSITION_MM))
-        return fail(HTEX_INVALID_ARGUMENT, "speed, force or position is not finite, or beyond its range");
+        || !within(position_mm, -HTEX_MOTION_1_MAX_POSITION_MM, HTEX_MOTION_1_MAX_POSITION_MM)
+        || !within(x_mm, -HTEX_MOTION_1_MAX_POSITION_MM, HTEX_MOTION_1_MAX_POSITION_MM)
+        || !within(y_mm, -HTEX_MOTION_1_MAX_POSITION_MM, HTEX_MOTION_1_MAX_POSITION_MM))
+        return fail(HTEX_INVALID_ARGUMENT, "speed, force, position or place is not finite, or beyond its range");
     slot->voice.goal = clamp((speed_mm_s < 0.0 ? -speed_mm_s : speed_mm_s) / 100.0, 0.0, 4.0);
     return HTEX_OK;
 }

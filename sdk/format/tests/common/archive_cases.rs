@@ -85,6 +85,17 @@ pub(super) fn entries() -> Vec<Named> {
             "entry_extra_field",
             changed(|e| e.central.extra = vec![0x55, 0x54, 0, 0]),
         ),
+        (
+            "entry_extra_field_local",
+            changed(|e| e.local.extra = vec![0x55, 0x54, 0, 0]),
+        ),
+        (
+            "entry_header_mismatch_stored",
+            changed(|e| {
+                e.local.size += 1;
+                e.central.size += 1;
+            }),
+        ),
         ("entry_header_mismatch", changed(|e| e.local.name[0] = b'P')),
         ("entry_header_mismatch_size", changed(|e| e.local.size += 1)),
         ("entry_corrupt", changed(|e| e.data[3] ^= 1)),

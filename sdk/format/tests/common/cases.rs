@@ -10,6 +10,7 @@ use super::archive_cases::{archives, entries};
 use super::manifest_cases::manifests;
 use super::plugin_cases::plugins;
 use super::text_cases::texts;
+use super::triangle_cases::triangles;
 use super::valid_cases::valid;
 use super::{asset, sbeta};
 
@@ -65,7 +66,8 @@ pub fn cases() -> Vec<Case> {
         .chain(entries())
         .chain(texts())
         .chain(manifests())
-        .chain(plugins());
+        .chain(plugins())
+        .chain(triangles());
     all.extend(broken.map(|(n, b)| case(n, b)));
     all.extend(limited());
     all

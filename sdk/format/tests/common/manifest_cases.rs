@@ -106,6 +106,9 @@ pub(super) fn manifests() -> Vec<Named> {
             m["conditions"][0]["speed_mm_s"] = json!(-40)
         }),
         ("condition_duplicate", |m| m["conditions"] = json!([{}, {}])),
+        ("condition_duplicate_absent", |m| {
+            m["conditions"] = json!([{}, { "speed_mm_s": 0, "force_n": 0 }])
+        }),
         ("representations_empty", |m| {
             m["representations"] = json!([])
         }),

@@ -14,6 +14,7 @@ pub mod parts;
 mod plugin_cases;
 pub mod raw_zip;
 mod text_cases;
+mod triangle_cases;
 mod valid_cases;
 
 use htex_format::*;
@@ -86,6 +87,7 @@ pub fn fitted(model: &str, conditions: usize, fields: &[(&str, &str, usize, Stor
         model_version: "1.0.0".to_owned(),
         fields: stored.clone(),
         at: (0..conditions).map(at).collect(),
+        triangles: Vec::new(),
         parameters: format!("parameters/{model}.bin"),
     };
     let parameters = (0..conditions).map(|c| flat(c, fields, &stored)).collect();

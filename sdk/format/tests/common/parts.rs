@@ -23,7 +23,7 @@ pub fn parts(manifest: &[u8], block: &[u8]) -> Vec<Entry> {
     ]
 }
 
-pub(super) fn with_text(manifest: &[u8]) -> Vec<u8> {
+pub fn with_text(manifest: &[u8]) -> Vec<u8> {
     archive(&parts(manifest, &block()))
 }
 

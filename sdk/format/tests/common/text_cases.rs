@@ -18,6 +18,7 @@ pub(super) fn texts() -> Vec<Named> {
             "json_syntax_not_finite",
             with_text(text.replacen("20.0", "1e999", 1).as_bytes()),
         ),
+        ("json_syntax_surrogate", with(r#""author":"\ud800""#)),
         ("json_too_deep", with_text(deep.as_bytes())),
         ("json_type_twice", with_text(twice.as_bytes())),
         (

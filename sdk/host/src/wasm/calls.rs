@@ -185,11 +185,13 @@ impl Instance {
             speed_mm_s,
             force_n,
             position_mm,
+            x_mm,
+            y_mm,
         } = motion;
         self.call_if(
             Deadline::Render,
             |f| Some(&f.motion.as_ref()?.set),
-            (voice, speed_mm_s, force_n, position_mm),
+            (voice, speed_mm_s, force_n, position_mm, x_mm, y_mm),
         )
     }
 

@@ -36,7 +36,7 @@ pub(super) struct Functions {
 
 /// The functions of `htex.motion/1` (`htex_model::motion_1`).
 pub(super) struct MotionFunctions {
-    pub(super) set: TypedFunc<(i64, f64, f64, f64), i64>,
+    pub(super) set: TypedFunc<(i64, f64, f64, f64, f64, f64), i64>,
     pub(super) fit: TypedFunc<MotionFitParams, i64>,
 }
 

@@ -24,6 +24,7 @@ const ROUNDING: f64 = 1e-9;
 #[schemars(deny_unknown_fields)]
 pub struct Required {
     /// Least share of the take in which the finger slides on its target, 0 to 1 ([`Coverage::on_target`]); 0 asks for nothing.
+    #[schemars(range(min = 0, max = 1))]
     pub on_target: f64,
     /// Fewest complete sweeps; 0 asks for none.
     pub sweeps: u32,

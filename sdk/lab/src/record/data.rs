@@ -23,15 +23,18 @@ const AXES: [&str; 7] = [
     "signal_z",
 ];
 
-/// What a take was recorded with; the first line of a part file, and a part of the JSON beside a recording.
+/// What a take was recorded with; the first line of a part file, and the object `take` of the JSON beside a recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct TakeHeader {
     /// Version of this structure: 1.
+    #[schemars(extend("const" = 1))]
     pub htex_take: u32,
     /// Name of the takes.
+    #[schemars(regex(pattern = names::PATTERN))]
     pub name: String,
     /// Number of the take, from 1.
+    #[schemars(range(min = 1))]
     pub number: u32,
     /// Program and version.
     pub tool: String,
@@ -43,15 +46,19 @@ pub struct TakeHeader {
     pub calibrations: Vec<Vec<f64>>,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
-    /// Sample rate, hertz.
+    /// Sample rate, hertz; of a WAV a whole number.
+    #[schemars(range(max = MAX_RATE_HZ), extend("exclusiveMinimum" = 0))]
     pub rate_hz: f64,
     /// Length of a complete take, seconds.
+    #[schemars(range(max = LONGEST_S), extend("exclusiveMinimum" = 0))]
     pub seconds: f64,
-    /// Recorded signals: role and unit.
+    /// Recorded signals: role and unit, each role once.
+    #[schemars(with = "Vec<SignalText>", length(min = 1))]
     pub signals: Vec<(String, String)>,
     /// Means that were subtracted from the signals; empty without tare.
     pub tare: Vec<f64>,
-    /// Signals of the tracker, without the time: role and unit; empty without a tracker.
+    /// Signals of the tracker, without the time: role and unit, each role once; empty without a tracker.
+    #[schemars(with = "Vec<SignalText>")]
     pub tracker: Vec<(String, String)>,
     pub target_speed_mm_s: Option<f64>,
     /// Target normal force, newtons.
@@ -62,6 +69,43 @@ pub struct TakeHeader {
     pub required: Required,
     /// Format of the recording: see [`Format`].
     pub format: Format,
+}
+
+/// Longest unit of a signal, bytes.
+const MOST_UNIT: usize = 16;
+
+/// Names of the roles that a signal of a take may have: all but the time.
+fn roles() -> impl Iterator<Item = &'static str> {
+    let names = Role::ALL.iter().map(|role| role.name());
+    names.filter(|name| *name != "time")
+}
+
+/// The schema of a signal: its role, and its unit of printable ASCII without commas.
+struct SignalText;
+
+impl JsonSchema for SignalText {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Signal".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        let roles: Vec<&str> = roles().collect();
+        schemars::json_schema!({
+            "description": "A signal: its role and its unit.",
+            "type": "array",
+            "prefixItems": [
+                { "enum": roles },
+                { "type": "string", "pattern": format!("^[!-+\\--~]{{0,{MOST_UNIT}}}$") },
+            ],
+            "minItems": 2,
+            "maxItems": 2,
+        })
+    }
+}
+
+/// The JSON Schema of a take's header, version 1: `spec/schemas/take-1.json`.
+pub fn take_schema() -> Value {
+    htex_schema::crossing::<TakeHeader>("take-1.json", "header of a take of htex 1")
 }
 
 /// A take: its header and its samples.
@@ -127,14 +171,18 @@ impl TakeHeader {
     /// Reads a header of this version.
     ///
     /// # Errors
-    /// What is wrong, if it has another version, other keys or other values.
-    pub(crate) fn of_json(json: Value) -> Result<Self, String> {
+    /// What is wrong, if it has another version, other keys, or values that no session would have written.
+    pub fn of_json(json: Value) -> Result<Self, String> {
         let version = &json["htex_take"];
         if *version != 1 {
             return Err(format!("its version is {version}, and this htex reads 1"));
         }
         htex_schema::check_keys::<Self>(&json)?;
-        serde_json::from_value(json).map_err(|error| error.to_string())
+        let header: Self = serde_json::from_value(json).map_err(|error| error.to_string())?;
+        match header.problem() {
+            None => Ok(header),
+            Some(problem) => Err(problem.to_owned()),
+        }
     }
 
     /// Frames of a complete take.
@@ -144,25 +192,24 @@ impl TakeHeader {
     }
 
     /// What no session would have written, if anything: a part file may be damaged, or not be ours.
-    pub(crate) fn problem(&self) -> Option<&'static str> {
+    fn problem(&self) -> Option<&'static str> {
         let has_known_roles = |signals: &[(String, String)]| {
             let mut names: Vec<&str> = signals.iter().map(|(role, _)| &role[..]).collect();
             let all = names.len();
             names.sort_unstable();
             names.dedup();
-            let is_known = |name: &&str| Role::ALL.iter().any(|role| role.name() == *name);
-            names.len() == all && names.iter().all(is_known) && !names.contains(&"time")
+            names.len() == all && names.iter().all(|name| roles().any(|role| role == *name))
         };
         let has_units = |signals: &[(String, String)]| {
-            let is_unit =
-                |unit: &str| unit.len() <= 16 && unit.bytes().all(|b| b.is_ascii_graphic());
-            signals
-                .iter()
-                .all(|(_, unit)| is_unit(unit) && !unit.contains(','))
+            let is_unit = |unit: &str| {
+                let is_sound = |b: u8| b.is_ascii_graphic() && b != b',';
+                unit.len() <= MOST_UNIT && unit.bytes().all(is_sound)
+            };
+            signals.iter().all(|(_, unit)| is_unit(unit))
         };
         let is_whole = self.rate_hz.fract() == 0.0 && self.rate_hz <= f64::from(u32::MAX);
         let checks = [
-            (self.htex_take == 1, "its version is not known"),
+            (self.number >= 1, "its number is 0; takes count from 1"),
             (
                 names::check(&self.name).is_ok(),
                 "its name is no name of a take",

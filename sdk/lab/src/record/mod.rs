@@ -46,7 +46,7 @@ pub use beside::KnownTake;
 pub(crate) use beside::{header as header_beside, settings as settings_of};
 pub use calibration::{AXES, Calibration};
 pub use coverage::{Coverage, Required};
-pub use data::{TakeData, TakeHeader};
+pub use data::{TakeData, TakeHeader, take_schema};
 pub use error::RecordError;
 pub use finish::{Recorded, recover};
 pub use format::{Format, Outcome};

@@ -11,6 +11,9 @@ pub(crate) const INCOMPLETE: &str = "incomplete";
 /// Extension of a take that is being recorded.
 const PART: &str = "part";
 
+/// The names that [`check`] allows.
+pub(crate) const PATTERN: &str = "^[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}$";
+
 /// The name of a take's files without extension: `vinyl-007`.
 pub(crate) fn stem(name: &str, number: u32) -> String {
     format!("{name}-{number:03}")

@@ -136,12 +136,6 @@ pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
         )
     });
     let header = header.in_file(path)?;
-    if let Some(problem) = header.problem() {
-        let problem = format!(
-            "it is not the part of a take that this htex records: {problem}; move it elsewhere"
-        );
-        return Err(ContentError::new(path, problem).into());
-    }
     let own = names::stem(&header.name, header.number);
     if path.file_stem().is_none_or(|stem| stem != &own[..]) {
         let problem = format!(

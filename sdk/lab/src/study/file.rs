@@ -225,7 +225,11 @@ pub struct Scale {
 }
 
 /// Pattern of a name in the results: not blank, without control characters.
-const NAME: &str = r"^[^\x00-\x1f\x7f-\x9f]*[^\s\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f]*$";
+const NAME: &str = concat!(
+    r"^[^\x00-\x1f\x7f-\x9f]*[^",
+    htex_schema::white_space!(),
+    r"\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f]*$"
+);
 
 /// What is rated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

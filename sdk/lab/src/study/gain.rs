@@ -1,11 +1,12 @@
 //! Matching of a gain: a state machine of key presses.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::study::file::{GainMethod, Matching};
 
 /// A press of a key while a gain is matched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GainKey {
     /// Stronger by a step; in a staircase, it should be stronger.

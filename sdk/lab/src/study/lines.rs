@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use htex_format::Quantity;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::record::Format;
@@ -11,7 +12,8 @@ use crate::study::gain::GainKey;
 /// Version of the files of answers.
 pub(crate) const VERSION: &str = "1.0";
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A line of a file of answers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Line {
     /// The first line.
@@ -36,10 +38,11 @@ pub enum Line {
 }
 
 /// The first line: what the answers belong to.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Header {
     /// Version of this format.
+    #[schemars(extend("const" = VERSION))]
     pub htex_answers: String,
     pub study: String,
     pub participant: String,
@@ -62,7 +65,7 @@ pub struct Header {
 }
 
 /// A simulated participant.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Simulated {
     /// Seed of its ratings.
@@ -72,7 +75,7 @@ pub struct Simulated {
 }
 
 /// The beginning of a session.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Began {
     /// Date and time in UTC: `2026-11-25T10:25:25Z`.
@@ -87,14 +90,14 @@ pub struct Began {
 }
 
 /// The device of a session, as it was set.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DeviceUsed {
     pub adapter: String,
     /// Its profile; empty if there is none.
     pub profile: String,
-    /// All its settings, such as the gain of an amplifier: given ones, those of the profile and defaults. Names of files that a trial is
-    /// played to are left out.
+    /// All its settings, such as the gain of an amplifier: given ones, those of the profile and defaults. Left out are names of files that a
+    /// trial is played to, and `buffer_ms` where the motion is not live: then nobody feels how long samples wait.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
     /// Largest magnitude that it takes, in its unit (of a display volts); absent without a limit.
@@ -143,7 +146,7 @@ impl DeviceUsed {
 }
 
 /// The source of a session's felt forces, and how they are recorded.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SourceUsed {
     /// The source, as it was named: `daq:Dev1/ai0:5`.
@@ -170,7 +173,7 @@ pub struct SourceUsed {
 }
 
 /// A recording of what was felt in a trial.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FeltFile {
     /// The recording in the folder of answers, with `/` between folders: `P07/felt/trial-0017-vinyl-ar.npy`.
@@ -183,7 +186,7 @@ pub struct FeltFile {
 }
 
 /// A rating.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Answer {
     /// Number of the trial within its phase, from 1.
@@ -216,7 +219,7 @@ pub struct Answer {
 }
 
 /// A key press of the gain matching.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Matched {
     pub texture: String,
@@ -243,6 +246,21 @@ fn is_zero(count: &u32) -> bool {
 }
 
 impl Line {
+    /// Reads a line.
+    ///
+    /// # Errors
+    /// What is wrong, if it is no line of an answer, has other keys or values, or is a header of another version.
+    pub fn parse(text: &[u8]) -> Result<Self, String> {
+        let line: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+        match &line {
+            Self::Header(header) if header.htex_answers != VERSION => Err(format!(
+                "the file has version {}, and this htex reads {VERSION}",
+                header.htex_answers
+            )),
+            _ => Ok(line),
+        }
+    }
+
     /// Time of the line, milliseconds; 0 for the header.
     pub fn at_ms(&self) -> u64 {
         match self {
@@ -253,4 +271,9 @@ impl Line {
             Self::Rest { at_ms, .. } => *at_ms,
         }
     }
+}
+
+/// The JSON Schema of a line of answers, version 1.0: `spec/schemas/answers-1.json`.
+pub fn answers_schema() -> serde_json::Value {
+    htex_schema::crossing::<Line>("answers-1.json", "line of a file of answers of htex 1")
 }

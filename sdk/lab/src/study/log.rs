@@ -114,9 +114,10 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), StudyError> {
         line,
         problem,
     };
-    let mut lines = bytes.split(|b| *b == b'\n').enumerate().map(|(i, line)| {
-        serde_json::from_slice::<Line>(line).map_err(|error| damaged(i + 1, error.to_string()))
-    });
+    let mut lines = bytes
+        .split(|b| *b == b'\n')
+        .enumerate()
+        .map(|(i, line)| Line::parse(line).map_err(|error| damaged(i + 1, error)));
     // After the last line end there is nothing.
     let count = bytes.iter().filter(|b| **b == b'\n').count();
     let Some(Line::Header(header)) = lines.next().transpose()?.filter(|_| count > 0) else {

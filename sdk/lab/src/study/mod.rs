@@ -55,6 +55,7 @@ pub use file::{
 pub use gain::{GainKey, Match};
 pub use lines::{
     Answer, Began, DeviceUsed, FeltFile, Header, Line, Matched, Simulated, SourceUsed,
+    answers_schema,
 };
 pub use log::{Log, participant_file};
 pub use page::{Page, PageOptions, Touch, Touched};

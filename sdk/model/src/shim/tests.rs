@@ -49,6 +49,8 @@ fn a_bad_motion_leaves_the_voice_as_it_was() {
         speed_mm_s: -80.0,
         force_n: 0.4,
         position_mm: -7.0,
+        x_mm: 3.0,
+        y_mm: -4.0,
     };
     // SAFETY: one thread.
     let set = |handle, motion| unsafe { state.motion_set(handle, motion) };
@@ -61,10 +63,12 @@ fn a_bad_motion_leaves_the_voice_as_it_was() {
     };
     let invalid = Status::InvalidArgument as i64;
     for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1.1e12] {
-        let fields: [fn(&mut Motion) -> &mut f64; 3] = [
+        let fields: [fn(&mut Motion) -> &mut f64; 5] = [
             |m| &mut m.speed_mm_s,
             |m| &mut m.force_n,
             |m| &mut m.position_mm,
+            |m| &mut m.x_mm,
+            |m| &mut m.y_mm,
         ];
         for field in fields {
             let mut motion = good;

@@ -29,7 +29,12 @@ impl Axis {
     pub(super) fn new(mut values: Vec<f64>, merged: bool) -> Self {
         values.sort_by(f64::total_cmp);
         let largest = values.last().copied().unwrap_or(0.0);
-        let scale = if largest > 0.0 { 1.0 / largest } else { 1.0 };
+        // The inverse of the smallest numbers is not finite.
+        let scale = if largest > 0.0 {
+            (1.0 / largest).min(f64::MAX)
+        } else {
+            1.0
+        };
         let is_one = |a: &f64, x: f64| a == &x || (merged && Condition::is_same(*a, x));
         let mut groups: Vec<Group> = Vec::new();
         for x in values {

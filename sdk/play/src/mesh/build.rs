@@ -10,7 +10,16 @@ use super::cells::fanned;
 use super::{Face, Mesh, Side};
 
 pub(super) fn mesh(conditions: &[[f64; 2]]) -> Mesh {
-    let (axes, numbers, places) = sorted(conditions);
+    let (mut axes, mut places) = placed(conditions, true);
+    if !are_apart(&places) {
+        (axes, places) = placed(conditions, false);
+    }
+    meshed(conditions, axes, &places)
+}
+
+/// Triangulates conditions at their coordinates.
+pub(super) fn meshed(conditions: &[[f64; 2]], axes: [Axis; 2], places: &[[f64; 2]]) -> Mesh {
+    let (numbers, places) = sorted(conditions, places);
     let (mut faces, mut sides) = match line(&places) {
         None => (vec![], vec![]),
         Some(line) => match triangulate(&places, &line) {
@@ -34,20 +43,16 @@ pub(super) fn mesh(conditions: &[[f64; 2]]) -> Mesh {
     }
 }
 
-/// Returns both axes, and the numbers and coordinates of all conditions, in ascending order of their coordinates: what
-/// is made of them does not depend on their own order.
-fn sorted(conditions: &[[f64; 2]]) -> ([Axis; 2], Vec<usize>, Vec<[f64; 2]>) {
-    let (mut axes, mut places) = placed(conditions, true);
-    if !are_apart(&places) {
-        (axes, places) = placed(conditions, false);
-    }
+/// Returns the numbers and coordinates of all conditions, in ascending order of their coordinates: what is made of them does
+/// not depend on their own order.
+pub(super) fn sorted(conditions: &[[f64; 2]], places: &[[f64; 2]]) -> (Vec<usize>, Vec<[f64; 2]>) {
     let mut numbers: Vec<usize> = (0..conditions.len()).collect();
     numbers.sort_by(|a, b| {
         let by_motion = || ascends(&conditions[*a], &conditions[*b]);
         ascends(&places[*a], &places[*b]).then_with(by_motion)
     });
     let places = numbers.iter().map(|i| places[*i]).collect();
-    (axes, numbers, places)
+    (numbers, places)
 }
 
 fn ascends(a: &[f64; 2], b: &[f64; 2]) -> Ordering {
@@ -55,7 +60,7 @@ fn ascends(a: &[f64; 2], b: &[f64; 2]) -> Ordering {
 }
 
 /// Returns both axes, and the coordinates of all conditions.
-fn placed(conditions: &[[f64; 2]], merged: bool) -> ([Axis; 2], Vec<[f64; 2]>) {
+pub(super) fn placed(conditions: &[[f64; 2]], merged: bool) -> ([Axis; 2], Vec<[f64; 2]>) {
     let values = |axis: usize| conditions.iter().map(|c| c[axis]).collect();
     let [speed, force] = [0, 1].map(|axis| Axis::new(values(axis), merged));
     let place = |c: &[f64; 2]| [speed.place(c[0]), force.place(c[1])];
@@ -128,10 +133,12 @@ fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
         .collect();
     let faces: Vec<Face> = fanned(&triangles, places).into_iter().map(face).collect();
     let corner = |v: spade::handles::FixedVertexHandle| index[v.index()];
-    let edges = mesh
+    let mut edges: Vec<[usize; 2]> = mesh
         .convex_hull()
         .map(|edge| [corner(edge.from().fix()), corner(edge.to().fix())])
         .collect();
+    // The first of two edges that could both take a narrow triangle takes it.
+    edges.sort_unstable_by_key(|ends| ascending(*ends));
     (!faces.is_empty()).then_some((faces, edges))
 }
 

@@ -47,6 +47,28 @@ fn one_condition_and_conditions_on_a_line() {
     }
 }
 
+/// A narrow triangle beside two edges belongs to the edge of the lower conditions, in any order of the conditions.
+#[test]
+fn a_triangle_beside_two_edges_belongs_to_the_first() {
+    let places = [[10.0, 0.1], [97.0, 1.0], [100.0, 0.97]];
+    for order in [
+        [0, 1, 2],
+        [0, 2, 1],
+        [1, 0, 2],
+        [1, 2, 0],
+        [2, 0, 1],
+        [2, 1, 0],
+    ] {
+        let mesh = Mesh::new(&order.map(|i: usize| places[i]));
+        let mixed: Vec<usize> = at(&mesh, 55.0, 0.55)
+            .iter()
+            .map(|(i, _)| order[*i])
+            .collect();
+        // On the edge from the first condition to the second the third one lies between them.
+        assert_eq!(mixed, [0, 2], "{order:?}");
+    }
+}
+
 /// Conditions that are equal within the tolerance: each is still reproduced.
 #[test]
 fn conditions_that_are_the_same_stay_apart() {
@@ -177,6 +199,34 @@ fn conditions_on_a_circle_are_fanned_from_the_lowest() {
     );
 }
 
+/// Two conditions have half the weight each.
+fn halves(mesh: &Mesh, [speed, force]: [f64; 2], conditions: [usize; 2]) {
+    let weights = at(mesh, speed, force);
+    let near = weights.iter().all(|(_, w)| (w - 0.5).abs() < 1e-12);
+    let which: Vec<usize> = weights.iter().map(|(i, _)| *i).collect();
+    assert!(which == conditions && near, "{weights:?}");
+}
+
+/// The diagonal that is stored, not Delaunay's; nothing is grouped, and outside the nearest point of an outer edge is played.
+#[test]
+fn stored_triangles_replace_those_that_are_found() {
+    let square = [[40.0, 0.4], [40.0, 1.2], [160.0, 1.2], [160.0, 0.4]];
+    let found = Mesh::new(&square);
+    let stored = Mesh::with_triangles(&square, &[[0, 1, 3], [3, 1, 2]]).unwrap();
+    halves(&found, [100.0, 0.8], [0, 2]);
+    halves(&stored, [100.0, 0.8], [1, 3]);
+    halves(&stored, [100.0, 0.1], [0, 3]);
+    assert_eq!(stored.locate(100.0, 0.1).1, [100.0, 0.4]);
+    assert_eq!(at(&stored, 500.0, 9.0), [(2, 1.0)]);
+    assert!(stored.surrounds(100.0, 0.8) && !stored.surrounds(100.0, 0.39));
+    // Forces within 5 % are two here.
+    let near = [[40.0, 0.4], [160.0, 0.4], [100.0, 0.41]];
+    let narrow = Mesh::with_triangles(&near, &[[2, 1, 0]]).unwrap();
+    assert_eq!(at(&narrow, 100.0, 0.41), [(2, 1.0)]);
+    halves(&narrow, [100.0, 0.4], [0, 1]);
+    assert!(Mesh::with_triangles(&square, &[[0, 1, 3]]).is_err());
+}
+
 /// Speeds or forces, each some tenths above the one before.
 fn axis(
     count: impl Into<proptest::collection::SizeRange>,
@@ -231,6 +281,19 @@ fn in_two_orders() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<usize>)> {
     })
 }
 
+/// Whether three conditions are too close to a line to be stored.
+fn is_flat(points: &[[f64; 2]], triangle: [usize; 3]) -> bool {
+    let most = |axis: usize| points.iter().map(|p| p[axis]).fold(0.0, f64::max);
+    let [a, b, c] = triangle.map(|i| [points[i][0] / most(0), points[i][1] / most(1)]);
+    area(a, b, c).abs() < 1e-8
+}
+
+fn weight_of(mesh: &Mesh, [v, f]: [f64; 2], condition: usize) -> f64 {
+    let all = at(mesh, v, f);
+    let own = all.iter().find(|(i, _)| *i == condition);
+    own.map_or(0.0, |(_, weight)| *weight)
+}
+
 /// Test motions: over the whole range, up to 50 % outside it, and close to each condition.
 fn motions() -> impl Strategy<Value = Vec<[f64; 2]>> {
     prop::collection::vec([0.0..1.0, 0.0..1.0], 24)
@@ -279,6 +342,44 @@ proptest! {
                 let step = db([v * on[0], f * on[1]]) - db([v, f]);
                 prop_assert!(step.abs() < 0.5, "{step} dB from {v} mm/s, {f} N in {on:?}: {points:?}");
             }
+        }
+    }
+
+    /// What a mesh finds itself is valid where it is stored, and stored in any order it has the same weights; at each condition only its
+    /// own is not zero, and nothing jumps.
+    #[test]
+    fn found_triangles_can_be_stored((points, order) in in_two_orders(), places in motions(), turn in any::<bool>()) {
+        let (axes, coordinates) = build::placed(&points, false);
+        let unmerged = build::meshed(&points, axes, &coordinates);
+        let found: Vec<[usize; 3]> = unmerged.triangles().collect();
+        let Ok(stored) = Mesh::with_triangles(&points, &found) else {
+            // Conditions on one line, some of them beside it by rounding, have no triangles to store.
+            prop_assert!(found.iter().any(|t| is_flat(&points, *t)), "{points:?}: {found:?}");
+            return Ok(());
+        };
+        if found.is_empty() {
+            return Ok(());
+        }
+        let shuffled: Vec<[f64; 2]> = order.iter().map(|i| points[*i]).collect();
+        let place = |i: usize| order.iter().position(|k| *k == i).unwrap();
+        let moved: Vec<[usize; 3]> = found.iter().rev().map(|corners| {
+            let [a, b, c] = corners.map(place);
+            if turn { [c, b, a] } else { [b, c, a] }
+        }).collect();
+        let other = Mesh::with_triangles(&shuffled, &moved).unwrap();
+        for (i, [v, f]) in points.iter().enumerate() {
+            prop_assert_eq!(at(&stored, *v, *f), [(i, 1.0)]);
+        }
+        let most = |axis: usize| points.iter().map(|p| p[axis]).fold(0.0, f64::max);
+        for [v, f] in places {
+            let motion = [1.2 * v * most(0), 1.2 * f * most(1)];
+            let theirs: Vec<(usize, f64)> = at(&other, motion[0], motion[1])
+                .into_iter().map(|(i, w)| (order[i], w)).collect();
+            prop_assert_eq!(at(&stored, motion[0], motion[1]), theirs, "at {:?}", motion);
+            // A step of 1e-9 of the ranges changes no weight by more than the narrowest triangle's height allows.
+            let beside = stored.weights(motion[0] + 1e-9 * most(0), motion[1]);
+            let step = beside.iter().map(|(i, w)| (w - weight_of(&stored, motion, i)).abs());
+            prop_assert!(step.fold(0.0, f64::max) < 1e-3, "at {:?}", motion);
         }
     }
 }

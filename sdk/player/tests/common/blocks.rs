@@ -1,4 +1,5 @@
 //! Small blocks, written from the specification.
+#![allow(dead_code)] // Each suite uses a part of it.
 
 use htex_player::crc32;
 
@@ -12,18 +13,32 @@ pub struct Plan {
     pub row: u16,
     pub size: u16,
     pub glide: u16,
+    pub filters: u8,
+    pub quantity: u8,
+    /// The exponents a, b and c.
+    pub law: [f32; 3],
+    pub ceiling: f32,
+    pub full_scale: f32,
+    pub highest: f32,
     pub speeds: Vec<f32>,
     pub forces: Vec<f32>,
     pub rows: Vec<f32>,
-    pub conditions: Vec<f32>,
+    pub levels: Vec<f32>,
+    /// Scales of filters, or frequencies and amplitudes.
+    pub numbers: Vec<f32>,
+    /// Weights and filters.
+    pub integers: Vec<i16>,
 }
 
 /// Noise of level 1 and 2 with two different filters.
 pub fn noise() -> Plan {
-    let filter = |level: f32, decay: f32| {
-        let side = (0..=8).map(move |i| 0.5 * decay.powi(i));
-        std::iter::once(level).chain(side)
+    let next = |decay: f32| move |c: &f32| Some(c * decay);
+    let filter = |decay: f32| {
+        std::iter::successors(Some(32_000.0), next(decay))
+            .take(9)
+            .map(|c| c as i16)
     };
+    let weights = [30_000, 0, -2_000, 32_767];
     Plan {
         kind: 1,
         flags: 0,
@@ -32,10 +47,22 @@ pub fn noise() -> Plan {
         row: 4,
         size: 8,
         glide: 20,
+        filters: 2,
+        quantity: 1,
+        law: [1.0, 0.5, 0.75],
+        ceiling: 8.0,
+        full_scale: 10.0,
+        highest: 0.4,
         speeds: vec![40.0, 80.0],
         forces: vec![0.4],
         rows: vec![0.0, 0.0, 1.0, 0.0, -0.1, 0.6, 0.6, -0.1],
-        conditions: filter(1.0, 0.5).chain(filter(2.0, -0.7)).collect(),
+        levels: vec![1.0, 2.0],
+        numbers: vec![5e-10, 5e-10],
+        integers: weights
+            .into_iter()
+            .chain(filter(0.5))
+            .chain(filter(-0.7))
+            .collect(),
     }
 }
 
@@ -47,31 +74,49 @@ pub fn tones() -> Plan {
         up: 1,
         row: 0,
         size: 2,
+        filters: 0,
+        quantity: 3,
         rows: vec![],
-        conditions: vec![1.0, 0.05, 1.0, 0.1, 0.5, 1.0, 0.1, 1.0, 0.2, 0.5],
+        levels: vec![1.0, 1.0],
+        numbers: vec![0.05, 1.0, 0.1, 0.5, 0.1, 1.0, 0.2, 0.5],
+        integers: vec![],
         ..noise()
     }
 }
 
 impl Plan {
-    pub fn bytes(&self) -> Vec<u8> {
-        let parts = [&self.speeds, &self.forces, &self.rows, &self.conditions];
-        let numbers: Vec<u8> = parts
-            .into_iter()
-            .flatten()
-            .flat_map(|x| x.to_le_bytes())
-            .collect();
+    /// The block without its checksum.
+    pub fn content(&self) -> Vec<u8> {
+        let parts = [
+            &self.speeds,
+            &self.forces,
+            &self.rows,
+            &self.levels,
+            &self.numbers,
+        ];
+        let numbers = parts.into_iter().flatten().flat_map(|x| x.to_le_bytes());
+        let integers = self.integers.iter().flat_map(|x| x.to_le_bytes());
+        let mut numbers: Vec<u8> = numbers.chain(integers).collect();
+        numbers.resize(numbers.len().next_multiple_of(4), 0);
         let mut bytes = b"HTXB\x01\x00".to_vec();
         bytes.extend([self.kind, self.flags]);
-        bytes.extend((32 + numbers.len() as u32 + 4).to_le_bytes());
+        bytes.extend((52 + numbers.len() as u32 + 4).to_le_bytes());
         bytes.extend(self.rate_hz.to_le_bytes());
         for number in [self.up, self.row, self.size, self.glide] {
             bytes.extend(number.to_le_bytes());
         }
         bytes.extend([self.speeds.len() as u8, self.forces.len() as u8]);
-        bytes.extend([0; 6]);
+        bytes.extend([self.filters, self.quantity]);
+        let [a, b, c] = self.law;
+        for number in [a, b, c, self.ceiling, self.full_scale, self.highest] {
+            bytes.extend(number.to_le_bytes());
+        }
         bytes.extend(numbers);
-        with_checksum(bytes)
+        bytes
+    }
+
+    pub fn bytes(&self) -> Vec<u8> {
+        with_checksum(self.content())
     }
 }
 

@@ -169,8 +169,9 @@ class Fit:
     """Models that could not be fitted, with reasons."""
     notes: list[str]
     """Notes about the recordings, as sentences."""
-    felt: list[list[dict[str, Any]]] = field(default_factory=list)
-    """What is felt of the difference from the recordings, of each model at each of its conditions."""
+    felt: list[list[dict[str, Any] | None]] = field(default_factory=list)
+    """What is felt of the difference from the recordings, of each model at each of its conditions; None at a condition that was computed
+    between recorded ones."""
     grid: dict[str, Any] | None = None
     """The grid of the conditions, if one was requested: its lines, its cells with their segments, repeatability and status,
     the triangles between conditions, and the errors of blocks of time that were left out: of the grid (``left_out_rms_db``) and of one condition

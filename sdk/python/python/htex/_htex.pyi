@@ -91,9 +91,12 @@ class Texture:
         position_mm: float | None = None,
         synthesis: str = "streamed",
         *,
+        x_mm: float | None = None,
+        y_mm: float | None = None,
         frequency_scaling: bool = True,
         level_scaling: bool = True,
         contact: bool = True,
+        ceiling: float = 4.0,
     ) -> Voice: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
@@ -144,9 +147,24 @@ class Voice:
     def unit(self) -> str: ...
     def render(self, n: int) -> npt.NDArray[np.float32]: ...
     def render_into(self, array: npt.NDArray[np.float32]) -> None: ...
-    def set_motion(self, speed_mm_s: float, force_n: float, position_mm: float | None = None) -> None: ...
+    def set_motion(
+        self,
+        speed_mm_s: float,
+        force_n: float,
+        position_mm: float | None = None,
+        *,
+        x_mm: float | None = None,
+        y_mm: float | None = None,
+    ) -> None: ...
     def render_path(
-        self, speed_mm_s: _Series, force_n: _Series, position_mm: _Series | None = None, block: int = 64
+        self,
+        speed_mm_s: _Series,
+        force_n: _Series,
+        position_mm: _Series | None = None,
+        block: int = 64,
+        *,
+        x_mm: _Series | None = None,
+        y_mm: _Series | None = None,
     ) -> npt.NDArray[np.float32]: ...
     def coverage(self, speed_mm_s: float, force_n: float) -> Coverage: ...
 

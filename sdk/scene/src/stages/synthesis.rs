@@ -1,6 +1,6 @@
 //! Synthesis: a voice of the surface's model, with unit RMS.
 
-use htex_play::{ModelMotion, Motion, SampleSource};
+use htex_play::{Finger, Motion, SampleSource};
 
 use super::Stage;
 
@@ -32,7 +32,7 @@ impl Synthesis {
 
     /// Tells a model that follows the motion itself where the finger is, so many seconds after the first sample. A model
     /// that refuses it plays on as before, and says so.
-    pub(crate) fn set_finger(&mut self, finger: ModelMotion, at_s: f64) {
+    pub(crate) fn set_finger(&mut self, finger: Finger, at_s: f64) {
         if let Err(error) = self.source.set_finger(finger, at_s) {
             self.failed.get_or_insert(error);
         }

@@ -98,6 +98,7 @@ fn asset(quantity: Quantity, models: &[&str]) -> Vec<u8> {
             quality: None,
             left_out: None,
         }],
+        triangles: Vec::new(),
         parameters: format!("parameters/{model}.bin"),
     };
     let values = |model: &&str| vec![fields(model).iter().map(|(_, value)| *value).collect()];
@@ -277,6 +278,13 @@ pub fn cases() -> Vec<Case> {
         (
             "scene_version_newer",
             with(&[("/htex_scene", json!("1.4")), ("/temperature_c", json!(20))]),
+        ),
+        (
+            "scene_version_newer_effect",
+            with(&[
+                ("/htex_scene", json!("1.4")),
+                ("/effects", json!({ "warmth": "on" })),
+            ]),
         ),
         (
             "effect_unknown",

@@ -21,17 +21,20 @@ struct Plan {
     contact: &'static str,
     /// Exponents of frequency over speed, level over speed and level over force, where a law is stated.
     law: Option<[f64; 3]>,
+    /// Triangles that it stores, by its conditions.
+    triangles: &'static [[usize; 3]],
 }
 
 const TACTILE_HZ: [f64; 2] = [20.0, 1000.0];
 
 /// Conditions of the assets of three to five are far from a line and from a circle. Those of `grid`, as measured by hand, are in
 /// neither order of a grid; those of `circle` have positions on one.
-const PLANS: [Plan; 7] = [
+const PLANS: [Plan; 8] = [
     Plan {
         name: "one_condition",
         contact: "finger",
         law: None,
+        triangles: &[],
         band_hz: TACTILE_HZ,
         conditions: &[[80.0, 0.4]],
         motions: &[[160.0, 0.8], [7.0, 0.1], [900.0, 19.0]],
@@ -40,6 +43,7 @@ const PLANS: [Plan; 7] = [
         name: "two_speeds",
         contact: "tool",
         law: None,
+        triangles: &[],
         band_hz: TACTILE_HZ,
         conditions: &[[40.0, 0.4], [160.0, 0.4]],
         motions: &[[70.0, 0.4], [100.0, 0.4], [20.0, 0.9], [400.0, 0.1]],
@@ -48,6 +52,7 @@ const PLANS: [Plan; 7] = [
         name: "three_conditions",
         contact: "unknown",
         law: Some([0.3, -0.6, 0.9]),
+        triangles: &[],
         band_hz: TACTILE_HZ,
         conditions: &[[50.0, 0.2], [150.0, 0.3], [90.0, 0.9]],
         motions: &[
@@ -62,6 +67,7 @@ const PLANS: [Plan; 7] = [
         name: "narrow_band",
         contact: "unknown",
         law: None,
+        triangles: &[],
         band_hz: [32.5, 437.5],
         conditions: &[[50.0, 0.2], [170.0, 0.25], [60.0, 0.8], [140.0, 0.9]],
         motions: &[[100.0, 0.5], [75.0, 0.3], [130.0, 0.4], [200.0, 0.6]],
@@ -70,6 +76,7 @@ const PLANS: [Plan; 7] = [
         name: "five_conditions",
         contact: "finger",
         law: Some([1.0, 0.25, 0.0]),
+        triangles: &[],
         band_hz: TACTILE_HZ,
         conditions: &[
             [40.0, 0.2],
@@ -90,6 +97,7 @@ const PLANS: [Plan; 7] = [
         name: "grid",
         contact: "finger",
         law: None,
+        triangles: &[],
         band_hz: TACTILE_HZ,
         conditions: &[
             [161.0, 1.01],
@@ -112,6 +120,7 @@ const PLANS: [Plan; 7] = [
         name: "circle",
         contact: "tool",
         law: None,
+        triangles: &[],
         band_hz: [32.5, 437.5],
         conditions: &[
             [140.0, 0.2],
@@ -124,6 +133,30 @@ const PLANS: [Plan; 7] = [
             [140.0, 1.0],
         ],
         motions: &[[120.0, 0.6], [60.0, 0.62], [150.0, 0.4], [110.0, 0.95]],
+    },
+    Plan {
+        name: "triangles",
+        contact: "tool",
+        law: None,
+        // The other diagonal than the fan from the slow and light condition has, in both senses of turning. By its force the last
+        // condition would be grouped with the lower edge; here it is the corner of a narrow triangle.
+        triangles: &[[3, 2, 1], [4, 1, 3], [0, 4, 1], [0, 3, 4]],
+        band_hz: TACTILE_HZ,
+        conditions: &[
+            [40.0, 0.4],
+            [40.0, 1.2],
+            [160.0, 1.2],
+            [160.0, 0.4],
+            [100.0, 0.41],
+        ],
+        motions: &[
+            [100.0, 0.8],
+            [120.0, 1.0],
+            [100.0, 0.405],
+            [110.0, 0.3],
+            [200.0, 2.0],
+            [20.0, 0.7],
+        ],
     },
 ];
 
@@ -178,6 +211,7 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
             "model_version": model.descriptor().version,
             "fields": fields,
             "at": at,
+            "triangles": plan.triangles,
             "parameters": format!("parameters/{}.bin", model.id()),
         }));
         all.push(sets);

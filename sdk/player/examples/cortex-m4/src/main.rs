@@ -17,6 +17,8 @@ use htex_player::{Block, Player};
 /// Address and size of the memory for the block.
 const BLOCK: (usize, usize) = (0x0020_0000, 0x0010_0000);
 
+/// A motion between conditions, mm/s and newtons.
+const BETWEEN: (f32, f32) = (87.0, 0.43);
 /// Samples whose instructions are counted.
 const COUNTED: usize = 2000;
 
@@ -42,9 +44,8 @@ fn play(block: Block<'_>) {
         player.render(&mut buffer);
     }
     let steady = timer.instructions();
-    player.set_motion(80.0, 0.4);
     let timer = Timer::start();
-    player.set_motion(45.0, 0.3);
+    player.set_motion(BETWEEN.0, BETWEEN.1);
     let set = timer.instructions();
     let timer = Timer::start();
     player.render(&mut buffer);

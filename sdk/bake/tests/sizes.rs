@@ -1,0 +1,85 @@
+//! What a block takes and states.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+mod common;
+
+use common::asset;
+use htex_bake::{Baked, Grid, bake};
+use htex_play::{Motion, Registry};
+use htex_player::{Block, Player};
+
+/// Most bytes of a block of the documented grid.
+const MOST_BYTES: usize = 16 * 1024;
+const WITHIN_DB: f64 = 0.3;
+
+fn documented(model: &str) -> Baked {
+    let grid = Grid::new(vec![40.0, 100.0, 160.0], vec![0.2, 0.4, 0.6]).unwrap();
+    bake(&asset(), Some(model), &grid, 8_000.0, WITHIN_DB).unwrap()
+}
+
+#[test]
+fn a_grid_takes_at_most_16_kilobytes() {
+    for model in Registry::builtin_names() {
+        let baked = documented(model);
+        let Baked {
+            at_conditions_db,
+            between_db,
+            taps,
+            filters,
+            ..
+        } = baked;
+        let bytes = baked.bytes.len();
+        println!(
+            "{model}: {bytes} bytes, {filters} filters of {taps}, {at_conditions_db:.3} dB, {between_db:.3} dB between"
+        );
+        assert!(bytes <= MOST_BYTES, "{model}: {bytes} bytes");
+        // A filter of 641 coefficients does not resolve Bands at a fourth of the highest speed.
+        let limits_db = if model == "bands" {
+            [0.45; 2]
+        } else {
+            [0.1, WITHIN_DB]
+        };
+        assert!(at_conditions_db <= limits_db[0], "{model}");
+        assert!(between_db <= limits_db[1], "{model}");
+    }
+}
+
+#[test]
+fn a_block_states_quantity_and_law_and_follows_it() {
+    let asset = asset();
+    let baked = documented("sslope");
+    let block = Block::open(&baked.bytes).unwrap();
+    assert_eq!(block.quantity().name(), asset.quantity().name());
+    assert_eq!(block.quantity().unit(), asset.quantity().unit());
+    let law = asset.motions(Some("sslope")).unwrap().explored().law;
+    assert_eq!(block.law().level_force, law.level_force.exponent as f32);
+    // Beyond the grid the level has the ratio that the host's has.
+    let host = |motion| asset.level_rms(Some("sslope"), Some(motion)).unwrap();
+    let player = |motion: Motion| {
+        let mut player = Player::new(block, 3);
+        player.set_motion(motion.speed_mm_s as f32, motion.force_n as f32);
+        let mut samples = vec![0.0; 400_000];
+        player.render(&mut samples);
+        let power: f64 = samples.iter().map(|x| f64::from(*x).powi(2)).sum();
+        let peak = samples.iter().fold(0.0f32, |most, x| most.max(x.abs()));
+        (
+            (power / samples.len() as f64).sqrt(),
+            peak / block.full_scale(),
+        )
+    };
+    let edge = Motion::new(160.0, 0.6);
+    let (at_edge, peak) = player(edge);
+    assert!((0.5..1.1).contains(&peak), "{peak} of the full scale");
+    for beyond in [
+        Motion::new(240.0, 0.6),
+        Motion::new(160.0, 1.1),
+        Motion::new(160.0, 19.0),
+    ] {
+        let ratio = player(beyond).0 / at_edge;
+        let expected = host(beyond) / host(edge);
+        assert!(
+            (ratio / expected - 1.0).abs() < 0.04,
+            "{beyond:?}: {ratio}, host {expected}"
+        );
+    }
+}

@@ -1,0 +1,62 @@
+//! A mesh of triangles that an asset stores, which [`htex_format::check_triangles`] accepts.
+
+use std::collections::BTreeSet;
+
+use htex_format::Triangle;
+
+use super::build::{placed, sorted};
+use super::{Face, Mesh, Side, area};
+
+/// Makes a mesh of valid triangles.
+pub(super) fn mesh(conditions: &[[f64; 2]], triangles: &[Triangle]) -> Mesh {
+    let (axes, places) = placed(conditions, false);
+    let (numbers, places) = sorted(conditions, &places);
+    let mut own = vec![0; numbers.len()];
+    for (i, number) in numbers.iter().enumerate() {
+        own[*number] = i;
+    }
+    let mut all: Vec<[usize; 3]> = triangles
+        .iter()
+        .map(|corners| upright(corners.map(|number| own[number]), &places))
+        .collect();
+    // What is made of them does not depend on their order.
+    all.sort_unstable();
+    let face = |corners: &[usize; 3]| Face {
+        corners: *corners,
+        places: corners.map(|i| places[i]),
+        side: None,
+    };
+    let sides = outer(&all);
+    Mesh {
+        only: places.first().copied().unwrap_or_default(),
+        numbers,
+        axes,
+        faces: all.iter().map(face).collect(),
+        sides: sides.map(|ends| Side::new(ends, &places)).collect(),
+    }
+}
+
+/// Returns the corners counterclockwise, from the lowest.
+fn upright([a, b, c]: [usize; 3], places: &[[f64; 2]]) -> [usize; 3] {
+    let [a, b, c] = match area(places[a], places[b], places[c]) < 0.0 {
+        true => [a, c, b],
+        false => [a, b, c],
+    };
+    let first = a.min(b).min(c);
+    if first == a {
+        [a, b, c]
+    } else if first == b {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}
+
+/// Returns the edges of one triangle only, in ascending order.
+fn outer(triangles: &[[usize; 3]]) -> impl Iterator<Item = [usize; 2]> {
+    let edges = |[a, b, c]: &[usize; 3]| [[*a, *b], [*b, *c], [*c, *a]];
+    let all: BTreeSet<[usize; 2]> = triangles.iter().flat_map(edges).collect();
+    let neighbours: BTreeSet<[usize; 2]> = all.iter().map(|[from, to]| [*to, *from]).collect();
+    all.into_iter()
+        .filter(move |edge| !neighbours.contains(edge))
+}

@@ -1,9 +1,11 @@
-//! A live motion, read from lines and passed to the playing loop without a lock.
+//! A live motion: read from lines and passed to the playing loop without a lock, or of the finger on a page.
 
 use std::io::BufRead;
 use std::thread;
 use std::time::Duration;
 
+#[cfg(feature = "lab")]
+use htex_lab::study::Touch;
 use htex_scene::Finger;
 use rtrb::{Consumer, Producer, RingBuffer};
 
@@ -12,8 +14,14 @@ const ROOM: usize = 1024;
 /// Time between two tries of the reader when the queue is full.
 const WAIT: Duration = Duration::from_millis(1);
 
-/// The queue of incoming motions.
-pub(crate) struct Motions(Consumer<Finger>);
+/// Where motions come from.
+pub(crate) enum Motions {
+    /// The queue of a reader.
+    Queue(Consumer<Finger>),
+    /// A page, and the force of a finger on it, N.
+    #[cfg(feature = "lab")]
+    Page(Touch, f64),
+}
 
 /// What has arrived since the last call.
 pub(crate) enum Moved {
@@ -26,34 +34,44 @@ pub(crate) enum Moved {
 }
 
 impl Motions {
-    /// A queue, and its other end.
-    #[cfg(feature = "lab")]
-    pub(crate) fn queue() -> (Producer<Finger>, Self) {
-        let (sender, receiver) = RingBuffer::new(ROOM);
-        (sender, Self(receiver))
-    }
-
-    /// Reads lines `speed_mm_s force_n [x_mm y_mm]` from standard input in a thread of its own. An
-    /// invalid line is reported with its number and skipped.
+    /// Reads lines `speed_mm_s force_n [x_mm y_mm]` from standard input in a thread of its own. A line of other words is reported
+    /// with its number and skipped; one with a number that no finger has is a failed reading, as for the renderer.
     pub(crate) fn from_stdin() -> Self {
         let (sender, receiver) = RingBuffer::new(ROOM);
         thread::spawn(move || read(std::io::stdin().lock(), sender));
-        Self(receiver)
+        Self::Queue(receiver)
     }
 
     /// What has arrived since the last call.
     pub(crate) fn look(&mut self) -> Moved {
-        // Read before the ring is emptied, so that no motion before the end is missed.
-        let is_ended = self.0.is_abandoned();
-        let mut newest = None;
-        while let Ok(finger) = self.0.pop() {
+        match self {
+            Self::Queue(queue) => newest(queue),
+            #[cfg(feature = "lab")]
+            Self::Page(touch, force_n) => {
+                Moved::To(touch.now().map_or(Finger::AWAY, |touched| Finger {
+                    speed_mm_s: touched.speed_mm_s,
+                    force_n: *force_n,
+                    at_mm: None,
+                }))
+            }
+        }
+    }
+}
+
+/// The newest reading of a queue; one that no finger has, only if there is no other.
+fn newest(queue: &mut Consumer<Finger>) -> Moved {
+    // Read before the ring is emptied, so that no motion before the end is missed.
+    let is_ended = queue.is_abandoned();
+    let mut newest: Option<Finger> = None;
+    while let Ok(finger) = queue.pop() {
+        if newest.is_none() || finger.is_reading() {
             newest = Some(finger);
         }
-        match newest {
-            Some(finger) => Moved::To(finger),
-            None if is_ended => Moved::Ended,
-            None => Moved::Not,
-        }
+    }
+    match newest {
+        Some(finger) => Moved::To(finger),
+        None if is_ended => Moved::Ended,
+        None => Moved::Not,
     }
 }
 
@@ -67,7 +85,7 @@ fn read(lines: impl BufRead, mut sender: Producer<Finger>) {
             let number = index + 1;
             crate::output::tell!(
                 "warning: line {number}, {line:?}, is skipped: a motion is \
-                 `speed_mm_s force_n [x_mm y_mm]`, the force not negative"
+                 `speed_mm_s force_n [x_mm y_mm]`"
             );
             continue;
         };
@@ -90,8 +108,7 @@ fn parse(line: &str) -> Option<Finger> {
         [speed, force, x, y] => (speed, force, Some([x, y])),
         _ => return None,
     };
-    let is_sound = numbers.iter().all(|x| x.is_finite()) && force_n >= 0.0;
-    is_sound.then_some(Finger {
+    Some(Finger {
         speed_mm_s,
         force_n,
         at_mm,
@@ -106,15 +123,29 @@ mod tests {
     fn the_newest_motion_counts_and_bad_lines_do_not() {
         let (sender, receiver) = RingBuffer::new(ROOM);
         read(
-            &b"80 0.4\nfast\n1 2 3\n-60,0.5, 1 2\n50 -1\nNaN 1\n"[..],
+            &b"80 0.4\nfast\n1 2 3\n-60,0.5, 1 2\n50 -1\nNaN 1\n9e9 1\n"[..],
             sender,
         );
-        let mut motions = Motions(receiver);
+        let mut motions = Motions::Queue(receiver);
         let Moved::To(finger) = motions.look() else {
             unreachable!("two lines were good");
         };
         let got = (finger.speed_mm_s, finger.force_n, finger.at_mm);
         assert_eq!(got, (-60.0, 0.5, Some([1.0, 2.0])));
         assert!(matches!(motions.look(), Moved::Ended));
+    }
+
+    /// A reading that fails is passed on: it is held for a while, and is no contact then.
+    #[test]
+    fn a_failed_reading_alone_is_passed_on() {
+        for line in ["NaN 0.4\n", "80 inf\n", "80 -1\n", "80 21\n", "1001 0.4\n"] {
+            let (sender, receiver) = RingBuffer::new(ROOM);
+            read(line.as_bytes(), sender);
+            let moved = Motions::Queue(receiver).look();
+            assert!(
+                matches!(moved, Moved::To(finger) if !finger.is_reading()),
+                "{line}"
+            );
+        }
     }
 }

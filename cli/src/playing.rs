@@ -17,16 +17,18 @@ use crate::scenes::Ready;
 const PATIENCE: Duration = Duration::from_secs(5);
 /// Longest block with a live motion, seconds.
 const LIVE_BLOCK_S: f64 = 0.005;
+/// Longest block on a display, seconds: it is played before the way to zero begins.
+const DISPLAY_BLOCK_S: f64 = 0.02;
 
-/// Frames in a block: the device's, or fewer with a live motion.
+/// Frames in a block: the device's, or fewer with a live motion or on a display at a low rate.
 fn block_frames(ready: &Ready, plan: &Plan) -> u32 {
-    let usual = ready.capabilities.block_frames.max(1);
-    match ready.scene.scene.motion {
-        Motion::Live => usual
-            .min((LIVE_BLOCK_S * plan.rate_hz).ceil() as u32)
-            .max(1),
-        _ => usual,
-    }
+    let most_s = match ready.scene.scene.motion {
+        Motion::Live => LIVE_BLOCK_S,
+        _ if is_wanted(&ready.capabilities) => DISPLAY_BLOCK_S,
+        _ => f64::INFINITY,
+    };
+    let most = (most_s * plan.rate_hz).ceil().max(1.0) as u32;
+    ready.capabilities.block_frames.clamp(1, most)
 }
 
 /// This program, as the one that holds a display's output.

@@ -4,6 +4,7 @@
 mod common;
 
 use common::Place;
+use htex_device::FromScene;
 
 #[test]
 fn cards_are_listed_whether_or_not_their_driver_is_there() {
@@ -16,6 +17,52 @@ fn cards_are_listed_whether_or_not_their_driver_is_there() {
     assert!(!there.is_empty() || problem.contains("ni.com"), "{daq}");
     let sound = all.iter().any(|d| d["id"] == "org.htex.audio");
     assert_eq!(sound, cfg!(feature = "audio"));
+}
+
+/// All that a file may ask of the devices of the command, by what it may do with it; everything else is a person's. Settings of files that
+/// are written describe the file. A new setting belongs into this list, or is `never`.
+#[test]
+fn what_a_file_may_ask_of_devices() {
+    let any = [
+        "encoding",
+        "format",
+        "full_scale",
+        "path",
+        "quantity",
+        "limit_v",
+        "carrier_hz",
+    ];
+    let mut allowed: Vec<String> = any
+        .iter()
+        .map(|name| format!("org.htex.file {name} any"))
+        .collect();
+    for setting in [
+        "limit_v less",
+        "dc_limit_v less",
+        "buffer_ms less",
+        "ramp_ms more",
+    ] {
+        allowed.push(format!("org.htex.daq {setting}"));
+    }
+    if cfg!(feature = "audio") {
+        allowed.push("org.htex.audio buffer_ms less".to_owned());
+    }
+    let mut found = Vec::new();
+    for adapter in htex_device_builtin::devices() {
+        let descriptor = adapter.descriptor();
+        for setting in &descriptor.settings {
+            let how = match setting.from_scene {
+                FromScene::Any => "any",
+                FromScene::Less => "less",
+                FromScene::More => "more",
+                FromScene::Never => continue,
+            };
+            found.push(format!("{} {} {how}", descriptor.id, setting.name));
+        }
+    }
+    allowed.sort();
+    found.sort();
+    assert_eq!(found, allowed);
 }
 
 #[test]

@@ -12,6 +12,8 @@ mod study;
 
 #[path = "study/felt.rs"]
 mod felt_trials;
+#[path = "study/hostile.rs"]
+mod hostile_clients;
 #[path = "study/page.rs"]
 mod page;
 #[path = "study/terminal.rs"]

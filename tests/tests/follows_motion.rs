@@ -15,7 +15,7 @@ use htex_author::{AssetRequest, Exploration, ModelRequest, Recording, Take, fit_
 use htex_device::{Capabilities, Quantity, Rates, Settings};
 use htex_host::{Band, Stream};
 use htex_scene::file::{Budget, DeviceChoice, Motion, Scene, Surface};
-use htex_scene::{Costs, LoadedScene, Plan, Renderer, Trace, plan};
+use htex_scene::{Costs, Finger, LoadedScene, Plan, Renderer, Trace, plan};
 
 const RATE_HZ: f64 = 20_000.0;
 /// Speed and force that the recordings are said to be of.
@@ -68,6 +68,8 @@ fn bursts_follow(file: &Path) {
     let gain = loudness(2.0 * FORCE_N) / loudness(FORCE_N);
     assert!((gain - 2.0).abs() < 0.1, "twice the force: {gain}");
 
+    one_bad_reading_is_not_felt(&asset);
+
     // 25 mm/s, and from the middle on 100 mm/s.
     let path = |t: f64| 25.0 * t + 75.0 * (t - 10.0).max(0.0);
     let scene = traced(&asset, trace(20.0, path));
@@ -77,6 +79,42 @@ fn bursts_follow(file: &Path) {
     let (slow, fast) = played.split_at(played.len() / 2);
     let ratio = bursts_a_second(fast) / bursts_a_second(slow);
     assert!((ratio - 4.0).abs() < 0.5, "four times the speed: {ratio}");
+}
+
+/// A live scene: a reading of a force or a speed that no finger has does not reach the model.
+fn one_bad_reading_is_not_felt(asset: &Asset) {
+    let mut scene = traced(asset, trace(1.0, |t| 50.0 * t));
+    (scene.scene.motion, scene.trace) = (Motion::Live, None);
+    let plan = planned(&scene);
+    let felt = |bad: Option<(f64, f64)>| {
+        let mut renderer = Renderer::new(&scene, &plan).unwrap();
+        let mut out = vec![0.0; 20_000];
+        for (i, block) in out.chunks_mut(CONTROL).enumerate() {
+            let reading = if i == 100 {
+                bad
+            } else {
+                Some((SPEED_MM_S, FORCE_N))
+            };
+            if let Some((speed_mm_s, force_n)) = reading {
+                let finger = Finger {
+                    speed_mm_s,
+                    force_n,
+                    at_mm: None,
+                };
+                let _ = renderer.set_motion(finger);
+            }
+            renderer.render(block);
+        }
+        out
+    };
+    let plain = felt(None);
+    for bad in [
+        (SPEED_MM_S, 25.0),
+        (SPEED_MM_S, f64::NAN),
+        (5_000.0, FORCE_N),
+    ] {
+        assert!(felt(Some(bad)) == plain, "{bad:?}");
+    }
 }
 
 fn ten_bursts_a_second(file: &Path) -> Vec<f64> {

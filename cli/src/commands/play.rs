@@ -143,8 +143,11 @@ pub(crate) fn open(
 /// Applies the newest motion; true when the input has ended.
 fn follow(motions: &mut Motions, renderer: &mut Renderer) -> bool {
     match motions.look() {
-        // The reader passes on valid motions only.
-        Moved::To(finger) => renderer.set_motion(finger).is_err(),
+        Moved::To(finger) => {
+            // A failed reading is held, and then no contact; the next one may be good.
+            let _ = renderer.set_motion(finger);
+            false
+        }
         Moved::Not => false,
         Moved::Ended => true,
     }

@@ -78,9 +78,7 @@ impl Bench {
     /// Volts of the card that came out so far; empty when it was never used. A line that is
     /// being written is left out.
     pub fn card_v(&self) -> Vec<f64> {
-        let text = std::fs::read_to_string(self.0.path(RECORD)).unwrap_or_default();
-        let whole = text.rfind('\n').map_or("", |end| &text[..end]);
-        whole.lines().map(|line| line.parse().unwrap()).collect()
+        card_v(&self.0)
     }
 
     /// Waits until the output is zero and stays so, however busy the machine is.
@@ -103,6 +101,13 @@ impl Bench {
         assert!(card_v.iter().any(|v| *v != 0.0), "it was never felt");
         assert_eq!(card_v.last(), Some(&0.0));
     }
+}
+
+/// As [`Bench::card_v`], of a folder.
+pub fn card_v(place: &Place) -> Vec<f64> {
+    let text = std::fs::read_to_string(place.path(RECORD)).unwrap_or_default();
+    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+    whole.lines().map(|line| line.parse().unwrap()).collect()
 }
 
 /// Exit status 1, and one sentence with these words.

@@ -90,7 +90,7 @@ fn a_source_that_fails_ends_the_session_and_the_trial_is_repeated() {
     );
     // A longer buffer is no other device: the motion is not live, and the session goes on.
     assert!(!before["Ann.jsonl"].contains("buffer_ms"));
-    let patient = ["--participant", "Ann", "--set", "buffer_ms=400"];
+    let patient = ["--participant", "Ann", "--set", "buffer_ms=380"];
     let patient = on_card(&place, "whole", &patient).output().unwrap();
     let error = String::from_utf8_lossy(&patient.stderr).into_owned();
     assert!(patient.status.success(), "{error}");

@@ -58,7 +58,7 @@ fn descriptor() -> Descriptor {
         kind: SettingKind::Text,
         default: Some(DEFAULT.to_owned()),
         live_default: None,
-        from_scene: FromScene::Any,
+        from_scene: FromScene::Never,
         description: "Sound output, as the list of devices names it.".to_owned(),
     };
     let buffer = Setting {
@@ -69,7 +69,7 @@ fn descriptor() -> Descriptor {
         },
         default: Some("60".to_owned()),
         live_default: None,
-        from_scene: FromScene::Any,
+        from_scene: FromScene::Less,
         description: "Samples kept ready for the card, milliseconds: more is safer, less is \
                       quicker."
             .to_owned(),

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use htex_device::{Descriptor, FromScene, Profile, Setting, SettingKind};
 
+use crate::rig::MOST_TO_ZERO_MS;
+
 pub(crate) fn descriptor() -> Descriptor {
     Descriptor {
         id: "org.htex.daq".to_owned(),
@@ -57,28 +59,36 @@ fn settings() -> Vec<Setting> {
             "Resolution of the card's output, bits.",
         ),
         setting(
+            "dc_limit_v",
+            number(0.01, 1_000.0),
+            FromScene::Less,
+            Some("1"),
+            "Largest direct voltage at the display, volts either way: the mean over any 100 ms. What exceeds it is not put out, \
+             and the output goes to zero.",
+        ),
+        setting(
             "carrier_hz",
             number(0.0, 100_000.0),
-            FromScene::Any,
+            FromScene::Never,
             Some("7000"),
-            "Carrier that the signal is to have, hertz; 0: none.",
+            "Carrier that the signal is to have, hertz, at most the rate over 2.5; 0: none, and then `dc_limit_v` is to be said.",
         ),
         Setting {
             live_default: Some("20".to_owned()),
             ..setting(
                 "buffer_ms",
-                number(10.0, 10_000.0),
-                FromScene::Any,
+                number(10.0, MOST_TO_ZERO_MS),
+                FromScene::Less,
                 Some("200"),
-                "Samples kept ready for the card, milliseconds: more is safer, less is quicker.",
+                "Samples kept ready for the card, milliseconds: more is safer, less is quicker. With the ramp at most 400.",
             )
         },
         setting(
             "ramp_ms",
-            number(1.0, 1_000.0),
+            number(1.0, MOST_TO_ZERO_MS),
             FromScene::More,
             Some("20"),
-            "Ramp before a first, and after a last sample that is not zero, milliseconds.",
+            "Ramp before a first, and after a last sample that is not zero, milliseconds. With the buffer at most 400.",
         ),
         setting(
             "driver",
@@ -126,8 +136,10 @@ fn paper() -> Profile {
 fn generic() -> Profile {
     profile(
         "generic",
-        "A card without an amplifier: volts of its output, -10 to 10 V, no carrier asked for.",
+        "A card without an amplifier: volts of its output, -10 to 10 V, no carrier asked for, and so direct voltage up to the \
+         whole 10 V (dc_limit_v): not for a display that a finger touches.",
         &[
+            ("dc_limit_v", "10"),
             ("amplifier_gain", "1"),
             ("limit_v", "10"),
             ("carrier_hz", "0"),

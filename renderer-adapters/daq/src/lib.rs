@@ -8,8 +8,11 @@
 //! - the output goes to zero before a stream, after it, on every error, and when the device is
 //!   dropped; a thread of the device detects an empty buffer even if no more samples are
 //!   written;
+//! - a mean over 100 ms beyond `dc_limit_v` is never output, whatever produced it;
 //! - a stream that does not begin or end at zero gets a ramp of `ramp_ms` *before its
-//!   first and after its last* sample. Samples themselves are never changed.
+//!   first and after its last* sample: the mirror image of what is there, under a falling weight, so that a carrier stays one.
+//!   Samples themselves are never changed;
+//! - buffer and ramp together have at most 400 ms.
 //!
 //! [`DaqInput`] is the reverse: the analog inputs of a card as a source, in volts.
 #![deny(unsafe_code)]
@@ -84,12 +87,12 @@ impl Adapter for Daq {
     ) -> Result<Box<dyn Device>, DeviceError> {
         let rig = Rig::new(settings)?;
         let driver = Driver::load(&rig.driver)?;
-        let rates = rig.capabilities(driver)?.rates;
-        if !rates.has(format.rate_hz) {
+        let able = rig.capabilities(driver)?;
+        if !able.has_rate(format.rate_hz) {
             return Err(DeviceError::Rate {
                 device: rig.device,
                 rate_hz: format.rate_hz,
-                rates: rates.to_string(),
+                rates: able.rates_text(),
             });
         }
         Ok(Box::new(stream::Stream::open(rig, driver, format)?))

@@ -1,11 +1,17 @@
 //! Card, amplifier and limits, from the settings.
 
-use htex_device::{Capabilities, DeviceError, Quantity, Rates, Settings};
+use htex_device::{
+    Capabilities, DIRECT_SETTING, DeviceError, Quantity, RATE_PER_CARRIER, Rates, Settings,
+};
 
 use crate::driver::Driver;
 
 /// The rate at which the paper records forces, hertz; it states no output rate.
 const DEFAULT_RATE_HZ: f64 = 20_000.0;
+/// Lowest rate, hertz: textures reach 1000 Hz, and a control block of eight frames takes 8 ms here, seconds far below.
+const LOWEST_RATE_HZ: f64 = 1_000.0;
+/// Longest buffer and ramp together, milliseconds: the output of a player that is killed is then at zero within half a second.
+pub(crate) const MOST_TO_ZERO_MS: f64 = 400.0;
 /// Preferred frames in a block.
 const BLOCK_FRAMES: u32 = 256;
 /// Relative tolerance of the limit: rounding to f32.
@@ -22,6 +28,8 @@ pub(crate) struct Rig {
     pub(crate) limit_v: f64,
     /// Distance of two neighbouring voltages at the display, volts.
     pub(crate) step_v: f64,
+    /// Limit of the mean at the display, volts.
+    pub(crate) dc_limit_v: f64,
     carrier_hz: f64,
     pub(crate) buffer_s: f64,
     pub(crate) ramp_s: f64,
@@ -38,11 +46,20 @@ impl Rig {
             gain,
             limit_v: settings.number("limit_v").min(gain * full_scale_v),
             step_v: 2.0 * full_scale_v * gain / codes,
+            dc_limit_v: settings.number(DIRECT_SETTING),
             carrier_hz: settings.number("carrier_hz"),
             buffer_s: settings.number("buffer_ms") / 1e3,
             ramp_s: settings.number("ramp_ms") / 1e3,
         };
+        let to_zero_ms = 1e3 * (rig.buffer_s + rig.ramp_s);
         match rig.limit_v > 0.0 {
+            _ if to_zero_ms > MOST_TO_ZERO_MS * (1.0 + ROUNDING) => Err(refuse(
+                "buffer_ms",
+                &format!(
+                    "buffer_ms and ramp_ms have at most {MOST_TO_ZERO_MS} ms together, and not {to_zero_ms}: the output must be at \
+                     zero within half a second"
+                ),
+            )),
             _ if !rig.device.contains('/') => Err(refuse(
                 "device",
                 "it must name an analog output, such as `Dev1/ao0`",
@@ -62,10 +79,19 @@ impl Rig {
         }
         let rates = driver.rates(card).map_err(|f| f.missing(&self.device))?;
         let (min_hz, max_hz) = rates;
+        let carried_hz = RATE_PER_CARRIER * self.carrier_hz;
+        if carried_hz > max_hz {
+            let what = format!(
+                "a carrier of {} Hz takes a rate of {carried_hz} Hz or more, and the card has {max_hz} Hz at most",
+                self.carrier_hz
+            );
+            return Err(refuse("carrier_hz", &what));
+        }
+        let min_hz = min_hz.max(LOWEST_RATE_HZ).max(carried_hz).min(max_hz);
         Ok(Capabilities {
             quantity: Quantity::DisplayVoltage,
             rates: Rates::Range { min_hz, max_hz },
-            default_rate_hz: DEFAULT_RATE_HZ.clamp(min_hz, max_hz.max(min_hz)),
+            default_rate_hz: DEFAULT_RATE_HZ.clamp(min_hz, max_hz),
             limit: Some(self.limit_v),
             step: Some(self.step_v),
             carrier_hz: (self.carrier_hz > 0.0).then_some(self.carrier_hz),
@@ -77,9 +103,10 @@ impl Rig {
     /// Advice for samples that come too late.
     pub(crate) fn larger_buffer(&self) -> String {
         let buffer_ms = self.buffer_s * 1e3;
+        let most_ms = MOST_TO_ZERO_MS - self.ramp_s * 1e3;
         format!(
             "write sooner, or give `setting buffer_ms={}` (now {buffer_ms} ms)",
-            2.0 * buffer_ms
+            (2.0 * buffer_ms).min(most_ms)
         )
     }
 

@@ -1,18 +1,18 @@
 //! The state that writer and watchdog of an open device share: the running task, and the return to zero.
 //!
-//! The adapter refuses a sample over the limit, the driver's own channel limits repeat the check, and the watchdog
+//! The adapter refuses a sample over the limit and a mean over that of direct voltage, the driver's own channel limits repeat the first, and the watchdog
 //! detects an underflow: a writer that hangs would leave the last voltage at the output. Every exit ends with an
 //! unclocked write of zero, which is repeated if it fails, and finally after a reset of the card.
 
 use std::thread::sleep;
 use std::time::Duration;
 
-use htex_device::{DeviceError, Status, StreamFormat};
+use htex_device::{DeviceError, DirectVoltage, Excess, Status, StreamFormat};
 
 use crate::claim::Claim;
 use crate::driver::{Driver, Task};
 use crate::fault::Fault;
-use crate::rig::Rig;
+use crate::rig::{MOST_TO_ZERO_MS, Rig};
 
 /// Attempts to output zero before the card is reset.
 const ATTEMPTS: usize = 5;
@@ -44,6 +44,8 @@ pub(crate) struct Session {
     generated: u64,
     /// The stream's last sample, volts of the card.
     last_v: f64,
+    /// What was given to the driver, volts of the card.
+    direct: DirectVoltage,
     status: Status,
 }
 
@@ -55,14 +57,17 @@ impl Session {
         format: &StreamFormat,
     ) -> Result<Self, DeviceError> {
         let frames = |seconds: f64| (seconds * format.rate_hz).ceil() as usize;
+        // A large block at a low rate must not delay the zero.
+        let most = frames(MOST_TO_ZERO_MS / 1e3 - rig.ramp_s);
         let ahead = frames(rig.buffer_s)
             .max(2 * format.block_frames as usize)
-            .max(2);
+            .clamp(2, most.max(2));
         let session = Self {
             claim: Some(Claim::take(&rig)?),
             capacity: ahead.max(frames(rig.ramp_s)),
             ahead,
             rate_hz: format.rate_hz,
+            direct: DirectVoltage::new(rig.dc_limit_v / rig.gain, format.rate_hz),
             rig,
             driver,
             task: None,
@@ -85,12 +90,13 @@ impl Session {
         self.usable()?;
         let samples = &samples[..samples.len().min(self.capacity)];
         let volts = self.checked(samples)?;
-        let Some(first_v) = volts.first() else {
+        if volts.is_empty() {
             return Ok(0);
-        };
-        if self.task.is_none() {
-            self.start(*first_v)?;
         }
+        if self.task.is_none() {
+            self.start(&volts)?;
+        }
+        self.check_direct(&volts)?;
         let fitting = self.space()?.min(volts.len());
         let taken = self.give(&volts[..fitting])?;
         for sample in &samples[..taken] {
@@ -113,12 +119,15 @@ impl Session {
         Ok(self.ahead.saturating_sub(waiting as usize))
     }
 
-    /// The ramp from the stream's last sample to zero, volts.
+    /// What leads from the stream's last sample to zero, volts: the mirror image of its end under a falling weight, or zero at once
+    /// where that would be a direct voltage.
     pub(crate) fn tail(&self) -> Vec<f64> {
-        let mut tail = self.ramp(self.last_v);
-        tail.reverse();
+        let mut tail = self.ramp(self.last_v, self.direct.mirrored());
         tail.push(0.0);
-        tail
+        match self.direct.excess(&tail) {
+            None => tail,
+            Some(_) => vec![0.0],
+        }
     }
 
     /// Gives the driver as many voltages as fit; returns their number.
@@ -134,6 +143,7 @@ impl Session {
         });
         let given = given.map_err(|fault| self.fail(&fault))?;
         self.given += given as u64;
+        self.direct.take(&volts[..given]);
         Ok(given)
     }
 
@@ -206,15 +216,20 @@ impl Session {
     }
 
     /// Starts the clock with zeros (half of the frames kept ahead, so that the first write is not late) that end in
-    /// a ramp to the first sample if that is not zero.
-    fn start(&mut self, first_v: f64) -> Result<(), DeviceError> {
-        let ramp = self.ramp(first_v);
+    /// a ramp to the first sample if that is not zero: the mirror image of the first ones.
+    fn start(&mut self, volts: &[f64]) -> Result<(), DeviceError> {
+        let (first, rest) = (volts[0], volts.get(1..).unwrap_or_default());
+        let there = if rest.is_empty() { volts } else { rest };
+        let back = there.iter().chain(there.iter().rev()).copied().cycle();
+        let ramp = self.ramp(first, back);
         let mut lead = vec![0.0; (self.ahead / 2).saturating_sub(ramp.len())];
-        lead.extend(ramp);
+        lead.extend(ramp.iter().rev());
+        self.check_direct(&lead)?;
         let started = self.started(&lead);
         self.task = Some(started.map_err(|fault| self.fail(&fault))?);
         self.lead = lead.len() as u64;
         self.given = self.lead;
+        self.direct.take(&lead);
         Ok(())
     }
 
@@ -229,14 +244,32 @@ impl Session {
         Ok(task)
     }
 
-    /// A ramp from zero to `to_v` without its ends; empty if `to_v` is zero within the card's step.
-    fn ramp(&self, to_v: f64) -> Vec<f64> {
-        if to_v.abs() * self.rig.gain < self.rig.step_v {
+    /// A ramp from `from_v` to zero without its ends, of samples under a falling weight; empty if `from_v` is zero within the card's
+    /// step.
+    fn ramp(&self, from_v: f64, samples: impl Iterator<Item = f64>) -> Vec<f64> {
+        if from_v.abs() * self.rig.gain < self.rig.step_v {
             return Vec::new();
         }
         let frames = (self.rig.ramp_s * self.rate_hz) as usize;
-        let at = |i: usize| to_v * (i + 1) as f64 / (frames + 1) as f64;
-        (0..frames).map(at).collect()
+        let weight = |i: usize| (frames - i) as f64 / (frames + 1) as f64;
+        let weighted = samples.take(frames).enumerate();
+        weighted.map(|(i, volts)| volts * weight(i)).collect()
+    }
+
+    /// Sets the output to zero if these samples would make a direct voltage.
+    fn check_direct(&mut self, volts: &[f64]) -> Result<(), DeviceError> {
+        let Some(Excess { at, mean_v }) = self.direct.excess(volts) else {
+            return Ok(());
+        };
+        let frame = self.status.frames_written + at as u64;
+        Err(match self.end() {
+            Err(fault) => fault.failed_and_not_zero(&self.rig.device),
+            Ok(()) => DeviceError::DirectVoltage {
+                frame,
+                mean_v: mean_v * self.rig.gain,
+                limit_v: self.rig.dc_limit_v,
+            },
+        })
     }
 
     /// The card's voltages for samples that are all within the limit.

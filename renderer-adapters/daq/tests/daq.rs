@@ -49,27 +49,27 @@ fn a_wall_clock_takes_samples_at_its_pace() {
     let card = Card::new();
     card.set("clock", "wall");
     let samples = burst(2_000);
-    let mut device = card.open(&[("buffer_ms", "2000")]).unwrap();
+    let mut device = card.open(&[("buffer_ms", "380")]).unwrap();
     assert_eq!(device.write(&samples, LONG).unwrap(), samples.len());
     assert!(
         device.status().frames_played == 0,
-        "the zeros before are 1 s long"
+        "the zeros before are 190 ms long"
     );
     device.finish().unwrap();
     let volts: Vec<f64> = samples.iter().map(|v| f64::from(*v) / GAIN).collect();
-    assert!(card.recorded()[1 + 20_000..].starts_with(&volts));
+    assert!(card.recorded()[1 + 3_800..].starts_with(&volts));
 }
 
 #[test]
 fn a_stream_that_is_not_zero_at_its_ends_is_led_there() {
     let card = Card::new();
     let mut device = card.open(&[("ramp_ms", "50")]).unwrap();
-    device.write(&[100.0; 500], LONG).unwrap();
+    device.write(&[100.0; 2_000], LONG).unwrap();
     device.finish().unwrap();
     let recorded = card.recorded();
     let high = recorded.iter().filter(|v| **v == 2.0).count();
     assert_eq!(
-        high, 500,
+        high, 2_000,
         "samples are as they were, and none is held longer"
     );
     let steepest = recorded
@@ -126,6 +126,101 @@ fn no_sample_beyond_the_limit_comes_out() {
         is_closed(&mut *device);
         assert!(card.recorded().iter().all(|v| (0.0..=3.0).contains(v)));
     }
+}
+
+/// Largest magnitude of the mean over any 100 ms, volts at the display.
+fn direct_v(card: &Card) -> f64 {
+    let recorded = card.recorded();
+    let window = (0.1 * RATE_HZ) as usize;
+    let zeros = vec![0.0; window];
+    let all = [&zeros[..], &recorded, &zeros].concat();
+    let means = all
+        .windows(window)
+        .map(|part| part.iter().sum::<f64>() / window as f64);
+    GAIN * means.fold(0.0, |most, mean| mean.abs().max(most))
+}
+
+/// A mean over 100 ms beyond the limit is not put out, whatever the blocks: the output goes to zero with an error.
+#[test]
+fn no_direct_voltage_beyond_the_limit_comes_out() {
+    for (volts, limit_v, block) in [
+        (100.0, "1", 256),
+        (-100.0, "1", 300),
+        (20.0, "5", 4_000),
+        (1.2, "1", 500),
+    ] {
+        let card = Card::new();
+        // A tone that has no mean, and then one that has.
+        let tone = |i: usize| (40.0 * (TAU * i as f64 / 8.0).sin()) as f32;
+        let mut samples: Vec<f32> = (0..8_000).map(tone).collect();
+        samples.extend((8_000..20_000).map(|i| tone(i) + volts));
+        let mut device = card.open(&[("dc_limit_v", limit_v)]).unwrap();
+        let error = samples
+            .chunks(block)
+            .find_map(|part| device.write(part, LONG).err());
+        let Some(DeviceError::DirectVoltage { frame, mean_v, .. }) = error else {
+            unreachable!("{error:?}")
+        };
+        goes_to_zero(&card);
+        is_closed(&mut *device);
+        let limit: f64 = limit_v.parse().unwrap();
+        assert!(frame >= 8_000 && mean_v.abs() > limit, "{frame} {mean_v}");
+        let direct_v = direct_v(&card);
+        println!("{volts} V: {direct_v:.3} V came out");
+        assert!(direct_v <= limit * (1.0 + 1e-5), "{direct_v}");
+    }
+    // At the limit itself it comes out.
+    let card = Card::new();
+    let mut device = card.open(&[("dc_limit_v", "2")]).unwrap();
+    device.write(&[2.0; 9_000], LONG).unwrap();
+    device.finish().unwrap();
+}
+
+/// A player that ends in the middle of a carrier leaves no direct voltage on the way to zero, and neither does one that begins there.
+#[test]
+fn a_carrier_that_is_cut_is_led_to_zero_as_a_carrier() {
+    for phase in [0.0, 0.7, 2.0] {
+        let card = Card::new();
+        let wave = |i: usize| (140.0 * (TAU * 7_000.0 * i as f64 / RATE_HZ + phase).cos()) as f32;
+        let samples: Vec<f32> = (0..9_001).map(wave).collect();
+        let mut device = card.open(&[("dc_limit_v", "1")]).unwrap();
+        device.write(&samples, LONG).unwrap();
+        device.finish().unwrap();
+        let direct_v = direct_v(&card);
+        println!("{direct_v:.3} V");
+        assert!(direct_v < 0.5, "{direct_v} V");
+        let played = card.recorded();
+        let felt = played.iter().filter(|v| **v != 0.0).count();
+        assert!(felt > 9_001 + 700, "a ramp at each end: {felt}");
+    }
+}
+
+/// A rate at which the carrier is none, and a buffer that delays the zero, are refused.
+#[test]
+fn what_endangers_a_finger_is_refused() {
+    for rate_hz in [7_000.0, 3_500.0, 14_000.0, 17_499.0] {
+        let card = Card::new();
+        let error = card.open_at(rate_hz, &[]).err().unwrap().to_string();
+        assert!(
+            error.contains("2.5 times its carrier of 7000 Hz"),
+            "{error}"
+        );
+        assert!(card.recorded().is_empty());
+    }
+    let card = Card::new();
+    let error = card.open(&[("buffer_ms", "390"), ("ramp_ms", "20")]);
+    assert!(
+        error
+            .err()
+            .unwrap()
+            .to_string()
+            .contains("at most 400 ms together")
+    );
+    let fast = Daq::new().capabilities(&card.settings(&[("carrier_hz", "100000")]));
+    let Rates::Range { min_hz, .. } = fast.unwrap().rates else {
+        unreachable!()
+    };
+    assert_eq!(min_hz, 250_000.0);
 }
 
 #[test]

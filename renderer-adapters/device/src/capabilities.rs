@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::DeviceError;
 use crate::abi::{MAX_BLOCK_FRAMES, MAX_RATE_HZ, MIN_RATE_HZ};
 
+/// Lowest rate of a display, as a multiple of its carrier: at a lower one the carrier is a slow or direct voltage.
+pub const RATE_PER_CARRIER: f64 = 2.5;
+
 /// Capabilities of a device; they cross the ABI as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
@@ -86,6 +89,27 @@ impl Capabilities {
             return Err(CapabilitiesError::BlockFrames);
         }
         Ok(())
+    }
+
+    /// The lowest rate at which the carrier is one, hertz; 0 without a carrier.
+    pub fn lowest_with_carrier_hz(&self) -> f64 {
+        self.carrier_hz.map_or(0.0, |hz| RATE_PER_CARRIER * hz)
+    }
+
+    /// Whether the device runs at a rate, and its carrier is one there.
+    pub fn has_rate(&self, rate_hz: f64) -> bool {
+        self.rates.has(rate_hz) && rate_hz >= self.lowest_with_carrier_hz()
+    }
+
+    /// Its rates as text, with what the carrier asks for.
+    pub fn rates_text(&self) -> String {
+        match self.carrier_hz {
+            Some(hz) => format!(
+                "{}, and at least at {RATE_PER_CARRIER} times its carrier of {hz} Hz",
+                self.rates
+            ),
+            None => self.rates.to_string(),
+        }
     }
 
     /// The error of the first sample that is over the limit or not a number; `first_frame` is the

@@ -23,7 +23,7 @@ pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
         E::Rate { .. } => Code::InvalidRate,
         E::Missing(_) => Code::Missing,
         E::Busy(_) => Code::Busy,
-        E::OverLimit { .. } => Code::OverLimit,
+        E::OverLimit { .. } | E::DirectVoltage { .. } => Code::OverLimit,
         E::Underflow { .. } => Code::Underflow,
         E::Closed(_) => Code::Closed,
         E::File { .. } => Code::File,

@@ -56,7 +56,7 @@ pub enum FromScene {
     /// Set it, unless the user does.
     #[default]
     Any,
-    /// Lower the number given by the user or the default: a limit. The smallest number given applies.
+    /// Lower the number given by the user or the default: a limit, a buffer. The smallest number given applies.
     Less,
     /// Raise the number given by the user or the default: a ramp.
     More,

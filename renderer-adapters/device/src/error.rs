@@ -37,6 +37,17 @@ pub enum DeviceError {
         /// Symbol of the unit.
         unit: &'static str,
     },
+    /// The mean of a display's voltage over 100 ms is beyond its limit; the output is at zero.
+    #[error(
+        "sample {frame} makes a direct voltage of {mean_v:.3} V over 100 ms, and the limit is {limit_v} V; the output is at zero. \
+         A carrier prevents it; for a rig that has none, a person gives the `setting dc_limit_v=VOLTS`"
+    )]
+    DirectVoltage {
+        /// Index of the sample since the device was opened.
+        frame: u64,
+        mean_v: f64,
+        limit_v: f64,
+    },
     /// The device ran dry: samples came too late. The output is at zero.
     #[error("{device} ran dry after {frames} frames; {advice}")]
     Underflow {

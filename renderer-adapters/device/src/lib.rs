@@ -14,7 +14,8 @@
 //! errors keep their kind either way. There is no device in WASM, since a sandbox without imports reaches no hardware.
 //!
 //! A device enforces its limits on every sample before it outputs any sample of a call, and a voltage without a limit
-//! is not loaded. After an error its output is at zero, and stays there.
+//! is not loaded. After an error its output is at zero, and stays there. The mean of a display's voltage is limited, too
+//! ([`DirectVoltage`]).
 #![warn(missing_docs)]
 
 pub mod abi;
@@ -23,6 +24,7 @@ mod capabilities;
 mod crossing;
 mod descriptor;
 mod devices;
+mod direct;
 mod error;
 mod export;
 mod exported;
@@ -38,11 +40,12 @@ pub mod shim;
 pub mod source;
 
 pub use adapter::{Adapter, Device, Status, StreamFormat};
-pub use capabilities::{Capabilities, CapabilitiesError, Quantity, Rates};
+pub use capabilities::{Capabilities, CapabilitiesError, Quantity, RATE_PER_CARRIER, Rates};
 pub use descriptor::{
     Descriptor, DescriptorError, Endpoint, FromScene, Profile, Setting, SettingFault, SettingKind,
 };
 pub use devices::{Devices, KnownDevice};
+pub use direct::{DIRECT_LIMIT_V, DIRECT_SETTING, DIRECT_WINDOW_S, DirectVoltage, Excess};
 pub use error::{AbiFault, DeviceError};
 pub use loaded::Native;
 pub use native::{NativeAdapter, NativeDevice};

@@ -9,8 +9,8 @@ use crate::crossing::{incoming, wait_ms};
 use crate::library::{Common, Table, Trouble};
 use crate::loaded::{Native, Opened};
 use crate::{
-    Adapter, Capabilities, Descriptor, DescriptorError, Device, DeviceError, Endpoint, Settings,
-    Status, StreamFormat,
+    Adapter, Capabilities, Descriptor, DescriptorError, Device, DeviceError, DirectVoltage,
+    Endpoint, Quantity, Settings, Status, StreamFormat,
 };
 
 impl Table for DeviceTable {
@@ -90,6 +90,15 @@ impl NativeAdapter {
     ) -> Result<NativeDevice, DeviceError> {
         let capabilities = self.capabilities(settings)?;
         let lines = self.lines(settings);
+        if format.rate_hz < capabilities.lowest_with_carrier_hz() {
+            return Err(DeviceError::Rate {
+                device: self.name().to_owned(),
+                rate_hz: format.rate_hz,
+                rates: capabilities.rates_text(),
+            });
+        }
+        let is_display = capabilities.quantity == Quantity::DisplayVoltage && capabilities.paced;
+        let direct = is_display.then(|| DirectVoltage::of(settings, format.rate_hz));
         let (rate_hz, block) = (format.rate_hz, format.block_frames);
         // SAFETY: a live text.
         let handle =
@@ -105,6 +114,7 @@ impl NativeAdapter {
         Ok(NativeDevice {
             opened,
             capabilities,
+            direct,
             written: 0,
         })
     }
@@ -137,6 +147,8 @@ impl Adapter for NativeAdapter {
 pub struct NativeDevice {
     opened: Opened<DeviceTable>,
     capabilities: Capabilities,
+    /// Of a display.
+    direct: Option<DirectVoltage>,
     written: u64,
 }
 
@@ -170,6 +182,23 @@ impl NativeDevice {
         self.opened.close()
     }
 
+    /// Closes the device, whose output is then at zero, if these samples would make a direct voltage.
+    fn check_direct(&mut self, samples: &[f32]) -> Result<(), DeviceError> {
+        let Some(direct) = &self.direct else {
+            return Ok(());
+        };
+        let Some(excess) = direct.excess(samples) else {
+            return Ok(());
+        };
+        let error = DeviceError::DirectVoltage {
+            frame: self.written + excess.at as u64,
+            mean_v: excess.mean_v,
+            limit_v: direct.limit_v(),
+        };
+        self.opened.close()?;
+        Err(error)
+    }
+
     /// The error of a write, with the details that only this side knows.
     fn write_error(&self, trouble: Trouble<Code>, samples: &[f32]) -> DeviceError {
         let adapter = &self.opened.adapter;
@@ -191,6 +220,7 @@ impl NativeDevice {
 
 impl Device for NativeDevice {
     fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
+        self.check_direct(samples)?;
         let (data, len) = (samples.as_ptr(), samples.len());
         let (library, handle) = (&self.opened.adapter.library, self.opened.handle);
         // SAFETY: a live slice; `&mut self` keeps the handle to one thread at a time.
@@ -198,6 +228,9 @@ impl Device for NativeDevice {
         match library.count(taken) {
             Ok(taken) if taken <= len => {
                 self.written += taken as u64;
+                if let Some(direct) = &mut self.direct {
+                    direct.take(&samples[..taken]);
+                }
                 Ok(taken)
             }
             Ok(taken) => {

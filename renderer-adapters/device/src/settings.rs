@@ -1,5 +1,7 @@
 //! Settings of a device: given values over those of a profile over the defaults.
 //!
+//! [`Settings::settle`] is the one place where what a file asks for meets what a person says.
+//!
 //! They cross the ABI as lines of text, all of them, with defaults applied: an author in C needs no parser of JSON.
 
 use std::collections::BTreeMap;

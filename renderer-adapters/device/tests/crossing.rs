@@ -40,10 +40,10 @@ impl Adapter for Bad {
             quantity: Quantity::DisplayVoltage,
             rates: Rates::List(vec![1e4]),
             default_rate_hz: 1e4,
-            limit: Some(1.0),
+            limit: Some(10.0),
             step: None,
             carrier_hz: None,
-            paced: false,
+            paced: true,
             block_frames: 16,
         })
     }
@@ -116,6 +116,29 @@ fn running_dry_keeps_its_kind() {
         advice: "write larger blocks".to_owned(),
     };
     assert_eq!(device.write(&[0.25], Duration::ZERO), Err(dry));
+}
+
+/// A display of a library has no setting of direct voltage: its host holds it to a mean of 1 V over 100 ms, 1,000 frames here.
+#[test]
+fn a_host_holds_direct_voltage_of_a_display() {
+    let mut device = open();
+    assert_eq!(device.write(&[9.0; 100], Duration::ZERO), Ok(100));
+    assert_eq!(device.write(&[-9.0; 200], Duration::ZERO), Ok(200));
+    assert_eq!(device.write(&[9.0; 210], Duration::ZERO), Ok(210));
+    let error = device.write(&[0.0, 9.0, 9.0, 9.0], Duration::ZERO);
+    let Err(DeviceError::DirectVoltage {
+        frame,
+        mean_v,
+        limit_v,
+    }) = error
+    else {
+        panic!("{error:?}")
+    };
+    assert_eq!((frame, limit_v), (512, 1.0));
+    assert!((mean_v - 1.008).abs() < 1e-9, "{mean_v}");
+    let closed = Err(DeviceError::Closed("Bad".to_owned()));
+    assert_eq!(device.write(&[0.0], Duration::ZERO), closed);
+    assert_eq!(device.status().frames_written, 510);
 }
 
 #[test]

@@ -102,20 +102,20 @@ impl Voice {
     /// 0.5 mm/s or at 0 N) makes the voice silent. Each of these can be switched off ([`Effects`](crate::Effects));
     /// [`Self::coverage`] reports them for a motion.
     ///
-    /// A motion above 1 m/s or 20 N is a failed reading: the last good motion is held for at most 100 ms, and the voice is
-    /// silent after that until the next good one.
+    /// A motion above 1 m/s or 20 N, or out of range, is a failed reading: the last good motion is held for at most 100 ms, and the voice
+    /// is silent after that until the next good one.
     ///
     /// An unchanged motion takes no time; a new one interpolates parameters in the voice's own memory. Does not allocate,
     /// lock or do I/O if the model keeps to the ABI, as the models of this project do.
     ///
     /// # Errors
-    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate; the voice then continues
+    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate; the voice then continues as said, or
     /// unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), Error> {
-        let motion = motion.checked()?;
-        if !motion.is_plausible() {
+        let checked = motion.checked();
+        if checked.is_err() || !motion.is_plausible() {
             self.follow.hold(self.frames);
-            return Ok(());
+            return checked.map(|_| ());
         }
         self.send_motion(motion)?;
         let felt = self.follow.is_felt(motion);

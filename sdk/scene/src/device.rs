@@ -154,7 +154,7 @@ fn report_hardware(
         let pointer = format!("/device/settings/{}", escape(name));
         findings.add(rule::DEVICE_HARDWARE, pointer, format!(
             "the plan uses the scene's {name}; a player takes it from a `profile` or a `setting` of the user, and \
-             a scene can at most ask for a lower limit or a longer ramp"
+             a scene can at most ask for a lower limit, a shorter buffer or a longer ramp"
         ));
     }
 }
@@ -218,14 +218,12 @@ fn is_path(descriptor: &Descriptor, name: &str) -> bool {
 fn check_fit(choice: &DeviceChoice, able: &Capabilities, findings: &mut Findings) {
     if let Some(rate_hz) = choice.rate_hz {
         findings.require(
-            able.rates.has(rate_hz),
+            able.has_rate(rate_hz),
             rule::DEVICE_RATE,
             "/device/rate_hz",
             || {
-                format!(
-                    "the device does not run at {rate_hz} Hz; it runs at {}",
-                    able.rates
-                )
+                let rates = able.rates_text();
+                format!("the device does not run at {rate_hz} Hz; it runs at {rates}")
             },
         );
     }

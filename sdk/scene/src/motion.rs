@@ -30,6 +30,12 @@ impl Finger {
         htex_play::Motion::new(self.speed_mm_s.abs(), self.force_n)
     }
 
+    /// Whether a finger moves so: numbers, a force that is not negative, at most 1000 mm/s and 20 N. Else the reading has failed.
+    pub fn is_reading(&self) -> bool {
+        let is_placed = self.at_mm.is_none_or(|at| at.iter().all(|x| x.is_finite()));
+        is_placed && self.motion().checked().is_ok() && self.motion().is_plausible()
+    }
+
     /// Whether it is in contact and moving.
     pub fn slides(&self) -> bool {
         slides(self.speed_mm_s, self.force_n)
@@ -48,7 +54,8 @@ impl Finger {
     }
 }
 
-/// The readings of a finger: those that no finger has are replaced by the last good motion, for at most [`HOLD_S`].
+/// The readings of a finger: those that no finger has are replaced by the last good motion, for at most [`HOLD_S`]. Every motion of a scene
+/// goes through them, so that one bad reading changes nothing that is felt.
 #[derive(Debug)]
 pub(crate) struct Readings {
     last: Finger,
@@ -69,7 +76,7 @@ impl Readings {
 
     /// Takes a reading that holds for a number of control blocks; returns it, the held one at its place, or no contact.
     pub(crate) fn take(&mut self, finger: Finger, blocks: u64) -> Finger {
-        if finger.motion().is_plausible() {
+        if finger.is_reading() {
             (self.last, self.held) = (finger, 0);
             return finger;
         }
@@ -78,10 +85,16 @@ impl Readings {
             true => self.last,
             false => Finger::AWAY,
         };
+        let is_placed = |at: &[f64; 2]| at.iter().all(|x| x.is_finite());
         Finger {
-            at_mm: finger.at_mm,
+            at_mm: finger.at_mm.filter(is_placed).or(self.last.at_mm),
             ..known
         }
+    }
+
+    /// Whether the last reading was a good one.
+    pub(crate) fn is_good(&self) -> bool {
+        self.held == 0
     }
 }
 

@@ -427,8 +427,8 @@ impl<'a> Draft<'a> {
                 !self.required.device.quantity.is_physical() || self.required.quantity_gain != 1.0
             }
             Effect::SquareRoot => !self.required.device.quantity.is_physical(),
-            // A voltage starts and ends at zero and stays within the drive.
-            Effect::Contact | Effect::Limiter => {
+            // A voltage starts and ends at zero, stays within the drive, and charges nobody.
+            Effect::Contact | Effect::Limiter | Effect::Carrier => {
                 self.required.device.quantity == Quantity::DisplayVoltage
             }
             _ => false,

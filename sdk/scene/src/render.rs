@@ -109,22 +109,25 @@ impl Renderer {
         self.timing.rate_hz
     }
 
-    /// Sets the position and motion of the finger of a live scene.
+    /// Sets the position and motion of the finger of a live scene. Numbers that no finger has ([`Finger::is_reading`]) are a failed
+    /// reading: the last good motion is held for at most 100 ms, then there is no contact until the next good one.
     ///
     /// # Errors
-    /// [`SceneError::Motion`] if a number is not finite or the force is negative.
+    /// [`SceneError::Motion`] if a number is not finite or the force is negative; that is a failed reading, too.
     pub fn set_motion(&mut self, finger: Finger) -> Result<(), SceneError> {
+        self.live = finger;
+        if finger.is_reading() {
+            self.path.moved(&finger, self.seconds());
+        }
         let place = finger.at_mm.unwrap_or_default();
         let finite = finger.speed_mm_s.is_finite() && place.iter().all(|x| x.is_finite());
-        if !finite || !finger.force_n.is_finite() || finger.force_n < 0.0 {
-            return Err(SceneError::Motion {
+        match finite && finger.force_n.is_finite() && finger.force_n >= 0.0 {
+            true => Ok(()),
+            false => Err(SceneError::Motion {
                 speed_mm_s: finger.speed_mm_s,
                 force_n: finger.force_n,
-            });
+            }),
         }
-        self.live = finger;
-        self.path.moved(&finger, self.seconds());
-        Ok(())
     }
 
     fn seconds(&self) -> f64 {
@@ -226,17 +229,22 @@ impl Renderer {
         self.peak = peak;
     }
 
-    /// The finger at the current frame, and its position along the path.
-    fn finger(&self) -> (Finger, FingerOnPath) {
+    /// The finger at the current frame, as far as its readings are good, and its position along the path.
+    fn finger(&mut self) -> (Finger, FingerOnPath) {
         let t_s = self.seconds();
-        let finger = match self.course {
+        let reading = match self.course {
             Course::Live => self.live,
             ref course => course.at(t_s),
         };
+        let finger = self.readings.take(reading, 1);
+        let mut point = self.path.at(t_s);
+        if !self.readings.is_good() && !finger.slides() {
+            point.speed_mm_s = 0.0;
+        }
         let on_path = FingerOnPath {
             t_s,
             force_n: finger.force_n,
-            point: self.path.at(t_s),
+            point,
             place_mm: finger.at_mm,
         };
         (finger, on_path)
@@ -246,7 +254,6 @@ impl Renderer {
     fn update(&mut self) {
         self.left = self.timing.control;
         let (finger, on_path) = self.finger();
-        let finger = self.readings.take(finger, 1);
         let context = Context {
             finger,
             level_rms: 0.0,

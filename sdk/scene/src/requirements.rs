@@ -120,10 +120,10 @@ impl Requirements {
     pub(crate) fn gather(scene: &LoadedScene, device: &Capabilities) -> Result<Self, SceneError> {
         let (file, choice) = (&scene.scene, &scene.scene.device);
         let rate_hz = choice.rate_hz.unwrap_or(device.default_rate_hz);
-        if !device.rates.has(rate_hz) {
+        if !device.has_rate(rate_hz) {
             return Err(SceneError::Rate {
                 rate_hz,
-                rates: device.rates.to_string(),
+                rates: device.rates_text(),
             });
         }
         let quantity = scene.quantity();

@@ -151,7 +151,7 @@ htex_finding::rule_table! {
     DEVICE_HARDWARE Warning:
         "The scene describes the hardware, or exceeds a limit.",
         "A wrong gain or limit can apply hundreds of volts more to a finger. Settings of the \
-         hardware come from a profile or from the user; a scene can only ask for a lower limit or a longer ramp.",
+         hardware come from a profile or from the user; a scene can only ask for a lower limit, a shorter buffer or a longer ramp.",
         "Give the `profile` of the rig to the player; remove the setting from the scene.";
     DEVICE_SETTING Error:
         "A profile or a setting of the device cannot be used.",
@@ -163,7 +163,7 @@ htex_finding::rule_table! {
         "Connect it and validate again; on a machine without the device this is expected.";
     DEVICE_RATE Error:
         "The device does not run at this rate.",
-        "At another rate all frequencies would be wrong.",
+        "At another rate all frequencies would be wrong; below 2.5 times a display's carrier, the carrier would be a direct voltage.",
         "Choose one of its rates, or leave `rate_hz` out.";
     DEVICE_FIELD_UNFIT Error:
         "A key of `device` does not apply to the device's quantity.",

@@ -5,8 +5,12 @@
 
 use std::path::Path;
 
+use htex_play::exploration::{HOLD_S, MOST_FORCE_N, MOST_SPEED_MM_S};
 use htex_recording::velocity;
 use htex_recording::{ReadError, TraceColumns, read_trace};
+
+/// Tolerance of times, seconds: a trace's rows are at least this far apart.
+const ROUNDING_S: f64 = 1e-9;
 
 /// A motion over time. The vectors have equal lengths of at least 2; time 0 is the first row.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,27 +61,34 @@ impl Trace {
     /// Makes a trace from columns.
     ///
     /// The velocity is that of [`velocity`]: exact when it is constant, and insensitive to the steps of a tracker of 60 Hz.
-    /// Negative forces, caused by a sensor's offset, become 0.
+    /// Negative forces, caused by a sensor's offset, become 0. Rows that no finger has (above 1000 mm/s or 20 N) are replaced by the last
+    /// good one for at most 100 ms, and have no contact after that: between rows, values are linear, and half of a bad one may look good.
     pub fn new(columns: TraceColumns) -> Self {
         let start_s = columns.t_s.first().copied().unwrap_or(0.0);
         let t_s: Vec<f64> = columns.t_s.iter().map(|t| t - start_s).collect();
         let along = |position: &[f64]| velocity(&t_s, position, t_s.iter().copied());
         let (vx, vy) = (along(&columns.x_mm), along(&columns.y_mm));
         let velocity_mm_s: Vec<[f64; 2]> = vx.iter().zip(vy).map(|(x, y)| [*x, y]).collect();
+        let moved: Vec<f64> = velocity_mm_s
+            .iter()
+            .map(|[x, y]| libm::hypot(*x, *y))
+            .collect();
         let speed_mm_s = match columns.speed_mm_s {
             Some(speed) => speed.iter().map(|v| v.abs()).collect(),
-            None => velocity_mm_s
-                .iter()
-                .map(|[x, y]| libm::hypot(*x, *y))
-                .collect(),
+            None => moved.clone(),
         };
+        let force_n: Vec<f64> = columns.force_n.iter().map(|f| f.max(0.0)).collect();
+        let good = readings(&t_s, |row| {
+            speed_mm_s[row] <= MOST_SPEED_MM_S && force_n[row] <= MOST_FORCE_N
+        });
+        let steady = readings(&t_s, |row| moved[row] <= MOST_SPEED_MM_S);
         Self {
             t_s,
             x_mm: columns.x_mm,
             y_mm: columns.y_mm,
-            force_n: columns.force_n.iter().map(|f| f.max(0.0)).collect(),
-            speed_mm_s,
-            velocity_mm_s,
+            force_n: taken(&good, &force_n),
+            speed_mm_s: taken(&good, &speed_mm_s),
+            velocity_mm_s: taken(&steady, &velocity_mm_s),
             warnings: columns.warnings,
         }
     }
@@ -121,6 +132,26 @@ impl Trace {
     pub fn duration_s(&self) -> f64 {
         self.t_s.last().copied().unwrap_or(0.0)
     }
+}
+
+/// The row whose reading each row has: its own if that is good, else the last good one within [`HOLD_S`].
+fn readings(t_s: &[f64], is_good: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
+    let mut last = None;
+    let row = |row: usize| {
+        if is_good(row) {
+            last = Some(row);
+        }
+        last.filter(|last| t_s[row] - t_s[*last] <= HOLD_S + ROUNDING_S)
+    };
+    (0..t_s.len()).map(row).collect()
+}
+
+/// The values of these rows; zero where there is none.
+fn taken<T: Copy + Default>(rows: &[Option<usize>], values: &[T]) -> Vec<T> {
+    let value = |row: &Option<usize>| row.and_then(|row| values.get(row).copied());
+    rows.iter()
+        .map(|row| value(row).unwrap_or_default())
+        .collect()
 }
 
 #[cfg(test)]
@@ -182,6 +213,43 @@ mod tests {
                 (point.speed_mm_s, point.force_n, point.y_mm),
                 (0.0, 0.0, 1.0)
             );
+        }
+    }
+
+    /// One row of no finger, in the speed or in the force, changes nothing; after 100 ms of them there is no contact.
+    #[test]
+    fn rows_that_no_finger_has_are_held_and_then_lost() {
+        let made = |bad: std::ops::Range<usize>, speed_mm_s: f64, force_n: f64| {
+            let pick = |usual: f64, bad_value: f64| {
+                let at = |row: usize| if bad.contains(&row) { bad_value } else { usual };
+                (0..400).map(at).collect::<Vec<f64>>()
+            };
+            Trace::new(TraceColumns {
+                t_s: (0..400).map(|row| f64::from(row) / 200.0).collect(),
+                x_mm: (0..400).map(|row| 0.4 * f64::from(row)).collect(),
+                y_mm: vec![0.0; 400],
+                force_n: pick(0.4, force_n),
+                speed_mm_s: Some(pick(80.0, speed_mm_s)),
+                warnings: Vec::new(),
+            })
+        };
+        let plain = made(0..0, 0.0, 0.0);
+        for (speed_mm_s, force_n) in [(80.0, 25.0), (80.0, 1e6), (1e6, 0.4), (2_000.0, 0.4)] {
+            for bad in [100..101, 100..120] {
+                let held = made(bad, speed_mm_s, force_n);
+                for step in 0..4_000 {
+                    let t_s = f64::from(step) / 2_000.0;
+                    assert_eq!(
+                        held.at(t_s),
+                        plain.at(t_s),
+                        "{speed_mm_s} {force_n} at {t_s}"
+                    );
+                }
+            }
+            let lost = made(100..200, speed_mm_s, force_n);
+            assert_eq!(lost.at(0.59).force_n, 0.4);
+            assert_eq!((lost.at(0.61).force_n, lost.at(0.9).speed_mm_s), (0.0, 0.0));
+            assert_eq!(lost.at(1.1), plain.at(1.1));
         }
     }
 

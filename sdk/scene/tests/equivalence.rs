@@ -152,6 +152,7 @@ impl Case {
         let rate_hz = [20_000.0, 44_100.0, 16_384.0, 2_000.0][usize::from(self.rate)];
         Capabilities {
             default_rate_hz: rate_hz,
+            carrier_hz: device.carrier_hz.map(|hz| hz.min(0.4 * rate_hz)),
             ..device
         }
     }

@@ -3,7 +3,8 @@
 
 mod common;
 
-use common::{constant, file, grid, planned, rendered, scene, single};
+use common::{constant, display, file, grid, planned, rendered, scene, single};
+use htex_device::Capabilities;
 use htex_format::{AtCondition, Condition};
 use htex_play::{
     Contact, Effects, Law, Motions, Quantity, Reach, Registry, Scaling, Voice, VoiceOptions,
@@ -354,6 +355,77 @@ fn a_failed_reading_is_held_and_then_silent() {
     assert!((held_db - good).abs() < 3.0, "{good} and {held_db} dB");
     play(failed, 2_000);
     assert!(play(failed, 1_000).iter().all(|x| *x == 0.0));
+}
+
+/// Samples of a live scene with one reading that is bad, if any.
+fn with_bad(device: &Capabilities, bad: Option<(f64, f64, Option<[f64; 2]>)>) -> Vec<f32> {
+    let scene = scene(grid(), Motion::Live, 1.0);
+    let mut renderer = Renderer::new(&scene, &planned(&scene, device)).unwrap();
+    let mut out = vec![0.0f32; 20_000];
+    for (i, block) in out.chunks_mut(CONTROL).enumerate() {
+        let good = Finger {
+            speed_mm_s: 60.0 + 20.0 * (0.05 * i as f64).sin(),
+            force_n: 0.4,
+            at_mm: Some([0.2 * i as f64, 0.0]),
+        };
+        match bad.filter(|_| i == 150) {
+            None if i == 150 => {}
+            None => renderer.set_motion(good).unwrap(),
+            Some((speed_mm_s, force_n, at_mm)) => {
+                let bad = Finger {
+                    speed_mm_s,
+                    force_n,
+                    at_mm,
+                };
+                let _ = renderer.set_motion(bad);
+            }
+        }
+        renderer.render(block);
+    }
+    out
+}
+
+/// One bad reading of force, speed or place changes nothing that is felt, on any device: it is as if it had not come.
+#[test]
+fn one_bad_reading_changes_no_sample() {
+    let place = Some([30.0, 0.0]);
+    for device in [file(), display()] {
+        let plain = with_bad(&device, None);
+        assert!(plain.iter().any(|x| *x != 0.0));
+        for bad in [
+            (60.0, 20.5, place),
+            (60.0, 1e9, place),
+            (60.0, f64::NAN, place),
+            (60.0, -3.0, place),
+            (1_001.0, 0.4, place),
+            (-1e6, 0.4, place),
+            (f64::NAN, 0.4, place),
+            (f64::INFINITY, f64::NEG_INFINITY, None),
+            (60.0, 0.4, Some([f64::NAN, 0.0])),
+        ] {
+            assert!(with_bad(&device, Some(bad)) == plain, "{bad:?}");
+        }
+    }
+}
+
+/// A voice takes a number that no motion has for a failed reading, too: it is refused, held, and then silent.
+#[test]
+fn a_reading_that_is_no_number_is_held_and_then_silent() {
+    let hold = (htex_play::exploration::HOLD_S * RATE_HZ) as usize;
+    for (speed_mm_s, force_n) in [
+        (f64::NAN, 0.4),
+        (80.0, f64::NAN),
+        (-80.0, 0.4),
+        (80.0, f64::INFINITY),
+    ] {
+        let mut held = voice("bands", Some(RECORDED), Effects::default());
+        let mut plain = voice("bands", Some(RECORDED), Effects::default());
+        held.set_motion(htex_play::Motion::new(speed_mm_s, force_n))
+            .unwrap_err();
+        assert_eq!(samples(&mut held, hold), samples(&mut plain, hold));
+        samples(&mut held, 400);
+        assert!(samples(&mut held, 1_000).iter().all(|x| *x == 0.0));
+    }
 }
 
 /// A force of 20 N on a texture of 0.4 N would be 34 dB stronger by its law; it is four times as strong, or what is asked for.

@@ -159,7 +159,10 @@ fn only_required_effects_cannot_be_switched_off() {
         let (_, (mut scene, device)) = pair(effect);
         scene.scene.effects = [(effect, Switch::Off)].into();
         let result = htex_scene::plan(&scene, &device, &costs);
-        let needed = matches!(effect, Effect::Resampling | Effect::SquareRoot);
+        let needed = matches!(
+            effect,
+            Effect::Resampling | Effect::SquareRoot | Effect::Carrier
+        );
         match result {
             Ok(plan) => {
                 assert!(!needed, "{effect:?}");

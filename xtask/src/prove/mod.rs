@@ -74,6 +74,19 @@ const PROOFS: &[Proof] = &[
         prove: |options| whole_test(options, &["-p", "htex-cli", "--test", "random_recipes"]),
     },
     Proof {
+        name: "fingers",
+        takes: "",
+        proves: "1,000 random scenes and studies put at most 1 V of direct voltage and the limit on a display, and zero within half a second; \
+                 1,000 hostile programs at a page lose no answer and delay no press; tests take 20 and 60",
+        prove: |options| {
+            whole_test(options, &["-p", "htex-cli", "--test", "finger", "random"])?;
+            whole_test(
+                options,
+                &["-p", "htex-cli", "--test", "study", "hostile_programs"],
+            )
+        },
+    },
+    Proof {
         name: "days",
         takes: "[--hours N]",
         proves: "voices of a day keep their power and phase, and do not repeat; tests take an hour",

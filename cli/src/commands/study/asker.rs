@@ -1,10 +1,7 @@
 //! Where participants are asked, and where their finger's motion comes from.
 
-use std::time::Duration;
-
 use clap::Args;
 use htex_lab::study::{Asker, Key, Page, PageOptions, Study, View};
-use htex_scene::Finger;
 use htex_scene::file::Motion;
 
 use super::terminal::Terminal;
@@ -111,7 +108,7 @@ impl AskingArgs {
             "" => participant.to_owned(),
             name => format!("{name} – {participant}"),
         };
-        let mut page = Page::open(PageOptions {
+        let page = Page::open(PageOptions {
             port: self.port,
             title,
             noise_dbfs: study.masking_noise.as_ref().map(|noise| noise.level_dbfs),
@@ -119,33 +116,12 @@ impl AskingArgs {
         })?;
         tell!("open {} in a browser of this machine", page.url());
         let motions = match self.motion.as_deref() {
-            Some("page") => self.touched(&mut page),
+            Some("page") => Some(Motions::Page(page.touch(), self.touch_force)),
             Some(_) => Some(Motions::from_stdin()),
             None => None,
         };
         let asker = Box::new(page);
         Ok(Asking { asker, motions })
-    }
-
-    /// The motions of the finger on the page.
-    fn touched(&self, page: &mut Page) -> Option<Motions> {
-        let touched = page.touched()?;
-        let (mut sender, motions) = Motions::queue();
-        let force_n = self.touch_force;
-        std::thread::spawn(move || {
-            for touch in touched {
-                while sender.is_full() && !sender.is_abandoned() {
-                    std::thread::sleep(Duration::from_millis(1));
-                }
-                // There is space, and only this thread fills it.
-                let _ = sender.push(Finger {
-                    speed_mm_s: touch.speed_mm_s,
-                    force_n: if touch.is_down { force_n } else { 0.0 },
-                    at_mm: None,
-                });
-            }
-        });
-        Some(motions)
     }
 }
 

@@ -117,8 +117,11 @@ impl StudyRig<'_> {
             return true;
         };
         match motions.look() {
-            // The reader passes on valid motions only.
-            Moved::To(finger) => renderer.set_motion(finger).is_ok(),
+            Moved::To(finger) => {
+                // A failed reading is held, and then no contact; the next one may be good.
+                let _ = renderer.set_motion(finger);
+                true
+            }
             Moved::Not => true,
             Moved::Ended => false,
         }

@@ -60,9 +60,10 @@ impl Card {
         }
     }
 
+    /// Settings of a person who allows direct voltage, which many tests write.
     pub fn settings(&self, given: &[(&str, &str)]) -> Settings {
         let driver = ("driver", self.library.to_str().unwrap());
-        let given = [&[driver], given].concat();
+        let given = [&[driver, ("dc_limit_v", "150")], given].concat();
         let given: BTreeMap<String, String> = given
             .iter()
             .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))

@@ -1,43 +1,89 @@
-//! The server of a page.
+//! The server of a page, on 127.0.0.1 alone.
 //!
-//! `tiny_http` blocks and has no runtime; it listens on 127.0.0.1 alone.
+//! Any program of this machine may connect, and nothing that it does delays the owner of the page: `hyper`, with a runtime of one thread of
+//! its own, hands a request over before its body comes. The gate decides by the head; a body of at most 4096 bytes is read after that; head and
+//! body have a second. Of 64 connections the oldest one that has not passed the gate makes room for the next. `hyper` is in the
+//! command for its stores; `tiny_http`, which was here, reads a body before anyone can refuse it, has no deadlines, and takes a thread for
+//! each connection.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::collections::VecDeque;
+use std::convert::Infallible;
+use std::net::TcpListener;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use http_body_util::{BodyExt, Full, Limited};
+use hyper::body::{Body, Bytes, Incoming};
+use hyper::header::{CONNECTION, HeaderValue};
+use hyper::server::conn::http1;
+use hyper::service::service_fn;
+use hyper::{Request, Response, StatusCode};
+use hyper_util::rt::{TokioIo, TokioTimer};
 use serde_json::Value;
-use tiny_http::{Header, Method, Request, Response, Server};
+use tokio::net::TcpStream;
+use tokio::sync::oneshot;
+use tokio::task::AbortHandle;
+use tokio::time::{sleep, timeout};
 
+use super::gate::{Asked, Gate, Owner, Refusal};
 use crate::page::{Content, PageError};
 
-/// A tab that has asked for nothing for this long is gone.
-const SILENT: Duration = Duration::from_secs(8);
+/// Most connections at a time.
+const MOST_CONNECTIONS: usize = 64;
+/// Longest wait for the head of a request, also of the next one on a connection; and for its body.
+const PATIENCE: Duration = Duration::from_secs(1);
 /// Longest body of a request, bytes.
-const MOST_BYTES: u64 = 4096;
+const MOST_BYTES: usize = 4096;
+/// Most bytes of a head, the least that `hyper` takes, and most of its lines.
+const MOST_HEAD_BYTES: usize = 8192;
+const MOST_HEADERS: usize = 64;
+/// Wait after an error of accepting, such as too many open files.
+const PAUSE: Duration = Duration::from_millis(10);
 /// Longest wait, at the end, for the page to show that all is done.
 const FAREWELL: Duration = Duration::from_secs(2);
 
+/// Requests that every page takes.
+const STATE: &str = "state";
+const LEAVE: &str = "leave";
+const STOP: &str = "stop";
+
+const TEXT: &str = "text/plain; charset=utf-8";
+/// Headers of each reply. With `same-origin`, requests of the page have its origin.
+const HEADERS: [(&str, &str); 4] = [
+    ("Cache-Control", "no-store"),
+    ("Referrer-Policy", "same-origin"),
+    ("X-Frame-Options", "DENY"),
+    (
+        "Content-Security-Policy",
+        "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; connect-src 'self'; img-src data:",
+    ),
+];
+
 /// A page that is served while this value lives.
 pub(crate) struct LocalPage {
-    server: Arc<Server>,
     owner: Arc<Owner>,
+    /// Ends the server when it is dropped.
+    end: Option<oneshot::Sender<Infallible>>,
     thread: Option<JoinHandle<()>>,
     url: String,
 }
 
-/// What a request must have.
-struct Gate {
-    /// Path that every request begins with: `/token/`.
-    root: String,
-    /// Host names of this server.
-    hosts: [String; 2],
+/// What all connections share.
+struct Desk<C> {
+    gate: Gate,
     owner: Arc<Owner>,
+    content: Arc<C>,
+    requests: Vec<&'static str>,
 }
 
-/// The tab that owns the page, and its last request.
-#[derive(Default)]
-struct Owner(Mutex<Option<(String, Instant)>>);
+/// An open connection.
+struct Guest {
+    task: AbortHandle,
+    /// Whether a request of it has passed the gate.
+    is_known: Arc<AtomicBool>,
+}
 
 impl LocalPage {
     /// Serves a page on this machine; port 0 is any that is free.
@@ -46,25 +92,39 @@ impl LocalPage {
     /// If the port is taken or there are no random numbers.
     pub(crate) fn open<C: Content>(port: u16, content: Arc<C>) -> Result<Self, PageError> {
         let failed = |problem: String| PageError { port, problem };
-        let server = Server::http(("127.0.0.1", port)).map_err(|e| failed(e.to_string()))?;
-        let server = Arc::new(server);
+        let io = |error: std::io::Error| failed(error.to_string());
+        let listener = TcpListener::bind(("127.0.0.1", port)).map_err(io)?;
+        listener.set_nonblocking(true).map_err(io)?;
+        let port = listener.local_addr().map_err(io)?.port();
         let mut token = [0u8; 16];
         getrandom::fill(&mut token).map_err(|e| failed(e.to_string()))?;
         let token: String = token.iter().map(|byte| format!("{byte:02x}")).collect();
-        let port = server.server_addr().to_ip().map_or(port, |at| at.port());
-        let root = format!("/{token}/");
-        let url = format!("http://127.0.0.1:{port}{root}");
         let owner = Arc::new(Owner::default());
-        let gate = Gate {
-            root,
-            hosts: [format!("127.0.0.1:{port}"), format!("localhost:{port}")],
+        let desk = Desk {
+            gate: Gate::new(&token, port),
             owner: Arc::clone(&owner),
+            content,
+            requests: [&[STATE, LEAVE, STOP], C::REQUESTS].concat(),
         };
-        let served = Arc::clone(&server);
-        let thread = std::thread::spawn(move || serve(&served, &gate, &*content));
+        let url = desk.gate.url();
+        let mut runtime = tokio::runtime::Builder::new_current_thread();
+        let runtime = runtime.enable_io().enable_time().build().map_err(io)?;
+        let (end, ended) = oneshot::channel();
+        let serving = move || {
+            runtime.block_on(async {
+                let server = tokio::spawn(serve(listener, Arc::new(desk)));
+                let _ = ended.await;
+                server.abort();
+            });
+            // The runtime goes, and all connections with it, whatever they wait for.
+        };
+        let thread = std::thread::Builder::new()
+            .name("htex-page".to_owned())
+            .spawn(serving)
+            .map_err(io)?;
         Ok(Self {
-            server,
             owner,
+            end: Some(end),
             thread: Some(thread),
             url,
         })
@@ -77,7 +137,7 @@ impl LocalPage {
     /// Waits until the page has what it shows at the end, if a tab has the page.
     pub(crate) fn wait_for_end(&self, is_shown: impl Fn() -> bool) {
         let start = Instant::now();
-        while start.elapsed() < FAREWELL && self.owner.lock().is_some() && !is_shown() {
+        while start.elapsed() < FAREWELL && self.owner.is_there() && !is_shown() {
             std::thread::sleep(Duration::from_millis(20));
         }
     }
@@ -85,106 +145,118 @@ impl LocalPage {
 
 impl Drop for LocalPage {
     fn drop(&mut self) {
-        self.server.unblock();
+        drop(self.end.take());
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
     }
 }
 
-impl Owner {
-    fn lock(&self) -> std::sync::MutexGuard<'_, Option<(String, Instant)>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Whether a tab owns the page, or may own it from now on.
-    fn admits(&self, tab: &str) -> bool {
-        let mut owner = self.lock();
-        let now = Instant::now();
-        let is_free = match &*owner {
-            None => true,
-            Some((owner, last)) => owner == tab || now.duration_since(*last) > SILENT,
+/// Takes connections, at most [`MOST_CONNECTIONS`] at a time.
+async fn serve<C: Content>(listener: TcpListener, desk: Arc<Desk<C>>) {
+    let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
+        return;
+    };
+    let mut guests: VecDeque<Guest> = VecDeque::new();
+    loop {
+        let Ok((socket, _)) = listener.accept().await else {
+            sleep(PAUSE).await;
+            continue;
         };
-        let admitted = is_free && !tab.is_empty();
-        if admitted {
-            *owner = Some((tab.to_owned(), now));
+        guests.retain(|guest| !guest.task.is_finished());
+        if guests.len() >= MOST_CONNECTIONS {
+            let is_stranger = |guest: &Guest| !guest.is_known.load(Ordering::Relaxed);
+            let leaves = guests.iter().position(is_stranger).unwrap_or(0);
+            if let Some(guest) = guests.remove(leaves) {
+                guest.task.abort();
+            }
         }
-        admitted
-    }
-
-    fn leave(&self) {
-        *self.lock() = None;
+        let is_known = Arc::new(AtomicBool::new(false));
+        let attending = attend(socket, Arc::clone(&desk), Arc::clone(&is_known));
+        let task = tokio::spawn(attending).abort_handle();
+        guests.push_back(Guest { task, is_known });
+        // The one that came is looked at before the next one may take its place.
+        tokio::task::yield_now().await;
     }
 }
 
-fn serve<C: Content>(server: &Server, gate: &Gate, content: &C) {
-    // An error of `recv` is the end of the server, too.
-    while let Ok(mut request) = server.recv() {
-        let (code, kind, body) = reply(&mut request, gate, content);
-        let mut response = Response::from_string(body).with_status_code(code);
-        let headers: [(&str, &str); 5] = [
-            ("Content-Type", kind),
-            ("Cache-Control", "no-store"),
-            ("Referrer-Policy", "no-referrer"),
-            ("X-Frame-Options", "DENY"),
-            (
-                "Content-Security-Policy",
-                "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; connect-src 'self'; img-src data:",
-            ),
-        ];
-        for (name, value) in headers {
-            if let Ok(header) = Header::from_bytes(name, value) {
-                response.add_header(header);
-            }
+/// Answers the requests of a connection.
+async fn attend<C: Content>(socket: TcpStream, desk: Arc<Desk<C>>, is_known: Arc<AtomicBool>) {
+    // Without it, the system may hold a reply back for 40 ms.
+    let _ = socket.set_nodelay(true);
+    let service = service_fn(|request| async {
+        let reply = desk.answer(request, &is_known).await;
+        Ok::<_, Infallible>(reply.unwrap_or_else(refused))
+    });
+    // A tab that is gone needs no reply.
+    let _ = http1::Builder::new()
+        .timer(TokioTimer::new())
+        .header_read_timeout(PATIENCE)
+        .max_headers(MOST_HEADERS)
+        .max_buf_size(MOST_HEAD_BYTES)
+        .serve_connection(TokioIo::new(socket), service)
+        .await;
+}
+
+impl<C: Content> Desk<C> {
+    async fn answer(
+        &self,
+        request: Request<Incoming>,
+        is_known: &AtomicBool,
+    ) -> Result<Response<Full<Bytes>>, Refusal> {
+        let (head, body) = request.into_parts();
+        let asked = self.gate.admit(&head, &self.requests)?;
+        is_known.store(true, Ordering::Relaxed);
+        let name = match asked {
+            Asked::Page => return Ok(reply(StatusCode::OK, "text/html; charset=utf-8", C::HTML)),
+            Asked::Request(name) => name,
+        };
+        let body = read(body).await?;
+        // Whoever has the address may stop, whichever tab owns the page.
+        if name == STOP {
+            self.content.take(STOP, &body);
         }
-        // A tab that is gone needs no reply.
-        let _ = request.respond(response);
+        let tab = body.get("tab").and_then(Value::as_str).unwrap_or_default();
+        if !self.owner.admits(tab) {
+            return Err((StatusCode::CONFLICT, "the session is open in another tab"));
+        }
+        match &name[..] {
+            LEAVE => self.owner.leave(),
+            STATE | STOP => {}
+            name => self.content.take(name, &body),
+        }
+        let state = self.content.state().to_string();
+        Ok(reply(StatusCode::OK, "application/json", state))
     }
 }
 
-/// Status, content type and body of a reply.
-fn reply<C: Content>(
-    request: &mut Request,
-    gate: &Gate,
-    content: &C,
-) -> (u16, &'static str, String) {
-    let text = |code: u16, body: &str| (code, "text/plain; charset=utf-8", body.to_owned());
-    let mut headers = request.headers().iter();
-    let host = headers.find(|header| header.field.equiv("Host"));
-    let host = host.map(|header| header.value.as_str().to_owned());
-    let mut body = Vec::new();
-    let read = std::io::Read::read_to_end(
-        &mut std::io::Read::take(request.as_reader(), MOST_BYTES),
-        &mut body,
-    );
-    let body: Value = match read {
-        Ok(_) => serde_json::from_slice(&body).unwrap_or_default(),
-        Err(_) => return text(400, "the request is incomplete"),
-    };
-    if !host.is_some_and(|host| gate.hosts.contains(&host)) {
-        return text(403, "this page is for this machine alone");
+/// Reads a body that is short and comes soon; what is no JSON is null.
+async fn read(body: Incoming) -> Result<Value, Refusal> {
+    let too_long = (StatusCode::PAYLOAD_TOO_LARGE, "the request is too long");
+    if body.size_hint().lower() > MOST_BYTES as u64 {
+        return Err(too_long);
     }
-    let Some(path) = request.url().strip_prefix(&gate.root) else {
-        return text(
-            404,
-            "the address is not complete; open the one that htex printed",
-        );
-    };
-    let is_request = |path: &str| ["state", "leave"].contains(&path) || C::REQUESTS.contains(&path);
-    match (request.method(), path) {
-        (Method::Get, "") => (200, "text/html; charset=utf-8", C::HTML.to_owned()),
-        (Method::Post, path) if is_request(path) => {
-            let tab = body.get("tab").and_then(Value::as_str).unwrap_or_default();
-            if !gate.owner.admits(tab) {
-                return text(409, "the session is open in another tab");
-            }
-            match path {
-                "leave" => gate.owner.leave(),
-                "state" => {}
-                _ => content.take(path, &body),
-            }
-            (200, "application/json", content.state().to_string())
-        }
-        _ => text(404, "there is no such page"),
+    let whole = timeout(PATIENCE, Limited::new(body, MOST_BYTES).collect()).await;
+    let late = (StatusCode::REQUEST_TIMEOUT, "the request is incomplete");
+    let body = whole.map_err(|_| late)?.map_err(|_| too_long)?;
+    Ok(serde_json::from_slice(&body.to_bytes()).unwrap_or_default())
+}
+
+fn reply(code: StatusCode, kind: &'static str, body: impl Into<Bytes>) -> Response<Full<Bytes>> {
+    let mut response = Response::new(Full::new(body.into()));
+    *response.status_mut() = code;
+    let headers = response.headers_mut();
+    headers.insert("Content-Type", HeaderValue::from_static(kind));
+    for (name, value) in HEADERS {
+        headers.insert(name, HeaderValue::from_static(value));
     }
+    response
+}
+
+/// The reply to a request that is refused, after which the connection is closed: its body was not read.
+fn refused((code, why): Refusal) -> Response<Full<Bytes>> {
+    let mut response = reply(code, TEXT, why);
+    let close = HeaderValue::from_static("close");
+    response.headers_mut().insert(CONNECTION, close);
+    response
 }

@@ -287,7 +287,7 @@ impl Shown {
 
 impl Content for Shown {
     const HTML: &'static str = include_str!("page.html");
-    const REQUESTS: &'static [&'static str] = &["start", "stop"];
+    const REQUESTS: &'static [&'static str] = &["start"];
 
     fn take(&self, request: &str, _: &Value) {
         let mut state = self.lock();

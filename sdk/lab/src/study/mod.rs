@@ -58,7 +58,7 @@ pub use lines::{
     answers_schema,
 };
 pub use log::{Log, participant_file};
-pub use page::{Page, PageOptions, Touched};
+pub use page::{Page, PageOptions, Touch, Touched};
 pub use plan::{ParticipantPlan, Plan, Trial};
 pub use progress::Step;
 pub use read::{check_files, files_of, read_study, study_schema};

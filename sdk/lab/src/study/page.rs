@@ -2,9 +2,8 @@
 //! press of a key, or one for a view that is gone, is not an answer.
 
 use std::collections::VecDeque;
-use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -14,6 +13,9 @@ use crate::study::asking::{Asker, Key, View};
 use crate::study::error::StudyError;
 use crate::study::file::GainMethod;
 use crate::study::gain::GainKey;
+
+/// A page that has said nothing of its finger for this long may be gone, and its finger counts as lifted.
+const SILENT: Duration = Duration::from_millis(300);
 
 /// What a page is for.
 #[derive(Debug, Clone, Default)]
@@ -30,17 +32,29 @@ pub struct PageOptions {
 /// A motion of the finger on the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Touched {
-    /// Speed, mm/s; negative to the left.
+    /// Speed, mm/s; negative to the left; NaN if the page did not say one.
     pub speed_mm_s: f64,
     /// Whether the finger is on the page.
     pub is_down: bool,
+}
+
+/// The finger on a page.
+#[derive(Clone)]
+pub struct Touch(Arc<Asked>);
+
+impl Touch {
+    /// Its motion now: none, if the page has said nothing for 300 ms.
+    pub fn now(&self) -> Option<Touched> {
+        let state = self.0.lock();
+        let (touched, at) = state.touched?;
+        (touched.is_down && at.elapsed() < SILENT).then_some(touched)
+    }
 }
 
 /// A page that is served while this value lives.
 pub struct Page {
     asked: Arc<Asked>,
     served: LocalPage,
-    touched: Option<Receiver<Touched>>,
 }
 
 /// What is asked, for the server's thread and for the session's.
@@ -59,7 +73,10 @@ struct State {
     answered: Option<u64>,
     /// The view that the page has.
     seen: u64,
-    touched: Sender<Touched>,
+    /// Whether a tab has stopped the session.
+    is_stopped: bool,
+    /// The last motion, and when it came.
+    touched: Option<(Touched, Instant)>,
 }
 
 impl Page {
@@ -69,12 +86,10 @@ impl Page {
     /// [`StudyError::Page`] if the port is taken or there are no random numbers.
     pub fn open(options: PageOptions) -> Result<Self, StudyError> {
         let port = options.port;
-        let (sender, touched) = channel();
-        let asked = Arc::new(Asked(Mutex::new(State::new(options, sender))));
+        let asked = Arc::new(Asked(Mutex::new(State::new(options))));
         Ok(Self {
             served: LocalPage::open(port, Arc::clone(&asked))?,
             asked,
-            touched: Some(touched),
         })
     }
 
@@ -82,9 +97,9 @@ impl Page {
         self.served.url()
     }
 
-    /// The motions of the finger on the page; the first call takes them.
-    pub fn touched(&mut self) -> Option<Receiver<Touched>> {
-        self.touched.take()
+    /// The finger on the page.
+    pub fn touch(&self) -> Touch {
+        Touch(Arc::clone(&self.asked))
     }
 }
 
@@ -94,7 +109,11 @@ impl Asker for Page {
     }
 
     fn key(&mut self) -> Option<Key> {
-        self.asked.lock().keys.pop_front()
+        let mut state = self.asked.lock();
+        match state.is_stopped {
+            true => Some(Key::Quit),
+            false => state.keys.pop_front(),
+        }
     }
 }
 
@@ -121,7 +140,8 @@ impl Content for Asked {
         let mut state = self.lock();
         match request {
             "key" => state.press(body),
-            _ => state.touch(body),
+            "motion" => state.touch(body),
+            _ => state.is_stopped = true,
         }
     }
 
@@ -143,7 +163,7 @@ struct Shown<'a> {
 }
 
 impl State {
-    fn new(options: PageOptions, touched: Sender<Touched>) -> Self {
+    fn new(options: PageOptions) -> Self {
         Self {
             options,
             step: 0,
@@ -154,7 +174,8 @@ impl State {
             keys: VecDeque::new(),
             answered: None,
             seen: 0,
-            touched,
+            is_stopped: false,
+            touched: None,
         }
     }
 
@@ -198,13 +219,11 @@ impl State {
     fn touch(&mut self, body: &Value) {
         let speed_mm_s = body.get("speed_mm_s").and_then(Value::as_f64);
         let is_down = body.get("down").and_then(Value::as_bool).unwrap_or(false);
-        if let Some(speed_mm_s) = speed_mm_s.filter(|v| v.abs() <= 1e4) {
-            // Nobody may listen.
-            let _ = self.touched.send(Touched {
-                speed_mm_s,
-                is_down,
-            });
-        }
+        let touched = Touched {
+            speed_mm_s: speed_mm_s.unwrap_or(f64::NAN),
+            is_down,
+        };
+        self.touched = Some((touched, Instant::now()));
     }
 }
 
@@ -242,7 +261,7 @@ mod tests {
     /// A double press, of which the second one comes 0.15 to 0.45 s after the first one: it ends the rest, and begins no trial.
     #[test]
     fn a_double_press_at_a_rest_begins_no_trial() {
-        let mut state = State::new(PageOptions::default(), channel().0);
+        let mut state = State::new(PageOptions::default());
         let ready = View::Ready {
             phase: Phase::Testing,
             texture: "vinyl".to_owned(),

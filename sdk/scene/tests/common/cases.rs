@@ -454,6 +454,16 @@ pub fn cases() -> Vec<Case> {
             with(&[("/device", json!({ "rate_hz": 50 }))]),
         ),
         (
+            "device_rate_of_a_carrier",
+            with(&[(
+                "/device",
+                json!({
+                    "rate_hz": 7000,
+                    "settings": { "quantity": "display_voltage", "limit_v": 100, "carrier_hz": 7000 },
+                }),
+            )]),
+        ),
+        (
             "device_field_unfit",
             with(&[("/device", json!({ "drive_v": 50, "pitch": 2 }))]),
         ),

@@ -280,16 +280,15 @@ const CASES: &[Case] = &[
             )
         },
     ),
-    within(
+    refused(
         "a carrier at half the rate",
         "scene",
-        "render",
-        Bound(LIMIT_V, "V", "finite, and not silent for ever,"),
+        "plan",
+        "at least at 2.5 times its carrier",
         || {
-            felt(
-                &device(Quantity::DisplayVoltage, 20_000.0, Some(10_000.0)),
-                &[(60.0, 0.4)],
-            )
+            let device = device(Quantity::DisplayVoltage, 20_000.0, Some(10_000.0));
+            let planned = plan(&scene(1), &device, &Costs::embedded());
+            planned.map_or_else(|error| error.to_string(), |_| "it was done".to_owned())
         },
     ),
     within(

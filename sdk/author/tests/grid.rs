@@ -11,7 +11,7 @@ use htex_dsp::normal::Normal;
 use htex_format::{AtCondition, Measure};
 use htex_host::Registry;
 use htex_play::{Asset, Mesh, Motion};
-use htex_simulate::{FreeMotion, SimulationOptions, Surface, simulate};
+use htex_simulate::{Departures, FreeMotion, SimulationOptions, Surface, simulate};
 
 fn free(surface: Surface, seconds: f64) -> SimulationOptions {
     SimulationOptions::new(surface)
@@ -129,6 +129,21 @@ fn one_free_recording_gives_the_truth_inside_the_mesh() {
         "{half}, {most}, {all} dB"
     );
     assert!(left_db < 1.2 && left_db > half);
+}
+
+/// So it is where frequencies stay, the level rises with the speed, and the finger leaves the surface a fifth of the time.
+#[test]
+fn a_hand_that_lifts_over_no_relief_gives_the_truth_inside_the_mesh() {
+    let departures = Departures::default()
+        .with_frequency_speed(0.0)
+        .with_level_speed(0.5)
+        .with_level_force(0.3);
+    let in_contact = free(Surface::Sandpaper, 120.0).with_departures(departures);
+    let lifting = in_contact.clone().with_departures(departures.with_lifted(0.2));
+    let errors = thirds(&in_contact, fit_at_finger(&lifting, &["bands"]));
+    let [half, most] = [0.5, 0.95].map(|part| errors[(part * errors.len() as f64) as usize]);
+    println!("median {half:.2}, 95 % {most:.2} dB");
+    assert!(half < 0.7 && most < 1.0, "{half}, {most} dB");
 }
 
 /// Noise whose level follows the law that is assumed of an unknown contact and rises in time by some decibels, over a motion whose speed

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use htex_recording::velocity;
-use htex_recording::{ReadError, TraceColumns, read_trace};
+use htex_recording::{ReadError, TraceColumns, read_trace, trace_from_bytes};
 
 /// A motion over time. The vectors have equal lengths of at least 2; time 0 is the first row.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,6 +52,14 @@ impl Trace {
     /// As [`read_trace`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         Ok(Self::new(read_trace(path)?))
+    }
+
+    /// As [`Self::open`], of a file in memory; messages name `file`.
+    ///
+    /// # Errors
+    /// As [`read_trace`].
+    pub fn from_bytes(file: &str, bytes: &[u8]) -> Result<Self, ReadError> {
+        Ok(Self::new(trace_from_bytes(file, bytes)?))
     }
 
     /// Makes a trace from columns.

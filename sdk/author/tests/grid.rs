@@ -139,7 +139,9 @@ fn a_hand_that_lifts_over_no_relief_gives_the_truth_inside_the_mesh() {
         .with_level_speed(0.5)
         .with_level_force(0.3);
     let in_contact = free(Surface::Sandpaper, 120.0).with_departures(departures);
-    let lifting = in_contact.clone().with_departures(departures.with_lifted(0.2));
+    let lifting = in_contact
+        .clone()
+        .with_departures(departures.with_lifted(0.2));
     let errors = thirds(&in_contact, fit_at_finger(&lifting, &["bands"]));
     let [half, most] = [0.5, 0.95].map(|part| errors[(part * errors.len() as f64) as usize]);
     println!("median {half:.2}, 95 % {most:.2} dB");

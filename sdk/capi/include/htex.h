@@ -23,6 +23,22 @@
 #define HTEX_API_VERSION 65536
 
 /*
+ Modules are not loaded: a texture that needs one is an error (`HTEX_STATUS_NO_MODEL`).
+ */
+#define HTEX_ENGINE_OFF 0
+
+/*
+ Modules run without handlers for signals: each access to memory is compared with its bound.
+ */
+#define HTEX_ENGINE_CHECKED 1
+
+/*
+ Modules run with handlers of the process for SIGSEGV, SIGBUS, SIGILL and SIGFPE, which stay after htex_shutdown and pass on what
+ is not of a module; up to a third faster.
+ */
+#define HTEX_ENGINE_SIGNALS 2
+
+/*
  Status of a call. Later versions may return further values; all but HTEX_STATUS_OK are errors.
  */
 enum htex_status
@@ -87,11 +103,11 @@ enum htex_status
      */
     HTEX_STATUS_INTERNAL = 13,
     /*
-     The library of textures is invalid (1.1).
+     The library of textures is invalid.
      */
     HTEX_STATUS_INVALID_LIBRARY = 14,
     /*
-     The library has no texture of this name (1.1).
+     The library has no texture of this name.
      */
     HTEX_STATUS_ABSENT = 15,
 };
@@ -143,13 +159,22 @@ typedef struct htex_bytes {
 } htex_bytes;
 
 /*
- Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to zero for the defaults.
+ Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to zero for the defaults: the
+ built-in models alone, which make no thread, file or handler of signals.
+
+ WASM modules, which assets may bring along, are run by an engine that must be turned on. Each module is compiled when it is
+ first used (0.1 to 5 s, unless `cache` has it), and as long as it is loaded one thread sleeps and wakes every 50 ms to stop
+ calls at their time limit. All is limited: 64 MiB of memory for a voice, 0.5 s for a block, 5 s to compile.
  */
 typedef struct htex_open_options {
     /*
      sizeof(htex_open_options).
      */
-    size_t size;
+    uint32_t size;
+    /*
+     HTEX_ENGINE_OFF, HTEX_ENGINE_CHECKED or HTEX_ENGINE_SIGNALS.
+     */
+    uint32_t engine;
     /*
      Files of models to load, native libraries or WASM modules. A native library runs with all rights of the program.
      */
@@ -159,14 +184,6 @@ typedef struct htex_open_options {
      */
     size_t plugins_len;
     /*
-     Not 0: models that assets bring along are not run. By default they run, in a sandbox.
-     */
-    uint32_t no_embedded;
-    /*
-     Not 0: installed models are searched for too: in the folders of HTEX_PLUGIN_PATH and in the user's.
-     */
-    uint32_t installed;
-    /*
      WASM modules of models, in memory; they run in a sandbox. The bytes are used during the call alone.
      */
     const struct htex_bytes *modules;
@@ -174,6 +191,19 @@ typedef struct htex_open_options {
      Number of `modules`.
      */
     size_t modules_len;
+    /*
+     Folder for compiled modules, made for this user alone; NULL: none is written. With one, a key that authenticates the files in
+     it is kept as `wasm.key` in the user's folder of settings, such as `~/.config/htex`.
+     */
+    const char *cache;
+    /*
+     Not 0: modules that assets bring along do not run even with an engine.
+     */
+    uint32_t no_embedded;
+    /*
+     Not 0: installed models are searched for too: in the folders of HTEX_PLUGIN_PATH and in the user's.
+     */
+    uint32_t installed;
 } htex_open_options;
 
 /*
@@ -185,6 +215,33 @@ typedef struct htex_asset {
      */
     uint64_t id;
 } htex_asset;
+
+/*
+ A file that the program reads. Set `size` to sizeof(htex_reader).
+ */
+typedef struct htex_reader {
+    /*
+     sizeof(htex_reader).
+     */
+    uint32_t size;
+    /*
+     Bytes of the file.
+     */
+    uint64_t len;
+    /*
+     The first argument of the functions.
+     */
+    void *context;
+    /*
+     Fills `buffer` with the `len` bytes from `offset` on, which are in the file. Returns 0, or another number for an error. Is called
+     in the thread of a call of the library, for a library of textures in several threads at a time.
+     */
+    int32_t (*read)(void *context, uint64_t offset, uint8_t *buffer, size_t len);
+    /*
+     Called once when the file is not read any more, also after an error; may be NULL.
+     */
+    void (*close)(void *context);
+} htex_reader;
 
 /*
  A band of frequencies.
@@ -264,7 +321,7 @@ typedef struct htex_scene_options {
     /*
      sizeof(htex_scene_options).
      */
-    size_t size;
+    uint32_t size;
     /*
      Rate of the samples, Hz; 0: 20000.
      */
@@ -280,6 +337,25 @@ typedef struct htex_scene {
      */
     uint64_t id;
 } htex_scene;
+
+/*
+ The files that a scene names. Set `size` to sizeof(htex_files).
+ */
+typedef struct htex_files {
+    /*
+     sizeof(htex_files).
+     */
+    uint32_t size;
+    /*
+     The first argument of `open`.
+     */
+    void *context;
+    /*
+     Opens the file of a name, as the scene has it (UTF-8): fills `file`, whose `size` is set. Returns 0, or another number if
+     there is no such file.
+     */
+    int32_t (*open)(void *context, const char *name, struct htex_reader *file);
+} htex_files;
 
 /*
  Position and motion of a finger over a scene.
@@ -310,13 +386,13 @@ typedef struct htex_voice_options {
     /*
      sizeof(htex_voice_options).
      */
-    size_t size;
+    uint32_t size;
     /*
      The model of the representation, by its id or short name; NULL: the representation of least error.
      */
     const char *model;
     /*
-     Rate of the samples, Hz; 0: 20000.
+     Rate of the samples, Hz, at least twice the asset's highest frequency; 0: 20000.
      */
     double rate_hz;
     /*
@@ -331,6 +407,19 @@ typedef struct htex_voice_options {
      How samples are made: "streamed", "loop:SECONDS" or "filter:TAPS"; NULL: streamed.
      */
     const char *synthesis;
+    /*
+     Gain of the samples; 0: 1. htex_voice_set_gain changes it.
+     */
+    double gain;
+    /*
+     Greatest magnitude of a sample after the gain, in the asset's unit; 0: no limit. The gain falls at once where a sample would
+     exceed it, and returns with a time constant of 50 ms.
+     */
+    double limit;
+    /*
+     Number of bands of htex_voice_envelope, 1 to 32; 0: no envelope, which takes no time.
+     */
+    uint32_t envelope_bands;
     /*
      Not 0: frequencies do not follow speeds beyond the recorded ones.
      */
@@ -360,6 +449,28 @@ typedef struct htex_voice {
     uint64_t id;
 } htex_voice;
 
+/*
+ What a voice played since the last htex_voice_envelope. Set `size` to sizeof(htex_envelope) before the call.
+ */
+typedef struct htex_envelope {
+    /*
+     sizeof(htex_envelope).
+     */
+    uint32_t size;
+    /*
+     RMS of the samples, in the asset's unit, exactly; 0 for none.
+     */
+    double level_rms;
+    /*
+     Mean frequency, weighted by power, Hz; 0 for silence.
+     */
+    double centroid_hz;
+    /*
+     Number of the samples.
+     */
+    uint64_t frames;
+} htex_envelope;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -378,6 +489,20 @@ const char *htex_version(void);
  [any thread; reads a file] Opens an asset file. `options` may be NULL.
  */
 htex_status htex_asset_open(const char *path, const struct htex_open_options *options, struct htex_asset *out);
+
+#if defined(_WIN32)
+/*
+ [any thread; reads a file] As htex_asset_open, of a path of Windows in UTF-16.
+ */
+htex_status htex_asset_open_wide(const uint16_t *path, const struct htex_open_options *options, struct htex_asset *out);
+#endif
+
+/*
+ [any thread; calls the reader] Opens an asset that the program reads. The reader is closed before this returns. `options` may be NULL.
+ */
+htex_status htex_asset_open_reader(const struct htex_reader *reader,
+                                   const struct htex_open_options *options,
+                                   struct htex_asset *out);
 
 /*
  [any thread] Opens an asset in memory. The bytes are copied. `options` may be NULL.
@@ -401,6 +526,11 @@ htex_status htex_asset_manifest_json(struct htex_asset asset,
                                      char *out,
                                      size_t capacity,
                                      size_t *length);
+
+/*
+ [any thread] Name of the asset. Written as by htex_asset_manifest_json.
+ */
+htex_status htex_asset_name(struct htex_asset asset, char *out, size_t capacity, size_t *length);
 
 /*
  [any thread] Unit of the samples, such as "N". Written as by htex_asset_manifest_json.
@@ -457,32 +587,51 @@ htex_status htex_asset_level_rms(struct htex_asset asset,
                                  double *out);
 
 /*
- [any thread; reads a file] Opens a library file (1.1). Its index is read page by page, its textures one at a time.
+ [any thread; reads a file] Opens a library file. Its index is read page by page, its textures one at a time.
  */
 htex_status htex_library_open(const char *path, struct htex_library *out);
 
+#if defined(_WIN32)
 /*
- [any thread] Frees a library; its assets stay open (1.1). HTEX_STATUS_BUSY if another thread uses it at this moment.
+ [any thread; reads a file] As htex_library_open, of a path of Windows in UTF-16.
+ */
+htex_status htex_library_open_wide(const uint16_t *path, struct htex_library *out);
+#endif
+
+/*
+ [any thread] Opens a library in memory. The bytes are copied.
+ */
+htex_status htex_library_from_bytes(const uint8_t *bytes, size_t len, struct htex_library *out);
+
+/*
+ [any thread; calls the reader] Opens a library that the program reads. The struct is copied; its functions are called until the
+ library is freed.
+ */
+htex_status htex_library_open_reader(const struct htex_reader *reader,
+                                     struct htex_library *out);
+
+/*
+ [any thread] Frees a library; its assets stay open. HTEX_STATUS_BUSY if another thread uses it at this moment.
  */
 htex_status htex_library_free(struct htex_library library);
 
 /*
- [any thread] Name of the library, which may be empty (1.1). Written as by htex_asset_manifest_json.
+ [any thread] Name of the library, which may be empty. Written as by htex_asset_manifest_json.
  */
 htex_status htex_library_name(struct htex_library library, char *out, size_t capacity, size_t *length);
 
 /*
- [any thread] Number of textures (1.1).
+ [any thread] Number of textures.
  */
 htex_status htex_library_count(struct htex_library library, uint64_t *out);
 
 /*
- [any thread] Number of pages of the index (1.1).
+ [any thread] Number of pages of the index.
  */
 htex_status htex_library_page_count(struct htex_library library, size_t *out);
 
 /*
- [any thread; reads the file] The entries of a page of the index, counted from 0, as a JSON array (1.1): the textures' names in ascending order, tags, models, ranges of
+ [any thread; reads the file] The entries of a page of the index, counted from 0, as a JSON array: the textures' names in ascending order, tags, models, ranges of
  recorded speeds and forces, bytes and hashes. Written as by htex_asset_manifest_json.
  */
 htex_status htex_library_page_json(struct htex_library library,
@@ -492,7 +641,7 @@ htex_status htex_library_page_json(struct htex_library library,
                                    size_t *length);
 
 /*
- [any thread; reads the file] The entry of a texture as JSON, as in htex_library_page_json (1.1); HTEX_STATUS_ABSENT if there is none of this
+ [any thread; reads the file] The entry of a texture as JSON, as in htex_library_page_json; HTEX_STATUS_ABSENT if there is none of this
  name.
  */
 htex_status htex_library_entry_json(struct htex_library library,
@@ -502,7 +651,7 @@ htex_status htex_library_entry_json(struct htex_library library,
                                     size_t *length);
 
 /*
- [any thread; reads the file] Opens a texture of the library (1.1); HTEX_STATUS_ABSENT if there is none of this name. `options` may be NULL.
+ [any thread; reads the file] Opens a texture of the library; HTEX_STATUS_ABSENT if there is none of this name. `options` may be NULL.
  */
 htex_status htex_library_asset(struct htex_library library,
                                const char *name,
@@ -526,6 +675,27 @@ htex_status htex_scene_open(const char *path,
                             const struct htex_open_options *open,
                             const struct htex_scene_options *options,
                             struct htex_scene *out);
+
+#if defined(_WIN32)
+/*
+ [any thread; reads files] As htex_scene_open, of a path of Windows in UTF-16.
+ */
+htex_status htex_scene_open_wide(const uint16_t *path,
+                                 const struct htex_open_options *open,
+                                 const struct htex_scene_options *options,
+                                 struct htex_scene *out);
+#endif
+
+/*
+ [any thread] As htex_scene_open, of a scene in memory, whose files the program reads. Bytes and `files` are used during the call
+ alone.
+ */
+htex_status htex_scene_from_bytes(const uint8_t *bytes,
+                                  size_t len,
+                                  const struct htex_files *files,
+                                  const struct htex_open_options *open,
+                                  const struct htex_scene_options *options,
+                                  struct htex_scene *out);
 
 /*
  [one thread at a time; not the real-time thread] Frees a scene.
@@ -568,10 +738,23 @@ htex_status htex_scene_render(struct htex_scene scene,
 htex_status htex_scene_stop(struct htex_scene scene);
 
 /*
+ [no other call may run in any thread] Frees all assets, voices, libraries and scenes, and all memory that was allocated for them, ends
+ the threads of engines and forgets the function of htex_set_log, so that the library can be unloaded. Handles from before are
+ bad afterwards, and new objects may be made. Constants of the models that were used stay, at most 64 kB. HTEX_STATUS_BUSY, and nothing is freed of
+ that kind, if an object is in use.
+ */
+htex_status htex_shutdown(void);
+
+/*
  [any thread] Text of the last error of the calling thread, in English, UTF-8 and at most 1023 bytes; empty if there was
  none. Valid until the thread's next call that fails. A call that succeeds leaves it as it is.
  */
 const char *htex_last_error(void);
+
+/*
+ [any thread; real-time] What a status means, in English. Static; "unknown status" for other numbers.
+ */
+const char *htex_status_text(int32_t status);
 
 /*
  [any thread; may load a model] Makes a voice of an asset. `options` may be NULL.
@@ -582,6 +765,35 @@ htex_status htex_voice_new(struct htex_asset asset, const struct htex_voice_opti
  [one thread at a time; not the real-time thread] Frees a voice.
  */
 htex_status htex_voice_free(struct htex_voice voice);
+
+/*
+ [one thread at a time; not the real-time thread] Makes the voice as it was when it was made, with the same options and the same
+ handle: the samples are those of a new voice. `motion` may be NULL (the motion of its options). After an error the voice plays on as before.
+ */
+htex_status htex_voice_reset(struct htex_voice voice,
+                             const struct htex_motion *motion);
+
+/*
+ [one thread at a time] Id of the model that plays: of the options, or that of the representation that was chosen. Written as by
+ htex_asset_manifest_json.
+ */
+htex_status htex_voice_model(struct htex_voice voice,
+                             char *out,
+                             size_t capacity,
+                             size_t *length);
+
+/*
+ [one thread at a time; real-time: neither allocates nor locks] Sets the gain, which is not negative and changes within 10 ms.
+ */
+htex_status htex_voice_set_gain(struct htex_voice voice,
+                                double gain);
+
+/*
+ [one thread at a time; real-time: neither allocates nor locks] Writes 1 if the voice rests, so that its samples are 0 until a motion
+ is felt again, else 0. A voice that rests takes hardly any time to render.
+ */
+htex_status htex_voice_is_silent(struct htex_voice voice,
+                                 uint32_t *out);
 
 /*
  [one thread at a time; real-time: neither allocates nor locks] Sets the motion of the finger; spectrum and level glide to it.
@@ -597,6 +809,37 @@ htex_status htex_voice_set_motion(struct htex_voice voice,
 htex_status htex_voice_render(struct htex_voice voice,
                               float *out,
                               size_t frames);
+
+/*
+ [one thread at a time; real-time: neither allocates nor locks] Adds the next samples, multiplied by `gain`, to `out`: for a mix of
+ voices.
+ */
+htex_status htex_voice_render_add(struct htex_voice voice,
+                                  float *out,
+                                  size_t frames,
+                                  float gain);
+
+/*
+ [one thread at a time; real-time: neither allocates nor locks] Tells what the voice played since the last call, effects, gain and limit
+ included, for phones, pads and motors, which take level and frequency. Writes the mean square in each of the voice's `envelope_bands`, in the
+ squared unit, to `bands`, which may be NULL with a `bands_len` of 0.
+
+ The level is exact. Frequency and bands are those of Hann windows of N samples, the least power of two that lasts 40 ms (20 kHz: 1024), of
+ which one ends every N / 4 samples; a call has the mean of the windows that ended since the last call, and the numbers of that call if none
+ did. The middle of a window is N / 2 samples before its end.
+ */
+htex_status htex_voice_envelope(struct htex_voice voice,
+                                struct htex_envelope *out,
+                                double *bands,
+                                size_t bands_len);
+
+/*
+ [one thread at a time] Writes the edges of the bands of htex_voice_envelope, one more than bands, Hz: equal ratios from the lowest to the highest frequency of
+ the asset. The first band reaches down to 0 Hz, and the last up to half the rate.
+ */
+htex_status htex_voice_envelope_edges(struct htex_voice voice,
+                                      double *edges_hz,
+                                      size_t len);
 
 /*
  [one thread at a time; real-time: neither allocates nor locks] Renders a block of `frames` samples for each of `motions_len` motions, which is set

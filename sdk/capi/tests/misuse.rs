@@ -90,6 +90,22 @@ fn freed_and_foreign_handles_are_refused() {
         for id in never {
             is(htex_scene_stop(htex_scene { id }), HTEX_STATUS_BAD_HANDLE);
         }
+        // A handle of one kind is none of another.
+        let (asset, voice) = (opened(), voice_of(opened()));
+        is(
+            htex_asset_free(htex_asset { id: voice.id }),
+            HTEX_STATUS_BAD_HANDLE,
+        );
+        is(
+            htex_voice_free(htex_voice { id: asset.id }),
+            HTEX_STATUS_BAD_HANDLE,
+        );
+        is(
+            htex_library_free(htex_library { id: voice.id }),
+            HTEX_STATUS_BAD_HANDLE,
+        );
+        assert_eq!(htex_asset_free(asset), HTEX_STATUS_OK);
+        assert_eq!(htex_voice_free(voice), HTEX_STATUS_OK);
     }
 }
 
@@ -245,12 +261,15 @@ fn options_are_checked_by_their_size() {
     let asset = opened();
     let mut voice = htex_voice { id: 0 };
     let mut options = htex_voice_options {
-        size: size_of::<htex_voice_options>(),
+        size: size_of::<htex_voice_options>() as u32,
         model: null(),
         rate_hz: 0.0,
         seed: 3,
         motion: null(),
         synthesis: null(),
+        gain: 0.0,
+        limit: 0.0,
+        envelope_bands: 0,
         no_frequency_scaling: 0,
         no_level_scaling: 0,
         no_contact: 0,
@@ -268,18 +287,32 @@ fn options_are_checked_by_their_size() {
     options.size = 0;
     is(new(&options), HTEX_STATUS_INVALID_ARGUMENT);
     // A program that was compiled against an older, shorter struct.
-    options.size = size_of::<usize>();
+    options.size = size_of::<u32>() as u32;
     assert_eq!(new(&options), HTEX_STATUS_OK);
-    options.size = size_of::<htex_voice_options>();
+    options.size = size_of::<htex_voice_options>() as u32;
     options.model = c"nothing".as_ptr();
     is(new(&options), HTEX_STATUS_NO_REPRESENTATION);
     options.model = null();
     options.synthesis = c"somehow".as_ptr();
     is(new(&options), HTEX_STATUS_INVALID_ARGUMENT);
     options.synthesis = null();
-    options.rate_hz = f64::NAN;
-    assert_ne!(new(&options), HTEX_STATUS_OK);
+    for rate_hz in [f64::NAN, f64::INFINITY, -1.0, 1.0, 1_999.0, 1e12] {
+        options.rate_hz = rate_hz;
+        is(new(&options), HTEX_STATUS_INVALID_ARGUMENT);
+    }
     options.rate_hz = 0.0;
+    for (gain, limit, bands) in [
+        (f64::NAN, 0.0, 0),
+        (-1.0, 0.0, 0),
+        (0.0, f64::INFINITY, 0),
+        (0.0, -1.0, 0),
+        (0.0, 0.0, 33),
+    ] {
+        (options.gain, options.limit, options.envelope_bands) = (gain, limit, bands);
+        is(new(&options), HTEX_STATUS_INVALID_ARGUMENT);
+    }
+    (options.gain, options.limit, options.envelope_bands) = (2.0, 0.5, 32);
+    assert_eq!(new(&options), HTEX_STATUS_OK);
     options.ceiling = 10.0;
     assert_eq!(new(&options), HTEX_STATUS_OK);
     for ceiling in [-1.0, f64::INFINITY, f64::NAN] {
@@ -295,7 +328,7 @@ fn options_are_checked_by_their_size() {
         more: u64,
     }
     options.rate_hz = 0.0;
-    options.size = size_of::<Newer>();
+    options.size = size_of::<Newer>() as u32;
     let mut newer = Newer {
         known: options,
         more: 0,

@@ -272,9 +272,14 @@ typedef struct htex_condition {
 } htex_condition;
 
 /*
- Motion of a finger over a texture, at one moment.
+ Motion of a finger over a texture, at one moment. Later versions add what may be unknown at the end; what a program that was compiled
+ against an earlier one does not have is not known.
  */
 typedef struct htex_motion {
+    /*
+     sizeof(htex_motion).
+     */
+    uint32_t size;
     /*
      Scanning speed, mm/s; finite and not negative.
      */
@@ -361,6 +366,10 @@ typedef struct htex_files {
  Position and motion of a finger over a scene.
  */
 typedef struct htex_finger {
+    /*
+     sizeof(htex_finger).
+     */
+    uint32_t size;
     /*
      Scanning speed, mm/s; negative on the back stroke.
      */
@@ -740,7 +749,7 @@ htex_status htex_scene_stop(struct htex_scene scene);
 /*
  [no other call may run in any thread] Frees all assets, voices, libraries and scenes, and all memory that was allocated for them, ends
  the threads of engines and forgets the function of htex_set_log, so that the library can be unloaded. Handles from before are
- bad afterwards, and new objects may be made. Constants of the models that were used stay, at most 64 kB. HTEX_STATUS_BUSY, and nothing is freed of
+ bad afterwards, and new objects may be made. Constants of the models that were used stay: 0.2 MB for all six, and no more with later use. HTEX_STATUS_BUSY, and nothing is freed of
  that kind, if an object is in use.
  */
 htex_status htex_shutdown(void);

@@ -27,7 +27,7 @@ using Files = htex_files;
 /* A motion at an unknown position and place. */
 inline Motion motion(double speed_mm_s, double force_n) noexcept
 {
-    return {speed_mm_s, force_n, NAN, NAN, NAN};
+    return {sizeof(Motion), speed_mm_s, force_n, NAN, NAN, NAN};
 }
 
 /* A status and the text of its error, which is empty on success. */

@@ -28,6 +28,8 @@ pub struct htex_scene_options {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_finger {
+    /// sizeof(htex_finger).
+    pub size: u32,
     /// Scanning speed, mm/s; negative on the back stroke.
     pub speed_mm_s: f64,
     /// Normal force, N; not negative.

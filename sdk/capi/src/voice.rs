@@ -7,9 +7,9 @@ use htex::{Asset, Voice, VoiceOptions};
 
 use crate::asset::{ASSETS, htex_asset};
 use crate::handles::{Kind, Table};
-use crate::motion::{htex_motion, needed_motion};
+use crate::motion::{Motions, htex_motion, needed_motion};
 use crate::options::{htex_voice_options, voice_options};
-use crate::pointers::{place, slice, slice_mut, write_text};
+use crate::pointers::{place, slice_mut, write_text};
 use crate::status::{Failure, guarded, htex_status};
 
 /// A playing texture. One thread at a time may use it. Zero is no voice.
@@ -269,14 +269,14 @@ pub unsafe extern "C" fn htex_voice_render_path(
         let len = motions_len.checked_mul(frames);
         let len = len.ok_or(Failure::argument("motions_len * frames is too large"))?;
         // SAFETY: the arrays are the caller's.
-        let (motions, out) = unsafe { (slice(motions, motions_len)?, slice_mut(out, len)?) };
+        let (motions, out) = unsafe { (Motions::of(motions, motions_len)?, slice_mut(out, len)?) };
         if frames == 0 {
             return motions
                 .iter()
-                .try_for_each(|motion| Ok(voice.set_motion((*motion).into())?));
+                .try_for_each(|motion| Ok(voice.set_motion(motion)?));
         }
         for (motion, block) in motions.iter().zip(out.chunks_exact_mut(frames)) {
-            voice.set_motion((*motion).into())?;
+            voice.set_motion(motion)?;
             voice.render(block)?;
         }
         Ok(())

@@ -44,6 +44,7 @@ fn is(status: htex_status, expected: htex_status) {
 }
 
 const MOTION: htex_motion = htex_motion {
+    size: size_of::<htex_motion>() as u32,
     speed_mm_s: 80.0,
     force_n: 0.4,
     position_mm: f64::NAN,
@@ -366,6 +367,54 @@ fn texts_tell_their_length() {
     htex_asset_free(asset);
 }
 
+/// Motions of programs that were compiled against other headers: of speed and force alone, and with more at the end.
+#[test]
+fn motions_have_the_size_of_their_header() {
+    #[repr(C)]
+    struct Early(u32, f64, f64);
+    #[repr(C)]
+    struct Late(htex_motion, f64);
+    let size = |size: usize| u32::try_from(size).unwrap();
+    let asset = opened();
+    let mut blocks = [[0.0f32; 256]; 3];
+    let speeds = [80.0, 200.0];
+    let now = speeds.map(|speed_mm_s| htex_motion {
+        speed_mm_s,
+        ..MOTION
+    });
+    let early = speeds.map(|speed| Early(size(size_of::<Early>()), speed, 0.4));
+    let late = now.map(|motion| {
+        let size = size(size_of::<Late>());
+        Late(htex_motion { size, ..motion }, 7.0)
+    });
+    let paths = [
+        now.as_ptr(),
+        early.as_ptr().cast(),
+        late.as_ptr().cast::<htex_motion>(),
+    ];
+    for (path, block) in paths.into_iter().zip(&mut blocks) {
+        let voice = voice_of(asset);
+        // SAFETY: live pointers, to motions of the sizes that they state.
+        unsafe {
+            let status = htex_voice_render_path(voice, path, 2, block.as_mut_ptr(), 128);
+            assert_eq!(status, HTEX_STATUS_OK, "{}", last_error());
+            for wrong in [0, 4, 23, 25, u32::MAX] {
+                let motion = htex_motion {
+                    size: wrong,
+                    ..MOTION
+                };
+                is(
+                    htex_voice_set_motion(voice, &motion),
+                    HTEX_STATUS_INVALID_ARGUMENT,
+                );
+            }
+        }
+        assert_eq!(htex_voice_free(voice), HTEX_STATUS_OK);
+    }
+    assert!(blocks[0] == blocks[1] && blocks[0] == blocks[2]);
+    htex_asset_free(asset);
+}
+
 /// Mutated files are refused or play; they neither crash nor leave handles.
 #[test]
 fn mutated_files_are_errors() {
@@ -439,6 +488,7 @@ fn a_scene_plays_and_reports() {
     let mut playing = htex_scene { id: 0 };
     let mut samples = [0.0f32; 2_000];
     let finger = htex_finger {
+        size: size_of::<htex_finger>() as u32,
         speed_mm_s: 80.0,
         force_n: 0.4,
         x_mm: 1.0,

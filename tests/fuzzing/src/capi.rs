@@ -83,6 +83,7 @@ impl Calls<'_> {
 
     fn motion(&mut self) -> htex_motion {
         htex_motion {
+            size: size_of::<htex_motion>() as u32,
             speed_mm_s: self.number(),
             force_n: self.number(),
             position_mm: self.number(),

@@ -238,6 +238,11 @@ pub(super) unsafe fn set_finger(scene: htex_scene, finger: *const htex_finger) -
         let mut scene = SCENES.exclusive(scene.id)?;
         // SAFETY: the finger is the caller's.
         let finger = unsafe { slice(finger, 1) }?[0];
+        if (finger.size as usize) < size_of::<htex_finger>() {
+            return Err(Failure::argument(
+                "the finger's size is not that of its struct; set it to sizeof(htex_finger)",
+            ));
+        }
         let unknown = finger.x_mm.is_nan() && finger.y_mm.is_nan();
         Ok(scene.renderer.set_motion(Finger {
             speed_mm_s: finger.speed_mm_s,

@@ -32,7 +32,7 @@ static void fail_in_every_way(htex_voice voice, float *block)
     const double wrong[] = {NAN, INFINITY, -1.0};
     htex_envelope envelope = {.size = sizeof envelope};
     double bands[BANDS + 1];
-    htex_motion motion = {80.0, 0.4, NAN};
+    htex_motion motion = {sizeof motion, 80.0, 0.4, NAN, NAN, NAN};
     htex_voice none = {voice.id + 1000};
     htex_voice foreign = {asset.id};
     for (int i = 0; i < 3; i++) {
@@ -46,6 +46,9 @@ static void fail_in_every_way(htex_voice voice, float *block)
     }
     motion.position_mm = INFINITY;
     EXPECT(htex_voice_set_motion(voice, &motion), HTEX_STATUS_INVALID_MOTION);
+    motion.size = 3;
+    EXPECT(htex_voice_set_motion(voice, &motion), HTEX_STATUS_INVALID_ARGUMENT);
+    motion.size = sizeof motion;
     EXPECT(htex_voice_set_motion(voice, NULL), HTEX_STATUS_INVALID_ARGUMENT);
     EXPECT(htex_voice_render(voice, NULL, FRAMES), HTEX_STATUS_INVALID_ARGUMENT);
     EXPECT(htex_voice_render(none, block, FRAMES), HTEX_STATUS_BAD_HANDLE);
@@ -63,7 +66,7 @@ static void play(htex_voice voice, int render, float *block)
     double bands[BANDS];
     uint32_t silent;
     /* Slow, fast, lifted, and readings that no finger has. */
-    htex_motion motion = {(render % 7) * 60.0, (render % 5) * 0.3, NAN};
+    htex_motion motion = {sizeof motion, (render % 7) * 60.0, (render % 5) * 0.3, NAN, NAN, NAN};
     if (render % 11 == 0)
         motion.speed_mm_s = 1e6;
     EXPECT(htex_voice_set_motion(voice, &motion), HTEX_STATUS_OK);

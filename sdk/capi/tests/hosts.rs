@@ -7,14 +7,17 @@
 #[path = "common/programs.rs"]
 mod programs;
 
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, embed_plugins, fit_asset};
 use htex::simulate::{SimulationOptions, Surface, simulate};
-use htex::{Registry, Search};
-use programs::{Language, Project};
+use htex::{Asset, Motion, Registry, Search, VoiceOptions};
+use programs::{Language, Project, asset};
 use xtask::needs;
 
 fn hosts(file: &str) -> PathBuf {
@@ -156,4 +159,93 @@ fn modules_run_only_in_a_program_that_asks_for_them() {
         .unwrap();
     passed("modules", &run);
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 0);
+}
+
+/// The lines that programs print: names and values.
+fn lines(printed: &str) -> BTreeMap<&str, &str> {
+    let lines = printed.lines().filter_map(|line| line.split_once(' '));
+    lines.collect()
+}
+
+fn numbers(text: &str) -> Vec<f64> {
+    text.split(' ').map(|word| word.parse().unwrap()).collect()
+}
+
+/// C++ and C# have names, levels, bands, envelopes, mixes and the rest as Rust has them.
+#[test]
+fn calls_of_each_language_tell_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let library = folder.path().join("a.htexlib");
+    let mut writer = htex::library::Writer::create(&library, "A").unwrap();
+    writer.add("a", &fs::read(asset()).unwrap()).unwrap();
+    writer.finish().unwrap();
+    let scene = asset().with_file_name("constant.scene.json");
+
+    let opened = Asset::open(asset()).unwrap();
+    let options = VoiceOptions::default()
+        .with_seed(7)
+        .with_gain(0.5)
+        .with_limit(0.01)
+        .with_envelope_bands(3);
+    let mut voice = opened.voice(&options).unwrap();
+    let (mut samples, mut bands) = ([0.0f32; 4_000], [0.0; 3]);
+    voice.render(&mut samples).unwrap();
+    let envelope = voice.envelope(&mut bands).unwrap();
+    let expected = [
+        ("library", vec![1.0]),
+        ("level", vec![opened.level_rms(None, None).unwrap()]),
+        ("band", vec![20.0, 1_000.0]),
+        ("edges", voice.envelope_edges_hz()[1..3].to_vec()),
+        (
+            "envelope",
+            [&[envelope.level_rms, envelope.centroid_hz], &bands[..]].concat(),
+        ),
+        ("again", vec![1.0]),
+        ("silent", vec![1.0]),
+    ];
+    voice.set_motion(Motion::new(0.0, 0.0)).unwrap();
+
+    for (language, file) in [(Language::Cxx, "calls.cpp"), (Language::Csharp, "Calls.cs")] {
+        let Some(project) = Project::new(language, "calls") else {
+            continue;
+        };
+        let source = fs::read_to_string(hosts(file)).unwrap();
+        let more: &[&str] = match language {
+            Language::Csharp => &["-r:System.Core"],
+            _ => &[],
+        };
+        let program = project.build_with(&source, more);
+        let asset = asset();
+        let mut paths: Vec<&OsStr> = vec![asset.as_os_str(), library.as_os_str()];
+        if language == Language::Csharp {
+            paths.push(scene.as_os_str());
+        }
+        let printed = passed(file, &project.run(&program, &paths));
+        let lines = lines(&printed);
+        for (name, values) in &expected {
+            for (there, wanted) in numbers(lines[name]).iter().zip(values) {
+                let near = (there - wanted).abs() <= 1e-9 * wanted.abs();
+                assert!(near, "{file}: {name}: {there} and {wanted}");
+            }
+            assert_eq!(numbers(lines[name]).len(), values.len());
+        }
+        assert_eq!(lines["name"], opened.manifest().name);
+        assert_eq!(lines["model"], opened.representation_id(None).unwrap());
+        assert_eq!(lines["status"], "another thread uses the object");
+    }
+}
+
+/// 2,000 toggles of `HtexSource` while an audio thread renders without a pause.
+#[test]
+fn toggles_of_a_source_leave_nothing() {
+    let Some(project) = Project::new(Language::Csharp, "toggles") else {
+        return;
+    };
+    let source = fs::read_to_string(hosts("Toggles.cs")).unwrap();
+    let behaviour = Path::new(env!("CARGO_MANIFEST_DIR")).join("unity/Runtime/HtexSource.cs");
+    let program = project.build_with(&source, &[&behaviour.display().to_string()]);
+    let asset = asset();
+    let (folder, name) = (asset.parent().unwrap(), asset.file_name().unwrap());
+    let run = project.run(&program, &[folder.as_os_str(), name]);
+    println!("{}", passed("toggles", &run));
 }

@@ -25,14 +25,14 @@ pub const HTEX_ENGINE_OFF: u32 = 0;
 /// Modules run without handlers for signals: each access to memory is compared with its bound.
 pub const HTEX_ENGINE_CHECKED: u32 = 1;
 /// Modules run with handlers of the process for SIGSEGV, SIGBUS, SIGILL and SIGFPE, which stay after htex_shutdown and pass on what
-/// is not of a module; up to a third faster.
+/// is not of a module. The model of `examples/model-c-bursts` then takes 34 ns a sample instead of 42.
 pub const HTEX_ENGINE_SIGNALS: u32 = 2;
 
 /// Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to zero for the defaults: the
 /// built-in models alone, which make no thread, file or handler of signals.
 ///
 /// WASM modules, which assets may bring along, are run by an engine that must be turned on. Each module is compiled when it is
-/// first used (0.1 to 5 s, unless `cache` has it), and as long as it is loaded one thread sleeps and wakes every 50 ms to stop
+/// first used (that example takes 0.07 to 0.4 s, and 5 s is the limit, unless `cache` has it), and as long as it is loaded one thread sleeps and wakes every 50 ms to stop
 /// calls at their time limit. All is limited: 64 MiB of memory for a voice, 0.5 s for a block, 5 s to compile.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]

@@ -12,8 +12,6 @@
 
 enum { THREADS = 4, VOICES = 16, FRAMES = 64, BANDS = 4 };
 
-static const char *const MODELS[] = {NULL, "ar", "bands", "mfcc", "sbeta", "speak", "sslope"};
-
 static htex_asset asset;
 static htex_voice common; /* that all threads use */
 static int renders;
@@ -102,14 +100,18 @@ int main(int argc, char **argv)
     static htex_voice voices[THREADS][VOICES];
     pthread_t threads[THREADS];
     long allocations = 0;
+    size_t models;
     if (argc != 3)
         return 2;
     renders = atoi(argv[2]);
     EXPECT(htex_asset_open(argv[1], NULL, &asset), HTEX_STATUS_OK);
+    EXPECT(htex_asset_representation_count(asset, &models), HTEX_STATUS_OK);
     for (int i = 0; i < THREADS * VOICES; i++) {
+        char model[64];
+        EXPECT(htex_asset_representation_model(asset, (size_t)i % models, model, sizeof model, NULL), HTEX_STATUS_OK);
         htex_voice_options options = {
             .size = sizeof options,
-            .model = MODELS[i % 7],
+            .model = model,
             .seed = (uint64_t)i,
             .rate_hz = i % 2 ? 48000.0 : 0.0,
             .limit = 1.0,

@@ -97,7 +97,7 @@ impl Limiter {
         Ok(Self {
             limit: number,
             gain: 1.0,
-            release: -(-1.0 / (RELEASE_S * rate_hz)).exp_m1() as f32,
+            release: (1.0 / (RELEASE_S * rate_hz)) as f32,
         })
     }
 

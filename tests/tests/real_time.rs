@@ -275,3 +275,32 @@ fn live_scene(asset: &Asset, model: &str) -> LoadedScene {
         notes: Vec::new(),
     }
 }
+
+/// A voice's output, envelope and errors, at motions that lift the finger and that no finger has.
+#[test]
+fn voices_measure_and_fail_without_allocating() {
+    let asset = asset();
+    for model in Registry::builtin_names() {
+        let options = VoiceOptions::default()
+            .with_model(model)
+            .with_limit(0.2)
+            .with_envelope_bands(5);
+        let mut voice = asset.voice(&options).unwrap();
+        let (mut block, mut bands) = ([0.0f32; 200], [0.0; 5]);
+        for i in 0..200u32 {
+            let speed_mm_s = [90.0, 0.0, f64::NAN, 300.0, 2_000.0][i as usize % 5];
+            let calls = count(|| {
+                let set = voice.set_motion(htex::Motion::new(speed_mm_s, 0.4));
+                assert_eq!(set.is_err(), speed_mm_s.is_nan());
+                drop(set);
+                assert!(voice.set_gain(-1.0).is_err());
+                voice.set_gain(f64::from(i % 3)).unwrap();
+                voice.render(&mut block[..i as usize]).unwrap();
+                voice.render_add(&mut block, 0.5).unwrap();
+                assert!(voice.envelope(&mut bands[..3]).is_err());
+                voice.envelope(&mut bands).unwrap();
+            });
+            assert_eq!(calls, 0, "{model}, block {i}");
+        }
+    }
+}

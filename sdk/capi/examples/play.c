@@ -38,7 +38,7 @@ int main(int argc, char **argv)
     }
     for (int block = 0; block < BLOCKS; block++) {
         float samples[BLOCK];
-        htex_motion motion = {40.0 + 0.2 * block, 0.4, NAN, NAN, NAN};
+        htex_motion motion = {sizeof motion, 40.0 + 0.2 * block, 0.4, NAN, NAN, NAN};
         if (htex_voice_set_motion(voice, &motion) != HTEX_STATUS_OK
             || htex_voice_render(voice, samples, BLOCK) != HTEX_STATUS_OK)
             return failed("render");

@@ -22,7 +22,7 @@ static void render(void *user, Uint8 *stream, int bytes)
 {
     float *samples = (float *)stream;
     int frames = bytes / (int)sizeof *samples;
-    htex_motion motion = {atomic_load(&speed_mm_s), 0.4, NAN, NAN, NAN};
+    htex_motion motion = {sizeof motion, atomic_load(&speed_mm_s), 0.4, NAN, NAN, NAN};
     (void)user;
     if (htex_voice_set_motion(voice, &motion) != HTEX_STATUS_OK
         || htex_voice_render(voice, samples, (size_t)frames) != HTEX_STATUS_OK) {

@@ -20,11 +20,14 @@ namespace htex {
 using Motion = htex_motion;
 using Finger = htex_finger;
 using Condition = htex_condition;
+using Band = htex_band;
+using Reader = htex_reader;
+using Files = htex_files;
 
 /* A motion at an unknown position and place. */
 inline Motion motion(double speed_mm_s, double force_n) noexcept
 {
-    return {speed_mm_s, force_n, NAN, NAN, NAN};
+    return {sizeof(Motion), speed_mm_s, force_n, NAN, NAN, NAN};
 }
 
 /* A status and the text of its error, which is empty on success. */
@@ -38,6 +41,24 @@ struct Status {
 inline Status status_of(htex_status code)
 {
     return code == HTEX_STATUS_OK ? Status{} : Status{code, htex_last_error()};
+}
+
+/* What a status means. */
+inline const char *text_of(htex_status code) noexcept
+{
+    return htex_status_text(code);
+}
+
+/* Sets the function that receives messages; see htex_set_log. */
+inline htex_status set_log(htex_log_callback callback, void *context = nullptr) noexcept
+{
+    return htex_set_log(callback, context);
+}
+
+/* Frees all that the library has; see htex_shutdown. Objects that are left are empty. */
+inline htex_status shutdown() noexcept
+{
+    return htex_shutdown();
 }
 
 /* A value, or the status of the call that has none. */
@@ -106,10 +127,20 @@ struct VoiceOptions {
     uint64_t seed = 0;
     std::optional<Motion> motion;
     std::optional<std::string> synthesis;
+    double gain = 0.0;  /* 0: 1 */
+    double limit = 0.0; /* in the asset's unit; 0: none */
+    uint32_t envelope_bands = 0;
     bool frequency_scaling = true;
     bool level_scaling = true;
     bool contact = true;
     double ceiling = 0.0;
+};
+
+/* What a voice played since it was last asked; see htex_voice_envelope. */
+struct Envelope {
+    double level_rms = 0.0;
+    double centroid_hz = 0.0;
+    uint64_t frames = 0;
 };
 
 /* A playing texture. [one thread at a time] */
@@ -132,6 +163,51 @@ public:
     {
         return htex_voice_render_path(handle_.get(), motions, motions_len, out, frames);
     }
+    /* [real-time] Adds the samples, multiplied by `gain`. */
+    htex_status render_add(float *out, size_t frames, float gain) noexcept
+    {
+        return htex_voice_render_add(handle_.get(), out, frames, gain);
+    }
+    /* [real-time] */
+    htex_status set_gain(double gain) noexcept { return htex_voice_set_gain(handle_.get(), gain); }
+    /* [real-time] Whether the voice rests; false of no voice. */
+    bool is_silent() const noexcept
+    {
+        uint32_t silent = 0;
+        htex_voice_is_silent(handle_.get(), &silent);
+        return silent != 0;
+    }
+    /* [real-time] What was rendered since the last call; `bands` has `bands_len` places, as many as bands or none. */
+    htex_status envelope(Envelope &out, double *bands = nullptr, size_t bands_len = 0) noexcept
+    {
+        htex_envelope envelope{};
+        envelope.size = sizeof envelope;
+        htex_status code = htex_voice_envelope(handle_.get(), &envelope, bands, bands_len);
+        if (code == HTEX_STATUS_OK)
+            out = {envelope.level_rms, envelope.centroid_hz, envelope.frames};
+        return code;
+    }
+    /* Edges of `bands` bands, Hz. */
+    Result<std::vector<double>> envelope_edges(size_t bands) const
+    {
+        std::vector<double> edges_hz(bands + 1);
+        htex_status code = htex_voice_envelope_edges(handle_.get(), edges_hz.data(), edges_hz.size());
+        if (Status status = status_of(code); !status)
+            return status;
+        return edges_hz;
+    }
+    /* Makes the voice as it was when it was made. */
+    Status reset(const std::optional<Motion> &motion = {})
+    {
+        return status_of(htex_voice_reset(handle_.get(), motion ? &*motion : nullptr));
+    }
+    /* Id of the model that plays. */
+    Result<std::string> model() const
+    {
+        return detail::text([&](char *out, size_t capacity, size_t *length) {
+            return htex_voice_model(handle_.get(), out, capacity, length);
+        });
+    }
     Result<std::string> coverage(const Motion &motion) const
     {
         return detail::text([&](char *out, size_t capacity, size_t *length) {
@@ -145,9 +221,19 @@ private:
     detail::Owned<htex_voice, htex_voice_free> handle_;
 };
 
+/* The engine of WASM modules; see htex_open_options. */
+enum class Engine : uint32_t {
+    off = HTEX_ENGINE_OFF,
+    checked = HTEX_ENGINE_CHECKED,
+    with_signals = HTEX_ENGINE_SIGNALS,
+};
+
 /* Options of opening; see htex_open_options. */
 struct OpenOptions {
     std::vector<std::string> plugins;
+    std::vector<std::vector<uint8_t>> modules;
+    Engine engine = Engine::off;
+    std::optional<std::string> cache;
     bool embedded = true;
     bool installed = false;
 
@@ -156,10 +242,17 @@ struct OpenOptions {
         std::vector<const char *> files;
         for (const std::string &plugin : plugins)
             files.push_back(plugin.c_str());
+        std::vector<htex_bytes> bytes;
+        for (const std::vector<uint8_t> &module : modules)
+            bytes.push_back({module.data(), module.size()});
         htex_open_options options{};
         options.size = sizeof options;
+        options.engine = static_cast<uint32_t>(engine);
         options.plugins = files.data();
         options.plugins_len = files.size();
+        options.modules = bytes.data();
+        options.modules_len = bytes.size();
+        options.cache = cache ? cache->c_str() : nullptr;
         options.no_embedded = !embedded;
         options.installed = installed;
         return call(&options);
@@ -176,6 +269,24 @@ public:
         htex_asset asset{};
         htex_status code = options.with(
             [&](const htex_open_options *open) { return htex_asset_open(path.c_str(), open, &asset); });
+        return made(code, asset);
+    }
+#ifdef _WIN32
+    static Result<Asset> open(const std::wstring &path, const OpenOptions &options = {})
+    {
+        htex_asset asset{};
+        htex_status code = options.with([&](const htex_open_options *open) {
+            return htex_asset_open_wide(reinterpret_cast<const uint16_t *>(path.c_str()), open, &asset);
+        });
+        return made(code, asset);
+    }
+#endif
+    /* Opens an asset that the program reads; the reader is closed before this returns. */
+    static Result<Asset> open(const Reader &reader, const OpenOptions &options = {})
+    {
+        htex_asset asset{};
+        htex_status code = options.with(
+            [&](const htex_open_options *open) { return htex_asset_open_reader(&reader, open, &asset); });
         return made(code, asset);
     }
     static Result<Asset> from_bytes(const uint8_t *bytes, size_t len, const OpenOptions &options = {})
@@ -195,6 +306,9 @@ public:
         c.seed = options.seed;
         c.motion = options.motion ? &*options.motion : nullptr;
         c.synthesis = options.synthesis ? options.synthesis->c_str() : nullptr;
+        c.gain = options.gain;
+        c.limit = options.limit;
+        c.envelope_bands = options.envelope_bands;
         c.no_frequency_scaling = !options.frequency_scaling;
         c.no_level_scaling = !options.level_scaling;
         c.no_contact = !options.contact;
@@ -210,6 +324,30 @@ public:
         return detail::text([&](char *out, size_t capacity, size_t *length) {
             return htex_asset_manifest_json(handle_.get(), out, capacity, length);
         });
+    }
+    Result<std::string> name() const
+    {
+        return detail::text([&](char *out, size_t capacity, size_t *length) {
+            return htex_asset_name(handle_.get(), out, capacity, length);
+        });
+    }
+    /* Band of the spectra. */
+    Result<Band> band() const
+    {
+        Band band{};
+        if (Status status = status_of(htex_asset_band(handle_.get(), &band)); !status)
+            return status;
+        return band;
+    }
+    /* Level of a voice, RMS in the asset's unit. */
+    Result<double> level_rms(const std::optional<std::string> &model = {}, const std::optional<Motion> &at = {}) const
+    {
+        double level_rms = 0.0;
+        htex_status code = htex_asset_level_rms(handle_.get(), model ? model->c_str() : nullptr,
+                                                at ? &*at : nullptr, &level_rms);
+        if (Status status = status_of(code); !status)
+            return status;
+        return level_rms;
     }
     Result<std::string> unit() const
     {
@@ -279,9 +417,25 @@ public:
     static Result<Library> open(const std::string &path)
     {
         htex_library library{};
-        if (Status status = status_of(htex_library_open(path.c_str(), &library)); !status)
-            return status;
-        return Library(library);
+        return made(htex_library_open(path.c_str(), &library), library);
+    }
+#ifdef _WIN32
+    static Result<Library> open(const std::wstring &path)
+    {
+        htex_library library{};
+        return made(htex_library_open_wide(reinterpret_cast<const uint16_t *>(path.c_str()), &library), library);
+    }
+#endif
+    /* Opens a library that the program reads, until it is freed. */
+    static Result<Library> open(const Reader &reader)
+    {
+        htex_library library{};
+        return made(htex_library_open_reader(&reader, &library), library);
+    }
+    static Result<Library> from_bytes(const uint8_t *bytes, size_t len)
+    {
+        htex_library library{};
+        return made(htex_library_from_bytes(bytes, len, &library), library);
     }
 
     /* Opens a texture; reads only its bytes. */
@@ -329,6 +483,12 @@ public:
 
 private:
     explicit Library(htex_library handle) noexcept : handle_(handle) {}
+    static Result<Library> made(htex_status code, const htex_library &library)
+    {
+        if (Status status = status_of(code); !status)
+            return status;
+        return Library(library);
+    }
     detail::Owned<htex_library, htex_library_free> handle_;
 };
 
@@ -339,16 +499,25 @@ public:
 
     static Result<Scene> open(const std::string &path, double rate_hz = 0.0, const OpenOptions &options = {})
     {
-        htex_scene_options scene_options{};
-        scene_options.size = sizeof scene_options;
-        scene_options.rate_hz = rate_hz;
-        htex_scene scene{};
-        htex_status code = options.with([&](const htex_open_options *open) {
-            return htex_scene_open(path.c_str(), open, &scene_options, &scene);
+        return made(rate_hz, options, [&](const htex_open_options *open, const htex_scene_options *of, htex_scene *out) {
+            return htex_scene_open(path.c_str(), open, of, out);
         });
-        if (Status status = status_of(code); !status)
-            return status;
-        return Scene(scene);
+    }
+#ifdef _WIN32
+    static Result<Scene> open(const std::wstring &path, double rate_hz = 0.0, const OpenOptions &options = {})
+    {
+        return made(rate_hz, options, [&](const htex_open_options *open, const htex_scene_options *of, htex_scene *out) {
+            return htex_scene_open_wide(reinterpret_cast<const uint16_t *>(path.c_str()), open, of, out);
+        });
+    }
+#endif
+    /* A scene in memory, whose files the program reads. */
+    static Result<Scene> from_bytes(const uint8_t *bytes, size_t len, const Files &files, double rate_hz = 0.0,
+                                    const OpenOptions &options = {})
+    {
+        return made(rate_hz, options, [&](const htex_open_options *open, const htex_scene_options *of, htex_scene *out) {
+            return htex_scene_from_bytes(bytes, len, &files, open, of, out);
+        });
     }
     Result<std::string> plan_json() const
     {
@@ -377,6 +546,18 @@ public:
 
 private:
     explicit Scene(htex_scene handle) noexcept : handle_(handle) {}
+    template <typename Call> static Result<Scene> made(double rate_hz, const OpenOptions &options, Call call)
+    {
+        htex_scene_options scene_options{};
+        scene_options.size = sizeof scene_options;
+        scene_options.rate_hz = rate_hz;
+        htex_scene scene{};
+        htex_status code = options.with(
+            [&](const htex_open_options *open) { return call(open, &scene_options, &scene); });
+        if (Status status = status_of(code); !status)
+            return status;
+        return Scene(scene);
+    }
     detail::Owned<htex_scene, htex_scene_free> handle_;
 };
 

@@ -4,10 +4,11 @@ use std::ffi::c_char;
 
 use htex::Asset;
 
-use crate::handles::Table;
+use crate::handles::{Kind, Table};
 use crate::motion::{htex_motion, motion};
 use crate::options::{Models, htex_open_options, models};
 use crate::pointers::{needed_text, place, slice, slice_mut, text, write_text};
+use crate::reader::{Reader, htex_reader};
 use crate::status::{Failure, guarded, htex_status};
 
 /// An opened asset. Several threads may use it at a time. Zero is no asset.
@@ -38,7 +39,7 @@ pub struct htex_band {
     pub high_hz: f64,
 }
 
-pub(crate) static ASSETS: Table<Asset> = Table::new();
+pub(crate) static ASSETS: Table<Asset> = Table::new(Kind::Asset);
 
 pub(crate) fn keep(
     data: htex::AssetData,
@@ -67,6 +68,40 @@ pub unsafe extern "C" fn htex_asset_open(
         // SAFETY: the pointers are the caller's.
         let (path, models) = unsafe { (needed_text(path)?, models(options)?) };
         let data = htex::AssetData::open(path.as_ref()).map_err(htex::Error::from)?;
+        keep(data, models, out)
+    })
+}
+
+/// [any thread; reads a file] As htex_asset_open, of a path of Windows in UTF-16.
+#[cfg(windows)]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_open_wide(
+    path: *const u16,
+    options: *const htex_open_options,
+    out: *mut htex_asset,
+) -> htex_status {
+    guarded(|| {
+        // SAFETY: the pointers are the caller's.
+        let (path, models) = unsafe { (crate::pointers::wide_path(path)?, models(options)?) };
+        let data = htex::AssetData::open(&path).map_err(htex::Error::from)?;
+        keep(data, models, out)
+    })
+}
+
+/// [any thread; calls the reader] Opens an asset that the program reads. The reader is closed before this returns. `options` may be NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_open_reader(
+    reader: *const htex_reader,
+    options: *const htex_open_options,
+    out: *mut htex_asset,
+) -> htex_status {
+    guarded(|| {
+        // SAFETY: the pointers are the caller's.
+        let (reader, models) = unsafe { (Reader::of(reader)?, models(options)?) };
+        let bytes = reader
+            .read_whole()
+            .map_err(|error| Failure::of(htex_status::HTEX_STATUS_IO, error))?;
+        let data = htex::AssetData::from_bytes(&bytes).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
 }
@@ -109,6 +144,21 @@ pub unsafe extern "C" fn htex_asset_manifest_json(
             .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INTERNAL, error))?;
         // SAFETY: the pointers are the caller's.
         unsafe { write_text(&json, out, capacity, length) }
+    })
+}
+
+/// [any thread] Name of the asset. Written as by htex_asset_manifest_json.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_name(
+    asset: htex_asset,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let asset = ASSETS.shared(asset.id)?;
+        // SAFETY: the pointers are the caller's.
+        unsafe { write_text(&asset.manifest().name, out, capacity, length) }
     })
 }
 

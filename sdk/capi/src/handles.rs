@@ -1,7 +1,8 @@
 //! Handles of objects: an index and a generation, so that the handle of a freed object is recognised.
 //!
 //! A lookup neither locks nor allocates. An object is used by one thread at a time, or read by several: a counter in its
-//! slot says which, and a call that would break the rule fails at once.
+//! slot says which, and a call that would break the rule fails at once. A handle also has its kind, so that that of a voice is no
+//! asset.
 
 use std::cell::UnsafeCell;
 use std::ops::{Deref, DerefMut};
@@ -14,6 +15,23 @@ use crate::status::{Failure, htex_status};
 const FIRST: usize = 64;
 const CHUNKS: usize = 20;
 
+/// The lower half of a handle: the index and one, below the kind.
+const KIND_SHIFT: u32 = 27;
+const _: () = assert!(FIRST << CHUNKS <= 1 << KIND_SHIFT);
+
+/// The kinds of objects.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Kind {
+    Asset = 1,
+    Voice = 2,
+    #[cfg(feature = "library")]
+    Library = 3,
+    #[cfg(feature = "scene")]
+    Scene = 4,
+    #[cfg(all(target_family = "wasm", feature = "library"))]
+    Index = 5,
+}
+
 /// The users of an object that is used exclusively.
 const EXCLUSIVE: u64 = u32::MAX as u64;
 /// Most readers at a time; far more than threads.
@@ -21,21 +39,25 @@ const MOST_USERS: u64 = EXCLUSIVE - 1;
 
 /// The objects of one kind.
 pub(crate) struct Table<T> {
+    kind: Kind,
     chunks: [AtomicPtr<Slot<T>>; CHUNKS],
     spare: Mutex<Spare>,
 }
 
-/// Free indices, and how many there have ever been.
+/// Free indices, and how many there have been since the table was last cleared.
 struct Spare {
     free: Vec<usize>,
     made: usize,
+    /// Generation of an unused slot, above those of handles from before the table was cleared.
+    unused: u64,
 }
 
 /// A place for an object.
 struct Slot<T> {
     /// Generation in the upper half, odd while an object is here; users in the lower half.
     state: AtomicU64,
-    value: UnsafeCell<Option<T>>,
+    /// In a box, so that the slots of a table that is hardly used are small.
+    value: UnsafeCell<Option<Box<T>>>,
 }
 
 // SAFETY: a value is reached through `state` alone: exclusively, or by several readers, which `Table::shared` allows only
@@ -51,24 +73,27 @@ const fn users(state: u64) -> u64 {
 }
 
 impl<T: Send + 'static> Table<T> {
-    pub(crate) const fn new() -> Self {
+    pub(crate) const fn new(kind: Kind) -> Self {
         Self {
+            kind,
             chunks: [const { AtomicPtr::new(std::ptr::null_mut()) }; CHUNKS],
             spare: Mutex::new(Spare {
                 free: Vec::new(),
                 made: 0,
+                unused: 0,
             }),
         }
     }
 
     /// Keeps an object; returns its handle, which is never 0. Allocates and locks.
     pub(crate) fn insert(&self, value: T) -> Result<u64, Failure> {
+        let value = Box::new(value);
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
         let index = match spare.free.pop() {
             Some(index) => index,
             None => {
                 let index = spare.made;
-                self.make_chunk(index)?;
+                self.make_chunk(index, spare.unused)?;
                 spare.made += 1;
                 index
             }
@@ -77,24 +102,27 @@ impl<T: Send + 'static> Table<T> {
             return Err(FULL);
         };
         let next = generation(slot.state.load(Ordering::Relaxed)) + 1;
+        if next >= EXCLUSIVE {
+            return Err(FULL);
+        }
         // SAFETY: the slot is empty, its index was spare, and the lock is held.
         unsafe { *slot.value.get() = Some(value) };
         slot.state.store(next << 32, Ordering::Release);
-        Ok(next << 32 | (index as u64 + 1))
+        Ok(next << 32 | (self.kind as u64) << KIND_SHIFT | (index as u64 + 1))
     }
 
     /// Makes the chunk of an index if it is the first in it.
-    fn make_chunk(&self, index: usize) -> Result<(), Failure> {
+    fn make_chunk(&self, index: usize, unused: u64) -> Result<(), Failure> {
         let (chunk, _) = place(index);
         let pointer = self.chunks.get(chunk).ok_or(FULL)?;
         if pointer.load(Ordering::Relaxed).is_null() {
             let slots: Box<[Slot<T>]> = (0..FIRST << chunk)
                 .map(|_| Slot {
-                    state: AtomicU64::new(0),
+                    state: AtomicU64::new(unused << 32),
                     value: UnsafeCell::new(None),
                 })
                 .collect();
-            // Slots live as long as the program: stale handles are looked up in them.
+            // Slots live until `clear`: stale handles are looked up in them.
             pointer.store(Box::leak(slots).as_mut_ptr(), Ordering::Release);
         }
         Ok(())
@@ -103,13 +131,18 @@ impl<T: Send + 'static> Table<T> {
     fn slot(&self, index: usize) -> Option<&'static Slot<T>> {
         let (chunk, offset) = place(index);
         let slots = self.chunks.get(chunk)?.load(Ordering::Acquire);
-        // SAFETY: a chunk that is there has `FIRST << chunk` slots, which are never freed.
+        // SAFETY: a chunk that is there has `FIRST << chunk` slots, which only `clear` frees.
         (!slots.is_null()).then(|| unsafe { &*slots.add(offset) })
     }
 
     /// The slot of a handle, and its generation.
     fn find(&self, handle: u64) -> Result<(&'static Slot<T>, u64, usize), Failure> {
-        let index = (handle & EXCLUSIVE).checked_sub(1).ok_or(BAD)? as usize;
+        let low = handle & EXCLUSIVE;
+        if low >> KIND_SHIFT != self.kind as u64 {
+            return Err(BAD);
+        }
+        let index = low & ((1 << KIND_SHIFT) - 1);
+        let index = index.checked_sub(1).ok_or(BAD)? as usize;
         let slot = self.slot(index).ok_or(BAD)?;
         let wanted = generation(handle);
         if wanted.is_multiple_of(2) || generation(slot.state.load(Ordering::Relaxed)) != wanted {
@@ -144,7 +177,10 @@ impl<T: Send + 'static> Table<T> {
         Self::enter(slot, wanted, |users| (users == 0).then_some(EXCLUSIVE))?;
         // SAFETY: the slot is of this generation, so it has an object, and this is its only user.
         match unsafe { &mut *slot.value.get() } {
-            Some(value) => Ok(Exclusive { value, slot }),
+            Some(value) => Ok(Exclusive {
+                value: &mut **value,
+                slot,
+            }),
             None => Err(BAD),
         }
     }
@@ -160,7 +196,10 @@ impl<T: Send + 'static> Table<T> {
         })?;
         // SAFETY: the slot is of this generation, so it has an object, and all its users read.
         match unsafe { &*slot.value.get() } {
-            Some(value) => Ok(Shared { value, slot }),
+            Some(value) => Ok(Shared {
+                value: &**value,
+                slot,
+            }),
             None => Err(BAD),
         }
     }
@@ -178,7 +217,38 @@ impl<T: Send + 'static> Table<T> {
         if wanted + 1 < EXCLUSIVE {
             spare.free.push(index);
         }
-        value.ok_or(BAD)
+        value.map(|value| *value).ok_or(BAD)
+    }
+
+    /// Frees all objects and slots; their handles stay bad. Frees nothing if an object is in use.
+    ///
+    /// # Safety
+    /// No other thread uses this table during the call.
+    pub(crate) unsafe fn clear(&self) -> Result<(), Failure> {
+        let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut highest = spare.unused;
+        for slot in (0..spare.made).filter_map(|index| self.slot(index)) {
+            let state = slot.state.load(Ordering::Acquire);
+            if users(state) != 0 {
+                return Err(BUSY);
+            }
+            highest = highest.max(generation(state));
+        }
+        for (chunk, pointer) in self.chunks.iter().enumerate() {
+            let slots = pointer.swap(std::ptr::null_mut(), Ordering::AcqRel);
+            if !slots.is_null() {
+                let slots = std::ptr::slice_from_raw_parts_mut(slots, FIRST << chunk);
+                // SAFETY: `make_chunk` leaked a box of as many slots, and nobody refers to them.
+                drop(unsafe { Box::from_raw(slots) });
+            }
+        }
+        *spare = Spare {
+            free: Vec::new(),
+            made: 0,
+            // Even: no object is there.
+            unused: highest.next_multiple_of(2),
+        };
+        Ok(())
     }
 }
 
@@ -268,7 +338,7 @@ mod tests {
 
     #[test]
     fn freed_handles_and_other_numbers_are_bad() {
-        static TABLE: Table<String> = Table::new();
+        static TABLE: Table<String> = Table::new(Kind::Asset);
         let a = TABLE.insert("a".to_owned()).unwrap();
         assert_eq!(TABLE.remove(a).unwrap(), "a");
         let b = TABLE.insert("b".to_owned()).unwrap();
@@ -279,11 +349,33 @@ mod tests {
             assert!(TABLE.remove(bad).is_err(), "{bad:#x}");
         }
         assert_eq!(*TABLE.shared(b).unwrap(), "b");
+        static VOICES: Table<String> = Table::new(Kind::Voice);
+        let voice = VOICES.insert("c".to_owned()).unwrap();
+        assert_eq!(TABLE.insert("d".to_owned()).unwrap() >> 32, voice >> 32);
+        assert!(TABLE.shared(voice).is_err() && TABLE.remove(voice).is_err());
+    }
+
+    #[test]
+    fn handles_from_before_a_table_was_cleared_are_bad() {
+        static TABLE: Table<u32> = Table::new(Kind::Asset);
+        let before: Vec<u64> = (0..100).map(|n| TABLE.insert(n).unwrap()).collect();
+        TABLE.remove(before[7]).unwrap();
+        {
+            let _used = TABLE.shared(before[3]).unwrap();
+            // SAFETY: this thread alone uses the table.
+            assert!(unsafe { TABLE.clear() }.is_err());
+        }
+        assert_eq!(*TABLE.shared(before[99]).unwrap(), 99);
+        // SAFETY: as above.
+        unsafe { TABLE.clear() }.unwrap();
+        let after: Vec<u64> = (0..100).map(|n| TABLE.insert(n).unwrap()).collect();
+        assert!(before.iter().all(|handle| TABLE.shared(*handle).is_err()));
+        assert!(after.iter().all(|handle| TABLE.shared(*handle).is_ok()));
     }
 
     #[test]
     fn an_object_has_one_user_or_several_readers() {
-        static TABLE: Table<u32> = Table::new();
+        static TABLE: Table<u32> = Table::new(Kind::Asset);
         let handle = TABLE.insert(1).unwrap();
         {
             let (_a, _b) = (TABLE.shared(handle).unwrap(), TABLE.shared(handle).unwrap());
@@ -301,7 +393,7 @@ mod tests {
     /// another's object.
     #[test]
     fn threads_meet_at_one_table() {
-        static TABLE: Table<(u64, u64)> = Table::new();
+        static TABLE: Table<(u64, u64)> = Table::new(Kind::Asset);
         static LAST: AtomicU64 = AtomicU64::new(0);
         std::thread::scope(|scope| {
             for thread in 0..4 {

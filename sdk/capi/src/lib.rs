@@ -18,7 +18,9 @@ mod log;
 mod motion;
 mod options;
 mod pointers;
+mod reader;
 mod scene;
+mod shutdown;
 mod status;
 mod voice;
 
@@ -28,9 +30,11 @@ pub use browser::{htex_alloc, htex_free};
 pub use library::*;
 pub use log::{htex_log_callback, htex_log_level, htex_set_log};
 pub use motion::htex_motion;
-pub use options::{htex_bytes, htex_open_options, htex_voice_options};
+pub use options::*;
+pub use reader::{htex_files, htex_reader};
 pub use scene::*;
-pub use status::{htex_last_error, htex_status};
+pub use shutdown::htex_shutdown;
+pub use status::{htex_last_error, htex_status, htex_status_text};
 pub use voice::*;
 
 /// Version of this interface, major and minor: 0x00010000 is 1.0. A minor version only adds.

@@ -4,6 +4,7 @@ use std::ffi::c_char;
 
 use crate::asset::htex_asset;
 use crate::options::htex_open_options;
+use crate::reader::htex_reader;
 use crate::status::htex_status;
 
 /// An opened library. Several threads may use it at a time. Zero is no library.
@@ -14,7 +15,7 @@ pub struct htex_library {
     pub id: u64,
 }
 
-/// [any thread; reads a file] Opens a library file (1.1). Its index is read page by page, its textures one at a time.
+/// [any thread; reads a file] Opens a library file. Its index is read page by page, its textures one at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_open(
     path: *const c_char,
@@ -24,13 +25,46 @@ pub unsafe extern "C" fn htex_library_open(
     unsafe { calls::open(path, out) }
 }
 
-/// [any thread] Frees a library; its assets stay open (1.1). HTEX_STATUS_BUSY if another thread uses it at this moment.
+/// [any thread; reads a file] As htex_library_open, of a path of Windows in UTF-16.
+#[cfg(windows)]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_library_open_wide(
+    path: *const u16,
+    out: *mut htex_library,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::open_wide(path, out) }
+}
+
+/// [any thread] Opens a library in memory. The bytes are copied.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_library_from_bytes(
+    bytes: *const u8,
+    len: usize,
+    out: *mut htex_library,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::from_bytes(bytes, len, out) }
+}
+
+/// [any thread; calls the reader] Opens a library that the program reads. The struct is copied; its functions are called until the
+/// library is freed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_library_open_reader(
+    reader: *const htex_reader,
+    out: *mut htex_library,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::open_reader(reader, out) }
+}
+
+/// [any thread] Frees a library; its assets stay open. HTEX_STATUS_BUSY if another thread uses it at this moment.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_library_free(library: htex_library) -> htex_status {
     calls::free(library)
 }
 
-/// [any thread] Name of the library, which may be empty (1.1). Written as by htex_asset_manifest_json.
+/// [any thread] Name of the library, which may be empty. Written as by htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_name(
     library: htex_library,
@@ -42,14 +76,14 @@ pub unsafe extern "C" fn htex_library_name(
     unsafe { calls::name(library, out, capacity, length) }
 }
 
-/// [any thread] Number of textures (1.1).
+/// [any thread] Number of textures.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_count(library: htex_library, out: *mut u64) -> htex_status {
     // SAFETY: the place is the caller's.
     unsafe { calls::count(library, out) }
 }
 
-/// [any thread] Number of pages of the index (1.1).
+/// [any thread] Number of pages of the index.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_page_count(
     library: htex_library,
@@ -59,7 +93,7 @@ pub unsafe extern "C" fn htex_library_page_count(
     unsafe { calls::page_count(library, out) }
 }
 
-/// [any thread; reads the file] The entries of a page of the index, counted from 0, as a JSON array (1.1): the textures' names in ascending order, tags, models, ranges of
+/// [any thread; reads the file] The entries of a page of the index, counted from 0, as a JSON array: the textures' names in ascending order, tags, models, ranges of
 /// recorded speeds and forces, bytes and hashes. Written as by htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_page_json(
@@ -73,7 +107,7 @@ pub unsafe extern "C" fn htex_library_page_json(
     unsafe { calls::page_json(library, page, out, capacity, length) }
 }
 
-/// [any thread; reads the file] The entry of a texture as JSON, as in htex_library_page_json (1.1); HTEX_STATUS_ABSENT if there is none of this
+/// [any thread; reads the file] The entry of a texture as JSON, as in htex_library_page_json; HTEX_STATUS_ABSENT if there is none of this
 /// name.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_entry_json(
@@ -87,7 +121,7 @@ pub unsafe extern "C" fn htex_library_entry_json(
     unsafe { calls::entry_json(library, name, out, capacity, length) }
 }
 
-/// [any thread; reads the file] Opens a texture of the library (1.1); HTEX_STATUS_ABSENT if there is none of this name. `options` may be NULL.
+/// [any thread; reads the file] Opens a texture of the library; HTEX_STATUS_ABSENT if there is none of this name. `options` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_asset(
     library: htex_library,
@@ -102,6 +136,8 @@ pub unsafe extern "C" fn htex_library_asset(
 #[cfg(feature = "library")]
 #[path = "library/calls.rs"]
 mod calls;
+#[cfg(feature = "library")]
+pub(crate) use calls::clear;
 
 #[cfg(not(feature = "library"))]
 mod calls {
@@ -119,6 +155,16 @@ mod calls {
     }
 
     pub(super) unsafe fn open(_: *const c_char, _: *mut htex_library) -> htex_status {
+        absent()
+    }
+    #[cfg(windows)]
+    pub(super) unsafe fn open_wide(_: *const u16, _: *mut htex_library) -> htex_status {
+        absent()
+    }
+    pub(super) unsafe fn from_bytes(_: *const u8, _: usize, _: *mut htex_library) -> htex_status {
+        absent()
+    }
+    pub(super) unsafe fn open_reader(_: *const htex_reader, _: *mut htex_library) -> htex_status {
         absent()
     }
     pub(super) fn free(_: htex_library) -> htex_status {

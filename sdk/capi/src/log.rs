@@ -48,6 +48,11 @@ pub unsafe extern "C" fn htex_set_log(
     })
 }
 
+/// Passes messages to nobody any more.
+pub(crate) fn forget_log() {
+    *LOG.write().unwrap_or_else(PoisonError::into_inner) = None;
+}
+
 /// Passes a message on.
 pub(crate) fn log(level: htex_log_level, message: &str) {
     let log = LOG.read().unwrap_or_else(PoisonError::into_inner);

@@ -1,14 +1,19 @@
 //! Motions as C has them.
 
+use std::mem::offset_of;
+
 use htex::Motion;
 
 use crate::pointers::slice;
 use crate::status::Failure;
 
-/// Motion of a finger over a texture, at one moment.
+/// Motion of a finger over a texture, at one moment. Later versions add what may be unknown at the end; what a program that was compiled
+/// against an earlier one does not have is not known.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_motion {
+    /// sizeof(htex_motion).
+    pub size: u32,
     /// Scanning speed, mm/s; finite and not negative.
     pub speed_mm_s: f64,
     /// Normal force, N; finite and not negative.
@@ -37,23 +42,83 @@ impl From<htex_motion> for Motion {
     }
 }
 
+const UNKNOWN: htex_motion = htex_motion {
+    size: 0,
+    speed_mm_s: f64::NAN,
+    force_n: f64::NAN,
+    position_mm: f64::NAN,
+    x_mm: f64::NAN,
+    y_mm: f64::NAN,
+};
+
+/// Bytes of the motions of versions of the header: speed and force are in all.
+const SIZES: std::ops::RangeInclusive<usize> = offset_of!(htex_motion, position_mm)..=256;
+
+/// Motions of a caller, which may have been compiled against a shorter or longer struct.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Motions {
+    first: *const u8,
+    size: usize,
+    len: usize,
+}
+
+impl Motions {
+    /// # Safety
+    /// As [`slice`], with the size that the first motion states.
+    pub(crate) unsafe fn of(pointer: *const htex_motion, len: usize) -> Result<Self, Failure> {
+        let first = pointer.cast::<u8>();
+        if len == 0 {
+            return Ok(Self {
+                first,
+                size: 0,
+                len,
+            });
+        }
+        if pointer.is_null() || !pointer.is_aligned() {
+            return Err(Failure::argument("a motion is NULL or misaligned"));
+        }
+        // SAFETY: a motion begins with its size.
+        let size = unsafe { pointer.cast::<u32>().read() } as usize;
+        if !SIZES.contains(&size) || !size.is_multiple_of(align_of::<htex_motion>()) {
+            return Err(Failure::argument(
+                "the motion's size is not that of its struct; set it to sizeof(htex_motion)",
+            ));
+        }
+        // SAFETY: as many motions of this size are there.
+        unsafe { slice(first, len.saturating_mul(size)) }?;
+        Ok(Self { first, size, len })
+    }
+
+    pub(crate) fn iter(self) -> impl Iterator<Item = Motion> {
+        (0..self.len).map(move |index| {
+            let mut motion = UNKNOWN;
+            // SAFETY: the caller's motions are there, and both have as many bytes, which are numbers.
+            unsafe {
+                let from = self.first.add(index * self.size);
+                let to = (&raw mut motion).cast::<u8>();
+                to.copy_from_nonoverlapping(from, self.size.min(size_of::<htex_motion>()));
+            }
+            motion.into()
+        })
+    }
+}
+
 /// The motion at `pointer`; `None` for NULL.
 ///
 /// # Safety
-/// As [`slice`].
+/// As [`Motions::of`].
 pub(crate) unsafe fn motion(pointer: *const htex_motion) -> Result<Option<Motion>, Failure> {
     if pointer.is_null() {
         return Ok(None);
     }
     // SAFETY: as here.
-    let motions = unsafe { slice(pointer, 1) }?;
-    Ok(motions.first().map(|motion| (*motion).into()))
+    Ok(unsafe { Motions::of(pointer, 1) }?.iter().next())
 }
 
 /// The motion at `pointer`, which must be there.
 ///
 /// # Safety
-/// As [`slice`].
+/// As [`Motions::of`].
 pub(crate) unsafe fn needed_motion(pointer: *const htex_motion) -> Result<Motion, Failure> {
     // SAFETY: as here.
     unsafe { motion(pointer) }?.ok_or(Failure::argument("the motion is NULL"))

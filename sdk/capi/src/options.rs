@@ -3,7 +3,7 @@
 use std::ffi::c_char;
 use std::path::PathBuf;
 
-use htex::{Effects, Registry, Search, Synthesis, VoiceOptions};
+use htex::{Effects, Registry, Search, Synthesis, VoiceOptions, WasmCache, WasmEngine, WasmLimits};
 
 use crate::log::{htex_log_level, log};
 use crate::motion::{htex_motion, motion};
@@ -20,24 +20,42 @@ pub struct htex_bytes {
     pub len: usize,
 }
 
-/// Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to zero for the defaults.
+/// Modules are not loaded: a texture that needs one is an error (`HTEX_STATUS_NO_MODEL`).
+pub const HTEX_ENGINE_OFF: u32 = 0;
+/// Modules run without handlers for signals: each access to memory is compared with its bound.
+pub const HTEX_ENGINE_CHECKED: u32 = 1;
+/// Modules run with handlers of the process for SIGSEGV, SIGBUS, SIGILL and SIGFPE, which stay after htex_shutdown and pass on what
+/// is not of a module. The model of `examples/model-c-bursts` then takes 34 ns a sample instead of 42.
+pub const HTEX_ENGINE_SIGNALS: u32 = 2;
+
+/// Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to zero for the defaults: the
+/// built-in models alone, which make no thread, file or handler of signals.
+///
+/// WASM modules, which assets may bring along, are run by an engine that must be turned on. Each module is compiled when it is
+/// first used (that example takes 0.07 to 0.4 s, and 5 s is the limit, unless `cache` has it), and as long as it is loaded one thread sleeps and wakes every 50 ms to stop
+/// calls at their time limit. All is limited: 64 MiB of memory for a voice, 0.5 s for a block, 5 s to compile.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_open_options {
     /// sizeof(htex_open_options).
-    pub size: usize,
+    pub size: u32,
+    /// HTEX_ENGINE_OFF, HTEX_ENGINE_CHECKED or HTEX_ENGINE_SIGNALS.
+    pub engine: u32,
     /// Files of models to load, native libraries or WASM modules. A native library runs with all rights of the program.
     pub plugins: *const *const c_char,
     /// Number of `plugins`.
     pub plugins_len: usize,
-    /// Not 0: models that assets bring along are not run. By default they run, in a sandbox.
-    pub no_embedded: u32,
-    /// Not 0: installed models are searched for too: in the folders of HTEX_PLUGIN_PATH and in the user's.
-    pub installed: u32,
     /// WASM modules of models, in memory; they run in a sandbox. The bytes are used during the call alone.
     pub modules: *const htex_bytes,
     /// Number of `modules`.
     pub modules_len: usize,
+    /// Folder for compiled modules, made for this user alone; NULL: none is written. With one, a key that authenticates the files in
+    /// it is kept as `wasm.key` in the user's folder of settings, such as `~/.config/htex`.
+    pub cache: *const c_char,
+    /// Not 0: modules that assets bring along do not run even with an engine.
+    pub no_embedded: u32,
+    /// Not 0: installed models are searched for too: in the folders of HTEX_PLUGIN_PATH and in the user's.
+    pub installed: u32,
 }
 
 /// Options of a voice. Set `size` to sizeof(htex_voice_options) and the rest to zero for the defaults.
@@ -45,10 +63,10 @@ pub struct htex_open_options {
 #[derive(Debug, Clone, Copy)]
 pub struct htex_voice_options {
     /// sizeof(htex_voice_options).
-    pub size: usize,
+    pub size: u32,
     /// The model of the representation, by its id or short name; NULL: the representation of least error.
     pub model: *const c_char,
-    /// Rate of the samples, Hz; 0: 20000.
+    /// Rate of the samples, Hz, at least twice the asset's highest frequency; 0: 20000.
     pub rate_hz: f64,
     /// Seed of the noise. Equal seeds give equal samples.
     pub seed: u64,
@@ -56,6 +74,13 @@ pub struct htex_voice_options {
     pub motion: *const htex_motion,
     /// How samples are made: "streamed", "loop:SECONDS" or "filter:TAPS"; NULL: streamed.
     pub synthesis: *const c_char,
+    /// Gain of the samples; 0: 1. htex_voice_set_gain changes it.
+    pub gain: f64,
+    /// Greatest magnitude of a sample after the gain, in the asset's unit; 0: no limit. The gain falls at once where a sample would
+    /// exceed it, and returns with a time constant of 50 ms.
+    pub limit: f64,
+    /// Number of bands of htex_voice_envelope, 1 to 32; 0: no envelope, which takes no time.
+    pub envelope_bands: u32,
     /// Not 0: frequencies do not follow speeds beyond the recorded ones.
     pub no_frequency_scaling: u32,
     /// Not 0: the level does not follow forces beyond the recorded ones.
@@ -79,8 +104,8 @@ pub(crate) unsafe fn options<T: Copy>(pointer: *const T, zeros: T) -> Result<T, 
         return Err(Failure::argument("the options are misaligned"));
     }
     // SAFETY: the struct begins with its size.
-    let size = unsafe { pointer.cast::<usize>().read() };
-    if !(size_of::<usize>()..=4096).contains(&size) {
+    let size = unsafe { pointer.cast::<u32>().read() } as usize;
+    if !(size_of::<u32>()..=4096).contains(&size) {
         return Err(Failure::argument(
             "the options' size is not that of their struct; set it to sizeof the struct",
         ));
@@ -117,12 +142,14 @@ pub(crate) struct Models {
 pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models, Failure> {
     const ZEROS: htex_open_options = htex_open_options {
         size: 0,
+        engine: HTEX_ENGINE_OFF,
         plugins: std::ptr::null(),
         plugins_len: 0,
-        no_embedded: 0,
-        installed: 0,
         modules: std::ptr::null(),
         modules_len: 0,
+        cache: std::ptr::null(),
+        no_embedded: 0,
+        installed: 0,
     };
     // SAFETY: as here.
     let options = unsafe { options(pointer, ZEROS) }?;
@@ -131,8 +158,16 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
         .iter()
         .map(|file| unsafe { needed_text(*file) }.map(PathBuf::from))
         .collect();
+    // SAFETY: the text is the caller's.
+    let cache = match unsafe { text(options.cache) }? {
+        Some(folder) => WasmCache::Dir(folder.into()),
+        None => WasmCache::Off,
+    };
+    let engine = engine(options.engine)?;
     let installed = options.installed != 0;
+    let limits = WasmLimits::default().with_engine(engine).with_cache(cache);
     let search = Search::builtin()
+        .with_limits(limits)
         .with_files(files?)
         .with_env(installed)
         .with_user_dir(installed);
@@ -150,15 +185,28 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
     }
     Ok(Models {
         registry,
-        embedded: options.no_embedded == 0,
+        embedded: options.no_embedded == 0 && engine != WasmEngine::Off,
     })
 }
 
+fn engine(number: u32) -> Result<WasmEngine, Failure> {
+    match number {
+        HTEX_ENGINE_OFF => Ok(WasmEngine::Off),
+        HTEX_ENGINE_CHECKED => Ok(WasmEngine::Checked),
+        HTEX_ENGINE_SIGNALS => Ok(WasmEngine::Signals),
+        _ => Err(Failure::argument(
+            "no engine of this number; give HTEX_ENGINE_OFF, HTEX_ENGINE_CHECKED or HTEX_ENGINE_SIGNALS",
+        )),
+    }
+}
+
+/// The model and the other options.
+///
 /// # Safety
-/// As [`options`]; the texts live as long as the result.
+/// As [`options`]; the text lives as long as the result.
 pub(crate) unsafe fn voice_options<'a>(
     pointer: *const htex_voice_options,
-) -> Result<VoiceOptions<'a>, Failure> {
+) -> Result<(Option<&'a str>, VoiceOptions<'static>), Failure> {
     const ZEROS: htex_voice_options = htex_voice_options {
         size: 0,
         model: std::ptr::null(),
@@ -166,6 +214,9 @@ pub(crate) unsafe fn voice_options<'a>(
         seed: 0,
         motion: std::ptr::null(),
         synthesis: std::ptr::null(),
+        gain: 0.0,
+        limit: 0.0,
+        envelope_bands: 0,
         no_frequency_scaling: 0,
         no_level_scaling: 0,
         no_contact: 0,
@@ -193,15 +244,19 @@ pub(crate) unsafe fn voice_options<'a>(
         .with_seed(options.seed)
         .with_motion(motion)
         .with_synthesis(synthesis)
+        .with_envelope_bands(options.envelope_bands as usize)
         .with_effects(effects);
-    if let Some(model) = model {
-        voice = voice.with_model(model);
-    }
     if options.rate_hz != 0.0 {
         voice = voice.with_rate_hz(options.rate_hz);
     }
     if options.ceiling != 0.0 {
         voice = voice.with_ceiling(options.ceiling);
     }
-    Ok(voice)
+    if options.gain != 0.0 {
+        voice = voice.with_gain(options.gain);
+    }
+    if options.limit != 0.0 {
+        voice = voice.with_limit(options.limit);
+    }
+    Ok((model, voice))
 }

@@ -80,6 +80,26 @@ pub(crate) unsafe fn needed_text<'a>(pointer: *const c_char) -> Result<&'a str, 
     unsafe { text(pointer) }?.ok_or(Failure::argument("a text is NULL"))
 }
 
+/// A path of Windows, UTF-16 with a zero at its end.
+///
+/// # Safety
+/// As [`text`].
+#[cfg(windows)]
+pub(crate) unsafe fn wide_path(path: *const u16) -> Result<std::path::PathBuf, Failure> {
+    use std::os::windows::ffi::OsStringExt;
+    if path.is_null() || !path.is_aligned() {
+        return Err(Failure::argument("a path is NULL or misaligned"));
+    }
+    let mut len = 0;
+    // SAFETY: the caller's text ends with a zero.
+    while unsafe { *path.add(len) } != 0 {
+        len += 1;
+    }
+    // SAFETY: as above.
+    let units = unsafe { slice(path, len) }?;
+    Ok(std::ffi::OsString::from_wide(units).into())
+}
+
 /// Writes a text with a zero at its end, and its length without the zero to `length` unless that is NULL. With a
 /// `capacity` of 0 only the length.
 ///

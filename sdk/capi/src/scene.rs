@@ -3,6 +3,7 @@
 use std::ffi::c_char;
 
 use crate::options::htex_open_options;
+use crate::reader::htex_files;
 use crate::status::htex_status;
 
 /// A planned scene that is playing. One thread at a time may use it. Zero is no scene.
@@ -18,7 +19,7 @@ pub struct htex_scene {
 #[derive(Debug, Clone, Copy)]
 pub struct htex_scene_options {
     /// sizeof(htex_scene_options).
-    pub size: usize,
+    pub size: u32,
     /// Rate of the samples, Hz; 0: 20000.
     pub rate_hz: f64,
 }
@@ -27,6 +28,8 @@ pub struct htex_scene_options {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_finger {
+    /// sizeof(htex_finger).
+    pub size: u32,
     /// Scanning speed, mm/s; negative on the back stroke.
     pub speed_mm_s: f64,
     /// Normal force, N; not negative.
@@ -47,7 +50,35 @@ pub unsafe extern "C" fn htex_scene_open(
     out: *mut htex_scene,
 ) -> htex_status {
     // SAFETY: the pointers are the caller's.
-    unsafe { calls::open(path, open, options, out) }
+    unsafe { calls::open_path(path, open, options, out) }
+}
+
+/// [any thread; reads files] As htex_scene_open, of a path of Windows in UTF-16.
+#[cfg(windows)]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_scene_open_wide(
+    path: *const u16,
+    open: *const htex_open_options,
+    options: *const htex_scene_options,
+    out: *mut htex_scene,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::open_wide(path, open, options, out) }
+}
+
+/// [any thread] As htex_scene_open, of a scene in memory, whose files the program reads. Bytes and `files` are used during the call
+/// alone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_scene_from_bytes(
+    bytes: *const u8,
+    len: usize,
+    files: *const htex_files,
+    open: *const htex_open_options,
+    options: *const htex_scene_options,
+    out: *mut htex_scene,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::from_bytes(bytes, len, files, open, options, out) }
 }
 
 /// [one thread at a time; not the real-time thread] Frees a scene.
@@ -109,6 +140,8 @@ pub extern "C" fn htex_scene_stop(scene: htex_scene) -> htex_status {
 #[cfg(feature = "scene")]
 #[path = "scene/calls.rs"]
 mod calls;
+#[cfg(feature = "scene")]
+pub(crate) use calls::clear;
 
 #[cfg(not(feature = "scene"))]
 mod calls {
@@ -125,8 +158,29 @@ mod calls {
         })
     }
 
-    pub(super) unsafe fn open(
+    pub(super) unsafe fn open_path(
         _: *const c_char,
+        _: *const htex_open_options,
+        _: *const htex_scene_options,
+        _: *mut htex_scene,
+    ) -> htex_status {
+        absent()
+    }
+
+    #[cfg(windows)]
+    pub(super) unsafe fn open_wide(
+        _: *const u16,
+        _: *const htex_open_options,
+        _: *const htex_scene_options,
+        _: *mut htex_scene,
+    ) -> htex_status {
+        absent()
+    }
+
+    pub(super) unsafe fn from_bytes(
+        _: *const u8,
+        _: usize,
+        _: *const htex_files,
         _: *const htex_open_options,
         _: *const htex_scene_options,
         _: *mut htex_scene,

@@ -1,7 +1,7 @@
 //! Statuses of calls, and the text of the last error of a thread.
 
 use std::cell::UnsafeCell;
-use std::ffi::c_char;
+use std::ffi::{CStr, c_char};
 use std::fmt::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -37,9 +37,9 @@ pub enum htex_status {
     HTEX_STATUS_TRUNCATED = 12,
     /// An error of the library itself. The object of the call must be freed.
     HTEX_STATUS_INTERNAL = 13,
-    /// The library of textures is invalid (1.1).
+    /// The library of textures is invalid.
     HTEX_STATUS_INVALID_LIBRARY = 14,
-    /// The library has no texture of this name (1.1).
+    /// The library has no texture of this name.
     HTEX_STATUS_ABSENT = 15,
 }
 
@@ -53,6 +53,10 @@ pub(crate) struct Failure {
 #[derive(Debug)]
 enum Text {
     Plain(&'static str),
+    /// Not in a box: calls in a real-time thread fail without allocating.
+    Playing(htex::Error),
+    #[cfg(feature = "scene")]
+    Scene(htex::scene::SceneError),
     Of(Box<dyn std::error::Error>),
 }
 
@@ -65,6 +69,13 @@ impl Failure {
 
     pub(crate) const fn argument(text: &'static str) -> Self {
         Self::plain(htex_status::HTEX_STATUS_INVALID_ARGUMENT, text)
+    }
+
+    /// As an error of a scene; does not allocate.
+    #[cfg(feature = "scene")]
+    pub(crate) fn of_scene(status: htex_status, error: htex::scene::SceneError) -> Self {
+        let text = Text::Scene(error);
+        Self { status, text }
     }
 
     /// As an error of an `htex` crate.
@@ -90,9 +101,13 @@ impl From<htex::Error> for Failure {
                 HTEX_STATUS_INVALID_ARGUMENT
             }
             Error::Model(HostError::Call { .. } | HostError::Broken { .. }) => HTEX_STATUS_MODEL,
+            Error::Rate { .. } | Error::OutOfRange { .. } | Error::Bands { .. } => {
+                HTEX_STATUS_INVALID_ARGUMENT
+            }
             _ => HTEX_STATUS_NO_MODEL,
         };
-        Self::of(status, error)
+        let text = Text::Playing(error);
+        Self { status, text }
     }
 }
 
@@ -136,6 +151,9 @@ fn remember(text: &Text) {
         // An error means that the text was cut.
         let _ = match text {
             Text::Plain(text) => last.write_str(text),
+            Text::Playing(error) => write!(last, "{error}"),
+            #[cfg(feature = "scene")]
+            Text::Scene(error) => write!(last, "{error}"),
             Text::Of(error) => write!(last, "{error}"),
         };
     });
@@ -146,6 +164,31 @@ fn remember(text: &Text) {
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_last_error() -> *const c_char {
     LAST.with(|last| last.get().cast::<c_char>().cast_const())
+}
+
+/// [any thread; real-time] What a status means, in English. Static; "unknown status" for other numbers.
+#[unsafe(no_mangle)]
+pub extern "C" fn htex_status_text(status: i32) -> *const c_char {
+    let text: &CStr = match status {
+        0 => c"the call succeeded",
+        1 => c"an argument is invalid",
+        2 => c"there is no such object",
+        3 => c"another thread uses the object",
+        4 => c"a file could not be read",
+        5 => c"the asset is invalid",
+        6 => c"the asset has no such representation",
+        7 => c"a model is missing, incompatible or not allowed to run",
+        8 => c"a model failed",
+        9 => c"the motion is invalid",
+        10 => c"the scene is invalid or cannot be planned",
+        11 => c"this build of the library lacks the feature",
+        12 => c"the buffer is too small",
+        13 => c"an error of the library itself",
+        14 => c"the library of textures is invalid",
+        15 => c"the library has no texture of this name",
+        _ => c"unknown status",
+    };
+    text.as_ptr()
 }
 
 /// Runs the body of a C function: keeps the text of an error, and stops panics.

@@ -1,14 +1,15 @@
 //! Voices: playing an asset at a motion.
 
 use std::ffi::c_char;
+use std::ops::{Deref, DerefMut};
 
-use htex::Voice;
+use htex::{Asset, Voice, VoiceOptions};
 
 use crate::asset::{ASSETS, htex_asset};
-use crate::handles::Table;
-use crate::motion::{htex_motion, needed_motion};
+use crate::handles::{Kind, Table};
+use crate::motion::{Motions, htex_motion, needed_motion};
 use crate::options::{htex_voice_options, voice_options};
-use crate::pointers::{place, slice, slice_mut, write_text};
+use crate::pointers::{place, slice_mut, write_text};
 use crate::status::{Failure, guarded, htex_status};
 
 /// A playing texture. One thread at a time may use it. Zero is no voice.
@@ -19,7 +20,60 @@ pub struct htex_voice {
     pub id: u64,
 }
 
-static VOICES: Table<Voice> = Table::new();
+/// A voice, and what it takes to make it again.
+pub(crate) struct Playing {
+    voice: Voice,
+    asset: Asset,
+    /// The representation, by the id of its model.
+    model: String,
+    options: VoiceOptions<'static>,
+}
+
+impl Playing {
+    fn new(
+        asset: &Asset,
+        model: Option<&str>,
+        options: VoiceOptions<'static>,
+    ) -> Result<Self, Failure> {
+        let model = asset.representation_id(model)?.to_owned();
+        Ok(Self {
+            voice: asset.voice(&options.clone().with_model(&model))?,
+            asset: asset.clone(),
+            model,
+            options,
+        })
+    }
+}
+
+impl Deref for Playing {
+    type Target = Voice;
+
+    fn deref(&self) -> &Voice {
+        &self.voice
+    }
+}
+
+impl DerefMut for Playing {
+    fn deref_mut(&mut self) -> &mut Voice {
+        &mut self.voice
+    }
+}
+
+/// What a voice played since the last htex_voice_envelope. Set `size` to sizeof(htex_envelope) before the call.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_envelope {
+    /// sizeof(htex_envelope).
+    pub size: u32,
+    /// RMS of the samples, in the asset's unit, exactly; 0 for none.
+    pub level_rms: f64,
+    /// Mean frequency, weighted by power, Hz; 0 for silence.
+    pub centroid_hz: f64,
+    /// Number of the samples.
+    pub frames: u64,
+}
+
+pub(crate) static VOICES: Table<Playing> = Table::new(Kind::Voice);
 
 /// [any thread; may load a model] Makes a voice of an asset. `options` may be NULL.
 #[unsafe(no_mangle)]
@@ -31,8 +85,8 @@ pub unsafe extern "C" fn htex_voice_new(
     guarded(|| {
         let asset = ASSETS.shared(asset.id)?;
         // SAFETY: the pointers are the caller's.
-        let (options, out) = unsafe { (voice_options(options)?, place(out)?) };
-        out.id = VOICES.insert(asset.voice(&options)?)?;
+        let ((model, options), out) = unsafe { (voice_options(options)?, place(out)?) };
+        out.id = VOICES.insert(Playing::new(&asset, model, options)?)?;
         Ok(())
     })
 }
@@ -41,6 +95,61 @@ pub unsafe extern "C" fn htex_voice_new(
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_voice_free(voice: htex_voice) -> htex_status {
     guarded(|| VOICES.remove(voice.id).map(drop))
+}
+
+/// [one thread at a time; not the real-time thread] Makes the voice as it was when it was made, with the same options and the same
+/// handle: the samples are those of a new voice. `motion` may be NULL (the motion of its options). After an error the voice plays on as before.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_voice_reset(
+    voice: htex_voice,
+    motion: *const htex_motion,
+) -> htex_status {
+    guarded(|| {
+        let mut voice = VOICES.exclusive(voice.id)?;
+        // SAFETY: the motion is the caller's.
+        let given = unsafe { crate::motion::motion(motion) }?;
+        let options = voice.options.clone();
+        let options = match given {
+            Some(motion) => options.with_motion(motion),
+            None => options,
+        };
+        voice.voice = voice.asset.voice(&options.with_model(&voice.model))?;
+        Ok(())
+    })
+}
+
+/// [one thread at a time] Id of the model that plays: of the options, or that of the representation that was chosen. Written as by
+/// htex_asset_manifest_json.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_voice_model(
+    voice: htex_voice,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let voice = VOICES.exclusive(voice.id)?;
+        // SAFETY: the pointers are the caller's.
+        unsafe { write_text(&voice.model, out, capacity, length) }
+    })
+}
+
+/// [one thread at a time; real-time: neither allocates nor locks] Sets the gain, which is not negative and changes within 10 ms.
+#[unsafe(no_mangle)]
+pub extern "C" fn htex_voice_set_gain(voice: htex_voice, gain: f64) -> htex_status {
+    guarded(|| Ok(VOICES.exclusive(voice.id)?.set_gain(gain)?))
+}
+
+/// [one thread at a time; real-time: neither allocates nor locks] Writes 1 if the voice rests, so that its samples are 0 until a motion
+/// is felt again, else 0. A voice that rests takes hardly any time to render.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_voice_is_silent(voice: htex_voice, out: *mut u32) -> htex_status {
+    guarded(|| {
+        let voice = VOICES.exclusive(voice.id)?;
+        // SAFETY: the place is the caller's.
+        *unsafe { place(out) }? = voice.is_silent().into();
+        Ok(())
+    })
 }
 
 /// [one thread at a time; real-time: neither allocates nor locks] Sets the motion of the finger; spectrum and level glide to it.
@@ -74,6 +183,77 @@ pub unsafe extern "C" fn htex_voice_render(
     })
 }
 
+/// [one thread at a time; real-time: neither allocates nor locks] Adds the next samples, multiplied by `gain`, to `out`: for a mix of
+/// voices.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_voice_render_add(
+    voice: htex_voice,
+    out: *mut f32,
+    frames: usize,
+    gain: f32,
+) -> htex_status {
+    guarded(|| {
+        let mut voice = VOICES.exclusive(voice.id)?;
+        // SAFETY: the buffer is the caller's.
+        let out = unsafe { slice_mut(out, frames) }?;
+        Ok(voice.render_add(out, gain)?)
+    })
+}
+
+/// [one thread at a time; real-time: neither allocates nor locks] Tells what the voice played since the last call, effects, gain and limit
+/// included, for phones, pads and motors, which take level and frequency. Writes the mean square in each of the voice's `envelope_bands`, in the
+/// squared unit, to `bands`, which may be NULL with a `bands_len` of 0.
+///
+/// The level is exact. Frequency and bands are those of Hann windows of N samples, the least power of two that lasts 40 ms (20 kHz: 1024), of
+/// which one ends every N / 4 samples; a call has the mean of the windows that ended since the last call, and the numbers of that call if none
+/// did. The middle of a window is N / 2 samples before its end.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_voice_envelope(
+    voice: htex_voice,
+    out: *mut htex_envelope,
+    bands: *mut f64,
+    bands_len: usize,
+) -> htex_status {
+    guarded(|| {
+        let mut voice = VOICES.exclusive(voice.id)?;
+        // SAFETY: the pointers are the caller's.
+        let (out, bands) = unsafe { (place(out)?, slice_mut(bands, bands_len)?) };
+        if (out.size as usize) < size_of::<htex_envelope>() {
+            return Err(Failure::argument(
+                "the envelope's size is not that of its struct; set it to sizeof(htex_envelope)",
+            ));
+        }
+        let envelope = voice.envelope(bands)?;
+        out.level_rms = envelope.level_rms;
+        out.centroid_hz = envelope.centroid_hz;
+        out.frames = envelope.frames;
+        Ok(())
+    })
+}
+
+/// [one thread at a time] Writes the edges of the bands of htex_voice_envelope, one more than bands, Hz: equal ratios from the lowest to the highest frequency of
+/// the asset. The first band reaches down to 0 Hz, and the last up to half the rate.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_voice_envelope_edges(
+    voice: htex_voice,
+    edges_hz: *mut f64,
+    len: usize,
+) -> htex_status {
+    guarded(|| {
+        let voice = VOICES.exclusive(voice.id)?;
+        // SAFETY: the pointer is the caller's.
+        let out = unsafe { slice_mut(edges_hz, len) }?;
+        let edges_hz = voice.envelope_edges_hz();
+        if out.len() != edges_hz.len() {
+            return Err(Failure::argument(
+                "there is one edge more than `envelope_bands` of the options, and none without bands",
+            ));
+        }
+        out.copy_from_slice(edges_hz);
+        Ok(())
+    })
+}
+
 /// [one thread at a time; real-time: neither allocates nor locks] Renders a block of `frames` samples for each of `motions_len` motions, which is set
 /// before its block: `motions_len * frames` samples. Stops at the first error; the rest of `out` is then unchanged.
 #[unsafe(no_mangle)]
@@ -89,14 +269,14 @@ pub unsafe extern "C" fn htex_voice_render_path(
         let len = motions_len.checked_mul(frames);
         let len = len.ok_or(Failure::argument("motions_len * frames is too large"))?;
         // SAFETY: the arrays are the caller's.
-        let (motions, out) = unsafe { (slice(motions, motions_len)?, slice_mut(out, len)?) };
+        let (motions, out) = unsafe { (Motions::of(motions, motions_len)?, slice_mut(out, len)?) };
         if frames == 0 {
             return motions
                 .iter()
-                .try_for_each(|motion| Ok(voice.set_motion((*motion).into())?));
+                .try_for_each(|motion| Ok(voice.set_motion(motion)?));
         }
         for (motion, block) in motions.iter().zip(out.chunks_exact_mut(frames)) {
-            voice.set_motion((*motion).into())?;
+            voice.set_motion(motion)?;
             voice.render(block)?;
         }
         Ok(())

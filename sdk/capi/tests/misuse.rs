@@ -44,6 +44,7 @@ fn is(status: htex_status, expected: htex_status) {
 }
 
 const MOTION: htex_motion = htex_motion {
+    size: size_of::<htex_motion>() as u32,
     speed_mm_s: 80.0,
     force_n: 0.4,
     position_mm: f64::NAN,
@@ -90,6 +91,22 @@ fn freed_and_foreign_handles_are_refused() {
         for id in never {
             is(htex_scene_stop(htex_scene { id }), HTEX_STATUS_BAD_HANDLE);
         }
+        // A handle of one kind is none of another.
+        let (asset, voice) = (opened(), voice_of(opened()));
+        is(
+            htex_asset_free(htex_asset { id: voice.id }),
+            HTEX_STATUS_BAD_HANDLE,
+        );
+        is(
+            htex_voice_free(htex_voice { id: asset.id }),
+            HTEX_STATUS_BAD_HANDLE,
+        );
+        is(
+            htex_library_free(htex_library { id: voice.id }),
+            HTEX_STATUS_BAD_HANDLE,
+        );
+        assert_eq!(htex_asset_free(asset), HTEX_STATUS_OK);
+        assert_eq!(htex_voice_free(voice), HTEX_STATUS_OK);
     }
 }
 
@@ -245,12 +262,15 @@ fn options_are_checked_by_their_size() {
     let asset = opened();
     let mut voice = htex_voice { id: 0 };
     let mut options = htex_voice_options {
-        size: size_of::<htex_voice_options>(),
+        size: size_of::<htex_voice_options>() as u32,
         model: null(),
         rate_hz: 0.0,
         seed: 3,
         motion: null(),
         synthesis: null(),
+        gain: 0.0,
+        limit: 0.0,
+        envelope_bands: 0,
         no_frequency_scaling: 0,
         no_level_scaling: 0,
         no_contact: 0,
@@ -268,18 +288,32 @@ fn options_are_checked_by_their_size() {
     options.size = 0;
     is(new(&options), HTEX_STATUS_INVALID_ARGUMENT);
     // A program that was compiled against an older, shorter struct.
-    options.size = size_of::<usize>();
+    options.size = size_of::<u32>() as u32;
     assert_eq!(new(&options), HTEX_STATUS_OK);
-    options.size = size_of::<htex_voice_options>();
+    options.size = size_of::<htex_voice_options>() as u32;
     options.model = c"nothing".as_ptr();
     is(new(&options), HTEX_STATUS_NO_REPRESENTATION);
     options.model = null();
     options.synthesis = c"somehow".as_ptr();
     is(new(&options), HTEX_STATUS_INVALID_ARGUMENT);
     options.synthesis = null();
-    options.rate_hz = f64::NAN;
-    assert_ne!(new(&options), HTEX_STATUS_OK);
+    for rate_hz in [f64::NAN, f64::INFINITY, -1.0, 1.0, 1_999.0, 1e12] {
+        options.rate_hz = rate_hz;
+        is(new(&options), HTEX_STATUS_INVALID_ARGUMENT);
+    }
     options.rate_hz = 0.0;
+    for (gain, limit, bands) in [
+        (f64::NAN, 0.0, 0),
+        (-1.0, 0.0, 0),
+        (0.0, f64::INFINITY, 0),
+        (0.0, -1.0, 0),
+        (0.0, 0.0, 33),
+    ] {
+        (options.gain, options.limit, options.envelope_bands) = (gain, limit, bands);
+        is(new(&options), HTEX_STATUS_INVALID_ARGUMENT);
+    }
+    (options.gain, options.limit, options.envelope_bands) = (2.0, 0.5, 32);
+    assert_eq!(new(&options), HTEX_STATUS_OK);
     options.ceiling = 10.0;
     assert_eq!(new(&options), HTEX_STATUS_OK);
     for ceiling in [-1.0, f64::INFINITY, f64::NAN] {
@@ -295,7 +329,7 @@ fn options_are_checked_by_their_size() {
         more: u64,
     }
     options.rate_hz = 0.0;
-    options.size = size_of::<Newer>();
+    options.size = size_of::<Newer>() as u32;
     let mut newer = Newer {
         known: options,
         more: 0,
@@ -330,6 +364,54 @@ fn texts_tell_their_length() {
         is(status, HTEX_STATUS_TRUNCATED);
         assert_eq!(CStr::from_ptr(short.as_ptr()).to_bytes().len(), 7);
     }
+    htex_asset_free(asset);
+}
+
+/// Motions of programs that were compiled against other headers: of speed and force alone, and with more at the end.
+#[test]
+fn motions_have_the_size_of_their_header() {
+    #[repr(C)]
+    struct Early(u32, f64, f64);
+    #[repr(C)]
+    struct Late(htex_motion, f64);
+    let size = |size: usize| u32::try_from(size).unwrap();
+    let asset = opened();
+    let mut blocks = [[0.0f32; 256]; 3];
+    let speeds = [80.0, 200.0];
+    let now = speeds.map(|speed_mm_s| htex_motion {
+        speed_mm_s,
+        ..MOTION
+    });
+    let early = speeds.map(|speed| Early(size(size_of::<Early>()), speed, 0.4));
+    let late = now.map(|motion| {
+        let size = size(size_of::<Late>());
+        Late(htex_motion { size, ..motion }, 7.0)
+    });
+    let paths = [
+        now.as_ptr(),
+        early.as_ptr().cast(),
+        late.as_ptr().cast::<htex_motion>(),
+    ];
+    for (path, block) in paths.into_iter().zip(&mut blocks) {
+        let voice = voice_of(asset);
+        // SAFETY: live pointers, to motions of the sizes that they state.
+        unsafe {
+            let status = htex_voice_render_path(voice, path, 2, block.as_mut_ptr(), 128);
+            assert_eq!(status, HTEX_STATUS_OK, "{}", last_error());
+            for wrong in [0, 4, 23, 25, u32::MAX] {
+                let motion = htex_motion {
+                    size: wrong,
+                    ..MOTION
+                };
+                is(
+                    htex_voice_set_motion(voice, &motion),
+                    HTEX_STATUS_INVALID_ARGUMENT,
+                );
+            }
+        }
+        assert_eq!(htex_voice_free(voice), HTEX_STATUS_OK);
+    }
+    assert!(blocks[0] == blocks[1] && blocks[0] == blocks[2]);
     htex_asset_free(asset);
 }
 
@@ -406,6 +488,7 @@ fn a_scene_plays_and_reports() {
     let mut playing = htex_scene { id: 0 };
     let mut samples = [0.0f32; 2_000];
     let finger = htex_finger {
+        size: size_of::<htex_finger>() as u32,
         speed_mm_s: 80.0,
         force_n: 0.4,
         x_mm: 1.0,

@@ -181,12 +181,12 @@ fn modules_reach_the_library_from_csharp() {
             static void Main(string[] paths)
             {
                 var module = File.ReadAllBytes(paths[1]);
-                using (Asset.Open(paths[0], new OpenOptions { Modules = new[] { module } }))
+                using (Asset.Open(paths[0], new OpenOptions { Engine = Engine.Checked, Modules = new[] { module } }))
                     Console.WriteLine("opened");
                 Array.Resize(ref module, module.Length / 2);
-                try { Asset.Open(paths[0], new OpenOptions { Modules = new[] { File.ReadAllBytes(paths[1]), module } }); }
+                try { Asset.Open(paths[0], new OpenOptions { Engine = Engine.Checked, Modules = new[] { File.ReadAllBytes(paths[1]), module } }); }
                 catch (HtexException error) { Console.WriteLine(error.Message); }
-                try { Asset.Open(paths[0], new OpenOptions { Modules = new[] { module, null } }); }
+                try { Asset.Open(paths[0], new OpenOptions { Engine = Engine.Checked, Modules = new[] { module, null } }); }
                 catch (HtexException error) { Console.WriteLine(error.Message); }
             }
         }

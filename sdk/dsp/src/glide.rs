@@ -39,6 +39,21 @@ impl Glide {
         self.left == 0 && self.value == value
     }
 
+    /// Ends a change at once.
+    pub fn finish(&mut self) {
+        self.restart(self.target);
+    }
+
+    /// Samples of [`Self::apply`] after which the gain stays 0; `None` if it does not.
+    pub fn until_zero(&self) -> Option<u32> {
+        (self.target == 0.0 && (self.left > 0 || self.value == 0.0)).then_some(self.left)
+    }
+
+    /// Number of samples that a change takes.
+    pub fn ramp(&self) -> u32 {
+        self.len
+    }
+
     /// Starts a change to `target`; no effect if `target` is already the target.
     pub fn set(&mut self, target: f32) {
         self.set_within(target, self.len);
@@ -91,12 +106,15 @@ mod tests {
         let mut glide = Glide::new(1.0, 4);
         glide.set(0.0);
         assert!(!glide.rests_at(1.0));
+        assert_eq!(glide.until_zero(), Some(4));
         let mut block = [1.0f32; 6];
         glide.apply(&mut block[..3]);
         glide.apply(&mut block[3..]);
         assert_eq!(block, [1.0, 0.75, 0.5, 0.25, 0.0, 0.0]);
         assert!(glide.rests_at(0.0) && !glide.rests_at(1.0));
+        assert_eq!(glide.until_zero(), Some(0));
         glide.set_within(2.0, 1);
+        assert_eq!(glide.until_zero(), None);
         assert_eq!(glide.advance(), 2.0);
     }
 }

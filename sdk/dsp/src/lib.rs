@@ -22,6 +22,7 @@ mod chebyshev;
 mod circle;
 pub mod dct;
 mod direct_form;
+pub mod envelope;
 pub mod estimation;
 pub mod exponential;
 pub mod fft;

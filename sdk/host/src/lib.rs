@@ -59,7 +59,7 @@ pub use htex_model::{
     Descriptor, Field, Fit, FitCondition, FitOption, Kind, Knob, Knobs, Motion, Status, Store,
 };
 pub use htex_native::folders;
-pub use limits::{WasmCache, WasmCompiler, WasmLimits, WasmTotal};
+pub use limits::{WasmCache, WasmCompiler, WasmEngine, WasmLimits, WasmTotal};
 pub use model::{FitRequest, LoadedModel, MOTION_EXTENSION};
 pub use note::Note;
 pub use origin::Origin;
@@ -71,7 +71,7 @@ pub use synthesis::{StillSound, Synthesis};
 pub use together::{VOICES_EXTENSION, render_together};
 pub use voice::ModelVoice;
 #[cfg(feature = "wasm")]
-pub use wasm::{CompilerError, serve_compiler};
+pub use wasm::{CompilerError, end_wasm_clocks, serve_compiler};
 
 /// Whether this build runs WASM modules: by the engine of the feature `wasm`, or by the browser it runs in.
 pub const RUNS_WASM: bool = cfg!(any(feature = "wasm", target_family = "wasm"));

@@ -53,6 +53,31 @@ pub struct WasmLimits {
     pub all: WasmTotal,
     /// Cache of compiled modules. Default [`WasmCache::User`].
     pub cache: WasmCache,
+    /// The engine that runs modules. Default [`WasmEngine::Signals`].
+    pub engine: WasmEngine,
+}
+
+/// The engine that runs modules, by what it takes from the process. While a module is loaded, each engine has one thread that stops
+/// calls at their time limit; browsers have their own engine, which is only on or off.
+///
+/// ```
+/// use htex_host::{Registry, Search, WasmEngine, WasmLimits};
+/// let limits = WasmLimits::default().with_engine(WasmEngine::Off);
+/// let mut registry = Registry::search(&Search::builtin().with_limits(limits))?;
+/// assert!(registry.add_wasm_bytes("a model", b"\0asm").is_err());
+/// # Ok::<(), htex_host::HostError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum WasmEngine {
+    /// Loading a module is an error: no thread, file or handler is made.
+    Off,
+    /// Modules run without handlers for signals: each access to memory is compared with its bound. The measures against
+    /// speculative execution that rely on such handlers are off.
+    Checked,
+    /// Modules run with handlers of the process for SIGSEGV, SIGILL, SIGFPE and SIGBUS, which pass on what is not of a module
+    /// to the handlers that were there.
+    Signals,
 }
 
 /// Limits that several modules share.
@@ -144,6 +169,7 @@ impl Default for WasmLimits {
             asset: WasmTotal::new(Duration::from_secs(10), 512 << 20, 512),
             all: WasmTotal::new(Duration::from_secs(30), 1 << 30, 2048),
             cache: WasmCache::User,
+            engine: WasmEngine::Signals,
         }
     }
 }
@@ -242,6 +268,13 @@ impl WasmLimits {
     #[must_use]
     pub fn with_cache(mut self, cache: WasmCache) -> Self {
         self.cache = cache;
+        self
+    }
+
+    /// Sets the engine that runs modules.
+    #[must_use]
+    pub fn with_engine(mut self, engine: WasmEngine) -> Self {
+        self.engine = engine;
         self
     }
 }

@@ -147,6 +147,8 @@ impl LoadedModel {
 
     #[cfg(feature = "wasm")]
     fn from_wasm_file(path: &Path, sandbox: &Sandbox) -> Result<Self, HostError> {
+        let origin = path.display().to_string();
+        check_engine(&origin, sandbox)?;
         let raw = crate::wasm::load_file(path, sandbox)?;
         Self::new(Origin::Wasm(path.to_owned()), Arc::new(raw))
     }
@@ -176,6 +178,7 @@ impl LoadedModel {
         bytes: &[u8],
         sandbox: &Sandbox,
     ) -> Result<Self, HostError> {
+        check_engine(name, sandbox)?;
         let origin = Origin::Embedded(name.to_owned());
         let raw = crate::wasm::load(&origin.to_string(), bytes, sandbox)?;
         Self::new(origin, Arc::new(raw))
@@ -459,6 +462,19 @@ fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Result<String, TextError> {
 fn reason(last_error: impl FnMut(&mut [u8]) -> i64) -> String {
     let text = text(last_error).ok().filter(|text| !text.is_empty());
     text.map_or_else(|| "no reason given".to_owned(), |text| plain(&text))
+}
+
+/// Refuses a module if the engine is off.
+#[cfg(any(feature = "wasm", target_family = "wasm"))]
+fn check_engine(origin: &str, sandbox: &Sandbox) -> Result<(), HostError> {
+    match sandbox.limits.engine {
+        crate::WasmEngine::Off => Err(HostError::Load {
+            path: origin.to_owned(),
+            what: "the engine of WASM modules is off; turn it on in the options of opening"
+                .to_owned(),
+        }),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(not(feature = "wasm"))]

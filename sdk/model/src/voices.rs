@@ -7,13 +7,23 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use crate::platform::{Lock, Once};
 
-/// Slots per allocation: few in a module, whose instances have one or two voices.
-const CHUNK: usize = if cfg!(target_family = "wasm") {
-    16
-} else {
+/// Chunk `c` has `FIRST << c` slots, allocated with the first voice in it: the first voice of a model takes the memory of a
+/// few slots (of up to 2.8 kB each), and a thousand voices that of at most twice as many.
+const FIRST: usize = 4;
+/// Most voices at a time: fewer in a module, whose instances have one or two.
+const MOST: usize = if cfg!(target_family = "wasm") {
     1024
+} else {
+    65_536
 };
-const CHUNKS: usize = 64;
+/// Chunks for `MOST` slots.
+const CHUNKS: usize = place(MOST - 1).0 + 1;
+
+/// Returns the chunk of an index, and its place there.
+const fn place(index: usize) -> (usize, usize) {
+    let chunk = (index / FIRST + 1).ilog2() as usize;
+    (chunk, index - FIRST * ((1 << chunk) - 1))
+}
 
 /// Up to 65,536 voices, 1,024 in a module. A handle consists of a slot's index and the slot's generation, which changes
 /// when a voice is inserted or removed.
@@ -60,20 +70,21 @@ impl<V> Voices<V> {
         let mut free = self.free.lock()?;
         let index = match free.freed.pop() {
             Some(index) => index,
-            None if (free.never_used as usize) < CHUNK * CHUNKS => {
+            None if (free.never_used as usize) < MOST => {
                 free.never_used += 1;
                 free.never_used - 1
             }
             None => return None,
         };
-        let chunk = self.chunks[index as usize / CHUNK].get_or_init(|| {
+        let (chunk, offset) = place(index as usize);
+        let slots = self.chunks[chunk].get_or_init(|| {
             let slot = || Slot {
                 generation: AtomicU32::new(0),
                 voice: UnsafeCell::new(None),
             };
-            (0..CHUNK).map(|_| slot()).collect()
+            (0..FIRST << chunk).map(|_| slot()).collect()
         });
-        let slot = &chunk[index as usize % CHUNK];
+        let slot = &slots[offset];
         // SAFETY: the slot is free (its index came from the free list, whose lock is held), so no
         // valid handle to it exists.
         unsafe { *slot.voice.get() = Some(voice) };
@@ -105,7 +116,8 @@ impl<V> Voices<V> {
 
     fn live_slot(&self, handle: i64) -> Option<&Slot<V>> {
         let index = usize::try_from((handle & 0xffff_ffff) - 1).ok()?;
-        let slot = self.chunks.get(index / CHUNK)?.get()?.get(index % CHUNK)?;
+        let (chunk, offset) = place(index);
+        let slot = self.chunks.get(chunk)?.get()?.get(offset)?;
         let generation = slot.generation.load(Ordering::Acquire);
         let wanted = (handle >> 32) as u32;
         (generation % 2 == 1 && generation & 0x7fff_ffff == wanted).then_some(slot)
@@ -133,5 +145,36 @@ mod tests {
             }
         }
         assert_eq!(voices.remove(a), None);
+    }
+
+    /// Voices of several chunks keep their places while chunks are added.
+    #[test]
+    fn chunks_are_made_as_needed() {
+        let voices = Voices::new();
+        let allocated = |voices: &Voices<usize>| {
+            let chunks = voices.chunks.iter().filter_map(Once::get);
+            chunks.map(|slots| slots.len()).sum::<usize>()
+        };
+        let handles: Vec<i64> = (0..1_000).map(|n| voices.insert(n).unwrap()).collect();
+        assert!(allocated(&voices) < 2_048);
+        for (n, handle) in handles.iter().enumerate() {
+            // SAFETY: one thread.
+            assert_eq!(unsafe { voices.get(*handle) }.copied(), Some(n));
+        }
+        let one = Voices::new();
+        one.insert(0).unwrap();
+        assert_eq!(allocated(&one), FIRST);
+    }
+
+    #[test]
+    fn voices_above_the_limit_are_refused() {
+        let voices = Voices::new();
+        let first = voices.insert(()).unwrap();
+        for _ in 1..MOST {
+            voices.insert(()).unwrap();
+        }
+        assert_eq!(voices.insert(()), None);
+        assert_eq!(voices.remove(first), Some(()));
+        assert!(voices.insert(()).is_some());
     }
 }

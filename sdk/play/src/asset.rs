@@ -14,6 +14,9 @@ use crate::known::{Known, Motions};
 use crate::playable::{field_order, model_of};
 use crate::{Error, Motion, SampleSource, Voice, VoiceOptions};
 
+/// Highest rate of samples, hertz: that of models and of the resampler.
+const MOST_RATE_HZ: f64 = 1e7;
+
 /// An opened texture. A clone shares the data of the file.
 ///
 /// ```no_run
@@ -156,8 +159,9 @@ impl Asset {
     ///
     /// # Errors
     /// When there is no such representation, its model is missing or not compatible, the model
-    /// refuses the parameters or the rate, or the synthesis or the ceiling is out of range.
+    /// refuses the parameters, the rate is below twice the highest frequency of the texture, or another option is out of range.
     pub fn voice(&self, options: &VoiceOptions<'_>) -> Result<Voice, Error> {
+        self.check_rate(options.rate_hz)?;
         let ceiling = options.ceiling;
         if !(ceiling > 0.0 && ceiling.is_finite()) {
             return Err(Error::Ceiling { ceiling });
@@ -170,6 +174,15 @@ impl Asset {
             ..options.clone()
         })?;
         Voice::new(source, still, options, base)
+    }
+
+    /// Refuses rates at which the texture's frequencies do not exist.
+    fn check_rate(&self, rate_hz: f64) -> Result<(), Error> {
+        let least_hz = 2.0 * self.band().high_hz;
+        match (least_hz..=MOST_RATE_HZ).contains(&rate_hz) {
+            true => Ok(()),
+            false => Err(Error::Rate { rate_hz, least_hz }),
+        }
     }
 
     /// Returns the reading speed of a voice at its start, in the recorded speed.
@@ -394,7 +407,7 @@ impl Asset {
 
     /// Returns whether this program can run a model of this id, without loading it.
     fn is_runnable(&self, id: &str) -> bool {
-        RUNS_WASM || self.registry.find(id).is_ok()
+        self.registry.find(id).is_ok() || RUNS_WASM && self.embedded && self.embeds(id)
     }
 
     /// Returns the model of a representation from the registry, without the embedded ones.

@@ -98,4 +98,34 @@ pub enum Error {
         /// Position along the path, mm.
         position_mm: f64,
     },
+    /// The rate of a voice is not a rate, or too low for its texture.
+    #[error(
+        "a rate of {rate_hz} Hz: it must be from {least_hz} Hz, twice the highest frequency of the texture, to 10 MHz"
+    )]
+    Rate {
+        /// The rate that was asked for, hertz.
+        rate_hz: f64,
+        /// The lowest rate, hertz.
+        least_hz: f64,
+    },
+    /// A number of the options or of a call is out of its range.
+    #[error("{name} {value}: {range}")]
+    OutOfRange {
+        /// What it is.
+        name: &'static str,
+        /// The number.
+        value: f64,
+        /// What it must be.
+        range: &'static str,
+    },
+    /// An envelope was asked for another number of bands than the voice has.
+    #[error(
+        "{given} bands were asked for, and the voice has {there}; the options of the voice give their number"
+    )]
+    Bands {
+        /// Places for bands.
+        given: usize,
+        /// Bands of the voice.
+        there: usize,
+    },
 }

@@ -91,6 +91,22 @@ impl Follow {
         self.gain
     }
 
+    /// Returns after how many of the next `len` samples, the first of which is that of `frame`, the voice rests: its samples are 0 from
+    /// there until it is felt again.
+    pub(crate) fn sounding(&self, len: usize, frame: u64) -> usize {
+        let until_zero = match (self.contact.until_zero(), self.ends) {
+            (Some(left), _) => u64::from(left),
+            (None, Some(end)) => end.saturating_sub(frame) + u64::from(self.contact.ramp()),
+            (None, None) => return len,
+        };
+        usize::try_from(until_zero).map_or(len, |left| left.min(len))
+    }
+
+    /// Returns whether the voice rests.
+    pub(crate) fn rests(&self) -> bool {
+        self.contact.rests_at(0.0)
+    }
+
     /// Fades samples out while the finger does not slide, or its motion is unknown; the first sample is that of `frame`.
     pub(crate) fn apply_contact(&mut self, block: &mut [f32], frame: u64) {
         let left = self.ends.map(|end| end.saturating_sub(frame));

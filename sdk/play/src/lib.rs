@@ -18,6 +18,7 @@
 #![forbid(unsafe_code)]
 
 mod asset;
+pub mod envelope;
 mod error;
 pub mod exploration;
 mod follow;
@@ -25,12 +26,14 @@ mod known;
 mod mesh;
 mod motion;
 mod options;
+mod output;
 mod playable;
 mod source;
 mod travel;
 mod voice;
 
 pub use asset::Asset;
+pub use envelope::Envelope;
 pub use error::Error;
 pub use exploration::{Coverage, Effects, Explored, Reach, Recorded, Scaling};
 pub use htex_finding::{Finding, Severity};
@@ -43,7 +46,7 @@ pub use htex_format::{
 pub use htex_format::{FieldOrder, SAME_CONDITION};
 pub use htex_host::{
     Band, Descriptor, DescriptorError, HostError, LoadedModel, Note, OptionError, Origin, Registry,
-    Search, Synthesis, WasmCache, WasmCompiler, WasmLimits, WasmTotal,
+    Search, Synthesis, WasmCache, WasmCompiler, WasmEngine, WasmLimits, WasmTotal,
 };
 pub use known::Motions;
 pub use mesh::{Mesh, Weights};

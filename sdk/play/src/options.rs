@@ -34,10 +34,18 @@ pub struct VoiceOptions<'a> {
     /// Highest level that a motion outside the recorded ones has, as a multiple of the strongest recorded level; above 0 and finite.
     /// A level that no motion raises is never reduced by it.
     pub ceiling: f64,
+    /// Gain of the samples at the start ([`Voice::set_gain`](crate::Voice::set_gain)); not negative.
+    pub gain: f64,
+    /// Greatest magnitude of a sample after the gain, in the asset's unit; above 0. The gain falls at once where a sample would
+    /// exceed it, and returns within 50 ms (to 1/e). `None` for no limit.
+    pub limit: Option<f64>,
+    /// Number of bands of [`Voice::envelope`](crate::Voice::envelope), 1 to 32; 0 for no envelope, which takes no time.
+    pub envelope_bands: usize,
 }
 
 impl Default for VoiceOptions<'_> {
-    /// 20 kHz (the paper's rate), seed 0, the first condition, streamed, all effects, and 4 times the strongest level.
+    /// 20 kHz (the paper's rate), seed 0, the first condition, streamed, all effects, 4 times the strongest level, a gain of 1, no
+    /// limit and no envelope.
     fn default() -> Self {
         Self {
             model: None,
@@ -47,6 +55,9 @@ impl Default for VoiceOptions<'_> {
             synthesis: Synthesis::Streamed,
             effects: Effects::default(),
             ceiling: CEILING,
+            gain: 1.0,
+            limit: None,
+            envelope_bands: 0,
         }
     }
 }
@@ -91,6 +102,27 @@ impl<'a> VoiceOptions<'a> {
     #[must_use]
     pub fn with_ceiling(mut self, ceiling: f64) -> Self {
         self.ceiling = ceiling;
+        self
+    }
+
+    /// Sets the gain of the samples at the start; not negative.
+    #[must_use]
+    pub fn with_gain(mut self, gain: f64) -> Self {
+        self.gain = gain;
+        self
+    }
+
+    /// Sets the greatest magnitude of a sample, in the asset's unit, or `None` for no limit.
+    #[must_use]
+    pub fn with_limit(mut self, limit: impl Into<Option<f64>>) -> Self {
+        self.limit = limit.into();
+        self
+    }
+
+    /// Sets the number of bands of the envelope, 1 to 32, or 0 for none.
+    #[must_use]
+    pub fn with_envelope_bands(mut self, bands: usize) -> Self {
+        self.envelope_bands = bands;
         self
     }
 

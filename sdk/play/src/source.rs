@@ -29,7 +29,7 @@ pub struct SampleSource {
     sets: Vec<f64>,
     mixed: Vec<f64>,
     rate_hz: f64,
-    top_hz: f64,
+    band: Band,
     motion: Motion,
     level_rms: f64,
     /// Whether the model follows the motion itself.
@@ -57,7 +57,7 @@ impl SampleSource {
             mixed: vec![0.0; model.most_parameters()],
             known,
             rate_hz,
-            top_hz: band.high_hz,
+            band,
             motion,
             level_rms: located.level_rms,
             follows: model.follows_motion(),
@@ -72,7 +72,12 @@ impl SampleSource {
 
     /// Returns the highest frequency of the texture, hertz.
     pub fn top_hz(&self) -> f64 {
-        self.top_hz
+        self.band.high_hz
+    }
+
+    /// Returns the band of the texture.
+    pub(crate) fn band(&self) -> Band {
+        self.band
     }
 
     /// Returns the RMS of the texture at the current motion, in the asset's unit.

@@ -1,10 +1,13 @@
 //! A playing texture.
 
+use htex_dsp::envelope::Analyser;
 use htex_dsp::glide::Glide;
 use htex_host::{StillSound, Stream};
 
+use crate::envelope::{self, Envelope};
 use crate::exploration::{Coverage, Reach};
 use crate::follow::Follow;
+use crate::output::Output;
 use crate::travel::Travel;
 use crate::{Effects, Error, Motion, SampleSource, VoiceOptions};
 
@@ -15,6 +18,8 @@ const _: () = {
     assert_send::<SampleSource>();
 };
 
+/// Samples that are rendered at a time to be added.
+const ADDED: usize = 256;
 /// Length of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
 
@@ -39,8 +44,12 @@ pub struct Voice {
     follow: Follow,
     /// The finger's position, for a model that follows the motion.
     travel: Option<Travel>,
+    output: Output,
+    analyser: Option<Analyser>,
     /// Frames rendered so far.
     frames: u64,
+    /// Those of them for which the source was rendered, since it pauses while the voice rests.
+    played: u64,
     rate_hz: f64,
     /// Highest level, as a multiple of the strongest recorded one.
     ceiling: f64,
@@ -76,6 +85,7 @@ impl Voice {
             follow.start(motion, scaling);
         }
         let level_rms = source.level_rms() * follow.gain();
+        let analyser = envelope::analyser(options.envelope_bands, source.band(), rate_hz)?;
         let (source_rate_hz, top_hz) = (source.rate_hz() * base, source.top_hz() * base);
         let mut voice = Self {
             level_rms: Glide::new(level_rms as f32, ramp),
@@ -83,7 +93,10 @@ impl Voice {
             still,
             follow,
             travel,
+            output: Output::new(options.gain, options.limit, ramp, rate_hz)?,
+            analyser,
             frames: 0,
+            played: 0,
             rate_hz,
             ceiling: options.ceiling,
             asked: options.motion,
@@ -151,7 +164,7 @@ impl Voice {
         };
         self.stream
             .source_mut()
-            .set_finger(finger, self.frames as f64 / self.rate_hz)
+            .set_finger(finger, self.played as f64 / self.rate_hz)
     }
 
     /// Returns how this voice plays a motion, and whether the motion lies within the recorded conditions. Does not
@@ -170,19 +183,103 @@ impl Voice {
         coverage
     }
 
-    /// Fills `out` with the next samples, in the asset's unit. Does not allocate, lock or do I/O.
+    /// Sets the gain, which changes gradually (10 ms). Does not allocate.
+    ///
+    /// # Errors
+    /// When it is negative or not finite; the gain stays as it was.
+    pub fn set_gain(&mut self, gain: f64) -> Result<(), Error> {
+        self.output.set_gain(gain, self.follow.rests())
+    }
+
+    /// Returns whether the voice rests: its samples are 0 until a motion is felt again. A voice without the effect of
+    /// contact never rests.
+    pub fn is_silent(&self) -> bool {
+        self.follow.rests()
+    }
+
+    /// Fills `out` with the next samples, in the asset's unit. Does not allocate, lock or do I/O. While the voice rests
+    /// ([`Self::is_silent`]) this takes hardly any time, and the noise goes on where it stopped when the voice is felt again.
     ///
     /// # Errors
     /// When the model fails; the samples that it did not render are zero.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
-        let result = self.render_shape(out);
-        self.level_rms.apply(out);
-        self.follow.apply_contact(out, self.frames);
+        let sounding = self.follow.sounding(out.len(), self.frames);
+        let (sounding, resting) = out.split_at_mut(sounding);
+        let mut result = Ok(());
+        if !sounding.is_empty() {
+            result = self.render_shape(sounding);
+            self.level_rms.apply(sounding);
+            self.follow.apply_contact(sounding, self.frames);
+            self.output.apply(sounding);
+            self.played += sounding.len() as u64;
+            if let Some(analyser) = &mut self.analyser {
+                analyser.push(sounding);
+            }
+        }
+        if !resting.is_empty() {
+            resting.fill(0.0);
+            self.output.rest();
+            if let Some(analyser) = &mut self.analyser {
+                analyser.push_zeros(resting.len());
+            }
+        }
         self.frames += out.len() as u64;
         if let Some(travel) = &mut self.travel {
             travel.advance(out.len());
         }
         result
+    }
+
+    /// Adds the next samples, multiplied by `gain`, to `out`: voices of a mix. Does not allocate, lock or do I/O.
+    ///
+    /// # Errors
+    /// As [`Self::render`], and when `gain` is not finite; `out` is unchanged then.
+    pub fn render_add(&mut self, out: &mut [f32], gain: f32) -> Result<(), Error> {
+        if !gain.is_finite() {
+            return Err(Error::OutOfRange {
+                name: "gain",
+                value: gain.into(),
+                range: "it must be finite",
+            });
+        }
+        let mut result = Ok(());
+        let mut samples = [0.0; ADDED];
+        for block in out.chunks_mut(ADDED) {
+            let samples = &mut samples[..block.len()];
+            result = result.and(self.render(samples));
+            for (sum, sample) in block.iter_mut().zip(samples) {
+                *sum += gain * *sample;
+            }
+        }
+        result
+    }
+
+    /// Returns what was rendered since the last call, or since the start: level, mean frequency, and the mean square in each of the
+    /// voice's bands ([`VoiceOptions::envelope_bands`]), in the squared unit, written to `bands`, which may be empty. All effects, the
+    /// gain and the limiter are included. The level is exact; frequency and bands lag by some 20 ms, since they are those of
+    /// windows of 40 to 80 ms ([`crate::envelope`]). Does not allocate, lock or do I/O.
+    ///
+    /// ```no_run
+    /// use htex::{Asset, VoiceOptions};
+    /// let options = VoiceOptions::default().with_envelope_bands(4);
+    /// let mut voice = Asset::open("sandpaper.htex")?.voice(&options)?;
+    /// let (mut block, mut bands) = ([0.0; 200], [0.0; 4]);
+    /// voice.render(&mut block)?; // 10 ms
+    /// let envelope = voice.envelope(&mut bands)?;
+    /// println!("{} N at {} Hz", envelope.level_rms, envelope.centroid_hz);
+    /// # Ok::<(), htex::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the voice has no bands, or `bands` has another number of places.
+    pub fn envelope(&mut self, bands: &mut [f64]) -> Result<Envelope, Error> {
+        envelope::read(self.analyser.as_mut(), bands)
+    }
+
+    /// Returns the edges of the bands of [`Self::envelope`], one more than bands, hertz: from the lowest to the highest frequency
+    /// of the asset in equal ratios. The first band reaches down to 0 Hz, and the last up to half the rate. Empty without bands.
+    pub fn envelope_edges_hz(&self) -> &[f64] {
+        self.analyser.as_ref().map_or(&[], Analyser::edges_hz)
     }
 
     /// Renders samples of unit RMS at the voice's rate.

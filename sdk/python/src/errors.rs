@@ -98,6 +98,9 @@ impl IntoPyErr for htex::Error {
             Self::Motion { .. } | Self::Position { .. } | Self::Place { .. } => {
                 MotionError::new_err(self.to_string())
             }
+            Self::Rate { .. } | Self::OutOfRange { .. } | Self::Bands { .. } => {
+                option(self.to_string())
+            }
             Self::Fields { .. } => AssetError::new_err(self.to_string()),
             Self::Ceiling { .. } => option(self.to_string()),
             other => ModelError::new_err(other.to_string()),

@@ -351,7 +351,7 @@ impl Texture {
     /// Makes a voice.
     #[pyo3(signature = (model=None, rate_hz=20_000.0, seed=0, speed_mm_s=None, force_n=None, position_mm=None,
                         synthesis="streamed", *, x_mm=None, y_mm=None, frequency_scaling=true, level_scaling=true,
-                        contact=true, ceiling=4.0))]
+                        contact=true, ceiling=4.0, gain=1.0, limit=None, envelope_bands=0))]
     #[allow(clippy::too_many_arguments)]
     fn voice(
         &self,
@@ -369,6 +369,9 @@ impl Texture {
         level_scaling: bool,
         contact: bool,
         ceiling: f64,
+        gain: f64,
+        limit: Option<f64>,
+        envelope_bands: usize,
     ) -> PyResult<Voice> {
         check_rate(rate_hz)?;
         let motion = self.motion(Some(At {
@@ -389,6 +392,9 @@ impl Texture {
             .with_motion(motion)
             .with_synthesis(synthesis.parse::<Synthesis>().or_raise()?)
             .with_ceiling(ceiling)
+            .with_gain(gain)
+            .with_limit(limit)
+            .with_envelope_bands(envelope_bands)
             .with_effects(
                 Effects::default()
                     .with_frequency_scaling(frequency_scaling)

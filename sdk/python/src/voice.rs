@@ -143,6 +143,40 @@ impl Voice {
         Ok(samples.into_pyarray(py))
     }
 
+    /// Sets the gain, which changes within 10 ms.
+    fn set_gain(&self, py: Python<'_>, gain: f64) -> PyResult<()> {
+        py.detach(|| self.lock().set_gain(gain).or_raise())
+    }
+
+    /// Whether the voice rests: its samples are 0 until a motion is felt again.
+    #[getter]
+    fn is_silent(&self, py: Python<'_>) -> bool {
+        py.detach(|| self.lock().is_silent())
+    }
+
+    /// Edges of the bands of `envelope`, hertz: one more than bands.
+    #[getter]
+    fn envelope_edges_hz<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let edges_hz = py.detach(|| self.lock().envelope_edges_hz().to_vec());
+        edges_hz.into_pyarray(py)
+    }
+
+    /// Returns what was rendered since the last call: level, mean frequency and mean squares in bands.
+    fn envelope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let (envelope, bands) = py.detach(|| {
+            let mut voice = self.lock();
+            let mut bands = vec![0.0; voice.envelope_edges_hz().len().saturating_sub(1)];
+            let envelope = voice.envelope(&mut bands).or_raise()?;
+            Ok::<_, PyErr>((envelope, bands))
+        })?;
+        let fields = PyDict::new(py);
+        fields.set_item("level_rms", envelope.level_rms)?;
+        fields.set_item("centroid_hz", envelope.centroid_hz)?;
+        fields.set_item("frames", envelope.frames)?;
+        fields.set_item("bands", bands.into_pyarray(py))?;
+        data(py, "Envelope", &fields)
+    }
+
     /// Returns how this voice plays a motion.
     fn coverage<'py>(
         &self,

@@ -183,3 +183,35 @@ def test_a_voice_is_shared_by_threads(texture: htex.Texture) -> None:
         thread.join()
     whole = texture.voice("ar").render(40_000).reshape(8, 5000)
     assert {part.tobytes() for part in parts} == {row.tobytes() for row in whole}
+
+
+def test_the_envelope_is_that_of_the_samples(texture: htex.Texture) -> None:
+    voice = texture.voice("ar", envelope_bands=3, gain=0.5, limit=0.02)
+    samples = np.concatenate([voice.render(n) for n in (1, 4_000, 19_999, 36_000)]).astype(float)
+    assert np.abs(samples).max() <= np.float32(0.02)
+    envelope = voice.envelope()
+    assert envelope.frames == len(samples)
+    assert envelope.level_rms == pytest.approx(np.sqrt(np.mean(samples**2)), rel=1e-6)
+    # Hann windows of 1024 samples, of which one ends every 256; samples before the first are 0.
+    padded = np.concatenate([np.zeros(1024), samples])
+    ends = np.arange(256, len(samples) + 1, 256)
+    window = signal.get_window("hann", 1024)
+    spectra = np.fft.rfft([padded[end : end + 1024] * window for end in ends])
+    power = np.mean(np.abs(spectra) ** 2, axis=0) / (1024 * np.sum(window**2))
+    power[1:-1] *= 2.0
+    frequency_hz = np.fft.rfftfreq(1024, 1 / 20_000)
+    assert envelope.centroid_hz == pytest.approx(np.sum(power * frequency_hz) / np.sum(power), rel=1e-6)
+    edges_hz = voice.envelope_edges_hz
+    assert edges_hz == pytest.approx(20.0 * 50.0 ** (np.arange(4) / 3))
+    band = np.searchsorted(edges_hz[1:-1], frequency_hz, side="right")
+    assert envelope.bands == pytest.approx(np.bincount(band, power), rel=1e-6)
+    assert voice.envelope().frames == 0
+    voice.set_motion(0.0, 0.0)
+    voice.render(1_000)
+    assert voice.is_silent
+    with pytest.raises(htex.OptionError):
+        voice.set_gain(-1.0)
+    with pytest.raises(htex.OptionError):
+        texture.voice("ar").envelope()
+    with pytest.raises(htex.OptionError):
+        texture.voice("ar", rate_hz=1_000.0)

@@ -47,7 +47,7 @@ pub use error::SceneError;
 pub use file::Scene;
 pub use gains::{Gain, GainKey, Gains, gains_schema, recordings_of, texture_id, texture_name};
 pub use limits::Limits;
-pub use load::{LoadError, LoadedScene, Surroundings, validate};
+pub use load::{LoadError, LoadedScene, SceneFiles, Surroundings, validate};
 pub use motion::Finger;
 pub use output::output_name;
 pub use page::{findings_page, scene_schema};

@@ -29,6 +29,31 @@ pub struct Surroundings<'a> {
     pub devices: &'a Devices,
 }
 
+/// The files that a scene names, of a program that does not have them in a folder.
+pub trait SceneFiles {
+    /// Reads a file by its path as the scene has it.
+    ///
+    /// # Errors
+    /// Those of the program; [`io::ErrorKind::NotFound`] if there is no such file.
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+}
+
+/// Where the files of a scene are.
+enum Place<'a> {
+    Folder(PathBuf),
+    Given(&'a dyn SceneFiles),
+}
+
+impl Place<'_> {
+    /// The folder that relative paths start from; empty if there is none.
+    fn folder(&self) -> PathBuf {
+        match self {
+            Self::Folder(folder) => folder.clone(),
+            Self::Given(_) => PathBuf::new(),
+        }
+    }
+}
+
 /// A scene with its files.
 #[derive(Debug, Clone)]
 pub struct LoadedScene {
@@ -122,11 +147,32 @@ impl LoadedScene {
         around: &Surroundings<'_>,
         device: &DeviceOverride,
     ) -> Result<Self, LoadError> {
+        let device = (device, &stem(path)[..]);
+        Self::placed(bytes, &Place::Folder(folder(path)), around, device)
+    }
+
+    /// Opens a scene in memory, whose files a program reads. Its `folder` is empty.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn from_files(
+        bytes: &[u8],
+        files: &dyn SceneFiles,
+        around: &Surroundings<'_>,
+        device: &DeviceOverride,
+    ) -> Result<Self, LoadError> {
+        Self::placed(bytes, &Place::Given(files), around, (device, "scene"))
+    }
+
+    fn placed(
+        bytes: &[u8],
+        place: &Place<'_>,
+        around: &Surroundings<'_>,
+        device: (&DeviceOverride, &str),
+    ) -> Result<Self, LoadError> {
         let mut findings = Findings::default();
         let scene = read_scene(bytes, &Limits::default(), &mut findings);
-        let device = (device, &stem(path)[..]);
-        let loaded =
-            scene.and_then(|scene| load(scene, folder(path), around, device, &mut findings));
+        let loaded = scene.and_then(|scene| load(scene, place, around, device, &mut findings));
         finish(loaded, findings).map_err(|error| error.pointing_into(bytes))
     }
 
@@ -154,7 +200,8 @@ impl LoadedScene {
         let mut findings = Findings::default();
         check(&scene, &Limits::default(), &mut findings);
         let device = (device, &stem(asset)[..]);
-        let loaded = load(scene, PathBuf::new(), around, device, &mut findings);
+        let place = Place::Folder(PathBuf::new());
+        let loaded = load(scene, &place, around, device, &mut findings);
         finish(loaded, findings)
     }
 }
@@ -213,15 +260,15 @@ fn folder(path: &Path) -> PathBuf {
 /// Opens the files of a scene; `None` if one is missing, with findings for each.
 fn load(
     mut scene: Scene,
-    folder: PathBuf,
+    place: &Place<'_>,
     around: &Surroundings<'_>,
     device: (&DeviceOverride, &str),
     findings: &mut Findings,
 ) -> Option<LoadedScene> {
-    let assets = open_assets(&scene, &folder, around, findings);
-    let trace = open_trace(&scene, &folder, findings);
+    let assets = open_assets(&scene, place, around, findings);
+    let trace = open_trace(&scene, place, findings);
     device.0.apply(&mut scene.device);
-    let response = open_response(&scene, &folder, findings);
+    let response = open_response(&scene, place, findings);
     let held = assets
         .as_ref()
         .and_then(|all| all.first())
@@ -242,7 +289,7 @@ fn load(
         response,
         settings: settings?,
         scene,
-        folder,
+        folder: place.folder(),
         notes: Vec::new(),
     })
 }
@@ -250,7 +297,7 @@ fn load(
 /// The assets of all surfaces; each file is opened once.
 fn open_assets(
     scene: &Scene,
-    folder: &Path,
+    place: &Place<'_>,
     around: &Surroundings<'_>,
     findings: &mut Findings,
 ) -> Option<Vec<Asset>> {
@@ -258,7 +305,7 @@ fn open_assets(
     let mut opened: HashMap<&Path, Opened> = HashMap::new();
     let mut assets = Vec::new();
     for (i, surface) in scene.surfaces.iter().enumerate() {
-        let open = || open_asset(&surface.asset, folder, around);
+        let open = || open_asset(&surface.asset, place, around);
         match opened.entry(&surface.asset).or_insert_with(open) {
             Ok(asset) => {
                 check_representation(asset, surface, i, findings);
@@ -274,14 +321,26 @@ fn open_assets(
 
 fn open_asset(
     asset: &Path,
-    folder: &Path,
+    place: &Place<'_>,
     around: &Surroundings<'_>,
 ) -> Result<Asset, (&'static Rule, String)> {
-    let path = folder.join(asset);
-    if !may_be_read(&path) {
-        return Err((rule::ASSET_INVALID, no_file(asset)));
-    }
-    let opened = htex_format::Asset::open(&path)
+    let data = match place {
+        Place::Folder(folder) => {
+            let path = folder.join(asset);
+            if !may_be_read(&path) {
+                return Err((rule::ASSET_INVALID, no_file(asset)));
+            }
+            htex_format::Asset::open(&path)
+        }
+        Place::Given(files) => files
+            .read(asset)
+            .map_err(|error| htex_format::ReadError::Io {
+                path: asset.to_owned(),
+                error,
+            })
+            .and_then(|bytes| htex_format::Asset::from_bytes(&bytes)),
+    };
+    let opened = data
         .map_err(htex_play::Error::from)
         .map(|data| Asset::with_registry(data, around.models.clone()))
         .map(|asset| match around.embedded {
@@ -365,13 +424,13 @@ fn check_representation(asset: &Asset, surface: &Surface, i: usize, findings: &m
     }
 }
 
-fn open_trace(scene: &Scene, folder: &Path, findings: &mut Findings) -> Option<Trace> {
+fn open_trace(scene: &Scene, place: &Place<'_>, findings: &mut Findings) -> Option<Trace> {
     let Motion::Trace(path) = &scene.motion else {
         return None;
     };
     let rules = [rule::TRACE_MISSING, rule::TRACE_INVALID];
-    let open = Trace::open;
-    let trace = opened(open, folder, path, rules, "/motion/trace", findings)?;
+    let open: (Open<Trace>, FromBytes<Trace>) = (Trace::open, Trace::from_bytes);
+    let trace = opened(open, place, path, rules, "/motion/trace", findings)?;
     for warning in &trace.warnings {
         findings.add(rule::TRACE_ASSUMED, "/motion/trace", warning.clone());
     }
@@ -389,11 +448,11 @@ fn open_trace(scene: &Scene, folder: &Path, findings: &mut Findings) -> Option<T
     Some(trace)
 }
 
-fn open_response(scene: &Scene, folder: &Path, findings: &mut Findings) -> Option<Response> {
+fn open_response(scene: &Scene, place: &Place<'_>, findings: &mut Findings) -> Option<Response> {
     let path = scene.device.response.as_ref()?;
     let rules = [rule::RESPONSE_MISSING, rule::RESPONSE_INVALID];
-    let open = response::open;
-    opened(open, folder, path, rules, "/device/response", findings)
+    let open: (Open<Response>, FromBytes<Response>) = (response::open, response::from_bytes);
+    opened(open, place, path, rules, "/device/response", findings)
 }
 
 /// Reports a response that is zero in the band of the textures, and warns of what its compensation raises.
@@ -426,21 +485,34 @@ fn check_response(
     }
 }
 
+type Open<T> = fn(&Path) -> Result<T, ReadError>;
+type FromBytes<T> = fn(&str, &[u8]) -> Result<T, ReadError>;
+
 /// Opens a file; otherwise adds a finding that it is missing or invalid.
 fn opened<T>(
-    open: impl Fn(&Path) -> Result<T, ReadError>,
-    folder: &Path,
+    (open, from_bytes): (Open<T>, FromBytes<T>),
+    place: &Place<'_>,
     path: &Path,
     [gone, invalid]: [&Rule; 2],
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<T> {
-    let place = folder.join(path);
-    if !may_be_read(&place) {
-        findings.add(invalid, pointer, no_file(path));
-        return None;
-    }
-    match open(&place) {
+    let name = path.display().to_string();
+    let read = match place {
+        Place::Folder(folder) => {
+            let file = folder.join(path);
+            if !may_be_read(&file) {
+                findings.add(invalid, pointer, no_file(path));
+                return None;
+            }
+            open(&file)
+        }
+        Place::Given(files) => files
+            .read(path)
+            .map_err(|error| ReadProblem::Io(error).in_file(&name))
+            .and_then(|bytes| from_bytes(&name, &bytes)),
+    };
+    match read {
         Ok(value) => return Some(value),
         Err(ReadError {
             problem: ReadProblem::Io(error),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use htex_dsp::grid::Band;
 use htex_play::Asset;
-use htex_recording::{Raised, raised, read_response};
+use htex_recording::{Raised, raised, read_response, response_from_bytes};
 use htex_recording::{ReadError, ReadProblem};
 
 pub use htex_recording::SetupResponse as Response;
@@ -15,16 +15,24 @@ pub use htex_recording::SetupResponse as Response;
 /// # Errors
 /// As [`read_response`]; and if no magnitude is above 0.
 pub fn open(path: &Path) -> Result<Response, ReadError> {
-    let response = read_response(path)?;
+    let file = path.file_name().unwrap_or(path.as_os_str());
+    not_zero(read_response(path)?, &file.to_string_lossy())
+}
+
+/// As [`open`], of a file in memory; messages name `file`.
+pub(crate) fn from_bytes(file: &str, bytes: &[u8]) -> Result<Response, ReadError> {
+    not_zero(response_from_bytes(file, bytes)?, file)
+}
+
+fn not_zero(response: Response, file: &str) -> Result<Response, ReadError> {
     if response.magnitude.iter().all(|m| *m == 0.0) {
-        let file = path.file_name().unwrap_or(path.as_os_str());
         let problem = ReadProblem::Option {
             option: "response",
             problem:
                 "every magnitude is 0, which cannot be compensated; measure the response again"
                     .into(),
         };
-        return Err(problem.in_file(&file.to_string_lossy()));
+        return Err(problem.in_file(file));
     }
     Ok(response)
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use htex_play::exploration::{HOLD_S, MOST_FORCE_N, MOST_SPEED_MM_S};
 use htex_recording::velocity;
-use htex_recording::{ReadError, TraceColumns, read_trace};
+use htex_recording::{ReadError, TraceColumns, read_trace, trace_from_bytes};
 
 /// Tolerance of times, seconds: a trace's rows are at least this far apart.
 const ROUNDING_S: f64 = 1e-9;
@@ -56,6 +56,14 @@ impl Trace {
     /// As [`read_trace`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         Ok(Self::new(read_trace(path)?))
+    }
+
+    /// As [`Self::open`], of a file in memory; messages name `file`.
+    ///
+    /// # Errors
+    /// As [`read_trace`].
+    pub fn from_bytes(file: &str, bytes: &[u8]) -> Result<Self, ReadError> {
+        Ok(Self::new(trace_from_bytes(file, bytes)?))
     }
 
     /// Makes a trace from columns.

@@ -34,12 +34,20 @@ export class HtexError extends Error {
   }
 }
 
-/** Sizes of structs: htex_open_options, htex_voice_options, htex_bytes. */
-const OPEN_OPTIONS = 28;
-const VOICE_OPTIONS = 56;
+/** Sizes of structs: htex_open_options, htex_voice_options, htex_bytes, htex_envelope. */
+const OPEN_OPTIONS = 36;
+const VOICE_OPTIONS = 72;
 const BYTES = 8;
+const ENVELOPE = 32;
+/** Most bands of an envelope. */
+const MOST_BANDS = 32;
+/** Size of htex_motion, and its first 8 bytes, the size and a gap, as the number that has these bits. */
+const MOTION = 48;
+export const MOTION_SIZE = new Float64Array(Uint32Array.of(MOTION, 0).buffer)[0];
+/** HTEX_ENGINE_CHECKED: the browser itself runs the modules that are given or allowed. */
+const ENGINE = 1;
 /** Bytes for results, at the start of each call. */
-const RESULTS = 64;
+const RESULTS = ENVELOPE + 8 * (MOST_BANDS + 1);
 /** Frames that are rendered at once; longer blocks are rendered in parts. */
 export const BLOCK = 4096;
 
@@ -99,6 +107,21 @@ export class Core {
     return this.samples;
   }
 
+  /** What a voice played since the last call; the mean squares of its bands are written to a Float64Array. */
+  envelope(id, bands) {
+    const at = this.results;
+    this.view().setUint32(at, ENVELOPE, true);
+    this.call("htex_voice_envelope", id, at, at + ENVELOPE, bands.length);
+    const view = this.view();
+    for (let i = 0; i < bands.length; i++) bands[i] = view.getFloat64(at + ENVELOPE + 8 * i, true);
+    return {
+      level: view.getFloat64(at + 8, true),
+      centroid: view.getFloat64(at + 16, true),
+      frames: Number(view.getBigUint64(at + 24, true)),
+      bands,
+    };
+  }
+
   error(status) {
     const at = this.exports.htex_last_error();
     const bytes = new Uint8Array(this.exports.memory.buffer, at);
@@ -152,7 +175,7 @@ export class Core {
   putMotion(take, motion) {
     if (!motion) return 0;
     const { speed = 0, force = 0, position = NaN, x = NaN, y = NaN } = motion;
-    return this.putNumbers(take, [speed, force, position, x, y]);
+    return this.putNumbers(take, [MOTION_SIZE, speed, force, position, x, y]);
   }
 
   /** The options of opening; see `OpenOptions` in index.d.ts. */
@@ -168,16 +191,17 @@ export class Core {
     const view = this.view();
     new Uint8Array(view.buffer, at, OPEN_OPTIONS).fill(0);
     view.setUint32(at, OPEN_OPTIONS, true);
-    view.setUint32(at + 12, embedded ? 0 : 1, true);
-    view.setUint32(at + 20, list, true);
-    view.setUint32(at + 24, modules.length, true);
+    view.setUint32(at + 4, ENGINE, true);
+    view.setUint32(at + 16, list, true);
+    view.setUint32(at + 20, modules.length, true);
+    view.setUint32(at + 28, embedded ? 0 : 1, true);
     return at;
   }
 
   /** The options of a voice; see `VoiceOptions` in index.d.ts. */
   putVoiceOptions(take, options) {
     const { model, rate = 20_000, seed = 0, motion, synthesis, ceiling = 0 } = options;
-    const { frequencyScaling = true, levelScaling = true, contact = true } = options;
+    const { frequencyScaling = true, levelScaling = true, contact = true, gain = 0, limit = 0, bands = 0 } = options;
     const texts = [this.putText(take, model), this.putMotion(take, motion), this.putText(take, synthesis)];
     const at = take(VOICE_OPTIONS);
     const view = this.view();
@@ -188,10 +212,13 @@ export class Core {
     view.setBigUint64(at + 16, BigInt.asUintN(64, BigInt(seed)), true);
     view.setUint32(at + 24, texts[1], true);
     view.setUint32(at + 28, texts[2], true);
-    view.setUint32(at + 32, frequencyScaling ? 0 : 1, true);
-    view.setUint32(at + 36, levelScaling ? 0 : 1, true);
-    view.setUint32(at + 40, contact ? 0 : 1, true);
-    view.setFloat64(at + 48, ceiling, true);
+    view.setFloat64(at + 32, gain, true);
+    view.setFloat64(at + 40, limit, true);
+    view.setUint32(at + 48, bands, true);
+    view.setUint32(at + 52, frequencyScaling ? 0 : 1, true);
+    view.setUint32(at + 56, levelScaling ? 0 : 1, true);
+    view.setUint32(at + 60, contact ? 0 : 1, true);
+    view.setFloat64(at + 64, ceiling, true);
     return at;
   }
 

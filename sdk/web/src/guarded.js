@@ -10,10 +10,28 @@ let keys = 0;
 /** What a worklet or a worker needs to make a voice. */
 export function describe(texture, options, rate) {
   texture.key ??= `texture ${(keys += 1)}`;
-  const { model, seed, synthesis, frequencyScaling, levelScaling, contact, ceiling, motion } = options;
-  const voice = { model, seed, synthesis, frequencyScaling, levelScaling, contact, ceiling, motion, rate };
+  const { model, seed, synthesis, frequencyScaling, levelScaling, contact, ceiling, limit, motion } = options;
+  const voice = { model, seed, synthesis, frequencyScaling, levelScaling, contact, ceiling, limit, motion, rate };
   const module = texture.core.module;
   return { module, key: texture.key, bytes: texture.bytes, open: texture.options, voice };
+}
+
+/** Starts the worker of a page. */
+function startInPage(receive, failed) {
+  const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+  worker.onmessage = ({ data }) => receive(data);
+  worker.onerror = ({ message }) => failed(message);
+  return worker;
+}
+
+/** Starts a thread of Node.js, which has no `Worker` of pages. It keeps the program running only while it is asked for something. */
+async function startInNode(receive, failed) {
+  const { Worker: Thread } = await import(/* @vite-ignore */ "node:worker_threads");
+  const thread = new Thread(new URL("./worker.js", import.meta.url));
+  thread.on("message", receive);
+  thread.on("error", ({ message }) => failed(message));
+  thread.unref();
+  return thread;
 }
 
 export class GuardedWorker {
@@ -23,10 +41,37 @@ export class GuardedWorker {
     this.waiting = new Map();
     this.last = 0;
     this.heard = Date.now();
-    this.worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
-    this.worker.onmessage = ({ data }) => this.receive(data);
-    this.worker.onerror = ({ message }) => this.end(new HtexError(`the worker failed: ${message}`, "internal"));
+    const receive = (data) => this.receive(data);
+    const failed = (message) => this.end(new HtexError(`the worker failed: ${message}`, "internal"));
+    if (typeof Worker !== "undefined") this.worker = startInPage(receive, failed);
+    // Until the thread of Node.js has started, messages wait.
+    else {
+      this.early = [];
+      startInNode(receive, failed).then((thread) => this.started(thread), ({ message }) => failed(message));
+    }
     this.timer = setInterval(() => this.ask(), ASKED_MS);
+    this.timer.unref?.();
+  }
+
+  /** Passes on what waited for a thread of Node.js. */
+  started(thread) {
+    this.worker = thread;
+    if (this.ended) return void thread.terminate();
+    for (const [message, transfer] of this.early) thread.postMessage(message, transfer);
+    this.hold();
+  }
+
+  post(message, transfer = []) {
+    if (this.worker) this.worker.postMessage(message, transfer);
+    else this.early.push([message, transfer]);
+    this.hold();
+  }
+
+  /** Keeps a program of Node.js running while a result is waited for. */
+  hold() {
+    const how = this.waiting.size > 0 ? "ref" : "unref";
+    this.worker?.[how]?.();
+    this.timer[how]?.();
   }
 
   receive({ pong, id, error, ...result }) {
@@ -37,6 +82,7 @@ export class GuardedWorker {
     }
     const { resolve, reject, isOnce } = this.waiting.get(id) ?? {};
     if (isOnce) this.waiting.delete(id);
+    this.hold();
     if (error) reject?.(new HtexError(error.message, error.code));
     else resolve?.(result);
   }
@@ -45,7 +91,7 @@ export class GuardedWorker {
     if (!this.asked) {
       this.heard = Date.now();
       this.asked = true;
-      this.worker.postMessage({ ping: true });
+      this.post({ ping: true });
     } else if (Date.now() - this.heard > this.limit) {
       this.end(new HtexError(`a model ran longer than ${this.limit} ms and was stopped`, "model"));
     }
@@ -60,7 +106,7 @@ export class GuardedWorker {
       const both = (error) => (reject(error), failed?.(error));
       this.waiting.set(id, { resolve, reject: both, isOnce: !failed });
     });
-    this.worker.postMessage({ id, ...message }, transfer);
+    this.post({ id, ...message }, transfer);
     return done;
   }
 
@@ -80,7 +126,7 @@ export class GuardedWorker {
     if (this.ended) return;
     this.ended = error;
     clearInterval(this.timer);
-    this.worker.terminate();
+    this.worker?.terminate();
     for (const { reject } of this.waiting.values()) reject(error);
     this.waiting.clear();
   }

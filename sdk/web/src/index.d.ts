@@ -51,6 +51,24 @@ export interface VoiceOptions {
   /** Highest level that a motion outside the recorded ones has, as a multiple of the strongest recorded level: above 0 and finite.
    * Default 4. */
   ceiling?: number;
+  /** Gain of the samples. Default 1; not of an `HtexNode`, whose `gain` is an AudioParam. */
+  gain?: number;
+  /** Greatest magnitude of a sample, in the texture's unit; the gain falls at once where one would exceed it. Default: no limit. */
+  limit?: number;
+  /** Number of bands of `Voice.envelope`, 1 to 32. Default 0: no envelope, which takes no time. */
+  bands?: number;
+}
+
+/** What a voice played since it was last asked: for phones, pads and motors, which take level and frequency. */
+export interface Envelope {
+  /** RMS of the samples, in the texture's unit, exactly; 0 for none. */
+  level: number;
+  /** Mean frequency, weighted by power, Hz, of windows that lag by some 20 ms; 0 for silence. */
+  centroid: number;
+  /** Number of the samples. */
+  frames: number;
+  /** Mean square in each band, of the same windows. */
+  bands: Float64Array;
 }
 
 export interface At {
@@ -104,6 +122,18 @@ export class Voice {
     xs?: ArrayLike<number>,
     ys?: ArrayLike<number>,
   ): Float32Array;
+  /** Id of the model that plays. */
+  readonly model: string;
+  /** Whether the voice rests: its samples are 0 until a motion is felt again. */
+  readonly isSilent: boolean;
+  /** Sets the gain, which changes within 10 ms. */
+  setGain(gain: number): void;
+  /** Makes the voice as it was when it was made. */
+  reset(): void;
+  /** What was rendered since the last call; the bands are written to the array, if one is given. */
+  envelope(bands?: Float64Array): Envelope;
+  /** Edges of the bands, Hz: one more than bands, in equal ratios. The first band reaches down to 0 Hz, and the last up to half the rate. */
+  readonly envelopeEdges: Float64Array;
   /** How the voice plays a motion, and whether that is within the recorded conditions, as English text. */
   coverage(motion: Motion): string;
   /** Frees the memory of the voice. */
@@ -165,7 +195,7 @@ export function setLibrary(library: string | URL | Bytes | WebAssembly.Module): 
 /** Prepares an audio context for nodes; must have returned before `new HtexNode`. */
 export function prepare(context: BaseAudioContext): Promise<void>;
 
-export interface NodeOptions extends Omit<VoiceOptions, "rate"> {
+export interface NodeOptions extends Omit<VoiceOptions, "rate" | "gain" | "bands"> {
   /** Factor from the texture's unit to full scale. Default: an RMS of 0.1, -20 dB, at the first condition. */
   gain?: number;
   /** Whether models of modules may run in the audio thread, where a call that does not return stops all sound. Default: only for textures
@@ -198,7 +228,8 @@ export class HtexNode extends AudioWorkletNode {
   stop(): void;
 }
 
-/** A worker that renders voices of models that are not trusted, and is ended when a call takes too long. */
+/** A worker that renders voices of models that are not trusted, and is ended when a call takes too long. In Node.js it is a thread, and
+ * does not keep the program running while nothing is asked for. */
 export class GuardedWorker {
   /** `limit`: longest call, ms. Default 2000. */
   constructor(options?: { limit?: number });

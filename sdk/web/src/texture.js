@@ -1,6 +1,6 @@
 // Textures and their voices.
 
-import { BLOCK, HtexError, toBytes } from "./core.js";
+import { BLOCK, HtexError, MOTION_SIZE, toBytes } from "./core.js";
 
 /** Frees what its owner did not free. */
 const abandoned =
@@ -103,6 +103,42 @@ export class Voice extends Handle {
       return core.view().getBigUint64(core.results, true);
     });
     super(core, id, "htex_voice_free");
+    this.bands = options.bands ?? 0;
+  }
+
+  /** Id of the model that plays. */
+  get model() {
+    return this.core.text("htex_voice_model", this.id);
+  }
+
+  /** Sets the gain, which changes within 10 ms. */
+  setGain(gain) {
+    this.core.call("htex_voice_set_gain", this.id, gain);
+  }
+
+  /** Whether the voice rests: its samples are 0 until a motion is felt again. */
+  get isSilent() {
+    const { core } = this;
+    core.call("htex_voice_is_silent", this.id, core.results);
+    return core.view().getUint32(core.results, true) !== 0;
+  }
+
+  /** Makes the voice as it was when it was made. */
+  reset() {
+    this.core.call("htex_voice_reset", this.id, 0);
+  }
+
+  /** What was rendered since the last call: level (RMS, in the unit), centroid (Hz) and the mean square in each of the voice's `bands`. */
+  envelope(bands = new Float64Array(this.bands)) {
+    return this.core.envelope(this.id, bands);
+  }
+
+  /** Edges of the bands, Hz: one more than bands. */
+  get envelopeEdges() {
+    const { core } = this;
+    const count = this.bands > 0 ? this.bands + 1 : 0;
+    core.call("htex_voice_envelope_edges", this.id, core.results, count);
+    return new Float64Array(core.exports.memory.buffer, core.results, count).slice();
   }
 
   /** Sets the motion of the finger: speed in mm/s, force in N, and, in mm, the position along the path and the place on the
@@ -110,11 +146,7 @@ export class Voice extends Handle {
   setMotion(speed, force, position = NaN, x = NaN, y = NaN) {
     const { core } = this;
     const view = core.view();
-    view.setFloat64(core.results, speed, true);
-    view.setFloat64(core.results + 8, force, true);
-    view.setFloat64(core.results + 16, position, true);
-    view.setFloat64(core.results + 24, x, true);
-    view.setFloat64(core.results + 32, y, true);
+    [MOTION_SIZE, speed, force, position, x, y].forEach((number, i) => view.setFloat64(core.results + 8 * i, number, true));
     core.call("htex_voice_set_motion", this.id, core.results);
   }
 
@@ -143,8 +175,10 @@ export class Voice extends Handle {
     }
     return core.scope((take) => {
       const given = [speeds, forces, positions, xs, ys];
-      const all = new Float64Array(given.length * count);
-      for (let i = 0; i < count; i++) all.set(given.map((numbers) => (numbers ? numbers[i] : NaN)), given.length * i);
+      const all = new Float64Array((1 + given.length) * count);
+      for (let i = 0; i < count; i++) {
+        all.set([MOTION_SIZE, ...given.map((numbers) => (numbers ? numbers[i] : NaN))], (1 + given.length) * i);
+      }
       const motions = core.putNumbers(take, all);
       const out = take(Math.max(4 * count * frames, 8));
       core.call("htex_voice_render_path", this.id, motions, count, out, frames);

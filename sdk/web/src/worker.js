@@ -8,8 +8,11 @@ const AHEAD = 6;
 
 const stage = new Stage();
 
+/** The other side: a page, or a program of Node.js, in which this is a thread. */
+const outside = globalThis.postMessage ? globalThis : (await import(/* @vite-ignore */ "node:worker_threads")).parentPort;
+
 function report(id, error) {
-  postMessage({ id, error: { message: error.message, code: error.code } });
+  outside.postMessage({ id, error: { message: error.message, code: error.code } });
 }
 
 /** Plays a voice through a port to an audio worklet. */
@@ -40,7 +43,7 @@ function play({ id, description, port }) {
   attempt(() => {
     voice = stage.voice(description);
     for (let i = 0; i < AHEAD; i++) render(new Float32Array(FRAMES));
-    postMessage({ id, ready: true });
+    outside.postMessage({ id, ready: true });
   });
 }
 
@@ -50,14 +53,14 @@ function render({ id, description, frames }) {
     const voice = stage.voice(description);
     const samples = voice.render(frames);
     voice.free();
-    postMessage({ id, samples }, [samples.buffer]);
+    outside.postMessage({ id, samples }, [samples.buffer]);
   } catch (error) {
     report(id, error);
   }
 }
 
-addEventListener("message", ({ data }) => {
-  if (data.ping) postMessage({ pong: data.ping });
+outside.onmessage = ({ data }) => {
+  if (data.ping) outside.postMessage({ pong: data.ping });
   else if (data.port) play(data);
   else render(data);
-});
+};

@@ -13,7 +13,7 @@ import { HTEX_FIXTURES, HTEX_PACKAGE, MODELS, bytes, difference, samples } from 
 /** The motion of the command's samples. */
 const MOTION = { speed: 80, force: 0.5 };
 
-const { open, HtexError, HtexNode } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "index.js")));
+const { open, GuardedWorker, HtexError, HtexNode } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "index.js")));
 
 for (const model of MODELS) {
   test(`${model} has the samples of the command`, async () => {
@@ -124,6 +124,59 @@ test("a module above its limits is refused", async () => {
   await assert.rejects(open(asset, { modules: [large] }), /memory is limited/);
   await assert.rejects(open(asset, { modules: [large.subarray(0, 8)] }), /not an htex model/);
   await assert.rejects(open(asset, { modules: [Uint8Array.of(1, 2, 3)] }), /does not begin/);
+});
+
+test("a voice tells what it plays", async () => {
+  const texture = await open(await bytes("vinyl.htex"));
+  const voice = texture.voice({ model: "ar", bands: 3, seed: 7, gain: 0.5 });
+  assert.equal(voice.model, "org.htex.ar");
+  const edges = [20, 20 * 50 ** (1 / 3), 20 * 50 ** (2 / 3), 1000];
+  assert.ok(voice.envelopeEdges.every((edge, k) => Math.abs(edge / edges[k] - 1) < 1e-9));
+  const samples = voice.render(20000);
+  const rms = Math.sqrt(samples.reduce((sum, x) => sum + x * x, 0) / samples.length);
+  const { level, centroid, frames, bands } = voice.envelope();
+  assert.equal(frames, 20000);
+  assert.ok(Math.abs(level / rms - 1) < 1e-6);
+  assert.ok(centroid > 20 && centroid < 1000);
+  const power = bands.reduce((sum, x) => sum + x);
+  assert.ok(bands.length === 3 && Math.abs(power / level ** 2 - 1) < 0.1, `${power} ${level ** 2}`);
+  voice.reset();
+  assert.equal(difference(voice.render(20000), samples), -1);
+  assert.throws(() => voice.envelope(new Float64Array(2)), { code: "invalid-argument" });
+  assert.throws(() => voice.setGain(-1), { code: "invalid-argument" });
+  voice.setMotion(0, 0);
+  assert.ok(!voice.isSilent);
+  voice.render(1000);
+  assert.ok(voice.isSilent);
+  const limited = texture.voice({ model: "ar", seed: 7, limit: 0.001 });
+  assert.ok(limited.render(2000).every((x) => Math.abs(x) <= Math.fround(0.001)));
+});
+
+test("a worker stops a module that does not return", async () => {
+  const modules = [await bytes("endless.wasm")];
+  const endless = await open(await bytes("bursts.htex"), { modules, embedded: false });
+  const worker = new GuardedWorker({ limit: 500 });
+  const start = performance.now();
+  const options = { model: "bursts", rate: 48000, seed: 7, motion: MOTION };
+  await assert.rejects(worker.render(endless, 100, options), { name: "HtexError", code: "model", message: /longer than 500 ms/ });
+  assert.ok(performance.now() - start < 5000);
+  await assert.rejects(worker.render(endless, 100, options), { code: "model" });
+  // Another worker plays a module that returns, and its errors are those of a voice.
+  const texture = await open(await bytes("bursts.htex"));
+  const guarded = new GuardedWorker();
+  const expected = await samples("bursts.wav");
+  const played = await guarded.render(texture, 1000, options);
+  assert.equal(difference(played, expected.slice(0, 1000)), -1);
+  await assert.rejects(guarded.render(texture, 100, { model: "none" }), { code: "no-representation" });
+  guarded.end();
+  await assert.rejects(guarded.render(texture, 100, options), { message: /ended/ });
+});
+
+test("a worker does not keep a program running", () => {
+  const index = JSON.stringify(pathToFileURL(path.join(HTEX_PACKAGE, "index.js")));
+  const program = `const { GuardedWorker } = await import(${index}); new GuardedWorker(); console.log("done");`;
+  const arguments_ = ["--input-type=module", "-e", program];
+  assert.equal(execFileSync(process.execPath, arguments_, { encoding: "utf8", timeout: 20000 }).trim(), "done");
 });
 
 test("the example of the README runs", async () => {

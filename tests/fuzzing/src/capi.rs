@@ -2,7 +2,7 @@
 #![allow(unsafe_code)] // The functions take pointers; all pointers here are live.
 
 use std::ffi::{CStr, c_char};
-use std::ptr::null;
+use std::ptr::{null, null_mut};
 
 use htex_c::htex_status::*;
 use htex_c::*;
@@ -83,6 +83,7 @@ impl Calls<'_> {
 
     fn motion(&mut self) -> htex_motion {
         htex_motion {
+            size: size_of::<htex_motion>() as u32,
             speed_mm_s: self.number(),
             force_n: self.number(),
             position_mm: self.number(),
@@ -152,7 +153,7 @@ impl Calls<'_> {
         ];
         let (asset, motion) = (self.asset(), self.motion());
         let options = htex_voice_options {
-            size: size_of::<htex_voice_options>(),
+            size: size_of::<htex_voice_options>() as u32,
             model: names[usize::from(self.bytes.next()) % names.len()],
             rate_hz: [0.0, 8_000.0, 20_000.0, self.number()][usize::from(self.bytes.next()) % 4],
             seed: self.bytes.next().into(),
@@ -162,6 +163,9 @@ impl Calls<'_> {
                 &motion
             },
             synthesis: ways[usize::from(self.bytes.next()) % ways.len()],
+            gain: self.number(),
+            limit: self.number(),
+            envelope_bands: (self.bytes.next() % 40).into(),
             no_frequency_scaling: (self.bytes.next() % 2).into(),
             no_level_scaling: 0,
             no_contact: 1,
@@ -180,6 +184,18 @@ impl Calls<'_> {
         let voice = self.voice();
         // SAFETY: `frames` is at most the length.
         self.rendered |= self.told(unsafe { htex_voice_render(voice, out.as_mut_ptr(), frames) });
+        let mut envelope = htex_envelope {
+            size: size_of::<htex_envelope>() as u32,
+            level_rms: 0.0,
+            centroid_hz: 0.0,
+            frames: 0,
+        };
+        let gain = self.number();
+        self.told(htex_voice_set_gain(voice, gain));
+        // SAFETY: live pointers.
+        if self.told(unsafe { htex_voice_envelope(voice, &mut envelope, null_mut(), 0) }) {
+            assert!(envelope.level_rms.is_finite() && envelope.centroid_hz.is_finite());
+        }
         assert!(out.iter().all(|x| x.is_finite()));
     }
 

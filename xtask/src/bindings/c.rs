@@ -62,6 +62,16 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     if samples.windows(2).any(|pair| pair[0] != pair[1]) || samples[0].len() != 4 * 64 * 625 {
         bail!("the builds render different samples");
     }
+    // The library as it is installed allocates nothing in real-time calls.
+    let line = "cc -std=c11 -O1 -Wall -Werror -DCOUNTED -pthread $0 $(pkg-config --cflags --libs htex) -lm -o real_time";
+    run(program("sh", &folder)
+        .args(["-c", line])
+        .arg(capi.join("tests/hosts/real_time.c"))
+        .env("PKG_CONFIG_PATH", whole.join("lib/pkgconfig")))?;
+    run(program("./real_time", &folder)
+        .arg(&asset)
+        .arg("20000")
+        .env("LD_LIBRARY_PATH", whole.join("lib")))?;
     let line =
         "cc -std=c11 -Wall -Werror $0 $(pkg-config --cflags --libs htex sdl2) -lm -o play_sdl";
     let sdl = capi.join("examples/play_sdl.c");

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use htex::library::{Entry, Index, LibraryError, Limits, Opening, Progress};
 
-use crate::handles::Table;
+use crate::handles::{Kind, Table};
 use crate::pointers::{needed_text, place, slice, slice_mut, write_text};
 use crate::status::{Failure, guarded, htex_status};
 
@@ -18,7 +18,7 @@ enum State {
     Open(Box<Index>, Vec<Entry>),
 }
 
-static INDEXES: Table<State> = Table::new();
+static INDEXES: Table<State> = Table::new(Kind::Index);
 
 impl State {
     fn index(&self) -> Result<&Index, Failure> {

@@ -1,18 +1,57 @@
 //! The calls of libraries.
 
 use std::ffi::c_char;
+use std::io;
+use std::path::Path;
 
 use htex::Library;
-use htex::library::LibraryError;
+use htex::library::{LibraryError, LibrarySource, LocalFile};
 
 use super::htex_library;
 use crate::asset::{htex_asset, keep};
-use crate::handles::Table;
+use crate::handles::{Kind, Table};
 use crate::options::{htex_open_options, models};
-use crate::pointers::{needed_text, place, write_text};
+use crate::pointers::{needed_text, place, slice, write_text};
+use crate::reader::{Reader, htex_reader};
 use crate::status::{Failure, guarded, htex_status};
 
-static LIBRARIES: Table<Library> = Table::new();
+/// The bytes of a library.
+enum Source {
+    File(LocalFile),
+    Memory(Vec<u8>),
+    Reader(Reader),
+}
+
+impl Source {
+    fn file(path: &Path) -> Result<Self, Failure> {
+        Ok(Self::File(LocalFile::open(path)?))
+    }
+}
+
+impl LibrarySource for Source {
+    fn len(&self) -> io::Result<u64> {
+        match self {
+            Self::File(file) => file.len(),
+            Self::Memory(bytes) => Ok(bytes.len() as u64),
+            Self::Reader(reader) => Ok(reader.len()),
+        }
+    }
+
+    fn read_at(&self, offset: u64, buffer: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.read_at(offset, buffer),
+            Self::Memory(bytes) => {
+                let from = usize::try_from(offset).map_or(bytes.len(), |at| at.min(bytes.len()));
+                let len = buffer.len().min(bytes.len() - from);
+                buffer[..len].copy_from_slice(&bytes[from..from + len]);
+                Ok(len)
+            }
+            Self::Reader(reader) => reader.read_at(offset, buffer),
+        }
+    }
+}
+
+static LIBRARIES: Table<Library<Source>> = Table::new(Kind::Library);
 
 impl From<LibraryError> for Failure {
     fn from(error: LibraryError) -> Self {
@@ -25,11 +64,60 @@ impl From<LibraryError> for Failure {
     }
 }
 
+/// Frees all of them.
+///
+/// # Safety
+/// As [`Table::clear`].
+pub(crate) unsafe fn clear() -> Result<(), Failure> {
+    // SAFETY: as here.
+    unsafe { LIBRARIES.clear() }
+}
+
 pub(super) unsafe fn open(path: *const c_char, out: *mut htex_library) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    let source = || Source::file(unsafe { needed_text(path) }?.as_ref());
+    // SAFETY: as above.
+    unsafe { keep_library(source, out) }
+}
+
+#[cfg(windows)]
+pub(super) unsafe fn open_wide(path: *const u16, out: *mut htex_library) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    let source = || Source::file(&unsafe { crate::pointers::wide_path(path) }?);
+    // SAFETY: as above.
+    unsafe { keep_library(source, out) }
+}
+
+pub(super) unsafe fn from_bytes(
+    bytes: *const u8,
+    len: usize,
+    out: *mut htex_library,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    let source = || Ok(Source::Memory(unsafe { slice(bytes, len) }?.to_vec()));
+    // SAFETY: as above.
+    unsafe { keep_library(source, out) }
+}
+
+pub(super) unsafe fn open_reader(
+    reader: *const htex_reader,
+    out: *mut htex_library,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    let source = || Ok(Source::Reader(unsafe { Reader::of(reader) }?));
+    // SAFETY: as above.
+    unsafe { keep_library(source, out) }
+}
+
+unsafe fn keep_library(
+    source: impl FnOnce() -> Result<Source, Failure>,
+    out: *mut htex_library,
+) -> htex_status {
     guarded(|| {
-        // SAFETY: the pointers are the caller's.
-        let (path, out) = unsafe { (needed_text(path)?, place(out)?) };
-        out.id = LIBRARIES.insert(Library::open(path.as_ref())?)?;
+        let source = source()?;
+        // SAFETY: the place is the caller's.
+        let out = unsafe { place(out) }?;
+        out.id = LIBRARIES.insert(Library::open_source(source)?)?;
         Ok(())
     })
 }

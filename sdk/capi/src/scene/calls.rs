@@ -2,20 +2,22 @@
 
 use std::collections::BTreeMap;
 use std::ffi::c_char;
-use std::path::Path;
+use std::io;
+use std::path::{Path, PathBuf};
 
-use htex::AssetData;
 use htex::device::Devices;
 use htex::scene::{
     Costs, DeviceOverride, Finger, Limits, LoadError, LoadedScene, Plan, Renderer, SceneError,
-    Surroundings, plan, read_scene,
+    SceneFiles, Surroundings, plan, read_scene,
 };
+use htex::{AssetData, Quantity};
 
 use super::{htex_finger, htex_scene, htex_scene_options};
-use crate::handles::Table;
+use crate::handles::{Kind, Table};
 use crate::log::{htex_log_level, log};
 use crate::options::{htex_open_options, models, options};
 use crate::pointers::{needed_text, place, slice, slice_mut, write_text};
+use crate::reader::{Files, htex_files};
 use crate::status::{Failure, guarded, htex_status};
 
 /// A scene that plays, and its plan as JSON.
@@ -24,7 +26,7 @@ struct Playing {
     plan_json: String,
 }
 
-static SCENES: Table<Playing> = Table::new();
+static SCENES: Table<Playing> = Table::new(Kind::Scene);
 
 /// The device whose samples a program gets: numbers in the assets' unit.
 const ADAPTER: &str = "org.htex.file";
@@ -47,12 +49,103 @@ impl From<SceneError> for Failure {
             SceneError::NoModel { .. } => htex_status::HTEX_STATUS_NO_MODEL,
             _ => htex_status::HTEX_STATUS_INVALID_SCENE,
         };
-        Self::of(status, error)
+        Self::of_scene(status, error)
     }
 }
 
-pub(super) unsafe fn open(
+/// Frees all of them.
+///
+/// # Safety
+/// As [`Table::clear`].
+pub(crate) unsafe fn clear() -> Result<(), Failure> {
+    // SAFETY: as here.
+    unsafe { SCENES.clear() }
+}
+
+/// What a scene is read from.
+pub(super) enum Source<'a> {
+    Path(PathBuf),
+    Memory(&'a [u8], Files),
+}
+
+impl Source<'_> {
+    fn load(
+        &self,
+        around: &Surroundings<'_>,
+        device: &DeviceOverride,
+    ) -> Result<LoadedScene, LoadError> {
+        match self {
+            Self::Path(path) => LoadedScene::open(path, around, device),
+            Self::Memory(bytes, files) => LoadedScene::from_files(bytes, files, around, device),
+        }
+    }
+
+    /// The quantity of the first surface's asset. A scene or an asset that cannot be read is an error of loading it.
+    fn quantity(&self) -> Option<Quantity> {
+        let first = |bytes: &[u8]| {
+            let scene = read_scene(bytes, &Limits::default(), &mut Default::default())?;
+            Some(scene.surfaces.first()?.asset.clone())
+        };
+        let data = match self {
+            Self::Path(path) => {
+                let asset = first(&std::fs::read(path).ok()?)?;
+                AssetData::open(&path.parent()?.join(asset)).ok()?
+            }
+            Self::Memory(bytes, files) => {
+                AssetData::from_bytes(&files.read(&first(bytes)?).ok()?).ok()?
+            }
+        };
+        Some(data.manifest.quantity)
+    }
+}
+
+impl SceneFiles for Files {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        self.read_whole(&path.to_string_lossy())
+    }
+}
+
+pub(super) unsafe fn open_path(
     path: *const c_char,
+    open_options: *const htex_open_options,
+    scene_options: *const htex_scene_options,
+    out: *mut htex_scene,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    let source = || Ok(Source::Path(unsafe { needed_text(path) }?.into()));
+    // SAFETY: as above.
+    unsafe { open(source, open_options, scene_options, out) }
+}
+
+#[cfg(windows)]
+pub(super) unsafe fn open_wide(
+    path: *const u16,
+    open_options: *const htex_open_options,
+    scene_options: *const htex_scene_options,
+    out: *mut htex_scene,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    let source = || Ok(Source::Path(unsafe { crate::pointers::wide_path(path) }?));
+    // SAFETY: as above.
+    unsafe { open(source, open_options, scene_options, out) }
+}
+
+pub(super) unsafe fn from_bytes(
+    bytes: *const u8,
+    len: usize,
+    files: *const htex_files,
+    open_options: *const htex_open_options,
+    scene_options: *const htex_scene_options,
+    out: *mut htex_scene,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    let source = || unsafe { Ok(Source::Memory(slice(bytes, len)?, Files::of(files)?)) };
+    // SAFETY: as above.
+    unsafe { open(source, open_options, scene_options, out) }
+}
+
+unsafe fn open(
+    source: impl FnOnce() -> Result<Source<'static>, Failure>,
     open: *const htex_open_options,
     scene_options: *const htex_scene_options,
     out: *mut htex_scene,
@@ -62,15 +155,10 @@ pub(super) unsafe fn open(
             size: 0,
             rate_hz: 0.0,
         };
+        let source = source()?;
         // SAFETY: the pointers are the caller's.
-        let (path, models, asked, out) = unsafe {
-            (
-                needed_text(path)?,
-                models(open)?,
-                options(scene_options, zeros)?,
-                place(out)?,
-            )
-        };
+        let (models, asked, out) =
+            unsafe { (models(open)?, options(scene_options, zeros)?, place(out)?) };
         let devices = Devices::new(htex_device_builtin::devices());
         let around = Surroundings {
             models: &models.registry,
@@ -79,11 +167,11 @@ pub(super) unsafe fn open(
         };
         let device = DeviceOverride {
             adapter: Some(ADAPTER.to_owned()),
-            settings: settings(path.as_ref(), asked.rate_hz),
+            settings: settings(source.quantity(), asked.rate_hz),
             rehearsal: true,
             ..DeviceOverride::default()
         };
-        let scene = LoadedScene::open(path.as_ref(), &around, &device)?;
+        let scene = source.load(&around, &device)?;
         for note in &scene.notes {
             log(htex_log_level::HTEX_LOG_WARNING, &note.to_string());
         }
@@ -101,16 +189,9 @@ pub(super) unsafe fn open(
     })
 }
 
-/// Settings of the device: the rate, and the quantity of the first surface's asset. A scene or an asset that cannot be read is
-/// an error of loading it.
-fn settings(path: &Path, rate_hz: f64) -> BTreeMap<String, String> {
-    let quantity = || {
-        let bytes = std::fs::read(path).ok()?;
-        let scene = read_scene(&bytes, &Limits::default(), &mut Default::default())?;
-        let asset = path.parent()?.join(&scene.surfaces.first()?.asset);
-        Some(AssetData::open(&asset).ok()?.manifest.quantity)
-    };
-    let quantity = quantity().map(|quantity| ("quantity", quantity.name().to_owned()));
+/// Settings of the device: the rate, and the quantity of the samples.
+fn settings(quantity: Option<Quantity>, rate_hz: f64) -> BTreeMap<String, String> {
+    let quantity = quantity.map(|quantity| ("quantity", quantity.name().to_owned()));
     let rate = (rate_hz != 0.0).then(|| ("rate_hz", rate_hz.to_string()));
     let given = [quantity, rate].into_iter().flatten();
     given
@@ -157,6 +238,11 @@ pub(super) unsafe fn set_finger(scene: htex_scene, finger: *const htex_finger) -
         let mut scene = SCENES.exclusive(scene.id)?;
         // SAFETY: the finger is the caller's.
         let finger = unsafe { slice(finger, 1) }?[0];
+        if (finger.size as usize) < size_of::<htex_finger>() {
+            return Err(Failure::argument(
+                "the finger's size is not that of its struct; set it to sizeof(htex_finger)",
+            ));
+        }
         let unknown = finger.x_mm.is_nan() && finger.y_mm.is_nan();
         Ok(scene.renderer.set_motion(Finger {
             speed_mm_s: finger.speed_mm_s,

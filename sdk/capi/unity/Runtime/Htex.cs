@@ -1,8 +1,9 @@
 // Htex.cs: libhtex for C#, in one file. C# 7.3, .NET Standard 2.0, mono, Unity (Mono and IL2CPP).
 //
-// Assets, libraries, voices and scenes are SafeHandles: they are freed with Dispose, or when they are collected. Calls that can fail throw
-// HtexException; Voice.Render, Voice.SetMotion, Scene.Render and Scene.SetFinger allocate nothing unless they fail, and may be
-// called in an audio thread.
+// Assets, libraries, voices and scenes are SafeHandles: they are freed with Dispose, or when they are collected. A call holds its object:
+// disposed of by another thread, it is freed when the call has returned, and later calls throw ObjectDisposedException. Calls that can
+// fail throw HtexException; Voice.Render, RenderAdd, SetMotion, SetGain and Envelope, Scene.Render and Scene.SetFinger allocate nothing
+// unless they fail, and may be called in an audio thread.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 using System;
@@ -48,6 +49,7 @@ namespace Htex
     [StructLayout(LayoutKind.Sequential)]
     public struct Motion
     {
+        internal uint Size;
         /// <summary>Scanning speed, mm/s; finite and not negative.</summary>
         public double SpeedMmS;
         /// <summary>Normal force, N; finite and not negative.</summary>
@@ -60,6 +62,7 @@ namespace Htex
         public Motion(
             double speedMmS, double forceN, double positionMm = double.NaN, double xMm = double.NaN, double yMm = double.NaN)
         {
+            Size = Native.MotionSize;
             SpeedMmS = speedMmS;
             ForceN = forceN;
             PositionMm = positionMm;
@@ -72,6 +75,7 @@ namespace Htex
     [StructLayout(LayoutKind.Sequential)]
     public struct Finger
     {
+        internal uint Size;
         /// <summary>Scanning speed, mm/s; negative on the back stroke.</summary>
         public double SpeedMmS;
         /// <summary>Normal force, N; not negative.</summary>
@@ -81,6 +85,7 @@ namespace Htex
 
         public Finger(double speedMmS, double forceN, double xMm = double.NaN, double yMm = double.NaN)
         {
+            Size = Native.FingerSize;
             SpeedMmS = speedMmS;
             ForceN = forceN;
             XMm = xMm;
@@ -95,6 +100,44 @@ namespace Htex
         public double SpeedMmS, ForceN;
     }
 
+    /// <summary>A band of frequencies.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Band
+    {
+        public double LowHz, HighHz;
+    }
+
+    /// <summary>What a voice played since it was last asked; see htex_voice_envelope.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Envelope
+    {
+        internal uint Size;
+        /// <summary>RMS of the samples, in the asset's unit; 0 for none.</summary>
+        public double LevelRms;
+        /// <summary>Mean frequency, Hz; 0 for silence.</summary>
+        public double CentroidHz;
+        /// <summary>Number of the samples.</summary>
+        public ulong Frames;
+    }
+
+    /// <summary>The engine of WASM modules; see htex_open_options.</summary>
+    public enum Engine
+    {
+        /// <summary>Modules are not loaded.</summary>
+        Off = 0,
+        /// <summary>Modules run without handlers for signals.</summary>
+        Checked = 1,
+        /// <summary>Modules run with handlers for signals, which some runtimes of C# do not allow.</summary>
+        Signals = 2,
+    }
+
+    /// <summary>Level of a message.</summary>
+    public enum LogLevel
+    {
+        Info = 0,
+        Warning = 1,
+    }
+
     /// <summary>Options of a voice; null and 0 select the defaults.</summary>
     public sealed class VoiceOptions
     {
@@ -103,6 +146,12 @@ namespace Htex
         public ulong Seed;
         public Motion? Motion;
         public string Synthesis;
+        /// <summary>Gain of the samples; 0: 1.</summary>
+        public double Gain;
+        /// <summary>Greatest magnitude of a sample, in the asset's unit; 0: none.</summary>
+        public double Limit;
+        /// <summary>Number of bands of the envelope, 1 to 32; 0: no envelope.</summary>
+        public int EnvelopeBands;
         public bool FrequencyScaling = true, LevelScaling = true, Contact = true;
         /// <summary>Highest level of a motion outside the recorded ones, over the strongest recorded level; 0: 4.</summary>
         public double Ceiling;
@@ -115,7 +164,11 @@ namespace Htex
         public string[] Plugins = new string[0];
         /// <summary>WASM modules of models, which run in a sandbox.</summary>
         public byte[][] Modules = new byte[0][];
-        /// <summary>Whether models that assets bring along run, in a sandbox.</summary>
+        /// <summary>The engine that runs modules.</summary>
+        public Engine Engine = Engine.Off;
+        /// <summary>Folder for compiled modules; null: none is written.</summary>
+        public string Cache;
+        /// <summary>Whether models that assets bring along run, with an engine and in its sandbox.</summary>
         public bool Embedded = true;
         /// <summary>Whether installed models are searched for.</summary>
         public bool Installed;
@@ -131,11 +184,9 @@ namespace Htex
 
         public override bool IsInvalid { get { return handle == IntPtr.Zero; } }
 
-        internal Native.Handle Id { get { return new Native.Handle { Id = (ulong)(long)handle }; } }
-
         protected override bool ReleaseHandle()
         {
-            return Native.htex_asset_free(Id) == Status.Ok;
+            return Native.htex_asset_free(new Native.Handle { Id = (ulong)(long)handle }) == Status.Ok;
         }
 
         public static Asset Open(string path, OpenOptions options = null)
@@ -158,16 +209,40 @@ namespace Htex
             }
         }
 
+        public string Name
+        {
+            get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_asset_name(this, o, c, out l)); }
+        }
+
+        /// <summary>Band of the spectra.</summary>
+        public Band Band
+        {
+            get
+            {
+                Band band;
+                Native.Check(Native.htex_asset_band(this, out band));
+                return band;
+            }
+        }
+
+        /// <summary>Level of a voice, RMS in the asset's unit.</summary>
+        public double LevelRms(string model = null, Motion? at = null)
+        {
+            double level;
+            Native.Check(Native.htex_asset_level_rms(this, Native.Utf8(model), Native.Sized(at), out level));
+            return level;
+        }
+
         /// <summary>The manifest as JSON.</summary>
         public string ManifestJson
         {
-            get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_asset_manifest_json(Id, o, c, out l)); }
+            get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_asset_manifest_json(this, o, c, out l)); }
         }
 
         /// <summary>Unit of the samples.</summary>
         public string Unit
         {
-            get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_asset_unit(Id, o, c, out l)); }
+            get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_asset_unit(this, o, c, out l)); }
         }
 
         /// <summary>Ids of the models of the representations.</summary>
@@ -176,12 +251,12 @@ namespace Htex
             get
             {
                 UIntPtr count;
-                Native.Check(Native.htex_asset_representation_count(Id, out count));
+                Native.Check(Native.htex_asset_representation_count(this, out count));
                 var models = new string[(int)count];
                 for (int i = 0; i < models.Length; i++)
                 {
                     var index = (UIntPtr)i;
-                    models[i] = Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_asset_representation_model(Id, index, o, c, out l));
+                    models[i] = Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_asset_representation_model(this, index, o, c, out l));
                 }
                 return models;
             }
@@ -193,10 +268,10 @@ namespace Htex
             get
             {
                 UIntPtr count;
-                Native.Check(Native.htex_asset_condition_count(Id, out count));
+                Native.Check(Native.htex_asset_condition_count(this, out count));
                 var conditions = new Condition[(int)count];
                 for (int i = 0; i < conditions.Length; i++)
-                    Native.Check(Native.htex_asset_condition(Id, (UIntPtr)i, out conditions[i]));
+                    Native.Check(Native.htex_asset_condition(this, (UIntPtr)i, out conditions[i]));
                 return conditions;
             }
         }
@@ -205,8 +280,7 @@ namespace Htex
         public double[] Magnitude(double[] frequencyHz, string model = null, Motion? at = null)
         {
             var magnitude = new double[frequencyHz.Length];
-            var motions = at.HasValue ? new[] { at.Value } : null;
-            Native.Check(Native.htex_asset_magnitude(Id, Native.Utf8(model), motions, frequencyHz, magnitude, Native.Length(magnitude)));
+            Native.Check(Native.htex_asset_magnitude(this, Native.Utf8(model), Native.Sized(at), frequencyHz, magnitude, Native.Length(magnitude)));
             return magnitude;
         }
 
@@ -227,11 +301,9 @@ namespace Htex
 
         public override bool IsInvalid { get { return handle == IntPtr.Zero; } }
 
-        private Native.Handle Id { get { return new Native.Handle { Id = (ulong)(long)handle }; } }
-
         protected override bool ReleaseHandle()
         {
-            return Native.htex_library_free(Id) == Status.Ok;
+            return Native.htex_library_free(new Native.Handle { Id = (ulong)(long)handle }) == Status.Ok;
         }
 
         public static Library Open(string path)
@@ -241,20 +313,28 @@ namespace Htex
             return new Library(library.Id);
         }
 
+        /// <summary>Opens a library in memory.</summary>
+        public static Library FromBytes(byte[] bytes)
+        {
+            Native.Handle library;
+            Native.Check(Native.htex_library_from_bytes(bytes, Native.Length(bytes), out library));
+            return new Library(library.Id);
+        }
+
         /// <summary>Opens a texture; reads only its bytes.</summary>
         public Asset Asset(string name, OpenOptions options = null)
         {
             using (var open = new Native.Open(options))
             {
                 Native.Handle asset;
-                Native.Check(Native.htex_library_asset(Id, Native.Utf8(name), ref open.Options, out asset));
+                Native.Check(Native.htex_library_asset(this, Native.Utf8(name), ref open.Options, out asset));
                 return new Asset(asset.Id);
             }
         }
 
         public string Name
         {
-            get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_library_name(Id, o, c, out l)); }
+            get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_library_name(this, o, c, out l)); }
         }
 
         /// <summary>Number of textures.</summary>
@@ -263,7 +343,7 @@ namespace Htex
             get
             {
                 ulong count;
-                Native.Check(Native.htex_library_count(Id, out count));
+                Native.Check(Native.htex_library_count(this, out count));
                 return count;
             }
         }
@@ -274,7 +354,7 @@ namespace Htex
             get
             {
                 UIntPtr count;
-                Native.Check(Native.htex_library_page_count(Id, out count));
+                Native.Check(Native.htex_library_page_count(this, out count));
                 return (int)count;
             }
         }
@@ -282,14 +362,14 @@ namespace Htex
         /// <summary>The entries of a page of the index as a JSON array; see htex_library_page_json.</summary>
         public string PageJson(int page)
         {
-            return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_library_page_json(Id, (UIntPtr)page, o, c, out l));
+            return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_library_page_json(this, (UIntPtr)page, o, c, out l));
         }
 
         /// <summary>The entry of a texture as JSON.</summary>
         public string EntryJson(string name)
         {
             var text = Native.Utf8(name);
-            return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_library_entry_json(Id, text, o, c, out l));
+            return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_library_entry_json(this, text, o, c, out l));
         }
     }
 
@@ -300,24 +380,27 @@ namespace Htex
         {
             var model = Native.Pin(Native.Utf8(options.Model));
             var synthesis = Native.Pin(Native.Utf8(options.Synthesis));
-            var motion = Native.Pin(options.Motion.HasValue ? new[] { options.Motion.Value } : null);
+            var motion = Native.Pin(Native.Sized(options.Motion));
             try
             {
                 var c = new Native.VoiceOptions
                 {
-                    Size = (UIntPtr)Marshal.SizeOf(typeof(Native.VoiceOptions)),
+                    Size = (uint)Marshal.SizeOf(typeof(Native.VoiceOptions)),
                     Model = Native.Address(model),
                     RateHz = options.RateHz,
                     Seed = options.Seed,
                     Motion = Native.Address(motion),
                     Synthesis = Native.Address(synthesis),
+                    Gain = options.Gain,
+                    Limit = options.Limit,
+                    EnvelopeBands = (uint)options.EnvelopeBands,
                     NoFrequencyScaling = options.FrequencyScaling ? 0u : 1u,
                     NoLevelScaling = options.LevelScaling ? 0u : 1u,
                     NoContact = options.Contact ? 0u : 1u,
                     Ceiling = options.Ceiling,
                 };
                 Native.Handle voice;
-                Native.Check(Native.htex_voice_new(asset.Id, ref c, out voice));
+                Native.Check(Native.htex_voice_new(asset, ref c, out voice));
                 Native.Keep(this, voice.Id, SetHandle);
             }
             finally
@@ -330,27 +413,115 @@ namespace Htex
 
         public override bool IsInvalid { get { return handle == IntPtr.Zero; } }
 
-        private Native.Handle Id { get { return new Native.Handle { Id = (ulong)(long)handle }; } }
-
         protected override bool ReleaseHandle()
         {
-            return Native.htex_voice_free(Id) == Status.Ok;
+            return Native.htex_voice_free(new Native.Handle { Id = (ulong)(long)handle }) == Status.Ok;
         }
 
         /// <summary>Sets the motion of the finger; spectrum and level glide to it.</summary>
         public void SetMotion(Motion motion)
         {
-            Native.Check(Native.htex_voice_set_motion(Id, ref motion));
+            motion.Size = Native.MotionSize;
+            Native.Check(Native.htex_voice_set_motion(this, ref motion));
         }
 
         /// <summary>Renders the next samples, in the asset's unit.</summary>
         public void Render(float[] samples)
         {
+            Render(samples, 0, samples.Length);
+        }
+
+        /// <summary>Renders the next samples to a part of an array.</summary>
+        public void Render(float[] samples, int offset, int count)
+        {
+            Native.CheckPart(samples, offset, count);
             // A reference is passed twice as fast as an array; an empty array has none to pass.
-            if (samples.Length > 0)
-                Native.Check(Native.htex_voice_render(Id, ref samples[0], (UIntPtr)samples.Length));
+            if (count > 0)
+                Native.Check(Native.htex_voice_render(this, ref samples[offset], (UIntPtr)count));
             else
-                Native.Check(Native.htex_voice_render(Id, ref Native.None, UIntPtr.Zero));
+                Native.Check(Native.htex_voice_render(this, ref Native.None, UIntPtr.Zero));
+        }
+
+        /// <summary>Renders the next samples to memory, such as that of a NativeArray.</summary>
+        public void Render(IntPtr samples, int count)
+        {
+            Native.Check(Native.htex_voice_render_to(this, samples, Native.Count(count)));
+        }
+
+        /// <summary>Adds the next samples, multiplied by a gain, to a part of an array.</summary>
+        public void RenderAdd(float[] samples, int offset, int count, float gain = 1.0f)
+        {
+            Native.CheckPart(samples, offset, count);
+            if (count > 0)
+                Native.Check(Native.htex_voice_render_add(this, ref samples[offset], (UIntPtr)count, gain));
+        }
+
+        /// <summary>Adds the next samples, multiplied by a gain, to memory.</summary>
+        public void RenderAdd(IntPtr samples, int count, float gain = 1.0f)
+        {
+            Native.Check(Native.htex_voice_render_add_to(this, samples, Native.Count(count), gain));
+        }
+
+#if NETSTANDARD2_1_OR_GREATER || NETCOREAPP || UNITY_2021_2_OR_NEWER
+        /// <summary>Renders the next samples to a span.</summary>
+        public void Render(Span<float> samples)
+        {
+            Native.Check(Native.htex_voice_render(this, ref MemoryMarshal.GetReference(samples), (UIntPtr)samples.Length));
+        }
+
+        /// <summary>Adds the next samples, multiplied by a gain, to a span.</summary>
+        public void RenderAdd(Span<float> samples, float gain = 1.0f)
+        {
+            Native.Check(Native.htex_voice_render_add(this, ref MemoryMarshal.GetReference(samples), (UIntPtr)samples.Length, gain));
+        }
+#endif
+
+        /// <summary>Sets the gain, which changes within 10 ms.</summary>
+        public void SetGain(double gain)
+        {
+            Native.Check(Native.htex_voice_set_gain(this, gain));
+        }
+
+        /// <summary>Whether the voice rests: its samples are 0 until a motion is felt again.</summary>
+        public bool IsSilent
+        {
+            get
+            {
+                uint silent;
+                Native.Check(Native.htex_voice_is_silent(this, out silent));
+                return silent != 0;
+            }
+        }
+
+        /// <summary>What was rendered since the last call. `bands` receives the mean squares, and has one place for each band; or is null.</summary>
+        public Envelope Envelope(double[] bands = null)
+        {
+            var envelope = new Envelope { Size = Native.EnvelopeSize };
+            if (bands == null || bands.Length == 0)
+                Native.Check(Native.htex_voice_envelope(this, ref envelope, ref Native.NoBand, UIntPtr.Zero));
+            else
+                Native.Check(Native.htex_voice_envelope(this, ref envelope, ref bands[0], (UIntPtr)bands.Length));
+            return envelope;
+        }
+
+        /// <summary>Edges of a number of bands, Hz: one more than bands.</summary>
+        public double[] EnvelopeEdges(int bands)
+        {
+            var edges = new double[bands + 1];
+            Native.Check(Native.htex_voice_envelope_edges(this, edges, Native.Length(edges)));
+            return edges;
+        }
+
+        /// <summary>Makes the voice as it was when it was made, at its own motion or another one. Not for an audio thread.</summary>
+        public void Reset(Motion? motion = null)
+        {
+            Native.Check(Native.htex_voice_reset(this, Native.Sized(motion)));
+        }
+
+        /// <summary>Id of the model that plays.</summary>
+        public string Model
+        {
+            get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_voice_model(this, o, c, out l)); }
         }
 
         /// <summary>Renders a block of `frames` samples for each motion.</summary>
@@ -358,13 +529,16 @@ namespace Htex
         {
             if ((long)motions.Length * frames != samples.Length)
                 throw new ArgumentException("samples has not one block of `frames` for each motion", "samples");
-            Native.Check(Native.htex_voice_render_path(Id, motions, Native.Length(motions), samples, (UIntPtr)frames));
+            for (int i = 0; i < motions.Length; i++)
+                motions[i].Size = Native.MotionSize;
+            Native.Check(Native.htex_voice_render_path(this, motions, Native.Length(motions), samples, (UIntPtr)frames));
         }
 
         /// <summary>How a motion is played, and whether it is within the recorded conditions.</summary>
         public string Coverage(Motion motion)
         {
-            return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_voice_coverage(Id, ref motion, o, c, out l));
+            motion.Size = Native.MotionSize;
+            return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_voice_coverage(this, ref motion, o, c, out l));
         }
     }
 
@@ -378,20 +552,32 @@ namespace Htex
 
         public override bool IsInvalid { get { return handle == IntPtr.Zero; } }
 
-        private Native.Handle Id { get { return new Native.Handle { Id = (ulong)(long)handle }; } }
-
         protected override bool ReleaseHandle()
         {
-            return Native.htex_scene_free(Id) == Status.Ok;
+            return Native.htex_scene_free(new Native.Handle { Id = (ulong)(long)handle }) == Status.Ok;
         }
 
         public static Scene Open(string path, double rateHz = 0, OpenOptions options = null)
         {
             using (var open = new Native.Open(options))
             {
-                var c = new Native.SceneOptions { Size = (UIntPtr)Marshal.SizeOf(typeof(Native.SceneOptions)), RateHz = rateHz };
+                var c = new Native.SceneOptions { Size = (uint)Marshal.SizeOf(typeof(Native.SceneOptions)), RateHz = rateHz };
                 Native.Handle scene;
                 Native.Check(Native.htex_scene_open(Native.Utf8(path), ref open.Options, ref c, out scene));
+                return new Scene(scene.Id);
+            }
+        }
+
+        /// <summary>Opens a scene in memory, whose files a function returns by their names in the scene; null for one that is absent.</summary>
+        public static Scene FromBytes(byte[] bytes, Func<string, byte[]> files, double rateHz = 0, OpenOptions options = null)
+        {
+            using (var open = new Native.Open(options))
+            using (var given = new SceneFiles(files))
+            {
+                var c = new Native.SceneOptions { Size = (uint)Marshal.SizeOf(typeof(Native.SceneOptions)), RateHz = rateHz };
+                var f = given.Files;
+                Native.Handle scene;
+                Native.Check(Native.htex_scene_from_bytes(bytes, Native.Length(bytes), ref f, ref open.Options, ref c, out scene));
                 return new Scene(scene.Id);
             }
         }
@@ -399,7 +585,7 @@ namespace Htex
         /// <summary>The plan as JSON.</summary>
         public string PlanJson
         {
-            get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_scene_plan_json(Id, o, c, out l)); }
+            get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_scene_plan_json(this, o, c, out l)); }
         }
 
         /// <summary>Rate of the samples, Hz.</summary>
@@ -408,7 +594,7 @@ namespace Htex
             get
             {
                 double rate;
-                Native.Check(Native.htex_scene_rate_hz(Id, out rate));
+                Native.Check(Native.htex_scene_rate_hz(this, out rate));
                 return rate;
             }
         }
@@ -416,28 +602,150 @@ namespace Htex
         /// <summary>Sets position and motion of the finger of a live scene.</summary>
         public void SetFinger(Finger finger)
         {
-            Native.Check(Native.htex_scene_set_finger(Id, ref finger));
+            finger.Size = Native.FingerSize;
+            Native.Check(Native.htex_scene_set_finger(this, ref finger));
         }
 
         /// <summary>Renders the next samples; returns their number, which is smaller at the end.</summary>
         public int Render(float[] samples)
         {
+            return Render(samples, 0, samples.Length);
+        }
+
+        /// <summary>Renders the next samples to a part of an array; returns their number.</summary>
+        public int Render(float[] samples, int offset, int count)
+        {
+            Native.CheckPart(samples, offset, count);
             UIntPtr rendered;
-            if (samples.Length > 0)
-                Native.Check(Native.htex_scene_render(Id, ref samples[0], (UIntPtr)samples.Length, out rendered));
+            if (count > 0)
+                Native.Check(Native.htex_scene_render(this, ref samples[offset], (UIntPtr)count, out rendered));
             else
-                Native.Check(Native.htex_scene_render(Id, ref Native.None, UIntPtr.Zero, out rendered));
+                Native.Check(Native.htex_scene_render(this, ref Native.None, UIntPtr.Zero, out rendered));
             return (int)rendered;
         }
 
         /// <summary>Ends the scene with a ramp to silence.</summary>
         public void Stop()
         {
-            Native.Check(Native.htex_scene_stop(Id));
+            Native.Check(Native.htex_scene_stop(this));
         }
     }
 
-    /// <summary>The functions of htex.h.</summary>
+    /// <summary>What concerns the library as a whole.</summary>
+    public static class LibHtex
+    {
+        private static readonly Native.Log Passing = Pass;
+        private static volatile Action<LogLevel, string> receiver;
+
+        /// <summary>Version of the library.</summary>
+        public static string Version { get { return Native.FromUtf8(Native.htex_version()); } }
+
+        /// <summary>What a status means.</summary>
+        public static string Text(Status status)
+        {
+            return Native.FromUtf8(Native.htex_status_text(status));
+        }
+
+        /// <summary>Sets the function that receives messages; null: none. It must not call the library.</summary>
+        public static void SetLog(Action<LogLevel, string> log)
+        {
+            receiver = log;
+            Native.Check(Native.htex_set_log(log == null ? null : Passing, IntPtr.Zero));
+        }
+
+        /// <summary>Frees all that the library has; no other call may run. Objects that are left are dead.</summary>
+        public static void Shutdown()
+        {
+            Native.Check(Native.htex_shutdown());
+        }
+
+#if UNITY_5_3_OR_NEWER
+        [AOT.MonoPInvokeCallback(typeof(Native.Log))]
+#endif
+        private static void Pass(LogLevel level, IntPtr message, IntPtr context)
+        {
+            var log = receiver;
+            if (log != null)
+                log(level, Native.FromUtf8(message));
+        }
+    }
+
+    /// <summary>The files of a scene, which a function returns.</summary>
+    internal sealed class SceneFiles : IDisposable
+    {
+        private static readonly Native.OpenFile Opening = Open;
+        private static readonly Native.ReadFile Reading = Read;
+        private static readonly Native.CloseFile Closing = Close;
+        private readonly Func<string, byte[]> files;
+        private GCHandle self;
+
+        internal SceneFiles(Func<string, byte[]> files)
+        {
+            this.files = files;
+            self = GCHandle.Alloc(this);
+        }
+
+        internal Native.FilesC Files
+        {
+            get
+            {
+                return new Native.FilesC
+                {
+                    Size = (uint)Marshal.SizeOf(typeof(Native.FilesC)),
+                    Context = GCHandle.ToIntPtr(self),
+                    Open = Marshal.GetFunctionPointerForDelegate(Opening),
+                };
+            }
+        }
+
+        public void Dispose()
+        {
+            self.Free();
+        }
+
+#if UNITY_5_3_OR_NEWER
+        [AOT.MonoPInvokeCallback(typeof(Native.OpenFile))]
+#endif
+        private static int Open(IntPtr context, IntPtr name, ref Native.ReaderC file)
+        {
+            byte[] bytes;
+            try
+            {
+                bytes = ((SceneFiles)GCHandle.FromIntPtr(context).Target).files(Native.FromUtf8(name));
+            }
+            catch (Exception)
+            {
+                // An exception cannot pass through the library: the file counts as absent.
+                bytes = null;
+            }
+            if (bytes == null)
+                return 1;
+            file.Length = (ulong)bytes.Length;
+            file.Context = GCHandle.ToIntPtr(GCHandle.Alloc(bytes));
+            file.Read = Marshal.GetFunctionPointerForDelegate(Reading);
+            file.Close = Marshal.GetFunctionPointerForDelegate(Closing);
+            return 0;
+        }
+
+#if UNITY_5_3_OR_NEWER
+        [AOT.MonoPInvokeCallback(typeof(Native.ReadFile))]
+#endif
+        private static int Read(IntPtr context, ulong offset, IntPtr buffer, UIntPtr length)
+        {
+            Marshal.Copy((byte[])GCHandle.FromIntPtr(context).Target, (int)offset, buffer, (int)length);
+            return 0;
+        }
+
+#if UNITY_5_3_OR_NEWER
+        [AOT.MonoPInvokeCallback(typeof(Native.CloseFile))]
+#endif
+        private static void Close(IntPtr context)
+        {
+            GCHandle.FromIntPtr(context).Free();
+        }
+    }
+
+    /// <summary>The functions of htex.h. An object that is passed is held during the call.</summary>
     internal static class Native
     {
 #if UNITY_IOS && !UNITY_EDITOR
@@ -448,6 +756,37 @@ namespace Htex
 
         /// <summary>What an empty array refers to; never written.</summary>
         internal static float None;
+        internal static double NoBand;
+
+        internal static readonly uint MotionSize = (uint)Marshal.SizeOf(typeof(Motion));
+        internal static readonly uint FingerSize = (uint)Marshal.SizeOf(typeof(Finger));
+        internal static readonly uint EnvelopeSize = (uint)Marshal.SizeOf(typeof(Envelope));
+
+        [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+        internal delegate void Log(LogLevel level, IntPtr message, IntPtr context);
+
+        /// <summary>A motion as an array, with its size; null for none.</summary>
+        internal static Motion[] Sized(Motion? motion)
+        {
+            if (!motion.HasValue)
+                return null;
+            var motions = new[] { motion.Value };
+            motions[0].Size = MotionSize;
+            return motions;
+        }
+
+        internal static void CheckPart(float[] samples, int offset, int count)
+        {
+            if (offset < 0 || count < 0 || offset > samples.Length - count)
+                throw new ArgumentOutOfRangeException("count", "the part is not in the array");
+        }
+
+        internal static UIntPtr Count(int count)
+        {
+            if (count < 0)
+                throw new ArgumentOutOfRangeException("count", "negative");
+            return (UIntPtr)count;
+        }
 
         [StructLayout(LayoutKind.Sequential)]
         internal struct Handle
@@ -458,13 +797,36 @@ namespace Htex
         [StructLayout(LayoutKind.Sequential)]
         internal struct OpenOptionsC
         {
-            internal UIntPtr Size;
+            internal uint Size, Engine;
             internal IntPtr Plugins;
             internal UIntPtr PluginsLen;
-            internal uint NoEmbedded, Installed;
             internal IntPtr Modules;
             internal UIntPtr ModulesLen;
+            internal IntPtr Cache;
+            internal uint NoEmbedded, Installed;
         }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct FilesC
+        {
+            internal uint Size;
+            internal IntPtr Context, Open;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct ReaderC
+        {
+            internal uint Size;
+            internal ulong Length;
+            internal IntPtr Context, Read, Close;
+        }
+
+        [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+        internal delegate int OpenFile(IntPtr context, IntPtr name, ref ReaderC file);
+        [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+        internal delegate int ReadFile(IntPtr context, ulong offset, IntPtr buffer, UIntPtr length);
+        [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+        internal delegate void CloseFile(IntPtr context);
 
         [StructLayout(LayoutKind.Sequential)]
         internal struct Bytes
@@ -476,11 +838,13 @@ namespace Htex
         [StructLayout(LayoutKind.Sequential)]
         internal struct VoiceOptions
         {
-            internal UIntPtr Size;
+            internal uint Size;
             internal IntPtr Model;
             internal double RateHz;
             internal ulong Seed;
             internal IntPtr Motion, Synthesis;
+            internal double Gain, Limit;
+            internal uint EnvelopeBands;
             internal uint NoFrequencyScaling, NoLevelScaling, NoContact;
             internal double Ceiling;
         }
@@ -488,7 +852,7 @@ namespace Htex
         [StructLayout(LayoutKind.Sequential)]
         internal struct SceneOptions
         {
-            internal UIntPtr Size;
+            internal uint Size;
             internal double RateHz;
         }
 
@@ -505,7 +869,9 @@ namespace Htex
                 var modules = Array.ConvertAll(options.Modules, module => new Bytes { Data = Keep(module), Len = Length(module) });
                 Options = new OpenOptionsC
                 {
-                    Size = (UIntPtr)Marshal.SizeOf(typeof(OpenOptionsC)),
+                    Size = (uint)Marshal.SizeOf(typeof(OpenOptionsC)),
+                    Engine = (uint)options.Engine,
+                    Cache = Keep(Utf8(options.Cache)),
                     Plugins = Keep(plugins),
                     PluginsLen = Length(plugins),
                     NoEmbedded = options.Embedded ? 0u : 1u,
@@ -550,7 +916,7 @@ namespace Htex
             return text == null ? null : Encoding.UTF8.GetBytes(text + "\0");
         }
 
-        private static string FromUtf8(IntPtr text)
+        internal static string FromUtf8(IntPtr text)
         {
             int length = 0;
             while (Marshal.ReadByte(text, length) != 0)
@@ -588,36 +954,54 @@ namespace Htex
         }
 
         [DllImport(Library)] internal static extern IntPtr htex_last_error();
+        [DllImport(Library)] internal static extern IntPtr htex_version();
+        [DllImport(Library)] internal static extern IntPtr htex_status_text(Status status);
+        [DllImport(Library)] internal static extern Status htex_set_log(Log callback, IntPtr context);
+        [DllImport(Library)] internal static extern Status htex_shutdown();
+        [DllImport(Library)] internal static extern Status htex_asset_name(Asset asset, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_asset_band(Asset asset, out Band band);
+        [DllImport(Library)] internal static extern Status htex_asset_level_rms(Asset asset, byte[] model, Motion[] at, out double level);
+        [DllImport(Library)] internal static extern Status htex_library_from_bytes(byte[] bytes, UIntPtr length, out Handle library);
         [DllImport(Library)] internal static extern Status htex_asset_open(byte[] path, ref OpenOptionsC options, out Handle asset);
         [DllImport(Library)] internal static extern Status htex_asset_from_bytes(byte[] bytes, UIntPtr length, ref OpenOptionsC options, out Handle asset);
         [DllImport(Library)] internal static extern Status htex_asset_free(Handle asset);
-        [DllImport(Library)] internal static extern Status htex_asset_manifest_json(Handle asset, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
-        [DllImport(Library)] internal static extern Status htex_asset_unit(Handle asset, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
-        [DllImport(Library)] internal static extern Status htex_asset_condition_count(Handle asset, out UIntPtr count);
-        [DllImport(Library)] internal static extern Status htex_asset_condition(Handle asset, UIntPtr index, out Condition condition);
-        [DllImport(Library)] internal static extern Status htex_asset_representation_count(Handle asset, out UIntPtr count);
-        [DllImport(Library)] internal static extern Status htex_asset_representation_model(Handle asset, UIntPtr index, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
-        [DllImport(Library)] internal static extern Status htex_asset_magnitude(Handle asset, byte[] model, Motion[] at, double[] frequencyHz, [Out] double[] magnitude, UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_asset_manifest_json(Asset asset, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_asset_unit(Asset asset, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_asset_condition_count(Asset asset, out UIntPtr count);
+        [DllImport(Library)] internal static extern Status htex_asset_condition(Asset asset, UIntPtr index, out Condition condition);
+        [DllImport(Library)] internal static extern Status htex_asset_representation_count(Asset asset, out UIntPtr count);
+        [DllImport(Library)] internal static extern Status htex_asset_representation_model(Asset asset, UIntPtr index, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_asset_magnitude(Asset asset, byte[] model, Motion[] at, double[] frequencyHz, [Out] double[] magnitude, UIntPtr length);
         [DllImport(Library)] internal static extern Status htex_library_open(byte[] path, out Handle library);
         [DllImport(Library)] internal static extern Status htex_library_free(Handle library);
-        [DllImport(Library)] internal static extern Status htex_library_name(Handle library, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
-        [DllImport(Library)] internal static extern Status htex_library_count(Handle library, out ulong count);
-        [DllImport(Library)] internal static extern Status htex_library_page_count(Handle library, out UIntPtr count);
-        [DllImport(Library)] internal static extern Status htex_library_page_json(Handle library, UIntPtr page, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
-        [DllImport(Library)] internal static extern Status htex_library_entry_json(Handle library, byte[] name, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
-        [DllImport(Library)] internal static extern Status htex_library_asset(Handle library, byte[] name, ref OpenOptionsC options, out Handle asset);
-        [DllImport(Library)] internal static extern Status htex_voice_new(Handle asset, ref VoiceOptions options, out Handle voice);
+        [DllImport(Library)] internal static extern Status htex_library_name(global::Htex.Library library, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_library_count(global::Htex.Library library, out ulong count);
+        [DllImport(Library)] internal static extern Status htex_library_page_count(global::Htex.Library library, out UIntPtr count);
+        [DllImport(Library)] internal static extern Status htex_library_page_json(global::Htex.Library library, UIntPtr page, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_library_entry_json(global::Htex.Library library, byte[] name, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_library_asset(global::Htex.Library library, byte[] name, ref OpenOptionsC options, out Handle asset);
+        [DllImport(Library)] internal static extern Status htex_voice_new(Asset asset, ref VoiceOptions options, out Handle voice);
         [DllImport(Library)] internal static extern Status htex_voice_free(Handle voice);
-        [DllImport(Library)] internal static extern Status htex_voice_set_motion(Handle voice, ref Motion motion);
-        [DllImport(Library)] internal static extern Status htex_voice_render(Handle voice, ref float samples, UIntPtr frames);
-        [DllImport(Library)] internal static extern Status htex_voice_render_path(Handle voice, Motion[] motions, UIntPtr motionsLength, [Out] float[] samples, UIntPtr frames);
-        [DllImport(Library)] internal static extern Status htex_voice_coverage(Handle voice, ref Motion motion, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_voice_set_motion(Voice voice, ref Motion motion);
+        [DllImport(Library)] internal static extern Status htex_voice_render(Voice voice, ref float samples, UIntPtr frames);
+        [DllImport(Library, EntryPoint = "htex_voice_render")] internal static extern Status htex_voice_render_to(Voice voice, IntPtr samples, UIntPtr frames);
+        [DllImport(Library)] internal static extern Status htex_voice_render_add(Voice voice, ref float samples, UIntPtr frames, float gain);
+        [DllImport(Library, EntryPoint = "htex_voice_render_add")] internal static extern Status htex_voice_render_add_to(Voice voice, IntPtr samples, UIntPtr frames, float gain);
+        [DllImport(Library)] internal static extern Status htex_voice_set_gain(Voice voice, double gain);
+        [DllImport(Library)] internal static extern Status htex_voice_is_silent(Voice voice, out uint silent);
+        [DllImport(Library)] internal static extern Status htex_voice_envelope(Voice voice, ref Envelope envelope, ref double bands, UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_voice_envelope_edges(Voice voice, [Out] double[] edges, UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_voice_reset(Voice voice, Motion[] motion);
+        [DllImport(Library)] internal static extern Status htex_voice_model(Voice voice, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_voice_render_path(Voice voice, Motion[] motions, UIntPtr motionsLength, [Out] float[] samples, UIntPtr frames);
+        [DllImport(Library)] internal static extern Status htex_voice_coverage(Voice voice, ref Motion motion, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
         [DllImport(Library)] internal static extern Status htex_scene_open(byte[] path, ref OpenOptionsC options, ref SceneOptions sceneOptions, out Handle scene);
+        [DllImport(Library)] internal static extern Status htex_scene_from_bytes(byte[] bytes, UIntPtr length, ref FilesC files, ref OpenOptionsC options, ref SceneOptions sceneOptions, out Handle scene);
         [DllImport(Library)] internal static extern Status htex_scene_free(Handle scene);
-        [DllImport(Library)] internal static extern Status htex_scene_plan_json(Handle scene, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
-        [DllImport(Library)] internal static extern Status htex_scene_rate_hz(Handle scene, out double rateHz);
-        [DllImport(Library)] internal static extern Status htex_scene_set_finger(Handle scene, ref Finger finger);
-        [DllImport(Library)] internal static extern Status htex_scene_render(Handle scene, ref float samples, UIntPtr frames, out UIntPtr rendered);
-        [DllImport(Library)] internal static extern Status htex_scene_stop(Handle scene);
+        [DllImport(Library)] internal static extern Status htex_scene_plan_json(Scene scene, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_scene_rate_hz(Scene scene, out double rateHz);
+        [DllImport(Library)] internal static extern Status htex_scene_set_finger(Scene scene, ref Finger finger);
+        [DllImport(Library)] internal static extern Status htex_scene_render(Scene scene, ref float samples, UIntPtr frames, out UIntPtr rendered);
+        [DllImport(Library)] internal static extern Status htex_scene_stop(Scene scene);
     }
 }

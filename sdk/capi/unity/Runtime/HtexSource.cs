@@ -25,12 +25,13 @@ namespace Htex
         public volatile float ForceN = 0.4f;
 
         private Asset asset;
-        private Voice voice;
+        private volatile Voice voice;
         private float[] samples = new float[0];
         private volatile string failure;
 
         private void OnEnable()
         {
+            failure = null;
             try
             {
                 asset = Htex.Asset.Open(Path.Combine(Application.streamingAssetsPath, Asset));
@@ -44,18 +45,21 @@ namespace Htex
             }
             catch (HtexException error)
             {
+                OnDisable();
                 Debug.LogError("htex: " + error.Message);
                 enabled = false;
             }
         }
 
+        /// <summary>The audio thread may render at this moment: its call holds the voice, which is freed after it.</summary>
         private void OnDisable()
         {
-            if (voice != null)
-                voice.Dispose();
+            Voice playing = voice;
+            voice = null;
+            if (playing != null)
+                playing.Dispose();
             if (asset != null)
                 asset.Dispose();
-            voice = null;
             asset = null;
         }
 
@@ -81,6 +85,11 @@ namespace Htex
             {
                 playing.SetMotion(new Motion(Valid(SpeedMmS), Valid(ForceN)));
                 playing.Render(samples);
+            }
+            catch (ObjectDisposedException)
+            {
+                // Disabled since this block began.
+                return;
             }
             catch (Exception error)
             {

@@ -5,12 +5,14 @@
 //! limit of memory costs no time while a module runs: the engine reserves addresses, and no access is compared with a
 //! bound.
 
+use std::sync::{Mutex, PoisonError};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
-use wasmtime::{Config, Engine, Module, OptLevel, RegallocAlgorithm};
+use wasmtime::{Config, Engine, EngineWeak, Module, OptLevel, RegallocAlgorithm};
 
 use super::compile_error::CompileError;
-use crate::WasmLimits;
+use crate::{WasmEngine, WasmLimits};
 
 /// Shortest and longest time between two ticks.
 const TICK: (Duration, Duration) = (Duration::from_millis(1), Duration::from_millis(50));
@@ -23,14 +25,37 @@ pub(super) enum Effort {
     Quick,
 }
 
+/// The thread that increments an engine's epoch.
+struct Clock {
+    engine: EngineWeak,
+    thread: JoinHandle<()>,
+}
+
+static CLOCKS: Mutex<Vec<Clock>> = Mutex::new(Vec::new());
+
+/// Waits until the threads of engines without modules have ended, at most 50 ms each: a program that unloads this code calls this
+/// before.
+pub fn end_wasm_clocks() {
+    let clocks = std::mem::take(&mut *CLOCKS.lock().unwrap_or_else(PoisonError::into_inner));
+    let (live, ended): (Vec<Clock>, Vec<Clock>) = clocks
+        .into_iter()
+        .partition(|clock| clock.engine.upgrade().is_some());
+    for clock in ended {
+        // The thread only counts: it cannot have panicked.
+        let _ = clock.thread.join();
+    }
+    let mut clocks = CLOCKS.lock().unwrap_or_else(PoisonError::into_inner);
+    clocks.extend(live);
+}
+
 /// An engine with a thread that increments its epoch.
 #[derive(Clone)]
-pub(super) struct WasmEngine {
+pub(super) struct ClockedEngine {
     pub(super) engine: Engine,
     tick: Duration,
 }
 
-impl WasmEngine {
+impl ClockedEngine {
     /// Starts an engine's clock.
     pub(super) fn start(engine: Engine, limits: &WasmLimits) -> Result<Self, CompileError> {
         let shortest = limits.call.min(limits.render);
@@ -44,12 +69,18 @@ impl WasmEngine {
                 std::thread::sleep(tick);
             }
         };
-        std::thread::Builder::new()
+        let thread = std::thread::Builder::new()
             .name("htex-wasm-clock".to_owned())
             .spawn(counting)
             .map_err(|error| CompileError::Clock {
                 what: error.to_string(),
             })?;
+        let mut clocks = CLOCKS.lock().unwrap_or_else(PoisonError::into_inner);
+        clocks.retain(|clock| !clock.thread.is_finished());
+        clocks.push(Clock {
+            engine: engine.weak(),
+            thread,
+        });
         Ok(Self { engine, tick })
     }
 
@@ -74,6 +105,7 @@ pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, Comp
         .epoch_interruption(true)
         .consume_fuel(limits.fuel.is_some())
         .max_wasm_stack(limits.stack_bytes)
+        .signals_based_traps(limits.engine == WasmEngine::Signals)
         // Relaxed operations have different results on different machines; calls use one 32-bit memory.
         .wasm_relaxed_simd(false)
         .wasm_memory64(false)

@@ -29,6 +29,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub use compile_error::CompilerError;
+pub use engine::end_wasm_clocks;
 pub(crate) use model::WasmModel;
 use module::WasmModule;
 pub use process::serve_compiler;

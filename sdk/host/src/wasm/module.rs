@@ -6,14 +6,14 @@ use wasmtime::{ExternType, Module};
 
 use super::compile;
 use super::compile_error::CompileError;
-use super::engine::WasmEngine;
+use super::engine::ClockedEngine;
 use super::shared::Shared;
 use crate::WasmLimits;
 use crate::sandbox::{Budget, Sandbox};
 
 /// A compiled module, and the data that its instances share.
 pub(super) struct WasmModule {
-    pub(super) engine: WasmEngine,
+    pub(super) engine: ClockedEngine,
     pub(super) module: Module,
     pub(super) limits: WasmLimits,
     pub(super) budget: Arc<Budget>,
@@ -33,7 +33,7 @@ impl WasmModule {
         check_imports(&module)?;
         check_memory(&module)?;
         Ok(Self {
-            engine: WasmEngine::start(module.engine().clone(), limits)?,
+            engine: ClockedEngine::start(module.engine().clone(), limits)?,
             module,
             limits: limits.clone(),
             budget: Arc::clone(&sandbox.budget),

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::compile_error::{CompileError, CompilerError};
 use super::engine::{Effort, engine, here};
-use crate::WasmLimits;
+use crate::{WasmEngine, WasmLimits};
 
 /// The first byte of a reply: machine code follows, or an error message.
 const COMPILED: u8 = 0;
@@ -101,6 +101,7 @@ pub fn serve_compiler(arguments: &[String]) -> Result<(), CompilerError> {
 struct Request {
     quick: bool,
     fuel: bool,
+    signals: bool,
     stack_bytes: usize,
     memory_bytes: usize,
     time_s: u64,
@@ -111,16 +112,18 @@ impl Request {
         Self {
             quick: effort == Effort::Quick,
             fuel: limits.fuel.is_some(),
+            signals: limits.engine == WasmEngine::Signals,
             stack_bytes: limits.stack_bytes,
             memory_bytes: limits.compile_bytes,
             time_s: time.as_secs() + 1,
         }
     }
 
-    fn words(self) -> [String; 5] {
+    fn words(self) -> [String; 6] {
         [
             self.quick.to_string(),
             self.fuel.to_string(),
+            self.signals.to_string(),
             self.stack_bytes.to_string(),
             self.memory_bytes.to_string(),
             self.time_s.to_string(),
@@ -128,12 +131,13 @@ impl Request {
     }
 
     fn read(words: &[String]) -> Option<Self> {
-        let [quick, fuel, stack_bytes, memory_bytes, time_s] = words else {
+        let [quick, fuel, signals, stack_bytes, memory_bytes, time_s] = words else {
             return None;
         };
         Some(Self {
             quick: quick.parse().ok()?,
             fuel: fuel.parse().ok()?,
+            signals: signals.parse().ok()?,
             stack_bytes: stack_bytes.parse().ok()?,
             memory_bytes: memory_bytes.parse().ok()?,
             time_s: time_s.parse().ok()?,
@@ -144,6 +148,10 @@ impl Request {
         let limits = WasmLimits {
             stack_bytes: self.stack_bytes,
             fuel: self.fuel.then_some(1),
+            engine: match self.signals {
+                true => WasmEngine::Signals,
+                false => WasmEngine::Checked,
+            },
             ..WasmLimits::default()
         };
         let effort = if self.quick {

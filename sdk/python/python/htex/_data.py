@@ -100,6 +100,23 @@ class Exponent:
     """Standard error of the measurement."""
 
 
+@dataclass(frozen=True, eq=False)
+class Envelope:
+    """What a voice played since it was last asked, for devices that are driven by level and frequency.
+
+    The level is exact; the other numbers are those of windows that lag by some 20 ms.
+    """
+
+    level_rms: float
+    """RMS of the samples, in the unit; 0 for none."""
+    centroid_hz: float
+    """Mean frequency, weighted by power, hertz; 0 for silence."""
+    frames: int
+    """Number of the samples."""
+    bands: npt.NDArray[np.float64]
+    """Mean square in each band, in the squared unit."""
+
+
 @dataclass(frozen=True)
 class Coverage:
     """The relation of a motion to the recorded conditions, and how a voice plays it."""
@@ -324,7 +341,7 @@ def _reopen(
     return _htex.open(data, plugins=plugins, embedded=embedded, installed=installed)
 
 
-for _class in (Condition, Exponent, Spectrum, Reach, Coverage, Agreement, Processed, Fit, Tradeoff, Comparison, Response, Simulation):
+for _class in (Condition, Exponent, Spectrum, Reach, Coverage, Envelope, Agreement, Processed, Fit, Tradeoff, Comparison, Response, Simulation):
     # Evaluated here: `typing.get_type_hints` would look for the names in the module that is stated below.
     _class.__annotations__ = get_type_hints(_class)
     _class.__module__ = "htex"

@@ -6,7 +6,7 @@ from typing import Any, Protocol, final
 import numpy as np
 import numpy.typing as npt
 
-from ._data import Condition, Coverage, Exponent, LibraryEntry, Quantity, Spectrum
+from ._data import Condition, Coverage, Envelope, Exponent, LibraryEntry, Quantity, Spectrum
 
 __version__: str
 __all__ = [
@@ -97,6 +97,9 @@ class Texture:
         level_scaling: bool = True,
         contact: bool = True,
         ceiling: float = 4.0,
+        gain: float = 1.0,
+        limit: float | None = None,
+        envelope_bands: int = 0,
     ) -> Voice: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
@@ -166,6 +169,12 @@ class Voice:
         x_mm: _Series | None = None,
         y_mm: _Series | None = None,
     ) -> npt.NDArray[np.float32]: ...
+    def set_gain(self, gain: float) -> None: ...
+    @property
+    def is_silent(self) -> bool: ...
+    @property
+    def envelope_edges_hz(self) -> npt.NDArray[np.float64]: ...
+    def envelope(self) -> Envelope: ...
     def coverage(self, speed_mm_s: float, force_n: float) -> Coverage: ...
 
 @final

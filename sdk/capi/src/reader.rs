@@ -1,0 +1,175 @@
+//! Files that a program reads for the library: from archives, packages of apps, or memory.
+
+use std::ffi::{CString, c_char, c_void};
+use std::io;
+
+use crate::pointers::slice;
+use crate::status::Failure;
+
+/// A file that the program reads. Set `size` to sizeof(htex_reader).
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_reader {
+    /// sizeof(htex_reader).
+    pub size: u32,
+    /// Bytes of the file.
+    pub len: u64,
+    /// The first argument of the functions.
+    pub context: *mut c_void,
+    /// Fills `buffer` with the `len` bytes from `offset` on, which are in the file. Returns 0, or another number for an error. Is called
+    /// in the thread of a call of the library, for a library of textures in several threads at a time.
+    pub read: Option<
+        unsafe extern "C" fn(context: *mut c_void, offset: u64, buffer: *mut u8, len: usize) -> i32,
+    >,
+    /// Called once when the file is not read any more, also after an error; may be NULL.
+    pub close: Option<unsafe extern "C" fn(context: *mut c_void)>,
+}
+
+/// The files that a scene names. Set `size` to sizeof(htex_files).
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_files {
+    /// sizeof(htex_files).
+    pub size: u32,
+    /// The first argument of `open`.
+    pub context: *mut c_void,
+    /// Opens the file of a name, as the scene has it (UTF-8): fills `file`, whose `size` is set. Returns 0, or another number if
+    /// there is no such file.
+    pub open: Option<
+        unsafe extern "C" fn(
+            context: *mut c_void,
+            name: *const c_char,
+            file: *mut htex_reader,
+        ) -> i32,
+    >,
+}
+
+/// Most bytes of a file that is read whole: recorded motions are the longest.
+const MOST_BYTES: u64 = 256 << 20;
+
+/// A file of the program, which is closed when it is dropped.
+#[derive(Debug)]
+pub(crate) struct Reader {
+    len: u64,
+    context: *mut c_void,
+    read: unsafe extern "C" fn(*mut c_void, u64, *mut u8, usize) -> i32,
+    close: Option<unsafe extern "C" fn(*mut c_void)>,
+}
+
+// SAFETY: the caller of a function with a reader allows calls from any thread.
+unsafe impl Send for Reader {}
+// SAFETY: as above, and several at a time.
+unsafe impl Sync for Reader {}
+
+impl Reader {
+    /// # Safety
+    /// NULL, or a reader of the caller.
+    pub(crate) unsafe fn of(reader: *const htex_reader) -> Result<Self, Failure> {
+        // SAFETY: as here.
+        let reader = unsafe { slice(reader, 1) }?[0];
+        Self::new(&reader)
+    }
+
+    fn new(reader: &htex_reader) -> Result<Self, Failure> {
+        if (reader.size as usize) < size_of::<htex_reader>() {
+            return Err(Failure::argument(
+                "the reader's size is not that of its struct; set it to sizeof(htex_reader)",
+            ));
+        }
+        let read = reader
+            .read
+            .ok_or(Failure::argument("the reader's function `read` is NULL"))?;
+        Ok(Self {
+            len: reader.len,
+            context: reader.context,
+            read,
+            close: reader.close,
+        })
+    }
+
+    #[cfg(feature = "library")]
+    pub(crate) fn len(&self) -> u64 {
+        self.len
+    }
+
+    /// Fills the buffer; returns how many bytes the file had there.
+    pub(crate) fn read_at(&self, offset: u64, buffer: &mut [u8]) -> io::Result<usize> {
+        let there = self.len.saturating_sub(offset);
+        let len = usize::try_from(there).map_or(buffer.len(), |there| there.min(buffer.len()));
+        if len == 0 {
+            return Ok(0);
+        }
+        // SAFETY: the caller vouches for the function; the buffer has as many bytes.
+        match unsafe { (self.read)(self.context, offset, buffer.as_mut_ptr(), len) } {
+            0 => Ok(len),
+            number => Err(io::Error::other(format!(
+                "the function of the program that reads returned {number}"
+            ))),
+        }
+    }
+
+    /// Reads the whole file.
+    pub(crate) fn read_whole(&self) -> io::Result<Vec<u8>> {
+        if self.len > MOST_BYTES {
+            let what = format!("{} bytes; at most {MOST_BYTES} are read", self.len);
+            return Err(io::Error::new(io::ErrorKind::FileTooLarge, what));
+        }
+        let mut bytes = vec![0; self.len as usize];
+        self.read_at(0, &mut bytes)?;
+        Ok(bytes)
+    }
+}
+
+impl Drop for Reader {
+    fn drop(&mut self) {
+        if let Some(close) = self.close {
+            // SAFETY: the caller vouches for the function, which is called once.
+            unsafe { close(self.context) };
+        }
+    }
+}
+
+/// The files of a scene.
+#[cfg(feature = "scene")]
+pub(crate) struct Files {
+    files: htex_files,
+}
+
+#[cfg(feature = "scene")]
+impl Files {
+    /// # Safety
+    /// NULL, or files of the caller.
+    pub(crate) unsafe fn of(files: *const htex_files) -> Result<Self, Failure> {
+        // SAFETY: as here.
+        let files = unsafe { slice(files, 1) }?[0];
+        if (files.size as usize) < size_of::<htex_files>() || files.open.is_none() {
+            return Err(Failure::argument(
+                "the files' size is not sizeof(htex_files), or their function is NULL",
+            ));
+        }
+        Ok(Self { files })
+    }
+
+    /// Reads the file of a name.
+    pub(crate) fn read_whole(&self, name: &str) -> io::Result<Vec<u8>> {
+        let absent = || io::Error::from(io::ErrorKind::NotFound);
+        let text = CString::new(name).map_err(|_| absent())?;
+        let mut reader = htex_reader {
+            size: size_of::<htex_reader>() as u32,
+            len: 0,
+            context: std::ptr::null_mut(),
+            read: None,
+            close: None,
+        };
+        let open = self.files.open.ok_or_else(absent)?;
+        // SAFETY: the caller vouches for the function.
+        match unsafe { open(self.files.context, text.as_ptr(), &mut reader) } {
+            0 => Reader::new(&reader)
+                .map_err(|_| {
+                    io::Error::other("the program opened the file without a function to read it")
+                })?
+                .read_whole(),
+            _ => Err(absent()),
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! Level, mean frequency and powers in bands of a stream of samples.
+//!
+//! The level is that of the samples of a block, exactly and without delay. Mean frequency and bands are those of Hann windows (periodic) of
+//! `N` samples, the least power of two that lasts 40 ms (20 kHz: 1024 samples, 51.2 ms; 48 kHz: 2048, 42.7 ms), of which one ends every
+//! `N / 4` samples; samples before the first are 0. With `X[k]` the transform of the windowed samples and `W` the sum of the
+//! squared window, bin `k` at `k * rate / N` has the power `|X[k]|² / (N * W)`, twice that for all bins but the first and the
+//! last, so that the powers of all bins are the mean square of the windowed samples, as a share of the window's. A block has the mean of
+//! the windows that end in it, and the numbers of the block before if none does.
+
+use alloc::vec::Vec;
+
+use num_complex::Complex;
+
+use crate::fft::RealFft;
+use crate::grid::Band;
+use crate::window::hann_periodic;
+
+/// Shortest window, seconds: two periods of 50 Hz, and nearly one of 20 Hz, the lowest frequency of a texture.
+const WINDOW_S: f64 = 0.040;
+/// Windows that overlap at each sample.
+const OVERLAP: usize = 4;
+
+/// What a stream was since it was last asked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measured {
+    /// RMS of the samples; 0 for none.
+    pub level_rms: f64,
+    /// Mean frequency, weighted by power, hertz; 0 for silence.
+    pub centroid_hz: f64,
+    /// Samples.
+    pub frames: u64,
+}
+
+/// Sums over windows or samples.
+#[derive(Debug, Clone, Default)]
+struct Sums {
+    squares: f64,
+    frames: u64,
+    windows: u64,
+    power: f64,
+    /// Power times frequency.
+    moment: f64,
+}
+
+/// Measures a stream of samples.
+///
+/// ```
+/// use htex_dsp::envelope::Analyser;
+/// use htex_dsp::grid::Band;
+/// let mut analyser = Analyser::new(3, Band::TACTILE, 20_000.0);
+/// let sine = |n: i32| (core::f32::consts::TAU * 250.0 * n as f32 / 20_000.0).sin();
+/// analyser.push(&(0..8_000).map(sine).collect::<Vec<_>>());
+/// let mut bands = [0.0; 3];
+/// let measured = analyser.read(&mut bands);
+/// assert!((measured.level_rms - 0.5f64.sqrt()).abs() < 1e-3);
+/// assert!((measured.centroid_hz - 250.0).abs() < 1.0);
+/// assert!(bands[1] > 100.0 * bands[0]); // 74 to 271 Hz
+/// ```
+#[derive(Debug, Clone)]
+pub struct Analyser {
+    rate_hz: f64,
+    edges_hz: Vec<f64>,
+    /// The band of each bin.
+    band_of: Vec<usize>,
+    window: Vec<f64>,
+    /// The power of a bin, in its squared magnitude.
+    scale: f64,
+    fft: RealFft,
+    bins: Vec<Complex<f64>>,
+    windowed: Vec<f64>,
+    /// The last samples, the oldest at `at`.
+    ring: Vec<f32>,
+    at: usize,
+    /// Samples that the ring has had since its last one that is not 0.
+    quiet: usize,
+    sums: Sums,
+    /// Of the windows that ended since the last call; then of the last window.
+    bands: Vec<f64>,
+    centroid_hz: f64,
+}
+
+impl Analyser {
+    /// Makes an analyser of `count` bands (at least one) of equal ratio within a band.
+    pub fn new(count: usize, band: Band, rate_hz: f64) -> Self {
+        let count = count.max(1);
+        let len = libm::ceil(WINDOW_S * rate_hz) as usize;
+        let len = len.next_power_of_two().max(OVERLAP);
+        let ratio = band.high_hz / band.low_hz;
+        let edge = |k: usize| band.low_hz * libm::pow(ratio, k as f64 / count as f64);
+        let edges_hz: Vec<f64> = (0..=count).map(edge).collect();
+        let fft = RealFft::new(len);
+        let bins = fft.make_bins();
+        // All below the second edge is of the first band, all above the last but one of the last.
+        let inner = &edges_hz[1..count];
+        let band_at = |hz: f64| inner.partition_point(|edge| *edge <= hz);
+        let window = hann_periodic(len);
+        let squares: f64 = window.iter().map(|w| w * w).sum();
+        Self {
+            rate_hz,
+            band_of: (0..bins.len())
+                .map(|k| band_at(k as f64 * rate_hz / len as f64))
+                .collect(),
+            scale: 1.0 / (len as f64 * squares),
+            window,
+            fft,
+            bins,
+            windowed: alloc::vec![0.0; len],
+            ring: alloc::vec![0.0; len],
+            at: 0,
+            quiet: len,
+            sums: Sums::default(),
+            bands: alloc::vec![0.0; edges_hz.len() - 1],
+            centroid_hz: 0.0,
+            edges_hz,
+        }
+    }
+
+    /// Returns the number of bands.
+    pub fn bands(&self) -> usize {
+        self.bands.len()
+    }
+
+    /// Returns the edges of the bands, one more than bands, ascending, hertz. The first band reaches down to 0 Hz, and the last up to
+    /// half the rate.
+    pub fn edges_hz(&self) -> &[f64] {
+        &self.edges_hz
+    }
+
+    /// Takes the next samples.
+    pub fn push(&mut self, samples: &[f32]) {
+        let mut rest = samples;
+        while !rest.is_empty() {
+            let (now, later) = rest.split_at(self.to_window().min(rest.len()));
+            self.ring[self.at..self.at + now.len()].copy_from_slice(now);
+            self.sums.squares += now.iter().map(|x| f64::from(x * x)).sum::<f64>();
+            self.quiet = match now.iter().rposition(|x| *x != 0.0) {
+                Some(last) => now.len() - 1 - last,
+                None => self.quiet.saturating_add(now.len()),
+            };
+            self.advance(now.len());
+            rest = later;
+        }
+    }
+
+    /// Takes samples that are 0.
+    pub fn push_zeros(&mut self, mut count: usize) {
+        const ZEROS: [f32; 64] = [0.0; 64];
+        while count > 0 && self.quiet < self.ring.len() {
+            let now = count.min(ZEROS.len());
+            self.push(&ZEROS[..now]);
+            count -= now;
+        }
+        // All windows that end in the rest are silent.
+        let hop = self.hop();
+        let ended = (self.at % hop + count) / hop;
+        if ended > 0 {
+            self.begin_window();
+            self.sums.windows += ended as u64;
+        }
+        self.at = (self.at + count) % self.ring.len();
+        self.sums.frames += count as u64;
+    }
+
+    fn hop(&self) -> usize {
+        self.ring.len() / OVERLAP
+    }
+
+    /// Samples until a window ends.
+    fn to_window(&self) -> usize {
+        self.hop() - self.at % self.hop()
+    }
+
+    /// Advances by at most as many samples as until a window ends.
+    fn advance(&mut self, count: usize) {
+        self.sums.frames += count as u64;
+        self.at += count;
+        if self.at.is_multiple_of(self.hop()) {
+            self.at %= self.ring.len();
+            self.add_window();
+        }
+    }
+
+    /// Forgets the last window when another one ends.
+    fn begin_window(&mut self) {
+        if self.sums.windows == 0 {
+            self.bands.fill(0.0);
+        }
+    }
+
+    /// Adds the powers of the window that ends here.
+    fn add_window(&mut self) {
+        self.begin_window();
+        self.sums.windows += 1;
+        if self.quiet >= self.ring.len() {
+            return;
+        }
+        let (new, old) = self.ring.split_at(self.at);
+        for ((to, x), w) in self
+            .windowed
+            .iter_mut()
+            .zip(old.iter().chain(new))
+            .zip(&self.window)
+        {
+            *to = f64::from(*x) * w;
+        }
+        self.fft.forward(&self.windowed, &mut self.bins);
+        let last = self.bins.len() - 1;
+        let step_hz = self.rate_hz / self.ring.len() as f64;
+        for (k, (bin, band)) in self.bins.iter().zip(&self.band_of).enumerate() {
+            let sides = if k == 0 || k == last { 1.0 } else { 2.0 };
+            let power = sides * self.scale * bin.norm_sqr();
+            self.bands[*band] += power;
+            self.sums.power += power;
+            self.sums.moment += power * step_hz * k as f64;
+        }
+    }
+
+    /// Returns what was taken since the last call; writes the mean square of each band, as far as there are places.
+    pub fn read(&mut self, bands: &mut [f64]) -> Measured {
+        let sums = core::mem::take(&mut self.sums);
+        if sums.windows > 0 {
+            self.bands
+                .iter_mut()
+                .for_each(|power| *power /= sums.windows as f64);
+            self.centroid_hz = match sums.power > 0.0 {
+                true => sums.moment / sums.power,
+                false => 0.0,
+            };
+        }
+        for (to, power) in bands.iter_mut().zip(&self.bands) {
+            *to = *power;
+        }
+        let level_rms = match sums.frames {
+            0 => 0.0,
+            frames => libm::sqrt(sums.squares / frames as f64),
+        };
+        Measured {
+            level_rms,
+            centroid_hz: self.centroid_hz,
+            frames: sums.frames,
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! The gain and the limiter of a voice, the last of its effects.
+
+use htex_dsp::glide::Glide;
+
+use crate::Error;
+
+/// Time constant with which a limiter lets go, seconds: shorter ones distort the lowest frequency of a texture, 20 Hz.
+const RELEASE_S: f64 = 0.050;
+
+/// The last effects of a voice.
+#[derive(Debug)]
+pub(crate) struct Output {
+    gain: Glide,
+    limiter: Option<Limiter>,
+}
+
+impl Output {
+    /// Makes a gain whose changes take `ramp` samples, and a limiter to `limit`.
+    ///
+    /// # Errors
+    /// When the gain is negative or not finite, or the limit not above 0.
+    pub(crate) fn new(
+        gain: f64,
+        limit: Option<f64>,
+        ramp: u32,
+        rate_hz: f64,
+    ) -> Result<Self, Error> {
+        let limiter = limit
+            .map(|limit| Limiter::new(limit, rate_hz))
+            .transpose()?;
+        Ok(Self {
+            gain: Glide::new(checked(gain)?, ramp),
+            limiter,
+        })
+    }
+
+    /// Changes the gain: gradually, or at once in a voice that rests.
+    ///
+    /// # Errors
+    /// When it is negative or not finite.
+    pub(crate) fn set_gain(&mut self, gain: f64, rests: bool) -> Result<(), Error> {
+        let gain = checked(gain)?;
+        match rests {
+            true => self.gain.restart(gain),
+            false => self.gain.set(gain),
+        }
+        Ok(())
+    }
+
+    pub(crate) fn apply(&mut self, block: &mut [f32]) {
+        self.gain.apply(block);
+        if let Some(limiter) = &mut self.limiter {
+            limiter.apply(block);
+        }
+    }
+
+    /// Ends what is gradual, since the samples are zero.
+    pub(crate) fn rest(&mut self) {
+        self.gain.finish();
+        if let Some(limiter) = &mut self.limiter {
+            limiter.gain = 1.0;
+        }
+    }
+}
+
+fn checked(gain: f64) -> Result<f32, Error> {
+    let number = gain as f32;
+    if number.is_finite() && number >= 0.0 {
+        return Ok(number);
+    }
+    Err(Error::OutOfRange {
+        name: "gain",
+        value: gain,
+        range: "it must be finite and not negative",
+    })
+}
+
+/// A gain that falls at once where a sample would exceed the limit, and returns to 1 exponentially.
+#[derive(Debug)]
+struct Limiter {
+    limit: f32,
+    gain: f32,
+    /// Part of the way to 1 of each sample.
+    release: f32,
+}
+
+impl Limiter {
+    fn new(limit: f64, rate_hz: f64) -> Result<Self, Error> {
+        let number = limit as f32;
+        if !(number > 0.0 && number.is_finite()) {
+            return Err(Error::OutOfRange {
+                name: "limit",
+                value: limit,
+                range: "it must be finite and above 0",
+            });
+        }
+        Ok(Self {
+            limit: number,
+            gain: 1.0,
+            release: (1.0 / (RELEASE_S * rate_hz)) as f32,
+        })
+    }
+
+    fn apply(&mut self, block: &mut [f32]) {
+        for sample in block {
+            self.gain += (1.0 - self.gain) * self.release;
+            let peak = sample.abs();
+            if peak * self.gain > self.limit {
+                self.gain = self.limit / peak;
+            }
+            // The product may round up.
+            *sample = (*sample * self.gain).clamp(-self.limit, self.limit);
+        }
+    }
+}

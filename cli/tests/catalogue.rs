@@ -46,7 +46,7 @@ fn textures_are_found_sorted_and_heard() {
     }
     place.write("library.toml", RECIPE);
     let run = place.run(&["build", "library.toml", "-o", "dist"]);
-    assert_eq!(run.code(), 1, "the recipe leaves one out: {}", run.error());
+    assert_eq!(run.code(), 3, "the recipe leaves one out: {}", run.error());
     let page = fs::read_to_string(place.path("dist/index.html")).unwrap();
     assert!(page.contains("<h1>Surfaces &amp; sounds</h1>"));
     let script = format!("<script type=\"module\">\n{STEPS}</script></body>");

@@ -35,7 +35,7 @@ struct voice {
 };
 
 /* Faults of the extension require a model that has it. */
-#if defined FAULT_MOTION_MISSING || defined FAULT_ACCEPTS_MOTION || defined FAULT_MOTION_ALLOCATES \
+#if defined FAULT_MOTION_MISSING || defined FAULT_ACCEPTS_MOTION || defined FAULT_ACCEPTS_PLACE || defined FAULT_MOTION_ALLOCATES \
     || defined FAULT_MOTION_BLOCKS
 #define HAS_MOTION
 #endif

@@ -1,5 +1,4 @@
-//! `spec/models` and `spec/playing-conformance` agree with the models, and a reader
-//! written from the specification agrees with them.
+//! `spec/models` and `spec/playing-conformance` agree with the models.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "common/playing/mod.rs"]
@@ -7,7 +6,6 @@ mod playing;
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
 
 use htex_host::Registry;
 use htex_tests::workspace;
@@ -136,36 +134,4 @@ fn valid_conformance_files_are_played() {
         }
     }
     assert!(played >= 40, "{played} representations");
-}
-
-/// Decodes the assets and computes their magnitudes in Python, from the text of the specification.
-#[test]
-fn a_reader_written_from_the_text_agrees() {
-    let python = python();
-    let there = xtask::needs::SCIPY.met(python.is_some());
-    let Some(python) = python.filter(|_| there) else {
-        return;
-    };
-    let output = Command::new(&python)
-        .arg(workspace().join("tests/peers/player.py"))
-        .arg(cases_folder())
-        .output()
-        .unwrap();
-    print!("{}", String::from_utf8_lossy(&output.stdout));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
-}
-
-/// The Python with NumPy and SciPy that the environment names, else that of the benchmark, else the system's.
-fn python() -> Option<PathBuf> {
-    let named = std::env::var_os("HTEX_PYTHON").map(PathBuf::from);
-    let own = workspace().join("target/peers/bin/python");
-    let known = named.into_iter().chain([own, "python3".into()]);
-    let has = |python: &PathBuf| {
-        let output = Command::new(python)
-            .args(["-c", "import numpy, scipy"])
-            .output();
-        output.is_ok_and(|output| output.status.success())
-    };
-    known.into_iter().find(has)
 }

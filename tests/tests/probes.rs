@@ -1,13 +1,16 @@
 //! One range for each number: what a schema refuses, reading refuses, and the reverse. Every number of a document that has all keys is
 //! replaced by numbers around and beyond the ranges, texts by others, and every key is left out.
 //!
-//! With `HTEX_PROBES_OUT` the documents are written to the file of that name, for another reader: lines of JSON with `kind`, `what`, `document` and
-//! `valid`. Manifests are read in an archive with an entry `a.bin` of three zero bytes.
+//! With `HTEX_PROBES_OUT` the documents are written to the file of that name, for another reader: lines of JSON with `kind`, `what`, `document`,
+//! `valid` (what reading says) and `schema` (what the schema says). Manifests are read in an archive with an entry `a.bin` of nine zero bytes.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "../../sdk/format/tests/common/raw_zip.rs"]
 #[allow(dead_code)]
 mod raw_zip;
+
+#[path = "common/probes/independent.rs"]
+mod independent;
 
 use std::env;
 use std::fs::{self, File};
@@ -122,8 +125,18 @@ fn changes_of(document: &Value) -> Vec<(String, Value)> {
     changes
 }
 
-/// Writes changed documents with the verdicts of reading to the file that `HTEX_PROBES_OUT` names, if it is set.
-fn write_out(stem: &str, changes: &[(String, Value, Vec<Finding>)]) {
+/// A changed document, and its verdicts.
+struct Change {
+    what: String,
+    document: Value,
+    /// Whether the schema allows it.
+    by_schema: bool,
+    /// Errors of reading.
+    errors: Vec<Finding>,
+}
+
+/// Writes changed documents with the verdicts of reading and of the schema to the file that `HTEX_PROBES_OUT` names, if it is set.
+fn write_out(stem: &str, changes: &[Change]) {
     static OUT: OnceLock<Option<Mutex<File>>> = OnceLock::new();
     let open =
         || env::var_os("HTEX_PROBES_OUT").map(|path| Mutex::new(File::create(path).unwrap()));
@@ -131,10 +144,15 @@ fn write_out(stem: &str, changes: &[(String, Value, Vec<Finding>)]) {
         return;
     };
     let kind = stem.strip_suffix("-1").unwrap_or(stem);
-    let line = |(what, document, errors): &(String, Value, Vec<Finding>)| {
-        let valid = errors.is_empty();
-        json!({ "kind": kind, "what": what, "document": document, "valid": valid }).to_string()
-            + "\n"
+    let line = |change: &Change| {
+        let verdicts = json!({
+            "kind": kind,
+            "what": change.what,
+            "document": change.document,
+            "valid": change.errors.is_empty(),
+            "schema": change.by_schema,
+        });
+        format!("{verdicts}\n")
     };
     let lines: String = changes.iter().map(line).collect();
     out.lock().unwrap().write_all(lines.as_bytes()).unwrap();
@@ -151,20 +169,23 @@ fn compare(stem: &str, document: &Value, depends: &[&str], read: &dyn Fn(&Value)
         found
     };
     assert_eq!(errors(document), [], "{stem}");
-    let read = |(what, changed): (String, Value)| {
-        let errors = errors(&changed);
-        (what, changed, errors)
+    let judged = |(what, document): (String, Value)| Change {
+        by_schema: schema.violations(&document).is_empty(),
+        errors: errors(&document),
+        what,
+        document,
     };
-    let changes: Vec<_> = changes_of(document).into_iter().map(read).collect();
+    let changes: Vec<Change> = changes_of(document).into_iter().map(judged).collect();
     assert!(changes.len() >= 80, "{stem}");
     write_out(stem, &changes);
     let mut differ = Vec::new();
-    for (what, changed, errors) in changes {
-        let by_schema = !schema.violations(&changed).is_empty();
-        let may_depend = depends.iter().any(|part| what.contains(part));
-        if by_schema == errors.is_empty() && (by_schema || !may_depend) {
+    for change in changes {
+        let may_depend = depends.iter().any(|part| change.what.contains(part));
+        let by_reading = change.errors.is_empty();
+        if change.by_schema != by_reading && (by_reading || !may_depend) {
             differ.push(format!(
-                "{what}: the schema refuses it: {by_schema}; reading: {errors:?}"
+                "{}: the schema allows it: {}; reading: {:?}",
+                change.what, change.by_schema, change.errors
             ));
         }
     }

@@ -267,6 +267,6 @@ fn generated_schemas_of_the_laboratory_are_fresh() {
         ("gains-1", htex_scene::gains_schema()),
     ] {
         let text = format!("{schema:#}\n");
-        xtask::generated::file(&format!("spec/schemas/{name}.json"), text.as_bytes());
+        xtask::generated::file(format!("spec/schemas/{name}.json"), text.as_bytes());
     }
 }

@@ -98,10 +98,10 @@ pub const ARM_GCC: Need = Need {
     for_wasm: false,
 };
 
-/// Another player, written in Python.
-pub const SCIPY: Need = Need {
-    what: "Python with NumPy and SciPy",
-    how: "python3 -m venv target/peers && target/peers/bin/pip install -r tests/peers/player-requirements.txt",
+/// Another reader and player, written in Python.
+pub const PEERS: Need = Need {
+    what: "Python with NumPy, SciPy and other packages",
+    how: "python3 -m venv target/peers && target/peers/bin/pip install -r tests/peers/independent/requirements.txt",
     for_wasm: false,
 };
 

@@ -24,6 +24,8 @@ mod tests;
 use axis::Axis;
 use htex_format::{Triangle, TrianglesError};
 
+/// Position, relative to the largest speed and force, from which edges are told apart by direction: farther out, rounding hides which is nearest.
+const FARTHEST: f64 = 1e6;
 /// Largest distance from an edge, relative to the largest speed and force, that is attributed to rounding.
 const ON_SIDE: f64 = 1e-9;
 
@@ -184,6 +186,12 @@ impl Mesh {
 
     /// Returns the weights of the hull's nearest point, and the point.
     fn nearest(&self, q: [f64; 2]) -> (Weights, [f64; 2]) {
+        let size = q[0].abs().max(q[1].abs());
+        let q = if size > FARTHEST {
+            q.map(|x| x / size * FARTHEST)
+        } else {
+            q
+        };
         let distance = |side: &Side| side.distance2(q);
         let nearest = self
             .sides

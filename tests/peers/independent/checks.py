@@ -1,0 +1,277 @@
+"""The stages of validation.md that need the manifest alone."""
+
+from __future__ import annotations
+
+import re
+
+from . import spdx
+from .blocks import grid
+from .findings import Findings, escape
+from .manifest import CORRELATIONS, ERRORS, NINE_BANDS, QUANTITIES
+from .models import Models
+from .plugins import signature_is_valid
+from .stores import Store
+from .triangles import covers_once, places, wrong_corner, wrong_triangle
+
+DOI = re.compile(r"10\.[0-9]{4,9}(\.[0-9]+)*/[!-~]+")
+HASH = re.compile(r"[0-9A-Fa-f]{64}")
+LOWER_HASH = re.compile(r"[0-9a-f]{64}")
+MODEL_ID = re.compile(r"[a-z0-9_-]+(\.[a-z0-9_-]+){2,}")
+_NUMBER, _PART = r"(?:0|[1-9][0-9]*)", r"(?:0|[1-9][0-9]*|[0-9]*[a-zA-Z-][0-9a-zA-Z-]*)"
+SEMVER = re.compile(
+    rf"({_NUMBER})\.({_NUMBER})\.({_NUMBER})(?:-({_PART}(?:\.{_PART})*))?(?:\+[0-9a-zA-Z-]+(?:\.[0-9a-zA-Z-]+)*)?"
+)
+# Findings after which the shape of stored triangles is not checked.
+UNUSABLE_CONDITIONS = {
+    "CONDITION_INVALID",
+    "CONDITION_DUPLICATE",
+    "CONDITION_INDEX_INVALID",
+    "CONDITION_INDEX_DUPLICATE",
+}
+EXTENSION = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+){2,}/[1-9][0-9]*")
+
+
+def check_manifest(manifest: dict, models: Models, findings: Findings) -> None:
+    """All stages from `the whole texture` to `fields`, in order."""
+    check_texture(manifest, findings)
+    check_provenance(manifest.get("provenance", {}), findings)
+    check_conditions(manifest, findings)
+    check_law(manifest.get("law"), findings)
+    check_representations(manifest, findings)
+    check_plugins(manifest, findings)
+    check_extensions(manifest, findings)
+    check_fields(manifest, models, findings)
+
+
+def check_texture(manifest: dict, findings: Findings) -> None:
+    if not manifest["name"].strip():
+        findings.add("NAME_EMPTY", "/name")
+    check_license(manifest, findings)
+    if "doi" in manifest and not DOI.fullmatch(manifest["doi"]):
+        findings.add("DOI_INVALID", "/doi")
+    if manifest["unit"] != QUANTITIES[manifest["quantity"]][0]:
+        findings.add("UNIT_UNKNOWN", "/unit")
+    if not band_is_valid(manifest["band"]):
+        findings.add("BAND_INVALID", "/band")
+
+
+def check_license(manifest: dict, findings: Findings) -> None:
+    if "license" not in manifest:
+        findings.add("LICENSE_MISSING")
+        return
+    try:
+        unknown = spdx.unknown_ids(manifest["license"])
+    except spdx.NotAnExpression:
+        findings.add("LICENSE_INVALID", "/license")
+        return
+    if unknown:
+        findings.add("LICENSE_UNKNOWN", "/license", ", ".join(unknown))
+
+
+def band_is_valid(band: dict) -> bool:
+    low, high = band["low_hz"], band["high_hz"]
+    return 0 < low < high <= 20000 and len(grid(low, high)) > 0
+
+
+def check_provenance(provenance: dict, findings: Findings) -> None:
+    for index, recording in enumerate(provenance.get("recordings", [])):
+        pointer = f"/provenance/recordings/{index}"
+        if not recording["rate_hz"] > 0:
+            findings.add("SOURCE_INVALID", pointer + "/rate_hz")
+        if "/" in recording["file"] or "\\" in recording["file"]:
+            findings.add("SOURCE_PATH", pointer + "/file")
+    for index, ingredient in enumerate(provenance.get("made", {}).get("from", [])):
+        pointer = f"/provenance/made/from/{index}"
+        if not 0 <= ingredient["weight"] <= 1:
+            findings.add("MADE_INVALID", pointer + "/weight")
+        if not HASH.fullmatch(ingredient["blake3"]):
+            findings.add("MADE_INVALID", pointer + "/blake3")
+
+
+def check_conditions(manifest: dict, findings: Findings) -> None:
+    if not manifest["conditions"]:
+        findings.add("CONDITIONS_EMPTY", "/conditions")
+    seen = set()
+    for index, condition in enumerate(manifest["conditions"]):
+        pointer = f"/conditions/{index}"
+        for key in ("speed_mm_s", "force_n", "repeatability_rms_db"):
+            if condition.get(key, 0.0) < 0:
+                findings.add("CONDITION_INVALID", f"{pointer}/{key}")
+        motion = (condition.get("speed_mm_s") or 0.0, condition.get("force_n") or 0.0)
+        if motion in seen:
+            findings.add("CONDITION_DUPLICATE", pointer)
+        seen.add(motion)
+
+
+def check_law(law: dict | None, findings: Findings) -> None:
+    if law is None:
+        return
+    for name in ("frequency_speed", "level_speed", "level_force"):
+        exponent = law[name]
+        if not -4 <= exponent["exponent"] <= 4 or exponent.get("standard_error", 0.0) < 0:
+            findings.add("LAW_INVALID", f"/law/{name}")
+
+
+def check_representations(manifest: dict, findings: Findings) -> None:
+    if not manifest["representations"]:
+        findings.add("REPRESENTATIONS_EMPTY", "/representations")
+    ids = set()
+    largest = QUANTITIES[manifest["quantity"]][1]
+    for index, representation in enumerate(manifest["representations"]):
+        pointer = f"/representations/{index}"
+        model = representation["model"]
+        if not MODEL_ID.fullmatch(model):
+            findings.add("MODEL_ID_INVALID", pointer + "/model")
+        if model in ids:
+            findings.add("MODEL_DUPLICATE", pointer + "/model")
+        ids.add(model)
+        if not SEMVER.fullmatch(representation["model_version"]):
+            findings.add("MODEL_VERSION_INVALID", pointer + "/model_version")
+        check_stored_fields(representation["fields"], pointer + "/fields", findings)
+        if not representation["at"]:
+            findings.add("AT_EMPTY", pointer + "/at")
+        check_at(representation["at"], pointer + "/at", len(manifest["conditions"]), largest, findings)
+        if "triangles" in representation:
+            check_triangles(representation, manifest["conditions"], pointer + "/triangles", findings)
+
+
+def check_triangles(representation: dict, conditions: list[dict], pointer: str, findings: Findings) -> None:
+    """Section 2, *Triangles*: the first rule that is broken."""
+    triangles, at = representation["triangles"], representation["at"]
+    number = wrong_corner(triangles, len(at))
+    if number is not None:
+        findings.add("TRIANGLES_INVALID", f"{pointer}/{number}")
+        return
+    found = {finding.code for finding in findings.items}
+    known = [conditions[int(e["condition"])] for e in at if e["condition"] < len(conditions)]
+    if any("speed_mm_s" not in condition or "force_n" not in condition for condition in known):
+        findings.add("TRIANGLES_INVALID", pointer)
+        return
+    if found & UNUSABLE_CONDITIONS:
+        return
+    positions = places([(condition["speed_mm_s"], condition["force_n"]) for condition in known])
+    corners = [tuple(int(corner) for corner in triangle) for triangle in triangles]
+    number = wrong_triangle(corners, positions)
+    if number is not None:
+        findings.add("TRIANGLES_INVALID", f"{pointer}/{number}")
+    elif not covers_once(corners, positions):
+        findings.add("TRIANGLES_INVALID", pointer)
+
+
+def check_stored_fields(fields: list[dict], pointer: str, findings: Findings) -> None:
+    names = set()
+    for index, field in enumerate(fields):
+        here = f"{pointer}/{index}"
+        if not field["name"]:
+            findings.add("FIELD_NAME_EMPTY", here + "/name")
+        if field["name"] in names:
+            findings.add("FIELD_DUPLICATE", here + "/name")
+        names.add(field["name"])
+        store = Store.of(field)
+        if store.wrong() or store.kind == "packed" and not field.get("list"):
+            findings.add("STORE_INVALID", here + "/store")
+
+
+def check_at(at: list[dict], pointer: str, conditions: int, largest: float, findings: Findings) -> None:
+    seen = set()
+    for index, element in enumerate(at):
+        here = f"{pointer}/{index}"
+        if element["condition"] >= conditions:
+            findings.add("CONDITION_INDEX_INVALID", here + "/condition")
+        elif element["condition"] in seen:
+            findings.add("CONDITION_INDEX_DUPLICATE", here + "/condition")
+        seen.add(element["condition"])
+        if not 0 <= element["level_rms"] <= largest:
+            findings.add("LEVEL_INVALID", here + "/level_rms")
+        check_measures(element.get("quality", {}), here + "/quality", findings)
+        check_measures(element.get("left_out", {}), here + "/left_out", findings)
+
+
+def check_measures(measures: dict, pointer: str, findings: Findings) -> None:
+    """The numbers of `quality` or `left_out`, in the order of the table."""
+    order = ("spectral_correlation", NINE_BANDS, *ERRORS[:4], "samples_spectral_correlation", *ERRORS[4:])
+    for key in order:
+        if key not in measures:
+            continue
+        value = measures[key]
+        if key == NINE_BANDS:
+            wrong = len(value) != 9
+        elif key in CORRELATIONS:
+            wrong = not -1 <= value <= 1
+        else:
+            wrong = value < 0
+        if wrong:
+            findings.add("QUALITY_INVALID", f"{pointer}/{key}")
+
+
+def check_plugins(manifest: dict, findings: Findings) -> None:
+    represented = {representation["model"] for representation in manifest["representations"]}
+    ids = set()
+    for index, plugin in enumerate(manifest.get("plugins", [])):
+        pointer = f"/plugins/{index}"
+        model = plugin["model"]
+        if not MODEL_ID.fullmatch(model):
+            findings.add("PLUGIN_INVALID", pointer + "/model")
+        if not SEMVER.fullmatch(plugin["version"]):
+            findings.add("PLUGIN_INVALID", pointer + "/version")
+        if plugin["file"] != f"plugins/{model}.wasm":
+            findings.add("PLUGIN_INVALID", pointer + "/file")
+        if not LOWER_HASH.fullmatch(plugin["blake3"]):
+            findings.add("PLUGIN_INVALID", pointer + "/blake3")
+        if model in ids:
+            findings.add("PLUGIN_DUPLICATE", pointer + "/model")
+        ids.add(model)
+        if model not in represented:
+            findings.add("PLUGIN_UNUSED", pointer + "/model")
+        if "signature" in plugin and not signature_is_valid(plugin):
+            findings.add("PLUGIN_SIGNATURE_INVALID", pointer + "/signature")
+
+
+def check_extensions(manifest: dict, findings: Findings) -> None:
+    for name in sorted(manifest.get("extensions", {}), key=lambda n: n.encode("utf-8")):
+        if not EXTENSION.fullmatch(name):
+            findings.add("EXTENSION_NAME_INVALID", f"/extensions/{escape(name)}")
+    for index, _ in enumerate(manifest.get("extensions_required", [])):
+        findings.add("EXTENSION_REQUIRED_UNKNOWN", f"/extensions_required/{index}")
+
+
+def version_key(version: str):
+    """A key that orders semantic versions, or None where it is none."""
+    match = SEMVER.fullmatch(version)
+    if not match:
+        return None
+    release = tuple(int(match.group(i)) for i in (1, 2, 3))
+    if match.group(4) is None:
+        return (release, 1, ())
+    parts = tuple((0, int(p), "") if p.isdigit() else (1, 0, p) for p in match.group(4).split("."))
+    return (release, 0, parts)
+
+
+def check_fields(manifest: dict, models: Models, findings: Findings) -> None:
+    """Stored fields against the descriptor's, then absent ones."""
+    for index, representation in enumerate(manifest["representations"]):
+        model = models.get(representation["model"])
+        if model is None:
+            continue
+        fitted = version_key(representation["model_version"])
+        newer = fitted is not None and fitted > version_key(model["version"])
+        described = {field["name"]: field for field in model["fields"]}
+        pointer = f"/representations/{index}/fields"
+        for number, field in enumerate(representation["fields"]):
+            check_field(field, described.get(field["name"]), newer, f"{pointer}/{number}", findings)
+        stored = {field["name"] for field in representation["fields"]}
+        for name, field in described.items():
+            if name not in stored and "default" not in field:
+                findings.add("FIELD_MISSING", pointer, name)
+
+
+def check_field(field: dict, described: dict | None, newer: bool, pointer: str, findings: Findings) -> None:
+    if described is None:
+        if not newer:
+            findings.add("FIELD_UNKNOWN", pointer + "/name")
+        return
+    if field.get("list", False) != (described["kind"]["type"] == "list"):
+        findings.add("FIELD_KIND_WRONG", pointer)
+    expected = None if described["unit"] == "1" else described["unit"]
+    if field.get("unit") != expected:
+        findings.add("FIELD_UNIT_WRONG", pointer)

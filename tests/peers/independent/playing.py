@@ -1,0 +1,158 @@
+"""A player's numbers at a motion (htex-1.md section 11)."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+
+from .asset import Asset, read_asset
+from .axes import Axis
+from .blocks import flat
+from .law import clamp, exponents, power, scaled
+from .mesh import Mesh
+from .mixing import mix
+from .models import Models
+from .shapes import SUMS_OF_SINUSOIDS, Band, Refusal, Values, magnitude
+from .triangles import StoredMesh
+
+LEFT_OUT = 1e-12
+
+
+@dataclass
+class Played:
+    """What a player plays at a motion, before it generates samples."""
+
+    values: Values
+    frequency_factor: float
+    level_rms: float
+    magnitude: Callable[[np.ndarray], np.ndarray]
+
+    @property
+    def parameters(self) -> list[float]:
+        return flat(self.values)
+
+
+class Voice:
+    """One representation of an asset."""
+
+    def __init__(self, asset: Asset, model: dict):
+        manifest = asset.manifest
+        index = next(i for i, r in enumerate(manifest["representations"]) if r["model"] == model["id"])
+        representation = manifest["representations"][index]
+        if representation["model_version"].split(".")[0] != model["version"].split(".")[0]:
+            raise Refusal("another major version of the model")
+        self.model = model
+        self.band = Band(manifest["band"]["low_hz"], manifest["band"]["high_hz"])
+        self.exponents = exponents(manifest)
+        stored = [field["name"] for field in representation["fields"]]
+        self.sets = [
+            [block[stored.index(field["name"])] for field in model["fields"]] for block in asset.blocks[index]
+        ]
+        for values in self.sets:
+            check_ranges(model, values)
+        self.levels = [element["level_rms"] for element in representation["at"]]
+        conditions = [manifest["conditions"][int(element["condition"])] for element in representation["at"]]
+        speeds = [condition.get("speed_mm_s") for condition in conditions]
+        forces = [condition.get("force_n") for condition in conditions]
+        for grouped in (True, False):
+            self.axes = (Axis(speeds, grouped), Axis(forces, grouped))
+            points = [(self.axes[0].position(v), self.axes[1].position(f)) for v, f in zip(speeds, forces)]
+            if len(set(points)) == len(points):
+                break
+        self.mesh = Mesh(points)
+        if "triangles" in representation:
+            self.axes = (Axis(speeds, False), Axis(forces, False))
+            self.mesh = StoredMesh(representation["triangles"], list(zip(speeds, forces)))
+
+    def at(self, speed: float, force: float) -> Played:
+        point = (self.axes[0].position(speed), self.axes[1].position(force))
+        weights, foot = self.mesh.weights(point)
+        kept = sorted((i for i, w in weights.items() if w > LEFT_OUT), key=lambda i: self.mesh.points[i])
+        values = mix(self.model["id"], [self.sets[i] for i in kept], [weights[i] for i in kept])
+        level = sum(weights[i] * self.levels[i] for i in kept)
+        ratio_v, ratio_f = self.ratios(speed, force, foot)
+        a, b, c = self.exponents
+        ratio_v = clamp(ratio_v)
+        factor = clamp(power(ratio_v, a))
+        level = scaled(level, max(self.levels), power(ratio_v, b) * power(ratio_f, c))
+        shape = magnitude(self.model["id"], values, self.band)
+        density = 1.0 if self.model["id"] in SUMS_OF_SINUSOIDS else factor**-0.5
+        return Played(values, factor, level, lambda f: level * density * shape(np.asarray(f) / factor))
+
+    def foot(self, speed: float, force: float):
+        """The foot on the nearest edge, or None where the motion lies in a triangle."""
+        return self.mesh.weights((self.axes[0].position(speed), self.axes[1].position(force)))[1]
+
+    def ratios(self, speed: float, force: float, foot) -> tuple[float, float]:
+        """v / v0 and F / F0; 1 on an axis that has no values to go by."""
+        if foot is None:
+            return 1.0, 1.0
+        result = []
+        for axis, place, value in zip(self.axes, foot, (speed, force)):
+            nearest = axis.nearest(place, value) if axis.complete else 0.0
+            result.append(value / nearest if nearest > 0 else 1.0)
+        return result[0], result[1]
+
+
+def check_ranges(model: dict, values: Values) -> None:
+    """Refuse parameters outside the descriptor's ranges."""
+    for field, value in zip(model["fields"], values):
+        numbers = value if isinstance(value, list) else [value]
+        if isinstance(value, list) and len(value) > field["kind"]["max_len"]:
+            raise Refusal(f"too many {field['name']}")
+        if any(not field["min"] <= number <= field["max"] for number in numbers):
+            raise Refusal(f"{field['name']} is out of range")
+    if model["id"] == "org.htex.speak" and len(values[0]) != len(values[1]):
+        raise Refusal("as many amplitudes as frequencies")
+    if model["id"] == "org.htex.bands" and not values[0]:
+        raise Refusal("no knot")
+
+
+def close(ours, theirs) -> float:
+    """The largest difference over what is allowed: 1e-8 of a number, or of a millionth of the largest."""
+    ours, theirs = np.atleast_1d(np.asarray(ours, float)), np.atleast_1d(np.asarray(theirs, float))
+    if ours.shape != theirs.shape:
+        return np.inf
+    if not len(theirs):
+        return 0.0
+    allowed = 1e-8 * np.maximum(np.abs(theirs), 1e-6 * np.max(np.abs(theirs)))
+    difference = np.abs(ours - theirs)
+    return float(np.max(np.where(difference == 0, 0.0, difference / np.where(allowed == 0, 1e-300, allowed))))
+
+
+def compare_playing(folder: Path, models: Models, say: Callable[[str], None]) -> tuple[int, int]:
+    """Every case of playing-conformance; how many agree, of how many."""
+    agree = total = 0
+    for path in sorted(folder.glob("*.json")):
+        cases = json.loads(path.read_text("utf-8"))
+        asset, findings = read_asset((folder / cases["asset"]).read_bytes(), models)
+        if not findings.valid:
+            say(f"{path.name}: the asset is not valid: {findings.items}")
+            continue
+        voices: dict[str, Voice] = {}
+        frequencies = np.array(cases["frequency_hz"])
+        for case in cases["cases"]:
+            total += 1
+            what = f"{path.stem} {case['model']} {case['speed_mm_s']} mm/s {case['force_n']} N"
+            try:
+                voice = voices.setdefault(case["model"], None) or Voice(asset, models[case["model"]])
+                voices[case["model"]] = voice
+                played = voice.at(case["speed_mm_s"], case["force_n"])
+                errors = {
+                    "parameters": close(played.parameters, case["parameters"]),
+                    "frequency_factor": close(played.frequency_factor, case["frequency_factor"]),
+                    "level_rms": close(played.level_rms, case["level_rms"]),
+                    "magnitude": close(played.magnitude(frequencies), case["magnitude"]),
+                }
+            except Refusal as refusal:
+                say(f"{what}: refused: {refusal}")
+                continue
+            wrong = {key: f"{value:.3g} x the tolerance" for key, value in errors.items() if value > 1}
+            agree += not wrong
+            if wrong:
+                say(f"{what}: {wrong}")
+    return agree, total

@@ -202,10 +202,11 @@ fn blocks() -> Vec<Seed> {
 
 /// Calls of libhtex: two voices that render and are freed, the second twice.
 fn calls() -> Vec<Seed> {
-    let motion = [80, 200, 40, 231, 0, 0, 0, 0, 0, 0, 0xf8, 0x7f];
-    let new: &[&[u8]] = &[&[0, 0], &motion, &[0, 0, 1, 0, 0, 0, 0]];
+    let unknown = [231, 0, 0, 0, 0, 0, 0, 0xf8, 0x7f];
+    let motion = [&[80, 200, 40], &unknown[..], &unknown, &unknown].concat();
+    let new: &[&[u8]] = &[&[0, 0], &motion, &[0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0]];
     let set: &[&[u8]] = &[&[1, 0], &motion];
-    let render: &[&[u8]] = &[&[2, 64, 0]];
+    let render: &[&[u8]] = &[&[2, 64, 0, 1]];
     let free: &[&[u8]] = &[&[7, 0], &[7, 0], &[4, 0], &motion, &[100]];
     let all = [new, render, new, set, render, free].concat().concat();
     vec![("c_calls", "two-voices".to_owned(), all)]

@@ -12,6 +12,7 @@ impl Exit {
     /// Wrong usage.
     pub(crate) const USAGE: Self = Self(2);
     /// Made, with some left out.
+    #[cfg(feature = "build")]
     pub(crate) const PART: Self = Self(3);
 
     /// Returns the status that the process ends with.

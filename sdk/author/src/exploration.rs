@@ -18,7 +18,7 @@ const HALF_AVERAGE_S: f64 = 0.025;
 pub(crate) fn definition() -> String {
     format!(
         "- `RECORDING_OFF_TARGET` and `RECORDING_UNSTEADY`: speed and force are averaged over {} s. A segment is off its target if the average anywhere in it \
-         differs from the target by more than {TOLERANCE} of that. Without a target the motion is unsteady if the average anywhere in the segments differs from the median of \
+         differs from the target by more than {TOLERANCE} of that; if all are, the recording is unusable. Without a target the motion is unsteady if the average anywhere in the segments differs from the median of \
          the samples in the segments by more than {TOLERANCE} of that.\n",
         2.0 * HALF_AVERAGE_S
     )

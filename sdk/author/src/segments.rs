@@ -30,7 +30,7 @@ pub(crate) fn definition() -> String {
          (halves up), and the sample itself, fewer at the ends. The finger *slides* at a sample whose average length is at least {REST_LEVEL} of the threshold. A \
          *sweep* is a stretch of at least a segment in which the average exceeds the threshold; it is cut off if it begins with the recording or ends with it. A \
          *segment* has the rate over {SEGMENTS_PER_S} samples, rounded. That of a sweep from sample *s* to before sample *e* begins at `(s + e) / 2`, rounded down, less half a segment, rounded \
-         down; sweeps that are cut off have none. Of the sliding, a sweep that is not cut off represents its length, at most {REPRESENTED_S} s. Where there are sweeps, a sample at \
+         down; sweeps that are cut off have none, and are a finding where segments of sweeps are read. Of the sliding, a sweep that is not cut off represents its length, at most {REPRESENTED_S} s. Where there are sweeps, a sample at \
          which the finger does not slide, and sweeps represent at least {REPRESENTED} of the samples of sliding, the segments of sweeps are read. Else *windows* are: segments every half a segment, rounded up, from the \
          first sample on.\n\n",
         2.0 * HALF_AVERAGE_S

@@ -1,25 +1,10 @@
-//! Spectra of baked conditions as recordings of them would read, and their distance from the model's.
+//! Distance of the spectra of baked conditions from the model's.
 
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db};
-use htex_dsp::grid::GRID_HZ;
-use htex_dsp::window::hann_main_lobe;
 use htex_host::Band;
-
-use crate::tones::Tone;
 
 /// Bands this far below the strongest, as energies, are not compared: 40 dB.
 const FAINT: f64 = 1e-4;
-
-/// Returns the magnitude on the band's grid of sinusoids, with frequencies divided by `ratio`, through a Hann window.
-pub(crate) fn of_tones(tones: &[Tone], band: Band, ratio: f64) -> Vec<f64> {
-    let at = |hz: f64| {
-        let seen = tones
-            .iter()
-            .map(|&(f, a)| a * hann_main_lobe((hz - f / ratio) / GRID_HZ));
-        seen.map(|m| m * m).sum::<f64>().sqrt()
-    };
-    band.grid_hz().into_iter().map(at).collect()
-}
 
 /// The nine bands of a band's grid.
 pub(crate) struct Bands(BandBank);

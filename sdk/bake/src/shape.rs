@@ -7,9 +7,8 @@ use htex_player::layout::{MAX_RATIO, MIN_RATIO};
 
 use crate::filter::energy;
 use crate::noise::{Designer, Filter};
-use crate::reading::of_tones;
 use crate::texture::{Moment, Texture};
-use crate::tones::Tone;
+use crate::tones::{self, Tone};
 use crate::{BakeError, Grid};
 
 /// How much slower and faster than the grid the error beyond it is measured.
@@ -59,7 +58,7 @@ impl Spectra {
                 let power: f64 = sum.iter().map(|(_, a)| 0.5 * a * a).sum();
                 let scale = 1.0 / power.sqrt();
                 sum.iter_mut().for_each(|(_, a)| *a *= scale);
-                of_tones(&sum, texture.band(), ratio)
+                tones::magnitude(&sum, texture.band(), ratio)
             }
         }
     }

@@ -2,6 +2,8 @@
 
 use std::rc::Rc;
 
+use htex_dsp::grid::GRID_HZ;
+use htex_dsp::window::hann_main_lobe;
 use htex_host::Band;
 use htex_player::layout::MOST_TONES;
 
@@ -38,6 +40,17 @@ pub(crate) fn of_moments(
             most: MOST_TONES,
         }),
     }
+}
+
+/// Returns the magnitude on the band's grid of sinusoids, with frequencies divided by `ratio`, through a Hann window.
+pub(crate) fn magnitude(tones: &[Tone], band: Band, ratio: f64) -> Vec<f64> {
+    let at = |hz: f64| {
+        let seen = tones
+            .iter()
+            .map(|&(f, a)| a * hann_main_lobe((hz - f / ratio) / GRID_HZ));
+        seen.map(|m| m * m).sum::<f64>().sqrt()
+    };
+    band.grid_hz().into_iter().map(at).collect()
 }
 
 /// Reads the model's fields: a list of frequencies, a list of amplitudes, whether phases are random.

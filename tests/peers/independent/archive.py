@@ -11,7 +11,8 @@ from .findings import Findings, Refused
 END, DIRECTORY, LOCAL, LOCATOR = b"PK\5\6", b"PK\1\2", b"PK\3\4", b"PK\6\7"
 END_BYTES, DIRECTORY_BYTES, LOCAL_BYTES = 22, 46, 30
 END_SEARCH = 65557
-FLAG_ENCRYPTED, FLAG_DESCRIPTOR = 1, 8
+# Bits 0, 6 and 13, and bit 3.
+FLAGS_ENCRYPTED, FLAG_DESCRIPTOR = 0x2041, 8
 STORED, DEFLATED = 0, 8
 MIMETYPE = b"application/vnd.htex+zip"
 
@@ -30,6 +31,7 @@ class Entry:
     offset: int
     extra: int
     comment: int
+    disk: int
     data_at: int = 0
 
 
@@ -105,7 +107,7 @@ def read_directory(data: bytes, end: End, limits: dict[str, int], findings: Find
         entries.append(entry)
     if at != end.at:
         findings.add("ARCHIVE_INVALID", "", "the records do not end where the directory does")
-    elif position != end.directory_at:
+    if position != end.directory_at:
         findings.add("ARCHIVE_EXTRA_DATA", "", "bytes between the last entry and the directory")
     if total > limits["total_bytes"]:
         findings.add("ARCHIVE_TOO_LARGE")
@@ -116,14 +118,14 @@ def directory_record(data: bytes, at: int, limit: int) -> tuple[Entry | None, in
     if at + DIRECTORY_BYTES > limit or data[at : at + 4] != DIRECTORY:
         return None, at
     flags, method = struct.unpack_from("<HH", data, at + 8)
-    crc, packed, size, name, extra, comment = struct.unpack_from("<IIIHHH", data, at + 16)
+    crc, packed, size, name, extra, comment, disk = struct.unpack_from("<IIIHHHH", data, at + 16)
     (offset,) = struct.unpack_from("<I", data, at + 42)
     after = at + DIRECTORY_BYTES + name + extra + comment
     if after > limit:
         return None, at
     text = data[at + DIRECTORY_BYTES : at + DIRECTORY_BYTES + name].decode("latin-1")
     time = data[at + 12 : at + 16]
-    return Entry(text, flags, method, time, crc, packed, size, offset, extra, comment), after
+    return Entry(text, flags, method, time, crc, packed, size, offset, extra, comment, disk), after
 
 
 def name_is_safe(name: str) -> bool:
@@ -140,7 +142,7 @@ def check_record(entry: Entry, names: set[str], limits: dict[str, int], findings
     if entry.name.lower() in names:
         findings.add("ENTRY_NAME_DUPLICATE", "", entry.name)
     names.add(entry.name.lower())
-    if entry.flags & FLAG_ENCRYPTED:
+    if entry.flags & FLAGS_ENCRYPTED:
         findings.add("ENTRY_ENCRYPTED", "", entry.name)
     elif entry.method not in (STORED, DEFLATED):
         findings.add("ENTRY_COMPRESSION_UNKNOWN", "", entry.name)
@@ -174,11 +176,11 @@ def check_local(data: bytes, entry: Entry, position: int, end: End, findings: Fi
         return None
     text = data[position + LOCAL_BYTES : position + LOCAL_BYTES + name].decode("latin-1")
     local = (text, flags, method, time, crc, packed, size)
-    if local != (entry.name, entry.flags, entry.method, entry.time, entry.crc, entry.packed, entry.size):
+    differ = local != (entry.name, entry.flags, entry.method, entry.time, entry.crc, entry.packed, entry.size)
+    # No text says whether the disk 0xFFFF, which ZIP64 uses too, is ARCHIVE_ZIP64.
+    if differ or entry.method == STORED and entry.packed != entry.size or entry.disk:
         findings.add("ENTRY_HEADER_MISMATCH", "", entry.name)
-    elif entry.method == 0 and entry.packed != entry.size:
-        findings.add("ENTRY_HEADER_MISMATCH", "", entry.name)
-    elif extra and not entry.extra:
+    if extra and not entry.extra:
         findings.add("ENTRY_EXTRA_FIELD", "", entry.name)
     return after
 

@@ -36,22 +36,17 @@ def read_asset(data: bytes, models: Models, limits: dict[str, int] | None = None
     if contents is None:
         return asset, findings
     check_mimetype(contents, findings)
-    return read_entries({entry.name: unpacked for entry, unpacked in contents}, models, limits, findings), findings
-
-
-def read_entries(entries: dict[str, bytes], models: Models, limits: dict[str, int], findings: Findings) -> Asset:
-    """The stages after the archive."""
-    asset = Asset(entries=entries)
+    asset.entries = {entry.name: unpacked for entry, unpacked in contents}
     if "manifest.json" not in asset.entries:
         findings.add("MANIFEST_MISSING")
-        return asset
+        return asset, findings
     manifest = read_manifest(asset.entries["manifest.json"], limits, findings)
     if manifest is None:
-        return asset
+        return asset, findings
     asset.manifest = manifest
     check_manifest(manifest, models, findings)
     Entries(asset, limits, findings).check()
-    return asset
+    return asset, findings
 
 
 class Entries:
@@ -75,12 +70,12 @@ class Entries:
                 self.findings.add("ENTRY_UNREFERENCED", "", name)
 
     def claim(self, name: str, pointer: str) -> bytes | None:
-        """The data of an entry that no other part uses."""
-        if name in self.used:
-            self.findings.add("PARAMETERS_ENTRY_INVALID", pointer)
-            return None
+        """The data of an entry that is there and that no other part uses."""
         if name not in self.asset.entries:
             self.findings.add("ENTRY_MISSING", pointer)
+            return None
+        if name in self.used:
+            self.findings.add("PARAMETERS_ENTRY_INVALID", pointer)
             return None
         self.used.add(name)
         return self.asset.entries[name]

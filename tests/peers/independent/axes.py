@@ -21,31 +21,29 @@ class Group:
 
 
 class Axis:
-    """The known values of an axis, in groups."""
+    """The values of an axis, in groups; an absent one counts as 0."""
 
     def __init__(self, values: list[float | None], grouped: bool):
-        known = sorted({value for value in values if value is not None})
-        self.greatest = known[-1] if known else 0.0
-        self.complete = bool(known) and self.greatest > 0 and None not in values
+        ascending = sorted({value or 0.0 for value in values})
+        greatest = ascending[-1]
+        self.complete = greatest > 0 and None not in values
         groups: list[list[float]] = []
-        for value in known:
+        for value in ascending:
             if grouped and groups and same(value, groups[-1][0]):
                 groups[-1].append(value)
             else:
                 groups.append([value])
-        scale = self.greatest or 1.0
-        self.groups = [Group(g[0], g[-1], (g[0] + g[-1]) / 2 / scale) for g in groups]
+        self.scale = greatest or 1.0
+        self.groups = [Group(g[0], g[-1], (g[0] + g[-1]) / 2 / self.scale) for g in groups]
 
     def position(self, value: float | None) -> float:
         """The position of a value; an absent one counts as 0."""
         value = value or 0.0
-        if not self.groups or self.greatest == 0:
-            return 0.0
         first, last = self.groups[0], self.groups[-1]
         if value < first.low:
-            return first.position - (first.low - value) / self.greatest
+            return first.position - (first.low - value) / self.scale
         if value > last.high:
-            return last.position + (value - last.high) / self.greatest
+            return last.position + (value - last.high) / self.scale
         previous = None
         for group in self.groups:
             if value < group.low:
@@ -68,3 +66,18 @@ class Axis:
                 part = (position - before.position) / (after.position - before.position)
                 return before.high + part * (after.low - before.high)
         return self.groups[-1].high
+
+
+class StoredAxis:
+    """The axis of stored triangles: values over the greatest, in no groups (*Stored triangles*)."""
+
+    def __init__(self, values: list[float]):
+        greatest = max(values)
+        self.complete = greatest > 0
+        self.scale = greatest or 1.0
+
+    def position(self, value: float) -> float:
+        return value / self.scale
+
+    def nearest(self, position: float, _value: float) -> float:
+        return position * self.scale

@@ -72,9 +72,10 @@ def read_block(data: bytes, fields: list[dict], conditions: int, budget: Budget)
 
 
 def read_number(reader: Reader, store: Store, budget: Budget) -> float:
-    if store.kind == "packed":
-        raise BlockError("PARAMETERS_INVALID", "packed is for lists only")
     budget.take(1)
+    if store.kind == "packed":
+        # STORE_INVALID; read as a list of one number without its length.
+        return finite(store.step(read_packed(reader, 1)[0]))
     return finite(store.value(reader.take(store.bytes)))
 
 

@@ -1,8 +1,8 @@
 """JSON as htex reads it (htex-1.md sections 2 and 12): strict, with duplicate keys refused.
 
-The result has dict, list, str, float, bool and None; every number is a float (binary64). The first
-error in the order of the text is raised as `Refused` with the code SYNTAX, TYPE or TOO_DEEP, to which
-a caller adds its prefix.
+The result has dict, list, str, float, bool and None. Every number is a float (binary64), and a `Whole` if it is of
+digits alone and binary64 does not have it. The first error in the order of the text is raised as `Refused` with the
+code SYNTAX, TYPE or TOO_DEEP, to which a caller adds its prefix.
 """
 
 from __future__ import annotations
@@ -57,6 +57,24 @@ def depth_of(data: bytes) -> int:
     return deepest
 
 
+class Whole(float):
+    """A number of digits alone that binary64 does not have; `written` is what was written (section 2)."""
+
+    def __new__(cls, written: int):
+        number = super().__new__(cls, written)
+        number.written = written
+        return number
+
+
+def number_of(text: str) -> float:
+    """The binary64 of a JSON number, infinite beyond them."""
+    number = float(text)
+    digits = text.lstrip("-")
+    if digits.isdigit() and len(digits) < 400 and math.isfinite(number) and int(text) != number:
+        return Whole(int(text))
+    return number
+
+
 class Parser:
     def __init__(self, text: str, prefix: str):
         self.text, self.prefix, self.at = text, prefix, 0
@@ -90,7 +108,7 @@ class Parser:
         match = NUMBER.match(self.text, self.at)
         if not match:
             self.fail("no value")
-        number = float(match.group())
+        number = number_of(match.group())
         if not math.isfinite(number):
             self.fail("a number beyond binary64")
         self.at = match.end()

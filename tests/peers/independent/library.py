@@ -84,6 +84,9 @@ def read_library(data: bytes, models: Models, limits: dict[str, int] | None = No
         page = data[header.root[0] : sum(header.root)]
         contents = unpack(page, limits["root_bytes"], "/root")
         root = read_root(contents, header.leaf_count, header.leaves[1], header.newer)
+        for number, length in enumerate(root.lengths):
+            if length > most_in_file(limits["leaf_bytes"]):
+                raise Refused("LIBRARY_PAGE_TOO_LARGE", f"/leaves/{number}")
         Validator(data, header, root, models, limits, findings).run()
     except Refused as refused:
         findings.items.append(refused.finding)
@@ -121,8 +124,6 @@ class Validator:
 
     def leaf(self, page: bytes, number: int, pointer: str) -> list[Entry]:
         """Stage 3."""
-        if len(page) > most_in_file(self.limits["leaf_bytes"]):
-            raise Refused("LIBRARY_PAGE_TOO_LARGE", pointer)
         entries = read_leaf(unpack(page, self.limits["leaf_bytes"], pointer), pointer, self.header.newer)
         before = None
         separators = self.root.separators

@@ -39,9 +39,9 @@ class Store(t.Any):
 
     def unknown(self, value, pointer):
         if isinstance(value, dict):
-            for key, item in value.items():
+            for key in t.in_order(value):
                 if key in STEP_STORES:
-                    yield from STEPS.unknown(item, f"{pointer}/{key}")
+                    yield from STEPS.unknown(value[key], f"{pointer}/{key}")
                 else:
                     yield f"{pointer}/{t.escape(key)}"
 
@@ -80,7 +80,9 @@ PROVENANCE = t.Object(
     {
         "tool": t.Text(),
         "simulated": t.Boolean(),
-        "recordings": t.List(t.Object({"file*": t.Text(), "rate_hz*": t.Number(), "segments*": t.Integer()})),
+        "recordings": t.List(
+            t.Object({"file*": t.Text(), "rate_hz*": t.Number(), "segments*": t.Integer(), "blake3": t.Text()})
+        ),
         "made": t.Object(
             {
                 "how*": t.Word(("parameters", "mixed")),
@@ -137,7 +139,7 @@ MANIFEST = t.Object(
                             }
                         )
                     ),
-                    "triangles": t.List(t.List(t.Integer())),
+                    "triangles": t.List(t.List(t.Integer(), 3)),
                     "parameters*": t.Text(),
                 }
             )
@@ -175,14 +177,14 @@ def check_version(document: dict, key: str, prefix: str) -> bool:
 def read_manifest(data: bytes, limits: dict[str, int], findings: Findings) -> dict | None:
     """The stage of the manifest, and that of unknown keys; None after an error."""
     try:
-        return accept_manifest(parse(data, limits["json_depth"]), findings)
+        return accept(parse(data, limits["json_depth"]), findings)
     except Refused as refused:
         findings.items.append(refused.finding)
         return None
 
 
-def accept_manifest(document, findings: Findings) -> dict:
-    """The same for a document that is parsed already; raises `Refused`."""
+def accept(document, findings: Findings) -> dict:
+    """The same after the text was parsed; raises `Refused`."""
     if not isinstance(document, dict):
         raise Refused("JSON_TYPE", "", "no object")
     newer = check_version(document, "htex", "")
@@ -193,6 +195,6 @@ def accept_manifest(document, findings: Findings) -> dict:
         raise Refused("QUANTITY_UNKNOWN", "/quantity")
     t.check(MANIFEST, document, "JSON_TYPE")
     if not newer:
-        for pointer in t.unknown_keys(MANIFEST, document):
+        for pointer in sorted(t.unknown_keys(MANIFEST, document), key=lambda p: p.encode("utf-8")):
             findings.add("JSON_UNKNOWN_KEY", pointer)
     return document

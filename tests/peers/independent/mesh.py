@@ -38,13 +38,17 @@ class Edge:
 
 
 class Mesh:
-    def __init__(self, points: list[Point]):
+    def __init__(self, points: list[Point], stored: list[tuple[int, int, int]] | None = None):
+        """Delaunay's triangles over `points`, or those that are `stored`, which are valid."""
         self.points = points
         self.exact = [(Fraction(x), Fraction(y)) for x, y in points]
         self.triangles: list[tuple[int, int, int]] = []
         self.edge_of: dict[tuple[int, int, int], Edge] = {}
         self.edges: list[Edge] = []
-        if self.on_one_line():
+        if stored is not None:
+            self.triangles = [counterclockwise(self.exact, triangle) for triangle in stored]
+            self.edges = [Edge(ends, [(0.0, ends[0]), (1.0, ends[1])]) for ends in self.outer_edges()]
+        elif self.on_one_line():
             order = sorted(range(len(points)), key=lambda i: points[i])
             edge = Edge((order[0], order[-1]), [])
             edge.feet = [(self.foot(edge.ends, points[i]), i) for i in order]
@@ -141,11 +145,15 @@ class Mesh:
 
     # Step 3: conditions that belong to an edge of the hull.
 
+    def outer_edges(self) -> list[tuple[int, int]]:
+        """Sides of one triangle only: by their lower conditions, then by the higher ones."""
+        found = {side for triangle in self.triangles for side in sides(triangle)}
+        outer = [side for side in found if side[::-1] not in found]
+        return sorted(outer, key=lambda side: sorted(self.points[i] for i in side))
+
     def find_hull(self) -> None:
         at = {edge: triangle for triangle in self.triangles for edge in sides(triangle)}
-        for (a, b), triangle in sorted(at.items()):
-            if (b, a) in at:
-                continue
+        for a, b in self.outer_edges():
             edge = Edge((a, b), [(0.0, a), (1.0, b)])
             self.edges.append(edge)
             self.absorb(edge, at, (a, b), (0.0, 1.0))
@@ -225,6 +233,11 @@ class Mesh:
                 share = (part - before) / (after - before)
                 return {i: 1.0 - share, j: share}
         return {feet[-1][1]: 1.0}
+
+
+def counterclockwise(exact, triangle) -> tuple[int, int, int]:
+    a, b, c = triangle
+    return (a, b, c) if orient(exact[a], exact[b], exact[c]) > 0 else (a, c, b)
 
 
 def sides(cell) -> list[tuple[int, int]]:

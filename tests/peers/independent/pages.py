@@ -54,14 +54,14 @@ def most_in_file(limit: int) -> int:
 
 
 def unpack(page: bytes, limit: int, pointer: str) -> bytes:
-    """The contents of a page; length against the limit, then checksum, then the deflate stream."""
+    """The contents of a page: its checksum, its length against the limit, its deflate stream (stage 2)."""
     if len(page) < 8:
         raise Refused("LIBRARY_PAGE_CORRUPT", pointer, "shorter than its head")
     checksum, length = struct.unpack_from("<II", page)
-    if length > limit:
-        raise Refused("LIBRARY_PAGE_TOO_LARGE", pointer)
     if zlib.crc32(page[4:]) != checksum:
         raise Refused("LIBRARY_PAGE_CHECKSUM", pointer)
+    if length > limit:
+        raise Refused("LIBRARY_PAGE_TOO_LARGE", pointer)
     stream = zlib.decompressobj(-15)
     try:
         contents = stream.decompress(page[8:], length + 1)

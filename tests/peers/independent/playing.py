@@ -10,14 +10,13 @@ from typing import Callable
 import numpy as np
 
 from .asset import Asset, read_asset
-from .axes import Axis
+from .axes import Axis, StoredAxis
 from .blocks import flat
 from .law import clamp, exponents, power, scaled
 from .mesh import Mesh
 from .mixing import mix
 from .models import Models
 from .shapes import SUMS_OF_SINUSOIDS, Band, Refusal, Values, magnitude
-from .triangles import StoredMesh
 
 LEFT_OUT = 1e-12
 
@@ -58,15 +57,20 @@ class Voice:
         conditions = [manifest["conditions"][int(element["condition"])] for element in representation["at"]]
         speeds = [condition.get("speed_mm_s") for condition in conditions]
         forces = [condition.get("force_n") for condition in conditions]
+        if "triangles" in representation:
+            self.axes = (StoredAxis(speeds), StoredAxis(forces))
+            triangles = [tuple(map(int, triangle)) for triangle in representation["triangles"]]
+            self.mesh = Mesh(self.positions(speeds, forces), triangles)
+            return
         for grouped in (True, False):
             self.axes = (Axis(speeds, grouped), Axis(forces, grouped))
-            points = [(self.axes[0].position(v), self.axes[1].position(f)) for v, f in zip(speeds, forces)]
+            points = self.positions(speeds, forces)
             if len(set(points)) == len(points):
                 break
         self.mesh = Mesh(points)
-        if "triangles" in representation:
-            self.axes = (Axis(speeds, False), Axis(forces, False))
-            self.mesh = StoredMesh(representation["triangles"], list(zip(speeds, forces)))
+
+    def positions(self, speeds: list[float | None], forces: list[float | None]) -> list[tuple[float, float]]:
+        return [(self.axes[0].position(v), self.axes[1].position(f)) for v, f in zip(speeds, forces)]
 
     def at(self, speed: float, force: float) -> Played:
         point = (self.axes[0].position(speed), self.axes[1].position(force))

@@ -1,13 +1,16 @@
 """Documents with expected verdicts, as JSON Lines: {"kind", "what", "document", "valid", "schema"}.
 
-`schema` is the verdict of the JSON Schema, schemas/KIND-1.json, and is compared for all kinds. `valid` is that of reading, which
-this reader has for manifests, in an archive with an entry `a.bin` of nine zero bytes, and for scenes without files.
+`valid` is what reading says, `schema` what the kind's JSON Schema says. A manifest is read in a container with an
+entry `a.bin` of zeros: three bytes (a `u16` and a `u8`) for each of the three conditions of the probes' manifests. Of a
+scene the document alone is read, without its files and device. Of other kinds only the schema's verdict is compared: no
+text gives the rest of what a reader of them checks.
 """
 
 from __future__ import annotations
 
+import io
 import json
-import math
+import zipfile
 from collections import defaultdict
 from pathlib import Path
 from typing import Callable
@@ -16,27 +19,35 @@ from jsonschema import Draft202012Validator
 from jsonschema.exceptions import best_match
 
 from . import limits
-from .asset import read_entries
+from .archive import MIMETYPE
+from .asset import read_asset
 from .findings import Findings, Refused
 from .models import Models
-from .scene_document import accept_document, check_document
+from .scene_document import check_document, read_document
 
-# The key of the expected verdict, by judge.
-EXPECTED = {"schema": "schema", "reader": "valid"}
-JUDGED = ("manifest", "scene")
-CONTAINER_OF_PROBES = {"mimetype": b"application/vnd.htex+zip", "a.bin": bytes(9)}
+BLOCK_BYTES = 9
+START = '{"document":'
 
 
-def judge(kind: str, document, models: Models) -> Findings:
-    """The verdict of this reader on a manifest or scene."""
-    findings = Findings()
+def container(manifest: bytes) -> bytes:
+    """An asset of a manifest and a block of zeros."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w") as archive:
+        for name, data in (("mimetype", MIMETYPE), ("manifest.json", manifest), ("a.bin", bytes(BLOCK_BYTES))):
+            archive.writestr(zipfile.ZipInfo(name), data)
+    return file.getvalue()
+
+
+def read(kind: str, text: str, models: Models) -> Findings:
+    """The findings of this reader in a manifest or scene."""
+    data = text.encode("utf-8")
     if kind == "manifest":
-        text = json.dumps(document).encode()
-        read_entries({**CONTAINER_OF_PROBES, "manifest.json": text}, models, limits.ASSET, findings)
-        return findings
+        return read_asset(container(data), models)[1]
+    findings = Findings()
     try:
-        check_text(document)
-        check_document(accept_document(document, findings), limits.SCENE, findings)
+        scene = read_document(data, limits.SCENE, findings)
+        if scene is not None:
+            check_document(scene, limits.SCENE, findings)
     except Refused as refused:
         findings.items.append(refused.finding)
     return findings
@@ -57,53 +68,30 @@ class Schemas:
         return error and f"{error.json_path}: {error.message[:200]}"
 
 
-def depth_of(value) -> int:
-    """The depth of arrays and objects."""
-    if isinstance(value, dict):
-        return 1 + max(map(depth_of, value.values()), default=0)
-    if isinstance(value, list):
-        return 1 + max(map(depth_of, value), default=0)
-    return 0
-
-
-def is_finite(value) -> bool:
-    if isinstance(value, float):
-        return math.isfinite(value)
-    if isinstance(value, dict):
-        value = list(value.values())
-    return all(map(is_finite, value)) if isinstance(value, list) else True
-
-
-def load(text: str):
-    """JSON whose numbers are all binary64, as in `jsontext`."""
-    return json.loads(text, parse_int=float)
-
-
-def check_text(scene) -> None:
-    """What the text of a scene would have been refused for."""
-    if depth_of(scene) > limits.SCENE["json_depth"]:
-        raise Refused("SCENE_JSON_TOO_DEEP")
-    if not is_finite(scene):
-        raise Refused("SCENE_JSON_SYNTAX", "", "a number beyond binary64")
+def text_of(line: str) -> str:
+    """The document of a line as it is written: it is the first key."""
+    if not line.startswith(START):
+        raise ValueError("a line that does not begin with its document")
+    return line[len(START) : json.JSONDecoder().raw_decode(line, len(START))[1]]
 
 
 def compare_probes(path: Path, models: Models, folder: Path, say: Callable[[str], None]) -> dict[str, tuple[int, int]]:
-    """By kind and judge, how many agree, of how many. Manifests and scenes are judged by this reader and their schema."""
+    """By kind and judge, how many agree, of how many."""
     schemas = Schemas(folder)
     counts: dict[str, list[int]] = defaultdict(lambda: [0, 0])
     for number, line in enumerate(path.read_text("utf-8").split("\n"), 1):
         if not line.strip():
             continue
-        probe = load(line)
-        kind, document = probe["kind"], probe["document"]
-        problems = {"schema": schemas.problem(kind, document)}
-        if kind in JUDGED:
-            findings = judge(kind, document, models)
-            problems["reader"] = None if findings.valid else str([finding.key() for finding in findings.items])
+        probe = json.loads(line)
+        kind = probe["kind"]
+        problems = {"schema": schemas.problem(kind, probe["document"])}
+        if kind in ("manifest", "scene"):
+            findings = read(kind, text_of(line), models)
+            problems["valid"] = None if findings.valid else str([finding.key() for finding in findings.items])
         for name, problem in problems.items():
             count = counts[f"{kind} by {name}"]
             count[1] += 1
-            if (problem is None) == probe[EXPECTED[name]]:
+            if (problem is None) == probe[name]:
                 count[0] += 1
             else:
                 say(f"probes/{kind} by {name}, line {number} ({probe['what']}): {problem or 'valid'}")

@@ -1,8 +1,7 @@
-"""Validation of scenes (scene-1.md, scene-findings.md)."""
+"""Validation of scenes: parts 6 to 9 of the order in scene-findings.md, which need other files and the device."""
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -10,29 +9,32 @@ import numpy as np
 from . import file_device
 from . import limits as defaults
 from .asset import Asset, read_asset
+from .file_device import FileDevice
 from .findings import Findings, Refused, escape
 from .models import Models
 from .playing import Voice
+from .response import compensation_db, read_response
 from .scene_document import check_document, read_document
 from .shapes import Refusal
-from .table import NotATable, read_table
+from .table import NotATable
+from .trace import read_trace
+from .typed import is_blank
 
 AMPLIFIED_DB = 10.0
-LEAST_STEP_S = 1e-9
-FARTHEST = 1e9
-MOST_TRACE_NUMBERS = 40_000_000
 
 
 def read_scene(path: Path, models: Models, limits: dict[str, int] | None = None) -> Findings:
+    """The findings of a scene file."""
     findings = Findings()
     limits = defaults.with_defaults(defaults.SCENE, limits)
     try:
         scene = read_document(path.read_bytes(), limits, findings)
-        check_document(scene, limits, findings)
-        if len(scene["surfaces"]) <= limits["surfaces"]:
-            Files(scene, path.parent, models, findings).check()
     except Refused as refused:
         findings.items.append(refused.finding)
+        return findings
+    if scene is not None:
+        check_document(scene, limits, findings)
+        Files(scene, path.parent, models, findings).check()
     return findings
 
 
@@ -41,36 +43,54 @@ def short_name(model: str) -> str:
 
 
 class Files:
-    """The stages that need assets, traces, responses and the device."""
+    """The parts that need assets, traces, responses and the device."""
 
     def __init__(self, scene: dict, folder: Path, models: Models, findings: Findings):
         self.scene, self.folder, self.models, self.findings = scene, folder, models, findings
         self.device = scene.get("device", {})
+        self.read: dict[Path, Asset | None] = {}
         self.assets: list[Asset | None] = []
-        self.voices: list[Voice] = []
+        self.voices: dict[int, Voice] = {}
+        self.curve: tuple[np.ndarray, np.ndarray] | None = None
 
     def check(self) -> None:
         for index, surface in enumerate(self.scene["surfaces"]):
-            self.assets.append(self.surface(surface, f"/surfaces/{index}"))
+            self.assets.append(self.surface(index, surface))
         self.trace()
-        self.beyond_recorded()
-        quantity = self.open_device()
         self.response()
-        self.quantities(quantity)
+        self.open_device()
+        if None not in self.assets:
+            self.quantities()
+        if self.findings.valid:
+            self.beyond_recorded()
+            self.compensation()
 
-    # Assets and representations.
+    def nearest(self, *keys: str) -> str:
+        """The pointer to a key, or to the nearest value around it that is there."""
+        pointer, value = "", self.scene
+        for key in keys:
+            if key not in value:
+                break
+            pointer, value = f"{pointer}/{escape(key)}", value[key]
+        return pointer
 
-    def surface(self, surface: dict, pointer: str) -> Asset | None:
-        path = self.folder / surface["asset"]
+    # Part 6.
+
+    def surface(self, index: int, surface: dict) -> Asset | None:
+        """A surface's asset, or None where it cannot be read; its voice is kept."""
+        pointer, path = f"/surfaces/{index}", self.folder / surface["asset"]
         if not path.is_file():
             self.findings.add("ASSET_MISSING", pointer + "/asset")
             return None
-        asset, findings = read_asset(path.read_bytes(), self.models)
-        if not findings.valid:
+        if path not in self.read:
+            asset, findings = read_asset(path.read_bytes(), self.models)
+            self.read[path] = asset if findings.valid else None
+        asset = self.read[path]
+        if asset is None:
             self.findings.add("ASSET_INVALID", pointer + "/asset")
             return None
         wanted = surface.get("representation", "auto")
-        if not wanted.strip():
+        if is_blank(wanted):
             return asset
         names = [r["model"] for r in asset.manifest["representations"]]
         if wanted != "auto":
@@ -79,10 +99,11 @@ class Files:
                 self.findings.add("REPRESENTATION_MISSING", pointer + "/representation")
                 return asset
         voice = self.voice(asset, names)
-        if voice is None:
-            self.findings.add("REPRESENTATION_UNPLAYABLE", pointer)
+        if voice is not None:
+            self.voices[index] = voice
         else:
-            self.voices.append(voice)
+            key = "/representation" if "representation" in surface else ""
+            self.findings.add("REPRESENTATION_UNPLAYABLE", pointer + key)
         return asset
 
     def voice(self, asset: Asset, names: list[str]) -> Voice | None:
@@ -94,7 +115,7 @@ class Files:
                     continue
         return None
 
-    # Motion.
+    # Part 7.
 
     def trace(self) -> None:
         motion = self.scene["motion"]
@@ -115,95 +136,6 @@ class Files:
         if self.scene.get("duration_s", 0.0) > last:
             self.findings.add("DURATION_BEYOND_TRACE", "/duration_s")
 
-    def beyond_recorded(self) -> None:
-        """A constant motion that is played as if it were another one."""
-        motion = self.scene["motion"]
-        constant = motion.get("constant") if isinstance(motion, dict) else None
-        if constant is None:
-            return
-        effects = self.scene.get("effects", {})
-        for index, voice in enumerate(self.voices):
-            speed, force = constant["speed_mm_s"], constant["force_n"]
-            ratio_v, ratio_f = voice.ratios(speed, force, voice.foot(speed, force))
-            clamped = ratio_v > 0 and not 1 / 16 <= ratio_v <= 8
-            a, b, c = voice.exponents
-            off = effects.get("frequency_scaling") == "off" and ratio_v != 1 and a != 0
-            off |= effects.get("level_scaling") == "off" and (ratio_v != 1 and b != 0 or ratio_f != 1 and c != 0)
-            if clamped or off:
-                self.findings.add("MOTION_BEYOND_RECORDED", "/motion", f"surface {index}")
-                return
-
-    # The device.
-
-    def open_device(self) -> str | None:
-        """Check adapter and settings; the device's quantity, or None where it cannot be opened."""
-        findings, pointer = self.findings, "/device/settings"
-        settings = self.device.get("settings", {})
-        if self.device.get("adapter", "file") not in ("file", "org.htex.file"):
-            findings.add("DEVICE_UNKNOWN", "/device/adapter")
-            return None
-        before = len(findings.items)
-        if "driver" in settings:
-            findings.add("DEVICE_PATH_UNSAFE", pointer + "/driver")
-        if "path" in settings:
-            findings.add("DEVICE_PATH_UNUSED", pointer + "/path")
-        if "profile" in self.device:
-            findings.add("DEVICE_SETTING", "/device/profile")
-        for name, value in settings.items():
-            if name != "driver" and not file_device.allows(name, value):
-                findings.add("DEVICE_SETTING", f"{pointer}/{escape(name)}")
-        quantity = settings.get("quantity", "lateral_force")
-        if quantity == "display_voltage" and "limit_v" not in settings:
-            findings.add("DEVICE_SETTING", pointer)
-        if any(finding.severity == "error" for finding in findings.items[before:]):
-            return None
-        rate = self.device.get("rate_hz")
-        if rate is not None and not file_device.LEAST_RATE_HZ <= rate <= file_device.MOST_RATE_HZ:
-            findings.add("DEVICE_RATE", "/device/rate_hz")
-        elif rate is not None and rate < file_device.LEAST_RATE_OVER_CARRIER * settings.get("carrier_hz", 0.0):
-            findings.add("DEVICE_RATE", "/device/rate_hz")
-        self.fields(quantity)
-        limit = settings.get("limit_v")
-        if quantity == "display_voltage" and self.device.get("drive_v", 0.0) > limit:
-            findings.add("DEVICE_DRIVE_TOO_HIGH", "/device/drive_v")
-        return quantity
-
-    def fields(self, quantity: str) -> None:
-        """Keys that must not be given for a device of this quantity."""
-        volts, sound = quantity == "display_voltage", quantity == "sound"
-        unfit = {
-            "gain_db": volts or sound,
-            "drive_v": not volts,
-            "level_dbfs": not sound,
-            "levels": not (volts or sound) and self.device.get("levels") == "own",
-            "reference_rms": self.device.get("levels", "normalised") != "own",
-            "pitch": not sound,
-        }
-        for key, wrong in unfit.items():
-            if wrong and key in self.device:
-                self.findings.add("DEVICE_FIELD_UNFIT", f"/device/{key}")
-
-    def quantities(self, device: str | None) -> None:
-        found = None
-        for index, asset in enumerate(self.assets):
-            if asset is None:
-                continue
-            quantity = asset.manifest["quantity"]
-            if found is not None and quantity != found:
-                self.findings.add("QUANTITIES_DIFFER", f"/surfaces/{index}/asset")
-                return
-            found = quantity
-        if found is None or device is None:
-            return
-        takes = "lateral_force" if device == "display_voltage" else device
-        given = "quantity_gain" in self.device
-        if given and (device == "sound" or takes == found):
-            self.findings.add("DEVICE_QUANTITY", "/device/quantity_gain")
-        elif not given and device != "sound" and takes != found:
-            self.findings.add("DEVICE_QUANTITY", "/device" if self.device else "")
-
-    # The response.
-
     def response(self) -> None:
         if "response" not in self.device:
             return
@@ -211,69 +143,121 @@ class Files:
         if not path.is_file():
             self.findings.add("RESPONSE_MISSING", pointer)
             return
-        bands = [asset.manifest["band"] for asset in self.assets if asset is not None]
-        if not bands:
-            return
-        pitch = self.device.get("pitch", 1.0)
-        low, high = min(b["low_hz"] for b in bands) * pitch, max(b["high_hz"] for b in bands) * pitch
         try:
-            frequencies, magnitudes = read_response(path.read_bytes())
-            gain_db = compensation_db(frequencies, magnitudes, low, high, self.device.get("response_depth_db", 40.0))
+            self.curve = read_response(path.read_bytes())
         except NotATable as error:
             self.findings.add("RESPONSE_INVALID", pointer, str(error))
+
+    # Part 8.
+
+    def open_device(self) -> None:
+        """The adapter, its settings, and what the device takes."""
+        if self.device.get("adapter", "file") not in file_device.NAMES:
+            self.findings.add("DEVICE_UNKNOWN", "/device/adapter")
+            return
+        settings = self.settings()
+        if settings is None:
+            return
+        device = file_device.device_of(settings)
+        rate = self.device.get("rate_hz")
+        least = max(file_device.LEAST_RATE_HZ, file_device.LEAST_RATE_OVER_CARRIER * settings["carrier_hz"])
+        if rate is not None and not least <= rate <= file_device.MOST_RATE_HZ:
+            self.findings.add("DEVICE_RATE", "/device/rate_hz")
+        self.fields(device)
+        self.quantity(device)
+
+    def settings(self) -> dict[str, str | float] | None:
+        """All settings, with their defaults; None after one that cannot be used."""
+        result = dict(file_device.DEFAULTS)
+        given = self.device.get("settings", {})
+        for name in sorted(given, key=lambda n: n.encode("utf-8")):
+            pointer = f"/device/settings/{escape(name)}"
+            if name == "driver":
+                # A driver that a scene names is not used: the other settings are still checked.
+                self.findings.add("DEVICE_PATH_UNSAFE", pointer)
+            elif name == "path":
+                self.findings.add("DEVICE_PATH_UNUSED", pointer)
+            else:
+                result[name] = file_device.value_of(name, given[name])
+                if result[name] is None:
+                    # No text says whether the settings after it are checked: this part ends at the first.
+                    self.findings.add("DEVICE_SETTING", pointer)
+                    return None
+        if "profile" in self.device:
+            self.findings.add("DEVICE_SETTING", "/device/profile")
+            return None
+        wrong = file_device.contradiction(result)
+        if wrong is not None:
+            self.findings.add("DEVICE_SETTING", self.nearest("device", "settings", wrong))
+            return None
+        return result
+
+    def fields(self, device: FileDevice) -> None:
+        """Keys that must not be given for a device of this quantity, and the drive."""
+        volts, sound = device.quantity == "display_voltage", device.quantity == "sound"
+        own = self.device.get("levels") == "own"
+        unfit = {
+            "gain_db": volts or sound,
+            "drive_v": not volts,
+            "level_dbfs": not sound,
+            "pitch": not sound,
+            "levels": own and not (volts or sound),
+            "reference_rms": not own,
+        }
+        for key, wrong in unfit.items():
+            if wrong and key in self.device:
+                self.findings.add("DEVICE_FIELD_UNFIT", f"/device/{key}")
+        if volts and self.device.get("drive_v", 0.0) > device.limit:
+            self.findings.add("DEVICE_DRIVE_TOO_HIGH", "/device/drive_v")
+
+    def quantity(self, device: FileDevice) -> None:
+        """The device's quantity against that of the first asset that could be read."""
+        held = next((asset.manifest["quantity"] for asset in self.assets if asset is not None), None)
+        if held is None:
+            return
+        takes = "lateral_force" if device.quantity == "display_voltage" else device.quantity
+        fits = device.quantity == "sound" or takes == held
+        if fits == ("quantity_gain" in self.device):
+            self.findings.add("DEVICE_QUANTITY", self.nearest("device", "quantity_gain"))
+
+    # Part 9.
+
+    def quantities(self) -> None:
+        for index, asset in enumerate(self.assets):
+            if asset.manifest["quantity"] != self.assets[0].manifest["quantity"]:
+                self.findings.add("QUANTITIES_DIFFER", f"/surfaces/{index}/asset")
+
+    def beyond_recorded(self) -> None:
+        """A constant motion that is played as if it were another one.
+
+        No text says how much of a trace has to be beyond the recorded motions, nor whether a surface counts that the
+        finger does not touch: traces have no finding here, and all surfaces count.
+        """
+        motion = self.scene["motion"]
+        constant = motion.get("constant") if isinstance(motion, dict) else None
+        if constant is None:
+            return
+        speed, force = constant["speed_mm_s"], constant["force_n"]
+        effects = self.scene.get("effects", {})
+        for index, voice in self.voices.items():
+            ratio_v, ratio_f = voice.ratios(speed, force, voice.foot(speed, force))
+            clamped = ratio_v > 0 and not 1 / 16 <= ratio_v <= 8
+            a, b, c = voice.exponents
+            off = effects.get("frequency_scaling") == "off" and ratio_v != 1 and a != 0
+            off |= effects.get("level_scaling") == "off" and (ratio_v != 1 and b != 0 or ratio_f != 1 and c != 0)
+            if clamped or off:
+                self.findings.add("MOTION_BEYOND_RECORDED", "/motion", f"surface {index}")
+
+    def compensation(self) -> None:
+        if self.curve is None:
+            return
+        pitch = self.device.get("pitch", 1.0)
+        bands = [asset.manifest["band"] for asset in self.assets]
+        low, high = min(b["low_hz"] for b in bands) * pitch, max(b["high_hz"] for b in bands) * pitch
+        try:
+            gain_db = compensation_db(*self.curve, low, high, self.device.get("response_depth_db", 40.0))
+        except NotATable as error:
+            self.findings.add("RESPONSE_INVALID", "/device/response", str(error))
             return
         if gain_db > AMPLIFIED_DB:
-            self.findings.add("RESPONSE_RAISED", pointer, f"by {gain_db:.1f} dB")
-
-
-TRACE_COLUMNS = ("t_s", "x_mm", "y_mm", "force_n", "speed_mm_s")
-
-
-def read_trace(data: bytes) -> tuple[dict[str, list[float]], list[str]]:
-    """The columns of a trace, and what was assumed of them."""
-    names, values = read_table(data)
-    columns, assumptions = {}, []
-    by_bare = {name.split("_")[0]: name for name in TRACE_COLUMNS}
-    unused = []
-    for name, column in zip(names, values):
-        known = name if name in TRACE_COLUMNS else by_bare.get(name)
-        if known is None or known in columns:
-            unused.append(name)
-            continue
-        columns[known] = column
-        if known != name:
-            assumptions.append(f"{name} is read as {known}")
-    if unused:
-        assumptions.append(f"not used: {', '.join(unused)}")
-    if any(name not in columns for name in TRACE_COLUMNS[:4]):
-        raise NotATable("a column is missing")
-    times = columns["t_s"]
-    if len(times) < 2 or any(b - a < LEAST_STEP_S for a, b in zip(times, times[1:])):
-        raise NotATable("fewer than two rows, or times that do not ascend by 1 ns")
-    if sum(map(len, values)) > MOST_TRACE_NUMBERS or any(abs(x) > FARTHEST for c in columns.values() for x in c):
-        raise NotATable("too many numbers, or one beyond 1e9")
-    return columns, assumptions
-
-
-def read_response(data: bytes) -> tuple[np.ndarray, np.ndarray]:
-    names, values = read_table(data)
-    columns = dict(zip(names, values))
-    if "frequency_hz" not in columns or "magnitude" not in columns:
-        raise NotATable("a column is missing")
-    frequencies, magnitudes = np.array(columns["frequency_hz"]), np.array(columns["magnitude"])
-    if np.any(np.diff(frequencies) <= 0) or np.any(magnitudes < 0):
-        raise NotATable("frequencies that do not ascend, or a negative magnitude")
-    return frequencies, magnitudes
-
-
-def compensation_db(frequencies: np.ndarray, magnitudes: np.ndarray, low: float, high: float, depth: float) -> float:
-    """The largest gain of the compensation in the band, dB (section 4)."""
-    inside = frequencies[(frequencies > low) & (frequencies < high)]
-    points = np.concatenate([[low], inside, [high]])
-    values = np.interp(points, frequencies, magnitudes)
-    largest = float(np.max(values))
-    if not largest > 0:
-        raise NotATable("all 0 in the band")
-    h, floor = np.interp(np.linspace(low, high, 20001), points, values / largest), 10 ** (-depth / 10)
-    gains = h / (h * h + floor)
-    return 20 * math.log10(float(np.max(gains)))
+            self.findings.add("RESPONSE_RAISED", "/device/response", f"by {gain_db:.1f} dB")

@@ -1,4 +1,4 @@
-"""The document of a scene: what can be checked without other files (scene-1.md sections 1 to 6)."""
+"""The document of a scene: parts 1 to 5 of the order in scene-findings.md, which need no other files."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ SCENE = t.Object(
                 "error": t.Word(("nine_band", "third_octave", "log_spectral")),
             }
         ),
-        "effects": t.Map(t.Word(("auto", "on", "off"))),
+        "effects": t.Object({name: t.Word(("auto", "on", "off")) for name in EFFECTS}),
     }
 )
 
@@ -104,15 +104,11 @@ def in_range(value: float, low: float, high: float, closed: bool = True) -> bool
     return (low <= value if closed else low < value) and value <= high
 
 
-def read_document(data: bytes, limits: dict[str, int], findings: Findings) -> dict:
-    """The scene as JSON with valid types; raises `Refused`."""
+def read_document(data: bytes, limits: dict[str, int], findings: Findings) -> dict | None:
+    """Parts 1 and 2: the scene with valid types, or None after unknown effects; raises `Refused`."""
     if len(data) > limits["file_bytes"]:
         raise Refused("SCENE_FILE_TOO_LARGE")
-    return accept_document(parse(data, limits["json_depth"], "SCENE_JSON_"), findings)
-
-
-def accept_document(document, findings: Findings) -> dict:
-    """The same for a document that is parsed already."""
+    document = parse(data, limits["json_depth"], "SCENE_JSON_")
     if not isinstance(document, dict):
         raise Refused("SCENE_JSON_TYPE", "", "no object")
     newer = check_version(document, "htex_scene", "SCENE_")
@@ -122,8 +118,10 @@ def accept_document(document, findings: Findings) -> dict:
     if isinstance(effects, dict):
         for name in t.in_order(effects):
             if name not in EFFECTS and not newer:
-                raise Refused("EFFECT_UNKNOWN", f"/effects/{t.escape(name)}")
+                findings.add("EFFECT_UNKNOWN", f"/effects/{t.escape(name)}")
     t.check(SCENE, document, "SCENE_JSON_TYPE")
+    if findings.has_errors():
+        return None
     if not newer:
         for pointer in t.unknown_keys(SCENE, document):
             findings.add("SCENE_UNKNOWN_KEY", pointer)
@@ -131,32 +129,32 @@ def accept_document(document, findings: Findings) -> dict:
 
 
 def check_document(scene: dict, limits: dict[str, int], findings: Findings) -> None:
-    """Ranges and regions, in the order of the table of codes."""
+    """Parts 3 to 5."""
     surfaces = scene["surfaces"]
     if not surfaces:
         findings.add("SURFACES_EMPTY", "/surfaces")
     if len(surfaces) > limits["surfaces"]:
         findings.add("SURFACES_TOO_MANY", "/surfaces")
-    for index, surface in enumerate(surfaces):
-        check_surface(surface, f"/surfaces/{index}", findings)
-    if len(surfaces) <= limits["surfaces"]:
+    else:
+        for index, surface in enumerate(surfaces):
+            check_surface(surface, f"/surfaces/{index}", findings)
         check_overlaps(surfaces, findings)
     check_motion(scene, findings)
+    device = scene.get("device", {})
+    for key, (low, high, closed) in DEVICE_RANGES.items():
+        if key in device and not in_range(device[key], low, high, closed):
+            findings.add("DEVICE_FIELD_INVALID", f"/device/{key}")
     if "duration_s" in scene and not in_range(scene["duration_s"], 0, 1e9, False):
         findings.add("DURATION_INVALID", "/duration_s")
     for key in ("ns_per_sample", "max_error_db"):
         if key in scene.get("budget", {}) and not in_range(scene["budget"][key], 0, 1e12, False):
             findings.add("BUDGET_INVALID", f"/budget/{key}")
-    device = scene.get("device", {})
-    for key, (low, high, closed) in DEVICE_RANGES.items():
-        if key in device and not in_range(device[key], low, high, closed):
-            findings.add("DEVICE_FIELD_INVALID", f"/device/{key}")
 
 
 def check_surface(surface: dict, pointer: str, findings: Findings) -> None:
     if not in_range(surface.get("gain", 1.0), 0, 1000):
         findings.add("SURFACE_GAIN_INVALID", pointer + "/gain")
-    if not surface.get("representation", "auto").strip():
+    if t.is_blank(surface.get("representation", "auto")):
         findings.add("REPRESENTATION_NAME_EMPTY", pointer + "/representation")
     for key in ("x_mm", "y_mm") if "region" in surface else ():
         low, high = surface["region"][key]
@@ -186,9 +184,6 @@ def check_motion(scene: dict, findings: Findings) -> None:
     if constant is None:
         return
     pointer = "/motion/constant"
-    surfaces = scene["surfaces"]
-    if surfaces and "from_mm" not in constant and not (len(surfaces) == 1 and "region" not in surfaces[0]):
-        findings.add("REGION_UNKNOWN_POSITION", pointer)
     if not in_range(constant["speed_mm_s"], 0, 1e4):
         findings.add("MOTION_INVALID", pointer + "/speed_mm_s")
     if not in_range(constant["force_n"], 0, 1000):
@@ -197,3 +192,6 @@ def check_motion(scene: dict, findings: Findings) -> None:
         findings.add("MOTION_INVALID", pointer + "/from_mm")
     if not in_range(constant.get("direction_deg", 0.0), -3600, 3600):
         findings.add("MOTION_INVALID", pointer + "/direction_deg")
+    surfaces = scene["surfaces"]
+    if surfaces and "from_mm" not in constant and not (len(surfaces) == 1 and "region" not in surfaces[0]):
+        findings.add("REGION_UNKNOWN_POSITION", pointer)

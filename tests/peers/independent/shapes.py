@@ -77,7 +77,8 @@ def read_power(frequency: float, band: Band) -> float:
     first, last = band.grid[0], band.grid[-1]
     if frequency - first >= 4 * BIN and last - frequency >= 4 * BIN:
         return 1.0
-    nearest = round(frequency / BIN) * BIN
+    # The higher of two bins that are equally near.
+    nearest = math.floor(frequency / BIN + 0.5) * BIN
     bins = nearest + BIN * np.arange(-4, 5)
     bins = bins[(bins >= first) & (bins <= last)]
     return float(np.sum(window_lobe((bins - frequency) / BIN) ** 2) / 1.5)

@@ -1,35 +1,48 @@
-"""SPDX licence expressions (htex-1.md section 2, `license`; the grammar is SPDX 2.3, annex D).
+"""SPDX licence expressions (htex-1.md section 2, *Licence*: the grammar of SPDX 3.0).
 
-The lists of ids are those of the package `packaging`.
+The list of ids is `spdx-ids.txt`; lists of readers may differ, since SPDX's grows.
 """
 
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
-from packaging.licenses import _spdx
-
-TOKEN = re.compile(r"\s*([()]|[A-Za-z0-9.\-:+]+)")
-IDSTRING = re.compile(r"[A-Za-z0-9.\-]+")
+# No text says what white space is here: it is ASCII's.
+TOKEN = re.compile(r"\s*([()]|[A-Za-z0-9.\-:+]+)", re.ASCII)
+ID = re.compile(r"[A-Za-z0-9.\-]+")
 REFERENCE = re.compile(r"(?:DocumentRef-[A-Za-z0-9.\-]+:)?LicenseRef-[A-Za-z0-9.\-]+")
 ADDITION = re.compile(r"(?:DocumentRef-[A-Za-z0-9.\-]+:)?AdditionRef-[A-Za-z0-9.\-]+")
 WORDS = {"AND", "OR", "WITH", "and", "or", "with"}
+# No text lists the GNU licences: they are those whose ids begin so.
+GNU = re.compile(r"(?:AGPL|GFDL|GPL|LGPL)-")
+
+
+def read_ids() -> tuple[frozenset[str], frozenset[str]]:
+    """Ids of licences and of exceptions."""
+    lines = Path(__file__).with_name("spdx-ids.txt").read_text("ascii").split("\n", 1)[1]
+    licences, exceptions = lines.split("\n\n")
+    return frozenset(licences.split()), frozenset(exceptions.split())
+
+
+LICENCES, EXCEPTIONS = read_ids()
 
 
 class NotAnExpression(ValueError):
     pass
 
 
-def unknown_ids(expression: str) -> list[str]:
-    """The ids that the list lacks; raises `NotAnExpression` where the grammar is broken."""
-    return Expression(expression).read()
+def first_unknown_id(expression: str) -> str | None:
+    """The first id that the list lacks; raises `NotAnExpression` where the grammar is broken."""
+    unknown = Expression(expression).read()
+    return unknown[0] if unknown else None
 
 
 class Expression:
     def __init__(self, text: str):
         self.tokens, self.at, self.unknown = [], 0, []
-        position = 0
-        while text[position:].strip():
+        position, end = 0, len(text.rstrip(" \t\n\r\f\v"))
+        while position < end:
             match = TOKEN.match(text, position)
             if not match:
                 raise NotAnExpression(text)
@@ -64,29 +77,26 @@ class Expression:
             if self.take() != ")":
                 raise NotAnExpression("no closing bracket")
             return
-        if token in WORDS or not token:
-            raise NotAnExpression(token)
-        if not REFERENCE.fullmatch(token):
-            plain = token[:-1] if token.endswith("+") else token
-            if not IDSTRING.fullmatch(plain):
-                raise NotAnExpression(token)
-            known = _spdx.LICENSES.get(plain.lower())
-            if (known is None or known["id"] != plain) and not self.known_with_plus(token):
-                self.unknown.append(token)
+        self.licence(token)
         if self.peek() in ("WITH", "with"):
             self.take()
             self.exception(self.take())
 
-    @staticmethod
-    def known_with_plus(token: str) -> bool:
-        known = _spdx.LICENSES.get(token.lower())
-        return known is not None and known["id"] == token
+    def licence(self, token: str) -> None:
+        if REFERENCE.fullmatch(token) or token in LICENCES:
+            return
+        if token.endswith("+"):
+            if token[:-1] not in LICENCES or GNU.match(token):
+                raise NotAnExpression(token)
+        elif token in WORDS or not ID.fullmatch(token):
+            raise NotAnExpression(token)
+        else:
+            self.unknown.append(token)
 
     def exception(self, token: str) -> None:
         if ADDITION.fullmatch(token):
             return
-        if token in WORDS or not IDSTRING.fullmatch(token):
+        if token in WORDS or not ID.fullmatch(token):
             raise NotAnExpression(token)
-        known = _spdx.EXCEPTIONS.get(token.lower())
-        if known is None or known["id"] != token:
+        if token not in EXCEPTIONS:
             self.unknown.append(token)

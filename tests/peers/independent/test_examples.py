@@ -11,10 +11,16 @@ from pathlib import Path
 import numpy as np
 
 from .blocks import Budget, read_block
-from .mesh import Mesh
+from .findings import Refused
+from .jsontext import parse
+from .mesh import Mesh, orient
 from .mixing import filter_of, line_frequencies
 from .pages import read_leaf, read_root
 from .shapes import Band, read_power
+from .spdx import NotAnExpression, first_unknown_id
+from .trace import SPELLINGS
+from .triangles import fault_of_cover
+from .typed import Integer, is_blank, check
 
 SPEC = Path(__file__).parent.parent / "spec"
 
@@ -95,9 +101,62 @@ class Meshes(unittest.TestCase):
                 self.assertAlmostEqual(area, float(abs(outline)), 12)
 
 
-def area_of(mesh: Mesh, triangle) -> Fraction:
-    from .mesh import orient
+    def test_stored(self):
+        """The triangles that a player finds are valid ones, without one they are not, and both meshes agree."""
+        rng = np.random.default_rng(4)
+        for _ in range(60):
+            points = [(float(x), float(y)) for x, y in rng.uniform(0.05, 1, (int(rng.integers(4, 14)), 2))]
+            mesh = Mesh(points)
+            if mesh.edge_of:
+                continue
+            triangles = [rng.permutation(triangle).tolist() for triangle in mesh.triangles]
+            self.assertIsNone(fault_of_cover(points, triangles))
+            self.assertIsNotNone(fault_of_cover(points, triangles[1:]))
+            self.assertIsNotNone(fault_of_cover(points, triangles + triangles[:1]))
+            stored = Mesh(points, triangles)
+            for x, y in rng.uniform(-0.3, 1.5, (20, 2)):
+                (ours, foot), (theirs, other) = stored.weights((x, y)), mesh.weights((x, y))
+                self.assertEqual(foot is None, other is None)
+                for index in range(len(points)):
+                    self.assertAlmostEqual(ours.get(index, 0.0), theirs.get(index, 0.0), 12)
 
+
+class Rules(unittest.TestCase):
+    def test_whole_numbers(self):
+        """Numbers of digits alone are compared as they are written."""
+        allowed_texts = ("9007199254740992", "9007199254740993.0", "1e0", "-0")
+        for text in (*allowed_texts, "9007199254740993", "1.5", "-1"):
+            allowed = text in allowed_texts
+            try:
+                check(Integer(), parse(text.encode(), 1), "JSON_TYPE")
+                self.assertTrue(allowed, text)
+            except Refused:
+                self.assertFalse(allowed, text)
+
+    def test_white_space(self):
+        self.assertTrue(is_blank("\t\u2003\x85"))
+        self.assertFalse(is_blank("\x1c") or is_blank("\ufeff"))
+
+    def test_licences(self):
+        for text in ("MIT or (Apache-2.0 AND GPL-2.0+)", "MPL-1.0+", "DocumentRef-a:LicenseRef-b WITH AdditionRef-c"):
+            self.assertIsNone(first_unknown_id(text))
+        self.assertEqual(first_unknown_id("MIT AND mit OR Nothing-1"), "mit")
+        for text in ("", "MIT +", "GPL-2.0-only+", "MIT And MIT", "MIT Apache-2.0", "(MIT", "LicenseRef-a+"):
+            with self.assertRaises(NotAnExpression):
+                first_unknown_id(text)
+
+    def test_columns(self):
+        expected = {
+            "f_n": ("force_n", 1.0, True),
+            "force_n": ("force_n", 1.0, False),
+            "x_position_(um)": ("x_mm", 1e-3, False),
+            "vel[m/s]": ("speed_mm_s", 1e3, False),
+        }
+        for name, meaning in expected.items():
+            self.assertEqual(SPELLINGS[name], meaning)
+
+
+def area_of(mesh: Mesh, triangle) -> Fraction:
     return orient(*(mesh.exact[i] for i in triangle))
 
 

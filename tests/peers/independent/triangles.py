@@ -1,123 +1,79 @@
-"""Triangles that a representation stores (htex-1.md section 2, *Triangles*, and section 11, *Stored triangles*)."""
+"""Stored triangles: the rules of *Triangles* in htex-1.md section 2.
+
+A fault is a pointer below `triangles`: `/INDEX` for a triangle, or an empty text for all of them.
+"""
 
 from __future__ import annotations
 
 import math
-from collections import Counter
-from fractions import Fraction
 
-FLAT = Fraction(1, 10**9)
+from .mesh import orient, sides
 
-Point = tuple[Fraction, Fraction]
-Triangle = tuple[int, int, int]
-
-
-def places(motions: list[tuple[float, float]]) -> list[Point]:
-    """Speed and force, each divided by the greatest value of all."""
-    greatest = [max(Fraction(motion[axis]) for motion in motions) or Fraction(1) for axis in (0, 1)]
-    return [(Fraction(v) / greatest[0], Fraction(f) / greatest[1]) for v, f in motions]
+Point = tuple[float, float]
+Triangle = list[float]
+FLAT = 1e-9
 
 
-def turn(a: Point, b: Point, c: Point) -> Fraction:
-    """Twice the signed area of a, b, c."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+def motion_of(condition: dict) -> tuple[float | None, float | None]:
+    return condition.get("speed_mm_s"), condition.get("force_n")
+
+
+def scaled(motions: list[tuple[float, float]]) -> list[Point]:
+    """Positions: each axis over its greatest value, or over 1 if that is 0."""
+    speed, force = (max(axis, default=0.0) or 1.0 for axis in (zip(*motions) if motions else ((), ())))
+    return [(v / speed, f / force) for v, f in motions]
+
+
+def fault_of_indices(triangles: list[Triangle], count: int) -> str | None:
+    """Rule 1: an index that `at` has not, or two equal ones."""
+    for number, triangle in enumerate(triangles):
+        if len(set(triangle)) < 3 or any(index >= count for index in triangle):
+            return f"/{number}"
+    return None
+
+
+def fault_of_cover(points: list[Point], triangles: list[Triangle]) -> str | None:
+    """Rules 3 to 5, of known motions."""
+    corners = [[int(index) for index in triangle] for triangle in triangles]
+    for number, triangle in enumerate(corners):
+        if is_flat(*(points[i] for i in triangle)):
+            return f"/{number}"
+    directed: set[tuple[int, int]] = set()
+    for number, (a, b, c) in enumerate(corners):
+        # Of two triangles that go around the same way, those on one side of an edge pass it in one direction.
+        around = sides((a, b, c) if orient(points[a], points[b], points[c]) > 0 else (a, c, b))
+        if any(side in directed for side in around):
+            return f"/{number}"
+        directed.update(around)
+    if {i for triangle in corners for i in triangle} != set(range(len(points))):
+        return ""
+    outer = [side for side in directed if side[::-1] not in directed]
+    return None if is_convex_outline(points, outer) else ""
 
 
 def is_flat(a: Point, b: Point, c: Point) -> bool:
-    longest2 = max((p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2 for p, q in ((a, b), (b, c), (c, a)))
-    return abs(turn(a, b, c)) <= FLAT * longest2
+    """Whether twice the area is at most 1e-9 of the square of the longest side."""
+    longest = max((p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2 for p, q in ((a, b), (b, c), (c, a)))
+    return abs(orient(a, b, c)) <= FLAT * longest
 
 
-def counterclockwise(triangle: Triangle, at: list[Point]) -> Triangle:
-    a, b, c = triangle
-    return triangle if turn(at[a], at[b], at[c]) > 0 else (a, c, b)
-
-
-def sides(triangle: Triangle) -> list[tuple[int, int]]:
-    a, b, c = triangle
-    return [(a, b), (b, c), (c, a)]
-
-
-def wrong_corner(triangles: list[list[int]], count: int) -> int | None:
-    """Rule 1: the first triangle with an index that `at` has not, or with two equal ones."""
-    for number, triangle in enumerate(triangles):
-        if len(set(triangle)) < 3 or not all(0 <= corner < count for corner in triangle):
-            return number
-    return None
-
-
-def wrong_triangle(triangles: list[Triangle], at: list[Point]) -> int | None:
-    """Rules 3 and 4: the first flat triangle, else the first on the same side of an edge as an earlier one."""
-    for number, (a, b, c) in enumerate(triangles):
-        if is_flat(at[a], at[b], at[c]):
-            return number
-    taken: set[tuple[int, int]] = set()
-    for number, triangle in enumerate(triangles):
-        own = sides(counterclockwise(triangle, at))
-        if taken.intersection(own):
-            return number
-        taken.update(own)
-    return None
-
-
-def outer_edges(triangles: list[Triangle], at: list[Point]) -> list[tuple[int, int]]:
-    """The edges of one triangle only, counterclockwise around it."""
-    directed = [side for triangle in triangles for side in sides(counterclockwise(triangle, at))]
-    both = set(directed)
-    return [(a, b) for a, b in directed if (b, a) not in both]
-
-
-def covers_once(triangles: list[Triangle], at: list[Point]) -> bool:
-    """Rule 5: every condition is a corner, and the outer edges are one convex outline that turns around once."""
-    if {corner for triangle in triangles for corner in triangle} != set(range(len(at))):
+def is_convex_outline(points: list[Point], edges: list[tuple[int, int]]) -> bool:
+    """Whether edges that go counterclockwise are one outline that turns around once, never to the right."""
+    after = dict(edges)
+    if not edges or len(after) != len(edges):
         return False
-    following = dict(outer := outer_edges(triangles, at))
-    ends = Counter(b for _, b in outer)
-    if len(following) != len(outer) or any(count > 1 for count in ends.values()):
-        return False
-    start = corner = outer[0][0]
-    turned, passed = 0.0, 0
-    while True:
-        middle = following[corner]
-        after = following[middle]
-        way = turn(at[corner], at[middle], at[after])
-        if way < 0 and not is_flat(at[corner], at[middle], at[after]):
+    outline = [edges[0][0]]
+    while (following := after.get(outline[-1])) is not None and following != outline[0]:
+        if len(outline) > len(edges):
             return False
-        dx, dy = (float(at[middle][i] - at[corner][i]) for i in (0, 1))
-        ex, ey = (float(at[after][i] - at[middle][i]) for i in (0, 1))
-        turned += math.atan2(dx * ey - dy * ex, dx * ex + dy * ey)
-        corner, passed = middle, passed + 1
-        if corner == start:
-            break
-    return passed == len(outer) and round(turned / math.tau) == 1
-
-
-class StoredMesh:
-    """Stored triangles, in which a player interpolates in place of Delaunay's."""
-
-    def __init__(self, triangles: list[list[int]], motions: list[tuple[float, float]]):
-        self.exact = places(motions)
-        self.points = [(float(x), float(y)) for x, y in self.exact]
-        self.triangles = [counterclockwise((int(a), int(b), int(c)), self.exact) for a, b, c in triangles]
-        self.outer = outer_edges(self.triangles, self.exact)
-
-    def weights(self, point: tuple[float, float]) -> tuple[dict[int, float], tuple[float, float] | None]:
-        """Weights of conditions, and the nearest point of the outer edges where the motion is in no triangle."""
-        q = (Fraction(point[0]), Fraction(point[1]))
-        for triangle in self.triangles:
-            a, b, c = (self.exact[i] for i in triangle)
-            parts = (turn(q, b, c), turn(q, c, a), turn(q, a, b))
-            if min(parts) >= 0:
-                return {i: float(part / turn(a, b, c)) for i, part in zip(triangle, parts)}, None
-        nearest = None
-        for i, j in self.outer:
-            a, b = self.exact[i], self.exact[j]
-            along = (b[0] - a[0], b[1] - a[1])
-            foot = ((q[0] - a[0]) * along[0] + (q[1] - a[1]) * along[1]) / (along[0] ** 2 + along[1] ** 2)
-            foot = min(max(foot, Fraction(0)), Fraction(1))
-            place = (a[0] + foot * along[0], a[1] + foot * along[1])
-            distance2 = (place[0] - q[0]) ** 2 + (place[1] - q[1]) ** 2
-            if nearest is None or distance2 < nearest[0]:
-                nearest = (distance2, {i: float(1 - foot), j: float(foot)}, place)
-        _, weights, place = nearest
-        return weights, (float(place[0]), float(place[1]))
+        outline.append(following)
+    if len(outline) != len(edges):
+        return False
+    turned = 0.0
+    for i, corner in enumerate(outline):
+        a, b, c = points[outline[i - 1]], points[corner], points[outline[(i + 1) % len(outline)]]
+        cross = orient(a, b, c)
+        if cross < 0 and not is_flat(a, b, c):
+            return False
+        turned += math.atan2(cross, (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]))
+    return round(turned / (2 * math.pi)) == 1

@@ -9,8 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .findings import Refused, escape
+from .jsontext import Whole
 
-LARGEST_INTEGER = 2.0**53
+LARGEST_INTEGER = 2**53
+
+
+WHITE_SPACE = "\t\n\v\f\r \x85\xa0\u1680" + "".join(map(chr, range(0x2000, 0x200B))) + "\u2028\u2029\u202f\u205f\u3000"
 
 
 class Wrong(Exception):
@@ -49,11 +53,14 @@ class Number(Any):
 
 @dataclass
 class Integer(Any):
-    low: float = 0.0
-    high: float = LARGEST_INTEGER
+    """A whole number, compared as it is written if it is of digits alone."""
+
+    low: int = 0
+    high: int = LARGEST_INTEGER
 
     def check(self, value, pointer):
-        if not isinstance(value, float) or not value.is_integer() or not self.low <= value <= self.high:
+        exact = value.written if isinstance(value, Whole) else value
+        if not isinstance(value, float) or not value.is_integer() or not self.low <= exact <= self.high:
             raise Wrong(pointer, "no whole number in range")
 
 
@@ -95,8 +102,8 @@ class Map(Any):
             self.item.check(value[key], f"{pointer}/{escape(key)}")
 
     def unknown(self, value, pointer):
-        for key, item in value.items():
-            yield from self.item.unknown(item, f"{pointer}/{escape(key)}")
+        for key in in_order(value):
+            yield from self.item.unknown(value[key], f"{pointer}/{escape(key)}")
 
 
 @dataclass
@@ -120,10 +127,10 @@ class Object(Any):
                 raise Wrong(pointer, f"no {key}")
 
     def unknown(self, value, pointer):
-        for key, item in value.items():
+        for key in in_order(value):
             below = f"{pointer}/{escape(key)}"
             if key in self.types:
-                yield from self.types[key].unknown(item, below)
+                yield from self.types[key].unknown(value[key], below)
             else:
                 yield below
 
@@ -141,5 +148,10 @@ def check(kind: Any, value, code: str) -> None:
 
 
 def unknown_keys(kind: Any, value) -> list[str]:
-    """Pointers of all unknown keys, sorted by their bytes."""
-    return sorted(kind.unknown(value, ""), key=lambda pointer: pointer.encode("utf-8"))
+    """Pointers of all unknown keys, depth first, the keys of an object in ascending order of their bytes."""
+    return list(kind.unknown(value, ""))
+
+
+def is_blank(text: str) -> bool:
+    """Whether all characters are Unicode's White_Space (the table of section 2)."""
+    return not text.strip(WHITE_SPACE)

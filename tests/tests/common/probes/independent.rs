@@ -44,7 +44,7 @@ fn python() -> Option<PathBuf> {
         let output = Command::new(python)
             .args([
                 "-c",
-                "import numpy, scipy, blake3, cryptography, packaging, jsonschema",
+                "import numpy, scipy, blake3, cryptography, jsonschema",
             ])
             .output();
         output.is_ok_and(|output| output.status.success())

@@ -1,6 +1,8 @@
 //! Files that a program reads for the library: from archives, packages of apps, or memory.
 
-use std::ffi::{CString, c_char, c_void};
+#[cfg(feature = "scene")]
+use std::ffi::CString;
+use std::ffi::{c_char, c_void};
 use std::io;
 
 use crate::pointers::slice;

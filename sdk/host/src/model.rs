@@ -5,12 +5,16 @@ use std::sync::Arc;
 
 use htex_dsp::grid::Band;
 use htex_model::abi::{MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_RATE_HZ};
-use htex_model::{Descriptor, Fit, FitCondition, Kind, Knobs, Status, Values};
+use htex_model::{Descriptor, Kind, Knobs, Status, Values};
+#[cfg(feature = "fit")]
+use htex_model::{Fit, FitCondition};
 
 use crate::descriptor::read_descriptor;
 use crate::error::{Loading, plain};
 use crate::marker::check_marker;
-use crate::raw::{RawFit, RawModel};
+#[cfg(feature = "fit")]
+use crate::raw::RawFit;
+use crate::raw::RawModel;
 use crate::sandbox::Sandbox;
 use crate::{HostError, ModelVoice, Origin, WasmLimits};
 

@@ -79,6 +79,7 @@ impl IndexedLaw {
     }
 
     /// The exponents in the order of the index.
+    #[cfg(feature = "write")]
     pub(crate) const fn exponents(&self) -> [IndexedExponent; 3] {
         [self.frequency_speed, self.level_speed, self.level_force]
     }

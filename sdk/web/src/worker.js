@@ -9,7 +9,7 @@ const AHEAD = 6;
 const stage = new Stage();
 
 /** The other side: a page, or a program of Node.js, in which this is a thread. */
-const outside = globalThis.postMessage ? globalThis : (await import(/* @vite-ignore */ "node:worker_threads")).parentPort;
+let outside = globalThis;
 
 function report(id, error) {
   outside.postMessage({ id, error: { message: error.message, code: error.code } });
@@ -59,8 +59,18 @@ function render({ id, description, frames }) {
   }
 }
 
-outside.onmessage = ({ data }) => {
-  if (data.ping) outside.postMessage({ pong: data.ping });
-  else if (data.port) play(data);
-  else render(data);
-};
+function listen() {
+  outside.onmessage = ({ data }) => {
+    if (data.ping) outside.postMessage({ pong: data.ping });
+    else if (data.port) play(data);
+    else render(data);
+  };
+}
+
+// Without `await` at this level, which bundles of workers in another format than ES do not have. Messages wait for `onmessage`.
+if (globalThis.postMessage) listen();
+else
+  import(/* @vite-ignore */ "node:worker_threads").then(({ parentPort }) => {
+    outside = parentPort;
+    listen();
+  });

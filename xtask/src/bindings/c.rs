@@ -9,7 +9,7 @@ use crate::places::workspace;
 use crate::programs::{program, run};
 
 /// Most bytes of the small build's shared library; the goal is 1.5 MB (docs/languages.md says what takes the rest).
-const SMALL: u64 = 2_400_000;
+const SMALL: u64 = 2_500_000;
 
 const CMAKE: &str = "cmake_minimum_required(VERSION 3.16)\nproject(app C)\nfind_package(htex 0.1 REQUIRED)\n\
                      add_executable(app main.c)\ntarget_link_libraries(app PRIVATE htex::htex m)\n\

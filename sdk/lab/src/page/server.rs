@@ -3,7 +3,7 @@
 //! Any program of this machine may connect, and nothing that it does delays the owner of the page: `hyper`, with a runtime of one thread of
 //! its own, hands a request over before its body comes. The gate decides by the head; a body of at most 4096 bytes is read after that; head and
 //! body have a second. Of 64 connections the oldest one that has not passed the gate makes room for the next. `hyper` is in the
-//! command for its stores; `tiny_http`, which was here, reads a body before anyone can refuse it, has no deadlines, and takes a thread for
+//! command for its stores; `tiny_http` reads a body before anyone can refuse it, has no deadlines, and takes a thread for
 //! each connection.
 
 use std::collections::VecDeque;

@@ -25,9 +25,12 @@ pub(crate) const MANIFEST: Stage = stage(
     true,
 );
 pub(crate) const UNKNOWN_KEYS: Stage = stage("unknown keys, sorted by pointer", false);
-pub(crate) const TEXTURE: Stage = stage("the whole texture", false);
+pub(crate) const TEXTURE: Stage = stage(
+    "the whole texture: its name, licence (one finding), DOI, unit and band",
+    false,
+);
 pub(crate) const RECORDINGS: Stage = stage(
-    "recordings, in their order, of each its rate and then its name; then the parts of a mixture",
+    "recordings, in their order, of each its rate, its hash and then its name; then the parts of a mixture",
     false,
 );
 pub(crate) const CONDITIONS: Stage = stage("conditions, in their order", false);

@@ -27,12 +27,14 @@ Findings are in this order, and inside a part in the order of the checked values
 6. of each surface the asset, and whether its representation can be played;
 7. the trace, each assumption, a longer duration; the response;
 8. the adapter; settings in ascending order of their names, then the profile and all settings together; `rate_hz`, `gain_db`, `drive_v`, `level_dbfs`, `pitch`, `levels`,
-   `reference_rms`, the drive, the quantity. An adapter or a setting that cannot be used ends this part;
-9. if all assets could be read: other quantities than the first surface's; if there is no error so far, motions beyond the recorded ones, by surface; the response in
+   `reference_rms`, the drive, the quantity. An adapter that is unknown, a file to load or a value that is no text, number or boolean (all of these), or else
+   the first setting that the adapter does not take, ends this part;
+9. if all assets could be read: other quantities than the first surface's; if there is no error so far, by surface, a constant motion beyond the recorded ones, or more than a
+   tenth of the rows of a trace (of at most 20,000, evenly spaced) at which the finger slides on this surface; the response in
    the textures' band.
 
-A value can thus have findings of several parts: a `rate_hz` of 0 is `DEVICE_FIELD_INVALID` and `DEVICE_RATE`. Without surfaces there is no `REGION_UNKNOWN_POSITION`
-and no `DEVICE_QUANTITY`; a representation whose name is empty is not looked up. `MOTION_BEYOND_RECORDED` points to `/motion`. In a scene with an error, the pointer to a key that it
+A value can thus have findings of several parts: a `rate_hz` of 0 is `DEVICE_FIELD_INVALID` and `DEVICE_RATE`. Without surfaces there is no `REGION_UNKNOWN_POSITION`,
+and without an asset that can be read no `DEVICE_QUANTITY`, which compares the first of these; a representation whose name is empty is not looked up. `MOTION_BEYOND_RECORDED` points to `/motion`. In a scene with an error, the pointer to a key that it
 leaves out is the pointer to the nearest value around it that is there: `REPRESENTATION_UNPLAYABLE` points to `representation`, or without one to the surface.
 A player has other reasons to refuse a scene, which it finds as it plans (sections 4 to 6 of [scene-1.md](scene-1.md)) and which have no code.
 ";

@@ -177,7 +177,6 @@ def check_local(data: bytes, entry: Entry, position: int, end: End, findings: Fi
     text = data[position + LOCAL_BYTES : position + LOCAL_BYTES + name].decode("latin-1")
     local = (text, flags, method, time, crc, packed, size)
     differ = local != (entry.name, entry.flags, entry.method, entry.time, entry.crc, entry.packed, entry.size)
-    # No text says whether the disk 0xFFFF, which ZIP64 uses too, is ARCHIVE_ZIP64.
     if differ or entry.method == STORED and entry.packed != entry.size or entry.disk:
         findings.add("ENTRY_HEADER_MISMATCH", "", entry.name)
     if extra and not entry.extra:

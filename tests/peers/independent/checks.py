@@ -72,9 +72,10 @@ def check_provenance(provenance: dict, findings: Findings) -> None:
         pointer = f"/provenance/recordings/{index}"
         if not recording["rate_hz"] > 0:
             findings.add("SOURCE_INVALID", pointer + "/rate_hz")
+        if not HASH.fullmatch(recording.get("blake3", "0" * 64)):
+            findings.add("SOURCE_INVALID", pointer + "/blake3")
         if "/" in recording["file"] or "\\" in recording["file"]:
             findings.add("SOURCE_PATH", pointer + "/file")
-        # No text gives a code for a recording's `blake3` that is not 64 hexadecimal digits: it is accepted here.
     for index, ingredient in enumerate(provenance.get("made", {}).get("from", [])):
         pointer = f"/provenance/made/from/{index}"
         if not 0 <= ingredient["weight"] <= 1:
@@ -251,10 +252,9 @@ def check_fields(manifest: dict, models: Models, findings: Findings) -> None:
             continue
         fitted = version_key(representation["model_version"])
         own = version_key(model["version"])
-        # No text says what a version that is none has for a model: its fields are compared here.
-        if fitted is not None and fitted[0][0] != own[0][0]:
+        if fitted is None or fitted[0][0] != own[0][0]:
             continue
-        newer = fitted is not None and fitted > own
+        newer = fitted > own
         described = {field["name"]: field for field in model["fields"]}
         pointer = f"/representations/{index}/fields"
         for number, field in enumerate(representation["fields"]):

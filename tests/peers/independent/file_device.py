@@ -66,7 +66,6 @@ def contradiction(settings: dict[str, str | float]) -> str | None:
         return "encoding"
     if encoding == "f32" and settings["full_scale"] != 1:
         return "full_scale"
-    # No text says whether a limit or a carrier above 0 contradicts another quantity: "of a `display_voltage`".
     if (settings["limit_v"] > 0) != volts:
         return "limit_v"
     if settings["carrier_hz"] > 0 and not volts:

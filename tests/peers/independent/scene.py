@@ -170,19 +170,27 @@ class Files:
         """All settings, with their defaults; None after one that cannot be used."""
         result = dict(file_device.DEFAULTS)
         given = self.device.get("settings", {})
-        for name in sorted(given, key=lambda n: n.encode("utf-8")):
+        names = sorted(given, key=lambda n: n.encode("utf-8"))
+        usable = True
+        for name in names:
             pointer = f"/device/settings/{escape(name)}"
-            if name == "driver":
-                # A driver that a scene names is not used: the other settings are still checked.
+            if not isinstance(given[name], str | float | bool):
+                self.findings.add("DEVICE_SETTING", pointer)
+                usable = False
+            elif name == "driver":
                 self.findings.add("DEVICE_PATH_UNSAFE", pointer)
+                usable = False
             elif name == "path":
                 self.findings.add("DEVICE_PATH_UNUSED", pointer)
-            else:
-                result[name] = file_device.value_of(name, given[name])
-                if result[name] is None:
-                    # No text says whether the settings after it are checked: this part ends at the first.
-                    self.findings.add("DEVICE_SETTING", pointer)
-                    return None
+        if not usable:
+            return None
+        for name in names:
+            if name == "path":
+                continue
+            result[name] = file_device.value_of(name, given[name])
+            if result[name] is None:
+                self.findings.add("DEVICE_SETTING", f"/device/settings/{escape(name)}")
+                return None
         if "profile" in self.device:
             self.findings.add("DEVICE_SETTING", "/device/profile")
             return None
@@ -230,8 +238,7 @@ class Files:
     def beyond_recorded(self) -> None:
         """A constant motion that is played as if it were another one.
 
-        No text says how much of a trace has to be beyond the recorded motions, nor whether a surface counts that the
-        finger does not touch: traces have no finding here, and all surfaces count.
+        Traces have no finding here: their motion at a row is not computed.
         """
         motion = self.scene["motion"]
         constant = motion.get("constant") if isinstance(motion, dict) else None

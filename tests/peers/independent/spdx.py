@@ -8,13 +8,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-# No text says what white space is here: it is ASCII's.
 TOKEN = re.compile(r"\s*([()]|[A-Za-z0-9.\-:+]+)", re.ASCII)
 ID = re.compile(r"[A-Za-z0-9.\-]+")
 REFERENCE = re.compile(r"(?:DocumentRef-[A-Za-z0-9.\-]+:)?LicenseRef-[A-Za-z0-9.\-]+")
 ADDITION = re.compile(r"(?:DocumentRef-[A-Za-z0-9.\-]+:)?AdditionRef-[A-Za-z0-9.\-]+")
 WORDS = {"AND", "OR", "WITH", "and", "or", "with"}
-# No text lists the GNU licences: they are those whose ids begin so.
 GNU = re.compile(r"(?:AGPL|GFDL|GPL|LGPL)-")
 
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import csv
 import io
 import math
+from collections.abc import Callable
 
 
 class NotATable(ValueError):
     pass
 
 
-def read_table(data: bytes) -> tuple[list[str], list[list[float]]]:
-    """Names of the columns and their numbers; lines that begin with `#` are comments."""
+def read_table(data: bytes, is_used: Callable[[str], bool] = lambda _: True) -> tuple[list[str], list[list[float]]]:
+    """Names of the columns and the numbers of those that are used; lines that begin with `#` are comments."""
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -26,7 +27,9 @@ def read_table(data: bytes) -> tuple[list[str], list[list[float]]]:
     for row in rows[1:]:
         if len(row) != len(names):
             raise NotATable("a row with another number of columns")
-        for column, cell in zip(columns, row):
+        for name, column, cell in zip(names, columns, row):
+            if not is_used(name):
+                continue
             try:
                 number = float(cell)
             except ValueError:

@@ -41,13 +41,17 @@ def spellings() -> dict[str, tuple[str, float, bool]]:
 SPELLINGS = spellings()
 
 
+def spelling(name: str) -> tuple[str, float, bool] | None:
+    return SPELLINGS.get(name.lower().replace(" ", "_").replace("-", "_"))
+
+
 def read_trace(data: bytes) -> tuple[dict[str, list[float]], list[str]]:
     """The columns of a trace in the units of their names, and what was assumed of them."""
-    names, values = read_table(data)
+    names, values = read_table(data, lambda name: spelling(name) is not None)
     columns: dict[str, list[float]] = {}
     assumptions, unused = [], []
     for name, numbers in zip(names, values):
-        found = SPELLINGS.get(name.lower().replace(" ", "_").replace("-", "_"))
+        found = spelling(name)
         if found is None:
             unused.append(name)
             continue
@@ -64,8 +68,6 @@ def read_trace(data: bytes) -> tuple[dict[str, list[float]], list[str]]:
     times = columns["t_s"]
     if len(times) < 2 or any(b - a < LEAST_STEP_S for a, b in zip(times, times[1:])):
         raise NotATable("fewer than two rows, or times that do not ascend by 1 ns")
-    # No text says whether the bound is of the numbers as written or in the columns' units, nor of which columns: of
-    # those that are used, in the columns' units.
-    if sum(map(len, values)) > MOST_NUMBERS or any(abs(x) > FARTHEST for c in columns.values() for x in c):
+    if sum(map(len, columns.values())) > MOST_NUMBERS or any(abs(x) > FARTHEST for c in columns.values() for x in c):
         raise NotATable("too many numbers, or one beyond 1e9")
     return columns, assumptions

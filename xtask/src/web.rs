@@ -46,8 +46,8 @@ const PROCESSOR: [&str; 5] = [
 /// A message with the file or the program.
 pub fn web(out: &Path) -> Result<()> {
     let source = workspace().join("sdk/web");
-    let player = module("htex-capi", &["--features", "library"])?.join("htex_c.wasm");
-    let author = module("htex-web-author", &[])?.join("htex_author_c.wasm");
+    let player = module("htex-capi", "small", &["--features", "library"])?.join("htex_c.wasm");
+    let author = module("htex-web-author", "author", &[])?.join("htex_author_c.wasm");
     fs::create_dir_all(out)?;
     let copy = |from: PathBuf, name: &str| fs::copy(from, out.join(name));
     for name in COPIED {
@@ -65,12 +65,12 @@ pub fn web(out: &Path) -> Result<()> {
     Ok(fs::write(out.join("processor.js"), processor)?)
 }
 
-/// Builds a package for WASM; returns the folder of its file.
-fn module(package: &str, features: &[&str]) -> Result<PathBuf> {
+/// Builds a package for WASM by a profile; returns the folder of its file.
+fn module(package: &str, profile: &str, features: &[&str]) -> Result<PathBuf> {
     let mut build = Command::new(cargo());
     build
         .args(["build", "--locked", "--package", package, "--lib"])
-        .args(["--profile", "small", "--no-default-features"])
+        .args(["--profile", profile, "--no-default-features"])
         .args(features)
         .args(["--target", TARGET])
         .env(
@@ -79,7 +79,7 @@ fn module(package: &str, features: &[&str]) -> Result<PathBuf> {
         )
         .current_dir(workspace());
     run(&mut build).context("`rustup target add` brings the target")?;
-    Ok(target().join(TARGET).join("small"))
+    Ok(target().join(TARGET).join(profile))
 }
 
 /// A file's text without its imports and with its exports as plain declarations.

@@ -170,6 +170,19 @@ export interface LibraryEntry {
   blake3: string;
 }
 
+/** What a texture must have to be found; what is absent is not asked for. */
+export interface LibraryQuery {
+  /** Parts of the name or of a tag, without case; all of them. */
+  words?: string[];
+  /** Tags, without case; all of them. */
+  tags?: string[];
+  /** A speed, mm/s, and a force, N, among the recorded ones. */
+  speed?: number;
+  force?: number;
+  /** A model, by its id or short name. */
+  model?: string;
+}
+
 /** A library: one `.htexlib` file with thousands of textures, of which ranges are fetched. */
 export class Library {
   private constructor();
@@ -181,6 +194,8 @@ export class Library {
   readonly count: number;
   /** The entries of all textures, in ascending order of their names. Reads the index, page by page. */
   entries(): AsyncGenerator<LibraryEntry>;
+  /** The entries that have all that is asked for. Reads the index, page by page. */
+  find(query: LibraryQuery): AsyncGenerator<LibraryEntry>;
   /** The entry of a texture; undefined if there is none of this name. */
   entry(name: string): Promise<LibraryEntry | undefined>;
   /** The bytes of a texture's `.htex` file; an HtexError of the kind "absent" if there is none of this name. */

@@ -110,7 +110,7 @@ export class HtexNode extends Base {
     /** The options that a later `load` takes over, the gain of the texture's usual level, and the voice in a worker. */
     Object.assign(this, { bands: options.bands, usual: usualGain(texture, options.model), playing: null, texture });
     this.port.onmessage = ({ data }) => this.receive(data);
-    this.addEventListener("processorerror", (event) => this.failed(new HtexError(`the audio worklet failed: ${event.message ?? "it stopped"}`, "internal")));
+    this.onprocessorerror = (event) => this.workletFailed(event);
     /** Resolves when the voice is made. */
     this.ready = isSent ? Promise.resolve() : this.send(voice, { trusted });
     this.sent = voice;
@@ -231,6 +231,13 @@ export class HtexNode extends Base {
     if (id > 0 && this.loads.has(id)) return;
     this.port.postMessage({ alone: true });
     this.failed(error);
+  }
+
+  /** Chromium gives its event the type `error`, that of the events of this node. */
+  workletFailed(event) {
+    if (event.error instanceof HtexError) return;
+    event.stopImmediatePropagation();
+    this.failed(new HtexError(`the audio worklet failed: ${event.message ?? "it stopped"}`, "internal"));
   }
 
   failed(error) {

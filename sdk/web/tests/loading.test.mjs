@@ -169,12 +169,14 @@ test("an error of the worklet itself reaches node.onerror", async () => {
   const made = await here.page();
   const told = await made.evaluate(async (play) => {
     await new Function(`return ${play}`)()();
-    const heard = new Promise((done) => (window.node.onerror = ({ error }) => done([error.name, error.code, error.message])));
+    let events = 0;
+    window.node.addEventListener("error", () => (events += 1));
+    const heard = new Promise((done) => (window.node.onerror = ({ error }) => setTimeout(() => done([error.name, error.code, events, error.message]), 100)));
     await window.node.context.audioWorklet.addModule("data:text/javascript,Array.prototype.forEach = () => { throw new Error('broken') }");
     return heard;
   }, PLAY);
-  assert.deepEqual(told.slice(0, 2), ["HtexError", "internal"]);
-  assert.match(told[2], /audio worklet failed/);
+  assert.deepEqual(told.slice(0, 3), ["HtexError", "internal", 1]);
+  assert.match(told[3], /audio worklet failed/);
   await made.close();
 });
 

@@ -622,7 +622,57 @@ fn findings_are_counted_by_code_and_denied_by_gates() {
     }
 }
 
-/// Wrong recipes say where and what, and write nothing.
+/// An error that ends a build is in the report, beside what an earlier build left; the next build is as if it had not been.
+#[test]
+fn an_error_that_ends_a_build_is_in_its_report() {
+    let place = place();
+    let report = || -> Value {
+        let report = fs::read(place.path("dist/build-report.json")).unwrap();
+        serde_json::from_slice(&report).unwrap()
+    };
+    let failed = |output: &str| {
+        let run = place.run(&["build", "library.toml", "-o", output, "--json"]);
+        assert_eq!(run.code(), 1, "{}", run.error());
+        serde_json::from_str::<Value>(&run.text()).unwrap()["error"].clone()
+    };
+    place.write("library.toml", "[library\nname = 1\n");
+    failed("dist");
+    assert!(!place.path("dist").exists(), "no build has begun");
+
+    place.write("library.toml", RECIPE.replace("\"sbeta\"", "\"spline\""));
+    let error = failed("dist");
+    assert_eq!(report()["error"], error);
+    assert!(error[0].as_str().unwrap().contains("spline"), "{error}");
+    assert_eq!(report()["textures"], Value::Array(Vec::new()));
+
+    place.write("library.toml", RECIPE);
+    build(&place, "dist", &[]);
+    let whole = report();
+    assert!(whole.get("error").is_none());
+    place.write("rec/broken_1.csv", "t_s,lateral_n\n0,1\n0.1,zero\n");
+    let error = failed("dist");
+    assert!(error[0].as_str().unwrap().contains("broken/1"), "{error}");
+    let mut after = report();
+    assert_eq!(after["error"], error);
+    after.as_object_mut().unwrap().remove("error");
+    assert_eq!(after, whole);
+
+    place.write("library.toml", "[library\nname = 1\n");
+    let before = report();
+    let dry = place.run(&["build", "library.toml", "-o", "dist", "--dry-run"]);
+    assert_eq!((dry.code(), report()), (1, before));
+    let error = failed("dist");
+    assert_eq!(report()["error"], error);
+    assert!(error.as_array().unwrap().len() > 1, "its lines: {error}");
+
+    let fewer = RECIPE.replace("rec/*.csv", "rec/vinyl_*.csv");
+    place.write("library.toml", fewer);
+    build(&place, "dist", &[]);
+    assert!(report().get("error").is_none());
+    assert!(!place.path("dist/textures/sandpaper/1.htex").exists());
+}
+
+/// Wrong recipes say where and what, and make no library.
 #[test]
 fn wrong_recipes_say_where() {
     let place = place();

@@ -4,9 +4,10 @@ use std::fs;
 use std::process::{Command, Output};
 use std::time::{Duration, SystemTime};
 
+use crate::browser::Browser;
 use crate::common::Place;
 use htex_object_server::{ACCESS_KEY, Fault, SECRET_KEY, Server};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// The part of a recipe before its recordings.
 const LIBRARY: &str = "[library]\nname = \"surfaces\"\n[[textures]]\n";
@@ -222,4 +223,71 @@ fn errors_name_uris() {
     bench.server.fail(|_, _| Fault::None);
     assert_eq!(bench.json(&build)["fitted"], 0);
     assert!(bench.server.get("shop/one/index.html").is_some());
+}
+
+/// A bucket that cannot be written is found out before anything is fitted, and the report says so.
+#[test]
+fn a_bucket_is_tried_before_anything_is_fitted() {
+    let bench = Bench::new();
+    let to = "s3://shop/vinyls";
+    let build = ["build", "away.toml", "-o", to, "--work", "w"];
+    bench.server.fail(|_, seen| match seen.method.as_str() {
+        "PUT" => Fault::Status(403, "AccessDenied"),
+        _ => Fault::None,
+    });
+    let refused = bench.run(&build);
+    assert_eq!(refused.status.code(), Some(1));
+    let words = "s3://shop/vinyls/.htex-build-tries: the server refuses access";
+    assert!(said(&refused).contains(words), "{}", said(&refused));
+    let writes = bench.server.requests();
+    let writes = writes.iter().filter(|seen| seen.method == "PUT");
+    assert_eq!(writes.count(), 1);
+    let made = crate::common::entries(&bench.place.path("w/.htex-build/made"));
+    assert!(made.is_empty(), "{made:?}");
+    let report = fs::read(bench.place.path("w/build-report.json")).unwrap();
+    let report: Value = serde_json::from_slice(&report).unwrap();
+    let error = report["error"][0].as_str().unwrap();
+    assert!(error.contains(words), "{report}");
+    bench.server.fail(|_, _| Fault::None);
+    assert_eq!(bench.json(&build)["fitted"], 3);
+    assert!(bench.server.get("shop/vinyls/.htex-build-tries").is_none());
+}
+
+/// What the catalogue in a store shows, links to and plays is there, under the media type that it was stored with.
+#[test]
+fn a_catalogue_opens_from_a_store() {
+    let installed = crate::browser::installed();
+    if !xtask::needs::CHROMIUM.met(installed.is_some()) {
+        return;
+    }
+    let bench = Bench::new();
+    bench.json(&["build", "away.toml", "-o", "s3://web/vinyls"]);
+    bench.server.fail(|_, _| Fault::None);
+    let mut browser = Browser::start(installed.unwrap(), &bench.place.path("browser"));
+    let tab = browser.open(&format!("{}/web/vinyls/index.html", bench.server.url()));
+    browser.shows(&tab, "3 of 3");
+    let document = browser.value(&tab, "[document.contentType, document.characterSet]");
+    assert_eq!(document, json!(["text/html", "UTF-8"]));
+    let linked = "Promise.all([...document.querySelectorAll('td a')].map(async (link) => { const got = await fetch(link.href); \
+        return [got.status, got.headers.get('content-type'), (await got.arrayBuffer()).byteLength > 0]; }))";
+    let texture = json!([200, "application/vnd.htex+zip", true]);
+    assert_eq!(
+        browser.promised(&tab, linked),
+        json!([texture, texture, texture])
+    );
+    browser.click(&tab, "button.play");
+    let played = "new Promise((done) => setInterval(() => performance.getEntriesByType('resource').some((e) => e.name.endsWith('.wav')) \
+        && done(document.querySelector('button.play').textContent), 20))";
+    assert_eq!(browser.promised(&tab, played), "▶");
+    let answers = bench.server.answers();
+    let has = |end: &str| answers.iter().any(|(path, _)| path.ends_with(end));
+    assert!(
+        has("/index.html") && has(".htex") && has(".wav"),
+        "{answers:?}"
+    );
+    let failed: Vec<_> = answers
+        .iter()
+        .filter(|(_, status)| *status >= 400)
+        .collect();
+    assert!(failed.is_empty(), "{failed:?}");
 }

@@ -336,3 +336,42 @@ fn wrong_usage_is_told_apart_from_failure() {
     assert_eq!(run.code(), 1);
     assert!(run.error().contains("10 %"), "{}", run.error());
 }
+
+/// The asset holds the hash of each recording, by which recordings of one name are told apart, also of one whose part is read; a pipe,
+/// which is read once, has none.
+#[test]
+fn an_asset_has_the_hash_of_each_recording() {
+    let place = Place::new();
+    let first = place.recording("vinyl");
+    let second = place.recording("sandpaper");
+    std::fs::create_dir(place.path("other")).unwrap();
+    std::fs::rename(place.path(&second), place.path(&format!("other/{first}"))).unwrap();
+    let other = format!("other/{first}");
+    let fit = |recordings: &[&str], more: &[&str]| {
+        let fit = ["--model", "bands", "-o", "a.htex", "--json"];
+        place.json(&[&["fit"], recordings, &fit, more].concat());
+        let asset = htex_format::Asset::open(&place.path("a.htex")).unwrap();
+        let recordings = asset.manifest.provenance.recordings.into_iter();
+        let hashed = recordings.map(|source| (source.file, source.blake3.unwrap_or_default()));
+        hashed.collect::<Vec<_>>()
+    };
+    let hash = |file: &str| {
+        let bytes = std::fs::read(place.path(file)).unwrap();
+        blake3::hash(&bytes).to_hex().to_string()
+    };
+    let named = |file: &str| (first.clone(), hash(file));
+    assert_eq!(fit(&[&first, &other], &[]), [named(&first), named(&other)]);
+    assert_ne!(hash(&first), hash(&other));
+    assert_eq!(fit(&[&first], &["--from", "1"]), [named(&first)]);
+    #[cfg(unix)]
+    {
+        let pipe = place.path("pipe.csv");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.unwrap().success());
+        let bytes = std::fs::read(place.path(&first)).unwrap();
+        let writer = std::thread::spawn(move || std::fs::write(pipe, bytes));
+        let none = ("pipe.csv".to_owned(), String::new());
+        assert_eq!(fit(&["pipe.csv"], &[]), [none]);
+        writer.join().unwrap().unwrap();
+    }
+}

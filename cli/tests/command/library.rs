@@ -284,3 +284,25 @@ fn what_cannot_be_packed_is_refused_and_nothing_is_left() {
     assert_eq!(entries(&place.path("")), before);
     assert_eq!(std::fs::read(place.path("all.htexlib")).unwrap(), kept);
 }
+
+/// What `lib unpack` refuses of a file (sizes, names, hashes), `htex validate` and `lib verify` refuse, too: a valid file unpacks whole.
+#[test]
+fn what_is_valid_unpacks() {
+    let place = Place::new();
+    let mut refused = 0;
+    for name in entries(Path::new(CONFORMANCE)) {
+        let Some(stem) = name.strip_suffix(".htexlib") else {
+            continue;
+        };
+        let library = format!("{CONFORMANCE}/{name}");
+        let unpacked = place.run(&["lib", "unpack", &library, "-o", &format!("out/{stem}")]);
+        let validated = place.run(&["validate", &library]);
+        let verified = place.run(&["lib", "verify", &library]);
+        assert_eq!(validated.code(), verified.code(), "{name}");
+        if unpacked.code() != 0 {
+            assert_eq!(validated.code(), 1, "{name}: {}", unpacked.error());
+            refused += 1;
+        }
+    }
+    assert!(refused > 30, "{refused}");
+}

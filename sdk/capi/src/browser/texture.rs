@@ -104,7 +104,9 @@ fn read_magnitude(
     condition: usize,
 ) -> Result<Vec<f64>, Failure> {
     let condition = asset.manifest().conditions.get(condition);
-    let condition = condition.ok_or(Failure::argument("the texture has no condition of this number"))?;
+    let condition = condition.ok_or(Failure::argument(
+        "the texture has no condition of this number",
+    ))?;
     let motion = condition.speed_mm_s.zip(condition.force_n);
     let motion = motion.map(|(speed, force)| Motion::new(speed, force));
     let loaded = asset.loaded_model(model)?;

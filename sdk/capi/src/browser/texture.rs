@@ -113,7 +113,7 @@ fn read_magnitude(
     if loaded.descriptor().is_sum_of_sines() {
         return Err(Failure::plain(
             htex_status::HTEX_STATUS_UNSUPPORTED,
-            "the player does not read the spectrum of a sum of sinusoids; render its voice and measure the samples",
+            "what is read of a sum of sinusoids, only its samples tell: render its voice and measure them",
         ));
     }
     let (parameters, level_rms) = asset.parameters(model, motion)?;

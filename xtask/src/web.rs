@@ -12,28 +12,51 @@ use crate::programs::run;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
-const COPIED: [&str; 12] = [
+const COPIED: [&str; 19] = [
     "core.js",
     "guarded.js",
     "guests.js",
+    "host.js",
     "htexlib.js",
     "index.d.ts",
     "index.js",
+    "index.node.js",
     "library.js",
+    "manifest.d.ts",
+    "measured.js",
     "node.js",
+    "options.js",
     "pointer.js",
+    "serve.js",
     "stage.js",
     "texture.js",
-    "worker.js",
+    "web.d.ts",
+    "worker.node.js",
 ];
 
 /// What the file of the audio worklet is made of. It has no imports: bundlers copy the file of a worklet alone.
-const PROCESSOR: [&str; 5] = [
+const PROCESSOR: [&str; 9] = [
     "guests.js",
     "core.js",
+    "options.js",
+    "measured.js",
     "texture.js",
     "stage.js",
+    "sources.js",
+    "track.js",
     "processor.js",
+];
+
+/// What the file of the worker of pages is made of, for bundlers that copy it alone, too.
+const WORKER: [&str; 8] = [
+    "guests.js",
+    "core.js",
+    "options.js",
+    "measured.js",
+    "texture.js",
+    "stage.js",
+    "serve.js",
+    "worker.js",
 ];
 
 /// Builds the package into a folder.
@@ -52,11 +75,17 @@ pub fn web(out: &Path) -> Result<()> {
         copy(source.join(name), name)?;
     }
     copy(library, "htex.wasm")?;
-    let mut processor = String::new();
-    for name in PROCESSOR {
-        processor += &without_modules(&fs::read_to_string(source.join("src").join(name))?);
+    join(&source.join("src"), &PROCESSOR, &out.join("processor.js"))?;
+    join(&source.join("src"), &WORKER, &out.join("worker.js"))
+}
+
+/// Writes a script of the files of a folder.
+fn join(folder: &Path, names: &[&str], out: &Path) -> Result<()> {
+    let mut script = String::new();
+    for name in names {
+        script += &without_modules(&fs::read_to_string(folder.join(name))?);
     }
-    Ok(fs::write(out.join("processor.js"), processor)?)
+    Ok(fs::write(out, script)?)
 }
 
 /// Builds the library for WASM; returns its file.

@@ -252,9 +252,10 @@ export class HtexNode extends Base {
   stop() {
     if (this.isStopped) return;
     this.isStopped = true;
-    this.port.postMessage({ stop: true });
-    if (this.context.state === "running") setTimeout(() => this.end(), SILENT_MS);
-    else if (!this.isOffline) this.end();
+    const isHeard = this.context.state === "running" || this.isOffline;
+    this.port.postMessage({ stop: true, isHeard });
+    if (!isHeard) this.end();
+    else if (!this.isOffline) setTimeout(() => this.end(), SILENT_MS);
   }
 
   /** An offline context is not running between its renderings. */

@@ -12,6 +12,8 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail, ensure};
 
+pub(crate) use fixtures::command;
+
 use crate::jobs::at_a_time;
 use crate::places::target;
 

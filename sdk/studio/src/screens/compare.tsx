@@ -1,0 +1,3 @@
+export function Compare() {
+  return <section><h1>Compare</h1></section>;
+}

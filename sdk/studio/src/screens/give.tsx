@@ -1,0 +1,3 @@
+export function Give() {
+  return <section><h1>Give</h1></section>;
+}

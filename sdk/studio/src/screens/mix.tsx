@@ -1,0 +1,3 @@
+export function Mix() {
+  return <section><h1>Mix</h1></section>;
+}

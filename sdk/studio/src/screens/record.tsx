@@ -1,0 +1,3 @@
+export function Record() {
+  return <section><h1>Record</h1></section>;
+}

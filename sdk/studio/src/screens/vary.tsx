@@ -1,0 +1,3 @@
+export function Vary() {
+  return <section><h1>Vary</h1></section>;
+}

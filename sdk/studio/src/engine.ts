@@ -4,7 +4,7 @@ import { effect, signal } from "@preact/signals";
 import { HtexNode, prepare, type Texture } from "htex";
 
 import { finger } from "./motion.ts";
-import { fail, present, texture } from "./state.ts";
+import { fail, origin, present, texture } from "./state.ts";
 
 /** What sounds: the present texture, or one that is tried. */
 export interface Sounding {
@@ -20,6 +20,9 @@ export interface Sounding {
 const LOUDNESS = 0.1;
 /** Factor of all frequencies of *Audible*. */
 export const AUDIBLE = 4;
+
+/** Bands of the envelope that motors follow. */
+const BANDS = 1;
 
 /** "off": no press yet, so that the browser plays nothing. */
 export const sound = signal<"off" | "on" | "muted">("off");
@@ -92,7 +95,7 @@ export function usualGain(of: Texture, model: string) {
 function start(sounding: Sounding, at: number) {
   if (!context || !entrance) return;
   const { speed, force } = finger.peek();
-  const options = { model: sounding.model, gain: at, ...(audible.peek() ? { pitch: AUDIBLE } : {}) };
+  const options = { model: sounding.model, gain: at, bands: BANDS, ...(audible.peek() ? { pitch: AUDIBLE } : {}) };
   node = new HtexNode(context, sounding.texture, options);
   node.speed.value = speed;
   node.force.value = force;
@@ -105,18 +108,19 @@ function start(sounding: Sounding, at: number) {
 function sounds(sounding: Sounding, piece: Texture) {
   const at = sounding.own ? usualGain(sounding.texture, sounding.model) : gain * (sounding.gain ?? 1);
   if (!node) start(sounding, at);
-  else if (!("load" in node)) {
-    (node as HtexNode).stop();
-    start(sounding, at);
-  } else {
-    node.load(sounding.texture, { model: sounding.model });
-    node.gain.setTargetAtTime(at, node.context.currentTime, 0.005);
+  else {
+    node.load(sounding.texture, { model: sounding.model, gain: at, bands: BANDS }).catch(fail);
   }
   playing = piece;
 }
 
-/** Sets the loudness of the piece of work by a texture. */
-export function setReference(of: Texture, model: string) {
+/** The document that the loudness was set by. */
+let reference: unknown = null;
+
+/** Sets the loudness by the piece of work as it came to the desk. */
+function refer(of: Texture, model: string) {
+  if (reference === origin.peek()) return;
+  reference = origin.peek();
   gain = usualGain(of, model);
 }
 
@@ -126,7 +130,11 @@ export function run() {
     const [now, tries, document] = [texture.value, tried.value, present.value];
     if (!isReady.value) return;
     if (tries) sounds(tries, tries.texture);
-    else if (now && document) sounds({ texture: now, model: now.models.includes(document.model) ? document.model : now.models[0] ?? "" }, now);
+    else if (now && document) {
+      const model = now.models.includes(document.model) ? document.model : now.models[0] ?? "";
+      refer(now, model);
+      sounds({ texture: now, model }, now);
+    }
   });
   effect(() => {
     const { speed, force, position } = finger.value;

@@ -6,6 +6,7 @@ import "./styles/base.css";
 import "./styles/frame.css";
 import "./styles/controls.css";
 import "./styles/screens.css";
+import "./styles/shape.css";
 import { App } from "./app.tsx";
 import { start } from "./start.ts";
 

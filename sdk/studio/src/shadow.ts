@@ -39,10 +39,8 @@ export interface Coverage {
 /** Whether the motion is within the recorded conditions, and how it is played if not. */
 export const coverage = computed<Coverage>(() => {
   const { speed, force, position } = motion.value;
-  const told = voice.value?.coverage({ speed, force, position }) as unknown;
-  if (typeof told === "string") return { inside: !/outside|beyond/.test(told), text: told };
-  if (!told) return { inside: true, text: "" };
-  return told as Coverage;
+  const told = voice.value?.coverage({ speed, force, position });
+  return told ? { inside: told.kind !== "outside", text: told.text } : { inside: true, text: "" };
 });
 
 /** Magnitudes that play at the motion, in the texture's unit. */

@@ -4,13 +4,14 @@
 import { effect } from "@preact/signals";
 
 import { listenForDrops } from "./drop.ts";
-import { run, sound, wake, warm } from "./engine.ts";
+import { author } from "./author.ts";
+import { audioContext, heard, playingNode, run, sound, tried, wake, warm } from "./engine.ts";
 import { fromLink } from "./link.ts";
-import { rest } from "./motion.ts";
+import { finger, rest } from "./motion.ts";
+import { handles, moveHandle, setMacro } from "./shaping/session.ts";
 import { fill, items } from "./shelf.ts";
-import { begin, fail, present, redo, say, screen, undo, type Document } from "./state.ts";
+import { begin, depth, fail, present, redo, say, screen, texture, undo, type Document } from "./state.ts";
 import { keepWork, lastWork } from "./store.ts";
-import { tried } from "./engine.ts";
 
 /** Texture that is on the pad when the page is opened for the first time. */
 const FIRST = "Coarse fabric";
@@ -106,3 +107,7 @@ export function start() {
     navigator.serviceWorker.register("./sw.js").catch(() => {});
   }
 }
+
+/** What scripts, such as the tests', may look at and call in the console: `htexStudio`. */
+export const scripted = { audioContext, playingNode, heard, finger, present, texture, author, begin, undo, redo, depth, moveHandle, setMacro, handles };
+Object.assign(globalThis, { htexStudio: scripted });

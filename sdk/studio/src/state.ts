@@ -44,8 +44,13 @@ export const undoable = computed(() => history.value.past.at(-1) && history.valu
 export const redoable = computed(() => history.value.future[0]?.change);
 export const depth = computed(() => history.value.past.length);
 
+/** Milliseconds after which a message goes; one of an error stays. */
+const SHOWN_MS = 6000;
+
 export function say(text: string, kind: Notice["kind"] = "plain") {
-  notice.value = { text, kind };
+  const told = { text, kind };
+  notice.value = told;
+  if (kind !== "bad") setTimeout(() => notice.peek() === told && (notice.value = null), SHOWN_MS);
 }
 
 export function fail(error: unknown) {

@@ -3,15 +3,18 @@
 import { useMemo } from "preact/hooks";
 import type { Texture } from "htex";
 
-const POINTS = 56;
-const HZ = Float64Array.from({ length: POINTS }, (_, i) => 20 * 50 ** (i / (POINTS - 1)));
+const POINTS = 72;
+/** Frequencies that are looked at for each point, so that no line of a spectrum is missed. */
+const FINE = 8;
+const HZ = Float64Array.from({ length: POINTS * FINE }, (_, i) => 20 * 50 ** (i / (POINTS * FINE - 1)));
 /** Range that is drawn below the largest value, dB. */
 const RANGE_DB = 45;
 const [WIDTH, HEIGHT] = [160, 44];
 
 /** The outline of a spectrum as a path, closed at the bottom. */
 export function outline(texture: Texture, model: string): string {
-  const decibels = Array.from(texture.spectrum(HZ, { model }), (m) => 20 * Math.log10(Math.max(m, 1e-12)));
+  const fine = texture.spectrum(HZ, { model });
+  const decibels = Array.from({ length: POINTS }, (_, i) => 20 * Math.log10(Math.max(1e-12, ...fine.subarray(i * FINE, (i + 1) * FINE))));
   const top = Math.max(...decibels);
   const points = decibels.map((db, i) => {
     const part = Math.min(Math.max((top - db) / RANGE_DB, 0), 1);

@@ -36,6 +36,7 @@ function Card({ item }: { item: Item }) {
       <button class={isHere ? "card here" : "card"} aria-pressed={isHere} {...looks} onClick={() => choose(item).catch(fail)} onDblClick={() => (screen.value = "shape")}>
         <Sparkline texture={item.texture} model={item.model} />
         <span class="card-name">{item.name}</span>
+        {isHere && <span class="card-here">on the pad</span>}
         <span class="card-tags">{item.tags.slice(0, 3).join(" · ")}</span>
       </button>
       {item.isOwn && (

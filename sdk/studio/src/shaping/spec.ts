@@ -1,6 +1,6 @@
 // What a texture is made of: a model's parameters at each condition. Read from a texture, changed, and made to a texture again.
 
-import type { Author, Texture } from "htex";
+import type { Author, MakeOptions, Metadata, Texture } from "htex";
 
 export type Parameters = Readonly<Record<string, number | readonly number[]>>;
 
@@ -48,10 +48,16 @@ export interface Frame {
   readonly from: Texture;
 }
 
+/** What a texture states of itself, to be kept in one that is made of it. */
+export function metadataOf(manifest: Texture["manifest"]): Metadata {
+  const names = ["license", "author", "description", "tags"] as const;
+  const stated = names.filter((name) => manifest[name] !== undefined && manifest[name] !== null);
+  return Object.fromEntries(stated.map((name) => [name, manifest[name]]));
+}
+
 /** Makes a texture of a specification; what else the given texture states stays. */
 export function make(author: Author, { from }: Frame, spec: Spec): Texture {
-  const { manifest } = from;
-  const text = (name: string) => manifest[name] as string | undefined;
+  const { manifest, law } = from;
   const conditions = spec.points.map(({ speed, force, level, parameters }) => ({
     ...(speed === null ? {} : { speed }),
     ...(force === null ? {} : { force }),
@@ -60,14 +66,15 @@ export function make(author: Author, { from }: Frame, spec: Spec): Texture {
   }));
   return author.make({
     name: from.name,
-    quantity: text("quantity"),
-    contact: text("contact"),
+    quantity: from.quantity as NonNullable<MakeOptions["quantity"]>,
+    contact: from.contact,
     band: from.band,
-    law: from.law,
-    license: text("license"),
-    author: text("author"),
-    description: text("description"),
-    tags: manifest["tags"] as string[] | undefined,
+    law: {
+      frequency_speed: law.frequency_speed.exponent,
+      level_speed: law.level_speed.exponent,
+      level_force: law.level_force.exponent,
+    },
+    ...metadataOf(manifest),
     representations: [{ model: spec.model, conditions }],
   });
 }

@@ -12,7 +12,11 @@ use crate::programs::run;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
-const COPIED: [&str; 12] = [
+const COPIED: [&str; 16] = [
+    "author-core.js",
+    "author-worker.js",
+    "author.d.ts",
+    "author.js",
     "core.js",
     "guarded.js",
     "guests.js",
@@ -42,7 +46,8 @@ const PROCESSOR: [&str; 5] = [
 /// A message with the file or the program.
 pub fn web(out: &Path) -> Result<()> {
     let source = workspace().join("sdk/web");
-    let library = library()?;
+    let player = module("htex-capi", &["--features", "library"])?.join("htex_c.wasm");
+    let author = module("htex-web-author", &[])?.join("htex_author_c.wasm");
     fs::create_dir_all(out)?;
     let copy = |from: PathBuf, name: &str| fs::copy(from, out.join(name));
     for name in COPIED {
@@ -51,7 +56,8 @@ pub fn web(out: &Path) -> Result<()> {
     for name in ["package.json", "README.md"] {
         copy(source.join(name), name)?;
     }
-    copy(library, "htex.wasm")?;
+    copy(player, "htex.wasm")?;
+    copy(author, "htex-author.wasm")?;
     let mut processor = String::new();
     for name in PROCESSOR {
         processor += &without_modules(&fs::read_to_string(source.join("src").join(name))?);
@@ -59,13 +65,13 @@ pub fn web(out: &Path) -> Result<()> {
     Ok(fs::write(out.join("processor.js"), processor)?)
 }
 
-/// Builds the library for WASM; returns its file.
-fn library() -> Result<PathBuf> {
+/// Builds a package for WASM; returns the folder of its file.
+fn module(package: &str, features: &[&str]) -> Result<PathBuf> {
     let mut build = Command::new(cargo());
     build
-        .args(["build", "--locked", "--package", "htex-capi", "--lib"])
+        .args(["build", "--locked", "--package", package, "--lib"])
         .args(["--profile", "small", "--no-default-features"])
-        .args(["--features", "library"])
+        .args(features)
         .args(["--target", TARGET])
         .env(
             "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
@@ -73,7 +79,7 @@ fn library() -> Result<PathBuf> {
         )
         .current_dir(workspace());
     run(&mut build).context("`rustup target add` brings the target")?;
-    Ok(target().join(TARGET).join("small/htex_c.wasm"))
+    Ok(target().join(TARGET).join("small"))
 }
 
 /// A file's text without its imports and with its exports as plain declarations.

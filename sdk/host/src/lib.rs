@@ -52,6 +52,7 @@ mod sections;
 #[path = "browser/mod.rs"]
 mod wasm;
 
+pub use clock::Instant;
 pub use descriptor::{DescriptorError, read_descriptor};
 pub use error::{HostError, OptionError};
 pub use htex_dsp::grid::{Band, GRID_HZ};

@@ -1,5 +1,7 @@
 /** Textures of touch in the browser and in Node.js. */
 
+export * from "./author.js";
+
 /** Bytes. */
 export type Bytes = ArrayBuffer | ArrayBufferView;
 

@@ -14,7 +14,8 @@ export function setLibrary(library) {
   [source, module, core] = [() => library, undefined, undefined];
 }
 
-async function fetched(library) {
+/** Compiles a module: its address, its bytes, or one that is compiled. */
+export async function compiledFrom(library) {
   if (library instanceof WebAssembly.Module) return library;
   if (library instanceof ArrayBuffer || ArrayBuffer.isView(library)) return WebAssembly.compile(toBytes(library));
   const url = new URL(/* @vite-ignore */ library, import.meta.url);
@@ -29,7 +30,7 @@ async function fetched(library) {
 
 /** The compiled library. */
 export function compiled() {
-  module ??= fetched(source());
+  module ??= compiledFrom(source());
   return module;
 }
 
@@ -42,8 +43,12 @@ export function library() {
 /** Opens a texture: its bytes, or its address. */
 export async function open(source, options = {}) {
   const data = typeof source === "string" || source instanceof URL ? await download(source) : source;
-  const bytes = toBytes(data).slice();
-  const texture = new Texture(await library(), bytes, options);
+  return opened(await library(), toBytes(data).slice(), options);
+}
+
+/** Opens the bytes of a texture, at once. */
+export function opened(player, bytes, options = {}) {
+  const texture = new Texture(player, bytes, options);
   const { modules = [], embedded = true } = options;
   const hasModules = modules.length > 0 || (embedded && (texture.manifest.plugins ?? []).length > 0);
   return Object.assign(texture, { bytes, options: { modules: modules.map((m) => toBytes(m).slice()), embedded }, hasModules });

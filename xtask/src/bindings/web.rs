@@ -44,6 +44,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
             "--test-concurrency=1",
             "node.test.mjs",
             "library.test.mjs",
+            "author.test.mjs",
             "browser.test.mjs",
         ])
         .env("HTEX_PACKAGE", &package)

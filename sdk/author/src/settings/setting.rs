@@ -125,6 +125,9 @@ macro_rules! settings {
         )*}
 
         impl $name {
+            /// The names of the settings, as recipes and keywords have them.
+            pub const NAMES: &'static [&'static str] = &[$(stringify!($field),)*];
+
             /// Returns these settings, and where they are absent those of `under`.
             #[must_use]
             pub fn over(self, under: Self) -> Self {

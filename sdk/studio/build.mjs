@@ -10,6 +10,8 @@ import path from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "vite";
 
+import { digest, policy, withPolicy } from "./parts.mjs";
+
 const here = path.dirname(fileURLToPath(import.meta.url));
 const out = path.resolve(process.argv[2] ?? path.join(here, "dist"));
 const common = {
@@ -18,11 +20,6 @@ const common = {
   logLevel: "warn",
 };
 
-/** What a page may do; nothing else, and nothing to other addresses. */
-const policy = (parts) =>
-  Object.entries({ "default-src": "'none'", "base-uri": "'none'", "form-action": "'none'", ...parts })
-    .map(([name, value]) => `${name} ${value}`)
-    .join("; ");
 const STATIC_POLICY = policy({
   "script-src": "'self' 'wasm-unsafe-eval'",
   "style-src": "'self'",
@@ -31,10 +28,6 @@ const STATIC_POLICY = policy({
   "worker-src": "'self'",
   "manifest-src": "'self'",
 });
-
-function withPolicy(html, text) {
-  return html.replace('<meta charset="utf-8" />', `<meta charset="utf-8" />\n    <meta http-equiv="Content-Security-Policy" content="${text}" />`);
-}
 
 async function files(folder, below = "") {
   const entries = await readdir(path.join(folder, below), { withFileTypes: true });
@@ -62,8 +55,6 @@ async function buildStatic() {
   await writeFile(index, withPolicy(await readFile(index, "utf8"), STATIC_POLICY));
   await writeServiceWorker(folder);
 }
-
-const digest = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
 
 /** One file: the script and the style sheet stand in it, and the library, the worklet and the shelf are `data:` addresses in the script. */
 async function buildSingle() {

@@ -1,8 +1,34 @@
 import { fileURLToPath } from "node:url";
-import { defineConfig } from "vite";
+import { defineConfig, type Plugin } from "vite";
 
-export default defineConfig({
+import { dataAddress, ownModules, playerPage, script } from "./parts.mjs";
+
+const WORKERS = "virtual:workers";
+const PLAYER = "virtual:player";
+
+/** Scripts of workers as `data:` addresses in the page of one file, and the page of a player as an asset. */
+function parts(mode: string): Plugin {
+  return {
+    name: "parts",
+    resolveId: (id) => (id === WORKERS || id === PLAYER ? `\0${id}` : null),
+    async load(id) {
+      if (id === `\0${WORKERS}`) {
+        const isSingle = mode === "single";
+        const text = async (entry: string) => (isSingle ? JSON.stringify(dataAddress((await script(entry)).code)) : "undefined");
+        return `export const authorWorker = ${await text(".htex/author-worker.js")}; export const guardedWorker = ${await text(".htex/worker.js")};`;
+      }
+      if (id !== `\0${PLAYER}`) return null;
+      const page = await playerPage();
+      if (mode === "single") return `export default ${JSON.stringify(`data:text/plain;base64,${Buffer.from(page).toString("base64")}`)};`;
+      const reference = this.emitFile({ type: "asset", name: "player.txt", source: page });
+      return `export default import.meta.ROLLUP_FILE_URL_${reference};`;
+    },
+  };
+}
+
+export default defineConfig(({ mode }) => ({
   resolve: { alias: { htex: fileURLToPath(new URL("./.htex/index.js", import.meta.url)) } },
   assetsInclude: ["**/*.htexlib"],
-  build: { target: "es2022", chunkSizeWarningLimit: 2000 },
-});
+  build: { target: "es2022", chunkSizeWarningLimit: 12_000 },
+  plugins: [ownModules, ...(mode === "part" ? [] : [parts(mode)])],
+}));

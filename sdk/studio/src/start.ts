@@ -9,6 +9,7 @@ import { audioContext, heard, playingNode, run, sound, tried, wake, warm } from 
 import { fromLink } from "./link.ts";
 import { finger, rest } from "./motion.ts";
 import { handles, moveHandle, setMacro } from "./shaping/session.ts";
+import { setModules } from "./modules.ts";
 import { fill, items } from "./shelf.ts";
 import { begin, depth, fail, present, redo, say, screen, texture, undo, type Document } from "./state.ts";
 import { keepWork, lastWork } from "./store.ts";
@@ -83,6 +84,7 @@ function stayAwake() {
 }
 
 export function start() {
+  setModules();
   run();
   warm().catch(fail);
   autosave();

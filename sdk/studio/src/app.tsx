@@ -1,16 +1,21 @@
 // The frame: what stands above, the screens with their tabs, and the pad, which is always there.
 
+import { lazy, Suspense } from "preact/compat";
+import { useErrorBoundary } from "preact/hooks";
+
 import { Dock } from "./parts/dock.tsx";
 import { Icon, type IconName } from "./parts/icons.tsx";
 import { Top } from "./parts/top.tsx";
 import { Compare } from "./screens/compare.tsx";
 import { Give } from "./screens/give.tsx";
 import { Mix } from "./screens/mix.tsx";
-import { Record } from "./screens/record.tsx";
 import { Shape } from "./screens/shape.tsx";
 import { Shelf } from "./screens/shelf.tsx";
 import { Vary } from "./screens/vary.tsx";
-import { notice, screen, type Screen } from "./state.ts";
+import { fail, notice, screen, type Screen } from "./state.ts";
+
+/** The screen of recordings comes when it is first shown: what draws its curves is a third of the page. */
+const Record = lazy(() => import("./screens/record.tsx").then(({ Record: shown }) => ({ default: shown })));
 
 const SCREENS: { id: Screen; name: string; icon: IconName; show: () => preact.JSX.Element }[] = [
   { id: "shelf", name: "Shelf", icon: "shelf", show: Shelf },
@@ -53,6 +58,18 @@ function Notice() {
   );
 }
 
+/** A screen that fails says so, and the others stay. */
+function Safely({ children }: { children: preact.ComponentChildren }) {
+  const [error] = useErrorBoundary(fail);
+  if (!error) return <>{children}</>;
+  return (
+    <section>
+      <h1>This screen has failed</h1>
+      <p class="empty">{String((error as Error).message ?? error)}. The texture is as it was; another screen, or undo, goes on.</p>
+    </section>
+  );
+}
+
 export function App() {
   const Shown = SCREENS.find(({ id }) => id === screen.value)?.show ?? Shelf;
   return (
@@ -60,7 +77,11 @@ export function App() {
       <Top />
       <Tabs />
       <main class="screen" id="screen">
-        <Shown key={screen.value} />
+        <Safely key={screen.value}>
+          <Suspense fallback={<p class="empty">…</p>}>
+            <Shown />
+          </Suspense>
+        </Safely>
       </main>
       <Dock />
       <Notice />

@@ -1,6 +1,6 @@
 // What the page shows: the present texture with its history, the screen, and what was said last.
 
-import { computed, signal } from "@preact/signals";
+import { batch, computed, signal } from "@preact/signals";
 import { open, type Texture } from "htex";
 
 /** A texture at one moment of the work. Nothing of it changes. */
@@ -57,10 +57,11 @@ export function fail(error: unknown) {
   say(error instanceof Error ? error.message : String(error), "bad");
 }
 
+/** Shows a texture; the one before it is freed when nobody looks at it any more. */
 function show(opened: Texture) {
   const before = texture.peek();
   texture.value = opened;
-  if (before && before !== opened) before.free();
+  if (before && before !== opened) queueMicrotask(() => before.free());
 }
 
 let opening = 0;
@@ -82,9 +83,11 @@ export async function begin(bytes: Uint8Array, change: string, model?: string) {
   const document = { bytes, name: opened.name, model: model ?? best(opened), change };
   opening += 1;
   const { past, present: before } = history.peek();
-  history.value = { past: before ? keep([...past, before]) : past, present: document, future: [], gesture: null };
-  origin.value = document;
-  show(opened);
+  batch(() => {
+    history.value = { past: before ? keep([...past, before]) : past, present: document, future: [], gesture: null };
+    origin.value = document;
+    show(opened);
+  });
 }
 
 /** The model that plays unless another is chosen: the one of least error. */
@@ -105,9 +108,11 @@ export function edit(made: { texture: Texture; bytes: Uint8Array; model: string;
   const document = { bytes: made.bytes, name: made.texture.name, model: made.model, change: made.change };
   const continues = gesture !== null && gesture === last;
   const kept = continues || !before ? past : keep([...past, before]);
-  history.value = { past: kept, present: document, future: [], gesture };
   opening += 1;
-  show(made.texture);
+  batch(() => {
+    history.value = { past: kept, present: document, future: [], gesture };
+    show(made.texture);
+  });
 }
 
 /** Plays another of the texture's models. */

@@ -1,5 +1,6 @@
 // The pad with its sliders: how fast, how hard, and who moves the finger.
 
+import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 
 import { audible, heard, sound, wake } from "../engine.ts";
@@ -8,6 +9,9 @@ import { coverage } from "../shadow.ts";
 import { Icon } from "./icons.tsx";
 import { Pad } from "./pad.tsx";
 import { Slider } from "./slider.tsx";
+
+/** Whether a phone shows the sliders of the motion; where there is room they are always there. */
+const hasControls = signal(false);
 
 const PILOTS: { id: Pilot; name: string }[] = [
   { id: "hand", name: "Hand" },
@@ -42,6 +46,9 @@ function Readings() {
           </dd>
         </div>
       </dl>
+      <button class="toggle dock-more" aria-expanded={hasControls.value} onClick={() => (hasControls.value = !hasControls.value)}>
+        Motion
+      </button>
       <p class={inside ? "coverage" : "coverage outside"}>
         {!inside && <Icon name="warn" />}
         {text || "As it was recorded or made."}
@@ -89,7 +96,7 @@ export function Dock() {
     <aside class="dock" aria-label="Pad">
       <Pad />
       <Readings />
-      <div class="dock-controls">
+      <div class={hasControls.value ? "dock-controls" : "dock-controls folded"}>
         <Pilots />
         <Slider label="Speed" unit="mm/s" min={5} max={400} value={pilotSpeed.value} isLog digits={0} onValue={(value) => (pilotSpeed.value = value)} />
         <Slider label="Force" unit="N" min={0.05} max={3} value={pilotForce.value} isLog digits={2} onValue={(value) => (pilotForce.value = value)} />

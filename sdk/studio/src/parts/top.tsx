@@ -27,7 +27,9 @@ function Sound() {
       </button>
       <input class="volume" type="range" min="0" max="1" step="0.01" aria-label="Volume" value={volume.value} onInput={(event) => (volume.value = event.currentTarget.valueAsNumber)} />
       <button class="toggle" aria-pressed={audible.value} title="Plays all frequencies four times as high, for small loudspeakers. It is then not what a finger feels." onClick={() => (audible.value = !audible.value)}>
-        {audible.value ? "Audible ×4 on" : "Audible ×4"}
+        <span>
+          <span class="wide">Audible </span>×4{audible.value && " on"}
+        </span>
       </button>
     </div>
   );

@@ -12,32 +12,62 @@ use crate::programs::run;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
-const COPIED: [&str; 16] = [
+const COPIED: [&str; 23] = [
     "author-core.js",
-    "author-worker.js",
+    "author-serve.js",
+    "author-worker.node.js",
     "author.d.ts",
     "author.js",
     "core.js",
     "guarded.js",
     "guests.js",
+    "host.js",
     "htexlib.js",
     "index.d.ts",
     "index.js",
+    "index.node.js",
     "library.js",
+    "manifest.d.ts",
     "node.js",
+    "options.js",
     "pointer.js",
+    "serve.js",
     "stage.js",
     "texture.js",
-    "worker.js",
+    "web.d.ts",
+    "worker.node.js",
 ];
 
 /// What the file of the audio worklet is made of. It has no imports: bundlers copy the file of a worklet alone.
-const PROCESSOR: [&str; 5] = [
+const PROCESSOR: [&str; 8] = [
     "guests.js",
     "core.js",
+    "options.js",
     "texture.js",
     "stage.js",
+    "sources.js",
+    "track.js",
     "processor.js",
+];
+
+/// What the file of the worker of pages is made of, for bundlers that copy it alone, too.
+const WORKER: [&str; 7] = [
+    "guests.js",
+    "core.js",
+    "options.js",
+    "texture.js",
+    "stage.js",
+    "serve.js",
+    "worker.js",
+];
+
+/// The same of the worker that fits.
+const AUTHOR_WORKER: [&str; 5] = [
+    "guests.js",
+    "core.js",
+    "author-core.js",
+    "author-serve.js",
+    "author-worker.js",
 ];
 
 /// Builds the package into a folder.
@@ -46,8 +76,8 @@ const PROCESSOR: [&str; 5] = [
 /// A message with the file or the program.
 pub fn web(out: &Path) -> Result<()> {
     let source = workspace().join("sdk/web");
-    let player = module("htex-capi", &["--features", "library"])?.join("htex_c.wasm");
-    let author = module("htex-web-author", &[])?.join("htex_author_c.wasm");
+    let player = module("htex-capi", "small", &["--features", "library"])?.join("htex_c.wasm");
+    let author = module("htex-web-author", "author", &[])?.join("htex_author_c.wasm");
     fs::create_dir_all(out)?;
     let copy = |from: PathBuf, name: &str| fs::copy(from, out.join(name));
     for name in COPIED {
@@ -58,19 +88,26 @@ pub fn web(out: &Path) -> Result<()> {
     }
     copy(player, "htex.wasm")?;
     copy(author, "htex-author.wasm")?;
-    let mut processor = String::new();
-    for name in PROCESSOR {
-        processor += &without_modules(&fs::read_to_string(source.join("src").join(name))?);
-    }
-    Ok(fs::write(out.join("processor.js"), processor)?)
+    join(&source.join("src"), &PROCESSOR, &out.join("processor.js"))?;
+    join(&source.join("src"), &WORKER, &out.join("worker.js"))?;
+    join(&source.join("src"), &AUTHOR_WORKER, &out.join("author-worker.js"))
 }
 
-/// Builds a package for WASM; returns the folder of its file.
-fn module(package: &str, features: &[&str]) -> Result<PathBuf> {
+/// Writes a script of the files of a folder.
+fn join(folder: &Path, names: &[&str], out: &Path) -> Result<()> {
+    let mut script = String::new();
+    for name in names {
+        script += &without_modules(&fs::read_to_string(folder.join(name))?);
+    }
+    Ok(fs::write(out, script)?)
+}
+
+/// Builds a package for WASM by a profile; returns the folder of its file.
+fn module(package: &str, profile: &str, features: &[&str]) -> Result<PathBuf> {
     let mut build = Command::new(cargo());
     build
         .args(["build", "--locked", "--package", package, "--lib"])
-        .args(["--profile", "small", "--no-default-features"])
+        .args(["--profile", profile, "--no-default-features"])
         .args(features)
         .args(["--target", TARGET])
         .env(
@@ -79,7 +116,7 @@ fn module(package: &str, features: &[&str]) -> Result<PathBuf> {
         )
         .current_dir(workspace());
     run(&mut build).context("`rustup target add` brings the target")?;
-    Ok(target().join(TARGET).join("small"))
+    Ok(target().join(TARGET).join(profile))
 }
 
 /// A file's text without its imports and with its exports as plain declarations.

@@ -3,6 +3,7 @@
 
 #[cfg(feature = "library")]
 mod library;
+mod texture;
 
 use crate::memory::{allocate, free};
 

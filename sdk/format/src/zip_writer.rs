@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
 
-use crate::unpack::{DEFLATED, STORED};
+use crate::unpack::{DEFLATED, STORED, crc32};
 use crate::zip_records::{CENTRAL, Common, END, LOCAL};
 
 /// zlib-rs chooses the same matches on every processor, so the bytes are the same everywhere. Zopfli takes 100 ms for an asset and saves
@@ -49,7 +49,7 @@ impl ZipWriter {
             flags: 0,
             method,
             time_date: NO_TIME,
-            crc: crc32fast::hash(bytes),
+            crc: crc32(bytes),
             packed: small(packed.len())?,
             size: small(bytes.len())?,
         };

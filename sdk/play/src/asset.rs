@@ -11,7 +11,9 @@ use htex_host::{Band, HostError, LoadedModel, RUNS_WASM, Registry, StillSound, S
 
 use crate::exploration::{CEILING, Scaling};
 use crate::known::{Known, Motions};
+use crate::parameter::{Parameter, named};
 use crate::playable::{field_order, model_of};
+use crate::spectrum::scaled_magnitude;
 use crate::{Error, Motion, SampleSource, Voice, VoiceOptions};
 
 /// Highest rate of samples, hertz: that of models and of the resampler.
@@ -270,13 +272,14 @@ impl Asset {
         };
         let level_rms = self.level_rms(model, motion)?;
         let (parameters, _) = self.parameters(model, motion)?;
-        let recorded_hz: Vec<f64> = frequency_hz.iter().map(|f| f / ratio).collect();
-        let shape = loaded.magnitude(&parameters, self.band(), &recorded_hz)?;
-        let spread = match loaded.descriptor().is_sum_of_sines() {
-            true => 1.0,
-            false => ratio.sqrt(),
-        };
-        Ok(shape.iter().map(|m| m * level_rms / spread).collect())
+        scaled_magnitude(
+            &loaded,
+            &parameters,
+            self.band(),
+            frequency_hz,
+            ratio,
+            level_rms,
+        )
     }
 
     /// Returns the level of a voice at a motion, else at the first condition: RMS in the asset's unit, with the law of the asset
@@ -366,6 +369,27 @@ impl Asset {
         let known = self.known(r, &model)?;
         let located = known.motions.locate(motion);
         Ok((known.at(&model, &located)?, located.level_rms))
+    }
+
+    /// Returns the parameters of [`Self::parameters`] with the names of the model's fields.
+    ///
+    /// ```no_run
+    /// let asset = htex::Asset::open("sandpaper.htex")?;
+    /// for (name, parameter) in asset.named_parameters(Some("sbeta"), None)? {
+    ///     println!("{name}: {parameter:?}");
+    /// }
+    /// # Ok::<(), htex::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::voice`].
+    pub fn named_parameters(
+        &self,
+        model: Option<&str>,
+        motion: Option<Motion>,
+    ) -> Result<Vec<(String, Parameter)>, Error> {
+        let (flat, _) = self.parameters(model, motion)?;
+        Ok(named(&self.loaded_model(model)?.descriptor().fields, flat))
     }
 
     /// Returns the index of a representation by its model's id or short name, else of the best.

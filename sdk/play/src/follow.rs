@@ -91,6 +91,11 @@ impl Follow {
         self.gain
     }
 
+    /// Returns the reading speed of the texture, in the recorded speed.
+    pub(crate) fn ratio(&self) -> f64 {
+        self.ratio
+    }
+
     /// Returns after how many of the next `len` samples, the first of which is that of `frame`, the voice rests: its samples are 0 from
     /// there until it is felt again.
     pub(crate) fn sounding(&self, len: usize, frame: u64) -> usize {

@@ -27,8 +27,10 @@ mod mesh;
 mod motion;
 mod options;
 mod output;
+mod parameter;
 mod playable;
 mod source;
+mod spectrum;
 mod travel;
 mod voice;
 
@@ -52,6 +54,7 @@ pub use known::Motions;
 pub use mesh::{Mesh, Weights};
 pub use motion::Motion;
 pub use options::VoiceOptions;
+pub use parameter::Parameter;
 pub use playable::{field_order, model_of};
 pub use source::SampleSource;
 pub use travel::Finger;

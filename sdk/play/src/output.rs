@@ -11,6 +11,8 @@ const RELEASE_S: f64 = 0.050;
 #[derive(Debug)]
 pub(crate) struct Output {
     gain: Glide,
+    /// The gain at the end of its glide.
+    target: f32,
     limiter: Option<Limiter>,
 }
 
@@ -28,8 +30,10 @@ impl Output {
         let limiter = limit
             .map(|limit| Limiter::new(limit, rate_hz))
             .transpose()?;
+        let target = checked(gain)?;
         Ok(Self {
-            gain: Glide::new(checked(gain)?, ramp),
+            gain: Glide::new(target, ramp),
+            target,
             limiter,
         })
     }
@@ -40,11 +44,17 @@ impl Output {
     /// When it is negative or not finite.
     pub(crate) fn set_gain(&mut self, gain: f64, rests: bool) -> Result<(), Error> {
         let gain = checked(gain)?;
+        self.target = gain;
         match rests {
             true => self.gain.restart(gain),
             false => self.gain.set(gain),
         }
         Ok(())
+    }
+
+    /// Returns the gain, or the one that it glides to.
+    pub(crate) fn gain(&self) -> f64 {
+        self.target.into()
     }
 
     pub(crate) fn apply(&mut self, block: &mut [f32]) {

@@ -4,6 +4,7 @@ use htex_host::{Band, LoadedModel, ModelVoice, Motion as ModelMotion};
 
 use crate::known::{Known, Located, Motions};
 use crate::mesh::Weights;
+use crate::spectrum::scaled_magnitude;
 use crate::travel::Finger;
 use crate::{Error, Motion};
 
@@ -24,6 +25,7 @@ const MIXED: usize = 3;
 #[derive(Debug)]
 pub struct SampleSource {
     known: Known,
+    model: LoadedModel,
     voice: ModelVoice,
     /// Buffers for the parameter sets to interpolate, and for the result.
     sets: Vec<f64>,
@@ -61,6 +63,7 @@ impl SampleSource {
             motion,
             level_rms: located.level_rms,
             follows: model.follows_motion(),
+            model,
             frames: 0,
         })
     }
@@ -94,6 +97,26 @@ impl SampleSource {
     /// Returns the motion of the current spectrum.
     pub(crate) fn motion(&self) -> Motion {
         self.motion
+    }
+
+    /// Returns the magnitudes of the texture at a motion, read at `ratio` times its recorded speed and played at a level.
+    pub(crate) fn magnitude(
+        &self,
+        motion: Motion,
+        frequency_hz: &[f64],
+        ratio: f64,
+        level_rms: f64,
+    ) -> Result<Vec<f64>, Error> {
+        let (model, located) = (&self.model, self.known.motions.locate(motion));
+        let parameters = self.known.at(model, &located)?;
+        scaled_magnitude(
+            model,
+            &parameters,
+            self.band,
+            frequency_hz,
+            ratio,
+            level_rms,
+        )
     }
 
     /// Returns the duration of the samples rendered so far, seconds.

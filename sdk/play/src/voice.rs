@@ -55,6 +55,8 @@ pub struct Voice {
     ceiling: f64,
     /// The last motion.
     asked: Option<Motion>,
+    /// The motion of the start.
+    started: Motion,
 }
 
 impl Voice {
@@ -88,6 +90,7 @@ impl Voice {
         let analyser = envelope::analyser(options.envelope_bands, source.band(), rate_hz)?;
         let (source_rate_hz, top_hz) = (source.rate_hz() * base, source.top_hz() * base);
         let mut voice = Self {
+            started: source.motion(),
             level_rms: Glide::new(level_rms as f32, ramp),
             stream: Stream::of(source, source_rate_hz, rate_hz, top_hz)?,
             still,
@@ -181,6 +184,31 @@ impl Voice {
         let frequency = &mut coverage.scaling.frequency;
         *frequency = frequency.min(self.follow.fastest());
         coverage
+    }
+
+    /// Returns the motion that was set last, else that of the start.
+    pub fn motion(&self) -> Motion {
+        self.asked.unwrap_or(self.started)
+    }
+
+    /// Returns the magnitudes that a long recording of this voice reads at the motion that is set, at frequencies in hertz and in the
+    /// asset's unit: with its effects, its [`ceiling`](VoiceOptions::ceiling) and its gain, and 0 where it is silent. What still glides is
+    /// taken at its end, and a limit is left out.
+    ///
+    /// # Errors
+    /// When the model refuses the parameters.
+    pub fn magnitude(&self, frequency_hz: &[f64]) -> Result<Vec<f64>, Error> {
+        if self.asked.is_some_and(|motion| !self.follow.is_felt(motion)) {
+            return Ok(vec![0.0; frequency_hz.len()]);
+        }
+        let source = self.stream.source();
+        // A still sound keeps the spectrum of the start.
+        let motion = match self.still {
+            Some(_) => self.started,
+            None => source.motion(),
+        };
+        let level_rms = source.level_rms() * self.follow.gain() * self.output.gain();
+        source.magnitude(motion, frequency_hz, self.follow.ratio(), level_rms)
     }
 
     /// Sets the gain, which changes gradually (10 ms). Does not allocate.

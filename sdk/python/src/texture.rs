@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use htex::format::write_file;
-use htex::{Asset, AssetData, Effects, Motion, Synthesis, VoiceOptions};
+use htex::{Asset, AssetData, Effects, Motion, Parameter, Synthesis, VoiceOptions};
 use htex_author::{SpectrumRef, read_spectrum};
-use htex_host::Kind;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
@@ -316,22 +315,14 @@ impl Texture {
         at: Option<At>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let motion = self.motion(at);
-        let (flat, loaded) = py
-            .detach(|| {
-                let (flat, _) = self.asset.parameters(model, motion)?;
-                Ok::<_, htex::Error>((flat, self.asset.loaded_model(model)?))
-            })
+        let all = py
+            .detach(|| self.asset.named_parameters(model, motion))
             .or_raise()?;
         let named = PyDict::new(py);
-        let mut rest = flat.into_iter();
-        for field in &loaded.descriptor().fields {
-            let first = rest.next().unwrap_or(f64::NAN);
-            match field.kind {
-                Kind::Scalar => named.set_item(&field.name, first)?,
-                Kind::List { .. } => {
-                    let list: Vec<f64> = rest.by_ref().take(first as usize).collect();
-                    named.set_item(&field.name, list)?;
-                }
+        for (name, parameter) in all {
+            match parameter {
+                Parameter::Number(number) => named.set_item(name, number)?,
+                Parameter::List(list) => named.set_item(name, list)?,
             }
         }
         Ok(named)

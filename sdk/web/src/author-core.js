@@ -5,8 +5,8 @@ import { Core, HtexError } from "./core.js";
 import { Guests } from "./guests.js";
 
 /** Sizes of structs: htex_bytes, htex_author_result. */
-const BYTES = 8;
-const RESULT = 16;
+const FILE = 8;
+const ANSWER = 16;
 
 export class AuthorCore {
   /** Instantiates the compiled module; `onProgress` is called with how far a fit is. */
@@ -27,16 +27,16 @@ export class AuthorCore {
     return core.scope((take) => {
       const text = new TextEncoder().encode(JSON.stringify(request));
       const places = files.map((file) => core.put(take, file));
-      const list = take(BYTES * Math.max(files.length, 1));
+      const list = take(FILE * Math.max(files.length, 1));
       const document = core.put(take, text);
       const title = core.putText(take, name);
-      const result = take(RESULT);
+      const result = take(ANSWER);
       const view = core.view();
       files.forEach((file, i) => {
-        view.setUint32(list + BYTES * i, places[i], true);
-        view.setUint32(list + BYTES * i + 4, file.length, true);
+        view.setUint32(list + FILE * i, places[i], true);
+        view.setUint32(list + FILE * i + 4, file.length, true);
       });
-      new Uint8Array(memory(), result, RESULT).fill(0);
+      new Uint8Array(memory(), result, ANSWER).fill(0);
       let failure;
       try {
         core.call("htex_author_call", title, document, text.length, list, files.length, result);

@@ -1,12 +1,16 @@
 /** Textures made: recordings fitted, parameters written, textures mixed and edited. */
 
-import type { Bytes, Texture } from "./index.js";
+import type { Address, Bytes, Readable, Texture } from "./index.js";
+import type { SignalLike, WorkerLike } from "./web.js";
 
 /** A file: its name, which tells what kind of recording it is, and its bytes. */
 export interface NamedBytes {
   name: string;
   bytes: Bytes;
 }
+
+/** A File, or a Blob with a name. */
+export type NamedFile = Readable & { readonly name: string };
 
 /** Settings that help against a problem: names of `ReadingSettings` and `FitSettings`, some with a value ("segments windows"). */
 export interface Notice {
@@ -31,7 +35,7 @@ export interface Report {
   findings: Finding[];
 }
 
-export type Quantity = "lateral_force" | "normal_force" | "acceleration" | "velocity" | "displacement";
+export type RecordedQuantity = "lateral_force" | "normal_force" | "acceleration" | "velocity" | "displacement";
 
 /** A parameter of a model. */
 export interface ModelField {
@@ -91,7 +95,7 @@ export interface MadeAt {
 export interface MakeOptions extends Metadata {
   representations: { model: string; conditions: MadeAt[] }[];
   /** Default "lateral_force". */
-  quantity?: Quantity;
+  quantity?: RecordedQuantity;
   /** The quantity's unit, to be checked. */
   unit?: string;
   /** Lowest and highest frequency, Hz. Default 20 to 1000. */
@@ -107,7 +111,7 @@ export interface ReadingSettings {
   /** Files with the finger's motion, one for each recording or one for all. */
   tracker?: NamedBytes | NamedBytes[];
   tracker_map?: string;
-  quantity?: Quantity;
+  quantity?: RecordedQuantity;
   /** What a full-scale sample of WAV, FLAC and NPY is, in the quantity's unit. */
   scale?: number;
   /** Response of the recording setup, a CSV. */
@@ -142,7 +146,7 @@ export interface FitSettings extends ReadingSettings, Metadata {
 export interface RecordedSpectrum {
   frequency_hz: number[];
   magnitude: number[];
-  quantity: Quantity;
+  quantity: RecordedQuantity;
   unit: string;
   band_hz: [number, number];
   segments: number;
@@ -257,11 +261,11 @@ export interface FitOptions extends FitSettings {
   /** Called with the steps that are done, their number, and what begins: "read felt.csv", "fit ar". */
   onProgress?: (progress: { done: number; of: number; text: string }) => void;
   /** Aborts the fit, which then fails with an HtexError of the code "aborted". */
-  signal?: AbortSignal;
+  signal?: SignalLike;
 }
 
 /** Fits models to recordings of a texture, in a worker. */
-export function fit(recordings: NamedBytes | File | (NamedBytes | File)[], options?: FitOptions): Promise<Fitted>;
+export function fit(recordings: NamedBytes | NamedFile | (NamedBytes | NamedFile)[], options?: FitOptions): Promise<Fitted>;
 
 /** Sets where the module is, and how its worker is started where a bundler has it elsewhere. Before the first use. */
-export function setAuthorLibrary(library: string | URL | Bytes | WebAssembly.Module, options?: { worker?: () => Worker | Promise<Worker> }): void;
+export function setAuthorLibrary(library: Address | Bytes | object | undefined, options?: { worker?: () => WorkerLike | Promise<WorkerLike> }): void;

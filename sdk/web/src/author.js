@@ -3,6 +3,7 @@
 
 import { AuthorCore } from "./author-core.js";
 import { HtexError, toBytes } from "./core.js";
+import { host } from "./host.js";
 import { compiledFrom, library, opened } from "./library.js";
 
 let source = () => new URL("./htex-author.wasm", import.meta.url);
@@ -15,13 +16,14 @@ let idle = null;
 /** Sets where the module is: its address, its bytes or a WebAssembly.Module; and how its worker is started, where a bundler has it
  * elsewhere. Before the first use. */
 export function setAuthorLibrary(library, { worker = null } = {}) {
-  [source, startWorker, module, author] = [() => library, worker, undefined, undefined];
+  if (library !== undefined) source = () => library;
+  [startWorker, module, author] = [worker, undefined, undefined];
   idle?.terminate();
   idle = null;
 }
 
 function compiled() {
-  module ??= compiledFrom(source()).catch((error) => {
+  module ??= compiledFrom(source(), "the author module").catch((error) => {
     module = undefined;
     throw error;
   });
@@ -184,24 +186,14 @@ function pictureOf({ signals, steps, ...picture }, bytes) {
 
 /** Starts the worker of a page. */
 function startInPage() {
+  // Bundlers look for this form.
   return new Worker(new URL("./author-worker.js", import.meta.url), { type: "module" });
 }
 
-/** Starts a thread of Node.js, as a worker of a page is used. */
-async function startInNode() {
-  const { Worker: Thread } = await import(/* @vite-ignore */ "node:worker_threads");
-  const thread = new Thread(new URL("./author-worker.js", import.meta.url));
-  thread.on("message", (data) => thread.onmessage?.({ data }));
-  thread.on("error", ({ message }) => thread.onerror?.({ message }));
-  return thread;
-}
-
-async function takeWorker() {
+function takeWorker() {
   const taken = idle;
   idle = null;
-  if (taken) return taken;
-  if (startWorker) return startWorker();
-  return typeof Worker !== "undefined" ? startInPage() : startInNode();
+  return taken ?? (startWorker ?? host.startAuthorThread ?? startInPage)();
 }
 
 /** Keeps a worker for the next fit; it does not keep a program of Node.js running. */

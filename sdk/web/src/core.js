@@ -56,15 +56,16 @@ function fault(error) {
 }
 
 export class Core {
-  /** Instantiates the compiled library, at once. */
-  static now(module) {
+  /** Instantiates the library at once: compiled, or its bytes. */
+  static now(library) {
     const guests = new Guests();
+    const module = library instanceof WebAssembly.Module ? library : new WebAssembly.Module(library);
     return new Core(new WebAssembly.Instance(module, { htex: guests.imports() }), guests);
   }
 
-  /** Instantiates the compiled library. */
-  static async make(module) {
-    const guests = new Guests();
+  /** Instantiates the compiled library. Without `runsModules` it refuses the modules of models. */
+  static async make(module, { runsModules }) {
+    const guests = new Guests({ runsModules });
     return new Core(await WebAssembly.instantiate(module, { htex: guests.imports() }), guests);
   }
 
@@ -238,5 +239,5 @@ export class Core {
 export function toBytes(data) {
   if (data instanceof ArrayBuffer) return new Uint8Array(data);
   if (ArrayBuffer.isView(data)) return new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
-  throw new TypeError("bytes are an ArrayBuffer or a view of one");
+  throw new HtexError("bytes are an ArrayBuffer, a typed array or a DataView", "invalid-argument");
 }

@@ -1,76 +1,75 @@
 // Voices of models that are not trusted, in a worker that is ended when it does not return.
 
 import { HtexError } from "./core.js";
+import { host } from "./host.js";
+import { files, libraryBytes } from "./library.js";
+import { VOICE, checked } from "./options.js";
+import { Texture } from "./texture.js";
 
 /** Milliseconds between two questions whether the worker returns. */
 const ASKED_MS = 250;
 
 let keys = 0;
 
-/** What a worklet or a worker needs to make a voice. */
-export function describe(texture, options, rate) {
+/** What a worklet or a worker needs to make a voice; `rests`: with the finger lifted. */
+export function describe(texture, voice, rests = false) {
   texture.key ??= `texture ${(keys += 1)}`;
-  const { model, seed, synthesis, frequencyScaling, levelScaling, contact, ceiling, limit, motion } = options;
-  const voice = { model, seed, synthesis, frequencyScaling, levelScaling, contact, ceiling, limit, motion, rate };
-  const module = texture.core.module;
-  return { module, key: texture.key, bytes: texture.bytes, open: texture.options, voice };
+  return { library: texture.core.module, key: texture.key, bytes: texture.bytes, open: texture.options, voice, rests };
+}
+
+/** Refuses what is not a texture of `open`. */
+export function checkTexture(texture, call) {
+  if (texture instanceof Texture && texture.bytes && !texture.isFreed) return;
+  const what = texture?.isFreed ? "a texture that was freed" : "no texture";
+  throw new HtexError(`${call} was given ${what}; give what \`await open(…)\` returns`, "invalid-argument");
 }
 
 /** Starts the worker of a page. */
 function startInPage(receive, failed) {
-  const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+  // Bundlers look for this form.
+  const worker = files.worker
+    ? new Worker(/* @vite-ignore */ files.worker, { type: "module" })
+    : new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
   worker.onmessage = ({ data }) => receive(data);
-  worker.onerror = ({ message }) => failed(message);
+  worker.onerror = ({ message }) => failed(message ?? "its file cannot be loaded");
   return worker;
-}
-
-/** Starts a thread of Node.js, which has no `Worker` of pages. It keeps the program running only while it is asked for something. */
-async function startInNode(receive, failed) {
-  const { Worker: Thread } = await import(/* @vite-ignore */ "node:worker_threads");
-  const thread = new Thread(new URL("./worker.js", import.meta.url));
-  thread.on("message", receive);
-  thread.on("error", ({ message }) => failed(message));
-  thread.unref();
-  return thread;
 }
 
 export class GuardedWorker {
   /** `limit`: milliseconds of the longest call. */
-  constructor({ limit = 2_000 } = {}) {
+  constructor(options = {}) {
+    const { limit = 2_000 } = checked(options, { limit: "number" }, "GuardedWorker");
     this.limit = limit;
     this.waiting = new Map();
     this.last = 0;
     this.heard = Date.now();
     const receive = (data) => this.receive(data);
     const failed = (message) => this.end(new HtexError(`the worker failed: ${message}`, "internal"));
-    if (typeof Worker !== "undefined") this.worker = startInPage(receive, failed);
-    // Until the thread of Node.js has started, messages wait.
-    else {
-      this.early = [];
-      startInNode(receive, failed).then((thread) => this.started(thread), ({ message }) => failed(message));
-    }
+    this.worker = (host.startThread ?? startInPage)(receive, failed);
     this.timer = setInterval(() => this.ask(), ASKED_MS);
     this.timer.unref?.();
   }
 
-  /** Passes on what waited for a thread of Node.js. */
-  started(thread) {
-    this.worker = thread;
-    if (this.ended) return void thread.terminate();
-    for (const [message, transfer] of this.early) thread.postMessage(message, transfer);
+  post(message, transfer = []) {
     this.hold();
+    try {
+      this.worker.postMessage(message, transfer);
+    } catch (error) {
+      if (error.name !== "DataCloneError" || !message.description) throw error;
+      this.postWithBytes(message, transfer);
+    }
   }
 
-  post(message, transfer = []) {
-    if (this.worker) this.worker.postMessage(message, transfer);
-    else this.early.push([message, transfer]);
-    this.hold();
+  /** Sends the library's bytes, where the compiled library cannot be sent. */
+  postWithBytes(message, transfer) {
+    const send = (library) => this.worker.postMessage({ ...message, description: { ...message.description, library } }, transfer);
+    libraryBytes().then(send).catch((error) => this.receive({ id: message.id, error }));
   }
 
   /** Keeps a program of Node.js running while a result is waited for. */
   hold() {
     const how = this.waiting.size > 0 ? "ref" : "unref";
-    this.worker?.[how]?.();
+    this.worker[how]?.();
     this.timer[how]?.();
   }
 
@@ -83,7 +82,7 @@ export class GuardedWorker {
     const { resolve, reject, isOnce } = this.waiting.get(id) ?? {};
     if (isOnce) this.waiting.delete(id);
     this.hold();
-    if (error) reject?.(new HtexError(error.message, error.code));
+    if (error) reject?.(new HtexError(error.message, error.code ?? "internal"));
     else resolve?.(result);
   }
 
@@ -110,15 +109,20 @@ export class GuardedWorker {
     return done;
   }
 
-  /** Plays a voice through a port; `failed` is called with an error, at any later time too. */
+  /** Plays a voice through a port; `failed` is called with an error, at any later time too, until `forget` is called. */
   play(description, port, failed) {
-    return this.request({ description, port }, [port], failed);
+    const ready = this.request({ description, port }, [port], failed);
+    const id = this.last;
+    return { ready, forget: () => void this.waiting.delete(id) };
   }
 
   /** Renders the first samples of a new voice. */
   async render(texture, frames, options = {}) {
-    const description = describe(texture, options, options.rate);
-    return (await this.request({ description, frames })).samples;
+    const call = "worker.render";
+    checkTexture(texture, call);
+    checked(options, VOICE, call);
+    if (!Number.isInteger(frames) || frames < 0) throw new HtexError(`${call}: ${frames} frames; give a whole number`, "invalid-argument");
+    return (await this.request({ description: describe(texture, options), frames })).samples;
   }
 
   /** Ends the worker; what it was asked for fails with the error. */
@@ -126,8 +130,14 @@ export class GuardedWorker {
     if (this.ended) return;
     this.ended = error;
     clearInterval(this.timer);
-    this.worker?.terminate();
+    this.worker.terminate();
     for (const { reject } of this.waiting.values()) reject(error);
     this.waiting.clear();
   }
+}
+
+if (Symbol.dispose) {
+  GuardedWorker.prototype[Symbol.dispose] = function () {
+    this.end();
+  };
 }

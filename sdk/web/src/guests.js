@@ -6,7 +6,8 @@ const I64 = 1;
 const F64 = 2;
 
 export class Guests {
-  constructor() {
+  constructor({ runsModules = true } = {}) {
+    this.runsModules = runsModules;
     /** The core's memory; set once the core is instantiated. */
     this.memory = null;
     this.modules = new Map();
@@ -53,6 +54,7 @@ export class Guests {
   }
 
   compile(bytes) {
+    if (!this.runsModules) throw new Error("this thread runs no modules of models");
     const module = new WebAssembly.Module(bytes);
     const [first] = WebAssembly.Module.imports(module);
     if (first) throw new Error(`the module imports \`${first.module}.${first.name}\`; a model may import nothing`);

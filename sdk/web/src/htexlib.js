@@ -1,7 +1,8 @@
 // Libraries: files with thousands of textures, of which ranges are fetched. The library in WASM says which.
 
-import { HtexError, toBytes } from "./core.js";
-import { library, open } from "./library.js";
+import { HtexError } from "./core.js";
+import { addressOf, bytesOf, isBlob, library, open } from "./library.js";
+import { checked } from "./options.js";
 import { Handle } from "./texture.js";
 
 /** Pages of the index that are kept, at most 40 KiB each. */
@@ -72,12 +73,30 @@ class Local {
   }
 }
 
+/** A File or a Blob, of which ranges are read. */
+class Chosen {
+  constructor(blob) {
+    this.blob = blob;
+    this.size = blob.size;
+  }
+
+  async read(start, end) {
+    return new Uint8Array(await this.blob.slice(start, end).arrayBuffer());
+  }
+}
+
+/** The file of a source. */
+async function fileOf(source, fetcher) {
+  if (typeof source === "string" || source instanceof URL) return new Remote(addressOf(source, "Library.open"), fetcher);
+  return isBlob(source) ? new Chosen(source) : new Local(await bytesOf(source, "Library.open"));
+}
+
 /** An opened library. */
 export class Library extends Handle {
-  /** Opens a library: its address, or its bytes. */
-  static async open(source, { fetch: fetcher = globalThis.fetch.bind(globalThis) } = {}) {
-    const isAddress = typeof source === "string" || source instanceof URL;
-    const file = isAddress ? new Remote(new URL(source, globalThis.location?.href), fetcher) : new Local(toBytes(source));
+  /** Opens a library: its address, a File or a Blob, or its bytes. */
+  static async open(source, options = {}) {
+    const { fetch: fetcher = globalThis.fetch.bind(globalThis) } = checked(options, { fetch: "function" }, "Library.open");
+    const file = await fileOf(source, fetcher);
     const opened = new Library(await library(), file);
     try {
       await opened.start();
@@ -148,6 +167,16 @@ export class Library extends Handle {
       const bytes = await this.page(number);
       this.read(number, bytes);
       yield* JSON.parse(this.core.text("htex_index_entries_json", this.id));
+    }
+  }
+
+  /** The entries that have all that is asked for: `words` in the name or a tag, `tags`, a `speed`, a `force`, a `model`. */
+  async *find(query) {
+    const text = JSON.stringify(query);
+    for (let number = 0; number < this.pageCount; number++) {
+      const bytes = await this.page(number);
+      this.read(number, bytes);
+      yield* this.core.scope((take) => JSON.parse(this.core.text("htex_index_find_json", this.id, this.core.putText(take, text))));
     }
   }
 

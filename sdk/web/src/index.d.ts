@@ -1,15 +1,31 @@
 /** Textures of touch in the browser and in Node.js. */
 
+/// <reference lib="esnext.disposable" />
+
 export * from "./author.js";
+
+import type { Contact, Law, Manifest, Quantity } from "./manifest.js";
+import { NodeBase } from "./web.js";
+import type { AudioContextLike, AudioParamLike, ElementLike, EventLike, Fetch } from "./web.js";
+
+export type { Contact, Exponent, Law, Manifest, ManifestCondition, Quantity, Representation } from "./manifest.js";
 
 /** Bytes. */
 export type Bytes = ArrayBuffer | ArrayBufferView;
+
+/** An address: a text or a URL. */
+export type Address = string | { readonly href: string };
+
+/** A File, a Blob or a Response. */
+export interface Readable {
+  arrayBuffer(): Promise<ArrayBuffer>;
+}
 
 /** An error of the library. */
 export class HtexError extends Error {
   readonly name: "HtexError";
   /** The kind of error: "invalid-argument", "invalid-asset", "no-representation", "no-model", "model", "invalid-motion", "bad-handle",
-   * "unsupported", "internal", "invalid-library", "absent", "io" and others. */
+   * "unsupported", "internal", "invalid-library", "absent", "io", "untrusted" and others. */
   readonly code: string;
 }
 
@@ -31,6 +47,9 @@ export interface OpenOptions {
   modules?: Bytes[];
   /** Whether models that the asset brings along may run, in a sandbox. Default true. */
   embedded?: boolean;
+  /** Whether modules may run in the thread that calls and in the audio thread, where nothing ends a call that does not return. Default
+   * false: they play in a worker, by `HtexNode` and `GuardedWorker`. */
+  trusted?: boolean;
 }
 
 export interface VoiceOptions {
@@ -84,10 +103,16 @@ export interface At {
 export class Texture {
   private constructor();
   /** The manifest: name, conditions, representations, qualities and all else that the asset states. */
-  readonly manifest: Record<string, unknown> & { name: string };
+  readonly manifest: Manifest;
   readonly name: string;
+  /** Physical quantity of the samples, such as "lateral_force". */
+  readonly quantity: Quantity;
   /** Unit of the samples, such as "N". */
   readonly unit: string;
+  /** What slid over the surface. */
+  readonly contact: Contact;
+  /** How frequencies and level follow a motion outside the recorded ones: stated, or assumed for the quantity and the contact. */
+  readonly law: Law;
   /** Lowest and highest frequency of the spectra, Hz. */
   readonly band: [number, number];
   /** The recorded conditions; NaN where a speed or force is not known. */
@@ -98,12 +123,46 @@ export class Texture {
   readonly hasModules: boolean;
   /** Magnitudes of the texture spectrum at frequencies in Hz, in the unit. */
   spectrum(frequencies: ArrayLike<number>, options?: At): Float64Array;
+  /** Magnitudes at a recorded condition, as a recording of the voice reads them; "unsupported" for sums of sinusoids. */
+  readSpectrum(options?: { model?: string; condition?: number }): { frequencies: Float64Array; magnitudes: Float64Array };
   /** Level of a representation, RMS in the unit. */
   level(options?: At): number;
-  /** Makes a voice. */
+  /** Parameters of a representation at a motion, by their names. */
+  parameters(options?: At): Record<string, number | number[]>;
+  /** Makes a voice, which runs in this thread: of a module only if the texture was opened as `trusted`. */
   voice(options?: VoiceOptions): Voice;
+  /** The bytes of the file. */
+  toBytes(): Uint8Array<ArrayBuffer>;
   /** Frees the memory of the texture; its voices play on. */
   free(): void;
+  [Symbol.dispose](): void;
+}
+
+/** The relation of a speed or force to the recorded ones. */
+export interface Reach {
+  /** "followed": the model follows it by itself. Outside, the texture follows its law from the nearest recorded value. */
+  kind: "inside" | "unknown" | "followed" | "outside";
+  /** The value that was asked for, and the nearest recorded one; of "outside". */
+  asked?: number;
+  recorded?: number;
+}
+
+/** The relation of a motion to the recorded conditions, and how a voice plays it. */
+export interface Coverage {
+  /** "silent": the finger does not slide. "inside": as recorded, or interpolated. */
+  kind: "silent" | "inside" | "followed" | "outside";
+  /** One sentence in English; empty if nothing differs from the recording. */
+  text: string;
+  inside: boolean;
+  slides: boolean;
+  /** Relative distance of the motion from the one that is played. */
+  excess: number;
+  /** Factor of all frequencies, and of the level. */
+  frequencyFactor: number;
+  levelFactor: number;
+  /** Speed, mm/s, and normal force, N. */
+  speed: Reach;
+  force: Reach;
 }
 
 /** A playing texture. */
@@ -136,14 +195,17 @@ export class Voice {
   envelope(bands?: Float64Array): Envelope;
   /** Edges of the bands, Hz: one more than bands, in equal ratios. The first band reaches down to 0 Hz, and the last up to half the rate. */
   readonly envelopeEdges: Float64Array;
-  /** How the voice plays a motion, and whether that is within the recorded conditions, as English text. */
-  coverage(motion: Motion): string;
+  /** How the voice plays a motion, or the one that is set, and whether that is within the recorded conditions. */
+  coverage(motion?: Motion): Coverage;
+  /** Magnitudes that a recording of the voice reads at the motion that is set, at frequencies in Hz, in the unit; its gain included. */
+  spectrum(frequencies: ArrayLike<number>): Float64Array;
   /** Frees the memory of the voice. */
   free(): void;
+  [Symbol.dispose](): void;
 }
 
-/** Opens a texture: its bytes, or its address. */
-export function open(source: Bytes | string | URL, options?: OpenOptions): Promise<Texture>;
+/** Opens a texture: its bytes, a File, a Blob or a Response, or its address. */
+export function open(source: Bytes | Readable | Address, options?: OpenOptions): Promise<Texture>;
 
 /** The least and the greatest of some numbers. */
 export interface Interval {
@@ -161,7 +223,7 @@ export interface LibraryEntry {
   /** What slid over the surface. */
   contact: "finger" | "tool" | "unknown";
   /** Exponents of the law by which frequencies and level follow a motion outside the recorded ones. */
-  law: Record<"frequency_speed" | "level_speed" | "level_force", { exponent: number; source: "measured" | "given" | "assumed" }>;
+  law: Law;
   /** Ids of the models of the representations. */
   models: string[];
   /** Bytes of the texture. */
@@ -170,17 +232,33 @@ export interface LibraryEntry {
   blake3: string;
 }
 
+/** What a texture must have to be found; what is absent is not asked for. */
+export interface LibraryQuery {
+  /** Parts of the name or of a tag, without case; all of them. */
+  words?: string[];
+  /** Tags, without case; all of them. */
+  tags?: string[];
+  /** A speed, mm/s, and a force, N, among the recorded ones. */
+  speed?: number;
+  force?: number;
+  /** A model, by its id or short name. */
+  model?: string;
+}
+
 /** A library: one `.htexlib` file with thousands of textures, of which ranges are fetched. */
 export class Library {
   private constructor();
-  /** Opens a library: its address, or its bytes. `fetch` is called for ranges, for example to add headers. */
-  static open(source: Bytes | string | URL, options?: { fetch?: typeof fetch }): Promise<Library>;
+  /** Opens a library: its address, a File or a Blob, of which ranges are read, or its bytes. `fetch` is called for ranges, for example to add
+   * headers. */
+  static open(source: Bytes | Readable | Address, options?: { fetch?: Fetch }): Promise<Library>;
   /** Name of the library; may be empty. */
   readonly name: string;
   /** Number of textures. */
   readonly count: number;
   /** The entries of all textures, in ascending order of their names. Reads the index, page by page. */
   entries(): AsyncGenerator<LibraryEntry>;
+  /** The entries that have all that is asked for. Reads the index, page by page. */
+  find(query: LibraryQuery): AsyncGenerator<LibraryEntry>;
   /** The entry of a texture; undefined if there is none of this name. */
   entry(name: string): Promise<LibraryEntry | undefined>;
   /** The bytes of a texture's `.htex` file; an HtexError of the kind "absent" if there is none of this name. */
@@ -189,45 +267,64 @@ export class Library {
   texture(name: string, options?: OpenOptions): Promise<Texture>;
   /** Frees the memory of the library; its textures stay open. */
   free(): void;
+  [Symbol.dispose](): void;
 }
 
-/** Sets the library: the address of `htex.wasm`, its bytes, or the compiled module. Before the first `open`. */
-export function setLibrary(library: string | URL | Bytes | WebAssembly.Module): void;
+/** Sets the library: the address of `htex.wasm`, its bytes, or the compiled module (a `WebAssembly.Module`); and the addresses of
+ * `processor.js` and `worker.js`, for pages whose files are elsewhere. Before the first `open`. */
+export function setLibrary(library: Address | Bytes | object | undefined, addresses?: { processor?: Address; worker?: Address }): void;
 
-/** Prepares an audio context for nodes; must have returned before `new HtexNode`. */
-export function prepare(context: BaseAudioContext): Promise<void>;
+/** Prepares an audio context for nodes; must have returned before `new HtexNode`. Needs https or localhost. */
+export function prepare(context: AudioContextLike): Promise<void>;
 
-export interface NodeOptions extends Omit<VoiceOptions, "rate" | "gain" | "bands"> {
-  /** Factor from the texture's unit to full scale. Default: an RMS of 0.1, -20 dB, at the first condition. */
-  gain?: number;
-  /** Whether models of modules may run in the audio thread, where a call that does not return stops all sound. Default: only for textures
-   * without modules; others play in a worker, 32 ms later. */
+export interface LoadOptions extends Omit<VoiceOptions, "rate"> {
+  /** Whether models of modules may run in the audio thread, where a call that does not return stops all sound. Default: only those of
+   * textures that were opened as trusted; others play in a worker, 32 ms later. */
   trusted?: boolean;
+  /** Factor from the texture's unit to full scale. Default: an RMS of 0.1, -20 dB, at the first condition; of `load` the present ratio to
+   * that. */
+  gain?: number;
+  /** Number of bands of the envelopes that `onenvelope` is told, 1 to 32. Default 0: none. */
+  bands?: number;
+}
+
+export interface NodeOptions extends LoadOptions {
+  /** The motion of the start. Default: at rest, silent until `speed` and `force` are set. */
+  motion?: Motion;
   /** A worker that several nodes share. */
   worker?: GuardedWorker;
   /** Longest call of a module in the worker, ms. Default 2000. */
   limit?: number;
 }
 
-/** Plays a texture. Has an event `error`, whose property of that name is an HtexError. */
-export class HtexNode extends AudioWorkletNode {
-  constructor(context: BaseAudioContext, texture: Texture, options?: NodeOptions);
+/** Plays a texture, with a fade at its start and its end. Has an event `error`, whose property of that name is an HtexError. */
+export class HtexNode extends NodeBase {
+  constructor(context: AudioContextLike, texture: Texture, options?: NodeOptions);
   /** Scanning speed, mm/s. */
-  readonly speed: AudioParam;
+  readonly speed: AudioParamLike;
   /** Normal force, N. */
-  readonly force: AudioParam;
+  readonly force: AudioParamLike;
   /** Factor from the texture's unit to full scale. */
-  readonly gain: AudioParam;
+  readonly gain: AudioParamLike;
   /** Position along the path, mm, for models that follow it. */
   set position(position: number);
+  /** Fades to another texture within 15 ms; resolves when that has begun. Of several calls at a time the last one counts. */
+  load(texture: Texture, options?: LoadOptions): Promise<void>;
   /** Resolves when the voice is made. */
   readonly ready: Promise<void>;
+  /** Is called with the error after which the node is silent; the worklet's own errors, too. */
+  onerror: ((event: EventLike & { readonly error: HtexError }) => void) | null;
+  /** Is called every 20 ms or so with what was played, in the texture's unit and before the gain, if the node has bands. */
+  onenvelope: ((envelope: Envelope) => void) | null;
+  /** Edges of the bands, Hz: one more than bands. */
+  readonly envelopeEdges: Float64Array;
   /** The error after which the node is silent. */
   readonly error?: HtexError;
   /** Frames that a worker did not deliver in time. */
   readonly missed: number;
-  /** Ends the voice; the node cannot be used again. */
+  /** Fades out within 10 ms, and frees the voice; the node cannot be used again. */
   stop(): void;
+  [Symbol.dispose](): void;
 }
 
 /** A worker that renders voices of models that are not trusted, and is ended when a call takes too long. In Node.js it is a thread, and
@@ -239,17 +336,25 @@ export class GuardedWorker {
   render(texture: Texture, frames: number, options?: VoiceOptions): Promise<Float32Array>;
   /** Ends the worker. */
   end(): void;
+  [Symbol.dispose](): void;
 }
 
 export interface PointerOptions {
   /** Millimetres of a CSS pixel. Default 25.4 / 96. */
   mmPerPixel?: number;
-  /** Force in N of a pressure of 0 to 1. Default 0.8 times the pressure; a mouse has 0.5. */
+  /** Force in N of a pressure of 0 to 1 that a device measures. Default 0.8 times the pressure. */
   force?: (pressure: number) => number;
+  /** Force in N of a mouse, and of a device that tells no other pressure than 0, 0.5 and 1. Default 0.4. */
+  defaultForce?: number;
 }
 
-/** Calls `moved` with the motion of a pointer over an element. Returns a function that ends this. */
-export function followPointer(element: HTMLElement, moved: (motion: Required<Motion>) => void, options?: PointerOptions): () => void;
+/** Calls `moved` with the motion of a pointer over an element: one pointer at a time, of a mouse with the primary button. The element has
+ * `touch-action: none` meanwhile. Returns a function that ends this. */
+export function followPointer(
+  element: ElementLike,
+  moved: (motion: { speed: number; force: number; position: number }) => void,
+  options?: PointerOptions,
+): () => void;
 
-/** Lets a node follow a pointer over an element. Returns a function that ends this. */
-export function follow(element: HTMLElement, node: HtexNode, options?: PointerOptions): () => void;
+/** Lets a node follow a pointer over an element, and resumes its context on the first press. Returns a function that ends this. */
+export function follow(element: ElementLike, node: HtexNode, options?: PointerOptions): () => void;

@@ -1,62 +1,139 @@
 // The library: fetched and compiled once.
 
-import { Core, toBytes } from "./core.js";
+import { Core, HtexError, toBytes } from "./core.js";
+import { host } from "./host.js";
+import { OPEN, checked } from "./options.js";
 import { Texture } from "./texture.js";
 
-let module;
-let core;
-
-/** Where the library is, unless `setLibrary` says otherwise. */
+/** Where the library is; `setLibrary` says otherwise. */
 let source = () => new URL("./htex.wasm", import.meta.url);
+/** Where the files of the worklet and of the worker are, if not beside this one. */
+export const files = { processor: undefined, worker: undefined };
 
-/** Sets the library: its address, its bytes, or a WebAssembly.Module. Before the first `open`. */
-export function setLibrary(library) {
-  [source, module, core] = [() => library, undefined, undefined];
+let module;
+/** The library in this thread, one that runs modules of models and one that runs none. */
+let cores = {};
+
+/** Sets the library: its address, its bytes, or a WebAssembly.Module; and the addresses of `processor.js` and `worker.js`. */
+export function setLibrary(library, addresses = {}) {
+  checked(addresses, { processor: "any", worker: "any" }, "setLibrary");
+  if (library !== undefined) source = () => library;
+  Object.assign(files, addresses);
+  [module, cores] = [undefined, {}];
 }
 
-/** Compiles a module: its address, its bytes, or one that is compiled. */
-export async function compiledFrom(library) {
-  if (library instanceof WebAssembly.Module) return library;
-  if (library instanceof ArrayBuffer || ArrayBuffer.isView(library)) return WebAssembly.compile(toBytes(library));
-  const url = new URL(/* @vite-ignore */ library, import.meta.url);
-  if (url.protocol === "file:") {
-    const { readFile } = await import(/* @vite-ignore */ "node:fs/promises");
-    return WebAssembly.compile(await readFile(url));
+/** Downloads a file; `what` it is stands in errors. */
+async function download(url, what) {
+  let response;
+  try {
+    response = await fetch(url);
+  } catch (error) {
+    throw new HtexError(`${what} ${url} cannot be downloaded (${error.message}); check the address and the connection, and call again`, "io");
   }
-  const response = await fetch(url);
-  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
-  return WebAssembly.compile(await response.arrayBuffer());
+  return received(response, `${what} ${url}`);
 }
 
-/** The compiled library. */
+/** A response that has a body to be read. */
+function received(response, what) {
+  if (!response.ok) {
+    const advice = response.status >= 500 ? "call again later" : "check the address";
+    throw new HtexError(`${what}: the server answered ${response.status} ${response.statusText}; ${advice}`, "io");
+  }
+  if (response.bodyUsed) throw new HtexError(`${what}: the body of this Response was read already; give its bytes`, "invalid-argument");
+  return response;
+}
+
+function isBytes(data) {
+  return data instanceof ArrayBuffer || ArrayBuffer.isView(data);
+}
+
+const isAddress = (source) => typeof source === "string" || source instanceof URL;
+
+/** The library's bytes, for threads that cannot be given a module. */
+export function libraryBytes() {
+  return moduleBytes(source(), "the library");
+}
+
+async function moduleBytes(library, what) {
+  if (isBytes(library)) return toBytes(library);
+  if (library instanceof WebAssembly.Module) {
+    throw new HtexError("this browser gives no WebAssembly.Module to other threads; give setLibrary the address or the bytes of htex.wasm", "unsupported");
+  }
+  const url = new URL(/* @vite-ignore */ library, import.meta.url);
+  if (url.protocol === "file:" && host.readFile) return host.readFile(url);
+  return new Uint8Array(await (await download(url, what)).arrayBuffer());
+}
+
+/** Compiles a module, its address, its bytes or one that is compiled: while it arrives if the server tells its type. `what` stands in errors. */
+export async function compiledFrom(library, what) {
+  if (library instanceof WebAssembly.Module) return library;
+  const url = isBytes(library) ? null : new URL(/* @vite-ignore */ library, import.meta.url);
+  if (url && url.protocol !== "file:" && WebAssembly.compileStreaming) {
+    const response = await download(url, what);
+    const isTyped = /^application\/wasm\b/.test(response.headers.get("content-type") ?? "");
+    return isTyped ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());
+  }
+  return WebAssembly.compile(await moduleBytes(library, what));
+}
+
+/** The compiled library. After a failure the next call tries again. */
 export function compiled() {
-  module ??= compiledFrom(source());
+  module ??= compiledFrom(source(), "the library").catch((error) => {
+    module = undefined;
+    throw error;
+  });
   return module;
 }
 
-/** The library in this thread. */
-export function library() {
-  core ??= compiled().then(async (compiledModule) => Object.assign(await Core.make(compiledModule), { module: compiledModule }));
-  return core;
+/** The library in this thread; modules of models run in it only if it is `trusted` with them. */
+export function library({ trusted = false } = {}) {
+  cores[trusted] ??= compiled()
+    .then(async (compiledModule) => Object.assign(await Core.make(compiledModule, { runsModules: trusted }), { module: compiledModule }))
+    .catch((error) => {
+      delete cores[trusted];
+      throw error;
+    });
+  return cores[trusted];
 }
 
-/** Opens a texture: its bytes, or its address. */
+/** A texture of its bytes, in a library that is there. */
+export function opened(core, bytes, { modules = [], embedded = true, trusted = false } = {}) {
+  const options = { modules: modules.map((module) => toBytes(module).slice()), embedded, trusted };
+  return Object.assign(new Texture(core, bytes, options), { bytes });
+}
+
+/** Opens a texture: its bytes, a File, a Blob or a Response, or its address. */
 export async function open(source, options = {}) {
-  const data = typeof source === "string" || source instanceof URL ? await download(source) : source;
-  return opened(await library(), toBytes(data).slice(), options);
+  checked(options, OPEN, "open");
+  // Both are fetched at the same time. Of two failures the first is told.
+  const [core, bytes] = await Promise.all([library(options), bytesOf(source, "open")]);
+  return opened(core, bytes, options);
 }
 
-/** Opens the bytes of a texture, at once. */
-export function opened(player, bytes, options = {}) {
-  const texture = new Texture(player, bytes, options);
-  const { modules = [], embedded = true } = options;
-  const hasModules = modules.length > 0 || (embedded && (texture.manifest.plugins ?? []).length > 0);
-  return Object.assign(texture, { bytes, options: { modules: modules.map((m) => toBytes(m).slice()), embedded }, hasModules });
+/** A copy of the bytes that a caller gives, in one of the ways of `open`. */
+export async function bytesOf(source, call) {
+  if (isAddress(source)) return new Uint8Array(await (await download(addressOf(source, call), "the texture")).arrayBuffer());
+  if (isBytes(source)) return toBytes(source).slice();
+  if (typeof Response !== "undefined" && source instanceof Response) {
+    return new Uint8Array(await received(source, `${call}: ${source.url || "the response"}`).arrayBuffer());
+  }
+  if (isBlob(source)) return new Uint8Array(await source.arrayBuffer());
+  const given = source === null ? "null" : (source?.constructor?.name ?? typeof source);
+  const awaited = source instanceof Promise ? "; `await` it first" : "";
+  const text = `${call} takes an ArrayBuffer, a typed array, a File, a Blob, a Response or an address, not ${given}${awaited}`;
+  throw new HtexError(text, "invalid-argument");
 }
 
-async function download(source) {
-  const url = new URL(source, globalThis.location?.href);
-  const response = await fetch(url);
-  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
-  return response.arrayBuffer();
+export function isBlob(source) {
+  return typeof Blob !== "undefined" && source instanceof Blob;
+}
+
+/** The address that a caller gives; programs have none that others are relative to. */
+export function addressOf(source, call) {
+  const base = globalThis.location?.href;
+  const url = URL.canParse(source, base) ? new URL(source, base) : null;
+  const isFile = url?.protocol === "file:" && host.readFile;
+  if (url && !isFile) return url;
+  const advice = host.readFile || !base ? `\`${call}(await readFile(${JSON.stringify(String(source))}))\`, with readFile of node:fs/promises` : "an address";
+  throw new HtexError(`${call}: ${JSON.stringify(String(source))} is no address of a web server, and no file is read; give ${advice}`, "invalid-argument");
 }

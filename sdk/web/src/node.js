@@ -1,34 +1,84 @@
 // A texture as a node of the Web Audio API.
 
-import { compiled } from "./library.js";
-import { GuardedWorker, describe } from "./guarded.js";
 import { HtexError } from "./core.js";
+import { GuardedWorker, checkTexture, describe } from "./guarded.js";
+import { compiled, files, libraryBytes } from "./library.js";
+import { VOICE, checked } from "./options.js";
 
 /** RMS of full scale that a node plays at by default: -20 dB. */
 const LEVEL = 0.1;
+/** Milliseconds after which a node that was stopped is taken to be silent, if its context renders no more. */
+const SILENT_MS = 200;
 
-/** The gain at which a texture plays at that level. */
+const { rate: _, gain, ...VOICE_OF_NODE } = VOICE;
+const LOAD = { ...VOICE_OF_NODE, gain, trusted: "boolean" };
+const NODE = { ...LOAD, worker: "object", limit: "number" };
+
+/** The gain at which a texture plays at that level: by what the file states, since no model runs here. */
 function usualGain(texture, model) {
-  const level = texture.level({ model });
+  const chosen = texture.chosenModel(model);
+  const level = texture.manifest.representations.find((representation) => representation.model === chosen).at[0].level_rms;
   return level > 0 ? LEVEL / level : 0;
 }
 
-/** Loads the worklet; once for each context. */
-const loaded = new WeakMap();
+/** Loading the worklet, for each context, and how often that failed. */
+const loading = new WeakMap();
+const failures = new WeakMap();
+const prepared = new WeakSet();
 
 /** Prepares a context for nodes; must have returned before `new HtexNode`. */
-export function prepare(context) {
-  let promise = loaded.get(context);
-  if (!promise) {
-    promise = Promise.all([context.audioWorklet.addModule(new URL("./processor.js", import.meta.url)), compiled()]);
-    loaded.set(context, promise);
+export async function prepare(context) {
+  checkContext(context, "prepare");
+  if (!loading.has(context)) loading.set(context, load(context));
+  try {
+    await loading.get(context);
+    prepared.add(context);
+  } catch (error) {
+    loading.delete(context);
+    throw error;
   }
-  return promise.then(() => undefined);
+}
+
+async function load(context) {
+  const url = new URL(files.processor ?? new URL("./processor.js", import.meta.url), import.meta.url);
+  const failed = failures.get(context) ?? 0;
+  // A worklet remembers an address that failed.
+  if (failed > 0 && url.protocol !== "data:") url.searchParams.set("retry", failed);
+  const added = context.audioWorklet.addModule(url).catch((error) => {
+    failures.set(context, failed + 1);
+    throw new HtexError(`the worklet ${url} cannot be loaded (${error.message}); check that it is there, and call prepare again`, "io");
+  });
+  await Promise.all([added, compiled()]);
+}
+
+function checkContext(context, call) {
+  if (typeof globalThis.BaseAudioContext === "undefined") throw absent();
+  if (!(context instanceof BaseAudioContext)) throw new HtexError(`${call} takes an AudioContext, such as new AudioContext()`, "invalid-argument");
+  if (context.audioWorklet) return;
+  const where = globalThis.isSecureContext === false ? `this page came from ${globalThis.location?.origin}` : "this browser has none";
+  throw new HtexError(`audio worklets need https or localhost; ${where}: serve the page by https, or open it from http://localhost`, "unsupported");
+}
+
+function absent() {
+  return new HtexError("there is no Web Audio API here; render with `texture.voice()`", "unsupported");
+}
+
+function checkNode(context, texture, options) {
+  if (options.rate !== undefined) throw new HtexError("new HtexNode: the rate is that of the context; leave `rate` out", "invalid-argument");
+  checked(options, NODE, "HtexNode");
+  checkContext(context, "new HtexNode");
+  if (!prepared.has(context)) throw new HtexError("new HtexNode: call `await prepare(context)` first, once for each context", "invalid-argument");
+  checkTexture(texture, "new HtexNode");
+}
+
+/** What makes the voice of a node; without a motion it begins at rest. */
+function describeFor(context, texture, { gain, trusted, worker, limit, ...voice }) {
+  return describe(texture, { ...voice, rate: context.sampleRate }, !voice.motion);
 }
 
 const Base = globalThis.AudioWorkletNode ?? class {
   constructor() {
-    throw new HtexError("there is no Web Audio API here; render with `texture.voice()`", "unsupported");
+    throw absent();
   }
 };
 
@@ -36,27 +86,35 @@ const Base = globalThis.AudioWorkletNode ?? class {
  * ended when a call takes too long; the node then falls silent and has an `error` event. */
 export class HtexNode extends Base {
   constructor(context, texture, options = {}) {
-    const { trusted = !texture.hasModules, worker } = options;
-    const description = describe(texture, options, context.sampleRate);
-    super(context, "htex", {
+    checkNode(context, texture, options);
+    const { trusted = texture.options.trusted || !texture.hasModules, worker, limit } = options;
+    const gain = options.gain ?? usualGain(texture, options.model);
+    const voice = { id: 0, description: describeFor(context, texture, options), gain };
+    const shape = (load) => ({
       numberOfInputs: 0,
       numberOfOutputs: 1,
       outputChannelCount: [1],
-      processorOptions: trusted ? { voice: description } : {},
-      parameterData: { speed: 0, force: 0, gain: options.gain ?? usualGain(texture, options.model) },
+      processorOptions: { gain, load },
+      parameterData: { speed: 0, force: 0, gain },
     });
-    this.missed = 0;
-    this.port.onmessage = ({ data }) => this.receive(data);
-    /** Resolves when the voice is made. */
-    this.ready = Promise.resolve();
-    if (!trusted) {
-      this.worker = worker ?? new GuardedWorker(options);
-      this.ownWorker = !worker;
-      const { port1, port2 } = new MessageChannel();
-      this.port.postMessage({ samples: port1 }, [port1]);
-      this.ready = this.worker.play(description, port2, (error) => this.failed(error)).then(() => undefined);
-      this.ready.catch(() => {});
+    let isSent = trusted;
+    try {
+      super(context, "htex", shape(trusted ? voice : null));
+    } catch (error) {
+      // Browsers that give no compiled library to a worklet get its bytes below.
+      if (error.name !== "DataCloneError") throw error;
+      super(context, "htex", shape(null));
+      isSent = false;
     }
+    Object.assign(this, { missed: 0, onerror: null, onenvelope: null, limit, sharedWorker: worker, loads: new Map(), lastLoad: 0 });
+    /** The options that a later `load` takes over, the gain of the texture's usual level, and the voice in a worker. */
+    Object.assign(this, { bands: options.bands, usual: usualGain(texture, options.model), playing: null, texture });
+    this.port.onmessage = ({ data }) => this.receive(data);
+    this.onprocessorerror = (event) => this.workletFailed(event);
+    /** Resolves when the voice is made. */
+    this.ready = isSent ? Promise.resolve() : this.send(voice, { trusted });
+    this.sent = voice;
+    this.ready.catch(() => {});
   }
 
   get speed() {
@@ -76,20 +134,145 @@ export class HtexNode extends Base {
     this.port.postMessage({ position });
   }
 
-  receive({ error, missed }) {
+  /** Edges of the bands of the envelopes, Hz. */
+  get envelopeEdges() {
+    const [low, high] = this.texture.band;
+    return this.bands > 0 ? Float64Array.from({ length: this.bands + 1 }, (_, k) => low * (high / low) ** (k / this.bands)) : new Float64Array(0);
+  }
+
+  /** Fades to another texture. Of several calls at a time the last one counts. The gain keeps its ratio to the usual one. */
+  async load(texture, options = {}) {
+    checked(options, LOAD, "node.load");
+    checkTexture(texture, "node.load");
+    if (this.isStopped) throw new HtexError("node.load: the node was stopped; make a new one", "invalid-argument");
+    // Throws if there is no such representation.
+    this.wanted = { texture, options, usual: usualGain(texture, options.model) };
+    this.changing ??= this.change().finally(() => (this.changing = null));
+    return this.changing;
+  }
+
+  /** Loads the texture that is wanted, and what is wanted meanwhile. */
+  async change() {
+    while (this.wanted) {
+      const { texture, options, usual } = this.wanted;
+      this.wanted = null;
+      const before = this.gain.value;
+      const gain = options.gain ?? (this.usual > 0 ? (usual * before) / this.usual : usual);
+      const bands = options.bands ?? this.bands;
+      const { trusted = texture.options.trusted || !texture.hasModules } = options;
+      const id = (this.lastLoad += 1);
+      await this.send({ id, description: describeFor(this.context, texture, { ...options, bands }), gain }, { trusted });
+      Object.assign(this, { texture, bands, usual });
+      // Until now the old texture played with the old gain; a gain that was set meanwhile stays.
+      if (this.gain.value === before) this.gain.value = gain;
+    }
+  }
+
+  /** Has a voice made and faded to; the promise is of its start. */
+  async send(voice, { trusted }) {
+    const { id, description, gain } = voice;
+    const started = new Promise((resolve, reject) => this.loads.set(id, { resolve, reject }));
+    let playing = null;
+    if (trusted) this.post(voice);
+    else {
+      const { port1, port2 } = new MessageChannel();
+      this.port.postMessage({ load: { id, samples: port1, gain } }, [port1]);
+      playing = this.guarded().play(description, port2, (error) => this.workerFailed(id, error));
+      playing.ready.catch(() => {});
+    }
+    try {
+      await started;
+    } finally {
+      this.loads.delete(id);
+    }
+    this.playing?.forget();
+    this.playing = playing;
+  }
+
+  /** Posts a voice to the worklet, with the library's bytes where the compiled one cannot be sent. */
+  post(voice) {
+    this.sent = voice;
+    try {
+      this.port.postMessage({ load: voice });
+    } catch (error) {
+      if (error.name !== "DataCloneError") throw error;
+      this.postWithBytes(voice);
+    }
+  }
+
+  postWithBytes(voice) {
+    const send = (library) => this.port.postMessage({ load: { ...voice, description: { ...voice.description, library } } });
+    libraryBytes().then(send).catch((error) => this.receive({ id: voice.id, error }));
+  }
+
+  /** The worker of this node, or the one that it shares. */
+  guarded() {
+    if (this.worker && !this.worker.ended) return this.worker;
+    this.worker = this.sharedWorker ?? new GuardedWorker({ limit: this.limit });
+    return this.worker;
+  }
+
+  receive({ id, started, unusable, error, missed, envelope, ended }) {
     if (missed) this.missed += missed;
-    if (error) this.failed(new HtexError(error.message, error.code));
+    if (envelope) this.onenvelope?.(envelope);
+    if (started) this.loads.get(id)?.resolve();
+    if (unusable) this.postWithBytes(this.sent);
+    if (ended) this.end();
+    if (!error) return;
+    const failure = new HtexError(error.message, error.code ?? "internal");
+    const load = this.loads.get(id);
+    if (load) load.reject(failure);
+    // Of a load that fails its promise tells; the texture before plays on.
+    if (!load || id === 0) this.failed(failure);
+  }
+
+  workerFailed(id, error) {
+    this.loads.get(id)?.reject(error);
+    if (id > 0 && this.loads.has(id)) return;
+    this.port.postMessage({ alone: true });
+    this.failed(error);
+  }
+
+  /** Chromium gives its event the type `error`, that of the events of this node. */
+  workletFailed(event) {
+    if (event.error instanceof HtexError) return;
+    event.stopImmediatePropagation();
+    this.failed(new HtexError(`the audio worklet failed: ${event.message ?? "it stopped"}`, "internal"));
   }
 
   failed(error) {
+    if (this.isStopped) return;
     this.error = error;
-    this.dispatchEvent(Object.assign(new Event("error"), { error }));
+    const event = Object.assign(new Event("error"), { error });
+    this.onerror?.(event);
+    this.dispatchEvent(event);
   }
 
-  /** Ends the voice; the node cannot be used again. */
+  /** Fades out and ends the voice; the node cannot be used again. */
   stop() {
+    if (this.isStopped) return;
+    this.isStopped = true;
     this.port.postMessage({ stop: true });
-    this.disconnect();
-    if (this.ownWorker) this.worker.end();
+    if (this.context.state === "running") setTimeout(() => this.end(), SILENT_MS);
+    else if (!this.isOffline) this.end();
   }
+
+  /** An offline context is not running between its renderings. */
+  get isOffline() {
+    return typeof OfflineAudioContext !== "undefined" && this.context instanceof OfflineAudioContext;
+  }
+
+  end() {
+    if (this.isEnded) return;
+    this.isEnded = true;
+    this.disconnect();
+    this.playing?.forget();
+    if (!this.sharedWorker) this.worker?.end();
+  }
+}
+
+if (Symbol.dispose) {
+  HtexNode.prototype[Symbol.dispose] = function () {
+    this.stop();
+  };
 }

@@ -1,14 +1,42 @@
 // The motion of a finger, a pen or a mouse over an element.
 
+import { HtexError } from "./core.js";
+import { checked } from "./options.js";
+
 /** Millimetres of a CSS pixel. */
 const MM_PER_PIXEL = 25.4 / 96;
 /** Seconds over which the speed is averaged, and after which a pointer that sends nothing rests. */
 const AVERAGED_S = 0.03;
 const RESTS_S = 0.06;
+/** Force of a pointer that tells no pressure, N. */
+const FORCE_N = 0.4;
+/** Pressures that stand for "pressed" in devices that measure none: that of the specification, and those that some browsers send. */
+const NO_PRESSURE = [0, 0.5, 1];
+/** What counts as a gesture, after which a browser lets sound begin. A touch counts when it is lifted. */
+const GESTURES = ["pointerdown", "pointerup", "touchend", "click", "keydown"];
+
+const OPTIONS = { mmPerPixel: "number", force: "function", defaultForce: "number" };
+
+/** The force of events, in N. A device that has sent nothing but the pressures that stand for "pressed" measures none. */
+class Force {
+  constructor(map, unknown) {
+    this.map = map;
+    this.unknown = unknown;
+    this.measuring = new Set();
+  }
+
+  of({ pointerType, pressure }) {
+    if (pointerType !== "mouse" && !NO_PRESSURE.includes(pressure)) this.measuring.add(pointerType);
+    return this.measuring.has(pointerType) ? this.map(pressure) : this.unknown;
+  }
+}
 
 /** Calls `moved({ speed, force, position })`, in mm/s, N and mm along the path, while a pointer is on the element; the
- * force is 0 when it leaves. `force` maps a pressure of 0 to 1 to newtons; a mouse has 0.5. Returns a function that ends this. */
-export function followPointer(element, moved, { mmPerPixel = MM_PER_PIXEL, force = (pressure) => 0.8 * pressure } = {}) {
+ * force is 0 when it leaves. One pointer counts at a time, and of a mouse the primary button. Returns a function that ends this. */
+export function followPointer(element, moved, options = {}) {
+  check(element, "followPointer");
+  const { mmPerPixel = MM_PER_PIXEL, force: map = (pressure) => 0.8 * pressure, defaultForce = FORCE_N } = checked(options, OPTIONS, "followPointer");
+  const force = new Force(map, defaultForce);
   let last = null;
   let motion = { speed: 0, force: 0, position: 0 };
   const tell = (change) => {
@@ -16,9 +44,10 @@ export function followPointer(element, moved, { mmPerPixel = MM_PER_PIXEL, force
     moved(motion);
   };
   const down = (event) => {
+    if (last || event.button !== 0) return;
     element.setPointerCapture?.(event.pointerId);
     last = event;
-    tell({ speed: 0, force: force(event.pressure || 0.5) });
+    tell({ speed: 0, force: force.of(event) });
   };
   const one = (event) => {
     const seconds = (event.timeStamp - last.timeStamp) / 1e3;
@@ -28,36 +57,64 @@ export function followPointer(element, moved, { mmPerPixel = MM_PER_PIXEL, force
     last = event;
     tell({
       speed: motion.speed + weight * (way / seconds - motion.speed),
-      force: force(event.pressure || 0.5),
+      force: force.of(event),
       position: motion.position + way,
     });
   };
+  const isOther = (event) => !last || event.pointerId !== last.pointerId;
   const move = (event) => {
-    if (!last) return;
+    if (isOther(event)) return;
     const all = event.getCoalescedEvents?.() ?? [];
     (all.length > 0 ? all : [event]).forEach(one);
   };
-  const up = () => {
+  const up = (event) => {
+    // A mouse has `pointerup` when the last of its buttons is lifted.
+    if (isOther(event)) return;
     last = null;
     tell({ speed: 0, force: 0 });
   };
   const timer = setInterval(() => {
     if (last && motion.speed > 0 && performance.now() - last.timeStamp > 1e3 * RESTS_S) tell({ speed: 0 });
   }, 1e3 * RESTS_S);
-  const listeners = { pointerdown: down, pointermove: move, pointerup: up, pointercancel: up };
-  for (const [name, listener] of Object.entries(listeners)) element.addEventListener(name, listener);
+  // The browser would scroll, and end the pointer.
+  const { touchAction } = element.style;
+  element.style.touchAction = "none";
+  const listening = listen(element, { pointerdown: down, pointermove: move, pointerup: up, pointercancel: up, lostpointercapture: up });
   return () => {
     clearInterval(timer);
-    for (const [name, listener] of Object.entries(listeners)) element.removeEventListener(name, listener);
+    listening();
+    element.style.touchAction = touchAction;
   };
 }
 
-/** Lets a node follow a pointer over an element. Returns a function that ends this. */
+/** Lets a node follow a pointer over an element, and resumes its context on the first press. Returns a function that ends this. */
 export function follow(element, node, options) {
+  check(element, "follow");
+  if (!node?.speed?.setValueAtTime || !node.context) throw new HtexError("follow takes an element and an HtexNode", "invalid-argument");
   const moved = ({ speed, force, position }) => {
     node.speed.value = speed;
     node.force.value = force;
     node.position = position;
   };
-  return followPointer(element, moved, options);
+  const unfollow = followPointer(element, moved, options);
+  const resume = () => void (node.context.state !== "running" && node.context.state !== "closed" && node.context.resume().catch(() => {}));
+  const unlisten = listen(element, Object.fromEntries(GESTURES.map((name) => [name, resume])));
+  return () => {
+    unfollow();
+    unlisten();
+  };
+}
+
+function check(element, call) {
+  if (element?.addEventListener && element.style) return;
+  const advice = element === null ? "; `querySelector` found none" : "";
+  throw new HtexError(`${call} takes an element of the page first${advice}`, "invalid-argument");
+}
+
+/** Adds listeners; returns a function that removes them. */
+function listen(element, listeners) {
+  for (const [name, listener] of Object.entries(listeners)) element.addEventListener(name, listener);
+  return () => {
+    for (const [name, listener] of Object.entries(listeners)) element.removeEventListener(name, listener);
+  };
 }

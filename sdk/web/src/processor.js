@@ -1,10 +1,18 @@
-// The audio worklet: voices in the audio thread, or samples that a worker renders.
+// The audio worklet: plays a source, and fades to another one.
 
+import { Here, There } from "./sources.js";
 import { Stage } from "./stage.js";
+import { Track } from "./track.js";
 
 const stage = new Stage();
-/** Seconds of the ramp to silence after a failure, and back. */
-const RAMP_S = 0.005;
+/** Seconds of the fades of a start, of a stop, and from a texture to another. */
+const START_S = 0.01;
+const STOP_S = 0.01;
+const CHANGE_S = 0.015;
+/** Most sources that sound at a time: one, and those that fade out. */
+const MOST_TRACKS = 4;
+/** Seconds between two envelopes. */
+const REPORT_S = 0.02;
 
 class HtexProcessor extends AudioWorkletProcessor {
   static get parameterDescriptors() {
@@ -16,136 +24,101 @@ class HtexProcessor extends AudioWorkletProcessor {
     ];
   }
 
-  constructor({ processorOptions }) {
+  constructor({ processorOptions: { gain, load } }) {
     super();
     this.position = NaN;
-    this.motion = [NaN, NaN, NaN];
-    this.gain = null;
-    this.stopped = false;
+    /** The value of the parameter `gain`. */
+    this.gain = gain;
+    this.tracks = [];
     this.block = new Float32Array(128);
+    this.unreported = 0;
     this.port.onmessage = ({ data }) => this.receive(data);
-    this.source = null;
-    try {
-      if (processorOptions.voice) this.source = new Here(processorOptions.voice);
-    } catch (error) {
-      this.fail(error);
-    }
+    if (load) this.load(load);
   }
 
   receive(data) {
     if (data.position !== undefined) this.position = data.position;
-    if (data.samples) this.source = new There(data.samples);
+    if (data.load) this.load(data.load);
+    if (data.alone) for (const { source } of this.tracks) source.isAlone = true;
     if (data.stop) {
-      this.stopped = true;
-      this.source?.free();
+      this.stopping = true;
+      for (const track of this.tracks) track.fadeOut(STOP_S * sampleRate);
     }
   }
 
-  fail(error) {
-    this.source = null;
-    this.port.postMessage({ error: { message: error.message, code: error.code } });
+  /** Starts a voice: of a description, or one whose samples arrive at a port. */
+  load({ id, description, samples, gain }) {
+    if (this.stopping) return;
+    if (samples) {
+      const source = new There(samples, () => this.start(source, id, gain));
+      return;
+    }
+    const { library } = description;
+    if (!(library instanceof WebAssembly.Module || ArrayBuffer.isView(library))) return void this.port.postMessage({ id, unusable: true });
+    try {
+      this.start(new Here(stage.voice(description)), id, gain);
+    } catch (error) {
+      this.fail(error, id);
+    }
   }
 
-  process(_, [channels], { speed, force, gain }) {
-    if (this.stopped) return false;
-    const frames = channels[0].length;
-    if (this.block.length !== frames) this.block = new Float32Array(frames);
-    this.render(speed[0], force[0]);
-    this.level(gain[0]);
-    for (const channel of channels) channel.set(this.block);
+  /** Fades from the present source, if there is one, to another. */
+  start(source, id, gain) {
+    if (this.stopping) return void source.free();
+    const frames = (this.tracks.length > 0 ? CHANGE_S : START_S) * sampleRate;
+    for (const track of this.tracks) track.fadeOut(frames);
+    this.tracks.push(new Track(source, { gain, parameter: this.gain, frames }));
+    if (this.tracks.length > MOST_TRACKS) this.leave(this.tracks.reduce((a, b) => (b.isLeaving && b.way < a.way ? b : a)));
+    this.port.postMessage({ id, started: true });
+  }
+
+  leave(track) {
+    track.source.free();
+    this.tracks = this.tracks.filter((other) => other !== track);
+  }
+
+  fail({ message, code }, id) {
+    this.port.postMessage({ id, error: { message, code } });
+  }
+
+  process(_, [[out]], { speed, force, gain }) {
+    this.gain = gain[0];
+    if (this.block.length !== out.length) this.block = new Float32Array(out.length);
+    const motion = [speed[0], force[0], this.position];
+    this.tracks.forEach((track, i) => {
+      this.render(track, motion);
+      if (i === 0) out.set(this.block);
+      else for (let k = 0; k < out.length; k++) out[k] += this.block[k];
+    });
+    for (const track of this.tracks) if (track.isOver || track.failed) this.leave(track);
+    this.report(out.length);
+    if (this.stopping && this.tracks.length === 0) {
+      this.port.postMessage({ ended: true });
+      return false;
+    }
     return true;
   }
 
-  render(speed, force) {
-    if (!this.source) return void this.block.fill(0);
+  render(track, motion) {
     try {
-      const motion = [speed, force, this.position];
-      if (motion.some((x, i) => !Object.is(x, this.motion[i]))) {
-        this.source.setMotion(...motion);
-        this.motion = motion;
-      }
-      this.source.render(this.block, (missed) => this.port.postMessage({ missed }));
+      const missed = track.render(this.block, motion);
+      if (missed > 0) this.port.postMessage({ missed });
     } catch (error) {
-      this.block.fill(0);
+      track.failed = true;
       this.fail(error);
     }
+    track.level(this.block, this.gain);
+    track.fade(this.block);
   }
 
-  /** Applies the gain, in a straight line from that of the last block. */
-  level(gain) {
-    const from = this.gain ?? gain;
-    this.gain = gain;
-    if (from === 1 && gain === 1) return;
-    const step = (gain - from) / this.block.length;
-    for (let i = 0; i < this.block.length; i++) this.block[i] *= from + step * (i + 1);
-  }
-}
-
-/** A voice in this thread. */
-class Here {
-  constructor(description) {
-    this.voice = stage.voice(description);
-  }
-
-  setMotion(speed, force, position) {
-    this.voice.setMotion(speed, force, position);
-  }
-
-  render(block) {
-    this.voice.render(block);
-  }
-
-  free() {
-    this.voice.free();
-  }
-}
-
-/** A voice in a worker, which renders ahead: blocks that arrive at `port`, asked for as they are used. */
-class There {
-  constructor(port) {
-    this.port = port;
-    this.blocks = [];
-    this.used = 0;
-    this.weight = 0;
-    this.motion = null;
-    port.onmessage = ({ data }) => this.blocks.push(data);
-  }
-
-  setMotion(speed, force, position) {
-    this.motion = [speed, force, position];
-  }
-
-  render(block, missed) {
-    let lacking = 0;
-    const step = 1 / (RAMP_S * sampleRate);
-    for (let i = 0; i < block.length; i++) {
-      const first = this.blocks[0];
-      if (!first) {
-        // Until blocks arrive again, the last sample fades away.
-        this.weight = Math.max(this.weight - step, 0);
-        block[i] = (this.last ?? 0) * this.weight;
-        lacking += 1;
-        continue;
-      }
-      this.weight = Math.min(this.weight + step, 1);
-      this.last = first[this.used++];
-      block[i] = this.last * this.weight;
-      if (this.used === first.length) {
-        this.port.postMessage({ block: first, motion: this.motion }, [first.buffer]);
-        this.motion = null;
-        this.blocks.shift();
-        this.used = 0;
-      }
-    }
-    if (lacking > 0 && this.last !== undefined) missed(lacking);
-    if (this.motion && this.blocks.length > 0) {
-      this.port.postMessage({ motion: this.motion });
-      this.motion = null;
-    }
-  }
-
-  free() {
-    this.port.postMessage({ stop: true });
+  /** Tells the envelope of the source that fades in or plays. */
+  report(frames) {
+    const source = this.tracks.at(-1)?.source;
+    this.unreported += frames;
+    if (!source || this.unreported < REPORT_S * sampleRate) return;
+    this.unreported = 0;
+    const envelope = source.envelope();
+    if (envelope) this.port.postMessage({ envelope });
   }
 }
 

@@ -1,10 +1,14 @@
 // Textures and their voices.
 
 import { BLOCK, HtexError, MOTION_SIZE, toBytes } from "./core.js";
+import { AT, VOICE, checked, checkedMotion } from "./options.js";
 
 /** Frees what its owner did not free. */
 const abandoned =
   typeof FinalizationRegistry === "undefined" ? null : new FinalizationRegistry(({ core, free, id }) => core.exports[free](id));
+
+/** Distance of the frequencies at which spectra are read, Hz. */
+const GRID_HZ = 5;
 
 /** What has a handle in the library. */
 export class Handle {
@@ -15,23 +19,63 @@ export class Handle {
     abandoned?.register(this, { core, free, id }, this);
   }
 
-  /** Frees the memory of the object, which is not used afterwards. */
+  /** Frees the memory of the object, which is not used afterwards. A second call does nothing. */
   free() {
+    if (this.isFreed) return;
+    this.isFreed = true;
     abandoned?.unregister(this);
     this.core.call(this.freeing, this.id);
   }
 }
 
+if (Symbol.dispose) {
+  Handle.prototype[Symbol.dispose] = function () {
+    this.free();
+  };
+}
+
+/** Of `open`: whether models of modules may run in this thread, those that are given, and those of the asset. */
+const ALL_RUN = { trusted: true, modules: [], embedded: true };
+
 /** A texture asset. */
 export class Texture extends Handle {
-  constructor(core, data, options = {}) {
+  constructor(core, data, options = ALL_RUN) {
     const bytes = toBytes(data);
     const id = core.scope((take) => {
       const at = core.put(take, bytes);
-      core.call("htex_asset_from_bytes", at, bytes.length, core.putOpenOptions(take, options), core.results);
+      const given = { ...options, modules: options.trusted ? options.modules : [] };
+      core.call("htex_asset_from_bytes", at, bytes.length, core.putOpenOptions(take, given), core.results);
       return core.view().getBigUint64(core.results, true);
     });
     super(core, id, "htex_asset_free");
+    this.options = options;
+  }
+
+  /** Whether models of modules may run. */
+  get hasModules() {
+    const { modules, embedded } = this.options;
+    return modules.length > 0 || (embedded && (this.manifest.plugins ?? []).length > 0);
+  }
+
+  /** Refuses a representation whose model is a module, unless it may run in this thread. */
+  guard(model, call) {
+    const { trusted, modules, embedded } = this.options;
+    if (trusted || !this.hasModules) return;
+    const chosen = this.chosenModel(model);
+    if (modules.length === 0 && !(embedded && this.manifest.plugins.some((plugin) => plugin.model === chosen))) return;
+    const advice = "play it with HtexNode or with `new GuardedWorker().render(texture, frames, options)`, or, if you trust its author, open it with `open(bytes, { trusted: true })`";
+    throw new HtexError(`${call}: the model ${chosen} comes from a module, which nothing could stop in this thread; ${advice}`, "untrusted");
+  }
+
+  /** Id of the model of a representation, or of the one that a voice chooses. */
+  chosenModel(model) {
+    const { core } = this;
+    return core.scope((take) => core.text("htex_asset_chosen_model", this.id, core.putText(take, model)));
+  }
+
+  /** The bytes of the file. */
+  toBytes() {
+    return this.bytes.slice();
   }
 
   /** The manifest: name, conditions, representations, qualities and all else that the asset states. */
@@ -47,6 +91,21 @@ export class Texture extends Handle {
   /** Unit of the samples, such as "N". */
   get unit() {
     return this.core.text("htex_asset_unit", this.id);
+  }
+
+  /** Physical quantity of the samples, such as "lateral_force". */
+  get quantity() {
+    return this.manifest.quantity;
+  }
+
+  /** What slid over the surface. */
+  get contact() {
+    return this.manifest.contact ?? "unknown";
+  }
+
+  /** How frequencies and level follow a motion outside the recorded ones. */
+  get law() {
+    return JSON.parse(this.core.text("htex_asset_law_json", this.id));
   }
 
   /** Lowest and highest frequency of the spectra, Hz. */
@@ -68,24 +127,60 @@ export class Texture extends Handle {
   }
 
   /** Magnitudes of the texture spectrum at frequencies in Hz, in the unit. */
-  spectrum(frequencies, { model, at } = {}) {
+  spectrum(frequencies, options = {}) {
     const { core } = this;
-    return core.scope((take) => {
+    return this.represented(options, "texture.spectrum", (take, name, motion) => {
       const numbers = core.putNumbers(take, frequencies);
-      const [name, motion] = [core.putText(take, model), core.putMotion(take, at)];
       core.call("htex_asset_magnitude", this.id, name, motion, numbers, numbers, frequencies.length);
       return new Float64Array(core.exports.memory.buffer, numbers, frequencies.length).slice();
     });
   }
 
-  /** Level of a representation, RMS in the unit. */
-  level({ model, at } = {}) {
+  /** Magnitudes at a recorded condition, as a recording of the voice reads them: frequencies, and magnitudes in the unit. */
+  readSpectrum({ model, condition = 0, ...rest } = {}) {
     const { core } = this;
-    return core.scope((take) => {
-      const [name, motion] = [core.putText(take, model), core.putMotion(take, at)];
+    checked({ model, condition, ...rest }, { model: "string", condition: "number" }, "texture.readSpectrum");
+    if (!this.manifest.conditions[condition]) {
+      const last = this.manifest.conditions.length - 1;
+      throw new HtexError(`texture.readSpectrum: there is no condition ${condition}; they are 0 to ${last}`, "invalid-argument");
+    }
+    return this.represented({ model }, "texture.readSpectrum", (take, name) => {
+      const frequencies = this.grid;
+      const numbers = core.putNumbers(take, frequencies);
+      core.call("htex_asset_read_magnitude", this.id, name, condition, numbers, frequencies.length);
+      const magnitudes = new Float64Array(core.exports.memory.buffer, numbers, frequencies.length).slice();
+      return { frequencies, magnitudes };
+    });
+  }
+
+  /** The frequencies at which spectra are read, Hz. */
+  get grid() {
+    const [first, last] = this.band.map((hz, i) => (i === 0 ? Math.ceil(hz / GRID_HZ) : Math.floor(hz / GRID_HZ)));
+    return Float64Array.from({ length: last - first + 1 }, (_, i) => GRID_HZ * (first + i));
+  }
+
+  /** Level of a representation, RMS in the unit. */
+  level(options = {}) {
+    const { core } = this;
+    return this.represented(options, "texture.level", (take, name, motion) => {
       core.call("htex_asset_level_rms", this.id, name, motion, core.results);
       return core.view().getFloat64(core.results, true);
     });
+  }
+
+  /** Parameters of a representation, by their names. */
+  parameters(options = {}) {
+    const { core } = this;
+    const read = (take, name, motion) => JSON.parse(core.text("htex_asset_parameters_json", this.id, name, motion));
+    return this.represented(options, "texture.parameters", read);
+  }
+
+  /** Runs `read` with the model's name and a motion, in memory of an arena. */
+  represented(options, call, read) {
+    const { model, at } = checked(options, AT, call);
+    this.guard(model, call);
+    const { core } = this;
+    return core.scope((take) => read(take, core.putText(take, model), core.putMotion(take, at)));
   }
 
   /** Makes a voice. */
@@ -98,6 +193,8 @@ export class Texture extends Handle {
 export class Voice extends Handle {
   constructor(texture, options) {
     const { core } = texture;
+    checked(options, VOICE, "texture.voice");
+    texture.guard(options.model, "texture.voice");
     const id = core.scope((take) => {
       core.call("htex_voice_new", texture.id, core.putVoiceOptions(take, options), core.results);
       return core.view().getBigUint64(core.results, true);
@@ -157,7 +254,7 @@ export class Voice extends Handle {
       if (!Number.isInteger(out) || out < 0) throw new HtexError(`${out} frames; give a whole number`, "invalid-argument");
       out = new Float32Array(out);
     }
-    if (!(out instanceof Float32Array)) throw new TypeError("give a Float32Array, or a number of frames");
+    if (!(out instanceof Float32Array)) throw new HtexError("give a Float32Array, or a number of frames", "invalid-argument");
     const { core } = this;
     for (let from = 0; from < out.length; from += BLOCK) {
       out.set(core.render(this.id, Math.min(BLOCK, out.length - from)), from);
@@ -186,10 +283,21 @@ export class Voice extends Handle {
     });
   }
 
-  /** How the voice plays a motion, and whether that is within the recorded conditions, as English text. */
+  /** How the voice plays a motion, or the one that is set, and whether that is within the recorded conditions. */
   coverage(motion) {
     const { core } = this;
-    return core.scope((take) => core.text("htex_voice_coverage", this.id, core.putMotion(take, motion)));
+    checkedMotion(motion, "voice.coverage");
+    const json = core.scope((take) => core.text("htex_voice_coverage_json", this.id, core.putMotion(take, motion)));
+    return JSON.parse(json);
+  }
+
+  /** Magnitudes that a recording of the voice reads at the motion that is set, at frequencies in Hz, in the unit. */
+  spectrum(frequencies) {
+    const { core } = this;
+    return core.scope((take) => {
+      const numbers = core.putNumbers(take, frequencies);
+      core.call("htex_voice_magnitude", this.id, numbers, numbers, frequencies.length);
+      return new Float64Array(core.exports.memory.buffer, numbers, frequencies.length).slice();
+    });
   }
 }
-

@@ -5,8 +5,8 @@ use std::ffi::c_char;
 use htex_c::calls::{Failure, allocate, guarded, needed_text, place, slice};
 use htex_c::{htex_bytes, htex_status};
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 
+use crate::document::Document;
 use crate::refusal::Refusal;
 use crate::{fit, libraries, made, models, process, validate};
 
@@ -42,7 +42,7 @@ impl Answer {
 /// The files that a call is given.
 pub(crate) type Files<'a> = &'a [&'a [u8]];
 
-type Function = fn(&[u8], Files<'_>) -> Result<Answer, Refusal>;
+type Function = fn(Document, Files<'_>) -> Result<Answer, Refusal>;
 
 const FUNCTIONS: &[(&str, Function)] = &[
     ("columns", process::columns),
@@ -56,11 +56,6 @@ const FUNCTIONS: &[(&str, Function)] = &[
     ("process", process::process),
     ("validate", validate::validate),
 ];
-
-/// Reads the document of a call.
-pub(crate) fn parsed<T: DeserializeOwned>(json: &[u8]) -> Result<T, Refusal> {
-    serde_json::from_slice(json).map_err(Refusal::argument)
-}
 
 /// Calls the function of a name with a document of JSON and the bytes of files. A call that fails has a result, too.
 ///
@@ -109,7 +104,7 @@ fn called(name: &str, json: &[u8], files: Files<'_>) -> Result<Answer, Refusal> 
     let function = FUNCTIONS.iter().find(|(own, _)| *own == name);
     let (_, function) =
         function.ok_or_else(|| Refusal::argument(format!("there is no function {name}")))?;
-    function(json, files)
+    function(Document::of_call(json)?, files)
 }
 
 /// Copies bytes to memory that the caller frees; NULL for none.

@@ -1,42 +1,77 @@
-//! Findings, notices and spectra as JSON, with what helps.
+//! Findings, notices and spectra as documents, with what helps.
 
 use htex_author::TextureSpectrum;
-use htex_finding::{Finding, Hint, Notice};
-use serde_json::{Value, json};
+use htex_finding::{Finding, Hint, Notice, Severity};
+use htex_format::Quantity;
+use serde::Serialize;
 
-fn settings(hint: Hint) -> Vec<&'static str> {
-    hint.settings().to_vec()
+/// The settings that help.
+fn settings(hint: Hint) -> &'static [&'static str] {
+    hint.settings()
 }
 
-/// A finding; `settings` are those that help.
-pub(crate) fn finding(finding: &Finding) -> Value {
-    json!({
-        "code": finding.code,
-        "severity": finding.severity,
-        "pointer": finding.pointer,
-        "message": finding.message,
-        "settings": settings(finding.hint),
-    })
+#[derive(Serialize)]
+pub(crate) struct DescribedFinding<'a> {
+    code: &'a str,
+    severity: Severity,
+    pointer: &'a str,
+    message: &'a str,
+    settings: &'static [&'static str],
 }
 
-pub(crate) fn findings(all: &[Finding]) -> Vec<Value> {
+pub(crate) fn finding(finding: &Finding) -> DescribedFinding<'_> {
+    DescribedFinding {
+        code: &finding.code,
+        severity: finding.severity,
+        pointer: &finding.pointer,
+        message: &finding.message,
+        settings: settings(finding.hint),
+    }
+}
+
+pub(crate) fn findings(all: &[Finding]) -> Vec<DescribedFinding<'_>> {
     all.iter().map(finding).collect()
 }
 
-/// Warnings or notes, each with the settings that help.
-pub(crate) fn notices(all: &[Notice]) -> Vec<Value> {
-    let one = |notice: &Notice| json!({ "text": notice.text, "settings": settings(notice.hint) });
-    all.iter().map(one).collect()
+/// A warning or a note.
+#[derive(Serialize)]
+pub(crate) struct DescribedNotice<'a> {
+    text: &'a str,
+    settings: &'static [&'static str],
 }
 
-pub(crate) fn spectrum(spectrum: &TextureSpectrum) -> Value {
-    json!({
-        "frequency_hz": spectrum.frequency_hz,
-        "magnitude": spectrum.magnitude,
-        "quantity": spectrum.quantity,
-        "unit": spectrum.quantity.unit(),
-        "band_hz": [spectrum.band.low_hz, spectrum.band.high_hz],
-        "segments": spectrum.segments,
-        "repeatability_rms_db": spectrum.repeatability_rms_db,
-    })
+impl<'a> DescribedNotice<'a> {
+    fn of(notice: &'a Notice) -> Self {
+        Self {
+            text: &notice.text,
+            settings: settings(notice.hint),
+        }
+    }
+}
+
+pub(crate) fn notices(all: &[Notice]) -> Vec<DescribedNotice<'_>> {
+    all.iter().map(DescribedNotice::of).collect()
+}
+
+#[derive(Serialize)]
+pub(crate) struct DescribedSpectrum<'a> {
+    frequency_hz: &'a [f64],
+    magnitude: &'a [f64],
+    quantity: Quantity,
+    unit: &'static str,
+    band_hz: [f64; 2],
+    segments: usize,
+    repeatability_rms_db: Option<f64>,
+}
+
+pub(crate) fn spectrum(spectrum: &TextureSpectrum) -> DescribedSpectrum<'_> {
+    DescribedSpectrum {
+        frequency_hz: &spectrum.frequency_hz,
+        magnitude: &spectrum.magnitude,
+        quantity: spectrum.quantity,
+        unit: spectrum.quantity.unit(),
+        band_hz: [spectrum.band.low_hz, spectrum.band.high_hz],
+        segments: spectrum.segments,
+        repeatability_rms_db: spectrum.repeatability_rms_db,
+    }
 }

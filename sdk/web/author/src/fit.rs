@@ -2,45 +2,39 @@
 
 use htex::host::Registry;
 use htex_author::settings::{FitSettings, Metadata};
-use htex_author::{AssetRequest, FeltError, FittedAsset, fit_asset_watched};
-use serde::Deserialize;
-use serde_json::{Map, Value, json};
+use htex_author::{AssetRequest, FeltError, FittedAsset, GridReport, fit_asset_watched};
+use htex_format::{Condition, LeftOut, Quality};
+use serde::Serialize;
 
 use crate::TOOL;
-use crate::call::{Answer, Files, parsed};
-use crate::recordings::{Given, Names, Reading};
+use crate::call::{Answer, Files};
+use crate::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
+use crate::document::Document;
+use crate::progress;
+use crate::recordings::{Given, Reading, given};
 use crate::refusal::Refusal;
-use crate::settings::Settings;
-use crate::{describe, progress};
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Call {
-    files: Names,
-    #[serde(default)]
-    conditions: Vec<Given>,
-    #[serde(default)]
-    settings: Map<String, Value>,
-}
 
 /// Fits models to recordings; the bytes are the asset.
-pub(crate) fn fit(json: &[u8], files: Files<'_>) -> Result<Answer, Refusal> {
-    let call: Call = parsed(json)?;
-    let mut settings = Settings::new(call.settings);
-    let reading = Reading::new(call.files, &mut settings, files)?;
-    let mut fitting: FitSettings = settings.take(FitSettings::NAMES)?;
-    let metadata: Metadata = settings.take(Metadata::NAMES)?;
+pub(crate) fn fit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
+    let names = call.object("files")?;
+    let conditions = call.list("conditions")?.into_iter().map(given);
+    let conditions = conditions.collect::<Result<Vec<Given>, _>>()?;
+    let mut settings = call.object("settings")?;
+    call.finish()?;
+    let reading = Reading::new(names, &mut settings, files)?;
+    let mut fitting: FitSettings = settings.table(FitSettings::NAMES)?;
+    let metadata: Metadata = settings.table(Metadata::NAMES)?;
     settings.finish()?;
     metadata.check()?;
     fitting.strict = Some(reading.strict);
     let registry = Registry::builtin();
     let request = request(&reading, &fitting, &metadata, &registry)?;
     progress::start(reading.count() + request.models.len());
-    let fitted = fitted(&reading, &call.conditions, &request);
+    let fitted = fitted(&reading, &conditions, &request);
     progress::end();
     let mut fitted = fitted?;
     metadata.apply(&mut fitted.asset.manifest);
-    Answer::new(&report(&fitted), fitted.asset.to_bytes()?)
+    Answer::new(&Report::of(&fitted), fitted.asset.to_bytes()?)
 }
 
 fn request(
@@ -54,8 +48,8 @@ fn request(
     let mut request = fitting.request(registry, &reading.settings, &name, TOOL)?;
     request.spectrum = reading.spectrum.clone();
     if let Some(response) = &reading.response {
-        let recorded = ("frf".to_owned(), response.clone());
-        request.recorded_options.extend([recorded]);
+        let recorded = &mut request.recorded_options;
+        recorded.insert("frf".to_owned(), response.clone());
     }
     Ok(request)
 }
@@ -73,66 +67,108 @@ fn fitted(
 }
 
 /// What the file of a fitted texture does not hold, and what ranks its models.
-fn report(fitted: &FittedAsset) -> Value {
-    let manifest = &fitted.asset.manifest;
-    let models = manifest
-        .representations
-        .iter()
-        .enumerate()
-        .map(|(i, representation)| {
-            let felt = fitted.felt.get(i).map_or(&[][..], Vec::as_slice);
-            let at = representation.at.iter().enumerate().map(|(k, at)| {
-                json!({
-                    "condition": at.condition,
-                    "level_rms": at.level_rms,
-                    "quality": at.quality,
-                    "left_out": at.left_out,
-                    "felt": felt.get(k),
-                })
-            });
-            json!({
-                "model": representation.model,
-                "bytes": fitted.asset.payload_bytes(i),
-                "fit_ms": fitted.fit_ms.get(i),
-                "felt": worst(felt),
-                "at": at.collect::<Vec<_>>(),
-            })
-        });
-    let skipped = fitted
-        .skipped
-        .iter()
-        .map(|(model, reason)| json!({ "model": model, "reason": reason }));
-    let findings = fitted.findings.iter().map(|found| {
-        json!({ "recording": found.recording, "finding": describe::finding(&found.finding) })
-    });
-    json!({
-        "models": models.collect::<Vec<_>>(),
-        "ranked": ranked(fitted),
-        "skipped": skipped.collect::<Vec<_>>(),
-        "conditions": manifest.conditions,
-        "spectra": fitted.spectra.iter().map(describe::spectrum).collect::<Vec<_>>(),
-        "findings": findings.collect::<Vec<_>>(),
-        "warnings": describe::notices(&fitted.warnings),
-        "notes": describe::notices(&fitted.notes),
-        "grid": fitted.grid,
-    })
+#[derive(Serialize)]
+struct Report<'a> {
+    models: Vec<Model<'a>>,
+    ranked: Vec<&'a str>,
+    skipped: Vec<Skipped<'a>>,
+    conditions: &'a [Condition],
+    spectra: Vec<DescribedSpectrum<'a>>,
+    findings: Vec<Found<'a>>,
+    warnings: Vec<DescribedNotice<'a>>,
+    notes: Vec<DescribedNotice<'a>>,
+    grid: Option<&'a GridReport>,
 }
 
-/// What is felt at the condition where most is.
-fn worst(felt: &[Option<FeltError>]) -> Option<FeltError> {
-    felt.iter().flatten().copied().reduce(FeltError::worse)
+#[derive(Serialize)]
+struct Model<'a> {
+    model: &'a str,
+    bytes: usize,
+    fit_ms: Option<f64>,
+    felt: Option<FeltError>,
+    at: Vec<At<'a>>,
+}
+
+#[derive(Serialize)]
+struct At<'a> {
+    condition: usize,
+    level_rms: f64,
+    quality: Option<&'a Quality>,
+    left_out: Option<LeftOut>,
+    felt: Option<FeltError>,
+}
+
+#[derive(Serialize)]
+struct Skipped<'a> {
+    model: &'a str,
+    reason: &'a str,
+}
+
+#[derive(Serialize)]
+struct Found<'a> {
+    recording: &'a str,
+    finding: DescribedFinding<'a>,
+}
+
+impl<'a> Report<'a> {
+    fn of(fitted: &'a FittedAsset) -> Self {
+        let manifest = &fitted.asset.manifest;
+        let skipped = fitted.skipped.iter();
+        let findings = fitted.findings.iter();
+        let models: Vec<Model<'_>> = (0..manifest.representations.len())
+            .filter_map(|i| Model::of(fitted, i))
+            .collect();
+        Self {
+            ranked: ranked(&models),
+            models,
+            skipped: skipped
+                .map(|(model, reason)| Skipped { model, reason })
+                .collect(),
+            conditions: &manifest.conditions,
+            spectra: fitted.spectra.iter().map(describe::spectrum).collect(),
+            findings: findings
+                .map(|found| Found {
+                    recording: &found.recording,
+                    finding: describe::finding(&found.finding),
+                })
+                .collect(),
+            warnings: describe::notices(&fitted.warnings),
+            notes: describe::notices(&fitted.notes),
+            grid: fitted.grid.as_ref(),
+        }
+    }
+}
+
+impl<'a> Model<'a> {
+    fn of(fitted: &'a FittedAsset, i: usize) -> Option<Self> {
+        let representation = fitted.asset.manifest.representations.get(i)?;
+        let felt = fitted.felt.get(i).map_or(&[][..], Vec::as_slice);
+        let at = representation.at.iter().enumerate();
+        Some(Self {
+            model: &representation.model,
+            bytes: fitted.asset.payload_bytes(i),
+            fit_ms: fitted.fit_ms.get(i).copied(),
+            felt: felt.iter().flatten().copied().reduce(FeltError::worse),
+            at: at
+                .map(|(k, at)| At {
+                    condition: at.condition,
+                    level_rms: at.level_rms,
+                    quality: at.quality.as_ref(),
+                    left_out: at.left_out,
+                    felt: felt.get(k).copied().flatten(),
+                })
+                .collect(),
+        })
+    }
 }
 
 /// The models, that of which least is felt first.
-fn ranked(fitted: &FittedAsset) -> Vec<&str> {
-    let representations = fitted.asset.manifest.representations.iter();
-    let mut all: Vec<(&str, f64)> = representations
-        .zip(&fitted.felt)
-        .map(|(representation, felt)| {
-            let error_db = worst(felt).map_or(f64::INFINITY, |felt| felt.error_rms_db);
-            (representation.model.as_str(), error_db)
-        })
-        .collect();
-    all.sort_by(|a, b| a.1.total_cmp(&b.1));
-    all.into_iter().map(|(model, _)| model).collect()
+fn ranked<'a>(models: &[Model<'a>]) -> Vec<&'a str> {
+    let mut ranked: Vec<(f64, &str)> = Vec::new();
+    for Model { model, felt, .. } in models {
+        let error_db = felt.map_or(f64::INFINITY, |felt| felt.error_rms_db);
+        let behind = ranked.partition_point(|(other, _)| *other <= error_db);
+        ranked.insert(behind, (error_db, model));
+    }
+    ranked.into_iter().map(|(_, model)| model).collect()
 }

@@ -6,6 +6,7 @@
 
 mod call;
 mod describe;
+mod document;
 mod fit;
 mod libraries;
 mod made;
@@ -14,7 +15,6 @@ mod process;
 mod progress;
 mod recordings;
 mod refusal;
-mod settings;
 mod validate;
 
 pub use call::{htex_author_call, htex_author_result};

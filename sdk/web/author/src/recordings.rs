@@ -2,42 +2,31 @@
 
 use std::path::{Path, PathBuf};
 
-use htex_author::recording::{ReadOptions, Tracker, recording_from_bytes, response_from_bytes};
+use htex_author::recording::{ReadOptions, recording_from_bytes, response_from_bytes};
 use htex_author::settings::ReadingSettings;
 use htex_author::{Exploration, Recording, SpectrumOptions, Take};
-use serde::Deserialize;
+use serde_json::Value;
 
 use crate::call::Files;
+use crate::document::Document;
 use crate::progress;
 use crate::refusal::Refusal;
-use crate::settings::Settings;
-
-/// The names of the files of a call: recordings, then the response, then the trackers.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Names {
-    recordings: Vec<String>,
-    #[serde(default)]
-    response: Option<String>,
-    #[serde(default)]
-    trackers: Vec<String>,
-}
-
-/// Settings of reading beside the table.
-#[derive(Deserialize, Default)]
-#[serde(default, deny_unknown_fields)]
-struct Besides {
-    speed_mm_s: Option<f64>,
-    force_n: Option<f64>,
-    strict: Option<bool>,
-}
 
 /// A speed in mm/s and a force in N.
-#[derive(Deserialize, Clone, Copy, Default)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Given {
     pub(crate) speed: Option<f64>,
     pub(crate) force: Option<f64>,
+}
+
+pub(crate) fn given(condition: Value) -> Result<Given, Refusal> {
+    let mut condition = Document::of(condition)?;
+    let given = Given {
+        speed: condition.number("speed")?,
+        force: condition.number("force")?,
+    };
+    condition.finish()?;
+    Ok(given)
 }
 
 /// Recordings and how they are read.
@@ -53,24 +42,27 @@ pub(crate) struct Reading<'a> {
 }
 
 impl<'a> Reading<'a> {
-    /// Takes the settings of reading.
+    /// Takes the settings of reading. The files are the recordings, then the response, then the trackers, as they are named.
     pub(crate) fn new(
-        names: Names,
-        settings: &mut Settings,
+        mut names: Document,
+        settings: &mut Document,
         files: Files<'a>,
     ) -> Result<Self, Refusal> {
-        let besides: Besides = settings.take(&["speed_mm_s", "force_n", "strict"])?;
-        let settings: ReadingSettings = settings.take(ReadingSettings::NAMES)?;
+        let given = Given {
+            speed: settings.number("speed_mm_s")?,
+            force: settings.number("force_n")?,
+        };
+        let strict = settings.flag("strict")?;
+        let settings: ReadingSettings = settings.table(ReadingSettings::NAMES)?;
         if settings.response.is_some() || settings.tracker.is_some() {
             return Err(Refusal::argument(
                 "the response and the tracker are files; give name and bytes",
             ));
         }
-        let Names {
-            recordings,
-            response,
-            trackers,
-        } = names;
+        let recordings = names.texts("recordings")?;
+        let response = names.text("response")?;
+        let trackers = names.texts("trackers")?;
+        names.finish()?;
         let mut files = files.iter().copied();
         let mut next = || {
             files
@@ -78,36 +70,31 @@ impl<'a> Reading<'a> {
                 .ok_or_else(|| Refusal::argument("a file is missing"))
         };
         let recordings = recordings.into_iter().map(|name| Ok((name, next()?)));
-        let recordings: Vec<(String, &[u8])> = recordings.collect::<Result<_, Refusal>>()?;
-        let divided = response.as_deref().map(|name| {
-            let response = response_from_bytes(name, next()?)?;
-            Ok::<_, Refusal>(response)
-        });
-        let spectrum = settings
-            .spectrum_options()?
-            .with_response(divided.transpose()?);
-        let with_names = ReadingSettings {
-            tracker: (!trackers.is_empty()).then(|| trackers.iter().map(PathBuf::from).collect()),
+        let recordings = recordings.collect::<Result<Vec<_>, Refusal>>()?;
+        let mut spectrum = settings.spectrum_options()?;
+        if let Some(name) = &response {
+            spectrum.response = Some(response_from_bytes(name, next()?)?);
+        }
+        let named = trackers.iter().map(PathBuf::from).collect();
+        let settings = ReadingSettings {
+            tracker: (!trackers.is_empty()).then_some(named),
             ..settings
         };
-        let mut options = with_names.read_options(recordings.len())?;
-        let mut bytes = trackers.iter().map(|_| next());
-        let bytes = bytes.by_ref().collect::<Result<Vec<_>, Refusal>>()?;
+        let mut options = settings.read_options(recordings.len())?;
+        let tracked = trackers.iter().map(|_| next());
+        let tracked = tracked.collect::<Result<Vec<_>, _>>()?;
         for (i, own) in options.iter_mut().enumerate() {
             // One for each recording, or one for all.
-            let own_bytes = bytes.get(i).or(bytes.first());
-            let tracker = own.tracker.take().zip(own_bytes);
-            own.tracker = tracker.map(|(tracker, bytes): (Tracker, _)| tracker.with_bytes(*bytes));
+            let bytes = tracked.get(i).or(tracked.first());
+            let tracker = own.tracker.take().zip(bytes);
+            own.tracker = tracker.map(|(tracker, bytes)| tracker.with_bytes(*bytes));
         }
         Ok(Self {
-            settings: with_names,
+            settings,
             spectrum,
-            strict: besides.strict.unwrap_or_default(),
+            strict,
             response,
-            given: Given {
-                speed: besides.speed_mm_s,
-                force: besides.force_n,
-            },
+            given,
             recordings,
             options,
         })

@@ -9,7 +9,7 @@ use htex_c::calls::Failure;
 use htex_c::htex_status::{self, *};
 use htex_format::{ReadError as AssetError, WriteError};
 use htex_library::LibraryError;
-use serde_json::json;
+use serde::Serialize;
 
 /// The error of a call.
 #[derive(Debug)]
@@ -20,13 +20,23 @@ pub(crate) struct Refusal {
     json: Vec<u8>,
 }
 
+/// The document of an error.
+#[derive(Serialize)]
+struct Told<'a> {
+    code: &'a str,
+    message: &'a str,
+}
+
 impl Refusal {
     fn new(status: htex_status, code: &str, error: impl ToString) -> Self {
         let message = error.to_string();
-        let json = json!({ "code": code, "message": message });
+        let told = Told {
+            code,
+            message: &message,
+        };
         Self {
             status,
-            json: json.to_string().into_bytes(),
+            json: serde_json::to_vec(&told).unwrap_or_default(),
             message,
         }
     }

@@ -1,0 +1,24 @@
+//! The spectrum of a voice whose frequencies and level are scaled.
+
+use htex_host::{Band, LoadedModel};
+
+use crate::Error;
+
+/// Returns the magnitudes, at frequencies in hertz, of a model's voice of unit RMS that is read at `ratio` times its recorded speed and
+/// played at a level. A noise of magnitude m(f) then reads `m(f / ratio) / sqrt(ratio)`, and a sum of sinusoids `m(f / ratio)`.
+pub(crate) fn scaled_magnitude(
+    model: &LoadedModel,
+    parameters: &[f64],
+    band: Band,
+    frequency_hz: &[f64],
+    ratio: f64,
+    level_rms: f64,
+) -> Result<Vec<f64>, Error> {
+    let recorded_hz: Vec<f64> = frequency_hz.iter().map(|f| f / ratio).collect();
+    let shape = model.magnitude(parameters, band, &recorded_hz)?;
+    let spread = match model.descriptor().is_sum_of_sines() {
+        true => 1.0,
+        false => ratio.sqrt(),
+    };
+    Ok(shape.iter().map(|m| m * level_rms / spread).collect())
+}

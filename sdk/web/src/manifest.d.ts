@@ -1,0 +1,68 @@
+/** The manifest of a texture: what its file states. `spec/htex-1.md` has the meaning of each key. */
+
+export type Quantity = string;
+export type Contact = "finger" | "tool" | "unknown";
+
+/** A speed and a force at which the texture was recorded; what is absent is not known. */
+export interface ManifestCondition {
+  speed_mm_s?: number;
+  force_n?: number;
+  /** By how much two recordings like this one differ, dB. */
+  repeatability_rms_db?: number;
+  /** Number of segments that were averaged; 0 for a condition that was computed. */
+  segments?: number;
+}
+
+/** An exponent of a law, and where it comes from. */
+export interface Exponent {
+  exponent: number;
+  source: "measured" | "given" | "assumed";
+  estimate?: number;
+  standard_error?: number;
+}
+
+/** How frequencies and level follow a motion outside the recorded ones. */
+export interface Law {
+  frequency_speed: Exponent;
+  level_speed: Exponent;
+  level_force: Exponent;
+}
+
+/** The texture as one model describes it. */
+export interface Representation {
+  /** Id of the model. */
+  model: string;
+  model_version: string;
+  /** Level and quality at each of the conditions that it is fitted at. */
+  at: ({ condition: number; level_rms: number } & Record<string, unknown>)[];
+  [key: string]: unknown;
+}
+
+export interface Manifest {
+  /** Version of the format. */
+  htex: string;
+  name: string;
+  license?: string;
+  author?: string;
+  tags?: string[];
+  description?: string;
+  source?: string;
+  doi?: string;
+  sensor?: string;
+  finger?: string;
+  contact?: Contact;
+  quantity: Quantity;
+  unit: string;
+  band: { low_hz: number; high_hz: number };
+  provenance?: Record<string, unknown>;
+  conditions: ManifestCondition[];
+  law?: Law;
+  representations: Representation[];
+  reference?: Record<string, unknown>;
+  /** Models that the file brings along. */
+  plugins?: { model: string; version: string; file: string; [key: string]: unknown }[];
+  extensions?: Record<string, unknown>;
+  extensions_required?: string[];
+  /** Keys of a newer minor version. */
+  [key: string]: unknown;
+}

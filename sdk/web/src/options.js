@@ -1,0 +1,69 @@
+// What options there are, and their types. A name that is not known is an error, since it would have no effect.
+
+import { HtexError } from "./core.js";
+
+export const OPEN = { modules: "array", embedded: "boolean", trusted: "boolean" };
+export const AT = { model: "string", at: "object" };
+export const VOICE = {
+  model: "string",
+  rate: "number",
+  seed: "integer",
+  motion: "object",
+  synthesis: "string",
+  frequencyScaling: "boolean",
+  levelScaling: "boolean",
+  contact: "boolean",
+  ceiling: "number",
+  gain: "number",
+  limit: "number",
+  bands: "number",
+};
+const MOTION_OPTIONS = { speed: "number", force: "number", position: "number", x: "number", y: "number" };
+
+const IS = {
+  array: Array.isArray,
+  object: (value) => typeof value === "object" && value !== null,
+  integer: (value) => typeof value === "bigint" || Number.isSafeInteger(value),
+};
+
+function typeIs(value, type) {
+  return type === "any" || (IS[type] ? IS[type](value) : typeof value === type);
+}
+
+/** Number of letters that differ: added, left out or replaced. */
+function distance(a, b) {
+  let row = Array.from({ length: b.length + 1 }, (_, i) => i);
+  for (let i = 1; i <= a.length; i++) {
+    const next = [i];
+    for (let k = 1; k <= b.length; k++) {
+      next.push(Math.min(next[k - 1] + 1, row[k] + 1, row[k - 1] + (a[i - 1] === b[k - 1] ? 0 : 1)));
+    }
+    row = next;
+  }
+  return row[b.length];
+}
+
+function unknown(name, known, what) {
+  const nearest = known.map((other) => [distance(name.toLowerCase(), other.toLowerCase()), other]).sort(([a], [b]) => a - b)[0];
+  const advice = nearest && nearest[0] <= 3 ? `did you mean \`${nearest[1]}\`?` : `there are ${known.join(", ")}`;
+  return new HtexError(`${what} has no option \`${name}\`; ${advice}`, "invalid-argument");
+}
+
+/** Checks names and types of options; `what` has them. Returns the options. */
+export function checked(options, known, what) {
+  if (!IS.object(options)) throw new HtexError(`the options of ${what} are an object, such as { model: "ar" }`, "invalid-argument");
+  for (const [name, value] of Object.entries(options)) {
+    if (!Object.hasOwn(known, name)) throw unknown(name, Object.keys(known), what);
+    if (value !== undefined && !typeIs(value, known[name])) {
+      const given = value === null ? "null" : Array.isArray(value) ? "array" : typeof value;
+      throw new HtexError(`${what}: \`${name}\` must be of the type ${known[name]}, not ${given}`, "invalid-argument");
+    }
+  }
+  for (const name of ["motion", "at"]) if (options[name]) checked(options[name], MOTION_OPTIONS, `\`${name}\` of ${what}`);
+  return options;
+}
+
+/** Checks a motion that is given by itself. */
+export function checkedMotion(motion, what) {
+  return motion === undefined ? motion : checked(motion, MOTION_OPTIONS, `the motion of ${what}`);
+}

@@ -1,0 +1,60 @@
+// A source in a worklet, with its gain and its fade.
+
+/** Whether two numbers are the same, as numbers of 32 bits, which the parameters of a node are. */
+function same(a, b) {
+  return Math.fround(a) === Math.fround(b);
+}
+
+export class Track {
+  /** Fades in within `frames`. The gain is `gain` until the node's parameter has another value than `parameter`. */
+  constructor(source, { gain, parameter, frames }) {
+    this.source = source;
+    this.given = gain;
+    this.parameter = parameter;
+    this.gain = null;
+    /** Way of the fade, 0 to 1, and its step for each frame. */
+    this.way = 0;
+    this.step = 1 / frames;
+    this.motion = [NaN, NaN, NaN];
+  }
+
+  fadeOut(frames) {
+    this.step = -1 / frames;
+    this.given ??= this.parameter;
+    this.isLeaving = true;
+  }
+
+  get isOver() {
+    return (this.isLeaving && this.way <= 0) || this.source.isOver;
+  }
+
+  /** Renders a block; returns the number of samples that lacked. */
+  render(block, motion) {
+    if (motion.some((x, i) => !Object.is(x, this.motion[i]))) {
+      this.motion = motion;
+      this.source.setMotion(...motion);
+    }
+    return this.source.render(block);
+  }
+
+  /** Applies the gain, in a straight line from that of the last block. A track that leaves keeps the gain that it had. */
+  level(block, parameter) {
+    if (!this.isLeaving && !same(parameter, this.parameter)) this.given = null;
+    if (!this.isLeaving) this.parameter = parameter;
+    const gain = this.given ?? parameter;
+    const from = this.gain ?? gain;
+    this.gain = gain;
+    if (from === 1 && gain === 1) return;
+    const step = (gain - from) / block.length;
+    for (let i = 0; i < block.length; i++) block[i] *= from + step * (i + 1);
+  }
+
+  /** Fades with equal power: two textures of the same level then have this level at any time. */
+  fade(block) {
+    if (this.way === 1 && this.step > 0) return;
+    for (let i = 0; i < block.length; i++) {
+      this.way = Math.min(Math.max(this.way + this.step, 0), 1);
+      block[i] *= Math.sin(0.5 * Math.PI * this.way);
+    }
+  }
+}

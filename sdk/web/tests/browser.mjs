@@ -1,0 +1,138 @@
+// A browser with the policies that users have, and a web server for its pages.
+
+import { cp, mkdtemp, readFile, writeFile } from "node:fs/promises";
+import { createServer } from "node:http";
+import { tmpdir } from "node:os";
+import path from "node:path";
+
+import { chromium } from "playwright-core";
+
+import { HTEX_FIXTURES, HTEX_PACKAGE } from "./fixtures.mjs";
+
+const { HTEX_CHROMIUM = "/usr/bin/chromium", HTEX_EXAMPLE } = process.env;
+const TYPES = { ".js": "text/javascript", ".html": "text/html", ".wasm": "application/wasm", ".css": "text/css" };
+/** A name of this machine whose pages are not secure, as those of a machine in the network are not. */
+const ELSEWHERE = "elsewhere.example";
+
+const SURFACE = '<div id=surface tabindex=0 style="width:600px;height:300px"></div>';
+
+/** Records what an audio node plays: `record(node)`, then `await recorded()`. */
+const RECORDER = `
+const source = \`registerProcessor("record", class extends AudioWorkletProcessor {
+  constructor() { super(); this.blocks = []; this.port.onmessage = () => this.port.postMessage(this.blocks.splice(0)); }
+  process([[input]]) { this.blocks.push(input ? input.slice() : new Float32Array(128)); return true; } });\`;
+window.record = async (node) => {
+  await node.context.audioWorklet.addModule("data:text/javascript," + encodeURIComponent(source));
+  const recorder = new AudioWorkletNode(node.context, "record", { numberOfOutputs: 0, channelCount: 1, channelCountMode: "explicit" });
+  node.connect(recorder);
+  window.recorded = () => new Promise((done) => {
+    recorder.port.onmessage = ({ data }) => done(data.flatMap((block) => Array.from(block)));
+    recorder.port.postMessage(0);
+  });
+};`;
+
+/** Starts both; `close` ends them. */
+export async function start() {
+  const folder = await mkdtemp(path.join(tmpdir(), "htex-browser-"));
+  await cp(HTEX_PACKAGE, path.join(folder, "htex"), { recursive: true });
+  await cp(HTEX_FIXTURES, path.join(folder, "fixtures"), { recursive: true });
+  await cp(HTEX_EXAMPLE, path.join(folder, "example"), { recursive: true });
+  await cp(HTEX_PACKAGE, path.join(folder, "example/htex"), { recursive: true });
+  await cp(path.join(HTEX_FIXTURES, "vinyl.htex"), path.join(folder, "cloth.htex"));
+  await writeFile(path.join(folder, "recorder.js"), RECORDER);
+  await writeFile(path.join(folder, "empty.html"), `<!doctype html><title>empty</title><script src=/recorder.js></script>${SURFACE}`);
+  const here = { folder, answer: null };
+  const server = createServer((request, response) => serve(here, request, response));
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  const { port } = server.address();
+  const args = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", `--host-resolver-rules=MAP ${ELSEWHERE} 127.0.0.1`];
+  const browser = await chromium.launch({ executablePath: HTEX_CHROMIUM, args });
+  return Object.assign(here, {
+    browser,
+    address: `http://127.0.0.1:${port}`,
+    elsewhere: `http://${ELSEWHERE}:${port}`,
+    page: (at = "empty.html", options = {}) => page(here, at, options),
+    close: async () => {
+      await browser.close();
+      server.closeAllConnections();
+      server.close();
+    },
+  });
+}
+
+/** Answers with a file, unless `here.answer` answers. */
+async function serve(here, request, response) {
+  const { pathname } = new URL(request.url, "http://x");
+  if (pathname === "/favicon.ico") return void response.writeHead(204).end();
+  if (await here.answer?.(pathname, response)) return;
+  const file = path.join(here.folder, path.normalize(pathname));
+  try {
+    response.setHeader("content-type", TYPES[path.extname(file)] ?? "application/octet-stream").end(await readFile(file));
+  } catch {
+    response.writeHead(404).end();
+  }
+}
+
+/** Opens a page. `errors` has what it reports; `run` evaluates an expression without the gesture that Playwright's `evaluate` counts as. */
+async function page(here, at, { origin = here.address, ...options }) {
+  const made = await here.browser.newPage({ viewport: { width: 1000, height: 700 }, ...options });
+  made.errors = [];
+  made.on("pageerror", (error) => made.errors.push(String(error)));
+  made.on("console", (message) => message.type() === "error" && made.errors.push(message.text()));
+  made.input = await made.context().newCDPSession(made);
+  made.run = async (expression) => {
+    const asked = { expression: `(async () => ${expression})()`, awaitPromise: true, returnByValue: true, userGesture: false };
+    const { result, exceptionDetails } = await made.input.send("Runtime.evaluate", asked);
+    if (exceptionDetails) throw new Error(exceptionDetails.exception?.description ?? exceptionDetails.text);
+    return result.value;
+  };
+  made.until = async (expression) => {
+    for (let tries = 0; tries < 200; tries++) {
+      if (await made.run(expression)) return;
+      await pause(50);
+    }
+    throw new Error(`${expression} has not come true; errors: ${made.errors.join("; ")}`);
+  };
+  await made.goto(`${origin}/${at}`);
+  return made;
+}
+
+/** Writes a page with the second example of the README, which leaves its constants in `window`. */
+export async function writeExample(folder, file = "readme.html") {
+  const page = `<!doctype html><script type=importmap>{"imports":{"htex":"/htex/index.js"}}</script><script src=/recorder.js></script>${SURFACE}`;
+  await writeFile(path.join(folder, file), `${page}<script type=module>${await example()}</script>`);
+}
+
+export async function example() {
+  const readme = await readFile(path.join(HTEX_PACKAGE, "README.md"), "utf8");
+  const [, code] = [...readme.matchAll(/```js\n([\s\S]*?)```/g)].map(([, text]) => text);
+  return `${code}\nwindow.node = node; window.context = context; await window.record?.(node);`;
+}
+
+export const pause = (ms) => new Promise((done) => setTimeout(done, ms));
+
+/** Drags the mouse or a finger along a line, by the browser's protocol of input. */
+export async function drag(made, { touch = false, from = 50, to = 450, y = 100, lift = true } = {}) {
+  const send = (kind, x) =>
+    touch
+      ? made.input.send("Input.dispatchTouchEvent", { type: `touch${kind}`, touchPoints: kind === "End" ? [] : [{ x, y, id: 1 }] })
+      : made.input.send("Input.dispatchMouseEvent", { type: MOUSE[kind], x, y, button: "left", buttons: kind === "End" ? 0 : 1, clickCount: 1 });
+  await send("Start", from);
+  for (let x = from; x <= to; x += 10) {
+    await send("Move", x);
+    await pause(10);
+  }
+  if (lift) await send("End", to);
+}
+
+const MOUSE = { Start: "mousePressed", Move: "mouseMoved", End: "mouseReleased" };
+
+/** RMS of numbers. */
+export const rms = (numbers) => Math.sqrt(numbers.reduce((sum, x) => sum + x * x, 0) / Math.max(numbers.length, 1));
+
+/** The largest step between neighbours, of those from `start` to `end`. */
+export function largestStep(numbers, start = 0, end = numbers.length) {
+  let largest = 0;
+  for (let i = Math.max(start, 1); i < end; i++) largest = Math.max(largest, Math.abs(numbers[i] - numbers[i - 1]));
+  return largest;
+}

@@ -1,0 +1,196 @@
+// What is heard: under the default policy of autoplay, without clicks.
+
+import assert from "node:assert/strict";
+import test, { after, before } from "node:test";
+
+import { drag, largestStep, pause, rms, start, writeExample } from "./browser.mjs";
+import { samples } from "./fixtures.mjs";
+
+const RATE = 48000;
+let here;
+before(async () => {
+  here = await start();
+  await writeExample(here.folder);
+});
+after(() => here?.close());
+
+/** Opens the README's page, whose context waits for a gesture. */
+async function waiting(options) {
+  const made = await here.page("readme.html", options);
+  await made.until("window.recorded !== undefined");
+  await pause(300);
+  assert.equal(await made.run("window.context.state"), "suspended");
+  return made;
+}
+
+test("the README's page sounds on the first press of a mouse", async () => {
+  const made = await waiting();
+  await drag(made, { lift: false });
+  assert.equal(await made.run("window.context.state"), "running");
+  const heard = await made.run("window.recorded()");
+  assert.ok(rms(heard.slice(-4800)) > 0.01, `${rms(heard.slice(-4800))}`);
+  assert.deepEqual(made.errors, []);
+  await made.close();
+});
+
+test("it sounds after the first touch", async () => {
+  const made = await waiting({ hasTouch: true });
+  await drag(made, { touch: true });
+  await made.until("window.context.state === 'running'");
+  await drag(made, { touch: true, lift: false });
+  const heard = await made.run("window.recorded()");
+  assert.ok(rms(heard.slice(-4800)) > 0.01);
+  await made.close();
+});
+
+test("a key on the surface resumes the context", async () => {
+  const made = await waiting();
+  for (const key of ["Tab", "a"]) {
+    for (const type of ["keyDown", "keyUp"]) await made.input.send("Input.dispatchKeyEvent", { type, key, code: key === "a" ? "KeyA" : key, text: key === "a" ? key : undefined });
+  }
+  await made.until("window.context.state === 'running'");
+  await made.close();
+});
+
+/** Renders a node offline in a page. `play(node, at, htex)` may call `at(seconds, what)`, which is done while the rendering is held there. */
+async function offline(play, { seconds = 2, options = { model: "bands", seed: 7 } } = {}) {
+  const made = await here.page();
+  const heard = await made.evaluate(
+    async ({ play, seconds, rate, options }) => {
+      const htex = await import("/htex/index.js");
+      const context = new OfflineAudioContext(1, seconds * rate, rate);
+      await htex.prepare(context);
+      const node = new htex.HtexNode(context, await htex.open("/fixtures/vinyl.htex"), options);
+      node.connect(context.destination);
+      const at = (second, what) =>
+        context.suspend(second).then(async () => {
+          await what();
+          // The worklet has then had its messages.
+          await new Promise((done) => setTimeout(done, 30));
+          context.resume();
+        });
+      await new Function(`return ${play}`)()(node, at, htex);
+      await node.ready;
+      const buffer = await context.startRendering();
+      if (node.error) throw node.error;
+      return Array.from(buffer.getChannelData(0));
+    },
+    { play: play.toString(), seconds, rate: RATE, options },
+  );
+  assert.deepEqual(made.errors, []);
+  await made.close();
+  return Float32Array.from(heard);
+}
+
+const MOVING = { model: "bands", seed: 7, motion: { speed: 80, force: 0.5 } };
+
+const moving = (node) => {
+  node.speed.value = 80;
+  node.force.value = 0.5;
+};
+
+test("a new node rests", async () => {
+  const heard = await offline(() => {}, { seconds: 0.5 });
+  assert.ok(heard.every((x) => x === 0));
+});
+
+test("a node that begins moving fades in within 10 ms", async () => {
+  const heard = await offline(moving, { options: { ...MOVING, gain: 1 }, seconds: 1 });
+  const expected = (await samples("bands.wav")).subarray(0, heard.length);
+  const faded = 0.01 * RATE;
+  assert.ok(Math.abs(heard[0]) < 0.01 * Math.max(...expected.map(Math.abs)));
+  for (let i = 0; i < faded; i++) assert.ok(Math.abs(heard[i]) <= Math.abs(expected[i]) * 1.000001, `${i}`);
+  assert.ok(heard.subarray(faded).every((x, i) => x === expected[faded + i]));
+  assert.ok(largestStep(heard, 0, faded) <= 1.5 * largestStep(expected));
+});
+
+test("stop fades within 10 ms", async () => {
+  const heard = await offline(
+    (node, at) => {
+      node.speed.value = 80;
+      node.force.value = 0.5;
+      at(1, () => node.stop());
+    },
+    { options: MOVING },
+  );
+  const last = heard.findLastIndex((x) => x !== 0);
+  assert.ok(last > RATE - 2 && last <= 1.01 * RATE + 128, `${last / RATE}`);
+  const own = largestStep(heard, 0.1 * RATE, RATE - 1);
+  const stopping = largestStep(heard, RATE - 1);
+  console.log(`stop: largest step ${stopping.toFixed(5)}, ${own.toFixed(5)} while it played`);
+  assert.ok(stopping <= 1.5 * own);
+});
+
+test("load fades to another texture and its gain", async () => {
+  // Ten swaps, between models and between gains: a quarter of a second each.
+  const heard = await offline(
+    async (node, at, { open }) => {
+      node.speed.value = 80;
+      node.force.value = 0.5;
+      const texture = await open("/fixtures/vinyl.htex");
+      const other = await open("/fixtures/vinyl.htex");
+      for (let i = 1; i <= 10; i++) {
+        const [to, options] = i % 2 ? [texture, { model: "sbeta", gain: i % 4 === 1 ? undefined : 40 }] : [other, { model: "ar", seed: i }];
+        at(0.25 * i, () => node.load(to, { ...options, motion: { speed: 80, force: 0.5 } }));
+      }
+    },
+    { options: MOVING, seconds: 3 },
+  );
+  const ratios = [];
+  for (let i = 1; i <= 10; i++) {
+    const swap = 0.25 * i * RATE;
+    const before = largestStep(heard, swap - 0.2 * RATE, swap - 1);
+    const after = largestStep(heard, swap + 0.02 * RATE, swap + 0.22 * RATE);
+    ratios.push(largestStep(heard, swap - 1, swap + 0.02 * RATE) / Math.max(before, after));
+  }
+  console.log(`load: largest steps of the swaps, of their textures' own: ${ratios.map((x) => x.toFixed(2)).join(" ")}`);
+  assert.ok(Math.max(...ratios) <= 1.5);
+  const level = (i) => rms(heard.subarray((0.25 * i + 0.02) * RATE, (0.25 * i + 0.25) * RATE));
+  // The usual gain plays at -20 dB; the gain that was set is higher, and the next one keeps its ratio.
+  assert.ok(Math.abs(20 * Math.log10(level(0) / 0.1)) < 1.5, `${level(0)}`);
+  assert.ok(Math.abs(20 * Math.log10(level(1) / 0.1)) < 1.5, `${level(1)}`);
+  assert.ok(level(3) > 1.5 * level(1), `${level(3)} ${level(1)}`);
+});
+
+test("load in a running context, of a module too, has no click and tells the envelope", async () => {
+  const made = await here.page();
+  const played = await made.evaluate(async () => {
+    const { open, prepare, HtexNode } = await import("/htex/index.js");
+    const context = new AudioContext({ sampleRate: 48000 });
+    await context.resume();
+    await prepare(context);
+    const [smooth, module] = [await open("/fixtures/vinyl.htex"), await open("/fixtures/bursts.htex")];
+    const motion = { speed: 80, force: 0.5 };
+    const node = new HtexNode(context, smooth, { model: "bands", motion, bands: 3 });
+    const envelopes = [];
+    node.onenvelope = ({ level, frames, bands }) => envelopes.push({ level, frames, bands: bands.length, model: node.texture === module });
+    node.speed.value = 80;
+    node.force.value = 0.5;
+    await window.record(node);
+    const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+    await wait(500);
+    await node.load(module, { model: "bursts", motion });
+    await wait(500);
+    // Of many at once the last one counts.
+    await Promise.all([1, 2, 3, 4, 5].map((seed) => node.load(smooth, { model: "ar", seed, motion })));
+    await wait(300);
+    node.stop();
+    await wait(300);
+    const heard = await window.recorded();
+    await context.close();
+    return { heard, envelopes, edges: Array.from(node.envelopeEdges), error: node.error?.message, missed: node.missed };
+  });
+  assert.equal(played.error, undefined);
+  const { heard, envelopes } = played;
+  const last = heard.findLastIndex((x) => x !== 0);
+  assert.ok(heard.length - last > 0.1 * RATE, "it was stopped");
+  assert.ok(rms(heard.slice(last - 0.25 * RATE, last - 0.05 * RATE)) > 0.03);
+  // The largest step of all is one of a texture itself, which has many nearly as large.
+  const steps = heard.map((x, i) => Math.abs(x - heard[Math.max(i - 1, 0)])).sort((a, b) => b - a);
+  assert.ok(steps[0] <= 1.5 * steps[20], `${steps[0]} ${steps[20]}`);
+  assert.ok(envelopes.length > 30 && envelopes.every(({ bands }) => bands === 3), `${envelopes.length}`);
+  assert.ok(envelopes.some(({ model, level }) => model && level > 0));
+  assert.equal(played.edges.length, 4);
+  assert.deepEqual(made.errors, []);
+  await made.close();
+});

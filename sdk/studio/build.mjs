@@ -8,6 +8,7 @@ import { createHash } from "node:crypto";
 import { mkdir, readdir, readFile, rm, writeFile } from "node:fs/promises";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
 import { build } from "vite";
 
 import { digest, policy, withPolicy } from "./parts.mjs";
@@ -56,6 +57,12 @@ async function buildStatic() {
   await writeServiceWorker(folder);
 }
 
+/** A module as text that runs nothing: compressed, since a page is read as a whole. */
+async function block(name) {
+  const text = gzipSync(await readFile(path.join(here, ".htex", name)), { level: 9 }).toString("base64");
+  return `<script type="application/octet-stream" id="${name}">${text}</script>\n    `;
+}
+
 /** One file: the script and the style sheet stand in it, and the library, the worklet and the shelf are `data:` addresses in the script. */
 async function buildSingle() {
   const folder = path.join(out, ".single");
@@ -81,7 +88,8 @@ async function buildSingle() {
   const icon = Buffer.from(await read("icon.svg")).toString("base64");
   html = html.replace(scriptTag, "").replace(styleTag, () => `<style>${css}</style>`);
   html = html.replace(iconTag, `<link rel="icon" href="data:image/svg+xml;base64,${icon}" />`);
-  html = html.replace("</body>", () => `<script type="module">${code}</script>\n  </body>`);
+  const blocks = await Promise.all(["htex.wasm", "htex-author.wasm"].map(block));
+  html = html.replace("</body>", () => `${blocks.join("")}<script type="module">${code}</script>\n  </body>`);
   const single = policy({
     "script-src": `${digest(code)} data: 'wasm-unsafe-eval'`,
     "style-src": digest(css),

@@ -20,7 +20,7 @@ export function withPolicy(html, text) {
 
 export const digest = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
 
-/** The page says where the modules are (`src/modules.ts`): the package's own addresses would bring them along twice. */
+/** The page says where the modules are (`virtual:modules`): the package's own addresses would bring them along twice. */
 export const ownModules = {
   name: "own-modules",
   transform(code, id) {

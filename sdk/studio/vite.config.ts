@@ -5,17 +5,25 @@ import { dataAddress, ownModules, playerPage, script } from "./parts.mjs";
 
 const WORKERS = "virtual:workers";
 const PLAYER = "virtual:player";
+const MODULES = "virtual:modules";
+
+const file = (name: string) => fileURLToPath(new URL(name, import.meta.url));
 
 /** Scripts of workers as `data:` addresses in the page of one file, and the page of a player as an asset. */
 function parts(mode: string): Plugin {
   return {
     name: "parts",
-    resolveId: (id) => (id === WORKERS || id === PLAYER ? `\0${id}` : null),
+    resolveId: (id) => (id === WORKERS || id === PLAYER || id === MODULES ? `\0${id}` : null),
     async load(id) {
       if (id === `\0${WORKERS}`) {
         const isSingle = mode === "single";
         const text = async (entry: string) => (isSingle ? JSON.stringify(dataAddress((await script(entry)).code)) : "undefined");
         return `export const authorWorker = ${await text(".htex/author-worker.js")}; export const guardedWorker = ${await text(".htex/worker.js")};`;
+      }
+      if (id === `\0${MODULES}`) {
+        if (mode === "single") return "export const library = undefined; export const author = undefined;";
+        const from = (name: string, module: string) => `export { default as ${name} } from ${JSON.stringify(`${file(`./.htex/${module}`)}?url`)};`;
+        return from("library", "htex.wasm") + from("author", "htex-author.wasm");
       }
       if (id !== `\0${PLAYER}`) return null;
       const page = await playerPage();
@@ -27,7 +35,7 @@ function parts(mode: string): Plugin {
 }
 
 export default defineConfig(({ mode }) => ({
-  resolve: { alias: { htex: fileURLToPath(new URL("./.htex/index.js", import.meta.url)) } },
+  resolve: { alias: { htex: file("./.htex/index.js") } },
   assetsInclude: ["**/*.htexlib"],
   build: { target: "es2022", chunkSizeWarningLimit: 12_000 },
   plugins: [ownModules, ...(mode === "part" ? [] : [parts(mode)])],

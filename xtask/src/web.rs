@@ -90,7 +90,11 @@ pub fn web(out: &Path) -> Result<()> {
     copy(author, "htex-author.wasm")?;
     join(&source.join("src"), &PROCESSOR, &out.join("processor.js"))?;
     join(&source.join("src"), &WORKER, &out.join("worker.js"))?;
-    join(&source.join("src"), &AUTHOR_WORKER, &out.join("author-worker.js"))
+    join(
+        &source.join("src"),
+        &AUTHOR_WORKER,
+        &out.join("author-worker.js"),
+    )
 }
 
 /// Writes a script of the files of a folder.

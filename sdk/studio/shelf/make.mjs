@@ -2,7 +2,7 @@
 //
 //   node shelf/make.mjs HTEX OUT.htexlib
 //
-// Simulated textures have six conditions and four models; those made by hand have one. All are given away under CC0-1.0.
+// Simulated textures are recorded at four motions, and have four models; those made by hand have one. All are given away under CC0-1.0.
 
 import { execFileSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -20,8 +20,8 @@ const metadata = ({ name, tags, description }) => ["--name", name, "--license", 
 mkdirSync(textures);
 for (const one of simulated) {
   const recordings = [];
-  for (const speed of [40, 80, 160]) {
-    for (const force of [0.25, 0.8]) {
+  for (const speed of [70, 110]) {
+    for (const force of [0.3, 0.8]) {
       const recording = path.join(folder, `${one.surface} ${speed} ${force}.csv`);
       run("simulate", "--surface", one.surface, "--speed", speed, "--force", force, "--seconds", 10, "-o", recording);
       recordings.push(recording);

@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals";
 
 import playerAddress from "virtual:player";
-import { libraryAddress } from "./modules.ts";
+import { compressedLibrary, plainBase64 } from "./modules.ts";
 import { theAuthor } from "./author.ts";
 import { toLink } from "./link.ts";
 import { fileName, save, wav } from "./save.ts";
@@ -80,28 +80,19 @@ export function link() {
   return document ? toLink(document.bytes, location.href) : "";
 }
 
-async function base64(bytes: Uint8Array, isCompressed: boolean) {
-  const stream = new Blob([bytes as Uint8Array<ArrayBuffer>]).stream();
-  const packed = isCompressed ? stream.pipeThrough(new CompressionStream("gzip")) : stream;
-  const all = new Uint8Array(await new Response(packed).arrayBuffer());
-  let text = "";
-  for (let at = 0; at < all.length; at += 0x8000) text += String.fromCharCode(...all.subarray(at, at + 0x8000));
-  return btoa(text);
-}
-
 const escaped = (text: string) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
 
 /** A page that plays this texture, without anything else. */
 export async function savePlayer() {
   const document = present.peek();
   if (!document) return;
-  const [template, library] = await Promise.all([fetch(playerAddress).then((one) => one.text()), fetch(libraryAddress).then((one) => one.arrayBuffer())]);
+  const [template, library] = await Promise.all([fetch(playerAddress).then((one) => one.text()), compressedLibrary()]);
   const license = texture.peek()?.manifest["license"];
   const parts: Record<string, string> = {
     __NAME__: escaped(document.name),
     __LICENSE__: license ? `Licence: ${escaped(String(license))}` : "",
-    __LIBRARY__: await base64(new Uint8Array(library), true),
-    __TEXTURE__: await base64(document.bytes, false),
+    __LIBRARY__: library,
+    __TEXTURE__: await plainBase64(document.bytes),
   };
   const page = template.replaceAll(/__(NAME|LICENSE|LIBRARY|TEXTURE)__/g, (word) => parts[word] ?? "");
   save(new TextEncoder().encode(page), fileName(document.name, "html"), "text/html");

@@ -1,7 +1,9 @@
 // What the present texture is compared with: itself as it was opened, and the recording it was fitted to.
 
 import { computed, effect, signal } from "@preact/signals";
-import { open, type RecordedSpectrum, type Texture } from "htex";
+import { open, type MakeOptions, type RecordedSpectrum, type Texture } from "htex";
+
+import { author } from "./author.ts";
 
 import { origin } from "./state.ts";
 import { toDecibels } from "./shaping/spec.ts";
@@ -64,9 +66,17 @@ const openedDrawn = computed<Drawn | null>(() => {
   return { hz: HZ, db: Array.from(now.texture.spectrum(HZ, { model: now.model, at }), toDecibels) };
 });
 
+/** The magnitudes at which a finger begins to feel a sinusoid. */
+const thresholdDrawn = computed<Drawn | null>(() => {
+  const [made, now] = [author.value, opened.value];
+  if (!made || !now) return null;
+  const quantity = now.texture.quantity as NonNullable<MakeOptions["quantity"]>;
+  return { hz: HZ, db: Array.from(made.threshold(HZ, { quantity }), toDecibels) };
+});
+
 export const reference = computed<Reference>(() => {
   const work = recordedWork.value;
   const isThis = work !== null && origin.value?.bytes === work.bytes;
   const [speed, force] = [pilotSpeed.value, pilotForce.value];
-  return { opened: openedDrawn.value, recorded: isThis ? nearestRecorded(work, speed, force) : null, threshold: null };
+  return { opened: openedDrawn.value, recorded: isThis ? nearestRecorded(work, speed, force) : null, threshold: thresholdDrawn.value };
 });

@@ -9,7 +9,7 @@ import { audioContext, heard, playingNode, run, sound, tried, wake, warm } from 
 import { fromLink } from "./link.ts";
 import { finger, rest } from "./motion.ts";
 import { handles, moveHandle, setMacro } from "./shaping/session.ts";
-import { setModules } from "./modules.ts";
+import { setPlayer } from "./modules.ts";
 import { fill, items } from "./shelf.ts";
 import { begin, depth, fail, present, redo, say, screen, texture, undo, type Document } from "./state.ts";
 import { keepWork, lastWork } from "./store.ts";
@@ -84,9 +84,8 @@ function stayAwake() {
 }
 
 export function start() {
-  setModules();
   run();
-  warm().catch(fail);
+  const player = setPlayer();
   autosave();
   stayAwake();
   listenForDrops(document.body);
@@ -97,8 +96,11 @@ export function start() {
   // Leaving the page in the middle of a stroke leaves no sound behind.
   addEventListener("blur", () => document.visibilityState === "hidden" && silence());
   const opened = async () => (await openLink()) || (await openLast());
-  const [work, shelf] = [opened(), fill()];
-  Promise.all([work, shelf])
+  player
+    .then(() => {
+      warm().catch(fail);
+      return Promise.all([opened(), fill()]);
+    })
     .then(async ([isThere]) => {
       if (!isThere) await openFirst();
       document.documentElement.dataset["ready"] = "yes";

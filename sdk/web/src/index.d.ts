@@ -295,6 +295,8 @@ export interface NodeOptions extends LoadOptions {
   worker?: GuardedWorker;
   /** Longest call of a module in the worker, ms. Default 2000. */
   limit?: number;
+  /** Factor of all frequencies, above 0, for loudspeakers that have no low ones. Default 1: as a finger feels them. */
+  pitch?: number;
 }
 
 /** Plays a texture, with a fade at its start and its end. Has an event `error`, whose property of that name is an HtexError. */

@@ -70,11 +70,3 @@ fn catalogue(fixtures: &Path, package: &Path) -> Result<()> {
         .arg(package)
         .stdout(std::process::Stdio::null()))
 }
-
-/// The path of a program.
-fn which(name: &str) -> std::path::PathBuf {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let mut all = std::env::split_paths(&path).map(|folder| folder.join(name));
-    all.find(|file| file.is_file())
-        .unwrap_or_else(|| name.into())
-}

@@ -83,7 +83,7 @@ function Legend({ curves }: { curves: readonly Curve[] }) {
       <li class="legend-model">{model.value ? nameOf(model.value) : "model"}</li>
       {has("recording") && <li class="legend-recording">recording</li>}
       {has("before") && <li class="legend-before">as it was opened</li>}
-      {has("threshold") && <li class="legend-threshold">below this a finger feels nothing</li>}
+      {has("threshold") && <li class="legend-threshold">a single sinusoid in here is not felt</li>}
     </ul>
   );
 }

@@ -36,8 +36,8 @@ function Card({ item }: { item: Item }) {
       <button class={isHere ? "card here" : "card"} aria-pressed={isHere} {...looks} onClick={() => choose(item).catch(fail)} onDblClick={() => (screen.value = "shape")}>
         <Sparkline texture={item.texture} model={item.model} />
         <span class="card-name">{item.name}</span>
-        {isHere && <span class="card-here">on the pad</span>}
-        <span class="card-tags">{item.tags.slice(0, 3).join(" · ")}</span>
+
+        <span class="card-tags">{isHere ? "● on the pad" : item.tags.slice(0, 3).join(" · ")}</span>
       </button>
       {item.isOwn && (
         <button class="card-forget" aria-label={`Forget ${item.name}`} onClick={() => (endAudition(), forget(item).catch(fail))}>

@@ -49,6 +49,10 @@ export function playingNode() {
   return node;
 }
 
+export function isHeard() {
+  return context?.state === "running";
+}
+
 /** The samples that go to the loudspeaker, for the meter. */
 export function heard(into: Float32Array<ArrayBuffer>) {
   if (meter && context?.state === "running") meter.getFloatTimeDomainData(into);
@@ -76,6 +80,7 @@ const isReady = signal(false);
 export function wake() {
   if (sound.peek() === "off") sound.value = "on";
   if (context?.state === "suspended") context.resume().catch(fail);
+  attend(finger.peek().force > 0);
 }
 
 export function toggleSound() {
@@ -84,6 +89,24 @@ export function toggleSound() {
     wake();
     sound.value = "on";
   }
+}
+
+/** Milliseconds of rest after which the audio thread stops. */
+const RESTS_MS = 4000;
+let resting = 0;
+
+/** Lets the audio thread run while a finger is down, and some seconds after. */
+function attend(isDown: boolean) {
+  if (isDown) {
+    clearTimeout(resting);
+    resting = 0;
+    if (sound.peek() !== "off" && context?.state === "suspended") context.resume().catch(fail);
+  } else resting ||= window.setTimeout(sleep, RESTS_MS);
+}
+
+function sleep() {
+  resting = 0;
+  if (context?.state === "running" && finger.peek().force === 0) context.suspend().catch(fail);
 }
 
 /** The loudness of a texture at which its level is the usual one. */
@@ -138,6 +161,7 @@ export function run() {
   });
   effect(() => {
     const { speed, force, position } = finger.value;
+    attend(force > 0);
     if (!node) return;
     node.speed.value = speed;
     node.force.value = force;

@@ -37,21 +37,25 @@ function words(macros: Macros) {
   return [first, second].filter((one) => one !== undefined).map(([name, value]) => (value < 0 ? opposite[name] : plain[name])).join(", ");
 }
 
+/** Moves one of the handles, if there are some. */
+function moved(bench: Bench, spec: Spec, shaper: Shaper, db: number): Spec {
+  const between = make(bench.author, bench, spec);
+  const place = { ...bench, from: between, of: spec };
+  const handles = shaper.handles(place, spec);
+  const at = Math.floor(Math.random() * handles.length);
+  const handle = handles[at];
+  const next = handle && handles.length > 1 ? shaper.move(place, spec, at, handle.hz, handle.db + db) : spec;
+  between.free();
+  return next;
+}
+
 /** One texture near the one of the bench. */
 function vary(bench: Bench, spec: Spec, shaper: Shaper): Variation {
   const far = reach.peek();
   const macros = { rougher: MOST_MACRO * far * random(), brighter: MOST_MACRO * far * random(), peak: 0.7 * far * random(), level: 0.3 * far * random() };
   let next = shaper.macros(bench, spec, macros);
   next = { ...next, points: next.points.map((point) => ({ ...point, level: point.level * fromDecibels(MACRO_DB * macros.level) })) };
-  const between = make(bench.author, bench, next);
-  const place = { ...bench, from: between };
-  const handles = shaper.handles(place, next);
-  for (let i = 0; i < Math.min(MOVED_HANDLES, handles.length - 1); i++) {
-    const at = Math.floor(Math.random() * handles.length);
-    const handle = handles[at];
-    if (handle) next = shaper.move(place, next, at, handle.hz, handle.db + MOST_DB * far * random());
-  }
-  between.free();
+  for (let i = 0; i < MOVED_HANDLES; i++) next = moved(bench, next, shaper, MOST_DB * far * random());
   return { texture: make(bench.author, bench, next), model: next.model, text: words(macros) };
 }
 
@@ -68,7 +72,7 @@ function nine(made: Author, now: Texture, model: string) {
   const own = spec === read_ ? null : make(made, bench, spec);
   const shaper = shaperOf(spec.model);
   if (!shaper) return [];
-  const place = own ? { ...bench, from: own } : bench;
+  const place = { ...bench, from: own ?? now, of: spec };
   const found = Array.from({ length: COUNT }, () => vary(place, spec, shaper));
   own?.free();
   return found;

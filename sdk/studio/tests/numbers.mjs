@@ -2,7 +2,6 @@
 //
 //   HTEX_STUDIO=DIR node numbers.mjs
 
-import { execFileSync } from "node:child_process";
 import { readdir, readFile, stat } from "node:fs/promises";
 import path from "node:path";
 import { gzipSync } from "node:zlib";
@@ -30,16 +29,28 @@ async function interactive(browser, address, { kbps } = {}) {
   return time;
 }
 
+/** The processes that this one has begun, and theirs: numbers of `/proc/PID/stat`. */
+async function family() {
+  const all = new Map();
+  for (const name of await readdir("/proc")) {
+    if (!/^\d+$/.test(name)) continue;
+    const text = await readFile(`/proc/${name}/stat`, "utf8").catch(() => null);
+    const fields = text?.slice(text.lastIndexOf(")") + 2).split(" ");
+    if (fields) all.set(Number(name), { parent: Number(fields[1]), ticks: Number(fields[11]) + Number(fields[12]), pages: Number(fields[21]) });
+  }
+  const isOwn = (pid) => pid > 1 && (pid === process.pid || isOwn(all.get(pid)?.parent ?? 0));
+  return [...all].filter(([pid]) => pid !== process.pid && isOwn(pid)).map(([, one]) => one);
+}
+
 /** Seconds of processor that the browser's processes have taken. */
-function processorSeconds() {
-  const ticks = execFileSync("sh", ["-c", "cat /proc/[0-9]*/stat 2>/dev/null | grep '(chromium)' | awk '{ sum += $14 + $15 } END { print sum + 0 }'"], { encoding: "utf8" });
-  return Number(ticks) / 100;
+async function processorSeconds() {
+  return (await family()).reduce((sum, { ticks }) => sum + ticks, 0) / 100;
 }
 
 async function share(seconds) {
-  const before = processorSeconds();
+  const before = await processorSeconds();
   await new Promise((resolve) => setTimeout(resolve, 1e3 * seconds));
-  return `${((100 * (processorSeconds() - before)) / seconds).toFixed(2)} % of a core`;
+  return `${((100 * ((await processorSeconds()) - before)) / seconds).toFixed(2)} % of a core`;
 }
 
 async function sizes() {
@@ -152,8 +163,8 @@ async function growth(page, edits) {
   const session = await page.context().newCDPSession(page);
   const memory = async () => {
     await session.send("HeapProfiler.collectGarbage");
-    const [heap, wasm] = [await session.send("Runtime.getHeapUsage"), await page.evaluate(() => performance.measureUserAgentSpecificMemory?.().then((all) => all.bytes).catch(() => 0) ?? 0)];
-    return { heap: heap.usedSize + (heap.backingStorageSize ?? 0), wasm, resident: residentBytes() };
+    const { usedSize, backingStorageSize = 0 } = await session.send("Runtime.getHeapUsage");
+    return { heap: usedSize + backingStorageSize, resident: await residentBytes() };
   };
   const run = (count) =>
     page.evaluate(async (times) => {
@@ -170,10 +181,9 @@ async function growth(page, edits) {
   return { heap: after.heap - before.heap, resident: after.resident - before.resident };
 }
 
-/** Memory of the largest process of the browser: the page's. */
-function residentBytes() {
-  const lines = execFileSync("sh", ["-c", "ps -eo rss,args | grep -- '--type=renderer' | grep -v grep | sort -n | tail -1 | awk '{ print $1 }'"], { encoding: "utf8" });
-  return 1024 * Number(lines);
+/** Memory of the browser's largest process: the page's. */
+async function residentBytes() {
+  return 4096 * Math.max(...(await family()).map(({ pages }) => pages));
 }
 
 const only = process.argv[2];
@@ -191,7 +201,7 @@ if (wanted("start")) {
 }
 const page = await openStudio(browser, FILE);
 await page.mouse.click(700, 20);
-await page.waitForTimeout(3000);
+await page.waitForTimeout(6000);
 print("idle, all processes of the browser", await share(5));
 if (wanted("input")) {
   const times = await inputToSample(page);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 
-use super::{CHROMIUM, copy, files, fixtures};
+use super::{CHROMIUM, copy, files, fixtures, which};
 use crate::places::workspace;
 use crate::programs::{program, run};
 

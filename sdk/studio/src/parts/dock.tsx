@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 
-import { audible, heard, sound, wake } from "../engine.ts";
+import { audible, heard, isHeard, sound, wake } from "../engine.ts";
 import { finger, pilot, pilotForce, pilotSpeed, setPilot, stroke, type Pilot } from "../motion.ts";
 import { coverage } from "../shadow.ts";
 import { Icon } from "./icons.tsx";
@@ -63,7 +63,7 @@ function Meter() {
   useEffect(() => {
     const samples = new Float32Array(1024);
     const timer = setInterval(() => {
-      if (!place.current || document.hidden) return;
+      if (!place.current || document.hidden || !isHeard()) return;
       const square = heard(samples).reduce((sum, x) => sum + x * x, 0) / samples.length;
       const value = Math.max(0, 1 + (10 * Math.log10(square + 1e-12)) / 60);
       if (Math.abs(place.current.value - value) > 0.005) place.current.value = value;

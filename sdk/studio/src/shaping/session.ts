@@ -36,15 +36,15 @@ export const shown = computed(() => {
   return Math.max(distance.indexOf(Math.min(...distance)), 0);
 });
 
-function bench(of: Texture): Bench | null {
+function bench(from: Texture, of: Spec): Bench | null {
   const made = author.peek();
-  return made ? { author: made, from: of, shown: shown.peek() } : null;
+  return made ? { author: made, from, of, shown: shown.peek() } : null;
 }
 
 export const handles = computed<Handle[]>(() => {
   const [now, what, made] = [texture.value, spec.value, author.value];
   if (!now || !what || !made) return [];
-  return shaperOf(what.model)?.handles({ author: made, from: now, shown: shown.value }, what) ?? [];
+  return shaperOf(what.model)?.handles({ author: made, from: now, of: what, shown: shown.value }, what) ?? [];
 });
 
 /** What the macros start from: a texture of one's own, since the present one is freed with each step. */
@@ -82,7 +82,7 @@ function attempt(run: () => void) {
 export function moveHandle(handle: number, hz: number, db: number, gesture: string) {
   attempt(() => {
     const [now, what] = [texture.peek(), spec.peek()];
-    const place = now && bench(now);
+    const place = now && what && bench(now, what);
     const shaper = what && shaperOf(what.model);
     const name = handles.peek()[handle]?.name.toLowerCase();
     if (place && what && shaper) take(shaper.move(place, what, handle, hz, db), `move ${name ?? "a handle"}`, gesture);
@@ -92,7 +92,7 @@ export function moveHandle(handle: number, hz: number, db: number, gesture: stri
 export function addHandle(hz: number, db: number) {
   attempt(() => {
     const [now, what] = [texture.peek(), spec.peek()];
-    const place = now && bench(now);
+    const place = now && what && bench(now, what);
     const added = place && what && shaperOf(what.model)?.add?.(place, what, hz, db);
     if (added) take(added, "add a peak", null);
   });
@@ -101,7 +101,7 @@ export function addHandle(hz: number, db: number) {
 export function removeHandle(handle: number) {
   attempt(() => {
     const [now, what] = [texture.peek(), spec.peek()];
-    const place = now && bench(now);
+    const place = now && what && bench(now, what);
     const left = place && what && shaperOf(what.model)?.remove?.(place, what, handle);
     if (left && left !== what) take(left, "remove a peak", null);
   });
@@ -112,7 +112,7 @@ export async function redraw() {
   await theAuthor();
   attempt(() => {
     const [now, what] = [texture.peek(), spec.peek()];
-    const place = now && bench(now);
+    const place = now && what && bench(now, what);
     if (place && what && what.model !== BANDS) take(redrawn(place, what), "redraw as bands", null);
   });
 }
@@ -123,13 +123,13 @@ export function setMacro(name: keyof Macros, value: number) {
     const [now, what, made] = [texture.peek(), spec.peek(), author.peek()];
     if (!now || !what || !made) return;
     if (!base) {
-      const place = { author: made, from: now, shown: shown.peek() };
+      const place = { author: made, from: now, of: what, shown: shown.peek() };
       // What cannot be drawn is redrawn first; its level alone can be changed as it is.
       const start = shaperOf(what.model) || name === "level" ? what : redrawn(place, what);
       base = { texture: make(made, { from: now }, start), spec: start, made: null };
     }
     const next = { ...macros.peek(), [name]: value };
-    const place = { author: made, from: base.texture, shown: shown.peek() };
+    const place = { author: made, from: base.texture, of: base.spec, shown: shown.peek() };
     const shaped = shaperOf(base.spec.model)?.macros(place, base.spec, next) ?? base.spec;
     const factor = fromDecibels(MACRO_DB * next.level);
     const levelled = { ...shaped, points: shaped.points.map((point) => ({ ...point, level: point.level * factor })) };

@@ -46,6 +46,8 @@ export function read(texture: Texture, model: string): Spec {
 export interface Frame {
   /** The texture that is changed: its name, quantity, law, contact and metadata stay. */
   readonly from: Texture;
+  /** The specification of that texture, whose spectra need not be made. */
+  readonly of?: Spec;
 }
 
 /** What a texture states of itself, to be kept in one that is made of it. */
@@ -81,6 +83,7 @@ export function make(author: Author, { from }: Frame, spec: Spec): Texture {
 
 /** The spectra of a specification: decibels relative to a thousandth of the unit, at frequencies, for each point. */
 export function decibels(author: Author, frame: Frame, spec: Spec, frequencies: ArrayLike<number>): number[][] {
+  if (frame.of === spec) return spec.points.map((point) => pointDecibels(frame.from, spec.model, point, frequencies));
   const texture = make(author, frame, spec);
   try {
     return spec.points.map((point) => pointDecibels(texture, spec.model, point, frequencies));

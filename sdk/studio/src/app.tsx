@@ -1,7 +1,7 @@
 // The frame: what stands above, the screens with their tabs, and the pad, which is always there.
 
 import { lazy, Suspense } from "preact/compat";
-import { useErrorBoundary } from "preact/hooks";
+import { useEffect, useErrorBoundary, useRef } from "preact/hooks";
 
 import { Dock } from "./parts/dock.tsx";
 import { Icon, type IconName } from "./parts/icons.tsx";
@@ -72,11 +72,13 @@ function Safely({ children }: { children: preact.ComponentChildren }) {
 
 export function App() {
   const Shown = SCREENS.find(({ id }) => id === screen.value)?.show ?? Shelf;
+  const place = useRef<HTMLElement>(null);
+  useEffect(() => place.current?.scrollTo(0, 0), [screen.value]);
   return (
     <div class="frame">
       <Top />
       <Tabs />
-      <main class="screen" id="screen">
+      <main class="screen" id="screen" ref={place}>
         <Safely key={screen.value}>
           <Suspense fallback={<p class="empty">…</p>}>
             <Shown />

@@ -215,6 +215,28 @@ if (wanted("slider")) {
   const times = await sliderToSamples(page);
   print("slider to new samples: median, p95", `${ms(median(times))}, ${ms(quantile(times, 0.95))} of ${times.length}`);
 }
+if (wanted("voices")) {
+  await page.keyboard.press("Escape");
+  await page.evaluate(() => {
+    const node = htexStudio.playingNode();
+    const { context } = node;
+    void context.resume();
+    context.suspend = async () => {};
+    window.eight = Array.from({ length: 8 }, (_, seed) => {
+      const one = new node.constructor(context, htexStudio.texture.value, { seed, motion: { speed: 80, force: 0.4 } });
+      one.speed.value = 80;
+      one.force.value = 0.4;
+      one.connect(context.destination);
+      return one;
+    });
+  });
+  await page.waitForTimeout(500);
+  print("eight voices play, nothing moves in the page", await share(5));
+  await page.evaluate(() => (window.eight.forEach((one) => one.stop()), delete htexStudio.playingNode().context.suspend));
+  await page.waitForTimeout(500);
+  await page.evaluate(() => htexStudio.playingNode().context.resume());
+  print("the same without the eight", await share(5));
+}
 await goTo(page, "Shape");
 if (wanted("frames")) {
   const tasks = await work(page);

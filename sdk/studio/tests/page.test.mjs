@@ -194,7 +194,7 @@ test("a recording becomes a texture in a worker", async () => {
 test("ten blind trials have a p-value and a table", async () => {
   const page = await openStudio(browser, FILE);
   await goTo(page, "Compare");
-  await page.getByLabel("B", { exact: true }).selectOption({ label: "Shelf: Zip" });
+  await page.getByRole("main").getByRole("combobox").nth(1).selectOption({ label: "Shelf: Zip" });
   await page.getByRole("button", { name: "Begin ten trials" }).click();
   for (let i = 0; i < 10; i++) await page.getByRole("button", { name: "X is A" }).click();
   const told = await page.getByText(/of 10 right/).textContent();

@@ -24,9 +24,9 @@ async function shot(page, name) {
 async function draw(page) {
   const box = await page.locator(".spectrum canvas").boundingBox();
   const at = (part, height) => [box.x + 50 + part * (box.width - 70), box.y + height * box.height];
-  await page.mouse.move(...at(0.42, 0.5));
+  await page.mouse.move(...at(0.42, 0.4));
   await page.mouse.down();
-  for (let i = 0; i <= 30; i++) await page.mouse.move(...at(0.42 + 0.008 * i, 0.5 - 0.2 * Math.sin((Math.PI * i) / 30)));
+  for (let i = 0; i <= 30; i++) await page.mouse.move(...at(0.42 + 0.008 * i, 0.4 - 0.18 * Math.sin((Math.PI * i) / 30)));
   await page.mouse.up();
 }
 
@@ -75,13 +75,13 @@ async function way(page) {
 }
 
 for (const colorScheme of ["light", "dark"]) {
-  for (const [width, height] of [[1400, 900], [390, 844]]) {
-    const page = await openStudio(browser, FILE, { viewport: { width, height }, colorScheme, hasTouch: width < 500 });
+  for (const [size, width, height] of [["wide", 1240, 800], ["phone", 390, 844]]) {
+    const page = await openStudio(browser, FILE, { viewport: { width, height }, colorScheme, hasTouch: size === "phone" });
     await page.locator("body").press("Shift");
-    await screens(page, `${width}-${colorScheme}`);
+    await screens(page, `${size}-${colorScheme}`);
     await page.context().close();
   }
 }
-const page = await openStudio(browser, FILE);
+const page = await openStudio(browser, FILE, { viewport: { width: 1240, height: 800 } });
 await way(page);
 await browser.close();

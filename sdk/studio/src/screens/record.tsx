@@ -80,6 +80,11 @@ function Notices({ notices, kind }: { notices: Notice[]; kind: string }) {
   ));
 }
 
+/** Notices that no finding tells. */
+function beside(notices: Notice[], findings: Finding[]) {
+  return notices.filter(({ text }) => !findings.some(({ code }) => text.includes(code)));
+}
+
 function OneRead({ read: { recording, columns, processed, problem } }: { read: Read }) {
   return (
     <article class="panel stack">
@@ -101,8 +106,8 @@ function OneRead({ read: { recording, columns, processed, problem } }: { read: R
             {processed.findings.map((finding) => (
               <Found key={finding.code} finding={finding} />
             ))}
-            <Notices notices={processed.warnings} kind="Warning" />
-            <Notices notices={processed.notes} kind="Note" />
+            <Notices notices={beside(processed.warnings, processed.findings)} kind="Warning" />
+            <Notices notices={beside(processed.notes, processed.findings)} kind="Note" />
           </ul>
         </>
       )}

@@ -45,7 +45,7 @@ export function loadAuthor() {
 async function loaded(file) {
   if (typeof Blob !== "undefined" && file instanceof Blob) {
     if (typeof file.name !== "string") throw argument("a Blob has no name, which tells what kind of file it is; give { name, bytes }");
-    return { name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) };
+    return { name: file.name, bytes: new Uint8Array(await file.arrayBuffer()), isCopy: true };
   }
   return named(file);
 }
@@ -224,8 +224,14 @@ export async function fit(recordings, { onProgress, signal, ...settings } = {}) 
   const given = filesOf(recordings, settings);
   const ready = await Promise.all([given.recordings, given.response, given.trackers].map((files) => Promise.all(files.map(loaded))));
   const [loadedRecordings, response, trackers] = ready;
+  const copies = ready.flat().flatMap(({ isCopy, bytes }) => (isCopy ? [bytes.buffer] : []));
   const call = callOf({ recordings: loadedRecordings, response, trackers }, settings);
-  const [compiledModule, player, worker] = await Promise.all([compiled(), library(), takeWorker()]);
+  // The worker starts meanwhile.
+  const worker = await takeWorker();
+  const [compiledModule, player] = await Promise.all([compiled(), library()]).catch((error) => {
+    giveBack(worker);
+    throw error;
+  });
   const { document, bytes } = await new Promise((resolve, reject) => {
     const end = (settle, value, kept) => {
       signal?.removeEventListener("abort", abort);
@@ -243,7 +249,7 @@ export async function fit(recordings, { onProgress, signal, ...settings } = {}) 
     worker.onerror = ({ message }) => end(reject, new HtexError(`the worker failed: ${message}`, "internal"), false);
     if (signal?.aborted) return abort();
     signal?.addEventListener("abort", abort, { once: true });
-    worker.postMessage({ module: compiledModule, name: "fit", ...call });
+    worker.postMessage({ module: compiledModule, name: "fit", ...call }, copies);
   });
   return { texture: opened(player, bytes), report: document };
 }

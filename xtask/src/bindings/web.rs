@@ -45,6 +45,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
             "node.test.mjs",
             "library.test.mjs",
             "author.test.mjs",
+            "author-browser.test.mjs",
             "browser.test.mjs",
         ])
         .env("HTEX_PACKAGE", &package)

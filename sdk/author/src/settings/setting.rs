@@ -141,7 +141,11 @@ macro_rules! settings {
                 use crate::settings::setting::Setting;
                 let entries: &[(&str, Option<String>)] = &[$($(($flag, self.$field.recorded()),)?)*];
                 let said = entries.iter();
-                said.filter_map(|(flag, text)| Some(((*flag).to_owned(), text.clone()?))).collect()
+                let said = said.filter_map(|(flag, text)| Some(((*flag).to_owned(), text.clone()?)));
+                // Inserted one by one: to collect them would sort them, by a sort of their own.
+                let mut recorded = std::collections::BTreeMap::new();
+                recorded.extend(said);
+                recorded
             }
         }
     };

@@ -5,9 +5,19 @@ use htex_finding::{Finding, Hint, Notice, Severity};
 use htex_format::Quantity;
 use serde::Serialize;
 
-/// The settings that help.
-fn settings(hint: Hint) -> &'static [&'static str] {
-    hint.settings()
+/// The settings that help, by the names of their tables; hints have those of flags.
+pub(crate) fn settings(hint: Hint) -> Vec<&'static str> {
+    let named = |flag: &&'static str| match *flag {
+        "rate" => "rate_hz",
+        "from" => "from_s",
+        "to" => "to_s",
+        "speed" => "speed_mm_s",
+        "force" => "force_n",
+        "most_numbers" => "most_values",
+        at if at.starts_with("at") => "conditions",
+        other => other,
+    };
+    hint.settings().iter().map(named).collect()
 }
 
 #[derive(Serialize)]
@@ -16,7 +26,7 @@ pub(crate) struct DescribedFinding<'a> {
     severity: Severity,
     pointer: &'a str,
     message: &'a str,
-    settings: &'static [&'static str],
+    settings: Vec<&'static str>,
 }
 
 pub(crate) fn finding(finding: &Finding) -> DescribedFinding<'_> {
@@ -37,7 +47,7 @@ pub(crate) fn findings(all: &[Finding]) -> Vec<DescribedFinding<'_>> {
 #[derive(Serialize)]
 pub(crate) struct DescribedNotice<'a> {
     text: &'a str,
-    settings: &'static [&'static str],
+    settings: Vec<&'static str>,
 }
 
 impl<'a> DescribedNotice<'a> {

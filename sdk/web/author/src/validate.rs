@@ -72,7 +72,7 @@ struct Explained {
     summary: &'static str,
     explanation: &'static str,
     fix: &'static str,
-    settings: &'static [&'static str],
+    settings: Vec<&'static str>,
 }
 
 /// What the code of a finding means; `null` for one that is not known.
@@ -88,7 +88,7 @@ pub(crate) fn explain(mut call: Document, _: Files<'_>) -> Result<Answer, Refusa
         summary: rule.summary,
         explanation: rule.explanation,
         fix: rule.fix,
-        settings: rule.hint.settings(),
+        settings: describe::settings(rule.hint),
     });
     Answer::new(&explained, Vec::new())
 }

@@ -5,6 +5,7 @@ import { createServer } from "node:http";
 import { readFile } from "node:fs/promises";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
+import { gzipSync } from "node:zlib";
 
 import { chromium } from "playwright-core";
 
@@ -21,8 +22,8 @@ const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/cs
 /** The strict policy that the folder is served with. */
 const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; worker-src 'self'";
 
-/** Serves the static folder; `close` ends it. */
-export async function serve() {
+/** Serves the static folder, compressed as most web servers do if that is asked for; `close` ends it. */
+export async function serve({ isCompressed = false } = {}) {
   const asked = [];
   const server = createServer(async (request, response) => {
     const { pathname } = new URL(request.url, "http://x");
@@ -30,7 +31,9 @@ export async function serve() {
     const file = path.join(HTEX_STUDIO, "static", path.normalize(pathname === "/" ? "/index.html" : pathname));
     try {
       const bytes = await readFile(file);
-      response.setHeader("Content-Type", TYPES[path.extname(file)] ?? "application/octet-stream").setHeader("Content-Security-Policy", POLICY).end(bytes);
+      response.setHeader("Content-Type", TYPES[path.extname(file)] ?? "application/octet-stream").setHeader("Content-Security-Policy", POLICY);
+      if (isCompressed) response.setHeader("Content-Encoding", "gzip");
+      response.end(isCompressed ? gzipSync(bytes) : bytes);
     } catch {
       response.writeHead(404).end();
     }

@@ -1,6 +1,6 @@
 // Two sides that are compared, with levels matched; and blind trials.
 
-import { computed, signal } from "@preact/signals";
+import { batch, computed, effect, signal } from "@preact/signals";
 import type { Texture } from "htex";
 
 import { tried } from "./engine.ts";
@@ -15,6 +15,11 @@ export type Side = "a" | "b";
 export const sides = signal<Record<Side, string>>({ a: "present", b: "opened" });
 export const isMatched = signal(true);
 export const heardSide = signal<Side | "x" | null>(null);
+
+/** Silence by Escape or by another screen is silence here, too. */
+effect(() => {
+  if (!tried.value) heardSide.value = null;
+});
 
 interface Played {
   readonly name: string;
@@ -53,8 +58,10 @@ export function play(side: Side | "x", actual: Side = side === "x" ? "a" : side)
   const chosen = actual === "a" ? a : b;
   if (!a || !b || !chosen) return;
   const factor = actual === "b" && isMatched.peek() ? levelOf(a) / Math.max(levelOf(b), 1e-12) : 1;
-  tried.value = { texture: chosen.texture, model: chosen.model, gain: factor };
-  heardSide.value = side;
+  batch(() => {
+    tried.value = { texture: chosen.texture, model: chosen.model, gain: factor };
+    heardSide.value = side;
+  });
 }
 
 export function stop() {

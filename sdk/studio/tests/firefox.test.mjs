@@ -71,6 +71,7 @@ async function slide(page) {
   let loudest = 0;
   for (let i = 0; i < 80 && loudest < 0.02; i++) {
     await page.mouse.move(pad.x + 40 + 3 * i, pad.y + 80);
+    await new Promise((resolve) => setTimeout(resolve, 20));
     loudest = await page.evaluate(() => Math.max(...htexStudio.heard(new Float32Array(1024))));
   }
   await page.mouse.up();

@@ -53,6 +53,7 @@ for (const [way, address] of [["the file", () => FILE], ["the folder", () => ser
     let loudest = 0;
     for (let i = 0; i < 60 && loudest < 0.02; i++) {
       await page.mouse.move(pad.x + 50 + 4 * i, pad.y + 100);
+      await page.waitForTimeout(20);
       loudest = await page.evaluate(() => Math.max(...htexStudio.heard(new Float32Array(1024))));
     }
     await page.mouse.up();
@@ -92,6 +93,29 @@ test("the page plays a texture of the shelf as the command does", async () => {
     await writeFile(file, await bytesOf(page));
     await assertPlaysAlike(page, file);
   }
+  await closed(page);
+});
+
+test("Audible plays four times as high, and says so", async () => {
+  const page = await openStudio(browser, FILE);
+  await goTo(page, "Shelf");
+  await page.getByRole("button", { name: /^Guitar string/ }).click();
+  await page.getByRole("button", { name: "Steady" }).click();
+  const pitch = () =>
+    page.evaluate(async () => {
+      const turns = [];
+      for (let i = 0; i < 12; i++) {
+        await new Promise((resolve) => setTimeout(resolve, 60));
+        const samples = htexStudio.heard(new Float32Array(1024));
+        turns.push(samples.reduce((sum, x, k) => sum + (k > 0 && x > 0 !== samples[k - 1] > 0 ? 1 : 0), 0));
+      }
+      return turns.sort((a, b) => a - b)[6];
+    });
+  const felt = await pitch();
+  await page.getByRole("button", { name: "Audible" }).click();
+  await page.getByText("which is not what a finger feels").waitFor();
+  const high = await pitch();
+  assert.ok(felt > 4 && high > 3 * felt && high < 5 * felt, `${felt} and ${high} changes of sign`);
   await closed(page);
 });
 
@@ -197,7 +221,7 @@ test("ten blind trials have a p-value and a table", async () => {
   await page.getByRole("main").getByRole("combobox").nth(1).selectOption({ label: "Shelf: Zip" });
   await page.getByRole("button", { name: "Begin ten trials" }).click();
   for (let i = 0; i < 10; i++) await page.getByRole("button", { name: "X is A" }).click();
-  const told = await page.getByText(/of 10 right/).textContent();
+  const told = await page.locator("p", { hasText: /of 10 right/ }).textContent();
   const { bytes } = await saved(page, () => page.getByRole("button", { name: "Save as CSV" }).click());
   const rows = bytes.toString().trim().split("\n").slice(1).map((row) => row.split(","));
   const right = rows.filter(([, x]) => x === "a").length;

@@ -4,7 +4,7 @@ import { effect } from "@preact/signals";
 
 import { finger } from "../motion.ts";
 import { sounding } from "../shadow.ts";
-import { scheme } from "../theme.ts";
+import { isCalm, scheme } from "../theme.ts";
 import { RELIEF_HZ, TILE, colour, relief } from "./relief.ts";
 
 /** Milliseconds between two reliefs while a texture is edited. */
@@ -81,7 +81,7 @@ export class PadPainter {
   /** Moves the grain with the finger; a finger that comes in on the other side has not moved back. */
   private carry(x: number, y: number, width: number, height: number, isDown: boolean) {
     const way = (now: number, before: number) => (Math.abs(now - before) > 0.5 ? 0 : now - before);
-    if (isDown) {
+    if (isDown && !isCalm.matches) {
       this.offset.x += CARRIED * width * way(x, this.before.x);
       this.offset.y += CARRIED * height * way(y, this.before.y);
     }

@@ -217,6 +217,18 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     ("htex-capi", &["htex", "htex-device-builtin"]),
     (
+        "htex-web-author",
+        &[
+            "htex",
+            "htex-author",
+            "htex-capi",
+            "htex-dsp",
+            "htex-finding",
+            "htex-format",
+            "htex-library",
+        ],
+    ),
+    (
         "htex-python",
         &[
             "htex",

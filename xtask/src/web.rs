@@ -12,7 +12,12 @@ use crate::programs::run;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
-const COPIED: [&str; 19] = [
+const COPIED: [&str; 24] = [
+    "author-core.js",
+    "author-serve.js",
+    "author-worker.node.js",
+    "author.d.ts",
+    "author.js",
     "core.js",
     "guarded.js",
     "guests.js",
@@ -59,13 +64,23 @@ const WORKER: [&str; 8] = [
     "worker.js",
 ];
 
+/// The same of the worker that fits.
+const AUTHOR_WORKER: [&str; 5] = [
+    "guests.js",
+    "core.js",
+    "author-core.js",
+    "author-serve.js",
+    "author-worker.js",
+];
+
 /// Builds the package into a folder.
 ///
 /// # Errors
 /// A message with the file or the program.
 pub fn web(out: &Path) -> Result<()> {
     let source = workspace().join("sdk/web");
-    let library = library()?;
+    let player = module("htex-capi", "small", &["--features", "library"])?.join("htex_c.wasm");
+    let author = module("htex-web-author", "author", &[])?.join("htex_author_c.wasm");
     fs::create_dir_all(out)?;
     let copy = |from: PathBuf, name: &str| fs::copy(from, out.join(name));
     for name in COPIED {
@@ -74,9 +89,15 @@ pub fn web(out: &Path) -> Result<()> {
     for name in ["package.json", "README.md"] {
         copy(source.join(name), name)?;
     }
-    copy(library, "htex.wasm")?;
+    copy(player, "htex.wasm")?;
+    copy(author, "htex-author.wasm")?;
     join(&source.join("src"), &PROCESSOR, &out.join("processor.js"))?;
-    join(&source.join("src"), &WORKER, &out.join("worker.js"))
+    join(&source.join("src"), &WORKER, &out.join("worker.js"))?;
+    join(
+        &source.join("src"),
+        &AUTHOR_WORKER,
+        &out.join("author-worker.js"),
+    )
 }
 
 /// Writes a script of the files of a folder.
@@ -88,13 +109,13 @@ fn join(folder: &Path, names: &[&str], out: &Path) -> Result<()> {
     Ok(fs::write(out, script)?)
 }
 
-/// Builds the library for WASM; returns its file.
-fn library() -> Result<PathBuf> {
+/// Builds a package for WASM by a profile; returns the folder of its file.
+fn module(package: &str, profile: &str, features: &[&str]) -> Result<PathBuf> {
     let mut build = Command::new(cargo());
     build
-        .args(["build", "--locked", "--package", "htex-capi", "--lib"])
-        .args(["--profile", "small", "--no-default-features"])
-        .args(["--features", "library"])
+        .args(["build", "--locked", "--package", package, "--lib"])
+        .args(["--profile", profile, "--no-default-features"])
+        .args(features)
         .args(["--target", TARGET])
         .env(
             "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
@@ -102,7 +123,7 @@ fn library() -> Result<PathBuf> {
         )
         .current_dir(workspace());
     run(&mut build).context("`rustup target add` brings the target")?;
-    Ok(target().join(TARGET).join("small/htex_c.wasm"))
+    Ok(target().join(TARGET).join(profile))
 }
 
 /// A file's text without its imports and with its exports as plain declarations.

@@ -10,6 +10,7 @@ mod fit;
 mod knobs;
 mod lines;
 mod together;
+mod usual;
 mod voice;
 
 use alloc::vec::Vec;
@@ -24,6 +25,7 @@ use htex_model::{
 
 pub use knobs::KNOBS;
 use lines::write_lines;
+pub use usual::USUAL;
 pub use voice::AutoregressionVoice;
 
 const COEFFICIENTS: usize = 0;

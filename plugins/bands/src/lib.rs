@@ -22,6 +22,7 @@ extern crate std;
 mod axis;
 mod fit;
 mod knobs;
+mod usual;
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -39,6 +40,7 @@ use htex_shaped::{Curve, Places, ShapedVoice};
 use axis::{Axis, Layout, Point};
 use fit::{Fitter, below_highest_db, total_energy};
 pub use knobs::KNOBS;
+pub use usual::USUAL;
 
 const BELOW: usize = 0;
 const STEP: usize = 1;

@@ -8,6 +8,7 @@ extern crate alloc;
 
 mod inverse;
 mod knobs;
+mod usual;
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -25,6 +26,7 @@ use htex_shaped::{Curve, Places, ShapedVoice};
 
 use inverse::Inverse;
 pub use knobs::KNOBS;
+pub use usual::USUAL;
 
 const CEPSTRUM: usize = 0;
 const BANDS: usize = 1;

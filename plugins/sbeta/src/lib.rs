@@ -9,6 +9,7 @@ extern crate alloc;
 mod decibels;
 mod fit;
 mod knobs;
+mod usual;
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -24,6 +25,7 @@ use htex_model::{
 use htex_shaped::{Curve, ShapedVoice};
 
 pub use knobs::KNOBS;
+pub use usual::USUAL;
 
 const ALPHA: usize = 0;
 const BETA: usize = 1;

@@ -10,6 +10,7 @@
 extern crate alloc;
 
 mod knobs;
+mod usual;
 
 use alloc::vec::Vec;
 
@@ -25,6 +26,7 @@ use htex_model::{
 };
 
 pub use knobs::KNOBS;
+pub use usual::USUAL;
 
 const FREQUENCY: usize = 0;
 const AMPLITUDE: usize = 1;

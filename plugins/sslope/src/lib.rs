@@ -12,6 +12,7 @@ extern crate alloc;
 
 mod fit;
 mod knobs;
+mod usual;
 
 use alloc::sync::Arc;
 
@@ -27,6 +28,7 @@ use htex_model::{
 use htex_shaped::{Curve, ShapedVoice};
 
 pub use knobs::KNOBS;
+pub use usual::USUAL;
 
 const PEAK: usize = 0;
 const HIGH_PASS: usize = 1;

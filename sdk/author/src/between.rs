@@ -61,7 +61,7 @@ fn neighbours(conditions: &[Condition]) -> Vec<[usize; 2]> {
     let mut order: Vec<usize> = (0..conditions.len())
         .filter(|i| known(*i).is_some())
         .collect();
-    order.sort_by(|a, b| {
+    htex_dsp::order::sort_by(&mut order, |a, b| {
         known(*a)
             .partial_cmp(&known(*b))
             .unwrap_or(std::cmp::Ordering::Equal)

@@ -1,7 +1,6 @@
 //! From recordings to a fitted and measured asset.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
@@ -10,7 +9,7 @@ use htex_format::{
     Asset, AtCondition, Condition, Contact, Law, Manifest, Measure, Provenance, Quality, Quantity,
     Reference, Representation, round_parameters,
 };
-use htex_host::{HostError, LoadedModel, Origin};
+use htex_host::{HostError, Instant, LoadedModel, Origin};
 
 use crate::alternatives::warning;
 use crate::between;
@@ -56,6 +55,18 @@ pub struct FittedAsset {
 /// # Errors
 /// When a recording is not usable, or no model could be fitted.
 pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, AuthorError> {
+    fit_asset_watched(takes, request, &mut |_| {})
+}
+
+/// As [`fit_asset`]; `begins` is called with each model before it is fitted.
+///
+/// # Errors
+/// As [`fit_asset`].
+pub fn fit_asset_watched(
+    takes: &[Take],
+    request: &AssetRequest,
+    begins: &mut dyn FnMut(&LoadedModel),
+) -> Result<FittedAsset, AuthorError> {
     let contact = contact(takes);
     let (spectrum, strict) = (&request.spectrum, request.strict);
     let (mut grouped, grid, left_out) = match &request.grid {
@@ -78,6 +89,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     let mut fitted = Vec::new();
     let mut skipped = Vec::new();
     for choice in &request.models {
+        begins(&choice.model);
         match fit_model(choice, &grouped.groups, request.level) {
             Ok(mut one) => {
                 one.leave_out(choice, &left_out, request.level);

@@ -11,7 +11,7 @@ use crate::findings::{
 use crate::spectrum::{Trend, spectra_of};
 use crate::take::Take;
 use crate::{AuthorError, Exploration, Recording, SegmentSpectra, SpectrumOptions, Spread};
-use htex_recording::{ReadError, ReadOptions, ReadProblem, read_recording};
+use htex_recording::{ReadError, ReadOptions, ReadProblem, read_recording, recording_from_bytes};
 
 /// The result of reading a recording.
 #[derive(Debug, Clone)]
@@ -106,7 +106,29 @@ pub fn validate_recording(
     given: Exploration,
     options: &SpectrumOptions,
 ) -> Result<Report, ReadError> {
-    let findings = match read_recording(path, read) {
+    validated(read_recording(path, read), given, options)
+}
+
+/// As [`validate_recording`], of bytes; `path` is not opened.
+///
+/// # Errors
+/// When an option does not apply.
+pub fn validate_recording_bytes(
+    path: &Path,
+    bytes: &[u8],
+    read: &ReadOptions,
+    given: Exploration,
+    options: &SpectrumOptions,
+) -> Result<Report, ReadError> {
+    validated(recording_from_bytes(path, bytes, read), given, options)
+}
+
+fn validated(
+    read: Result<Recording, ReadError>,
+    given: Exploration,
+    options: &SpectrumOptions,
+) -> Result<Report, ReadError> {
+    let findings = match read {
         Err(error)
             if matches!(
                 error.problem,

@@ -15,6 +15,7 @@ mod browser;
 mod handles;
 mod library;
 mod log;
+mod memory;
 mod motion;
 mod options;
 mod pointers;
@@ -23,6 +24,14 @@ mod scene;
 mod shutdown;
 mod status;
 mod voice;
+
+/// What the functions of this crate are made of, for those that the module of `sdk/web/author` adds. Not part of the C interface.
+#[doc(hidden)]
+pub mod calls {
+    pub use crate::memory::{allocate, free};
+    pub use crate::pointers::{needed_text, place, slice};
+    pub use crate::status::{Failure, guarded};
+}
 
 pub use asset::*;
 #[cfg(target_family = "wasm")]

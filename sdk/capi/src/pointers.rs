@@ -9,7 +9,7 @@ use crate::status::{Failure, htex_status};
 ///
 /// # Safety
 /// As the module says.
-pub(crate) unsafe fn slice<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], Failure> {
+pub unsafe fn slice<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], Failure> {
     if len == 0 {
         return Ok(&[]);
     }
@@ -45,7 +45,7 @@ fn check<T>(pointer: *const T, len: usize) -> Result<(), Failure> {
 ///
 /// # Safety
 /// As the module says.
-pub(crate) unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
+pub unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
     if pointer.is_null() || !pointer.is_aligned() {
         return Err(Failure::argument(
             "the pointer for the result is NULL or misaligned",
@@ -75,7 +75,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Result<Option<&'a str>,
 ///
 /// # Safety
 /// As [`text`].
-pub(crate) unsafe fn needed_text<'a>(pointer: *const c_char) -> Result<&'a str, Failure> {
+pub unsafe fn needed_text<'a>(pointer: *const c_char) -> Result<&'a str, Failure> {
     // SAFETY: as here.
     unsafe { text(pointer) }?.ok_or(Failure::argument("a text is NULL"))
 }

@@ -45,7 +45,7 @@ pub enum htex_status {
 
 /// An error of a call: its status and its text.
 #[derive(Debug)]
-pub(crate) struct Failure {
+pub struct Failure {
     status: htex_status,
     text: Text,
 }
@@ -62,12 +62,13 @@ enum Text {
 
 impl Failure {
     /// An error with a fixed text; does not allocate.
-    pub(crate) const fn plain(status: htex_status, text: &'static str) -> Self {
+    pub const fn plain(status: htex_status, text: &'static str) -> Self {
         let text = Text::Plain(text);
         Self { status, text }
     }
 
-    pub(crate) const fn argument(text: &'static str) -> Self {
+    /// As a wrong argument; does not allocate.
+    pub const fn argument(text: &'static str) -> Self {
         Self::plain(htex_status::HTEX_STATUS_INVALID_ARGUMENT, text)
     }
 
@@ -79,7 +80,7 @@ impl Failure {
     }
 
     /// As an error of an `htex` crate.
-    pub(crate) fn of(status: htex_status, error: impl std::error::Error + 'static) -> Self {
+    pub fn of(status: htex_status, error: impl std::error::Error + 'static) -> Self {
         let text = Text::Of(Box::new(error));
         Self { status, text }
     }
@@ -205,7 +206,7 @@ pub extern "C" fn htex_status_text(status: i32) -> *const c_char {
 }
 
 /// Runs the body of a C function: keeps the text of an error, and stops panics.
-pub(crate) fn guarded(body: impl FnOnce() -> Result<(), Failure>) -> htex_status {
+pub fn guarded(body: impl FnOnce() -> Result<(), Failure>) -> htex_status {
     let result = catch_unwind(AssertUnwindSafe(body)).unwrap_or(Err(Failure::plain(
         htex_status::HTEX_STATUS_INTERNAL,
         "an error of the library itself; please report it",

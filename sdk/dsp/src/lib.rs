@@ -43,6 +43,7 @@ pub mod nelder_mead;
 pub mod noise;
 pub mod non_negative;
 pub mod normal;
+pub mod order;
 pub mod peaks;
 pub mod pipeline;
 mod polyphase;

@@ -51,6 +51,8 @@ mod validate;
 #[cfg(feature = "write")]
 mod writing;
 mod zip_records;
+#[cfg(feature = "write")]
+mod zip_writer;
 
 pub use asset::Asset;
 pub use block::{round_parameters, stored_bytes};

@@ -100,7 +100,8 @@ pub fn check_triangles(
     let places = relative(conditions);
     let upright = upright(&places, triangles)?;
     let outline = outline(&upright)?;
-    let used: BTreeSet<usize> = triangles.iter().flatten().copied().collect();
+    let mut used = BTreeSet::new();
+    used.extend(triangles.iter().flatten().copied());
     match (0..conditions.len()).find(|condition| !used.contains(condition)) {
         Some(condition) => Err(TrianglesError::Unreached { condition }),
         None => check_outline(&places, &outline),

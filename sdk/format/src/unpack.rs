@@ -5,7 +5,7 @@
 
 use std::borrow::Cow;
 
-use flate2::{Decompress, FlushDecompress, Status};
+use flate2::{Crc, Decompress, FlushDecompress, Status};
 
 use crate::zip_records::Common;
 
@@ -38,7 +38,7 @@ pub(crate) fn unpack<'a>(data: &'a [u8], common: &Common) -> Result<Cow<'a, [u8]
         DEFLATED => Cow::Owned(inflate(data, common.size as usize)?),
         _ => Cow::Borrowed(data),
     };
-    let crc = crc32fast::hash(&bytes);
+    let crc = crc32(&bytes);
     if crc == common.crc {
         return Ok(bytes);
     }
@@ -46,6 +46,13 @@ pub(crate) fn unpack<'a>(data: &'a [u8], common: &Common) -> Result<Cow<'a, [u8]
         found: crc,
         stated: common.crc,
     })
+}
+
+/// The checksum of ZIP, of the inflater: its tables are in every program that reads an asset.
+pub(crate) fn crc32(bytes: &[u8]) -> u32 {
+    let mut crc = Crc::new();
+    crc.update(bytes);
+    crc.sum()
 }
 
 fn inflate(data: &[u8], size: usize) -> Result<Vec<u8>, Damage> {

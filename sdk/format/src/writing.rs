@@ -1,22 +1,15 @@
 //! Writing assets as `.htex` files.
 
-use std::io::{Cursor, Write};
 use std::path::Path;
-
-use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
 use crate::check_manifest::check_manifest;
 use crate::check_manifest::grid_points;
 use crate::entries::{MANIFEST, MEDIA_TYPE, MIMETYPE};
 use crate::limits::Limits;
 use crate::validate::inspect;
+use crate::zip_writer::ZipWriter;
 use crate::{Asset, WriteError, block, write_file};
 use htex_finding::Findings;
-
-/// zlib-rs chooses the same matches on every processor, so the bytes are the same everywhere.
-/// Zopfli takes 100 ms for an asset and saves five bytes.
-const DEFLATE_LEVEL: i64 = 9;
 
 impl Asset {
     /// Encodes the asset as a `.htex` file. Equal assets give equal bytes on every machine.
@@ -37,20 +30,23 @@ impl Asset {
             return Err(WriteError::Invalid { findings });
         }
         let json = serde_json::to_vec(&manifest).map_err(archive_error)?;
-        let mut archive = Writer::new();
-        archive.add(MIMETYPE, MEDIA_TYPE.as_bytes(), CompressionMethod::Stored)?;
-        archive.add(MANIFEST, &json, CompressionMethod::Deflated)?;
-        for (name, bytes) in self.blocks()? {
-            archive.add(name, &bytes, CompressionMethod::Stored)?;
-        }
-        if let Some((name, bytes)) = self.reference_entry()? {
-            archive.add(name, &bytes, CompressionMethod::Stored)?;
-        }
+        let blocks = self.blocks()?;
+        let reference = self.reference_entry()?;
         count("plugins", manifest.plugins.len(), self.plugins.len())?;
-        for (plugin, module) in manifest.plugins.iter().zip(&self.plugins) {
-            archive.add(&plugin.file, module, CompressionMethod::Deflated)?;
-        }
-        readable(archive.finish()?)
+        let plugins = manifest.plugins.iter().zip(&self.plugins);
+        let archived = || {
+            let mut archive = ZipWriter::default();
+            archive.store(MIMETYPE, MEDIA_TYPE.as_bytes())?;
+            archive.deflate(MANIFEST, &json)?;
+            for (name, bytes) in blocks.into_iter().chain(reference) {
+                archive.store(name, &bytes)?;
+            }
+            for (plugin, module) in plugins {
+                archive.deflate(&plugin.file, module)?;
+            }
+            archive.finish()
+        };
+        readable(archived().map_err(archive_error)?)
     }
 
     /// Writes the asset to a file atomically: a reader sees the old file or the new one.
@@ -131,34 +127,5 @@ fn count(what: &str, expected: usize, got: usize) -> Result<(), WriteError> {
 fn archive_error(error: impl std::fmt::Display) -> WriteError {
     WriteError::Archive {
         problem: error.to_string(),
-    }
-}
-
-struct Writer(ZipWriter<Cursor<Vec<u8>>>);
-
-impl Writer {
-    fn new() -> Self {
-        Self(ZipWriter::new(Cursor::new(Vec::new())))
-    }
-
-    fn add(
-        &mut self,
-        name: &str,
-        bytes: &[u8],
-        method: CompressionMethod,
-    ) -> Result<(), WriteError> {
-        let level = (method == CompressionMethod::Deflated).then_some(DEFLATE_LEVEL);
-        let options = SimpleFileOptions::default()
-            .compression_method(method)
-            .compression_level(level)
-            .last_modified_time(DateTime::default())
-            .system(System::Unix)
-            .unix_permissions(0o644);
-        self.0.start_file(name, options).map_err(archive_error)?;
-        self.0.write_all(bytes).map_err(archive_error)
-    }
-
-    fn finish(self) -> Result<Vec<u8>, WriteError> {
-        Ok(self.0.finish().map_err(archive_error)?.into_inner())
     }
 }

@@ -6,9 +6,9 @@ pub(crate) const END_BYTES: usize = 22;
 const LOCAL_BYTES: usize = 30;
 const CENTRAL_BYTES: usize = 46;
 
-const END: u32 = 0x0605_4b50;
-const CENTRAL: u32 = 0x0201_4b50;
-const LOCAL: u32 = 0x0403_4b50;
+pub(crate) const END: u32 = 0x0605_4b50;
+pub(crate) const CENTRAL: u32 = 0x0201_4b50;
+pub(crate) const LOCAL: u32 = 0x0403_4b50;
 const ZIP64_LOCATOR: u32 = 0x0706_4b50;
 const ZIP64_LOCATOR_BYTES: usize = 20;
 

@@ -17,6 +17,20 @@ pub(crate) fn models() -> &'static [LoadedModel] {
     &MODELS
 }
 
+/// What renders several voices of a model in one call, as large scenes do. Pages have few voices, and would download it for nothing.
+#[cfg(not(target_family = "wasm"))]
+macro_rules! voices {
+    ($model:ident) => {
+        Some(&$model::VOICES)
+    };
+}
+#[cfg(target_family = "wasm")]
+macro_rules! voices {
+    ($model:ident) => {
+        None
+    };
+}
+
 /// The table of a model's crate, with the fit only in programs that fit: otherwise nothing links it, nor what it computes with.
 macro_rules! model {
     ($model:ident) => {{
@@ -27,26 +41,26 @@ macro_rules! model {
             fit: without_fits,
             ..$model::TABLE
         };
-        TableModel::new(TABLE, Some(&$model::VOICES))
+        TableModel::new(TABLE, voices!($model))
     }};
-    ($model:ident, knobs) => {{
+    ($model:ident, knobs, usual) => {{
         let model = model!($model);
         #[cfg(feature = "fit")]
-        let model = model.with_knobs(&$model::KNOBS);
+        let model = model.with_knobs(&$model::KNOBS).with_usual($model::USUAL);
         model
     }};
 }
 
-/// The models. One that is added here is in every program that links this crate. Without `knobs` a sweep spans the ranges of its
-/// options.
+/// The models. One that is added here is in every program that links this crate. Without `usual` its parameters have the ranges of its
+/// descriptor alone; without `knobs` a sweep spans the ranges of its options.
 fn tables() -> Vec<TableModel> {
     vec![
-        model!(htex_ar, knobs),
-        model!(htex_mfcc, knobs),
-        model!(htex_speak, knobs),
-        model!(htex_sbeta, knobs),
-        model!(htex_sslope, knobs),
-        model!(htex_bands, knobs),
+        model!(htex_ar, knobs, usual),
+        model!(htex_mfcc, knobs, usual),
+        model!(htex_speak, knobs, usual),
+        model!(htex_sbeta, knobs, usual),
+        model!(htex_sslope, knobs, usual),
+        model!(htex_bands, knobs, usual),
     ]
 }
 
@@ -54,6 +68,26 @@ fn tables() -> Vec<TableModel> {
 #[test]
 fn every_model_is_loaded() {
     assert_eq!(models().len(), tables().len());
+}
+
+/// Each parameter of a model has a usual range, which is a part of what may be stored.
+#[cfg(all(test, feature = "fit"))]
+#[test]
+fn usual_ranges_are_within_the_descriptors() {
+    for model in models() {
+        let usual = model.usual();
+        for field in &model.descriptor().fields {
+            let own = usual.iter().find(|usual| usual.field == field.name);
+            let is_within = own.is_some_and(|own| {
+                field.min <= own.min && own.min < own.max && own.max <= field.max
+            });
+            assert!(is_within, "{}.{}: {own:?}", model.id(), field.name);
+            let starts = own.map_or(0.0, |own| own.min);
+            let is_log = own.is_some_and(|own| own.scale == htex_model::Scale::Log);
+            assert!(!is_log || starts > 0.0, "{}.{}", model.id(), field.name);
+        }
+        assert_eq!(usual.len(), model.descriptor().fields.len());
+    }
 }
 
 /// A fit that fails.

@@ -1,12 +1,12 @@
 //! Times of calls.
 
 #[cfg(not(target_family = "wasm"))]
-pub(crate) use std::time::Instant;
+pub use std::time::Instant;
 
-/// A time of the browser, which the standard library cannot read.
+/// A time of the browser, which the standard library cannot read; elsewhere it is that of the standard library.
 #[cfg(target_family = "wasm")]
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Instant {
+pub struct Instant {
     ms: f64,
 }
 
@@ -22,17 +22,23 @@ mod imported {
 
 #[cfg(target_family = "wasm")]
 impl Instant {
-    pub(crate) fn now() -> Self {
+    /// The time now.
+    #[must_use]
+    pub fn now() -> Self {
         Self {
             ms: imported::now_ms(),
         }
     }
 
-    pub(crate) fn elapsed(self) -> std::time::Duration {
+    /// The time since then.
+    #[must_use]
+    pub fn elapsed(self) -> std::time::Duration {
         Self::now().saturating_duration_since(self)
     }
 
-    pub(crate) fn saturating_duration_since(self, earlier: Self) -> std::time::Duration {
+    /// The time since an earlier one; zero if that is later.
+    #[must_use]
+    pub fn saturating_duration_since(self, earlier: Self) -> std::time::Duration {
         std::time::Duration::try_from_secs_f64((self.ms - earlier.ms) / 1e3).unwrap_or_default()
     }
 }

@@ -95,7 +95,7 @@ fn check_descriptor(descriptor: &Descriptor) -> Result<(), DescriptorError> {
         return Err(DescriptorError::ControlCharacters { text });
     }
     let mut names: Vec<&str> = descriptor.fields.iter().map(|f| f.name.as_str()).collect();
-    names.sort_unstable();
+    htex_dsp::order::sort(&mut names);
     match names.windows(2).find(|pair| pair[0] == pair[1]) {
         Some(pair) => Err(DescriptorError::SameName {
             name: plain(pair[0]),

@@ -52,11 +52,13 @@ mod sections;
 #[path = "browser/mod.rs"]
 mod wasm;
 
+pub use clock::Instant;
 pub use descriptor::{DescriptorError, read_descriptor};
 pub use error::{HostError, OptionError};
 pub use htex_dsp::grid::{Band, GRID_HZ};
 pub use htex_model::{
-    Descriptor, Field, Fit, FitCondition, FitOption, Kind, Knob, Knobs, Motion, Status, Store,
+    Descriptor, Field, Fit, FitCondition, FitOption, Kind, Knob, Knobs, Motion, Scale, Status,
+    Store, Usual,
 };
 pub use htex_native::folders;
 pub use limits::{WasmCache, WasmCompiler, WasmEngine, WasmLimits, WasmTotal};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use htex_dsp::grid::Band;
 use htex_model::abi::{MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_RATE_HZ};
-use htex_model::{Descriptor, Kind, Knobs, Status, Values};
+use htex_model::{Descriptor, Kind, Knobs, Status, Usual, Values};
 #[cfg(feature = "fit")]
 use htex_model::{Fit, FitCondition};
 
@@ -217,6 +217,12 @@ impl LoadedModel {
     /// feature `fit`.
     pub fn knobs(&self) -> Option<&'static Knobs> {
         self.raw.knobs()
+    }
+
+    /// Returns the usual ranges of the parameters, for sliders; empty for a model that is not built in or states none, and without the
+    /// feature `fit`.
+    pub fn usual(&self) -> &'static [Usual] {
+        self.raw.usual()
     }
 
     /// Fits the model to a spectrum. Needs the feature `fit`.

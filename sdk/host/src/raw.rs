@@ -5,7 +5,7 @@
 
 use htex_model::abi::ModelTable;
 use htex_model::voices_1::VoicesRenderFn;
-use htex_model::{Band, FitCondition, Knobs, Motion};
+use htex_model::{Band, FitCondition, Knobs, Motion, Usual};
 
 /// Arguments of a fit, as passed through the ABI.
 pub(crate) struct RawFit<'a> {
@@ -39,6 +39,9 @@ pub(crate) trait RawModel: Send + Sync {
     fn follows_motion(&self) -> bool;
     fn knobs(&self) -> Option<&'static Knobs> {
         None
+    }
+    fn usual(&self) -> &'static [Usual] {
+        &[]
     }
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64;
     /// Makes a voice; an error is a status.

@@ -3,7 +3,7 @@
 use htex_model::abi::ModelTable;
 use htex_model::motion_1::MotionTable;
 use htex_model::voices_1::VoicesTable;
-use htex_model::{Band, Knobs, Motion};
+use htex_model::{Band, Knobs, Motion, Usual};
 
 use crate::raw::{RawFit, RawModel, RawVoice, Together};
 
@@ -16,6 +16,7 @@ pub(crate) struct TableModel {
     /// If the model has the extension `htex.motion/1`.
     motion: Option<&'static MotionTable>,
     knobs: Option<&'static Knobs>,
+    usual: &'static [Usual],
 }
 
 impl TableModel {
@@ -25,6 +26,7 @@ impl TableModel {
             voices,
             motion: None,
             knobs: None,
+            usual: &[],
         }
     }
 
@@ -42,6 +44,11 @@ impl TableModel {
             knobs: Some(knobs),
             ..self
         }
+    }
+
+    #[cfg(feature = "fit")]
+    pub(crate) fn with_usual(self, usual: &'static [Usual]) -> Self {
+        Self { usual, ..self }
     }
 }
 
@@ -153,6 +160,10 @@ impl RawModel for TableModel {
 
     fn knobs(&self) -> Option<&'static Knobs> {
         self.knobs
+    }
+
+    fn usual(&self) -> &'static [Usual] {
+        self.usual
     }
 
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {

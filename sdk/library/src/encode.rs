@@ -107,8 +107,9 @@ impl Pages {
 /// Encodes the entries of a leaf, of which there is at least one.
 fn leaf(entries: &[Entry]) -> Vec<u8> {
     let words = entries.iter().flat_map(|e| e.tags.iter().chain(&e.models));
-    let words: BTreeSet<&str> = words.map(String::as_str).collect();
-    let words: Vec<&str> = words.into_iter().collect();
+    let mut distinct = BTreeSet::new();
+    distinct.extend(words.map(String::as_str));
+    let words: Vec<&str> = distinct.into_iter().collect();
     let mut page = Vec::with_capacity(LEAF_BYTES);
     put_varint(&mut page, entries.len() as u64);
     put_varint(&mut page, words.len() as u64);

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::fault::Fault;
 use crate::limits::Limits;
+use crate::page::crc32;
 use crate::rules as rule;
 
 /// First bytes of every library. As in PNG, one byte is no ASCII and line ends of both kinds follow, so that a transfer as
@@ -149,7 +150,7 @@ impl Header {
         bytes[80..88].copy_from_slice(&self.entries.to_le_bytes());
         bytes[88..92].copy_from_slice(&self.leaf_count.to_le_bytes());
         bytes[92..124].copy_from_slice(&self.index_blake3);
-        let crc = crc32fast::hash(&bytes[..124]);
+        let crc = crc32(&bytes[..124]);
         bytes[124..].copy_from_slice(&crc.to_le_bytes());
         bytes
     }
@@ -168,7 +169,7 @@ fn check_version(bytes: &[u8; HEADER_BYTES]) -> Result<(), Fault> {
 }
 
 fn check_sum(bytes: &[u8; HEADER_BYTES]) -> Result<(), Fault> {
-    let (found, stated) = (crc32fast::hash(&bytes[..124]), u32_at(bytes, 124));
+    let (found, stated) = (crc32(&bytes[..124]), u32_at(bytes, 124));
     if found == stated {
         return Ok(());
     }

@@ -49,6 +49,8 @@ mod limits;
 mod located;
 mod name;
 mod opening;
+#[cfg(feature = "write")]
+mod packer;
 mod page;
 mod query;
 mod ratio;
@@ -74,10 +76,12 @@ pub use limits::Limits;
 pub use located::Located;
 pub use name::{InvalidName, check_name};
 pub use opening::{FIRST_READ, Opening, Progress};
+#[cfg(feature = "write")]
+pub use packer::Packed;
 pub use query::Query;
 pub use ratio::Ratio;
 pub use rules::{RULES, findings_page};
 pub use source::{LibrarySource, LocalFile};
 pub use validate::{validate, validate_source};
 #[cfg(feature = "write")]
-pub use writer::{Packed, Writer};
+pub use writer::{MemoryWriter, Writer};

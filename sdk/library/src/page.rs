@@ -1,6 +1,6 @@
 //! The frame of a page: checksum, unpacked length, deflate stream.
 
-use flate2::{Decompress, FlushDecompress, Status};
+use flate2::{Crc, Decompress, FlushDecompress, Status};
 
 use crate::fault::Fault;
 use crate::rules as rule;
@@ -27,7 +27,7 @@ pub(crate) fn unpack(page: &[u8], most: u64, place: &str) -> Result<Vec<u8>, Fau
         u32::from_le_bytes([a, b, c, d]),
         u32::from_le_bytes([e, f, g, h]),
     );
-    let found = crc32fast::hash(&page[4..]);
+    let found = crc32(&page[4..]);
     if found != stated {
         let message =
             format!("its checksum is {found:08x} instead of {stated:08x}; get the file again");
@@ -59,6 +59,13 @@ pub(crate) fn check_packed_size(size: u64, most: u64, place: &str) -> Result<(),
     Err(Fault::new(rule::LIBRARY_PAGE_TOO_LARGE, place, message))
 }
 
+/// The checksum of pages and of the header, of the inflater: its tables are in every program that reads a library.
+pub(crate) fn crc32(bytes: &[u8]) -> u32 {
+    let mut crc = Crc::new();
+    crc.update(bytes);
+    crc.sum()
+}
+
 fn inflate(stream: &[u8], size: usize) -> Result<Vec<u8>, &'static str> {
     // One byte more than stated, to detect a longer stream.
     let mut bytes = vec![0; size + 1];
@@ -86,7 +93,7 @@ pub(crate) fn pack(contents: &[u8]) -> Vec<u8> {
     let mut page = vec![0; 4];
     page.extend(size.to_le_bytes());
     page.extend(deflate(contents));
-    let crc = crc32fast::hash(&page[4..]);
+    let crc = crc32(&page[4..]);
     page[..4].copy_from_slice(&crc.to_le_bytes());
     page
 }

@@ -3,6 +3,7 @@
 use htex_format::Condition;
 
 use crate::entry::{Entry, Interval};
+use crate::name::caseless;
 
 /// What a texture must have to be found; what is `None` or empty is not asked for.
 ///
@@ -35,15 +36,18 @@ pub struct Query {
 impl Query {
     /// Whether the texture has all that is asked for.
     pub fn matches(&self, entry: &Entry) -> bool {
-        let (name, tags) = (lower(&entry.name), entry.tags.iter().map(|tag| lower(tag)));
+        let (name, tags) = (
+            caseless(&entry.name),
+            entry.tags.iter().map(|tag| caseless(tag)),
+        );
         let tags: Vec<String> = tags.collect();
         let is_in = |word: &String| {
-            let word = lower(word);
+            let word = caseless(word);
             name.contains(&word) || tags.iter().any(|tag| tag.contains(&word))
         };
         let conditions = entry.conditions;
         self.words.iter().all(is_in)
-            && self.tags.iter().all(|tag| tags.contains(&lower(tag)))
+            && self.tags.iter().all(|tag| tags.contains(&caseless(tag)))
             && is_among(self.speed_mm_s, conditions.speed_mm_s)
             && is_among(self.force_n, conditions.force_n)
             && self
@@ -51,10 +55,6 @@ impl Query {
                 .as_ref()
                 .is_none_or(|model| has_model(entry, model))
     }
-}
-
-fn lower(text: &str) -> String {
-    text.to_lowercase()
 }
 
 fn is_among(asked: Option<f64>, known: Option<Interval>) -> bool {

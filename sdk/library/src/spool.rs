@@ -1,10 +1,8 @@
-//! The bytes of textures while a library is written: a file beside it, with every embedded module once.
+//! The bytes of textures while a library is written, with every embedded module once: in a file beside it, or in memory.
 
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
-use std::path::Path;
 
 use htex_files::Scratch;
 use htex_format::entry_ranges;
@@ -14,9 +12,39 @@ const MODULES: &str = "plugins/";
 /// Least bytes of a shared object: below, its place in the index takes a good part of them.
 const LEAST_SHARED: usize = 64;
 
-/// A writer of the file.
-pub(crate) struct Spool {
-    scratch: Scratch,
+/// Where the bytes are kept meanwhile.
+pub(crate) trait Store: Read + Write + Seek {}
+
+impl<T: Read + Write + Seek> Store for T {}
+
+/// A file that is removed when it is dropped.
+pub(crate) struct ScratchFile(pub(crate) Scratch);
+
+impl Read for ScratchFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.0.file().read(buffer)
+    }
+}
+
+impl Write for ScratchFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.file().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.file().flush()
+    }
+}
+
+impl Seek for ScratchFile {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.0.file().seek(to)
+    }
+}
+
+/// A writer of the bytes.
+pub(crate) struct Spool<S> {
+    store: S,
     buffer: Vec<u8>,
     end: u64,
     modules: Vec<Module>,
@@ -44,15 +72,15 @@ pub(crate) struct Spooled {
 /// Bytes that are gathered before they are written.
 const BUFFER_BYTES: usize = 1 << 20;
 
-impl Spool {
-    pub(crate) fn beside(path: &Path) -> io::Result<Self> {
-        Ok(Self {
-            scratch: Scratch::beside(path)?,
+impl<S: Store> Spool<S> {
+    pub(crate) fn new(store: S) -> Self {
+        Self {
+            store,
             buffer: Vec::new(),
             end: 0,
             modules: Vec::new(),
             by_hash: HashMap::new(),
-        })
+        }
     }
 
     /// Adds a valid asset.
@@ -108,43 +136,36 @@ impl Spool {
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.scratch.file().write_all(&self.buffer)?;
+        self.store.write_all(&self.buffer)?;
         self.buffer.clear();
         Ok(())
     }
 
-    pub(crate) fn finish(mut self) -> io::Result<(SpoolReader, Vec<Module>)> {
+    pub(crate) fn finish(mut self) -> io::Result<(SpoolReader<S>, Vec<Module>)> {
         self.flush()?;
-        self.scratch.file().rewind()?;
-        let file = self.scratch.file().try_clone()?;
+        self.store.rewind()?;
         let reader = SpoolReader {
-            file: BufReader::with_capacity(BUFFER_BYTES, file),
+            store: BufReader::with_capacity(BUFFER_BYTES, self.store),
             at: 0,
-            _scratch: self.scratch,
         };
         Ok((reader, self.modules))
     }
 }
 
-/// A reader of the file, which is removed with it.
-pub(crate) struct SpoolReader {
-    file: BufReader<File>,
+/// A reader of the bytes.
+pub(crate) struct SpoolReader<S> {
+    store: BufReader<S>,
     at: u64,
-    _scratch: Scratch,
 }
 
-impl SpoolReader {
-    /// Copies a range to a file.
-    pub(crate) fn copy(
-        &mut self,
-        range: Range<u64>,
-        to: &mut BufWriter<&mut File>,
-    ) -> io::Result<()> {
+impl<S: Store> SpoolReader<S> {
+    /// Copies a range.
+    pub(crate) fn copy(&mut self, range: Range<u64>, to: &mut impl Write) -> io::Result<()> {
         if range.start != self.at {
             self.seek(range.start)?;
         }
         let length = range.end - range.start;
-        let copied = io::copy(&mut (&mut self.file).take(length), to)?;
+        let copied = io::copy(&mut (&mut self.store).take(length), to)?;
         self.at = range.start + copied;
         if copied == length {
             return Ok(());
@@ -158,8 +179,8 @@ impl SpoolReader {
     fn seek(&mut self, to: u64) -> io::Result<()> {
         match i64::try_from(i128::from(to) - i128::from(self.at)) {
             // Stays in the buffer where it can.
-            Ok(offset) => self.file.seek_relative(offset),
-            Err(_) => self.file.seek(SeekFrom::Start(to)).map(|_| ()),
+            Ok(offset) => self.store.seek_relative(offset),
+            Err(_) => self.store.seek(SeekFrom::Start(to)).map(|_| ()),
         }
     }
 }

@@ -1,25 +1,16 @@
-//! Writing of libraries.
+//! Writing of libraries: to a file, or in memory.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::io::{BufWriter, Cursor, Write};
+use std::path::Path;
 
-use htex_files::Unfinished;
-use htex_format::{Asset, Contact};
+use htex_files::{Scratch, Unfinished};
 
-use crate::encode::Pages;
-use crate::entry::{Conditions, Entry, IndexedLaw};
 use crate::error::LibraryError;
-use crate::facts::{Facts, MOST_WORDS};
-use crate::header::{HEADER_BYTES, Header, MINOR};
-use crate::leaf::length;
-use crate::limits::Limits;
-use crate::name::{caseless, check_library_name, check_name};
-use crate::sharing::Sharing;
-use crate::spool::{Spool, SpoolReader, Spooled};
-use crate::wire::TEXT_BYTES;
+use crate::packer::{Packed, Packer, Unchanged};
+use crate::spool::ScratchFile;
+
+/// Bytes that are gathered before they are written.
+const BUFFER_BYTES: usize = 1 << 20;
 
 /// Writes a library. Textures are added in any order; the same textures give the same bytes.
 ///
@@ -34,51 +25,9 @@ use crate::wire::TEXT_BYTES;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Writer {
-    path: PathBuf,
-    name: String,
     target: Unfinished,
-    spool: Spool,
-    /// The textures by name.
-    added: BTreeMap<String, Added>,
-    /// Their names, by what names have in common where case does not count.
-    caseless: BTreeMap<String, String>,
-    /// Different tags and models, which many textures have in common.
-    words: BTreeSet<Arc<Words>>,
-}
-
-/// Tags and models of a texture.
-#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Words {
-    tags: Vec<String>,
-    models: Vec<String>,
-}
-
-/// A texture that was added.
-struct Added {
-    words: Arc<Words>,
-    conditions: Conditions,
-    contact: Contact,
-    law: IndexedLaw,
-    blake3: [u8; 32],
-    spooled: Spooled,
-}
-
-/// What was written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Packed {
-    /// Textures of the library.
-    pub entries: u64,
-    /// Bytes of the file.
-    pub bytes: u64,
-    /// Bytes of the header and the index.
-    pub index_bytes: u64,
-    /// Objects that several textures share.
-    pub shared_objects: u64,
-    /// Bytes that are not in the file because textures share them.
-    pub saved_bytes: u64,
-    /// BLAKE3 of the index, which names the library.
-    pub blake3: [u8; 32],
+    path: std::path::PathBuf,
+    packer: Packer<ScratchFile>,
 }
 
 impl Writer {
@@ -87,18 +36,12 @@ impl Writer {
     /// # Errors
     /// When the name has a control character or more than 255 bytes, or a file cannot be written there.
     pub fn create(path: &Path, name: &str) -> Result<Self, LibraryError> {
-        check_library_name(name).map_err(|problem| LibraryError::Name {
-            name: name.to_owned(),
-            problem,
-        })?;
+        let target = Unfinished::create(path).unchanged(path)?;
+        let scratch = ScratchFile(Scratch::beside(path).unchanged(path)?);
         Ok(Self {
+            target,
             path: path.to_owned(),
-            name: name.to_owned(),
-            target: Unfinished::create(path).unchanged(path)?,
-            spool: Spool::beside(path).unchanged(path)?,
-            added: BTreeMap::new(),
-            caseless: BTreeMap::new(),
-            words: BTreeSet::new(),
+            packer: Packer::new(path, name, scratch)?,
         })
     }
 
@@ -108,206 +51,62 @@ impl Writer {
     /// When the name breaks a rule of [`check_name`] or was added before, in the same or another case, the asset is not valid or has more tags or longer ones
     /// than the index holds (64 of 255 bytes), or the bytes cannot be written.
     pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
-        check_name(name).map_err(|problem| LibraryError::Name {
-            name: name.to_owned(),
-            problem,
-        })?;
-        if self.added.contains_key(name) {
-            return Err(LibraryError::Duplicate {
-                name: name.to_owned(),
-            });
-        }
-        if let Some(other) = self.caseless.get(&caseless(name)) {
-            return Err(LibraryError::Alike {
-                name: name.to_owned(),
-                other: other.clone(),
-            });
-        }
-        let read = Asset::from_bytes(asset).map_err(|error| LibraryError::Asset {
-            name: name.to_owned(),
-            error: Box::new(error),
-        })?;
-        let facts = Facts::of(&read.manifest);
-        check_words(name, "tags", &facts.tags)?;
-        check_words(name, "models", &facts.models)?;
-        let spooled = self.spool.add(asset).unchanged(&self.path)?;
-        let added = Added {
-            words: self.common_words(facts.tags, facts.models),
-            conditions: facts.conditions,
-            contact: facts.contact,
-            law: facts.law,
-            blake3: *blake3::hash(asset).as_bytes(),
-            spooled,
-        };
-        self.added.insert(name.to_owned(), added);
-        self.caseless.insert(caseless(name), name.to_owned());
-        Ok(())
-    }
-
-    /// Returns the tags and models, once for all textures with the same.
-    fn common_words(&mut self, tags: Vec<String>, models: Vec<String>) -> Arc<Words> {
-        let words = Arc::new(Words { tags, models });
-        if let Some(known) = self.words.get(&words) {
-            return known.clone();
-        }
-        self.words.insert(words.clone());
-        words
+        self.packer.add(name, asset)
     }
 
     /// Writes the library and renames it into place.
     ///
     /// # Errors
-    /// When a file cannot be written, or the library exceeds the default [`Limits`] of readers.
+    /// When a file cannot be written, or the library exceeds the default limits of readers.
     pub fn finish(self) -> Result<Packed, LibraryError> {
         let Self {
-            path,
-            name,
             mut target,
-            spool,
-            added,
-            ..
+            path,
+            packer,
         } = self;
-        let (mut spool, modules) = spool.finish().unchanged(&path)?;
-        let sharing = Sharing::of(modules);
-        let (header, index, total) = index(&name, &added, &sharing);
-        check_limits(&name, &header, total)?;
-        write(target.file(), &header, &index, &mut spool, &sharing, &added)
-            .and_then(|()| target.keep())
-            .unchanged(&path)?;
-        Ok(Packed {
-            entries: header.entries,
-            bytes: header.payload.end,
-            index_bytes: header.leaves.end,
-            shared_objects: sharing.objects().len() as u64,
-            saved_bytes: sharing.saved_bytes(),
-            blake3: header.index_blake3,
-        })
+        let mut file = BufWriter::with_capacity(BUFFER_BYTES, target.file());
+        let packed = packer.finish(&mut file)?;
+        let written = file.flush();
+        drop(file);
+        written.and_then(|()| target.keep()).unchanged(&path)?;
+        Ok(packed)
     }
 }
 
-/// Adds the file, which stays as it was, to an error of writing it.
-trait Unchanged<T> {
-    fn unchanged(self, path: &Path) -> Result<T, LibraryError>;
-}
+/// As [`Writer`], in memory: for programs without files.
+///
+/// ```
+/// let writer = htex_library::MemoryWriter::new("Cloth")?;
+/// let (packed, bytes) = writer.finish()?;
+/// assert_eq!((packed.entries, packed.bytes), (0, bytes.len() as u64));
+/// # Ok::<(), htex_library::LibraryError>(())
+/// ```
+pub struct MemoryWriter(Packer<Cursor<Vec<u8>>>);
 
-impl<T> Unchanged<T> for io::Result<T> {
-    fn unchanged(self, path: &Path) -> Result<T, LibraryError> {
-        self.map_err(|error| LibraryError::Write {
-            path: path.to_owned(),
-            error,
-        })
+impl MemoryWriter {
+    /// Starts a library; `name` may be empty.
+    ///
+    /// # Errors
+    /// As [`Writer::create`].
+    pub fn new(name: &str) -> Result<Self, LibraryError> {
+        Packer::new(Path::new(""), name, Cursor::default()).map(Self)
     }
-}
 
-fn check_words(name: &str, what: &str, words: &[String]) -> Result<(), LibraryError> {
-    let problem = if words.len() > MOST_WORDS {
-        format!(
-            "it has {} {what} and the index holds {MOST_WORDS}; leave some out",
-            words.len()
-        )
-    } else if let Some(word) = words.iter().find(|word| word.len() > TEXT_BYTES) {
-        format!(
-            "one of its {what} has {} bytes and the index holds {TEXT_BYTES}; shorten it",
-            word.len()
-        )
-    } else {
-        return Ok(());
-    };
-    Err(LibraryError::Limit {
-        name: name.to_owned(),
-        problem,
-    })
-}
-
-/// Encodes the index. Returns the header, root and leaves, and the bytes of all textures.
-fn index(name: &str, added: &BTreeMap<String, Added>, sharing: &Sharing) -> (Header, Vec<u8>, u64) {
-    let (mut pages, mut payload, mut total) = (Pages::default(), 0, 0);
-    for (name, texture) in added {
-        let place = sharing.place(&texture.spooled, payload);
-        payload = place.own.end;
-        let shared = place.cuts.iter().map(|cut| length(&cut.object));
-        let bytes = length(&place.own) + shared.sum::<u64>();
-        total += bytes;
-        pages.add(Entry {
-            name: name.clone(),
-            tags: texture.words.tags.clone(),
-            models: texture.words.models.clone(),
-            conditions: texture.conditions,
-            contact: texture.contact,
-            law: texture.law,
-            bytes,
-            blake3: texture.blake3,
-            place,
-        });
+    /// Adds a texture.
+    ///
+    /// # Errors
+    /// As [`Writer::add`].
+    pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
+        self.0.add(name, asset)
     }
-    let (root, leaves, leaf_count) = pages.finish(name);
-    let mut end = HEADER_BYTES as u64;
-    let mut part = |bytes: u64| {
-        let start = end;
-        end += bytes;
-        start..end
-    };
-    let index = [root.as_slice(), &leaves].concat();
-    let header = Header {
-        minor: MINOR,
-        root: part(root.len() as u64),
-        leaves: part(leaves.len() as u64),
-        shared: part(sharing.bytes()),
-        payload: part(payload),
-        entries: added.len() as u64,
-        leaf_count,
-        index_blake3: *blake3::hash(&index).as_bytes(),
-    };
-    (header, index, total)
-}
 
-/// Everything that is written can be read within the default limits.
-fn check_limits(name: &str, header: &Header, total: u64) -> Result<(), LibraryError> {
-    let limits = Limits::default();
-    let problem = if header.entries > limits.entries || u64::from(header.leaf_count) > limits.leaves
-    {
-        format!(
-            "it has {} textures and readers' limit is {}; split it",
-            header.entries, limits.entries
-        )
-    } else if length(&header.root) > limits.root_bytes {
-        format!(
-            "its root page has {} bytes and readers' limit is {}; split it or shorten names",
-            length(&header.root),
-            limits.root_bytes
-        )
-    } else if total > header.payload.end.saturating_mul(limits.ratio) {
-        let ratio = limits.ratio;
-        format!(
-            "its textures have {total} bytes, over {ratio} times those of the file, which readers refuse; split it"
-        )
-    } else {
-        return Ok(());
-    };
-    Err(LibraryError::Limit {
-        name: format!("library {name:?}"),
-        problem,
-    })
-}
-
-fn write(
-    target: &mut File,
-    header: &Header,
-    index: &[u8],
-    spool: &mut SpoolReader,
-    sharing: &Sharing,
-    added: &BTreeMap<String, Added>,
-) -> io::Result<()> {
-    let mut target = BufWriter::with_capacity(1 << 20, target);
-    target.write_all(&header.to_bytes())?;
-    target.write_all(index)?;
-    for object in sharing.objects() {
-        spool.copy(object, &mut target)?;
+    /// Returns the library.
+    ///
+    /// # Errors
+    /// When it exceeds the default limits of readers.
+    pub fn finish(self) -> Result<(Packed, Vec<u8>), LibraryError> {
+        let mut bytes = Vec::new();
+        let packed = self.0.finish(&mut bytes)?;
+        Ok((packed, bytes))
     }
-    for texture in added.values() {
-        for piece in sharing.own_pieces(&texture.spooled) {
-            spool.copy(piece, &mut target)?;
-        }
-    }
-    target.flush()
 }

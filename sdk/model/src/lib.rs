@@ -47,6 +47,7 @@ mod static_descriptor;
 mod store;
 pub mod text;
 mod traits;
+mod usual;
 mod values;
 #[cfg(any(feature = "std", target_family = "wasm"))]
 mod voices;
@@ -69,4 +70,5 @@ pub use platform::Lock;
 pub use static_descriptor::{StaticDescriptor, StaticField, StaticOption};
 pub use store::{Kind, Store};
 pub use traits::{Fit, FitInput, Model, Voice};
+pub use usual::{Scale, Usual};
 pub use values::{Fields, Range, Values, flatten};

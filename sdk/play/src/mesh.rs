@@ -57,7 +57,14 @@ impl Weights {
     /// Returns the weights above [`NO_WEIGHT`] in ascending order, by the numbers of the caller's conditions.
     fn numbered(self, numbers: &[usize]) -> Self {
         let mut parts = [0, 1, 2].map(|i| (self.condition[i], self.weight[i]));
-        parts[..self.count].sort_unstable_by_key(|(condition, _)| *condition);
+        // Insertion sort, which neither allocates nor is large.
+        for i in 1..self.count {
+            let mut at = i;
+            while at > 0 && parts[at].0 < parts[at - 1].0 {
+                parts.swap(at, at - 1);
+                at -= 1;
+            }
+        }
         let mut kept = Self { count: 0, ..self };
         for (condition, weight) in parts[..self.count].iter().filter(|(_, w)| *w > NO_WEIGHT) {
             kept.condition[kept.count] = numbers.get(*condition).copied().unwrap_or_default();

@@ -62,7 +62,11 @@ pub(crate) fn follow(
 
 fn read(file: &str, tracker: &Tracker, options: &ReadOptions) -> Result<Motion, Fault> {
     let own = ReadOptions::default().with_most_values(options.most_values);
-    let mut sheet = formats::open(Opened::file(&tracker.path)?, &own)?;
+    let opened = match &tracker.bytes {
+        Some(bytes) => Opened::bytes(&tracker.path, bytes)?,
+        None => Opened::file(&tracker.path)?,
+    };
+    let mut sheet = formats::open(opened, &own)?;
     let selection = select_motion(sheet.columns(), tracker.map.as_ref())?;
     let mut signals = Signals::read(&mut *sheet, &selection)?;
     let path = match signals.take(Role::Speed) {

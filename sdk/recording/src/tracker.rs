@@ -1,6 +1,7 @@
 //! The file of a tracker, beside a recording.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use crate::columns::map::ColumnMap;
 
@@ -12,6 +13,8 @@ use crate::columns::map::ColumnMap;
 #[non_exhaustive]
 pub struct Tracker {
     pub path: PathBuf,
+    /// The bytes of the file, where it is not read from the path.
+    pub bytes: Option<Arc<[u8]>>,
     /// Roles of its columns: time, x, y, speed; columns that it leaves out are assigned by their names.
     pub map: Option<ColumnMap>,
 }
@@ -22,8 +25,16 @@ impl Tracker {
     pub fn new(path: impl Into<PathBuf>) -> Self {
         Self {
             path: path.into(),
+            bytes: None,
             map: None,
         }
+    }
+
+    /// Gives the bytes of the file, whose path is then its name alone.
+    #[must_use]
+    pub fn with_bytes(mut self, bytes: impl Into<Arc<[u8]>>) -> Self {
+        self.bytes = Some(bytes.into());
+        self
     }
 
     /// Sets the roles of its columns.

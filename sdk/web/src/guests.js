@@ -14,12 +14,15 @@ export class Guests {
     this.instances = new Map();
     this.last = 0;
     this.failure = new Uint8Array(0);
+    /** Called by the author module with how far a call is: steps that are done, their number, and what begins. */
+    this.onProgress = null;
   }
 
   /** The imports of the core, `sdk/host/src/browser/imports.rs`. */
   imports() {
     return {
       now_ms: () => Date.now(),
+      progress: (done, of, text, len) => this.onProgress?.(done, of, decode(this.bytes(text, len))),
       module_new: (at, len) => this.attempt(() => this.compile(this.bytes(at, len).slice())),
       module_free: (module) => void this.modules.delete(module),
       instance_new: (module, names, len) =>

@@ -5,4 +5,6 @@ export const host = {
   readFile: null,
   /** Starts the thread of a GuardedWorker. */
   startThread: null,
+  /** Starts the thread that fits; it has `onmessage` and `onerror`, as a worker of a page. */
+  startAuthorThread: null,
 };

@@ -170,6 +170,16 @@ export class Library extends Handle {
     }
   }
 
+  /** The entries that have all that is asked for: `words` in the name or a tag, `tags`, a `speed`, a `force`, a `model`. */
+  async *find(query) {
+    const text = JSON.stringify(query);
+    for (let number = 0; number < this.pageCount; number++) {
+      const bytes = await this.page(number);
+      this.read(number, bytes);
+      yield* this.core.scope((take) => JSON.parse(this.core.text("htex_index_find_json", this.id, this.core.putText(take, text))));
+    }
+  }
+
   /** The entry of a texture; undefined if there is none of this name. */
   async entry(name) {
     if (this.count === 0) return undefined;

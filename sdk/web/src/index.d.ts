@@ -2,6 +2,8 @@
 
 /// <reference lib="esnext.disposable" />
 
+export * from "./author.js";
+
 import type { Contact, Law, Manifest, Quantity } from "./manifest.js";
 import { NodeBase } from "./web.js";
 import type { AudioContextLike, AudioParamLike, ElementLike, EventLike, Fetch } from "./web.js";
@@ -230,6 +232,19 @@ export interface LibraryEntry {
   blake3: string;
 }
 
+/** What a texture must have to be found; what is absent is not asked for. */
+export interface LibraryQuery {
+  /** Parts of the name or of a tag, without case; all of them. */
+  words?: string[];
+  /** Tags, without case; all of them. */
+  tags?: string[];
+  /** A speed, mm/s, and a force, N, among the recorded ones. */
+  speed?: number;
+  force?: number;
+  /** A model, by its id or short name. */
+  model?: string;
+}
+
 /** A library: one `.htexlib` file with thousands of textures, of which ranges are fetched. */
 export class Library {
   private constructor();
@@ -242,6 +257,8 @@ export class Library {
   readonly count: number;
   /** The entries of all textures, in ascending order of their names. Reads the index, page by page. */
   entries(): AsyncGenerator<LibraryEntry>;
+  /** The entries that have all that is asked for. Reads the index, page by page. */
+  find(query: LibraryQuery): AsyncGenerator<LibraryEntry>;
   /** The entry of a texture; undefined if there is none of this name. */
   entry(name: string): Promise<LibraryEntry | undefined>;
   /** The bytes of a texture's `.htex` file; an HtexError of the kind "absent" if there is none of this name. */
@@ -278,6 +295,8 @@ export interface NodeOptions extends LoadOptions {
   worker?: GuardedWorker;
   /** Longest call of a module in the worker, ms. Default 2000. */
   limit?: number;
+  /** Factor of all frequencies, above 0, for loudspeakers that have no low ones. Default 1: as a finger feels them. */
+  pitch?: number;
 }
 
 /** Plays a texture, with a fade at its start and its end. Has an event `error`, whose property of that name is an HtexError. */

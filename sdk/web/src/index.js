@@ -1,5 +1,6 @@
 // Textures of touch in the browser and in Node.js.
 
+export { fit, loadAuthor, setAuthorLibrary } from "./author.js";
 export { HtexError } from "./core.js";
 export { Texture, Voice } from "./texture.js";
 export { open, setLibrary } from "./library.js";

@@ -16,4 +16,11 @@ host.startThread = (receive, failed) => {
   return thread;
 };
 
+host.startAuthorThread = () => {
+  const thread = new Thread(new URL("./author-worker.node.js", import.meta.url));
+  thread.on("message", (data) => thread.onmessage?.({ data }));
+  thread.on("error", ({ message }) => thread.onerror?.({ message }));
+  return thread;
+};
+
 export * from "./index.js";

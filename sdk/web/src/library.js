@@ -55,33 +55,35 @@ export function resolved(address) {
 const isAddress = (source) => typeof source === "string" || source instanceof URL;
 
 /** The library's bytes, for threads that cannot be given a module. */
-export async function libraryBytes() {
-  const library = source();
+export function libraryBytes() {
+  return moduleBytes(source(), "the library");
+}
+
+async function moduleBytes(library, what) {
   if (isBytes(library)) return toBytes(library);
   if (library instanceof WebAssembly.Module) {
     throw new HtexError("this browser gives no WebAssembly.Module to other threads; give setLibrary the address or the bytes of htex.wasm", "unsupported");
   }
   const url = resolved(library);
   if (url.protocol === "file:" && host.readFile) return host.readFile(url);
-  return new Uint8Array(await (await download(url, "the library")).arrayBuffer());
+  return new Uint8Array(await (await download(url, what)).arrayBuffer());
 }
 
-/** Compiles the library, while it arrives if the server tells its type. */
-async function compile() {
-  const library = source();
+/** Compiles a module, its address, its bytes or one that is compiled: while it arrives if the server tells its type. `what` stands in errors. */
+export async function compiledFrom(library, what) {
   if (library instanceof WebAssembly.Module) return library;
   const url = isBytes(library) ? null : resolved(library);
   if (url && url.protocol !== "file:" && WebAssembly.compileStreaming) {
-    const response = await download(url, "the library");
+    const response = await download(url, what);
     const isTyped = /^application\/wasm\b/.test(response.headers.get("content-type") ?? "");
     return isTyped ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());
   }
-  return WebAssembly.compile(await libraryBytes());
+  return WebAssembly.compile(await moduleBytes(library, what));
 }
 
 /** The compiled library. After a failure the next call tries again. */
 export function compiled() {
-  module ??= compile().catch((error) => {
+  module ??= compiledFrom(source(), "the library").catch((error) => {
     module = undefined;
     throw error;
   });

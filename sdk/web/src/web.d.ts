@@ -6,6 +6,8 @@ export type AudioContextLike = Instance<"BaseAudioContext">;
 export type AudioParamLike = Instance<"AudioParam">;
 export type ElementLike = Instance<"HTMLElement">;
 export type EventLike = Instance<"Event">;
+export type WorkerLike = Instance<"Worker">;
+export type SignalLike = Instance<"AbortSignal">;
 
 /** What `AudioWorkletNode` is; a class that cannot be made where there is none. */
 export declare const NodeBase: typeof globalThis extends { AudioWorkletNode: infer T extends abstract new (...values: any) => any }

@@ -1,7 +1,22 @@
 // Uses each declaration of the package; `tsc --strict` checks it.
 
-import { GuardedWorker, HtexError, HtexNode, Library, Texture, Voice, follow, followPointer, open, prepare, setLibrary } from "htex";
-import type { Coverage, Law, Manifest } from "htex";
+import {
+  GuardedWorker,
+  HtexError,
+  HtexNode,
+  Library,
+  Texture,
+  Voice,
+  fit,
+  follow,
+  followPointer,
+  loadAuthor,
+  open,
+  prepare,
+  setAuthorLibrary,
+  setLibrary,
+} from "htex";
+import type { Author, Coverage, FitOptions, Fitted, Law, Manifest } from "htex";
 
 export async function play(context: AudioContext, element: HTMLElement, file: File): Promise<number> {
   setLibrary(new URL("htex.wasm", "https://example.org/"), { processor: "/processor.js", worker: new URL("https://example.org/worker.js") });
@@ -50,8 +65,29 @@ export async function search(tag: string): Promise<Texture[]> {
   for await (const { name, tags, conditions } of library.entries()) {
     if (tags.includes(tag) && (conditions.speed_mm_s?.max ?? 0) > 100) found.push(await library.texture(name));
   }
+  for await (const { name } of library.find({ words: ["oak"], speed: 80 })) found.push(await library.texture(name));
   const bytes: Uint8Array = await library.bytes("oak");
   console.log(library.name, library.count - bytes.length, (await library.entry("oak"))?.blake3);
   library.free();
   return found;
+}
+
+export async function make(file: File, signal: AbortSignal): Promise<Uint8Array> {
+  const options: FitOptions = { models: ["ar", "bands"], options: { ar: { order: 8 } }, grid: { speed: [40, 80] }, license: "CC0-1.0" };
+  const { texture, report }: Fitted = await fit([file, { name: "felt.csv", bytes: new Uint8Array(8) }], {
+    ...options,
+    onProgress: ({ done, of, text }) => console.log(done / of, text),
+    signal,
+  });
+  const author: Author = await loadAuthor();
+  const [slider] = author.models()[0]!.fields.map(({ usual, min }) => usual?.min ?? min);
+  const parameters = { below_highest: [0, 10], step_db: 1, layout: slider ?? 1 };
+  const made: Texture = author.make({ name: "made", representations: [{ model: "bands", conditions: [{ speed: 80, force: 0.5, parameters }] }] });
+  const mixed: Texture = author.edit(author.mix(texture, made, 0.5), { author: "A. Weaver" });
+  const { columns, picture, findings } = author.process({ name: "felt.csv", bytes: new ArrayBuffer(8) }, { map: "lateral=#2" });
+  console.log(report.ranked[0], columns.problem, picture.signals["signal"]?.least[0], author.explain(findings[0]!.code)?.fix);
+  // @ts-expect-error: a setting of no table.
+  author.columns({ name: "felt.csv", bytes: new ArrayBuffer(8) }, { form_s: 2 });
+  setAuthorLibrary("htex-author.wasm", { worker: () => new Worker("author-worker.js") });
+  return author.library({ mixed, made }, { name: "Two" });
 }

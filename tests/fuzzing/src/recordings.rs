@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use htex_author::recording::{
-    ReadError, ReadOptions, ReadProblem, recording_from_bytes, trace_from_bytes,
+    ColumnMap, ReadError, ReadOptions, ReadProblem, preview, recording_from_bytes, trace_from_bytes,
 };
 use htex_author::{
     Averaging, Exploration, Recording, SegmentChoice, SpectrumOptions, Take, TextureSpectrum,
@@ -43,6 +43,20 @@ fn recording(name: &str, input: &[u8], rate_hz: f64) -> bool {
     recording_with(name, input, &ReadOptions::default(), rate_hz)
 }
 
+/// What is shown of a file before it is read: the map of its columns is one.
+fn previewed(name: &str, input: &[u8], options: &ReadOptions) {
+    match preview(Path::new(name), input, options) {
+        Ok(found) if found.map.is_empty() => {}
+        Ok(found) => {
+            let map = found.map.parse::<ColumnMap>();
+            assert!(map.is_ok(), "{map:?}");
+        }
+        Err(error) => {
+            refused(&error);
+        }
+    }
+}
+
 /// The same with options.
 pub(crate) fn recording_with(
     name: &str,
@@ -51,6 +65,7 @@ pub(crate) fn recording_with(
     rate_hz: f64,
 ) -> bool {
     let read = |options: &ReadOptions| recording_from_bytes(Path::new(name), input, options);
+    previewed(name, input, options);
     let mut result = read(options);
     let has_no_rate = |error: &ReadError| matches!(error.problem, ReadProblem::NoRate);
     if result.as_ref().is_err_and(has_no_rate) {

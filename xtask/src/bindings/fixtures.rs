@@ -18,7 +18,7 @@ const SPEED: &str = "80";
 const FORCE: &str = "0.5";
 
 /// The `htex` command as it is installed, which libhtex and the Python package are built beside.
-pub(super) fn command() -> Result<PathBuf> {
+pub(crate) fn command() -> Result<PathBuf> {
     let mut build = Command::new(cargo());
     run(build
         .args(["build", "--release", "--locked", "--package", "htex-cli"])
@@ -85,6 +85,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
         synth("vinyl.htex", model)?;
     }
     synth("bursts.htex", "bursts")?;
+    authored(folder, &htex)?;
     let printed = |arguments: &[&str], out: &str| {
         let file = fs_err::File::create(folder.join(out))?;
         run(program(&command, folder)
@@ -94,6 +95,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
     let spectrum = ["spectrum", "vinyl.htex", "--model", "bands", "--json"];
     printed(&spectrum, "spectrum.json")?;
     printed(&["info", "vinyl.htex", "--json"], "info.json")?;
+    printed(&["process", "vinyl.csv", "--json"], "process.json")?;
     copy_many(folder)?;
     let textures = ["many", "vinyl.htex", "bursts.htex"];
     htex(
@@ -104,6 +106,49 @@ pub(super) fn write(folder: &Path) -> Result<()> {
         .concat(),
     )?;
     printed(&["lib", "ls", "many.htexlib", "--json"], "many.json")
+}
+
+/// What the command makes of the same as the author module of the npm package: textures of a part of a recording, of samples, by hand, mixed
+/// and edited, a library of two, and what is read of a recording (`process.json`).
+fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
+    for name in ["pcm16.flac", "pcm16.wav"] {
+        let source = workspace().join("sdk/recording/tests/lab").join(name);
+        copy(&source, &folder.join(name))?;
+    }
+    let given = ["--speed", SPEED, "--force", FORCE];
+    let fitted = ["fit", "vinyl.csv", "--from", "2", "--to", "8"];
+    let options = [
+        "--model",
+        "ar,bands",
+        "--option",
+        "ar.order=8",
+        "--keep-reference",
+    ];
+    let said = ["--license", "CC0-1.0", "--tag", "smooth", "-o", "part.htex"];
+    htex(&[&fitted[..], &options, &said].concat())?;
+    let samples = ["fit", "ar.wav", "--scale", "2", "-o", "samples.htex"];
+    htex(&[&samples[..], &given].concat())?;
+    let made = ["make", "--model", "sbeta", "--set", "alpha=2", "beta=5"];
+    htex(
+        &[
+            &made[..],
+            &[
+                "--level",
+                "0.02",
+                "--at",
+                "speed=80,force=0.5",
+                "-o",
+                "hum.htex",
+            ],
+        ]
+        .concat(),
+    )?;
+    let mixed = ["mix", "vinyl.htex", "hum.htex", "--weight", "0.25"];
+    htex(&[&mixed[..], &["--name", "between", "-o", "mixed.htex"]].concat())?;
+    let edited = ["edit", "vinyl.htex", "--author", "A. Weaver"];
+    htex(&[&edited[..], &["--contact", "tool", "-o", "edited.htex"]].concat())?;
+    let pack = ["lib", "pack", "two.htexlib", "--name", "Two"];
+    htex(&[&pack[..], &["vinyl.htex", "bursts.htex"]].concat())
 }
 
 /// Copies the assets to the folder `many`; the module of `bursts.htex` is then in the library twice.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 
-use super::{CHROMIUM, copy, files, fixtures};
+use super::{CHROMIUM, copy, files, fixtures, which};
 use crate::places::workspace;
 use crate::programs::{program, run};
 
@@ -40,6 +40,8 @@ pub(super) fn test(folder: &Path) -> Result<()> {
             "loading.test.mjs",
             "pointer.test.mjs",
             "sound.test.mjs",
+            "author.test.mjs",
+            "author-browser.test.mjs",
             "browser.test.mjs",
             "bundles.test.mjs",
         ])
@@ -65,12 +67,4 @@ fn catalogue(fixtures: &Path, package: &Path) -> Result<()> {
         ])
         .arg(package)
         .stdout(std::process::Stdio::null()))
-}
-
-/// The path of a program.
-fn which(name: &str) -> std::path::PathBuf {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let mut all = std::env::split_paths(&path).map(|folder| folder.join(name));
-    all.find(|file| file.is_file())
-        .unwrap_or_else(|| name.into())
 }

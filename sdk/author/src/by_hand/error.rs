@@ -38,6 +38,24 @@ pub enum ByHandError {
         /// The largest level of the quantity.
         most: f64,
     },
+    /// A model's parameters are not the level, and no level is given.
+    #[error(
+        "{model} needs a level: the RMS of the texture in the band, in the unit of its quantity"
+    )]
+    NoLevel { model: String },
+    /// The band is not one.
+    #[error("the band is {low_hz} to {high_hz} Hz; its edges ascend, above 0 and up to 20,000 Hz")]
+    Band { low_hz: f64, high_hz: f64 },
+    /// There is no model, or no condition.
+    #[error(
+        "the texture has no model, or none has parameters at a condition; give one of each at least"
+    )]
+    Empty,
+    /// Speed or force is known of some conditions alone.
+    #[error(
+        "the speed or the force of some conditions alone is known; give both of all, or of none"
+    )]
+    Conditions,
     /// The textures cannot be mixed.
     #[error("{a} and {b} cannot be mixed: {problem}")]
     Different {

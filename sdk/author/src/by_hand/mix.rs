@@ -145,7 +145,8 @@ fn conditions(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<Vec<Condition>, St
     Ok(all)
 }
 
-fn is_same(a: &Condition, b: &Condition) -> bool {
+/// Whether both are the same condition, as far as they are known.
+pub(super) fn is_same(a: &Condition, b: &Condition) -> bool {
     let same = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => Condition::is_same(a, b),
         _ => a == b,

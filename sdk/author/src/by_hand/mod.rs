@@ -9,7 +9,7 @@ mod parameters;
 
 pub use error::ByHandError;
 pub use mix::{MixedAsset, mix};
-pub use parameters::{ByHand, make};
+pub use parameters::{ByHand, ByHandAt, ByHandModel, ByHandModels, make, make_all};
 
 use htex_format::{
     Asset, Condition, Contact, Law, Made, Manifest, Provenance, Quantity, Representation, VERSION,

@@ -1,4 +1,4 @@
-//! A texture of parameters.
+//! Textures of parameters.
 
 use std::collections::BTreeMap;
 
@@ -8,8 +8,12 @@ use htex_format::{
 };
 use htex_host::{Band, Field, Kind, LoadedModel};
 
+use super::mix::is_same;
 use super::{ByHandError, Frame};
 use crate::stored::stored_fields;
+
+/// Highest frequency of a band, hertz.
+const HIGHEST_HZ: f64 = 20_000.0;
 
 /// A texture to be made of one model's parameters.
 #[derive(Debug, Clone)]
@@ -80,24 +84,69 @@ impl ByHand {
 /// # Errors
 /// A parameter that is unknown, absent or out of its range, a level out of its quantity's, or what the model refuses.
 pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, ByHandError> {
-    check_level(texture.level_rms, texture.quantity)?;
-    let flat = flat(model, &texture.values)?;
-    let fields = stored_fields(model.descriptor());
-    let stored = round_parameters(&fields, &flat)?;
-    model.magnitude(&stored, texture.band, &texture.band.grid_hz())?;
-    let representation = Representation {
-        model: model.id().to_owned(),
-        model_version: model.descriptor().version.clone(),
-        fields,
-        at: vec![AtCondition {
-            condition: 0,
-            level_rms: texture.level_rms,
-            quality: None,
-            left_out: None,
-        }],
-        triangles: Vec::new(),
-        parameters: format!("parameters/{}.bin", model.short_name()),
+    let at = ByHandAt {
+        condition: texture.condition,
+        values: texture.values.clone(),
+        level_rms: Some(texture.level_rms),
     };
+    make_all(&ByHandModels {
+        name: texture.name.clone(),
+        models: vec![ByHandModel {
+            model: model.clone(),
+            at: vec![at],
+        }],
+        quantity: texture.quantity,
+        band: texture.band,
+        tool: texture.tool.clone(),
+    })
+}
+
+/// A texture to be made of the parameters of one or several models, each at one or several conditions.
+#[derive(Debug, Clone)]
+pub struct ByHandModels {
+    pub name: String,
+    /// In the order of the representations.
+    pub models: Vec<ByHandModel>,
+    pub quantity: Quantity,
+    pub band: Band,
+    /// Program and version, for the provenance.
+    pub tool: String,
+}
+
+/// A model of a texture, with its parameters.
+#[derive(Debug, Clone)]
+pub struct ByHandModel {
+    pub model: LoadedModel,
+    pub at: Vec<ByHandAt>,
+}
+
+/// The parameters of a model at a condition.
+#[derive(Debug, Clone)]
+pub struct ByHandAt {
+    pub condition: Condition,
+    /// Values by name of the field; of a list, all of them.
+    pub values: BTreeMap<String, Vec<f64>>,
+    /// RMS of the texture in the band, in the quantity's unit. It may be absent of a model whose parameters are the level
+    /// ([`htex_host::Descriptor::keeps_level`]).
+    pub level_rms: Option<f64>,
+}
+
+/// As [`make`], of several models and conditions. Conditions within 5 % of each other are one ([`htex_format::SAME_CONDITION`]).
+///
+/// # Errors
+/// As [`make`]; and without a model or a condition, or when the speed or the force of some conditions alone is known.
+pub fn make_all(texture: &ByHandModels) -> Result<Asset, ByHandError> {
+    let Band { low_hz, high_hz } = texture.band;
+    if !(0.0 < low_hz && low_hz < high_hz && high_hz <= HIGHEST_HZ) {
+        return Err(ByHandError::Band { low_hz, high_hz });
+    }
+    let all = texture.models.iter().flat_map(|model| &model.at);
+    let conditions = distinct(all.map(|at| at.condition))?;
+    let made = texture
+        .models
+        .iter()
+        .map(|of| representation(of, texture, &conditions))
+        .collect::<Result<Vec<_>, _>>()?;
     let frame = Frame {
         name: texture.name.clone(),
         quantity: texture.quantity,
@@ -107,11 +156,71 @@ pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, ByHandError>
             how: How::Parameters,
             from: Vec::new(),
         },
-        conditions: vec![texture.condition],
+        conditions,
         contact: Contact::Unknown,
         law: Law::assumed(texture.quantity, Contact::Unknown),
     };
-    Ok(frame.asset(vec![(representation, vec![stored])]))
+    Ok(frame.asset(made))
+}
+
+/// The conditions, of which those that are the same are one.
+fn distinct(all: impl Iterator<Item = Condition>) -> Result<Vec<Condition>, ByHandError> {
+    let mut distinct: Vec<Condition> = Vec::new();
+    for condition in all {
+        let known = |c: &Condition| (c.speed_mm_s.is_some(), c.force_n.is_some());
+        let first = distinct.first().map(known);
+        if first.is_some_and(|first| first != known(&condition)) {
+            return Err(ByHandError::Conditions);
+        }
+        if !distinct.iter().any(|other| is_same(other, &condition)) {
+            distinct.push(condition);
+        }
+    }
+    match distinct.is_empty() {
+        true => Err(ByHandError::Empty),
+        false => Ok(distinct),
+    }
+}
+
+fn representation(
+    of: &ByHandModel,
+    texture: &ByHandModels,
+    conditions: &[Condition],
+) -> Result<(Representation, Vec<Vec<f64>>), ByHandError> {
+    let (model, band) = (&of.model, texture.band);
+    let fields = stored_fields(model.descriptor());
+    let (mut at, mut parameters) = (Vec::new(), Vec::new());
+    for own in &of.at {
+        let flat = flat(model, &own.values)?;
+        let stored = round_parameters(&fields, &flat)?;
+        let magnitude = model.magnitude(&stored, band, &band.grid_hz())?;
+        let level_rms = match own.level_rms {
+            Some(level_rms) => level_rms,
+            None if model.descriptor().keeps_level => htex_dsp::grid::level_rms(&magnitude),
+            None => {
+                let model = model.short_name().to_owned();
+                return Err(ByHandError::NoLevel { model });
+            }
+        };
+        check_level(level_rms, texture.quantity)?;
+        let place = conditions.iter().position(|c| is_same(c, &own.condition));
+        at.push(AtCondition {
+            condition: place.unwrap_or_default(),
+            level_rms,
+            quality: None,
+            left_out: None,
+        });
+        parameters.push(stored);
+    }
+    let representation = Representation {
+        model: model.id().to_owned(),
+        model_version: model.descriptor().version.clone(),
+        fields,
+        at,
+        triangles: Vec::new(),
+        parameters: format!("parameters/{}.bin", model.short_name()),
+    };
+    Ok((representation, parameters))
 }
 
 fn check_level(level_rms: f64, quantity: Quantity) -> Result<(), ByHandError> {

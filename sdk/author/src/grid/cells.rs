@@ -1,5 +1,7 @@
 //! The cells of a grid: the steady windows around each crossing of its lines.
 
+use htex_dsp::order;
+
 use super::lines::{FEWEST, Lines};
 
 /// Windows from which a cell is not widened. In third octaves the power of as many windows of noise scatters by 0.5 dB
@@ -34,7 +36,7 @@ impl Cell {
             return None;
         }
         let mut used: Vec<usize> = self.own.iter().chain(&self.borrowed).copied().collect();
-        used.sort_unstable();
+        order::sort(&mut used);
         Some(used)
     }
 }
@@ -68,9 +70,9 @@ fn cell(at: [f64; 2], halves: [[f64; 2]; 2], motions: &[[f64; 2]], among: &[usiz
     let mut borrowed: Vec<usize> = all()
         .filter(|i| inside[*i] >= 1.0 && around[*i] < 1.0)
         .collect();
-    borrowed.sort_by(|a, b| around[*a].total_cmp(&around[*b]));
+    order::sort_by(&mut borrowed, |a, b| around[*a].total_cmp(&around[*b]));
     borrowed.truncate(ENOUGH.saturating_sub(own.len()));
-    borrowed.sort_unstable();
+    order::sort(&mut borrowed);
     let slower = |i: &usize| motions[*i][0] < at[0];
     let both_sides = borrowed.iter().any(slower) && !borrowed.iter().all(slower);
     Cell {
@@ -88,7 +90,7 @@ pub(super) fn are_full(cells: &[Cell]) -> bool {
         .iter()
         .map(|cell| cell.own.len() + cell.borrowed.len())
         .collect();
-    counts.sort_unstable();
+    order::sort(&mut counts);
     counts
         .get(counts.len() / 2)
         .is_some_and(|count| 2 * count >= ENOUGH)

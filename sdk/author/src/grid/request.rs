@@ -75,7 +75,7 @@ fn parse_lines(text: &str, most: f64) -> Result<Vec<f64>, String> {
         }
         lines.push(value);
     }
-    lines.sort_by(f64::total_cmp);
+    htex_dsp::order::sort_by(&mut lines, f64::total_cmp);
     let near = |pair: &&[f64]| htex_format::Condition::is_same(pair[0], pair[1]);
     match lines.windows(2).find(near) {
         None => Ok(lines),

@@ -218,9 +218,10 @@ impl FitSettings {
 /// When a model is not known.
 pub fn named_models(registry: &Registry, names: &[String]) -> Result<Vec<LoadedModel>, HostError> {
     if names.is_empty() || names.iter().any(|name| name == "all") {
-        let mut all = registry.models().to_vec();
-        all.sort_by_key(|model| matches!(model.origin(), Origin::Runtime(_)));
-        return Ok(all);
+        let all = registry.models().iter().cloned();
+        let is_other = |model: &LoadedModel| matches!(model.origin(), Origin::Runtime(_));
+        let (others, own): (Vec<_>, Vec<_>) = all.partition(is_other);
+        return Ok([own, others].concat());
     }
     let mut models: Vec<LoadedModel> = Vec::new();
     for name in names {

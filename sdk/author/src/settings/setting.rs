@@ -125,6 +125,9 @@ macro_rules! settings {
         )*}
 
         impl $name {
+            /// The names of the settings, as recipes and keywords have them.
+            pub const NAMES: &'static [&'static str] = &[$(stringify!($field),)*];
+
             /// Returns these settings, and where they are absent those of `under`.
             #[must_use]
             pub fn over(self, under: Self) -> Self {
@@ -138,7 +141,11 @@ macro_rules! settings {
                 use crate::settings::setting::Setting;
                 let entries: &[(&str, Option<String>)] = &[$($(($flag, self.$field.recorded()),)?)*];
                 let said = entries.iter();
-                said.filter_map(|(flag, text)| Some(((*flag).to_owned(), text.clone()?))).collect()
+                let said = said.filter_map(|(flag, text)| Some(((*flag).to_owned(), text.clone()?)));
+                // Inserted one by one: to collect them would sort them, by a sort of their own.
+                let mut recorded = std::collections::BTreeMap::new();
+                recorded.extend(said);
+                recorded
             }
         }
     };

@@ -4,7 +4,8 @@
 use std::ffi::c_char;
 use std::ops::Range;
 
-use htex::library::{Entry, Index, LibraryError, Limits, Opening, Progress};
+use htex::library::{Entry, Index, LibraryError, Limits, Opening, Progress, Query};
+use serde::Deserialize;
 
 use crate::handles::{Kind, Table};
 use crate::pointers::{needed_text, place, slice, slice_mut, write_text};
@@ -28,14 +29,18 @@ impl State {
         }
     }
 
+    /// The entries of the page that was read last.
+    fn entries(&self) -> &[Entry] {
+        match self {
+            Self::Open(_, entries) => entries,
+            Self::Opening(_) => &[],
+        }
+    }
+
     /// The index, and the entry of this name in the page that was read last.
     fn entry(&self, name: &str) -> Result<(&Index, &Entry), Failure> {
         let index = self.index()?;
-        let entries = match self {
-            Self::Open(_, entries) => entries.as_slice(),
-            Self::Opening(_) => &[],
-        };
-        match entries.iter().find(|entry| entry.name == name) {
+        match self.entries().iter().find(|entry| entry.name == name) {
             Some(entry) => Ok((index, entry)),
             None => Err(absent(name)),
         }
@@ -187,15 +192,72 @@ pub unsafe extern "C" fn htex_index_entries_json(
 ) -> htex_status {
     guarded(|| {
         let state = INDEXES.shared(index)?;
-        let entries = match &*state {
-            State::Open(_, entries) => entries.as_slice(),
-            State::Opening(_) => &[],
-        };
-        let json = serde_json::to_string(entries)
-            .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INTERNAL, error))?;
+        let entries: Vec<&Entry> = state.entries().iter().collect();
         // SAFETY: the pointers are the caller's.
-        unsafe { write_text(&json, out, capacity, length) }
+        unsafe { write_entries(&entries, out, capacity, length) }
     })
+}
+
+/// The entries of the page that was read that have all that a query asks for (`LibraryQuery` in `sdk/web/src/index.d.ts`), as JSON.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_find_json(
+    index: u64,
+    query: *const c_char,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        // SAFETY: the pointers are the caller's.
+        let query = unsafe { needed_text(query) }?;
+        let asked: Asked = serde_json::from_str(query)
+            .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INVALID_ARGUMENT, error))?;
+        let query = Query::from(asked);
+        let entries = state.entries().iter();
+        let found: Vec<&Entry> = entries.filter(|entry| query.matches(entry)).collect();
+        // SAFETY: as above.
+        unsafe { write_entries(&found, out, capacity, length) }
+    })
+}
+
+/// A query as JavaScript writes it.
+#[derive(Deserialize, Default)]
+#[serde(default, deny_unknown_fields)]
+struct Asked {
+    words: Vec<String>,
+    tags: Vec<String>,
+    speed: Option<f64>,
+    force: Option<f64>,
+    model: Option<String>,
+}
+
+impl From<Asked> for Query {
+    fn from(asked: Asked) -> Self {
+        Self {
+            words: asked.words,
+            tags: asked.tags,
+            speed_mm_s: asked.speed,
+            force_n: asked.force,
+            model: asked.model,
+        }
+    }
+}
+
+/// Writes entries as JSON.
+///
+/// # Safety
+/// As for pointers.
+unsafe fn write_entries(
+    entries: &[&Entry],
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> Result<(), Failure> {
+    let json = serde_json::to_string(entries)
+        .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INTERNAL, error))?;
+    // SAFETY: the caller says so.
+    unsafe { write_text(&json, out, capacity, length) }
 }
 
 /// The bytes of a texture of the page that was read: start and end of each of at most `capacity` ranges. Writes

@@ -27,7 +27,7 @@ impl Axis {
     /// Makes an axis of one or more recorded values, not negative. If `merged`, values that are equal within the
     /// tolerance have the same coordinate.
     pub(super) fn new(mut values: Vec<f64>, merged: bool) -> Self {
-        values.sort_by(f64::total_cmp);
+        htex_dsp::order::sort_by(&mut values, f64::total_cmp);
         let largest = values.last().copied().unwrap_or(0.0);
         // The inverse of the smallest numbers is not finite.
         let scale = if largest > 0.0 {

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use htex_dsp::order;
 use htex_format::Condition;
 use spade::{DelaunayTriangulation, HierarchyHintGenerator, Point2, Triangulation};
 
@@ -46,10 +47,9 @@ pub(super) fn meshed(conditions: &[[f64; 2]], axes: [Axis; 2], places: &[[f64; 2
 /// Returns the numbers and coordinates of all conditions, in ascending order of their coordinates: what is made of them does
 /// not depend on their own order.
 pub(super) fn sorted(conditions: &[[f64; 2]], places: &[[f64; 2]]) -> (Vec<usize>, Vec<[f64; 2]>) {
-    let mut numbers: Vec<usize> = (0..conditions.len()).collect();
-    numbers.sort_by(|a, b| {
-        let by_motion = || ascends(&conditions[*a], &conditions[*b]);
-        ascends(&places[*a], &places[*b]).then_with(by_motion)
+    let numbers = order::order(conditions.len(), &|a, b| {
+        let by_motion = || ascends(&conditions[a], &conditions[b]);
+        ascends(&places[a], &places[b]).then_with(by_motion)
     });
     let places = numbers.iter().map(|i| places[*i]).collect();
     (numbers, places)
@@ -71,7 +71,7 @@ pub(super) fn placed(conditions: &[[f64; 2]], merged: bool) -> ([Axis; 2], Vec<[
 /// Returns whether all conditions have different coordinates.
 fn are_apart(places: &[[f64; 2]]) -> bool {
     let mut sorted = places.to_vec();
-    sorted.sort_by(ascends);
+    order::sort_by(&mut sorted, ascends);
     sorted.windows(2).all(|pair| pair[0] != pair[1])
 }
 
@@ -99,7 +99,8 @@ pub(super) fn order(places: &[[f64; 2]], line: &Side) -> Option<Vec<usize>> {
     if places.len() > FEW {
         let (first, last) = (line.conditions.first(), line.conditions.last());
         let is_corner = |i: &usize| Some(i) == first || Some(i) == last || *i == farthest;
-        order.sort_by_cached_key(|i| (!is_corner(i), scattered(*i as u64)));
+        let key = |i: &usize| (!is_corner(i), scattered(*i as u64));
+        order::sort_by(&mut order, |a, b| key(a).cmp(&key(b)));
     }
     Some(order)
 }
@@ -138,7 +139,7 @@ fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
         .map(|edge| [corner(edge.from().fix()), corner(edge.to().fix())])
         .collect();
     // The first of two edges that could both take a narrow triangle takes it.
-    edges.sort_unstable_by_key(|ends| ascending(*ends));
+    order::sort_by(&mut edges, |a, b| ascending(*a).cmp(&ascending(*b)));
     (!faces.is_empty()).then_some((faces, edges))
 }
 
@@ -165,7 +166,7 @@ pub(super) fn line(places: &[[f64; 2]]) -> Option<Side> {
     let mut side = Side::new([first, last], places);
     let mut feet: Vec<(f64, usize)> = all.map(|i| (side.foot(places[i]), i)).collect();
     feet.retain(|(foot, i)| (*foot > 0.0 && *foot < 1.0) || *i == first || *i == last);
-    feet.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order::sort_by(&mut feet, |a, b| a.0.total_cmp(&b.0));
     feet.dedup_by(|a, b| a.0 == b.0);
     (side.feet, side.conditions) = feet.into_iter().unzip();
     Some(side)
@@ -215,7 +216,7 @@ impl Edges {
             [[a, b], [b, c], [c, a]].map(|ends| (ascending(ends), i))
         };
         let mut edges: Vec<_> = faces.iter().enumerate().flat_map(edges).collect();
-        edges.sort_unstable();
+        order::sort(&mut edges);
         Self(edges)
     }
 

@@ -6,6 +6,8 @@
 
 use std::collections::BTreeMap;
 
+use htex_dsp::order;
+
 use super::area;
 
 /// Largest deviation of the sum of two opposite angles from half a turn, radians, that is attributed to rounding.
@@ -68,7 +70,8 @@ fn edges([a, b, c]: Corners) -> [[usize; 2]; 3] {
 fn neighbours(triangles: &[Corners]) -> Vec<[([usize; 2], usize); 2]> {
     let directed = |(i, corners): (usize, &Corners)| edges(*corners).map(|edge| (edge, i));
     let mut all: Vec<_> = triangles.iter().enumerate().flat_map(directed).collect();
-    all.sort_unstable_by_key(|([a, b], i)| ([*a.min(b), *a.max(b)], *i));
+    let key = |([a, b], i): &([usize; 2], usize)| ([*a.min(b), *a.max(b)], *i);
+    order::sort_by(&mut all, |a, b| key(a).cmp(&key(b)));
     let pairs = all.windows(2);
     pairs
         .filter(|pair| pair[0].0 == [pair[1].0[1], pair[1].0[0]])
@@ -92,9 +95,10 @@ fn are_on_a_circle(edge: [[f64; 2]; 2], opposite: [[f64; 2]; 2]) -> bool {
 fn fan(cell: impl Iterator<Item = Corners>, places: &[[f64; 2]]) -> Option<Vec<Corners>> {
     let all: Vec<[usize; 2]> = cell.flat_map(edges).collect();
     let mut inner: Vec<[usize; 2]> = all.iter().map(|[a, b]| [*b, *a]).collect();
-    inner.sort_unstable();
+    order::sort(&mut inner);
     let is_outer = |edge: &&[usize; 2]| inner.binary_search(edge).is_err();
-    let next: BTreeMap<usize, usize> = all.iter().filter(is_outer).map(|[a, b]| (*a, *b)).collect();
+    let mut next = BTreeMap::new();
+    next.extend(all.iter().filter(is_outer).map(|[a, b]| (*a, *b)));
     let apex = *next.keys().next()?;
     let mut fan = Vec::with_capacity(next.len());
     let mut from = *next.get(&apex)?;

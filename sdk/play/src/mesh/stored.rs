@@ -20,7 +20,7 @@ pub(super) fn mesh(conditions: &[[f64; 2]], triangles: &[Triangle]) -> Mesh {
         .map(|corners| upright(corners.map(|number| own[number]), &places))
         .collect();
     // What is made of them does not depend on their order.
-    all.sort_unstable();
+    htex_dsp::order::sort(&mut all);
     let face = |corners: &[usize; 3]| Face {
         corners: *corners,
         places: corners.map(|i| places[i]),
@@ -55,8 +55,9 @@ fn upright([a, b, c]: [usize; 3], places: &[[f64; 2]]) -> [usize; 3] {
 /// Returns the edges of one triangle only, in ascending order.
 fn outer(triangles: &[[usize; 3]]) -> impl Iterator<Item = [usize; 2]> {
     let edges = |[a, b, c]: &[usize; 3]| [[*a, *b], [*b, *c], [*c, *a]];
-    let all: BTreeSet<[usize; 2]> = triangles.iter().flat_map(edges).collect();
-    let neighbours: BTreeSet<[usize; 2]> = all.iter().map(|[from, to]| [*to, *from]).collect();
+    let (mut all, mut neighbours) = (BTreeSet::new(), BTreeSet::new());
+    all.extend(triangles.iter().flat_map(edges));
+    neighbours.extend(all.iter().map(|[from, to]: &[usize; 2]| [*to, *from]));
     all.into_iter()
         .filter(move |edge| !neighbours.contains(edge))
 }

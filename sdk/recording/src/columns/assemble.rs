@@ -71,7 +71,7 @@ impl Signals {
     /// Reads the selected columns, each once, and computes the values of the roles.
     pub(crate) fn read(sheet: &mut dyn Sheet, selection: &Selection) -> Result<Self, Fault> {
         let mut wanted: Vec<usize> = selection.chosen.iter().flat_map(Chosen::columns).collect();
-        wanted.sort_unstable();
+        htex_dsp::order::sort(&mut wanted);
         wanted.dedup();
         let mut numbers = even_numbers(sheet, &wanted)?;
         let rows = numbers.columns.first().map_or(0, Vec::len);

@@ -143,7 +143,7 @@ pub(crate) fn base_unit(role: Role, quantity: Quantity) -> &'static str {
 
 fn normalise(name: &str) -> String {
     name.trim()
-        .to_lowercase()
+        .to_ascii_lowercase()
         .replace(['µ', 'μ'], "u")
         .replace([' ', '-'], "_")
         .replace('²', "2")

@@ -104,7 +104,7 @@ impl RowMap {
             if has_scale || unit.is_empty() || in_name != Unit::Unsaid {
                 continue;
             }
-            match unit_of(chosen.role, &unit.to_lowercase(), self.quantity) {
+            match unit_of(chosen.role, &unit.to_ascii_lowercase(), self.quantity) {
                 Unit::Scale(scale) => chosen.scale = scale,
                 unit => {
                     let problem = no_scale(name, chosen.role, &unit, self.quantity);
@@ -139,7 +139,7 @@ impl RowMap {
     pub fn channels(&self) -> Vec<usize> {
         let chosen = self.selection.chosen.iter();
         let mut used: Vec<usize> = chosen.flat_map(|c| c.columns()).collect();
-        used.sort_unstable();
+        htex_dsp::order::sort(&mut used);
         used.dedup();
         used
     }

@@ -23,7 +23,7 @@ const RATES: [&str; 9] = [
 
 /// Whether a scalar or an attribute of this name states the sample rate.
 pub(crate) fn is_rate_name(name: &str) -> bool {
-    RATES.contains(&name.to_lowercase().as_str())
+    RATES.contains(&name.to_ascii_lowercase().as_str())
 }
 
 /// The shape of an array that is read as columns: its longer side is time.

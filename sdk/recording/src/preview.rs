@@ -1,0 +1,195 @@
+//! What a file's columns are taken to be, before it is read: for programs that show it and let a person correct it.
+
+use std::path::Path;
+
+use crate::columns::map::Role;
+use crate::columns::names::base_unit;
+use crate::columns::select::{Selection, Values, select};
+use crate::error::{Fault, ReadError};
+use crate::formats;
+use crate::input::{Opened, file_name};
+use crate::options::ReadOptions;
+use crate::sheet::{Layout, Sheet};
+use htex_format::Quantity;
+
+/// Rows of which the numbers are shown.
+const ROWS: usize = 5;
+/// Columns of a text of which the numbers are shown.
+const MOST_READ: usize = 64;
+/// Bytes of a text of which the first rows are read.
+const FIRST_BYTES: usize = 64 << 10;
+
+/// The columns of a file, and the role of each.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Preview {
+    pub columns: Vec<PreviewColumn>,
+    /// The rate that the file states, hertz; that of a column of times is not among them.
+    pub rate_hz: Option<f64>,
+    /// The roles as a column map ([`crate::ColumnMap`]), which a person may correct; empty if no column has one.
+    pub map: String,
+    /// Why the file cannot be read as a recording with these options, if it cannot.
+    pub problem: Option<String>,
+}
+
+/// A column of a file.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct PreviewColumn {
+    /// Its name; `#` and its number for one without a name.
+    pub name: String,
+    /// What it is read as, if it is read.
+    pub role: Option<Role>,
+    /// Factor to the unit of its role; 1 for one that is not read alone.
+    pub scale: f64,
+    /// Unit of the role; empty without one.
+    pub unit: &'static str,
+    /// Its first numbers, as they are in the file.
+    pub first: Vec<f64>,
+}
+
+/// Returns what the columns of a file are taken to be. `path` names it; the bytes are those of its contents.
+///
+/// ```
+/// use htex_recording::{ReadOptions, Role, preview};
+/// let csv = "t_s,fx_n,extra\n0,0.1,7\n0.001,0.2,7\n";
+/// let found = preview("felt.csv".as_ref(), csv.as_bytes(), &ReadOptions::default())?;
+/// let roles: Vec<_> = found.columns.iter().map(|column| column.role).collect();
+/// assert_eq!(roles, [Some(Role::Time), Some(Role::LateralX), None]);
+/// assert_eq!(found.columns[1].first, [0.1, 0.2]);
+/// assert_eq!(found.map, "time=#1:1,lateral_x=#2:1");
+/// # Ok::<(), htex_recording::ReadError>(())
+/// ```
+///
+/// # Errors
+/// When the file has no columns of numbers at all, or an option does not apply. Columns without a clear role are no error, but the
+/// [`Preview::problem`].
+pub fn preview(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Preview, ReadError> {
+    let previewed = || {
+        options.check()?;
+        let sheet = formats::open(Opened::bytes(path, bytes)?, options)?;
+        let bytes = match sheet.layout() {
+            Layout::Text => beginning(bytes),
+            Layout::Channels { .. } | Layout::Named => bytes,
+        };
+        let first = first_numbers(&*sheet, || {
+            formats::open(Opened::bytes(path, bytes)?, options)
+        });
+        Ok(of_sheet(&*sheet, first, options))
+    };
+    previewed().map_err(|fault: Fault| fault.in_file(&file_name(path)))
+}
+
+/// Returns the first numbers of each column; none of a column of words. A sheet is read once, so that it is opened for each reading.
+fn first_numbers<'a>(
+    sheet: &dyn Sheet,
+    open: impl Fn() -> Result<Box<dyn Sheet + 'a>, Fault>,
+) -> Vec<Vec<f64>> {
+    let read = |wanted: &[usize]| {
+        let numbers = open().and_then(|mut sheet| sheet.numbers(wanted));
+        let columns = numbers.unwrap_or_default().columns.into_iter();
+        columns.map(|numbers| numbers.into_iter().take(ROWS).collect())
+    };
+    let all: Vec<usize> = (0..sheet.columns().width()).collect();
+    match sheet.layout() {
+        Layout::Text => {
+            let one = |column: &usize| read(&[*column]).next().unwrap_or_default();
+            all.iter().take(MOST_READ).map(one).collect()
+        }
+        Layout::Channels { .. } | Layout::Named => read(&all).collect(),
+    }
+}
+
+/// The whole lines at the beginning of a text.
+fn beginning(text: &[u8]) -> &[u8] {
+    let Some(first) = text.get(..FIRST_BYTES) else {
+        return text;
+    };
+    match first.iter().rposition(|byte| *byte == b'\n') {
+        Some(end) => &first[..=end],
+        None => text,
+    }
+}
+
+fn of_sheet(sheet: &dyn Sheet, first: Vec<Vec<f64>>, options: &ReadOptions) -> Preview {
+    let (width, quantity) = (sheet.columns().width(), options.quantity);
+    let mut first = first.into_iter();
+    let mut columns: Vec<PreviewColumn> = (0..width)
+        .map(|column| PreviewColumn {
+            name: sheet.columns().name(column),
+            role: None,
+            scale: 1.0,
+            unit: "",
+            first: first.next().unwrap_or_default(),
+        })
+        .collect();
+    let assigned = match (sheet.layout(), &options.map) {
+        (Layout::Channels { .. }, None) => by_order(&mut columns, options),
+        (_, map) => select(sheet.columns(), map.as_ref(), quantity)
+            .map(|selection| by_name(&selection, &mut columns, quantity))
+            .map_err(|problem| problem.to_string()),
+    };
+    let all: Vec<usize> = (0..width).collect();
+    Preview {
+        map: map_of(&columns),
+        columns,
+        rate_hz: sheet.rate_hz(&all).ok().flatten(),
+        problem: assigned.err(),
+    }
+}
+
+impl PreviewColumn {
+    fn take(&mut self, role: Role, scale: f64, quantity: Quantity) {
+        self.role = Some(role);
+        self.scale = scale;
+        self.unit = base_unit(role, quantity);
+    }
+}
+
+/// Assigns channels without names.
+fn by_order(columns: &mut [PreviewColumn], options: &ReadOptions) -> Result<(), String> {
+    use Role::{Lateral, LateralX, LateralY, Normal, Signal, SignalX, SignalY, SignalZ};
+    let roles: &[Role] = match (options.quantity, columns.len()) {
+        (Quantity::NormalForce, 1) => &[Normal],
+        (Quantity::LateralForce, 1) => &[Lateral],
+        (Quantity::LateralForce, 2 | 3) => &[LateralX, LateralY, Normal],
+        (Quantity::Acceleration | Quantity::Velocity | Quantity::Displacement, 1) => &[Signal],
+        (Quantity::Acceleration | Quantity::Velocity | Quantity::Displacement, 2 | 3) => {
+            &[SignalX, SignalY, SignalZ]
+        }
+        (quantity, channels) => {
+            return Err(format!(
+                "{channels} channels of a {}; map those of the recording, as in lateral=#1:SCALE",
+                quantity.words()
+            ));
+        }
+    };
+    let scale = options.scale.unwrap_or(1.0);
+    for (column, role) in columns.iter_mut().zip(roles) {
+        column.take(*role, scale, options.quantity);
+    }
+    Ok(())
+}
+
+/// Assigns columns that a map or their names select; what is computed of several has the role at its first column.
+fn by_name(selection: &Selection, columns: &mut [PreviewColumn], quantity: Quantity) {
+    for chosen in &selection.chosen {
+        let scale = match chosen.values {
+            Values::Column(_) => chosen.scale,
+            Values::Formula { .. } => 1.0,
+        };
+        let first = chosen.columns().first().copied().unwrap_or_default();
+        if let Some(column) = columns.get_mut(first) {
+            column.take(chosen.role, scale, quantity);
+        }
+    }
+}
+
+/// Writes the roles as a column map; columns by number, since a name may stand twice.
+fn map_of(columns: &[PreviewColumn]) -> String {
+    let entries = columns.iter().enumerate().filter_map(|(at, column)| {
+        let role = column.role?;
+        Some(format!("{role}=#{}:{}", at + 1, column.scale))
+    });
+    entries.collect::<Vec<_>>().join(",")
+}

@@ -1,0 +1,127 @@
+//! The C function, and the functions that it calls by name.
+
+use std::ffi::c_char;
+
+use htex_c::calls::{Failure, allocate, guarded, needed_text, place, slice};
+use htex_c::{htex_bytes, htex_status};
+use serde::Serialize;
+
+use crate::document::Document;
+use crate::refusal::Refusal;
+use crate::{felt, fit, libraries, made, models, process, validate};
+
+/// The result of a call, in memory that the caller frees: `htex_free(json, json_len)`, `htex_free(bytes, bytes_len)`.
+#[repr(C)]
+#[derive(Debug)]
+#[allow(non_camel_case_types)] // As the names of the C header.
+pub struct htex_author_result {
+    /// A document of JSON; of a call that fails, `{ code, message }`.
+    pub json: *mut u8,
+    /// Its bytes.
+    pub json_len: usize,
+    /// A file, or numbers; NULL if there are none.
+    pub bytes: *mut u8,
+    /// Their number.
+    pub bytes_len: usize,
+}
+
+/// What a function returns: a document, and bytes.
+#[derive(Debug)]
+pub(crate) struct Answer {
+    json: Vec<u8>,
+    bytes: Vec<u8>,
+}
+
+impl Answer {
+    pub(crate) fn new(document: &impl Serialize, bytes: Vec<u8>) -> Result<Self, Refusal> {
+        let json = serde_json::to_vec(document).map_err(Refusal::internal)?;
+        Ok(Self { json, bytes })
+    }
+}
+
+/// The files that a call is given.
+pub(crate) type Files<'a> = &'a [&'a [u8]];
+
+type Function = fn(Document, Files<'_>) -> Result<Answer, Refusal>;
+
+const FUNCTIONS: &[(&str, Function)] = &[
+    ("columns", process::columns),
+    ("edit", made::edit),
+    ("explain", validate::explain),
+    ("felt", felt::felt),
+    ("fit", fit::fit),
+    ("library", libraries::pack),
+    ("make", made::make),
+    ("mix", made::mix),
+    ("models", models::models),
+    ("process", process::process),
+    ("threshold", felt::threshold),
+    ("validate", validate::validate),
+];
+
+/// Calls the function of a name with a document of JSON and the bytes of files. A call that fails has a result, too.
+///
+/// # Safety
+/// The pointers are the caller's: what they point to is there during the call, and `out` is written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_author_call(
+    name: *const c_char,
+    json: *const u8,
+    json_len: usize,
+    files: *const htex_bytes,
+    files_len: usize,
+    out: *mut htex_author_result,
+) -> htex_status {
+    guarded(|| {
+        // SAFETY: the pointers are the caller's.
+        let (name, json, files, out) = unsafe {
+            (
+                needed_text(name)?,
+                slice(json, json_len)?,
+                slice(files, files_len)?,
+                place(out)?,
+            )
+        };
+        // SAFETY: as above.
+        let files = files
+            .iter()
+            .map(|file| unsafe { slice(file.data, file.len) });
+        let files = files.collect::<Result<Vec<_>, Failure>>()?;
+        let answer = called(name, json, &files);
+        let (json, bytes) = match &answer {
+            Ok(answer) => (answer.json.as_slice(), answer.bytes.as_slice()),
+            Err(refusal) => (refusal.json(), &[][..]),
+        };
+        *out = htex_author_result {
+            json: handed_over(json)?,
+            json_len: json.len(),
+            bytes: handed_over(bytes)?,
+            bytes_len: bytes.len(),
+        };
+        answer.map(drop).map_err(Failure::from)
+    })
+}
+
+fn called(name: &str, json: &[u8], files: Files<'_>) -> Result<Answer, Refusal> {
+    let function = FUNCTIONS.iter().find(|(own, _)| *own == name);
+    let (_, function) =
+        function.ok_or_else(|| Refusal::argument(format!("there is no function {name}")))?;
+    function(Document::of_call(json)?, files)
+}
+
+/// Copies bytes to memory that the caller frees; NULL for none.
+fn handed_over(bytes: &[u8]) -> Result<*mut u8, Failure> {
+    if bytes.is_empty() {
+        return Ok(std::ptr::null_mut());
+    }
+    let at = allocate(bytes.len());
+    if at.is_null() {
+        return Err(Failure::plain(
+            htex_status::HTEX_STATUS_INTERNAL,
+            "the memory for the result cannot be allocated",
+        ));
+    }
+    // SAFETY: as many bytes were allocated, and are nobody else's.
+    unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), at, bytes.len()) };
+    Ok(at)
+}

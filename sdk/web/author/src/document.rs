@@ -1,0 +1,128 @@
+//! Documents of calls: objects of JSON, whose entries are taken by their names.
+//!
+//! They are not read by derived code, which takes a kilobyte and more for each struct. Only the tables of settings are.
+
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
+
+use crate::refusal::Refusal;
+
+/// An object whose entries are taken.
+pub(crate) struct Document {
+    left: Map<String, Value>,
+    known: Vec<&'static str>,
+}
+
+impl Document {
+    /// Reads the document of a call.
+    pub(crate) fn of_call(json: &[u8]) -> Result<Self, Refusal> {
+        let value = serde_json::from_slice::<Value>(json).map_err(Refusal::argument)?;
+        Self::of(value)
+    }
+
+    /// Takes an object; `null` entries are absent.
+    pub(crate) fn of(value: Value) -> Result<Self, Refusal> {
+        match value {
+            Value::Object(mut left) => {
+                left.retain(|_, value| !value.is_null());
+                Ok(Self {
+                    left,
+                    known: Vec::new(),
+                })
+            }
+            Value::Null => Self::of(Value::Object(Map::new())),
+            other => Err(Refusal::argument(format!("{other} is not an object"))),
+        }
+    }
+
+    fn take(&mut self, name: &'static str) -> Option<Value> {
+        self.known.push(name);
+        self.left.remove(name)
+    }
+
+    /// Takes the entries of a table of settings.
+    pub(crate) fn table<T: DeserializeOwned>(
+        &mut self,
+        names: &[&'static str],
+    ) -> Result<T, Refusal> {
+        let mut own = Map::new();
+        for name in names {
+            if let Some(value) = self.take(name) {
+                own.insert((*name).to_owned(), value);
+            }
+        }
+        serde_json::from_value(Value::Object(own)).map_err(Refusal::argument)
+    }
+
+    pub(crate) fn object(&mut self, name: &'static str) -> Result<Self, Refusal> {
+        Self::of(self.take(name).unwrap_or_default())
+    }
+
+    /// Takes a list; an absent one is empty.
+    pub(crate) fn list(&mut self, name: &'static str) -> Result<Vec<Value>, Refusal> {
+        match self.take(name) {
+            None => Ok(Vec::new()),
+            Some(Value::Array(all)) => Ok(all),
+            Some(_) => Err(wrong(name, "a list")),
+        }
+    }
+
+    pub(crate) fn texts(&mut self, name: &'static str) -> Result<Vec<String>, Refusal> {
+        let text = |value| match value {
+            Value::String(text) => Ok(text),
+            _ => Err(wrong(name, "a list of texts")),
+        };
+        self.list(name)?.into_iter().map(text).collect()
+    }
+
+    pub(crate) fn text(&mut self, name: &'static str) -> Result<Option<String>, Refusal> {
+        match self.take(name) {
+            None => Ok(None),
+            Some(Value::String(text)) => Ok(Some(text)),
+            Some(_) => Err(wrong(name, "a text")),
+        }
+    }
+
+    pub(crate) fn number(&mut self, name: &'static str) -> Result<Option<f64>, Refusal> {
+        match self.take(name) {
+            None => Ok(None),
+            Some(value) => number(&value)
+                .map(Some)
+                .ok_or_else(|| wrong(name, "a number")),
+        }
+    }
+
+    pub(crate) fn flag(&mut self, name: &'static str) -> Result<bool, Refusal> {
+        match self.take(name) {
+            None => Ok(false),
+            Some(Value::Bool(is)) => Ok(is),
+            Some(_) => Err(wrong(name, "true or false")),
+        }
+    }
+
+    /// Takes what is left, by names of the caller.
+    pub(crate) fn rest(self) -> Map<String, Value> {
+        self.left
+    }
+
+    /// Refuses an entry that was not taken.
+    pub(crate) fn finish(self) -> Result<(), Refusal> {
+        match self.left.keys().next() {
+            None => Ok(()),
+            Some(name) => {
+                let (name, known) = (htex_finding::plain(name), self.known.join(", "));
+                let sentence = format!("there is no {name}; there are {known}");
+                Err(Refusal::argument(sentence))
+            }
+        }
+    }
+}
+
+/// A finite number.
+pub(crate) fn number(value: &Value) -> Option<f64> {
+    value.as_f64()
+}
+
+fn wrong(name: &str, wanted: &str) -> Refusal {
+    Refusal::argument(format!("{name} is {wanted}"))
+}

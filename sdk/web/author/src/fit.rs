@@ -1,0 +1,174 @@
+//! Recordings to a fitted texture.
+
+use htex::host::Registry;
+use htex_author::settings::{FitSettings, Metadata};
+use htex_author::{AssetRequest, FeltError, FittedAsset, GridReport, fit_asset_watched};
+use htex_format::{Condition, LeftOut, Quality};
+use serde::Serialize;
+
+use crate::TOOL;
+use crate::call::{Answer, Files};
+use crate::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
+use crate::document::Document;
+use crate::progress;
+use crate::recordings::{Given, Reading, given};
+use crate::refusal::Refusal;
+
+/// Fits models to recordings; the bytes are the asset.
+pub(crate) fn fit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
+    let names = call.object("files")?;
+    let conditions = call.list("conditions")?.into_iter().map(given);
+    let conditions = conditions.collect::<Result<Vec<Given>, _>>()?;
+    let mut settings = call.object("settings")?;
+    call.finish()?;
+    let reading = Reading::new(names, &mut settings, files)?;
+    let mut fitting: FitSettings = settings.table(FitSettings::NAMES)?;
+    let metadata: Metadata = settings.table(Metadata::NAMES)?;
+    settings.finish()?;
+    metadata.check()?;
+    fitting.strict = Some(reading.strict);
+    let registry = Registry::builtin();
+    let request = request(&reading, &fitting, &metadata, &registry)?;
+    progress::start(reading.count() + request.models.len());
+    let fitted = fitted(&reading, &conditions, &request);
+    progress::end();
+    let mut fitted = fitted?;
+    metadata.apply(&mut fitted.asset.manifest);
+    Answer::new(&Report::of(&fitted), fitted.asset.to_bytes()?)
+}
+
+fn request(
+    reading: &Reading<'_>,
+    fitting: &FitSettings,
+    metadata: &Metadata,
+    registry: &Registry,
+) -> Result<AssetRequest, Refusal> {
+    let name = metadata.name.clone().or_else(|| reading.stem());
+    let name = name.unwrap_or_else(|| "texture".to_owned());
+    let mut request = fitting.request(registry, &reading.settings, &name, TOOL)?;
+    request.spectrum = reading.spectrum.clone();
+    if let Some(response) = &reading.response {
+        let recorded = &mut request.recorded_options;
+        recorded.insert("frf".to_owned(), response.clone());
+    }
+    Ok(request)
+}
+
+fn fitted(
+    reading: &Reading<'_>,
+    conditions: &[Given],
+    request: &AssetRequest,
+) -> Result<FittedAsset, Refusal> {
+    let takes = reading.takes(conditions)?;
+    let fitted = fit_asset_watched(&takes, request, &mut |model| {
+        progress::begin("fit", model.short_name());
+    });
+    Ok(fitted?)
+}
+
+/// What the file of a fitted texture does not hold, and what ranks its models.
+#[derive(Serialize)]
+struct Report<'a> {
+    models: Vec<Model<'a>>,
+    ranked: Vec<&'a str>,
+    skipped: Vec<Skipped<'a>>,
+    conditions: &'a [Condition],
+    spectra: Vec<DescribedSpectrum<'a>>,
+    findings: Vec<Found<'a>>,
+    warnings: Vec<DescribedNotice<'a>>,
+    notes: Vec<DescribedNotice<'a>>,
+    grid: Option<&'a GridReport>,
+}
+
+#[derive(Serialize)]
+struct Model<'a> {
+    model: &'a str,
+    bytes: usize,
+    fit_ms: Option<f64>,
+    felt: Option<FeltError>,
+    at: Vec<At<'a>>,
+}
+
+#[derive(Serialize)]
+struct At<'a> {
+    condition: usize,
+    level_rms: f64,
+    quality: Option<&'a Quality>,
+    left_out: Option<LeftOut>,
+    felt: Option<FeltError>,
+}
+
+#[derive(Serialize)]
+struct Skipped<'a> {
+    model: &'a str,
+    reason: &'a str,
+}
+
+#[derive(Serialize)]
+struct Found<'a> {
+    recording: &'a str,
+    finding: DescribedFinding<'a>,
+}
+
+impl<'a> Report<'a> {
+    fn of(fitted: &'a FittedAsset) -> Self {
+        let manifest = &fitted.asset.manifest;
+        let skipped = fitted.skipped.iter();
+        let findings = fitted.findings.iter();
+        let models: Vec<Model<'_>> = (0..manifest.representations.len())
+            .filter_map(|i| Model::of(fitted, i))
+            .collect();
+        Self {
+            ranked: ranked(&models),
+            models,
+            skipped: skipped
+                .map(|(model, reason)| Skipped { model, reason })
+                .collect(),
+            conditions: &manifest.conditions,
+            spectra: fitted.spectra.iter().map(describe::spectrum).collect(),
+            findings: findings
+                .map(|found| Found {
+                    recording: &found.recording,
+                    finding: describe::finding(&found.finding),
+                })
+                .collect(),
+            warnings: describe::notices(&fitted.warnings),
+            notes: describe::notices(&fitted.notes),
+            grid: fitted.grid.as_ref(),
+        }
+    }
+}
+
+impl<'a> Model<'a> {
+    fn of(fitted: &'a FittedAsset, i: usize) -> Option<Self> {
+        let representation = fitted.asset.manifest.representations.get(i)?;
+        let felt = fitted.felt.get(i).map_or(&[][..], Vec::as_slice);
+        let at = representation.at.iter().enumerate();
+        Some(Self {
+            model: &representation.model,
+            bytes: fitted.asset.payload_bytes(i),
+            fit_ms: fitted.fit_ms.get(i).copied(),
+            felt: felt.iter().flatten().copied().reduce(FeltError::worse),
+            at: at
+                .map(|(k, at)| At {
+                    condition: at.condition,
+                    level_rms: at.level_rms,
+                    quality: at.quality.as_ref(),
+                    left_out: at.left_out,
+                    felt: felt.get(k).copied().flatten(),
+                })
+                .collect(),
+        })
+    }
+}
+
+/// The models, that of which least is felt first.
+fn ranked<'a>(models: &[Model<'a>]) -> Vec<&'a str> {
+    let mut ranked: Vec<(f64, &str)> = Vec::new();
+    for Model { model, felt, .. } in models {
+        let error_db = felt.map_or(f64::INFINITY, |felt| felt.error_rms_db);
+        let behind = ranked.partition_point(|(other, _)| *other <= error_db);
+        ranked.insert(behind, (error_db, model));
+    }
+    ranked.into_iter().map(|(_, model)| model).collect()
+}

@@ -1,0 +1,21 @@
+//! Textures to a library.
+
+use crate::call::{Answer, Files};
+use crate::document::Document;
+use crate::refusal::Refusal;
+
+/// Packs textures, the files, whose names are given; the bytes are the library.
+pub(crate) fn pack(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
+    let name = call.text("name")?.unwrap_or_default();
+    let textures = call.texts("textures")?;
+    call.finish()?;
+    if textures.len() != files.len() {
+        return Err(Refusal::argument("a file is missing"));
+    }
+    let mut writer = htex_library::MemoryWriter::new(&name)?;
+    for (name, bytes) in textures.iter().zip(files) {
+        writer.add(name, bytes)?;
+    }
+    let (_, bytes) = writer.finish()?;
+    Answer::new(&(), bytes)
+}

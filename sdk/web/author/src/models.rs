@@ -1,0 +1,87 @@
+//! The descriptors of the built-in models, with the usual ranges of their parameters.
+
+use htex::host::{Descriptor, Field, FitOption, Kind, LoadedModel, Registry, Usual};
+use serde::Serialize;
+
+use crate::call::{Answer, Files};
+use crate::document::Document;
+use crate::refusal::Refusal;
+
+pub(crate) fn models(call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
+    call.finish()?;
+    let registry = Registry::builtin();
+    let all: Vec<Model<'_>> = registry.models().iter().map(Model::of).collect();
+    Answer::new(&all, Vec::new())
+}
+
+#[derive(Serialize)]
+struct Model<'a> {
+    id: &'a str,
+    name: &'a str,
+    version: &'a str,
+    summary: &'a str,
+    fields: Vec<Parameter<'a>>,
+    options: &'a [FitOption],
+    keeps_level: bool,
+}
+
+#[derive(Serialize)]
+struct Parameter<'a> {
+    name: &'a str,
+    unit: &'a str,
+    kind: Kind,
+    min: f64,
+    max: f64,
+    usual: Option<Range>,
+    default: Option<f64>,
+    description: &'a str,
+}
+
+#[derive(Serialize)]
+struct Range {
+    min: f64,
+    max: f64,
+    scale: &'static str,
+}
+
+impl<'a> Model<'a> {
+    fn of(model: &'a LoadedModel) -> Self {
+        let Descriptor {
+            id,
+            name,
+            version,
+            summary,
+            fields,
+            options,
+            keeps_level,
+        } = model.descriptor();
+        let usual = model.usual();
+        Self {
+            id,
+            name,
+            version,
+            summary,
+            fields: fields.iter().map(|field| parameter(field, usual)).collect(),
+            options,
+            keeps_level: *keeps_level,
+        }
+    }
+}
+
+fn parameter<'a>(field: &'a Field, usual: &[Usual]) -> Parameter<'a> {
+    let own = usual.iter().find(|usual| usual.field == field.name);
+    Parameter {
+        name: &field.name,
+        unit: &field.unit,
+        kind: field.kind,
+        min: field.min,
+        max: field.max,
+        usual: own.map(|usual| Range {
+            min: usual.min,
+            max: usual.max,
+            scale: usual.scale.name(),
+        }),
+        default: field.default,
+        description: &field.description,
+    }
+}

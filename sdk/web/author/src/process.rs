@@ -1,0 +1,195 @@
+//! A recording as it is read: its columns, its signals, its spectrum, its findings.
+
+use htex_author::recording::{Preview, preview};
+use htex_author::{Reading as Read, Recording, TextureSpectrum, read_take};
+use serde::Serialize;
+
+use crate::call::{Answer, Files};
+use crate::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
+use crate::document::Document;
+use crate::recordings::Reading;
+use crate::refusal::Refusal;
+
+/// Steps of a picture of the signals.
+const STEPS: usize = 1000;
+
+fn reading<'a>(mut call: Document, files: Files<'a>) -> Result<Reading<'a>, Refusal> {
+    let names = call.object("files")?;
+    let mut settings = call.object("settings")?;
+    call.finish()?;
+    let reading = Reading::new(names, &mut settings, files)?;
+    settings.finish()?;
+    Ok(reading)
+}
+
+/// What the columns of a file are taken to be.
+pub(crate) fn columns(call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
+    let reading = reading(call, files)?;
+    let (name, bytes, options) = reading.only()?;
+    let preview = preview(name, bytes, options)?;
+    Answer::new(&Columns::of(&preview), Vec::new())
+}
+
+#[derive(Serialize)]
+struct Columns<'a> {
+    columns: Vec<Column<'a>>,
+    rate_hz: Option<f64>,
+    map: &'a str,
+    problem: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+struct Column<'a> {
+    name: &'a str,
+    role: Option<&'static str>,
+    scale: f64,
+    unit: &'static str,
+    first: &'a [f64],
+}
+
+impl<'a> Columns<'a> {
+    fn of(preview: &'a Preview) -> Self {
+        let columns = preview.columns.iter().map(|column| Column {
+            name: &column.name,
+            role: column.role.map(|role| role.name()),
+            scale: column.scale,
+            unit: column.unit,
+            first: &column.first,
+        });
+        Self {
+            columns: columns.collect(),
+            rate_hz: preview.rate_hz,
+            map: &preview.map,
+            problem: preview.problem.as_deref(),
+        }
+    }
+}
+
+/// Reads a recording; the bytes are a picture of its signals, [`Picture`].
+pub(crate) fn process(call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
+    let reading = reading(call, files)?;
+    let (name, bytes, options) = reading.only()?;
+    let preview = preview(name, bytes, options)?;
+    let take = reading.takes(&[])?.pop();
+    let take = take.ok_or_else(|| Refusal::argument("give one recording"))?;
+    let read = read_take(&take, &reading.spectrum, reading.strict)?;
+    let parts = std::slice::from_ref(&read.part);
+    let spectrum = TextureSpectrum::average(parts, reading.spectrum.averaging)?;
+    let (picture, numbers) = Picture::of(&take.recording);
+    let processed = Processed {
+        columns: Columns::of(&preview),
+        picture,
+        ..Processed::of(&take.recording, &read, &spectrum)
+    };
+    Answer::new(&processed, numbers)
+}
+
+#[derive(Serialize)]
+struct Processed<'a> {
+    columns: Columns<'a>,
+    rate_hz: f64,
+    duration_s: f64,
+    simulated: bool,
+    spectrum: DescribedSpectrum<'a>,
+    segments: usize,
+    from_sweeps: bool,
+    read_s: Vec<[f64; 2]>,
+    condition: Condition,
+    speed_spread: Option<[f64; 2]>,
+    force_spread: Option<[f64; 2]>,
+    findings: Vec<DescribedFinding<'a>>,
+    warnings: Vec<DescribedNotice<'a>>,
+    notes: Vec<DescribedNotice<'a>>,
+    picture: Picture,
+}
+
+#[derive(Serialize)]
+struct Condition {
+    speed: Option<f64>,
+    force: Option<f64>,
+}
+
+impl<'a> Processed<'a> {
+    fn of(recording: &Recording, read: &'a Read, spectrum: &'a TextureSpectrum) -> Self {
+        let stretches = read.part.segments.stretches().into_iter();
+        let second = |part: std::ops::Range<usize>| {
+            [recording.second(part.start), recording.second(part.end)]
+        };
+        Self {
+            columns: Columns {
+                columns: Vec::new(),
+                rate_hz: None,
+                map: "",
+                problem: None,
+            },
+            rate_hz: recording.rate_hz,
+            duration_s: recording.duration_s(),
+            simulated: recording.simulated,
+            spectrum: describe::spectrum(spectrum),
+            segments: spectrum.segments,
+            from_sweeps: read.part.segments.from_sweeps,
+            read_s: stretches.map(second).collect(),
+            condition: Condition {
+                speed: read.condition.speed_mm_s,
+                force: read.condition.force_n,
+            },
+            speed_spread: read.spread.speed_mm_s,
+            force_spread: read.spread.force_n,
+            findings: describe::findings(&read.findings),
+            warnings: describe::notices(&read.warnings),
+            notes: describe::notices(&read.notes),
+            picture: Picture::default(),
+        }
+    }
+}
+
+/// Signals in at most 1000 steps of time: of each the least and the greatest of each step, in single precision.
+#[derive(Serialize, Default)]
+struct Picture {
+    from_s: f64,
+    step_s: f64,
+    steps: usize,
+    signals: Vec<&'static str>,
+}
+
+impl Picture {
+    /// The picture, and its numbers.
+    fn of(recording: &Recording) -> (Self, Vec<u8>) {
+        let samples = recording.samples();
+        let per_step = samples.div_ceil(STEPS).max(1);
+        let axes = ["signal", "signal_y", "signal_z"];
+        let axes = axes.into_iter().zip(recording.axes.iter().map(Some));
+        let motion = [
+            ("normal", recording.normal_n.as_ref()),
+            ("speed", recording.speed_mm_s.as_ref()),
+        ];
+        let mut picture = Self {
+            from_s: recording.second(0),
+            step_s: per_step as f64 / recording.rate_hz,
+            steps: samples.div_ceil(per_step),
+            signals: Vec::new(),
+        };
+        let mut numbers = Vec::new();
+        for (name, signal) in axes.chain(motion) {
+            if let Some(signal) = signal {
+                picture.signals.push(name);
+                draw(signal, per_step, &mut numbers);
+            }
+        }
+        (picture, numbers)
+    }
+}
+
+fn draw(signal: &[f64], per_step: usize, numbers: &mut Vec<u8>) {
+    let mut greatest = Vec::new();
+    for step in signal.chunks(per_step) {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for value in step {
+            low = low.min(*value);
+            high = high.max(*value);
+        }
+        numbers.extend((low as f32).to_le_bytes());
+        greatest.extend((high as f32).to_le_bytes());
+    }
+    numbers.append(&mut greatest);
+}

@@ -1,0 +1,94 @@
+//! Checks of files, and what their findings mean.
+
+use std::path::Path;
+
+use htex::host::Registry;
+use htex_author::recording::{ReadOptions, rules};
+use htex_author::{Exploration, SpectrumOptions, validate_recording_bytes};
+use htex_finding::{FINDINGS_TRUNCATED, Report, Rule, Severity};
+use htex_format::{Limits, Representation, validate_with};
+use htex_library::{EXTENSION, MAGIC, validate_source};
+use serde::Serialize;
+
+use crate::call::{Answer, Files};
+use crate::describe::{self, DescribedFinding};
+use crate::document::Document;
+use crate::refusal::Refusal;
+
+#[derive(Serialize)]
+struct Validated<'a> {
+    kind: &'static str,
+    valid: bool,
+    findings: Vec<DescribedFinding<'a>>,
+}
+
+/// Validates a texture, a library or a recording, the file.
+pub(crate) fn validate(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
+    let name = call.text("name")?.unwrap_or_default();
+    call.finish()?;
+    let [bytes] = files else {
+        return Err(Refusal::argument("give one file"));
+    };
+    let path = Path::new(&name);
+    let extension = path.extension().unwrap_or_default();
+    let called = |own: &str| extension.eq_ignore_ascii_case(own);
+    let (kind, report) = if called(EXTENSION) || bytes.starts_with(&MAGIC) {
+        let limits = htex_library::Limits::default();
+        ("library", validate_source(*bytes, &limits)?)
+    } else if called("htex") || bytes.starts_with(b"PK") || name.is_empty() {
+        ("texture", of_texture(bytes))
+    } else {
+        ("recording", of_recording(path, bytes)?)
+    };
+    let validated = Validated {
+        kind,
+        valid: report.valid,
+        findings: describe::findings(&report.findings),
+    };
+    Answer::new(&validated, Vec::new())
+}
+
+fn of_texture(bytes: &[u8]) -> Report {
+    let models = Registry::builtin();
+    let known = |r: &Representation| {
+        let model = htex::model_of(&models, r).ok()?;
+        Some(model.descriptor())
+    };
+    validate_with(bytes, &Limits::default(), &known)
+}
+
+fn of_recording(path: &Path, bytes: &[u8]) -> Result<Report, Refusal> {
+    let (read, spectrum) = (ReadOptions::default(), SpectrumOptions::default());
+    let given = Exploration::default();
+    Ok(validate_recording_bytes(
+        path, bytes, &read, given, &spectrum,
+    )?)
+}
+
+#[derive(Serialize)]
+struct Explained {
+    code: &'static str,
+    severity: Severity,
+    summary: &'static str,
+    explanation: &'static str,
+    fix: &'static str,
+    settings: Vec<&'static str>,
+}
+
+/// What the code of a finding means; `null` for one that is not known.
+pub(crate) fn explain(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
+    let code = call.text("code")?.unwrap_or_default();
+    call.finish()?;
+    let all = [htex_format::RULES, htex_library::RULES, rules::RULES];
+    let mut all = all.into_iter().flatten().chain([FINDINGS_TRUNCATED]);
+    let explained = all.find(|rule| rule.code == code);
+    let explained = explained.map(|rule: &Rule| Explained {
+        code: rule.code,
+        severity: rule.severity,
+        summary: rule.summary,
+        explanation: rule.explanation,
+        fix: rule.fix,
+        settings: describe::settings(rule.hint),
+    });
+    Answer::new(&explained, Vec::new())
+}

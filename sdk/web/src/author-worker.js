@@ -1,0 +1,5 @@
+// The worker of a page that fits.
+
+import { serveAuthor } from "./author-serve.js";
+
+serveAuthor(globalThis);

@@ -1,0 +1,255 @@
+// Textures made: recordings fitted, parameters written, textures mixed and edited. What makes them is a second module, which holds the
+// player, too, and is loaded when it is first needed.
+
+import { AuthorCore } from "./author-core.js";
+import { HtexError, toBytes } from "./core.js";
+import { host } from "./host.js";
+import { compiledFrom, library, opened } from "./library.js";
+
+let source = () => new URL("./htex-author.wasm", import.meta.url);
+let startWorker = null;
+let module;
+let author;
+/** A worker that waits for the next fit. */
+let idle = null;
+
+/** Sets where the module is: its address, its bytes or a WebAssembly.Module; and how its worker is started, where a bundler has it
+ * elsewhere. Before the first use. */
+export function setAuthorLibrary(library, { worker = null } = {}) {
+  if (library !== undefined) source = () => library;
+  [startWorker, module, author] = [worker, undefined, undefined];
+  idle?.terminate();
+  idle = null;
+}
+
+function compiled() {
+  module ??= compiledFrom(source(), "the author module").catch((error) => {
+    module = undefined;
+    throw error;
+  });
+  return module;
+}
+
+/** The author in this thread. */
+export function loadAuthor() {
+  author ??= Promise.all([compiled().then((compiledModule) => AuthorCore.make(compiledModule)), library()])
+    .then(([own, player]) => new Author(own, player))
+    .catch((error) => {
+      author = undefined;
+      throw error;
+    });
+  return author;
+}
+
+/** The bytes and the name of a file: `{ name, bytes }`, a File, or a Blob with a name. */
+async function loaded(file) {
+  if (typeof Blob !== "undefined" && file instanceof Blob) {
+    if (typeof file.name !== "string") throw argument("a Blob has no name, which tells what kind of file it is; give { name, bytes }");
+    return { name: file.name, bytes: new Uint8Array(await file.arrayBuffer()), isCopy: true };
+  }
+  return named(file);
+}
+
+function named(file) {
+  if (typeof file?.name !== "string" || file.bytes === undefined) {
+    throw argument('a recording is { name: "felt.csv", bytes }, a File or a Blob with a name');
+  }
+  return { name: file.name, bytes: bytesOf(file.bytes) };
+}
+
+function bytesOf(data) {
+  try {
+    return toBytes(data);
+  } catch (error) {
+    throw argument(error.message);
+  }
+}
+
+function argument(text) {
+  return new HtexError(text, "invalid-argument");
+}
+
+/** All files of recordings and settings, as they are named. */
+function filesOf(recordings, { response, tracker }) {
+  const list = (one) => (one === undefined || one === null ? [] : Array.isArray(one) ? one : [one]);
+  return { recordings: list(recordings), response: list(response), trackers: list(tracker) };
+}
+
+/** A call of the module: its document, and the bytes of the files, whose contents are there. */
+function callOf({ recordings, response, trackers }, { response: _, tracker: __, conditions, models, grid, ...settings }) {
+  if (recordings.length === 0) throw argument("give at least one recording");
+  const names = (files) => files.map((file) => file.name);
+  const request = { files: { recordings: names(recordings), response: response[0]?.name, trackers: names(trackers) }, settings };
+  if (conditions !== undefined) request.conditions = conditions;
+  if (models !== undefined) settings.models = [models].flat();
+  if (grid !== undefined) settings.grid = linesOf(grid);
+  return { request, files: [...recordings, ...response, ...trackers].map((file) => file.bytes) };
+}
+
+/** A grid as the command takes it. */
+function linesOf(grid) {
+  if (typeof grid === "string" || Array.isArray(grid)) return grid;
+  const lines = Object.entries(grid).map(([axis, values]) => `${axis}=${values.join(",")}`);
+  return lines.length > 0 ? lines : "auto";
+}
+
+function eachOf({ recordings, response, trackers }, read) {
+  return { recordings: recordings.map(read), response: response.map(read), trackers: trackers.map(read) };
+}
+
+/** What makes textures, in the thread that calls. */
+export class Author {
+  constructor(core, player) {
+    this.core = core;
+    this.player = player;
+  }
+
+  texture(bytes) {
+    return opened(this.player, bytes);
+  }
+
+  /** The descriptors of the models. */
+  models() {
+    return this.core.call("models", {}).document;
+  }
+
+  /** Makes a texture of parameters. */
+  make({ representations, quantity, band, unit, ...metadata }) {
+    const { bytes } = this.core.call("make", { representations, quantity, band, metadata });
+    const texture = this.texture(bytes);
+    if (unit !== undefined && unit !== texture.unit) {
+      texture.free();
+      throw argument(`the unit of a ${quantity ?? "lateral_force"} is not ${unit}; leave it out`);
+    }
+    return texture;
+  }
+
+  /** Makes a texture between two others; `weight` is the part of the second. */
+  mix(a, b, weight, metadata = {}) {
+    return this.texture(this.core.call("mix", { weight, metadata }, [a, b].map(bytesOfTexture)).bytes);
+  }
+
+  /** A texture with other metadata. */
+  edit(texture, metadata) {
+    return this.texture(this.core.call("edit", { metadata }, [bytesOfTexture(texture)]).bytes);
+  }
+
+  /** Checks a texture, a library or a recording; `name` tells what it is, where its bytes do not. */
+  validate(bytes, { name } = {}) {
+    return this.core.call("validate", { name }, [bytesOf(bytes)]).document;
+  }
+
+  /** What a fingertip feels of the difference of a texture from a reference, each at a motion and by a model. */
+  felt(reference, other) {
+    const sideOf = ({ model, at }) => ({ model, at });
+    const request = { reference: sideOf(reference), other: sideOf(other) };
+    return this.core.call("felt", request, [reference, other].map(({ texture }) => bytesOfTexture(texture))).document;
+  }
+
+  /** The magnitudes at which sinusoids of frequencies in Hz are at the detection threshold, in the quantity's unit. */
+  threshold(frequencies, { quantity } = {}) {
+    return Float64Array.from(this.core.call("threshold", { frequencies: Array.from(frequencies), quantity }).document);
+  }
+
+  /** What the code of a finding means; undefined for one that is not known. */
+  explain(code) {
+    return this.core.call("explain", { code }).document ?? undefined;
+  }
+
+  /** What the columns of a recording are taken to be. */
+  columns(recording, settings = {}) {
+    const { request, files } = callOf(eachOf(filesOf(recording, settings), named), settings);
+    return this.core.call("columns", request, files).document;
+  }
+
+  /** Reads a recording: its columns, its signals, its spectrum, what was found. */
+  process(recording, settings = {}) {
+    const { request, files } = callOf(eachOf(filesOf(recording, settings), named), settings);
+    const { document, bytes } = this.core.call("process", request, files);
+    return { ...document, picture: pictureOf(document.picture, bytes) };
+  }
+
+  /** Fits models to recordings of a texture. */
+  fit(recordings, settings = {}) {
+    const { request, files } = callOf(eachOf(filesOf(recordings, settings), named), settings);
+    const { document, bytes } = this.core.call("fit", request, files);
+    return { texture: this.texture(bytes), report: document };
+  }
+
+  /** Packs textures, by their names in the library, to a `.htexlib` file. */
+  library(textures, { name = "" } = {}) {
+    const all = Object.entries(textures);
+    const request = { name, textures: all.map(([own]) => own) };
+    return this.core.call("library", request, all.map(([, texture]) => bytesOfTexture(texture))).bytes;
+  }
+}
+
+function bytesOfTexture(texture) {
+  return bytesOf(texture?.bytes ?? texture);
+}
+
+/** The least and the greatest of each signal in each step. */
+function pictureOf({ signals, steps, ...picture }, bytes) {
+  const numbers = new Float32Array(bytes.buffer, bytes.byteOffset, 2 * steps * signals.length);
+  const part = (i) => numbers.subarray(i * steps, (i + 1) * steps);
+  const drawn = signals.map((signal, i) => [signal, { least: part(2 * i), greatest: part(2 * i + 1) }]);
+  return { ...picture, steps, signals: Object.fromEntries(drawn) };
+}
+
+/** Starts the worker of a page. */
+function startInPage() {
+  // Bundlers look for this form.
+  return new Worker(new URL("./author-worker.js", import.meta.url), { type: "module" });
+}
+
+function takeWorker() {
+  const taken = idle;
+  idle = null;
+  return taken ?? (startWorker ?? host.startAuthorThread ?? startInPage)();
+}
+
+/** Keeps a worker for the next fit; it does not keep a program of Node.js running. */
+function giveBack(worker) {
+  worker.onmessage = null;
+  worker.onerror = null;
+  if (idle) return worker.terminate();
+  idle = worker;
+  worker.unref?.();
+}
+
+/** Fits models to recordings in a worker. `onProgress` is called with `{ done, of, text }`; `signal` aborts the fit. */
+export async function fit(recordings, { onProgress, signal, ...settings } = {}) {
+  const aborted = () => Object.assign(new HtexError("the fit was aborted", "aborted"), { cause: signal.reason });
+  if (signal?.aborted) throw aborted();
+  const given = filesOf(recordings, settings);
+  const ready = await Promise.all([given.recordings, given.response, given.trackers].map((files) => Promise.all(files.map(loaded))));
+  const [loadedRecordings, response, trackers] = ready;
+  const copies = ready.flat().flatMap(({ isCopy, bytes }) => (isCopy ? [bytes.buffer] : []));
+  const call = callOf({ recordings: loadedRecordings, response, trackers }, settings);
+  // The worker starts meanwhile.
+  const worker = await takeWorker();
+  const [compiledModule, player] = await Promise.all([compiled(), library()]).catch((error) => {
+    giveBack(worker);
+    throw error;
+  });
+  const { document, bytes } = await new Promise((resolve, reject) => {
+    const end = (settle, value, kept) => {
+      signal?.removeEventListener("abort", abort);
+      if (kept) giveBack(worker);
+      else worker.terminate();
+      settle(value);
+    };
+    const abort = () => end(reject, aborted(), false);
+    worker.ref?.();
+    worker.onmessage = ({ data: { progress, error, ...result } }) => {
+      if (progress) onProgress?.(progress);
+      else if (error) end(reject, new HtexError(error.message, error.code ?? "internal"), error.code !== "internal");
+      else end(resolve, result, true);
+    };
+    worker.onerror = ({ message }) => end(reject, new HtexError(`the worker failed: ${message}`, "internal"), false);
+    if (signal?.aborted) return abort();
+    signal?.addEventListener("abort", abort, { once: true });
+    worker.postMessage({ module: compiledModule, name: "fit", ...call }, copies);
+  });
+  return { texture: opened(player, bytes), report: document };
+}

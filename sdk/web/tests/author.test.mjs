@@ -1,0 +1,177 @@
+// The author module in Node.js: what it makes is what the command makes, bit for bit.
+
+import assert from "node:assert/strict";
+import path from "node:path";
+import test from "node:test";
+import { pathToFileURL } from "node:url";
+
+import { HTEX_PACKAGE, bytes, difference, samples } from "./fixtures.mjs";
+
+const { HtexError, Library, fit, loadAuthor, open } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "index.node.js")));
+
+const author = await loadAuthor();
+const vinyl = { name: "vinyl.csv", bytes: await bytes("vinyl.csv") };
+const MOTION = { speed_mm_s: 80, force_n: 0.5 };
+
+/** The bytes of a texture are those of a file of the command. */
+async function isFile(texture, name) {
+  assert.ok(Buffer.from(texture.bytes).equals(await bytes(name)), `${name} has other bytes`);
+}
+
+/** An NPY file of single precision. */
+function npy(numbers) {
+  const header = `{'descr': '<f4', 'fortran_order': False, 'shape': (${numbers.length},), }`.padEnd(117) + "\n";
+  const start = Buffer.from(`\x93NUMPY\x01\x00${String.fromCharCode(header.length)}\x00`, "latin1");
+  return Buffer.concat([start, Buffer.from(header), Buffer.from(numbers.buffer, numbers.byteOffset, numbers.byteLength)]);
+}
+
+test("a recording is fitted to the bytes of the command, in a worker and in this thread", async () => {
+  const steps = [];
+  const { texture, report } = await fit(vinyl, { name: "vinyl", onProgress: ({ done, of, text }) => steps.push([done, of, text]) });
+  await isFile(texture, "vinyl.htex");
+  assert.deepEqual(steps.map(([done]) => done), [0, 1, 2, 3, 4, 5, 6]);
+  assert.deepEqual(steps[0], [0, 7, "read vinyl.csv"]);
+  const info = JSON.parse(await bytes("info.json"));
+  assert.deepEqual(report.models.map(({ model, bytes: own }) => [model, own]), info.representations.map((r) => [r.model, r.payload_bytes]));
+  assert.ok(report.models.every(({ felt, fit_ms }) => felt.error_rms_db >= 0 && fit_ms >= 0));
+  assert.equal(report.ranked.length, 6);
+  await isFile(author.fit(vinyl, { name: "vinyl" }).texture, "vinyl.htex");
+});
+
+test("settings are those of the command", async () => {
+  const settings = { name: "part", from_s: 2, to_s: 8, models: ["ar", "bands"], options: { ar: { order: 8 } }, keep_reference: true };
+  const { texture } = author.fit(vinyl, { ...settings, license: "CC0-1.0", tags: ["smooth"] });
+  await isFile(texture, "part.htex");
+  assert.throws(() => author.fit(vinyl, { form_s: 2 }), { name: "HtexError", code: "invalid-argument", message: /form_s.*from_s/ });
+  assert.throws(() => author.fit(vinyl, { models: "none" }), { code: "no-model" });
+  assert.throws(() => author.fit(vinyl, { license: "nothing at all" }), { code: "invalid-argument" });
+});
+
+test("samples are read of WAV, NPY and FLAC", async () => {
+  const name = "samples";
+  const wav = { name: "ar.wav", bytes: await bytes("ar.wav") };
+  const { texture, report } = await fit([wav], { name, scale: 2, ...MOTION });
+  await isFile(texture, "samples.htex");
+  const numbers = { name: "ar.npy", bytes: npy(await samples("ar.wav")) };
+  const other = await fit(numbers, { name, scale: 2, rate_hz: 48000, ...MOTION });
+  assert.deepEqual(other.report.spectra, report.spectra);
+  assert.deepEqual(other.texture.manifest.representations, texture.manifest.representations);
+  const flac = author.columns({ name: "pcm16.flac", bytes: await bytes("pcm16.flac") }, { scale: 1 });
+  const pcm = author.columns({ name: "pcm16.wav", bytes: await bytes("pcm16.wav") }, { scale: 1 });
+  assert.deepEqual([flac.rate_hz, flac.columns.length], [pcm.rate_hz, pcm.columns.length]);
+  // Their writers round differently.
+  const isNear = (x, i, k) => Math.abs(x - pcm.columns[i].first[k]) < 3 / 32768;
+  assert.ok(flac.columns.every(({ first }, i) => first.length === 5 && first.every((x, k) => isNear(x, i, k))));
+});
+
+test("a fit is aborted, and the next one runs", async () => {
+  const controller = new AbortController();
+  const fitting = fit(vinyl, { onProgress: () => controller.abort(), signal: controller.signal });
+  await assert.rejects(fitting, (error) => error instanceof HtexError && error.code === "aborted");
+  await assert.rejects(fit(vinyl, { signal: controller.signal }), { code: "aborted" });
+  await isFile((await fit(vinyl, { name: "vinyl" })).texture, "vinyl.htex");
+});
+
+test("a recording is read as the command reads it", async () => {
+  const read = author.process(vinyl);
+  const expected = JSON.parse(await bytes("process.json"));
+  assert.deepEqual(read.spectrum.magnitude, expected.magnitude);
+  assert.deepEqual(read.spectrum.frequency_hz, expected.frequency_hz);
+  assert.equal(read.condition.force, expected.force_n);
+  const roles = read.columns.columns.map(({ name, role }) => [name, role]);
+  assert.deepEqual(roles.slice(0, 3), [["t_s", "time"], ["fx_n", "lateral_x"], ["fy_n", "lateral_y"]]);
+  const { steps, signals } = read.picture;
+  assert.ok(steps <= 1000 && Object.keys(signals).includes("normal"));
+  assert.ok(signals.signal.least.length === steps && signals.signal.least.every((x, i) => x <= signals.signal.greatest[i]));
+  // The map that is guessed reads the same.
+  const mapped = author.process(vinyl, { map: read.columns.map });
+  assert.deepEqual(mapped.spectrum, read.spectrum);
+});
+
+test("a finding says what it means, and a column without a role what to do", () => {
+  const silent = "t_s,fx_n\n" + Array.from({ length: 4000 }, (_, i) => `${i / 2000},0.25\n`).join("");
+  const { findings } = author.process({ name: "silent.csv", bytes: Buffer.from(silent) });
+  const found = findings.find(({ code }) => code === "RECORDING_STUCK");
+  assert.ok(found.severity === "error" && /0.2500 N/.test(found.message));
+  assert.deepEqual(found.settings, ["from_s", "to_s"]);
+  assert.match(author.explain("RECORDING_STUCK").fix, /record/i);
+  assert.equal(author.explain("NOTHING"), undefined);
+  const strange = { name: "strange.csv", bytes: Buffer.from("p,q\n1,2\n3,4\n5,6\n") };
+  const { columns, problem } = author.columns(strange);
+  assert.deepEqual(columns.map(({ name, role, first }) => [name, role, first]), [["p", null, [1, 3, 5]], ["q", null, [2, 4, 6]]]);
+  assert.match(problem, /map/);
+  assert.throws(() => author.fit(strange), { code: "invalid-recording", message: /map/ });
+  assert.throws(() => author.process({ bytes: new Uint8Array(4) }), { code: "invalid-argument", message: /name/ });
+});
+
+test("a texture is made of parameters, and played", async () => {
+  const at = { speed: 80, force: 0.5, level: 0.02, parameters: { alpha: 2, beta: 5 } };
+  const hum = author.make({ name: "hum", representations: [{ model: "sbeta", conditions: [at] }] });
+  await isFile(hum, "hum.htex");
+  const opened = await open(await bytes("hum.htex"));
+  const [own, expected] = [hum, opened].map((texture) => texture.voice({ seed: 3 }).render(2000));
+  assert.equal(difference(own, expected), -1);
+  // Two models, of which one has its level in its parameters, at two conditions.
+  const bands = { below_highest: [0, 10, 20], step_db: 1, layout: 1 };
+  const two = author.make({
+    name: "two",
+    license: "CC0-1.0",
+    quantity: "acceleration",
+    unit: "m/s2",
+    representations: [
+      { model: "sbeta", conditions: [at, { ...at, speed: 160 }] },
+      { model: "bands", conditions: [{ speed: 80, force: 0.5, parameters: bands }, { speed: 160, force: 0.5, parameters: bands }] },
+    ],
+  });
+  assert.deepEqual([two.conditions.length, two.models.length, two.unit], [2, 2, "m/s2"]);
+  assert.ok(author.validate(two.bytes).valid);
+  const refused = (change) => () => author.make({ name: "no", representations: [{ model: "sbeta", conditions: [{ ...at, ...change }] }] });
+  assert.throws(refused({ parameters: { alpha: 2 } }), { code: "invalid-argument", message: /beta/ });
+  assert.throws(refused({ parameters: { alpha: 2, beta: -1 } }), { code: "invalid-argument", message: /beta/ });
+  assert.throws(refused({ level: undefined }), { code: "invalid-argument", message: /level/ });
+});
+
+test("every model has a usual range for each number", () => {
+  const models = author.models();
+  assert.equal(models.length, 6);
+  for (const { id, fields } of models) {
+    for (const { name, min, max, usual } of fields) {
+      assert.ok(usual && min <= usual.min && usual.min < usual.max && usual.max <= max, `${id}.${name}`);
+      assert.ok(usual.scale === "linear" || (usual.scale === "log" && usual.min > 0), `${id}.${name}`);
+    }
+  }
+});
+
+test("textures are mixed and edited as by the command", async () => {
+  const [a, b] = await Promise.all(["vinyl.htex", "hum.htex"].map(async (name) => open(await bytes(name))));
+  await isFile(author.mix(a, b, 0.25, { name: "between" }), "mixed.htex");
+  await isFile(author.edit(a, { author: "A. Weaver", contact: "tool" }), "edited.htex");
+  assert.throws(() => author.edit(a, {}), { code: "invalid-argument" });
+  assert.throws(() => author.mix(a, b, 2), { code: "invalid-argument" });
+});
+
+test("files are validated", async () => {
+  assert.deepEqual(author.validate(await bytes("part.htex")), { kind: "texture", valid: true, findings: [] });
+  assert.deepEqual(author.validate(await bytes("vinyl.htex")).findings.map(({ code }) => code), ["LICENSE_MISSING"]);
+  const broken = author.validate((await bytes("vinyl.htex")).subarray(0, 500));
+  assert.ok(!broken.valid && broken.findings[0].severity === "error");
+  assert.ok(author.validate(vinyl.bytes, { name: vinyl.name }).valid);
+  assert.equal(author.validate(await bytes("two.htexlib")).kind, "library");
+});
+
+test("a library is packed to the bytes of the command, and searched", async () => {
+  const textures = { vinyl: await open(await bytes("vinyl.htex")), bursts: await bytes("bursts.htex") };
+  const packed = author.library(textures, { name: "Two" });
+  assert.ok(Buffer.from(packed).equals(await bytes("two.htexlib")));
+  const library = await Library.open(packed);
+  const found = async (query) => {
+    const names = [];
+    for await (const { name } of library.find(query)) names.push(name);
+    return names;
+  };
+  assert.deepEqual(await found({ words: ["VIN"] }), ["vinyl"]);
+  assert.deepEqual(await found({ model: "bands" }), ["vinyl"]);
+  assert.deepEqual(await found({ speed: 80, force: 0.5 }), ["bursts", "vinyl"]);
+  assert.deepEqual(await found({ tags: ["rough"] }), []);
+  await assert.rejects(found({ tag: "rough" }), { code: "invalid-argument" });
+});

@@ -5,12 +5,15 @@ mod costs;
 mod fixtures;
 mod processors;
 mod python;
+mod studio;
 mod web;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, bail, ensure};
+
+pub(crate) use fixtures::command;
 
 use crate::jobs::at_a_time;
 use crate::places::target;
@@ -80,7 +83,7 @@ const QEMU_USER: [Program; 2] = [
     },
 ];
 
-const BINDINGS: [Binding; 4] = [
+const BINDINGS: [Binding; 5] = [
     Binding {
         name: "c",
         needs: &[CC, PKG_CONFIG, CMAKE, SDL2],
@@ -95,6 +98,11 @@ const BINDINGS: [Binding; 4] = [
         name: "web",
         needs: &[NODE, NPM, CHROMIUM, CLANG],
         test: web::test,
+    },
+    Binding {
+        name: "studio",
+        needs: &[NODE, NPM, CHROMIUM],
+        test: studio::test,
     },
     Binding {
         name: "processors",
@@ -184,6 +192,14 @@ fn prepare(folder: &Path) -> Result<()> {
         fs_err::remove_dir_all(folder)?;
     }
     Ok(fs_err::create_dir_all(folder)?)
+}
+
+/// The path of a program.
+fn which(name: &str) -> std::path::PathBuf {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let mut all = std::env::split_paths(&path).map(|folder| folder.join(name));
+    all.find(|file| file.is_file())
+        .unwrap_or_else(|| name.into())
 }
 
 /// Copies a file to a folder under a name.

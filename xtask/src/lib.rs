@@ -12,5 +12,6 @@ mod places;
 pub mod plugins;
 pub mod programs;
 pub mod prove;
+pub mod studio;
 mod wasm;
 pub mod web;

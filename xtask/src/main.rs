@@ -22,6 +22,8 @@ cargo xtask dist --prefix DIR [--small]  builds and installs libhtex for C, C++ 
 cargo xtask bindings  tests the bindings to other languages and on other processors, all or those named: c, web,
                       python, processors; says what is missing
 cargo xtask web --out DIR  builds the npm package `htex` for browsers and Node.js
+cargo xtask studio --out DIR  builds the studio: DIR/studio.html, one file, and DIR/static, for a web server
+cargo xtask studio-shelf  makes the textures that come with the studio anew, sdk/studio/shelf/shelf.htexlib
 cargo xtask prove [NAME]  runs a proof that takes long; lists them without a name
 cargo xtask generate  writes the generated files of spec/: schemas, pages, conformance files; and
                       the seeds of the fuzz targets";
@@ -42,6 +44,8 @@ fn main() -> Result<ExitCode> {
         ["bindings", ref names @ ..] => xtask::bindings::test(names)?,
         ["prove", ref arguments @ ..] => xtask::prove::prove(arguments)?,
         ["web", "--out", out] => xtask::web::web(out.as_ref())?,
+        ["studio", "--out", out] => xtask::studio::studio(out.as_ref())?,
+        ["studio-shelf"] => xtask::studio::shelf()?,
         ["ci"] => {
             let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
             run(Command::new("bash").arg(".ci/run").current_dir(workspace))?;

@@ -31,6 +31,8 @@ mod simulate;
 mod source;
 mod spectrum;
 #[cfg(feature = "lab")]
+mod studio;
+#[cfg(feature = "lab")]
 mod study;
 mod synth;
 mod tradeoff;
@@ -63,6 +65,8 @@ pub(crate) enum Command {
     Mix(mix::Mix),
     Compare(compare::Compare),
     Tradeoff(tradeoff::Tradeoff),
+    #[cfg(feature = "lab")]
+    Studio(studio::Studio),
     #[cfg(feature = "lab")]
     Study(study::Study),
     Plan(plan::Plan),
@@ -103,6 +107,8 @@ impl Command {
             Self::Mix(args) => args.run(),
             Self::Compare(args) => args.run(),
             Self::Tradeoff(args) => args.run(),
+            #[cfg(feature = "lab")]
+            Self::Studio(args) => args.run(),
             #[cfg(feature = "lab")]
             Self::Study(args) => args.run(),
             Self::Plan(args) => args.run(),

@@ -207,6 +207,20 @@ fn displacement_m(hertz: f64, quantity: Quantity, skin: &Skin) -> f64 {
     }
 }
 
+/// Returns the magnitude of a sinusoid that is at a listener's detection threshold, in the quantity's unit, at a frequency in hertz above 0.
+///
+/// ```
+/// use htex_author::threshold_magnitude;
+/// use htex_dsp::vibrotactile::Listener;
+/// use htex_format::Quantity;
+/// let at = |quantity| threshold_magnitude(250.0, quantity, &Listener::default());
+/// assert_eq!(at(Quantity::Displacement), 1e-7);
+/// assert!((0.2e-3..0.3e-3).contains(&at(Quantity::LateralForce)));
+/// ```
+pub fn threshold_magnitude(hertz: f64, quantity: Quantity, listener: &Listener) -> f64 {
+    listener.threshold_m(hertz) / displacement_m(hertz, quantity, &listener.skin)
+}
+
 /// Level of an energy relative to the threshold; of none, one that is far below.
 fn level_db(energy: f64) -> f64 {
     10.0 * libm::log10(energy.max(1e-30))

@@ -69,7 +69,7 @@ pub use edit::{EditError, edit};
 pub use embed::{EmbedError, embed_plugins};
 pub use error::AuthorError;
 pub use exploration::{Exploration, Spread};
-pub use felt::{DIFFERENCE_THRESHOLD_DB, Felt, FeltError, FeltShare, felt};
+pub use felt::{DIFFERENCE_THRESHOLD_DB, Felt, FeltError, FeltShare, felt, threshold_magnitude};
 pub use findings::recording_findings;
 pub use fit::{FittedAsset, fit_asset, fit_asset_watched, measure};
 pub use grid::{CellStatus, Grid, GridCell, GridReport};

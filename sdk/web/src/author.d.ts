@@ -205,6 +205,31 @@ export interface FeltError {
   within_repeatability: boolean;
 }
 
+/** A texture as it is felt: by a model, at a motion. */
+export interface FeltSide {
+  texture: Texture | Bytes;
+  /** Default: the representation of least error. */
+  model?: string;
+  /** Default: the first recorded condition. */
+  at?: { speed?: number; force?: number };
+}
+
+/** What a fingertip feels of a difference: levels above the detection threshold in third octaves; see `docs/manual.md`. */
+export interface Felt {
+  centre_hz: number[];
+  /** Levels above the threshold of the reference and of the other one; negative below it. */
+  reference_db: number[];
+  level_db: number[];
+  /** Difference of what is above the threshold. */
+  error_db: number[];
+  error_rms_db: number;
+  largest_error_db: number;
+  total_error_db: number;
+  /** Whether no difference is felt, by the usual listener and by a sensitive one. */
+  below_difference_threshold: boolean;
+  below_if_sensitive: boolean;
+}
+
 export interface FitReport {
   models: {
     model: string;
@@ -243,6 +268,10 @@ export interface Author {
   edit(texture: Texture | Bytes, metadata: Metadata): Texture;
   /** Checks a file: a library and a texture are known by their bytes, a recording by its `name`. */
   validate(bytes: Bytes, options?: { name?: string }): Report;
+  /** What a fingertip feels of the difference of a texture from a reference. */
+  felt(reference: FeltSide, other: FeltSide): Felt;
+  /** The magnitudes at which sinusoids of frequencies in Hz are at the detection threshold, in the quantity's unit. */
+  threshold(frequencies: ArrayLike<number>, options?: { quantity?: Quantity }): Float64Array;
   /** What the code of a finding means. */
   explain(code: string): { code: string; severity: string; summary: string; explanation: string; fix: string; settings: string[] } | undefined;
   /** What the columns of a recording are taken to be. */

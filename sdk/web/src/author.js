@@ -139,6 +139,18 @@ export class Author {
     return this.core.call("validate", { name }, [bytesOf(bytes)]).document;
   }
 
+  /** What a fingertip feels of the difference of a texture from a reference, each at a motion and by a model. */
+  felt(reference, other) {
+    const sideOf = ({ model, at }) => ({ model, at });
+    const request = { reference: sideOf(reference), other: sideOf(other) };
+    return this.core.call("felt", request, [reference, other].map(({ texture }) => bytesOfTexture(texture))).document;
+  }
+
+  /** The magnitudes at which sinusoids of frequencies in Hz are at the detection threshold, in the quantity's unit. */
+  threshold(frequencies, { quantity } = {}) {
+    return Float64Array.from(this.core.call("threshold", { frequencies: Array.from(frequencies), quantity }).document);
+  }
+
   /** What the code of a finding means; undefined for one that is not known. */
   explain(code) {
     return this.core.call("explain", { code }).document ?? undefined;

@@ -2,7 +2,7 @@
 
 import { HtexError } from "./core.js";
 import { GuardedWorker, checkTexture, describe } from "./guarded.js";
-import { compiled, files, libraryBytes } from "./library.js";
+import { compiled, files, libraryBytes, resolved } from "./library.js";
 import { VOICE, checked } from "./options.js";
 
 /** RMS of full scale that a node plays at by default: -20 dB. */
@@ -12,7 +12,7 @@ const SILENT_MS = 200;
 
 const { rate: _, gain, ...VOICE_OF_NODE } = VOICE;
 const LOAD = { ...VOICE_OF_NODE, gain, trusted: "boolean" };
-const NODE = { ...LOAD, worker: "object", limit: "number" };
+const NODE = { ...LOAD, worker: "object", limit: "number", pitch: "number" };
 
 /** The gain at which a texture plays at that level: by what the file states, since no model runs here. */
 function usualGain(texture, model) {
@@ -40,7 +40,7 @@ export async function prepare(context) {
 }
 
 async function load(context) {
-  const url = new URL(files.processor ?? new URL("./processor.js", import.meta.url), import.meta.url);
+  const url = new URL(resolved(files.processor ?? new URL("./processor.js", import.meta.url)).href);
   const failed = failures.get(context) ?? 0;
   // A worklet remembers an address that failed.
   if (failed > 0 && url.protocol !== "data:") url.searchParams.set("retry", failed);
@@ -72,8 +72,8 @@ function checkNode(context, texture, options) {
 }
 
 /** What makes the voice of a node; without a motion it begins at rest. */
-function describeFor(context, texture, { gain, trusted, worker, limit, ...voice }) {
-  return describe(texture, { ...voice, rate: context.sampleRate }, !voice.motion);
+function describeFor(context, texture, { gain, trusted, worker, limit, pitch = 1, ...voice }) {
+  return describe(texture, { ...voice, rate: context.sampleRate / pitch }, !voice.motion);
 }
 
 const Base = globalThis.AudioWorkletNode ?? class {
@@ -108,12 +108,13 @@ export class HtexNode extends Base {
     }
     Object.assign(this, { missed: 0, onerror: null, onenvelope: null, limit, sharedWorker: worker, loads: new Map(), lastLoad: 0 });
     /** The options that a later `load` takes over, the gain of the texture's usual level, and the voice in a worker. */
-    Object.assign(this, { bands: options.bands, usual: usualGain(texture, options.model), playing: null, texture });
+    Object.assign(this, { bands: options.bands, pitch: options.pitch, usual: usualGain(texture, options.model), playing: null, texture });
     this.port.onmessage = ({ data }) => this.receive(data);
     this.onprocessorerror = (event) => this.workletFailed(event);
     /** Resolves when the voice is made. */
     this.ready = isSent ? Promise.resolve() : this.send(voice, { trusted });
-    this.sent = voice;
+    /** The voice that was sent last, and the one that was sent with the library. */
+    Object.assign(this, { sent: voice, withLibrary: isSent ? voice.id : this.withLibrary });
     this.ready.catch(() => {});
   }
 
@@ -161,7 +162,7 @@ export class HtexNode extends Base {
       const bands = options.bands ?? this.bands;
       const { trusted = texture.options.trusted || !texture.hasModules } = options;
       const id = (this.lastLoad += 1);
-      await this.send({ id, description: describeFor(this.context, texture, { ...options, bands }), gain }, { trusted });
+      await this.send({ id, description: describeFor(this.context, texture, { ...options, bands, pitch: this.pitch }), gain }, { trusted });
       Object.assign(this, { texture, bands, usual });
       // Until now the old texture played with the old gain; a gain that was set meanwhile stays.
       if (this.gain.value === before) this.gain.value = gain;
@@ -189,9 +190,15 @@ export class HtexNode extends Base {
     this.playing = playing;
   }
 
-  /** Posts a voice to the worklet, with the library's bytes where the compiled one cannot be sent. */
+  /** Posts a voice to the worklet, with the library's bytes where the compiled one cannot be sent. A worklet that has played a voice has the
+   * library. */
   post(voice) {
     this.sent = voice;
+    if (this.hasLibrary) {
+      const { library, ...description } = voice.description;
+      return void this.port.postMessage({ load: { ...voice, description } });
+    }
+    this.withLibrary = voice.id;
     try {
       this.port.postMessage({ load: voice });
     } catch (error) {
@@ -215,7 +222,7 @@ export class HtexNode extends Base {
   receive({ id, started, unusable, error, missed, envelope, ended }) {
     if (missed) this.missed += missed;
     if (envelope) this.onenvelope?.(envelope);
-    if (started) this.loads.get(id)?.resolve();
+    if (started) this.started(id);
     if (unusable) this.postWithBytes(this.sent);
     if (ended) this.end();
     if (!error) return;
@@ -224,6 +231,11 @@ export class HtexNode extends Base {
     if (load) load.reject(failure);
     // Of a load that fails its promise tells; the texture before plays on.
     if (!load || id === 0) this.failed(failure);
+  }
+
+  started(id) {
+    this.hasLibrary ||= id === this.withLibrary;
+    this.loads.get(id)?.resolve();
   }
 
   workerFailed(id, error) {
@@ -252,9 +264,10 @@ export class HtexNode extends Base {
   stop() {
     if (this.isStopped) return;
     this.isStopped = true;
-    this.port.postMessage({ stop: true });
-    if (this.context.state === "running") setTimeout(() => this.end(), SILENT_MS);
-    else if (!this.isOffline) this.end();
+    const isHeard = this.context.state === "running" || this.isOffline;
+    this.port.postMessage({ stop: true, isHeard });
+    if (!isHeard) this.end();
+    else if (!this.isOffline) setTimeout(() => this.end(), SILENT_MS);
   }
 
   /** An offline context is not running between its renderings. */

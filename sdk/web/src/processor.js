@@ -33,6 +33,8 @@ class HtexProcessor extends AudioWorkletProcessor {
     this.block = new Float32Array(128);
     this.unreported = 0;
     this.port.onmessage = ({ data }) => this.receive(data);
+    // A page that is a file cannot send a compiled library through a port.
+    this.port.onmessageerror = () => this.port.postMessage({ unusable: true });
     if (load) this.load(load);
   }
 
@@ -42,7 +44,8 @@ class HtexProcessor extends AudioWorkletProcessor {
     if (data.alone) for (const { source } of this.tracks) source.isAlone = true;
     if (data.stop) {
       this.stopping = true;
-      for (const track of this.tracks) track.fadeOut(STOP_S * sampleRate);
+      // A context that is suspended renders no fade.
+      for (const track of this.tracks) data.isHeard ? track.fadeOut(STOP_S * sampleRate) : this.leave(track);
     }
   }
 
@@ -54,7 +57,7 @@ class HtexProcessor extends AudioWorkletProcessor {
       return;
     }
     const { library } = description;
-    if (!(library instanceof WebAssembly.Module || ArrayBuffer.isView(library))) return void this.port.postMessage({ id, unusable: true });
+    if (!(stage.core || library instanceof WebAssembly.Module || ArrayBuffer.isView(library))) return void this.port.postMessage({ id, unusable: true });
     try {
       this.start(new Here(stage.voice(description)), id, gain);
     } catch (error) {

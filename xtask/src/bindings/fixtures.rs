@@ -18,7 +18,7 @@ const SPEED: &str = "80";
 const FORCE: &str = "0.5";
 
 /// The `htex` command as it is installed, which libhtex and the Python package are built beside.
-pub(super) fn command() -> Result<PathBuf> {
+pub(crate) fn command() -> Result<PathBuf> {
     let mut build = Command::new(cargo());
     run(build
         .args(["build", "--release", "--locked", "--package", "htex-cli"])

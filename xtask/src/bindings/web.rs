@@ -1,10 +1,10 @@
-//! The npm package, in Node.js, in Chromium and in a bundler.
+//! The npm package, in Node.js, in Chromium and in bundlers.
 
 use std::path::Path;
 
 use anyhow::Result;
 
-use super::{CHROMIUM, copy, files, fixtures};
+use super::{CHROMIUM, copy, files, fixtures, which};
 use crate::places::workspace;
 use crate::programs::{program, run};
 
@@ -26,16 +26,9 @@ pub(super) fn test(folder: &Path) -> Result<()> {
         .args(quiet)
         .args(["--no-save"])
         .arg(&package))?;
-    let strict = [
-        "tsc",
-        "--strict",
-        "--noUncheckedIndexedAccess",
-        "--noEmit",
-        "--target",
-        "es2022",
-    ];
-    let module = ["--module", "nodenext", "--lib", "es2022,dom", "types.ts"];
-    run(program("npx", &tests).args(strict).args(module))?;
+    for project in ["tsconfig.json", "tsconfig.node.json"] {
+        run(program("npx", &tests).args(["tsc", "--project", project]))?;
+    }
     let chromium = CHROMIUM.find().unwrap_or("chromium");
     let example = workspace().join("examples/web");
     run(program("node", &tests)
@@ -44,9 +37,13 @@ pub(super) fn test(folder: &Path) -> Result<()> {
             "--test-concurrency=1",
             "node.test.mjs",
             "library.test.mjs",
+            "loading.test.mjs",
+            "pointer.test.mjs",
+            "sound.test.mjs",
             "author.test.mjs",
             "author-browser.test.mjs",
             "browser.test.mjs",
+            "bundles.test.mjs",
         ])
         .env("HTEX_PACKAGE", &package)
         .env("HTEX_FIXTURES", &fixtures)
@@ -70,12 +67,4 @@ fn catalogue(fixtures: &Path, package: &Path) -> Result<()> {
         ])
         .arg(package)
         .stdout(std::process::Stdio::null()))
-}
-
-/// The path of a program.
-fn which(name: &str) -> std::path::PathBuf {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let mut all = std::env::split_paths(&path).map(|folder| folder.join(name));
-    all.find(|file| file.is_file())
-        .unwrap_or_else(|| name.into())
 }

@@ -34,7 +34,7 @@ impl Gate {
     pub(super) fn new(token: &str, port: u16) -> Self {
         Self {
             root: format!("/{token}/"),
-            hosts: [format!("127.0.0.1:{port}"), format!("localhost:{port}")],
+            hosts: hosts(port),
         }
     }
 
@@ -44,20 +44,7 @@ impl Gate {
 
     /// Decides by the head of a request, whose body has not been read.
     pub(super) fn admit(&self, head: &Parts, requests: &[&str]) -> Result<Asked, Refusal> {
-        let text = |name: HeaderName| head.headers.get(name).map(|value| value.to_str().ok());
-        let is_host = |text: &str| self.hosts.iter().any(|host| host == text);
-        if !text(HOST).flatten().is_some_and(is_host) {
-            let why = "this page is for this machine alone";
-            return Err((StatusCode::FORBIDDEN, why));
-        }
-        // Programs have no origin; the page's requests have one.
-        let is_own = |origin: Option<&str>| {
-            let host = origin.and_then(|origin| origin.strip_prefix("http://"));
-            host.is_some_and(is_host)
-        };
-        if !text(ORIGIN).is_none_or(is_own) {
-            return Err((StatusCode::FORBIDDEN, "another page may not ask this one"));
-        }
+        check_origin(head, &self.hosts)?;
         let Some(path) = head.uri.path().strip_prefix(&self.root) else {
             let why = "the address is not complete; open the one that htex printed";
             return Err((StatusCode::NOT_FOUND, why));
@@ -70,6 +57,30 @@ impl Gate {
             _ => Err((StatusCode::NOT_FOUND, "there is no such page")),
         }
     }
+}
+
+/// Host names of a server of this machine.
+pub(super) fn hosts(port: u16) -> [String; 2] {
+    [format!("127.0.0.1:{port}"), format!("localhost:{port}")]
+}
+
+/// Refuses a request with another host name, or of another page.
+pub(super) fn check_origin(head: &Parts, hosts: &[String]) -> Result<(), Refusal> {
+    let text = |name: HeaderName| head.headers.get(name).map(|value| value.to_str().ok());
+    let is_host = |text: &str| hosts.iter().any(|host| host == text);
+    if !text(HOST).flatten().is_some_and(is_host) {
+        let why = "this page is for this machine alone";
+        return Err((StatusCode::FORBIDDEN, why));
+    }
+    // Programs have no origin; the page's requests have one.
+    let is_own = |origin: Option<&str>| {
+        let host = origin.and_then(|origin| origin.strip_prefix("http://"));
+        host.is_some_and(is_host)
+    };
+    if !text(ORIGIN).is_none_or(is_own) {
+        return Err((StatusCode::FORBIDDEN, "another page may not ask this one"));
+    }
+    Ok(())
 }
 
 /// The tab that owns the page, and its last request.

@@ -4,11 +4,13 @@
 //! browser and other users of the machine can neither see nor answer, nor delay anything. One tab owns the page, until it is closed or silent for
 //! 8 s; others are refused. Each tab may stop the session at any time: a button, and Escape.
 
+mod folder;
 mod gate;
 mod server;
 
 use serde_json::Value;
 
+pub use folder::{FolderError, ServedFolder};
 pub(crate) use server::LocalPage;
 
 /// A page cannot be served.

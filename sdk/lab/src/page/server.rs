@@ -64,10 +64,26 @@ const HEADERS: [(&str, &str); 4] = [
 /// A page that is served while this value lives.
 pub(crate) struct LocalPage {
     owner: Arc<Owner>,
+    url: String,
+    /// Ends when it is dropped.
+    _server: Server,
+}
+
+/// A server that runs while this value lives.
+pub(super) struct Server {
     /// Ends the server when it is dropped.
     end: Option<oneshot::Sender<Infallible>>,
     thread: Option<JoinHandle<()>>,
-    url: String,
+}
+
+/// What answers requests.
+pub(super) trait Answers: Send + Sync + 'static {
+    /// The reply to a request. `is_known` is set when the request has passed the gate.
+    fn answer(
+        &self,
+        request: Request<Incoming>,
+        is_known: &AtomicBool,
+    ) -> impl Future<Output = Result<Response<Full<Bytes>>, Refusal>> + Send;
 }
 
 /// What all connections share.
@@ -92,10 +108,8 @@ impl LocalPage {
     /// If the port is taken or there are no random numbers.
     pub(crate) fn open<C: Content>(port: u16, content: Arc<C>) -> Result<Self, PageError> {
         let failed = |problem: String| PageError { port, problem };
-        let io = |error: std::io::Error| failed(error.to_string());
-        let listener = TcpListener::bind(("127.0.0.1", port)).map_err(io)?;
-        listener.set_nonblocking(true).map_err(io)?;
-        let port = listener.local_addr().map_err(io)?.port();
+        let listener = listen(port).map_err(|error| failed(error.to_string()))?;
+        let port = listener.1;
         let mut token = [0u8; 16];
         getrandom::fill(&mut token).map_err(|e| failed(e.to_string()))?;
         let token: String = token.iter().map(|byte| format!("{byte:02x}")).collect();
@@ -107,26 +121,11 @@ impl LocalPage {
             requests: [&[STATE, LEAVE, STOP], C::REQUESTS].concat(),
         };
         let url = desk.gate.url();
-        let mut runtime = tokio::runtime::Builder::new_current_thread();
-        let runtime = runtime.enable_io().enable_time().build().map_err(io)?;
-        let (end, ended) = oneshot::channel();
-        let serving = move || {
-            runtime.block_on(async {
-                let server = tokio::spawn(serve(listener, Arc::new(desk)));
-                let _ = ended.await;
-                server.abort();
-            });
-            // The runtime goes, and all connections with it, whatever they wait for.
-        };
-        let thread = std::thread::Builder::new()
-            .name("htex-page".to_owned())
-            .spawn(serving)
-            .map_err(io)?;
+        let started = Server::start(listener.0, Arc::new(desk));
         Ok(Self {
             owner,
-            end: Some(end),
-            thread: Some(thread),
             url,
+            _server: started.map_err(|error| failed(error.to_string()))?,
         })
     }
 
@@ -143,7 +142,42 @@ impl LocalPage {
     }
 }
 
-impl Drop for LocalPage {
+/// Listens on this machine alone; returns the port, too.
+pub(super) fn listen(port: u16) -> std::io::Result<(TcpListener, u16)> {
+    let listener = TcpListener::bind(("127.0.0.1", port))?;
+    listener.set_nonblocking(true)?;
+    let port = listener.local_addr()?.port();
+    Ok((listener, port))
+}
+
+impl Server {
+    /// Answers connections in a thread.
+    pub(super) fn start<A: Answers>(
+        listener: TcpListener,
+        answers: Arc<A>,
+    ) -> std::io::Result<Self> {
+        let mut runtime = tokio::runtime::Builder::new_current_thread();
+        let runtime = runtime.enable_io().enable_time().build()?;
+        let (end, ended) = oneshot::channel();
+        let serving = move || {
+            runtime.block_on(async {
+                let server = tokio::spawn(serve(listener, answers));
+                let _ = ended.await;
+                server.abort();
+            });
+            // The runtime goes, and all connections with it, whatever they wait for.
+        };
+        let thread = std::thread::Builder::new()
+            .name("htex-page".to_owned())
+            .spawn(serving)?;
+        Ok(Self {
+            end: Some(end),
+            thread: Some(thread),
+        })
+    }
+}
+
+impl Drop for Server {
     fn drop(&mut self) {
         drop(self.end.take());
         if let Some(thread) = self.thread.take() {
@@ -153,7 +187,7 @@ impl Drop for LocalPage {
 }
 
 /// Takes connections, at most [`MOST_CONNECTIONS`] at a time.
-async fn serve<C: Content>(listener: TcpListener, desk: Arc<Desk<C>>) {
+async fn serve<A: Answers>(listener: TcpListener, desk: Arc<A>) {
     let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
         return;
     };
@@ -181,7 +215,7 @@ async fn serve<C: Content>(listener: TcpListener, desk: Arc<Desk<C>>) {
 }
 
 /// Answers the requests of a connection.
-async fn attend<C: Content>(socket: TcpStream, desk: Arc<Desk<C>>, is_known: Arc<AtomicBool>) {
+async fn attend<A: Answers>(socket: TcpStream, desk: Arc<A>, is_known: Arc<AtomicBool>) {
     // Without it, the system may hold a reply back for 40 ms.
     let _ = socket.set_nodelay(true);
     let service = service_fn(|request| async {
@@ -198,7 +232,7 @@ async fn attend<C: Content>(socket: TcpStream, desk: Arc<Desk<C>>, is_known: Arc
         .await;
 }
 
-impl<C: Content> Desk<C> {
+impl<C: Content> Answers for Desk<C> {
     async fn answer(
         &self,
         request: Request<Incoming>,

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::document::Document;
 use crate::refusal::Refusal;
-use crate::{fit, libraries, made, models, process, validate};
+use crate::{felt, fit, libraries, made, models, process, validate};
 
 /// The result of a call, in memory that the caller frees: `htex_free(json, json_len)`, `htex_free(bytes, bytes_len)`.
 #[repr(C)]
@@ -48,12 +48,14 @@ const FUNCTIONS: &[(&str, Function)] = &[
     ("columns", process::columns),
     ("edit", made::edit),
     ("explain", validate::explain),
+    ("felt", felt::felt),
     ("fit", fit::fit),
     ("library", libraries::pack),
     ("make", made::make),
     ("mix", made::mix),
     ("models", models::models),
     ("process", process::process),
+    ("threshold", felt::threshold),
     ("validate", validate::validate),
 ];
 

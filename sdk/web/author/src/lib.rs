@@ -7,6 +7,7 @@
 mod call;
 mod describe;
 mod document;
+mod felt;
 mod fit;
 mod libraries;
 mod made;

@@ -48,7 +48,7 @@ pub(crate) fn make(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> 
     answer(&asset)
 }
 
-fn quantity(name: Option<String>) -> Result<Quantity, Refusal> {
+pub(crate) fn quantity(name: Option<String>) -> Result<Quantity, Refusal> {
     let Some(name) = name else {
         return Ok(Quantity::default());
     };

@@ -1,0 +1,85 @@
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::Args;
+use htex_lab::page::ServedFolder;
+
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::output::print;
+use crate::signals;
+
+/// Where the page is served unless another port is given. It stays the same, so that the browser finds one's own textures again.
+const PORT: u16 = 8420;
+/// How often it is looked whether the command shall end.
+const NOTICED: Duration = Duration::from_millis(100);
+/// The environment's variable that names the folder.
+const VARIABLE: &str = "HTEX_STUDIO";
+/// Where an installation has the page, from the folder of the command.
+const SHARED: &str = "../share/htex/studio";
+/// The part of a build that a server gives.
+const STATIC: &str = "static";
+
+/// Touch, shape, compare and give away textures in the browser.
+///
+/// Serves the studio on this machine alone, until Ctrl-C. The page is built by `cargo xtask studio --out DIR`; it asks for nothing beyond
+/// this address.
+#[derive(Args)]
+pub(crate) struct Studio {
+    /// Folder of the page, as `cargo xtask studio` writes it [default: $HTEX_STUDIO, or ../share/htex/studio beside the command]
+    #[arg(long, value_name = "DIR")]
+    folder: Option<PathBuf>,
+
+    /// Port of the address; 0 is any that is free, at which the browser does not find textures of another time
+    #[arg(long, default_value_t = PORT, value_name = "PORT")]
+    port: u16,
+}
+
+impl Studio {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
+        let folder = self.page()?;
+        let served = ServedFolder::open(&folder, self.port)
+            .map_err(|error| Failure::Other(error.to_string()))?;
+        print(&format!(
+            "the studio is at {}; Ctrl-C ends it\n",
+            served.url()
+        ))?;
+        signals::ask();
+        while !signals::interrupted() {
+            std::thread::sleep(NOTICED);
+        }
+        Ok(Exit::SUCCESS)
+    }
+
+    /// The folder that has the page.
+    fn page(&self) -> Result<PathBuf, Failure> {
+        let given = self.folder.clone();
+        let given = given.or_else(|| std::env::var_os(VARIABLE).map(PathBuf::from));
+        let looked = match given {
+            Some(folder) => vec![folder],
+            None => shared().into_iter().collect(),
+        };
+        let page = looked.iter().find_map(|folder| page_in(folder));
+        page.ok_or_else(|| {
+            let places: Vec<String> = looked.iter().map(|p| p.display().to_string()).collect();
+            Failure::Other(format!(
+                "the studio's page is not in {}; build it by `cargo xtask studio --out DIR`, and give --folder DIR or set {VARIABLE}=DIR",
+                places.join(" or ")
+            ))
+        })
+    }
+}
+
+/// The folder of an installation.
+fn shared() -> Option<PathBuf> {
+    let command = std::env::current_exe().ok()?;
+    Some(command.parent()?.join(SHARED))
+}
+
+/// The page of a folder: of a build, or of its part for servers.
+fn page_in(folder: &Path) -> Option<PathBuf> {
+    let places = [folder.join(STATIC), folder.to_owned()];
+    places
+        .into_iter()
+        .find(|place| place.join("index.html").is_file())
+}

@@ -1,0 +1,99 @@
+// What is given away: the file with its name and licence, sound, a link, and a player of one file.
+
+import { signal } from "@preact/signals";
+
+import playerAddress from "virtual:player";
+import { compressedLibrary, plainBase64 } from "./modules.ts";
+import { theAuthor } from "./author.ts";
+import { toLink } from "./link.ts";
+import { fileName, save, wav } from "./save.ts";
+import { add } from "./shelf.ts";
+import { pilotForce, pilotSpeed } from "./motion.ts";
+import { edit, present, say, texture } from "./state.ts";
+
+export interface Label {
+  readonly name: string;
+  readonly license: string;
+  readonly author: string;
+  readonly tags: string;
+  readonly description: string;
+}
+
+const WAV_S = 10;
+const WAV_HZ = 48_000;
+
+/** Who gives away; asked once, and kept in this tab. */
+export const giver = signal({ license: "CC0-1.0", author: "" });
+
+/** The label of the present texture. */
+export function labelOf(): Label {
+  const manifest = texture.value?.manifest;
+  const text = (name: string) => (manifest?.[name] as string | undefined) ?? "";
+  return {
+    name: texture.value?.name ?? "",
+    license: text("license") || giver.value.license,
+    author: text("author") || giver.value.author,
+    tags: ((manifest?.["tags"] as string[] | undefined) ?? []).join(", "),
+    description: text("description"),
+  };
+}
+
+/** Writes the label into the texture, as a step of its history. */
+export async function write(label: Label) {
+  const now = texture.peek();
+  const document = present.peek();
+  if (!now || !document) return;
+  const tags = label.tags.split(",").map((tag) => tag.trim()).filter(Boolean);
+  giver.value = { license: label.license, author: label.author };
+  const before = labelOf();
+  if (JSON.stringify(before) === JSON.stringify(label) && now.manifest["license"] === label.license) return;
+  const made = (await theAuthor()).edit(now, { name: label.name, license: label.license, author: label.author, description: label.description, tags });
+  edit({ texture: made, bytes: made.toBytes(), model: document.model, change: "name and licence" });
+}
+
+export function saveTexture() {
+  const document = present.peek();
+  if (document) save(document.bytes, fileName(document.name, "htex"), "application/octet-stream");
+}
+
+export async function keepOnShelf() {
+  const document = present.peek();
+  if (!document) return;
+  await add(document.bytes);
+  say(`${document.name} is on your shelf, on this device.`, "good");
+}
+
+/** Ten seconds at the motion of the pad's sliders; full scale is one unit of the texture times the factor that is told. */
+export function saveSound() {
+  const [now, document] = [texture.peek(), present.peek()];
+  if (!now || !document) return;
+  const motion = { speed: pilotSpeed.peek(), force: pilotForce.peek() };
+  const voice = now.voice({ model: document.model, rate: WAV_HZ, motion });
+  const samples = voice.render(WAV_S * WAV_HZ);
+  voice.free();
+  save(wav(samples, WAV_HZ), fileName(document.name, "wav"), "audio/wav");
+  say(`${WAV_S} s at ${motion.speed.toFixed(0)} mm/s and ${motion.force.toFixed(2)} N, in ${now.unit}: a full-scale sample is 1 ${now.unit}.`);
+}
+
+export function link() {
+  const document = present.value;
+  return document ? toLink(document.bytes, location.href) : "";
+}
+
+const escaped = (text: string) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+
+/** A page that plays this texture, without anything else. */
+export async function savePlayer() {
+  const document = present.peek();
+  if (!document) return;
+  const [template, library] = await Promise.all([fetch(playerAddress).then((one) => one.text()), compressedLibrary()]);
+  const license = texture.peek()?.manifest["license"];
+  const parts: Record<string, string> = {
+    __NAME__: escaped(document.name),
+    __LICENSE__: license ? `Licence: ${escaped(String(license))}` : "",
+    __LIBRARY__: library,
+    __TEXTURE__: await plainBase64(document.bytes),
+  };
+  const page = template.replaceAll(/__(NAME|LICENSE|LIBRARY|TEXTURE)__/g, (word) => parts[word] ?? "");
+  save(new TextEncoder().encode(page), fileName(document.name, "html"), "text/html");
+}

@@ -1,0 +1,15 @@
+// The page begins.
+
+import { render } from "preact";
+
+import "./styles/base.css";
+import "./styles/frame.css";
+import "./styles/controls.css";
+import "./styles/screens.css";
+import "./styles/shape.css";
+import { App } from "./app.tsx";
+import { start } from "./start.ts";
+
+const place = document.getElementById("app");
+if (place) render(<App />, place);
+start();

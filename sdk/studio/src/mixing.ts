@@ -1,0 +1,91 @@
+// Four textures in the corners of a pad, and what is between them.
+
+import { computed, signal } from "@preact/signals";
+import type { Author, Texture } from "htex";
+
+import { theAuthor } from "./author.ts";
+import { tried } from "./engine.ts";
+import { items } from "./shelf.ts";
+import { BANDS, redrawn } from "./shaping/bands.ts";
+import { make, read } from "./shaping/spec.ts";
+import { edit, present, texture } from "./state.ts";
+
+/** Names of items of the shelf in the corners: upper left, upper right, lower left, lower right. The first may be the present texture. */
+export const corners = signal<readonly string[]>(["", "", "", ""]);
+/** Where the mixture is, 0 to 1. */
+export const place = signal({ x: 0.5, y: 0.5 });
+
+const DEFAULTS = ["", "Corduroy", "Leather", "Frosted glass"];
+
+/** A corner that is chosen, or its default. */
+export const chosen = computed(() => corners.value.map((id, i) => id || DEFAULTS[i] || ""));
+
+/** Parts of the corners. */
+export const parts = computed(() => {
+  const { x, y } = place.value;
+  return [(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y];
+});
+
+/** Corners as Bands, by the item they are of: all textures have this model, so that all can be mixed. */
+const asBands = new Map<string, { of: unknown; texture: Texture }>();
+
+function bandsOf(author: Author, id: string): Texture | null {
+  const item = items.peek().find((one) => one.id === id);
+  const source = item?.texture ?? texture.peek();
+  const of = item ?? present.peek();
+  const model = item?.model ?? present.peek()?.model;
+  if (!source || !model) return null;
+  const cached = asBands.get(id);
+  if (cached?.of === of) return cached.texture;
+  cached?.texture.free();
+  const spec = read(source, source.models.includes(BANDS) ? BANDS : model);
+  const bands = spec.model === BANDS ? spec : redrawn({ author, from: source, shown: 0 }, spec);
+  const made = make(author, { from: source }, bands);
+  asBands.set(id, { of, texture: made });
+  return made;
+}
+
+const percent = (part: number) => `${Math.round(100 * part)} %`;
+
+/** The mixture at the place; its provenance names what it was mixed of. */
+function mixture(author: Author): Texture | null {
+  const four = chosen.peek().map((id) => bandsOf(author, id));
+  const [a, b, c, d] = four;
+  if (!a || !b || !c || !d) return null;
+  const { x, y } = place.peek();
+  const between = (one: Texture, two: Texture, part: number) => author.mix(one, two, part, { name: `${percent(1 - part)} ${one.name}, ${percent(part)} ${two.name}` });
+  const [upper, lower] = [between(a, b, x), between(c, d, x)];
+  const shares = parts.peek().map((part, i) => [part, four[i]?.name] as const).filter(([part]) => part > 0.005);
+  const name = shares.map(([part, own]) => `${percent(part)} ${own}`).join(", ");
+  const mixed = author.mix(upper, lower, y, { name: name.length > 90 ? `Mixture of ${shares.length}` : name });
+  upper.free();
+  lower.free();
+  return mixed;
+}
+
+let sounding: Texture | null = null;
+
+/** Plays the mixture at the place. */
+export async function listen() {
+  const mixed = mixture(await theAuthor());
+  if (!mixed) return;
+  const before = sounding;
+  sounding = mixed;
+  tried.value = { texture: mixed, model: BANDS, own: true };
+  before?.free();
+}
+
+export function endListening() {
+  if (tried.peek()?.texture === sounding) tried.value = null;
+  sounding?.free();
+  sounding = null;
+}
+
+/** Takes the mixture as the next step of the present texture. */
+export async function takeMixture() {
+  const mixed = mixture(await theAuthor());
+  if (!mixed) return;
+  endListening();
+  edit({ texture: mixed, bytes: mixed.toBytes(), model: BANDS, change: "mix" });
+}
+

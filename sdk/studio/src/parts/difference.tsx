@@ -1,0 +1,66 @@
+// What is felt of the difference of two textures, in words and by third octaves.
+
+import type { Felt } from "htex";
+
+import { author, theAuthor } from "../author.ts";
+import { both } from "../comparing.ts";
+import { pilotForce, pilotSpeed } from "../motion.ts";
+import { fail } from "../state.ts";
+
+/** The sentence for what is felt. */
+export function words({ below_difference_threshold, below_if_sensitive, largest_error_db, total_error_db }: Pick<Felt, "below_difference_threshold" | "below_if_sensitive" | "largest_error_db" | "total_error_db">) {
+  if (below_if_sensitive) return "Even a sensitive finger feels no difference.";
+  if (below_difference_threshold) return "A finger feels no difference; a sensitive one may.";
+  const whole = Math.abs(total_error_db) < 0.05 ? "" : ` All together it is ${Math.abs(total_error_db).toFixed(1)} dB ${total_error_db > 0 ? "stronger" : "weaker"}.`;
+  return `A difference is felt: in the third octave where most is, ${largest_error_db.toFixed(1)} dB.${whole}`;
+}
+
+function difference() {
+  const made = author.value;
+  const { a, b } = both.value;
+  if (!made || !a || !b) return null;
+  const at = { speed: pilotSpeed.value, force: pilotForce.value };
+  return made.felt({ texture: a.texture, model: a.model, at }, { texture: b.texture, model: b.model, at });
+}
+
+const [WIDTH, HEIGHT, MOST_DB] = [560, 120, 20];
+
+function Bars({ of }: { of: Felt }) {
+  const step = WIDTH / of.centre_hz.length;
+  const middle = HEIGHT / 2;
+  return (
+    <svg class="felt-bars" viewBox={`0 0 ${WIDTH} ${HEIGHT + 18}`} role="img" aria-label="Felt difference by third octave, B against A">
+      <line x1="0" x2={WIDTH} y1={middle} y2={middle} />
+      {of.error_db.map((db, i) => {
+        const height = (Math.min(Math.abs(db), MOST_DB) / MOST_DB) * (middle - 4);
+        return <rect key={i} x={i * step + 2} width={step - 4} y={db > 0 ? middle - height : middle} height={Math.max(height, 0.5)} rx="2" />;
+      })}
+      {of.centre_hz.map((hz, i) => i % 3 === 0 && (
+        <text key={hz} x={i * step + step / 2} y={HEIGHT + 14} text-anchor="middle">
+          {hz.toFixed(0)}
+        </text>
+      ))}
+    </svg>
+  );
+}
+
+export function Difference() {
+  if (!author.value) theAuthor().catch(fail);
+  const found = difference();
+  return (
+    <div class="panel stack">
+      <h2>What is felt of the difference</h2>
+      {found ? (
+        <>
+          <p>{words(found)}</p>
+          <Bars of={found} />
+          <p class="soft small">
+            At {pilotSpeed.value.toFixed(0)} mm/s and {pilotForce.value.toFixed(2)} N; B against A, up is stronger, up to {MOST_DB} dB, by third octave in Hz. A listener by the papers that the manual names: what is below the detection threshold does not count.
+          </p>
+        </>
+      ) : (
+        <p class="soft">{both.value.a && both.value.b ? "…" : "Choose two textures."}</p>
+      )}
+    </div>
+  );
+}

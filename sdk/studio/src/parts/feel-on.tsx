@@ -1,0 +1,64 @@
+// "Feel it on": other outputs than the loudspeaker, each with what it cannot do.
+
+import { useState } from "preact/hooks";
+
+import { feelOn, gamepadThere, outputs, startFeeling, type Feel } from "../feel.ts";
+import { canChooseOutput, sendTo } from "../engine.ts";
+import { fail, say } from "../state.ts";
+import { Icon } from "./icons.tsx";
+
+const WAYS: { id: Feel; name: string; limit: string; there: () => boolean }[] = [
+  { id: "none", name: "Sound alone", limit: "Loudspeakers and headphones play what a finger would feel.", there: () => true },
+  {
+    id: "gamepad",
+    name: "Gamepad",
+    limit: "Two motors follow the level and the pitch. They cannot play the texture's frequencies, and they lag by some 50 ms.",
+    there: gamepadThere,
+  },
+  {
+    id: "phone",
+    name: "This phone",
+    limit: "The motor is on or off, in pulses as long as the level is high. It has one frequency of its own.",
+    there: () => "vibrate" in navigator,
+  },
+];
+
+export function FeelOn() {
+  const [isOpen, setOpen] = useState(false);
+  const choose = (id: string) => sendTo(id).then(() => say("The volume is at 0 for the new output. Raise it slowly.", "plain"), fail);
+  return (
+    <div class="menu">
+      <button class="toggle" aria-expanded={isOpen} onClick={() => (setOpen(!isOpen), void outputs.refresh())}>
+        <Icon name="feel" /> <span class="wide">Feel it on</span>
+      </button>
+      {isOpen && (
+        <div class="menu-sheet" role="group" aria-label="Feel it on" onKeyDown={(event) => event.key === "Escape" && setOpen(false)}>
+          {WAYS.map(({ id, name, limit, there }) => (
+            <button key={id} class="menu-item" aria-pressed={feelOn.value === id} disabled={!there()} onClick={() => startFeeling(id)}>
+              <b>{name}</b>
+              <small>{there() ? limit : `${limit} There is none here.`}</small>
+            </button>
+          ))}
+          {canChooseOutput() ? (
+            <label class="menu-item">
+              <b>Another output, such as a shaker on an amplifier</b>
+              <small>It gets the sound as it is, without calibration and without the guards of `htex play`. Gain begins at 0.</small>
+              <select onChange={(event) => choose(event.currentTarget.value)}>
+                <option value="">The system's output</option>
+                {outputs.list.value.map(({ id, name }) => (
+                  <option key={id} value={id}>
+                    {name}
+                  </option>
+                ))}
+              </select>
+            </label>
+          ) : (
+            <p class="menu-item">
+              <small>This browser cannot choose an output; choose it in the system's settings.</small>
+            </p>
+          )}
+        </div>
+      )}
+    </div>
+  );
+}

@@ -1,0 +1,124 @@
+// Paints the pad: the grain, which moves with the finger, and the finger. It paints when something has changed, and not else.
+
+import { effect } from "@preact/signals";
+
+import { finger } from "../motion.ts";
+import { sounding } from "../shadow.ts";
+import { isCalm, scheme } from "../theme.ts";
+import { RELIEF_HZ, TILE, colour, relief } from "./relief.ts";
+
+/** Milliseconds between two reliefs while a texture is edited. */
+const RELIEF_MS = 120;
+/** Part of the finger's way by which the grain moves. */
+const CARRIED = 0.3;
+
+export class PadPainter {
+  private tile: HTMLCanvasElement | null = null;
+  private frame = 0;
+  private timer = 0;
+  private offset = { x: 0, y: 0 };
+  private before = { x: 0.5, y: 0.5 };
+  private readonly ends: (() => void)[];
+
+  constructor(private readonly canvas: HTMLCanvasElement) {
+    const observer = new ResizeObserver(() => this.fit());
+    observer.observe(canvas);
+    this.ends = [
+      effect(() => {
+        void sounding.value;
+        void scheme.value;
+        this.timer ||= window.setTimeout(() => this.renew(), this.tile ? RELIEF_MS : 0);
+      }),
+      effect(() => {
+        void finger.value;
+        this.wish();
+      }),
+      () => observer.disconnect(),
+    ];
+  }
+
+  end() {
+    for (const end of this.ends) end();
+    cancelAnimationFrame(this.frame);
+    clearTimeout(this.timer);
+  }
+
+  private fit() {
+    const { clientWidth, clientHeight } = this.canvas;
+    const scale = Math.min(devicePixelRatio, 2);
+    this.canvas.width = Math.max(Math.round(clientWidth * scale), 1);
+    this.canvas.height = Math.max(Math.round(clientHeight * scale), 1);
+    this.wish();
+  }
+
+  private renew() {
+    this.timer = 0;
+    const now = sounding.peek();
+    if (!now) return;
+    const magnitude = now.texture.spectrum(RELIEF_HZ, { model: now.model });
+    this.tile = relief(magnitude, colour("--grain-dark"), colour("--grain-light"));
+    this.wish();
+  }
+
+  private wish() {
+    this.frame ||= requestAnimationFrame(() => this.paint());
+  }
+
+  private paint() {
+    this.frame = 0;
+    const pen = this.canvas.getContext("2d");
+    if (!pen) return;
+    const { width, height } = this.canvas;
+    const { x, y, force, speed } = finger.peek();
+    this.carry(x, y, width, height, force > 0);
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.clearRect(0, 0, width, height);
+    const scale = Math.min(devicePixelRatio, 2);
+    if (this.tile) this.grain(pen, width, height, scale);
+    if (force > 0) this.touch(pen, x * width, y * height, scale, force, speed);
+  }
+
+  /** Moves the grain with the finger; a finger that comes in on the other side has not moved back. */
+  private carry(x: number, y: number, width: number, height: number, isDown: boolean) {
+    const way = (now: number, before: number) => (Math.abs(now - before) > 0.5 ? 0 : now - before);
+    if (isDown && !isCalm.matches) {
+      this.offset.x += CARRIED * width * way(x, this.before.x);
+      this.offset.y += CARRIED * height * way(y, this.before.y);
+    }
+    this.before = { x, y };
+  }
+
+  private grain(pen: CanvasRenderingContext2D, width: number, height: number, scale: number) {
+    const pattern = this.tile && pen.createPattern(this.tile, "repeat");
+    if (!pattern) return;
+    const size = TILE * scale;
+    pen.save();
+    pen.translate((this.offset.x % size) - size, (this.offset.y % size) - size);
+    pen.scale(scale, scale);
+    pen.fillStyle = pattern;
+    pen.fillRect(0, 0, width / scale + 2 * TILE, height / scale + 2 * TILE);
+    pen.restore();
+  }
+
+  private touch(pen: CanvasRenderingContext2D, x: number, y: number, scale: number, force: number, speed: number) {
+    const radius = scale * (16 + 16 * Math.sqrt(Math.min(force, 3)));
+    const [r, g, b] = colour("--accent");
+    const glow = pen.createRadialGradient(x, y, radius * 0.2, x, y, radius * 2.2);
+    glow.addColorStop(0, `rgba(${r}, ${g}, ${b}, 0.55)`);
+    glow.addColorStop(1, `rgba(${r}, ${g}, ${b}, 0)`);
+    pen.fillStyle = glow;
+    pen.beginPath();
+    pen.arc(x, y, radius * 2.2, 0, 2 * Math.PI);
+    pen.fill();
+    pen.lineWidth = 2 * scale;
+    pen.strokeStyle = "rgba(255, 255, 255, 0.95)";
+    pen.beginPath();
+    pen.arc(x, y, radius, 0, 2 * Math.PI);
+    pen.stroke();
+    pen.lineWidth = 4 * scale;
+    pen.strokeStyle = `rgb(${r}, ${g}, ${b})`;
+    pen.beginPath();
+    pen.arc(x, y, radius, -Math.PI / 2, -Math.PI / 2 + 2 * Math.PI * Math.min(speed / 300, 1));
+    pen.stroke();
+  }
+}

@@ -1,0 +1,120 @@
+// The pad: a surface that a finger slides over.
+
+import { useEffect, useRef } from "preact/hooks";
+import { followPointer } from "htex";
+
+import { sound, wake } from "../engine.ts";
+import { byHand, byKey, finger, handLeaves, padSize, pilot, pilotForce, releaseKeys, setPilot, stroke } from "../motion.ts";
+import { present } from "../state.ts";
+import { coverage, sounding } from "../shadow.ts";
+import { PadPainter } from "./pad-painter.ts";
+
+/** Force of a pen's full pressure, N. */
+const PEN_N = 1.5;
+/** Forces of the keys 1 to 5, N. */
+export const KEY_FORCES = [0.1, 0.2, 0.4, 0.8, 1.6];
+
+/** Follows pointers over the pad; returns a function that ends this. */
+function attach(element: HTMLElement) {
+  let type = "mouse";
+  let began = 0;
+  let points: { t: number; x: number; y: number }[] = [];
+  const place = (event: PointerEvent) => {
+    const box = element.getBoundingClientRect();
+    const clamp = (part: number) => Math.min(Math.max(part, 0), 1);
+    return { x: clamp((event.clientX - box.left) / box.width), y: clamp((event.clientY - box.top) / box.height) };
+  };
+  const down = (event: PointerEvent) => {
+    if (!event.isPrimary || event.button !== 0) return;
+    wake();
+    type = event.pointerType;
+    began = event.timeStamp;
+    points = [];
+    byHand(place(event));
+  };
+  const move = (event: PointerEvent) => {
+    if (!event.isPrimary || event.buttons === 0) return;
+    points.push({ t: (event.timeStamp - began) / 1e3, ...place(event) });
+    byHand(place(event));
+  };
+  const up = () => {
+    if (points.length > 2) stroke.value = points;
+    points = [];
+  };
+  const wheel = (event: WheelEvent) => {
+    event.preventDefault();
+    const next = pilotForce.peek() * Math.exp(-event.deltaY / 600);
+    pilotForce.value = Math.min(Math.max(next, 0.05), 3);
+    if (finger.peek().force > 0 && type !== "pen") byHand({ force: pilotForce.value });
+  };
+  element.addEventListener("pointerdown", down);
+  element.addEventListener("pointermove", move);
+  element.addEventListener("pointerup", up);
+  element.addEventListener("wheel", wheel, { passive: false });
+  const force = (pressure: number) => (type === "pen" ? PEN_N * pressure : pilotForce.peek());
+  const mmPerPixel = () => padSize.width / element.getBoundingClientRect().width;
+  let end = () => {};
+  const moved = ({ speed, force: now, position }: { speed: number; force: number; position: number }) => {
+    if (now > 0) byHand({ speed, force: now, position });
+    else handLeaves();
+  };
+  const follow = () => {
+    end();
+    padSize.height = (padSize.width * element.clientHeight) / Math.max(element.clientWidth, 1);
+    end = followPointer(element, moved, { force, mmPerPixel: mmPerPixel() });
+  };
+  const observer = new ResizeObserver(follow);
+  observer.observe(element);
+  return () => {
+    observer.disconnect();
+    end();
+    element.removeEventListener("pointerdown", down);
+    element.removeEventListener("pointermove", move);
+    element.removeEventListener("pointerup", up);
+    element.removeEventListener("wheel", wheel);
+  };
+}
+
+function keyDown(event: KeyboardEvent) {
+  if (event.key.startsWith("Arrow")) {
+    wake();
+    byKey(event.key, true, event.shiftKey);
+  } else if (event.key === " ") {
+    wake();
+    setPilot(pilot.peek() === "hand" ? "to-and-fro" : "hand");
+  } else if (/^[1-5]$/.test(event.key) && !event.ctrlKey && !event.metaKey) {
+    pilotForce.value = KEY_FORCES[Number(event.key) - 1] ?? 0.4;
+  } else return;
+  event.preventDefault();
+  event.stopPropagation();
+}
+
+export function Pad() {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  useEffect(() => {
+    if (!canvas.current) return;
+    const painter = new PadPainter(canvas.current);
+    const end = attach(canvas.current);
+    return () => {
+      end();
+      painter.end();
+    };
+  }, []);
+  const { inside } = coverage.value;
+  const name = sounding.value?.texture.name ?? present.value?.name ?? "no texture";
+  return (
+    <div class={inside ? "pad" : "pad outside"}>
+      <canvas
+        ref={canvas}
+        tabIndex={0}
+        role="application"
+        aria-label={`Pad of ${name}. Arrow keys slide, Shift slides faster, 1 to 5 press harder, Space slides to and fro.`}
+        onKeyDown={keyDown}
+        onKeyUp={(event) => byKey(event.key, false, event.shiftKey)}
+        onBlur={releaseKeys}
+        onContextMenu={(event) => event.preventDefault()}
+      />
+      {sound.value === "off" && <p class="pad-hint">Press and slide</p>}
+    </div>
+  );
+}

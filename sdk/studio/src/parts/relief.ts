@@ -1,0 +1,86 @@
+// A picture of a texture's grain: waves whose strengths are those of the spectrum, as a relief in light from the upper left. Wavelengths are
+// spread so that they can be seen: it is a picture, not a map.
+
+/** Side of the tile, pixels. */
+export const TILE = 256;
+const WAVES = 84;
+const [LOW_HZ, HIGH_HZ] = [20, 1000];
+/** Wavelengths of the lowest frequency, pixels, and how much faster they fall than they rise in frequency. */
+const LONGEST = 72;
+const SPREAD = 0.8;
+
+/** Frequencies at which a texture's spectrum is wanted for its relief. */
+export const RELIEF_HZ = Float64Array.from({ length: WAVES }, (_, i) => LOW_HZ * (HIGH_HZ / LOW_HZ) ** ((i + 0.5) / WAVES));
+
+/** Numbers from 0 to 1 that are the same each time, so that a surface looks the same, too. */
+function numbers(seed: number) {
+  let state = seed;
+  return () => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return state / 2 ** 32;
+  };
+}
+
+function heights(magnitude: ArrayLike<number>) {
+  const height = new Float32Array(TILE * TILE);
+  const next = numbers(11);
+  const row = new Float32Array(4 * TILE);
+  for (let wave = 0; wave < WAVES; wave++) {
+    const length = LONGEST * ((RELIEF_HZ[wave] ?? LOW_HZ) / LOW_HZ) ** -SPREAD;
+    const [angle, phase] = [Math.PI * (0.06 + 0.42 * (next() - 0.5) + (wave % 3 === 0 ? 0.5 : 0)), 2 * Math.PI * next()];
+    const kx = Math.round((TILE / length) * Math.cos(angle));
+    const ky = Math.round((TILE / length) * Math.sin(angle));
+    const amplitude = (magnitude[wave] ?? 0) * Math.sqrt(length);
+    for (let i = 0; i < TILE; i++) {
+      const [ax, ay] = [(2 * Math.PI * kx * i) / TILE + phase, (2 * Math.PI * ky * i) / TILE];
+      row[i] = Math.cos(ax);
+      row[TILE + i] = Math.sin(ax);
+      row[2 * TILE + i] = amplitude * Math.cos(ay);
+      row[3 * TILE + i] = amplitude * Math.sin(ay);
+    }
+    for (let y = 0, at = 0; y < TILE; y++) {
+      const [c, s] = [row[2 * TILE + y] as number, row[3 * TILE + y] as number];
+      for (let x = 0; x < TILE; x++, at++) height[at] = (height[at] as number) + c * (row[x] as number) - s * (row[TILE + x] as number);
+    }
+  }
+  return height;
+}
+
+/** Draws the relief to a tile that repeats. `dark` and `light` are the colours of slopes away from the light and towards it. */
+export function relief(magnitude: ArrayLike<number>, dark: Colour, light: Colour): HTMLCanvasElement {
+  const height = heights(magnitude);
+  const slope = new Float32Array(height.length);
+  let square = 0;
+  for (let y = 0, at = 0; y < TILE; y++) {
+    for (let x = 0; x < TILE; x++, at++) {
+      const left = height[y * TILE + ((x + TILE - 1) % TILE)] as number;
+      const up = height[((y + TILE - 1) % TILE) * TILE + x] as number;
+      const here = height[at] as number;
+      slope[at] = 1.2 * (here - left) + 0.8 * (here - up);
+      square += (slope[at] as number) ** 2;
+    }
+  }
+  const contrast = 0.85 / (Math.sqrt(square / slope.length) || 1);
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = TILE;
+  const pen = canvas.getContext("2d");
+  if (!pen) return canvas;
+  const image = pen.createImageData(TILE, TILE);
+  for (let at = 0; at < slope.length; at++) {
+    const part = 0.5 + 0.5 * Math.tanh(contrast * (slope[at] as number));
+    for (let c = 0; c < 3; c++) image.data[4 * at + c] = (dark[c] as number) + part * ((light[c] as number) - (dark[c] as number));
+    image.data[4 * at + 3] = 255;
+  }
+  pen.putImageData(image, 0, 0);
+  return canvas;
+}
+
+export type Colour = readonly [number, number, number];
+
+/** A colour of the style sheet, such as `--grain-dark`, as red, green and blue. */
+export function colour(name: string): Colour {
+  const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const hex = /^#(..)(..)(..)$/.exec(text);
+  if (!hex) return [128, 128, 128];
+  return [1, 2, 3].map((i) => Number.parseInt(hex[i] as string, 16)) as unknown as Colour;
+}

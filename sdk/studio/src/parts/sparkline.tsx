@@ -1,0 +1,33 @@
+// A small spectrum: dB over the logarithm of frequency, 20 to 1000 Hz.
+
+import { useMemo } from "preact/hooks";
+import type { Texture } from "htex";
+
+const POINTS = 72;
+/** Frequencies that are looked at for each point, so that no line of a spectrum is missed. */
+const FINE = 8;
+const HZ = Float64Array.from({ length: POINTS * FINE }, (_, i) => 20 * 50 ** (i / (POINTS * FINE - 1)));
+/** Range that is drawn below the largest value, dB. */
+const RANGE_DB = 45;
+const [WIDTH, HEIGHT] = [160, 44];
+
+/** The outline of a spectrum as a path, closed at the bottom. */
+export function outline(texture: Texture, model: string): string {
+  const fine = texture.spectrum(HZ, { model });
+  const decibels = Array.from({ length: POINTS }, (_, i) => 20 * Math.log10(Math.max(1e-12, ...fine.subarray(i * FINE, (i + 1) * FINE))));
+  const top = Math.max(...decibels);
+  const points = decibels.map((db, i) => {
+    const part = Math.min(Math.max((top - db) / RANGE_DB, 0), 1);
+    return `${((i / (POINTS - 1)) * WIDTH).toFixed(1)} ${(3 + part * (HEIGHT - 4)).toFixed(1)}`;
+  });
+  return `M0 ${HEIGHT}L${points.join("L")}L${WIDTH} ${HEIGHT}Z`;
+}
+
+export function Sparkline({ texture, model }: { texture: Texture; model: string }) {
+  const path = useMemo(() => outline(texture, model), [texture, model]);
+  return (
+    <svg class="sparkline" viewBox={`0 0 ${WIDTH} ${HEIGHT}`} preserveAspectRatio="none" aria-hidden="true">
+      <path d={path} />
+    </svg>
+  );
+}

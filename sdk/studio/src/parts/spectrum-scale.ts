@@ -1,0 +1,28 @@
+// The axes of the spectrum: logarithm of frequency, and decibels.
+
+export const [LOW_HZ, HIGH_HZ] = [20, 1000];
+export const TICKS_HZ = [20, 50, 100, 200, 500, 1000];
+
+export interface Scale {
+  readonly left: number;
+  readonly top: number;
+  readonly width: number;
+  readonly height: number;
+  /** Decibels at the lower and at the upper edge. */
+  readonly floor: number;
+  readonly ceiling: number;
+}
+
+export const toX = (scale: Scale, hz: number) => scale.left + (scale.width * Math.log(hz / LOW_HZ)) / Math.log(HIGH_HZ / LOW_HZ);
+export const toY = (scale: Scale, db: number) => scale.top + (scale.height * (scale.ceiling - db)) / (scale.ceiling - scale.floor);
+export const toHz = (scale: Scale, x: number) => LOW_HZ * (HIGH_HZ / LOW_HZ) ** Math.min(Math.max((x - scale.left) / scale.width, 0), 1);
+export const toDb = (scale: Scale, y: number) => scale.ceiling - ((y - scale.top) / scale.height) * (scale.ceiling - scale.floor);
+
+/** Decibels that are shown: those of the curves, in steps of 10, at least 50. */
+export function rangeOf(curves: readonly (readonly number[])[]): { floor: number; ceiling: number } {
+  const all = curves.flat().filter(Number.isFinite);
+  const highest = all.length > 0 ? Math.max(...all) : 0;
+  const ceiling = 10 * Math.ceil((highest + 6) / 10);
+  const lowest = Math.min(...all.filter((db) => db > highest - 60), highest);
+  return { floor: Math.min(10 * Math.floor((lowest - 4) / 10), ceiling - 50), ceiling };
+}

@@ -1,0 +1,193 @@
+// The spectrum, drawn and drawn on: handles follow the pointer and the arrow keys.
+
+import { effect } from "@preact/signals";
+import { useEffect, useRef, useState } from "preact/hooks";
+
+import { scheme } from "../theme.ts";
+import { paintSpectrum, type Curve } from "./spectrum-painter.ts";
+import { rangeOf, toDb, toHz, toX, toY, type Scale } from "./spectrum-scale.ts";
+import type { Handle } from "../shaping/shaper.ts";
+
+/** How near a press has to be to a handle, pixels. */
+const NEAR = 30;
+/** Steps of the arrow keys. */
+const STEP_DB = 1;
+const STEP_RATIO = 2 ** (1 / 24);
+
+export interface SpectrumProps {
+  /** Curves that change with the texture. */
+  curves: readonly Curve[];
+  /** A curve that follows the finger; asked for at each frame in which something moved. */
+  live?: () => Curve | null;
+  /** What tells that the live curve may have changed. */
+  watch?: () => unknown;
+  handles: readonly Handle[];
+  hasBars: boolean;
+  onMove: (handle: number, hz: number, db: number) => void;
+  onSettle: () => void;
+  onAdd?: ((hz: number, db: number) => void) | undefined;
+  onRemove?: ((handle: number) => void) | undefined;
+  label: string;
+}
+
+export function Spectrum(props: SpectrumProps) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const [selected, select] = useState(0);
+  const [hasFocus, focus] = useState(false);
+  const kept = useRef({ ...props, selected, hasFocus, scale: null as Scale | null, dragged: -1, drawnDb: null as number | null, frame: 0, wanted: null as [number, number] | null });
+  Object.assign(kept.current, props, { selected: Math.min(selected, Math.max(props.handles.length - 1, 0)), hasFocus });
+
+  const wish = () => {
+    const state = kept.current;
+    state.frame ||= requestAnimationFrame(() => paint(canvas.current, state));
+  };
+  useEffect(wish);
+  useEffect(() => {
+    const place = canvas.current;
+    if (!place) return;
+    const observer = new ResizeObserver(() => wish());
+    observer.observe(place);
+    const end = effect(() => {
+      kept.current.watch?.();
+      void scheme.value;
+      wish();
+    });
+    return () => {
+      observer.disconnect();
+      end();
+      cancelAnimationFrame(kept.current.frame);
+    };
+  }, []);
+
+  const at = (event: PointerEvent | MouseEvent): [number, number] => {
+    const box = canvas.current?.getBoundingClientRect();
+    return [event.clientX - (box?.left ?? 0), event.clientY - (box?.top ?? 0)];
+  };
+  const down = (event: PointerEvent) => {
+    const { scale, handles, hasBars } = kept.current;
+    if (!scale || event.button !== 0) return;
+    const found = nearest(scale, handles, hasBars, at(event));
+    if (found < 0) return;
+    canvas.current?.setPointerCapture(event.pointerId);
+    Object.assign(kept.current, { dragged: found, drawnDb: null });
+    select(found);
+    if (hasBars) drag(event);
+  };
+  const drag = (event: PointerEvent) => {
+    const state = kept.current;
+    if (state.dragged < 0 || !state.scale) return;
+    state.wanted = at(event);
+    // The hand may be faster than the frames.
+    requestAnimationFrame(() => {
+      if (!state.wanted || !state.scale) return;
+      const [x, y] = state.wanted;
+      state.wanted = null;
+      if (state.hasBars) draw(state, x, y);
+      else {
+        const handle = state.handles[state.dragged];
+        if (handle) state.onMove(state.dragged, handle.moves === "both" ? toHz(state.scale, x) : handle.hz, toDb(state.scale, y));
+      }
+      select(state.dragged);
+    });
+  };
+  const up = () => {
+    if (kept.current.dragged < 0) return;
+    kept.current.dragged = -1;
+    requestAnimationFrame(() => kept.current.onSettle());
+  };
+  const add = (event: MouseEvent) => {
+    const { scale, onAdd } = kept.current;
+    const [x, y] = at(event);
+    if (scale) onAdd?.(toHz(scale, x), toDb(scale, y));
+  };
+  const key = (event: KeyboardEvent) => {
+    const { handles, selected: now } = kept.current;
+    const handle = handles[now];
+    if (!handle) return;
+    const free = event.altKey || event.shiftKey;
+    if (event.key === "ArrowUp" || event.key === "ArrowDown") {
+      kept.current.onMove(now, handle.hz, handle.db + (event.key === "ArrowUp" ? STEP_DB : -STEP_DB));
+    } else if ((event.key === "ArrowLeft" || event.key === "ArrowRight") && free && handle.moves === "both") {
+      kept.current.onMove(now, handle.hz * (event.key === "ArrowRight" ? STEP_RATIO : 1 / STEP_RATIO), handle.db);
+    } else if (event.key === "ArrowLeft" || event.key === "ArrowRight") {
+      select(Math.min(Math.max(now + (event.key === "ArrowRight" ? 1 : -1), 0), handles.length - 1));
+    } else if (event.key === "Delete" || event.key === "Backspace") {
+      kept.current.onRemove?.(now);
+    } else return;
+    event.preventDefault();
+  };
+  const handle = props.handles[kept.current.selected];
+  const text = handle ? `${handle.name}, ${handle.hz.toFixed(0)} Hz, ${handle.db.toFixed(0)} dB` : "";
+  return (
+    <div class="spectrum">
+      <canvas
+        ref={canvas}
+        tabIndex={handle ? 0 : undefined}
+        role={handle ? "slider" : "img"}
+        aria-label={props.label}
+        {...(handle ? { "aria-valuenow": Math.round(handle.db), "aria-valuemin": -120, "aria-valuemax": 80, "aria-valuetext": text } : {})}
+        onPointerDown={down}
+        onPointerMove={drag}
+        onPointerUp={up}
+        onPointerCancel={up}
+        onDblClick={props.onAdd ? add : undefined}
+        onKeyDown={key}
+        onKeyUp={() => props.onSettle()}
+        onFocus={() => focus(true)}
+        onBlur={() => focus(false)}
+      />
+      <output class="spectrum-told">{text}</output>
+    </div>
+  );
+}
+
+/** Sets all bars between the last one and that of the pointer to a line between both. */
+function draw(state: Painted, x: number, y: number) {
+  const { scale, handles } = state;
+  if (!scale) return;
+  const [from, to] = [state.dragged, nearest(scale, handles, true, [x, y])];
+  const start = state.drawnDb ?? toDb(scale, y);
+  const end = toDb(scale, y);
+  const steps = Math.abs(to - from);
+  for (let i = steps === 0 ? 0 : 1; i <= steps; i++) {
+    const bar = from + Math.sign(to - from) * i;
+    const handle = handles[bar];
+    if (handle) state.onMove(bar, handle.hz, steps === 0 ? end : start + ((end - start) * i) / steps);
+  }
+  state.dragged = to;
+  state.drawnDb = end;
+}
+
+/** The handle of a press; of bars the one below or above it. */
+function nearest(scale: Scale, handles: readonly Handle[], hasBars: boolean, [x, y]: [number, number]) {
+  const far = handles.map(({ hz, db }) => Math.hypot(toX(scale, hz) - x, hasBars ? 0 : toY(scale, db) - y));
+  const least = Math.min(...far);
+  return hasBars || least < NEAR ? far.indexOf(least) : -1;
+}
+
+interface Painted extends SpectrumProps {
+  selected: number;
+  hasFocus: boolean;
+  scale: Scale | null;
+  dragged: number;
+  /** Decibels of the bar that was drawn last. */
+  drawnDb: number | null;
+  frame: number;
+}
+
+function paint(canvas: HTMLCanvasElement | null, state: Painted) {
+  state.frame = 0;
+  const pen = canvas?.getContext("2d");
+  if (!canvas || !pen) return;
+  const ratio = Math.min(devicePixelRatio, 2);
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio);
+  if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);
+  const live = state.live?.();
+  // While a handle is dragged, the axes stay.
+  const kept = state.dragged >= 0 && state.scale;
+  const range = kept || rangeOf(state.curves.filter(({ style }) => style !== "threshold").map(({ db }) => db));
+  state.scale = { left: 44, top: 10, width: width - 58, height: height - 40, floor: range.floor, ceiling: range.ceiling };
+  const curves = live ? [...state.curves, live] : state.curves;
+  paintSpectrum(pen, ratio, { scale: state.scale, curves, marks: state.handles, hasBars: state.hasBars, selected: state.handles.length > 0 ? state.selected : -1, hasFocus: state.hasFocus });
+}

@@ -1,0 +1,55 @@
+// What stands above: the texture's name, undo and redo, and the sound.
+
+import { audible, sound, toggleSound, volume } from "../engine.ts";
+import { depth, fail, present, redo, redoable, undo, undoable } from "../state.ts";
+import { FeelOn } from "./feel-on.tsx";
+import { Icon } from "./icons.tsx";
+
+function History() {
+  return (
+    <div class="group">
+      <button class="icon-button" disabled={!undoable.value} title={undoable.value ? `Undo: ${undoable.value} (Ctrl Z)` : "Nothing to undo"} aria-label="Undo" onClick={() => undo().catch(fail)}>
+        <Icon name="undo" />
+      </button>
+      <button class="icon-button" disabled={!redoable.value} title={redoable.value ? `Redo: ${redoable.value} (Ctrl Shift Z)` : "Nothing to redo"} aria-label="Redo" onClick={() => redo().catch(fail)}>
+        <Icon name="redo" />
+      </button>
+    </div>
+  );
+}
+
+function Sound() {
+  const isOn = sound.value === "on";
+  return (
+    <div class="group">
+      <button class="icon-button" aria-pressed={isOn} aria-label="Sound" title={isOn ? "Sound is on. Use headphones: small loudspeakers have no low frequencies. Esc silences." : "Turn the sound on"} onClick={toggleSound}>
+        <Icon name={isOn ? "sound" : "muted"} />
+      </button>
+      <input class="volume" type="range" min="0" max="1" step="0.01" aria-label="Volume" value={volume.value} onInput={(event) => (volume.value = event.currentTarget.valueAsNumber)} />
+      <button class="toggle" aria-pressed={audible.value} title="Plays all frequencies four times as high, for small loudspeakers. It is then not what a finger feels." onClick={() => (audible.value = !audible.value)}>
+        <span>
+          <span class="wide">Audible </span>×4{audible.value && " on"}
+        </span>
+      </button>
+    </div>
+  );
+}
+
+export function Top() {
+  return (
+    <header class="top">
+      <span class="brand">
+        <svg class="logo" viewBox="0 0 32 32" aria-hidden="true">
+          <path d="M3 20c5 0 5-11 9-11s3 10 7 10 3-5 10-5" />
+        </svg>
+        <span class="brand-name">htex studio</span>
+      </span>
+      <span class="piece" title={present.value ? `${depth.value} steps can be undone` : ""}>
+        {present.value?.name ?? "…"}
+      </span>
+      <History />
+      <Sound />
+      <FeelOn />
+    </header>
+  );
+}

@@ -1,0 +1,82 @@
+// What the present texture is compared with: itself as it was opened, and the recording it was fitted to.
+
+import { computed, effect, signal } from "@preact/signals";
+import { open, type MakeOptions, type RecordedSpectrum, type Texture } from "htex";
+
+import { author } from "./author.ts";
+
+import { origin } from "./state.ts";
+import { toDecibels } from "./shaping/spec.ts";
+import { pilotForce, pilotSpeed } from "./motion.ts";
+
+export interface Drawn {
+  readonly hz: ArrayLike<number>;
+  readonly db: readonly number[];
+}
+
+export interface Reference {
+  readonly opened: Drawn | null;
+  readonly recorded: Drawn | null;
+  readonly threshold: Drawn | null;
+}
+
+const HZ = Float64Array.from({ length: 160 }, (_, i) => 20 * 50 ** (i / 159));
+
+/** The texture as it was opened; its own copy, since the present one is freed with each edit. */
+export const opened = signal<{ texture: Texture; model: string } | null>(null);
+
+effect(() => {
+  const document = origin.value;
+  if (!document) return;
+  open(document.bytes).then((texture) => {
+    if (origin.peek() !== document) return texture.free();
+    opened.peek()?.texture.free();
+    opened.value = { texture, model: document.model };
+  }, () => {});
+});
+
+/** Recorded spectra of the texture that was fitted here, with their conditions; of the bytes that were fitted. */
+export interface RecordedWork {
+  readonly bytes: Uint8Array;
+  readonly spectra: readonly RecordedSpectrum[];
+  readonly conditions: readonly { speed: number | null; force: number | null }[];
+}
+export const recordedWork = signal<RecordedWork | null>(null);
+
+/** The condition nearest to a motion. */
+function conditionAt({ conditions }: Texture, speed: number, force: number) {
+  const far = (a: number, b: number) => (Number.isNaN(a) || a <= 0 ? 0 : Math.abs(Math.log(b / a)));
+  const distance = conditions.map((condition) => far(condition.speed, speed) + far(condition.force, force));
+  const found = conditions[distance.indexOf(Math.min(...distance))];
+  const known = (x: number | undefined) => (x === undefined || Number.isNaN(x) ? 0 : x);
+  return { speed: known(found?.speed), force: known(found?.force) };
+}
+
+function nearestRecorded({ spectra, conditions }: RecordedWork, speed: number, force: number): Drawn | null {
+  const far = (a: number | null, b: number) => (a === null || a <= 0 ? 0 : Math.abs(Math.log(b / a)));
+  const distance = conditions.map((condition) => far(condition.speed, speed) + far(condition.force, force));
+  const found = spectra[distance.indexOf(Math.min(...distance))];
+  return found ? { hz: found.frequency_hz, db: found.magnitude.map(toDecibels) } : null;
+}
+
+const openedDrawn = computed<Drawn | null>(() => {
+  const now = opened.value;
+  if (!now) return null;
+  const at = conditionAt(now.texture, pilotSpeed.value, pilotForce.value);
+  return { hz: HZ, db: Array.from(now.texture.spectrum(HZ, { model: now.model, at }), toDecibels) };
+});
+
+/** The magnitudes at which a finger begins to feel a sinusoid. */
+const thresholdDrawn = computed<Drawn | null>(() => {
+  const [made, now] = [author.value, opened.value];
+  if (!made || !now) return null;
+  const quantity = now.texture.quantity as NonNullable<MakeOptions["quantity"]>;
+  return { hz: HZ, db: Array.from(made.threshold(HZ, { quantity }), toDecibels) };
+});
+
+export const reference = computed<Reference>(() => {
+  const work = recordedWork.value;
+  const isThis = work !== null && origin.value?.bytes === work.bytes;
+  const [speed, force] = [pilotSpeed.value, pilotForce.value];
+  return { opened: openedDrawn.value, recorded: isThis ? nearestRecorded(work, speed, force) : null, threshold: thresholdDrawn.value };
+});

@@ -1,0 +1,58 @@
+// Vary: nine textures near the present one; a press takes one.
+
+import { useEffect } from "preact/hooks";
+
+import { endAudition, onLook } from "../audition.ts";
+import { Slider } from "../parts/slider.tsx";
+import { Sparkline } from "../parts/sparkline.tsx";
+import { fail, present, say } from "../state.ts";
+import { again, keepVarying, reach, takeVariation, variations, type Variation } from "../varying.ts";
+
+async function take(variation: Variation) {
+  endAudition();
+  await takeVariation(variation);
+  say(`Taken: ${variation.text}. Nine others are around it now.`);
+}
+
+function Card({ variation, index }: { variation: Variation; index: number }) {
+  const { texture, model, text } = variation;
+  return (
+    <li>
+      <button class="card" aria-label={`Variation ${index + 1}: ${text}`} {...onLook(() => ({ texture, model }))} onClick={() => take(variation).catch(fail)}>
+        <Sparkline texture={texture} model={model} />
+        <span class="card-name">{text}</span>
+      </button>
+    </li>
+  );
+}
+
+export function Vary() {
+  useEffect(() => {
+    const end = keepVarying();
+    return () => {
+      endAudition();
+      end();
+    };
+  }, []);
+  return (
+    <section aria-labelledby="vary-title">
+      <header class="screen-head">
+        <div>
+          <h1 id="vary-title">Vary</h1>
+          <p>Nine textures near {present.value?.name ?? "the one on the pad"}. Pass over one to try it, press to take it.</p>
+        </div>
+        <button class="button" onClick={() => again().catch(fail)}>
+          Nine others
+        </button>
+      </header>
+      <div class="panel narrow">
+        <Slider label="How far" min={0.1} max={1} step={0.01} value={reach.value} onValue={(value) => (reach.value = value)} onSettled={() => again().catch(fail)} />
+      </div>
+      <ul class="cards nine">
+        {variations.value.map((variation, i) => (
+          <Card key={variation.texture} variation={variation} index={i} />
+        ))}
+      </ul>
+    </section>
+  );
+}

@@ -1,0 +1,53 @@
+// A voice on the main thread that makes no sound: it tells what plays at the finger's motion, and whether that was recorded.
+
+import { computed, effect, signal } from "@preact/signals";
+import type { Texture, Voice } from "htex";
+
+import { tried } from "./engine.ts";
+import { finger, pilotForce, pilotSpeed } from "./motion.ts";
+import { present, texture } from "./state.ts";
+
+/** The texture that sounds, and its model. */
+export const sounding = computed<{ texture: Texture; model: string } | null>(() => {
+  const [tries, now, document] = [tried.value, texture.value, present.value];
+  if (tries) return { texture: tries.texture, model: tries.model };
+  if (!now || !document) return null;
+  return { texture: now, model: now.models.includes(document.model) ? document.model : now.models[0] ?? "" };
+});
+
+const voice = signal<Voice | null>(null);
+
+effect(() => {
+  const now = sounding.value;
+  const before = voice.peek();
+  before?.free();
+  voice.value = now ? now.texture.voice({ model: now.model }) : null;
+});
+
+/** The motion that is shown: the finger's, or the one that the sliders are set to while it rests. */
+export const motion = computed(() => {
+  const { speed, force, position } = finger.value;
+  if (force > 0) return { speed, force, position };
+  return { speed: pilotSpeed.value, force: pilotForce.value, position };
+});
+
+export interface Coverage {
+  readonly inside: boolean;
+  readonly text: string;
+}
+
+/** Whether the motion is within the recorded conditions, and how it is played if not. */
+export const coverage = computed<Coverage>(() => {
+  const { speed, force, position } = motion.value;
+  const told = voice.value?.coverage({ speed, force, position });
+  return told ? { inside: told.kind !== "outside", text: told.text } : { inside: true, text: "" };
+});
+
+/** Magnitudes that play at the motion, in the texture's unit. */
+export function played(frequencies: Float64Array): Float64Array | null {
+  const now = voice.value;
+  if (!now) return null;
+  const { speed, force, position } = motion.value;
+  now.setMotion(speed, force, position);
+  return now.spectrum(frequencies);
+}

@@ -1,0 +1,87 @@
+// Takes the pictures of `docs/studio.md`: each screen, and the way from opening to a saved texture, by pointer and keys.
+//
+//   HTEX_STUDIO=DIR HTEX_COMMAND=htex node pictures.mjs OUT
+
+import { mkdir, mkdtemp } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import path from "node:path";
+
+import { FILE, goTo, htex, launch, openStudio } from "./studio.mjs";
+
+const out = process.argv[2];
+const browser = await launch();
+await mkdir(out, { recursive: true });
+const folder = await mkdtemp(path.join(tmpdir(), "htex-pictures-"));
+const csv = path.join(folder, "linen.csv");
+htex("simulate", "--surface", "fine-fabric", "--seconds", "8", "-o", csv);
+
+async function shot(page, name) {
+  await page.waitForTimeout(500);
+  await page.screenshot({ path: path.join(out, `${name}.png`) });
+}
+
+/** Draws over the bars. */
+async function draw(page) {
+  const box = await page.locator(".spectrum canvas").boundingBox();
+  const at = (part, height) => [box.x + 50 + part * (box.width - 70), box.y + height * box.height];
+  await page.mouse.move(...at(0.42, 0.4));
+  await page.mouse.down();
+  for (let i = 0; i <= 30; i++) await page.mouse.move(...at(0.42 + 0.008 * i, 0.4 - 0.18 * Math.sin((Math.PI * i) / 30)));
+  await page.mouse.up();
+}
+
+async function screens(page, suffix) {
+  await goTo(page, "Shelf");
+  await shot(page, `shelf-${suffix}`);
+  await goTo(page, "Shape");
+  await page.waitForFunction(() => htexStudio.handles.value.length > 0);
+  await draw(page);
+  await page.evaluate(() => document.querySelector(".notice button")?.click());
+  await shot(page, `shape-${suffix}`);
+  for (const name of ["Mix", "Vary", "Compare"]) {
+    await goTo(page, name);
+    await shot(page, `${name.toLowerCase()}-${suffix}`);
+  }
+  await goTo(page, "Record");
+  await page.locator("input[type=file]").setInputFiles(csv);
+  await page.getByRole("button", { name: "Fit all models" }).click();
+  await page.locator(".ranked li").first().waitFor();
+  await shot(page, `record-${suffix}`);
+  await goTo(page, "Give");
+  await shot(page, `give-${suffix}`);
+}
+
+/** From opening to a saved texture. */
+async function way(page) {
+  await shot(page, "way-1-opened");
+  const pad = await page.locator(".pad canvas").boundingBox();
+  await page.mouse.move(pad.x + 80, pad.y + 200);
+  await page.mouse.down();
+  for (let i = 0; i < 20; i++) await page.mouse.move(pad.x + 80 + 8 * i, pad.y + 200 + 2 * i);
+  await page.screenshot({ path: path.join(out, "way-2-touched.png") });
+  await page.mouse.up();
+  await page.getByRole("button", { name: /^Denim/ }).click();
+  await goTo(page, "Shape");
+  await page.waitForFunction(() => htexStudio.handles.value.length > 0);
+  await page.getByRole("button", { name: "To and fro" }).click();
+  await draw(page);
+  await shot(page, "way-3-shaped");
+  await goTo(page, "Give");
+  await page.getByLabel("Name").fill("My denim");
+  const saved = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Save .htex" }).click();
+  await saved;
+  await shot(page, "way-4-saved");
+}
+
+for (const colorScheme of ["light", "dark"]) {
+  for (const [size, width, height] of [["wide", 1240, 800], ["phone", 390, 844]]) {
+    const page = await openStudio(browser, FILE, { viewport: { width, height }, colorScheme, hasTouch: size === "phone" });
+    await page.locator("body").press("Shift");
+    await screens(page, `${size}-${colorScheme}`);
+    await page.context().close();
+  }
+}
+const page = await openStudio(browser, FILE, { viewport: { width: 1240, height: 800 } });
+await way(page);
+await browser.close();

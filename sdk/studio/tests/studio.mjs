@@ -1,0 +1,97 @@
+// What the tests share: the page as a file and from a server, a browser, and the command.
+
+import { execFileSync } from "node:child_process";
+import { createServer } from "node:http";
+import { readFile } from "node:fs/promises";
+import path from "node:path";
+import { pathToFileURL } from "node:url";
+import { gzipSync } from "node:zlib";
+
+import { chromium } from "playwright-core";
+
+/** The folder that `cargo xtask studio` wrote, the command, and the browsers. */
+export const { HTEX_STUDIO, HTEX_COMMAND, HTEX_CHROMIUM = "/usr/bin/chromium", HTEX_FIREFOX = "/usr/bin/firefox-esr" } = process.env;
+
+export const FILE = pathToFileURL(path.join(HTEX_STUDIO, "studio.html")).href;
+
+/** Screens, by the names of their tabs. */
+export const SCREENS = ["Shelf", "Shape", "Mix", "Vary", "Compare", "Record", "Give"];
+
+const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".wasm": "application/wasm", ".txt": "text/plain" };
+
+/** The strict policy that the folder is served with. */
+const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; worker-src 'self'";
+
+/** Serves the static folder, compressed as most web servers do if that is asked for; `close` ends it. */
+export async function serve({ isCompressed = false } = {}) {
+  const asked = [];
+  const server = createServer(async (request, response) => {
+    const { pathname } = new URL(request.url, "http://x");
+    asked.push(pathname);
+    const file = path.join(HTEX_STUDIO, "static", path.normalize(pathname === "/" ? "/index.html" : pathname));
+    try {
+      const bytes = await readFile(file);
+      response.setHeader("Content-Type", TYPES[path.extname(file)] ?? "application/octet-stream").setHeader("Content-Security-Policy", POLICY);
+      if (isCompressed) response.setHeader("Content-Encoding", "gzip");
+      response.end(isCompressed ? gzipSync(bytes) : bytes);
+    } catch {
+      response.writeHead(404).end();
+    }
+  });
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  const close = () => new Promise((resolve) => (server.close(resolve), server.closeAllConnections()));
+  return { address: `http://127.0.0.1:${server.address().port}/`, asked, close };
+}
+
+/** Chromium under its default policy: sound needs a press. */
+export function launch(options = {}) {
+  return chromium.launch({ executablePath: HTEX_CHROMIUM, args: ["--no-sandbox", "--disable-gpu", "--disable-background-networking"], ...options });
+}
+
+/** Opens the page, and waits until it is ready; `page.errors` has what it complained of, `page.requests` what it asked for. */
+export async function openStudio(browser, address, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, acceptDownloads: true, ...options });
+  const page = await context.newPage();
+  Object.assign(page, { errors: [], requests: [] });
+  page.on("pageerror", (error) => page.errors.push(String(error)));
+  page.on("console", (message) => message.type() === "error" && page.errors.push(message.text()));
+  page.on("request", (request) => /^https?:/.test(request.url()) && page.requests.push(request.url()));
+  await page.goto(address);
+  await ready(page);
+  return page;
+}
+
+export async function ready(page) {
+  await page.waitForFunction(() => document.documentElement.dataset.ready === "yes");
+}
+
+export async function goTo(page, name) {
+  await page.getByRole("navigation").getByRole("button", { name }).click();
+}
+
+/** Waits until the author module is there and handles can be moved. */
+export async function shaping(page) {
+  await goTo(page, "Shape");
+  await page.waitForFunction(() => htexStudio.handles.value.length > 0);
+}
+
+/** The bytes of the present texture. */
+export async function bytesOf(page) {
+  return Buffer.from(await page.evaluate(() => Array.from(htexStudio.present.value.bytes)));
+}
+
+/** The bytes of a file that a press saves. */
+export async function saved(page, press) {
+  const [download] = await Promise.all([page.waitForEvent("download"), press()]);
+  return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
+}
+
+export function htex(...words) {
+  return execFileSync(HTEX_COMMAND, words, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
+}
+
+/** The samples of a WAV file of 32-bit numbers. */
+export function samplesOf(wav) {
+  const at = wav.indexOf("data", 12, "latin1") + 8;
+  return new Float32Array(wav.buffer.slice(wav.byteOffset + at, wav.byteOffset + at + 4 * Math.floor((wav.length - at) / 4)));
+}

@@ -1,0 +1,101 @@
+//! What a fingertip feels of textures: of the difference of two, and from which magnitude on.
+
+use htex::{Asset, AssetData, Motion};
+use htex_author::by_hand::ByHandError;
+use htex_author::{Felt, SpectrumRef, felt as difference, threshold_magnitude};
+use htex_dsp::vibrotactile::Listener;
+use serde::Serialize;
+
+use crate::call::{Answer, Files};
+use crate::document::{Document, number};
+use crate::made::quantity;
+use crate::refusal::Refusal;
+
+/// What is felt of a difference: by third-octave band, and in a few numbers.
+#[derive(Serialize)]
+struct Told {
+    centre_hz: Vec<f64>,
+    reference_db: Vec<f64>,
+    level_db: Vec<f64>,
+    error_db: Vec<f64>,
+    error_rms_db: f64,
+    largest_error_db: f64,
+    total_error_db: f64,
+    below_difference_threshold: bool,
+    below_if_sensitive: bool,
+}
+
+/// Compares a texture, the second file, with a reference, the first one, each at a motion.
+pub(crate) fn felt(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
+    let sides = (call.object("reference")?, call.object("other")?);
+    call.finish()?;
+    let [reference, other] = files else {
+        return Err(Refusal::argument("give two textures"));
+    };
+    let (reference, first) = magnitude(reference, sides.0)?;
+    let (other, second) = magnitude(other, sides.1)?;
+    if reference.quantity() != other.quantity() || reference.band() != other.band() {
+        let sentence =
+            "the textures have other quantities or bands, whose spectra cannot be compared";
+        return Err(Refusal::argument(sentence));
+    }
+    let band = reference.band();
+    let grid = band.grid_hz();
+    let spectrum = SpectrumRef {
+        band,
+        frequency_hz: &grid,
+        magnitude: &first,
+    };
+    let by = |listener: &Listener| difference(spectrum, &second, reference.quantity(), listener);
+    let told = told(by(&Listener::default()), &by(&Listener::sensitive()));
+    Answer::new(&told, Vec::new())
+}
+
+fn told(felt: Felt, if_sensitive: &Felt) -> Told {
+    Told {
+        below_difference_threshold: felt.is_below_difference_threshold(),
+        below_if_sensitive: if_sensitive.is_below_difference_threshold(),
+        centre_hz: felt.centre_hz,
+        reference_db: felt.reference_db,
+        level_db: felt.level_db,
+        error_db: felt.error_db,
+        error_rms_db: felt.error_rms_db,
+        largest_error_db: felt.largest_error_db,
+        total_error_db: felt.total_error_db,
+    }
+}
+
+/// A texture, and its magnitudes at a motion by a model.
+fn magnitude(bytes: &[u8], mut side: Document) -> Result<(Asset, Vec<f64>), Refusal> {
+    let model = side.text("model")?;
+    let at = motion(side.object("at")?)?;
+    side.finish()?;
+    let asset = Asset::new(AssetData::from_bytes(bytes)?);
+    let grid = asset.band().grid_hz();
+    let magnitude = asset.magnitude(model.as_deref(), at, &grid);
+    Ok((asset, magnitude.map_err(ByHandError::from)?))
+}
+
+/// A motion; none of an empty document.
+fn motion(mut given: Document) -> Result<Option<Motion>, Refusal> {
+    let (speed, force) = (given.number("speed")?, given.number("force")?);
+    given.finish()?;
+    let motion = Motion::new(speed.unwrap_or_default(), force.unwrap_or_default());
+    Ok((speed.is_some() || force.is_some()).then_some(motion))
+}
+
+/// The magnitudes at which sinusoids are at the detection threshold, at frequencies.
+pub(crate) fn threshold(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
+    let quantity = quantity(call.text("quantity")?)?;
+    let frequencies = call.list("frequencies")?;
+    call.finish()?;
+    let hertz = frequencies
+        .iter()
+        .map(|value| number(value).filter(|hertz| *hertz > 0.0));
+    let hertz: Option<Vec<f64>> = hertz.collect();
+    let hertz = hertz.ok_or_else(|| Refusal::argument("frequencies are numbers above 0, Hz"))?;
+    let listener = Listener::default();
+    let magnitude = |hertz: &f64| threshold_magnitude(*hertz, quantity, &listener);
+    let magnitudes: Vec<f64> = hertz.iter().map(magnitude).collect();
+    Answer::new(&magnitudes, Vec::new())
+}

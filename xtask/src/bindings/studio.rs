@@ -1,0 +1,28 @@
+//! The studio, in Chromium and in Firefox.
+
+use std::path::Path;
+
+use anyhow::Result;
+
+use super::{CHROMIUM, copy, files, fixtures, which};
+use crate::places::workspace;
+use crate::programs::{program, run};
+
+pub(super) fn test(folder: &Path) -> Result<()> {
+    let folder = fs_err::canonicalize(folder)?;
+    let page = folder.join("page");
+    crate::studio::studio(&page)?;
+    let tests = folder.join("tests");
+    fs_err::create_dir_all(&tests)?;
+    for file in files(&workspace().join("sdk/studio/tests"))? {
+        copy(&file, &tests.join(file.file_name().unwrap_or_default()))?;
+    }
+    crate::studio::install(&tests)?;
+    let chromium = CHROMIUM.find().unwrap_or("chromium");
+    run(program("node", &tests)
+        .args(["--test", "--test-concurrency=1"])
+        .args(["page.test.mjs", "served.test.mjs", "firefox.test.mjs"])
+        .env("HTEX_STUDIO", &page)
+        .env("HTEX_COMMAND", fixtures::command()?)
+        .env("HTEX_CHROMIUM", which(chromium)))
+}

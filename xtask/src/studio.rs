@@ -1,0 +1,58 @@
+//! Builds the studio of `sdk/studio`: one page, as a file and as a folder.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use fs_err as fs;
+
+use crate::places::workspace;
+use crate::programs::{program, run};
+
+/// Where the page's build finds the npm package of this workspace.
+const PACKAGE: &str = ".htex";
+
+/// Builds `studio.html` and the folder `static` into a folder. Needs Rust, Node.js and npm.
+///
+/// # Errors
+/// A message with the file or the program.
+pub fn studio(out: &Path) -> Result<()> {
+    let source = source();
+    let package = source.join(PACKAGE);
+    if package.exists() {
+        fs::remove_dir_all(&package)?;
+    }
+    crate::web::web(&package)?;
+    install(&source)?;
+    build(&source, out)
+}
+
+/// Builds the page with the npm package that is there.
+pub(crate) fn build(source: &Path, out: &Path) -> Result<()> {
+    fs::create_dir_all(out)?;
+    run(program("npm", source)
+        .args(["run", "--silent", "build", "--"])
+        .arg(fs::canonicalize(out)?))
+}
+
+/// Installs what the lock file names.
+pub(crate) fn install(folder: &Path) -> Result<()> {
+    run(program("npm", folder).args(["ci", "--silent", "--no-audit", "--no-fund"]))
+        .context("Node.js from version 20 and npm build the studio")
+}
+
+pub(crate) fn source() -> PathBuf {
+    workspace().join("sdk/studio")
+}
+
+/// Makes the library of the studio's shelf anew, by the `htex` command.
+///
+/// # Errors
+/// As [`studio`].
+pub fn shelf() -> Result<()> {
+    let source = source();
+    let command = crate::bindings::command()?;
+    run(program("node", &source)
+        .arg("shelf/make.mjs")
+        .arg(command)
+        .arg("shelf/shelf.htexlib"))
+}

@@ -9,7 +9,7 @@ use htex_author::{EditError, edit};
 
 use crate::assets::AssetSummary;
 use crate::bounded::read_asset;
-use crate::commands::validate::refuse_library;
+use crate::commands::validate::{refuse_library, refuse_more};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
@@ -29,6 +29,10 @@ pub(crate) struct Edit {
     #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
+    /// Further assets, which are refused with what to do
+    #[arg(hide = true)]
+    more: Vec<PathBuf>,
+
     /// The asset to write [default: the asset itself]
     #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT)]
     output: Option<PathBuf>,
@@ -43,6 +47,7 @@ pub(crate) struct Edit {
 
 impl Edit {
     pub(crate) fn run(mut self) -> Result<Exit, Failure> {
+        refuse_more("edit", &self.more)?;
         let metadata = std::mem::take(&mut self.metadata);
         if metadata.is_empty() {
             let sentence = "nothing to change: give at least one of the metadata, such as --author";

@@ -4,7 +4,7 @@ use clap::Args;
 use htex_host::Registry;
 
 use crate::assets::AssetSummary;
-use crate::commands::validate::refuse_library;
+use crate::commands::validate::{refuse_library, refuse_more};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
@@ -22,6 +22,10 @@ pub(crate) struct Info {
     #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
+    /// Further assets, which are refused with what to do
+    #[arg(hide = true)]
+    more: Vec<PathBuf>,
+
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
@@ -29,6 +33,7 @@ pub(crate) struct Info {
 
 impl Info {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
+        refuse_more("info", &self.more)?;
         refuse_library(&self.asset)?;
         let asset = htex_format::Asset::open(&self.asset).of(&self.asset)?;
         let bytes = std::fs::metadata(&self.asset).map_or(0, |m| m.len());

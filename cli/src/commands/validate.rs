@@ -142,6 +142,17 @@ pub(crate) fn refuse_library(path: &Path) -> Result<(), Failure> {
     )))
 }
 
+/// Says what to do with further assets of a command that takes one.
+pub(crate) fn refuse_more(command: &str, more: &[PathBuf]) -> Result<(), Failure> {
+    let Some(second) = more.first() else {
+        return Ok(());
+    };
+    let file = crate::shown::shown(second);
+    Err(Failure::Usage(format!(
+        "{file}: `htex {command}` takes one asset; run it for each. `htex compare RECORDING ASSET` measures assets against their recording"
+    )))
+}
+
 /// Whether `--strict` accepts the findings.
 fn is_clean(report: &Report) -> bool {
     report.findings.iter().all(|f| f.severity == Severity::Info)

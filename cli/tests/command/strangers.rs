@@ -629,7 +629,7 @@ fn a_mistake_in_toml_has_lines() {
     );
 }
 
-/// Where one asset is meant, a library is no riddle.
+/// Where one asset is meant, a library or a second asset is an error that says what to do.
 #[test]
 fn a_library_in_place_of_an_asset_says_what_to_do() {
     let place = place();
@@ -644,6 +644,8 @@ fn a_library_in_place_of_an_asset_says_what_to_do() {
         (&["compare", "rec/a.csv", library], "htex lib unpack"),
         (&["compare", library, library], "htex lib diff"),
         (&["compare", asset, asset], "give the recording first"),
+        (&["info", asset, asset], "run it for each"),
+        (&["edit", asset, asset, "--author", "A"], "run it for each"),
     ] {
         let run = place.run(arguments);
         assert!(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import http.server
+import json
 import os
 import pathlib
 import re
@@ -157,13 +158,23 @@ def test_what_cannot_be_made_is_named(recipe: pathlib.Path, cluster: Cluster, tm
     with Client(cluster.address, timeout=60) as client:
         with pytest.raises(htex.BuildError, match="broken.*zero"):
             htex.dask.build(tmp_path / "library.toml", client, tmp_path / "dist")
+        assert "broken" in error_of(tmp_path / "dist")[0]
         report = htex.dask.build(tmp_path / "library.toml", client, tmp_path / "dist", keep_going=True)
-    assert report["library"]["left_out"] == 1
+    assert report["library"]["left_out"] == 1 and error_of(tmp_path / "dist") == []
     with pytest.raises(htex.BuildError, match="broken.*zero"):
         htex.build(tmp_path / "library.toml", tmp_path / "dist")
+    assert "broken" in error_of(tmp_path / "dist")[0]
     with pytest.raises(htex.BuildError, match="no file matches"):
         (tmp_path / "broken.csv").unlink()
         htex.build(tmp_path / "library.toml", tmp_path / "dist")
+    assert "no file matches" in error_of(tmp_path / "dist")[0]
+
+
+def error_of(folder: pathlib.Path) -> list[str]:
+    """The error that a report has, line by line."""
+    report = json.loads((folder / "build-report.json").read_text())
+    error: list[str] = report.get("error", [])
+    return error
 
 
 class Files(http.server.BaseHTTPRequestHandler):

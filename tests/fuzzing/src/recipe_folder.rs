@@ -1,11 +1,12 @@
-//! Recipes with a table, in a folder with traps: what they name is found, checked and hashed as a build does, and nothing is fitted.
+//! Recipes with a table, in a folder with traps: what they name is found, checked and hashed as a build does, and nothing is fitted. An
+//! error goes into the report of the folder, where links lead outside.
 
 use std::net::TcpListener;
 use std::path::Path;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use htex_build::{Build, BuildError, BuildOptions, check};
+use htex_build::{Build, BuildError, BuildOptions, check, report_failure};
 use htex_finding::plain;
 use tempfile::TempDir;
 
@@ -31,6 +32,11 @@ pub fn recipe_folder(input: &[u8]) -> bool {
     let checked = taken(check(&file, &BuildOptions::new("fuzz 1")));
     let dist = work.join("dist");
     let opened = taken(Build::open(&file, &dist, BuildOptions::new("fuzz 1")));
+    let lines: Vec<String> = String::from_utf8_lossy(recipe)
+        .lines()
+        .map(str::to_owned)
+        .collect();
+    let _ = report_failure(&dist, "fuzz 1", &lines);
     assert_eq!(
         REQUESTS.load(Ordering::SeqCst),
         0,
@@ -85,6 +91,7 @@ fn links(work: &Path) {
         ("dist/.htex-build/files.json", "../../../outside/victim"),
         ("dist/.htex-build/made", "../../../outside"),
         ("dist/textures", "../../outside"),
+        ("dist/build-report.json", "../../outside/victim"),
     ] {
         std::os::unix::fs::symlink(to, work.join(name)).unwrap();
     }

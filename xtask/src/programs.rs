@@ -19,10 +19,21 @@ pub(crate) fn program(name: impl AsRef<OsStr>, folder: &Path) -> Command {
 /// When it cannot be run or fails; its own output has been printed.
 pub fn run(command: &mut Command) -> Result<()> {
     let name = command.get_program().to_string_lossy().into_owned();
+    forget_package(command);
     let status = command.status().with_context(|| name.clone())?;
     if status.success() {
         return Ok(());
     }
     let arguments: Vec<_> = command.get_args().map(OsStr::to_string_lossy).collect();
     bail!("{name} {}: {status}", arguments.join(" "))
+}
+
+/// Removes what cargo tells of the package that it runs. Build scripts that watch it (`ring`'s does) would run again, and all that is built
+/// upon them.
+fn forget_package(command: &mut Command) {
+    for (name, _) in std::env::vars_os() {
+        if name.to_string_lossy().starts_with("CARGO_PKG_") {
+            command.env_remove(name);
+        }
+    }
 }

@@ -150,6 +150,20 @@ test("textures are mixed and edited as by the command", async () => {
   assert.throws(() => author.mix(a, b, 2), { code: "invalid-argument" });
 });
 
+test("what is felt of a difference is that of its level, and of nothing below the threshold", () => {
+  const made = (level) => author.make({ name: "noise", representations: [{ model: "sbeta", conditions: [{ level, parameters: { alpha: 2, beta: 3 } }] }] });
+  const [one, same, twice, faint, fainter] = [0.1, 0.1, 0.2, 1e-8, 1e-9].map((level) => ({ texture: made(level) }));
+  const none = author.felt(one, same);
+  assert.deepEqual([none.error_rms_db, none.total_error_db, none.below_difference_threshold, none.below_if_sensitive], [0, 0, true, true]);
+  const louder = author.felt(one, twice);
+  assert.ok(Math.abs(louder.total_error_db - 20 * Math.log10(2)) < 0.05 && !louder.below_difference_threshold, JSON.stringify(louder));
+  assert.equal(louder.centre_hz.length, louder.error_db.length);
+  assert.equal(author.felt(faint, fainter).largest_error_db, 0);
+  assert.equal(author.threshold([250], { quantity: "displacement" })[0], 1e-7);
+  assert.throws(() => author.threshold([0]), { name: "HtexError", code: "invalid-argument" });
+  assert.throws(() => author.felt(one, { texture: made(0.1), model: "ar" }), { name: "HtexError" });
+});
+
 test("files are validated", async () => {
   assert.deepEqual(author.validate(await bytes("part.htex")), { kind: "texture", valid: true, findings: [] });
   assert.deepEqual(author.validate(await bytes("vinyl.htex")).findings.map(({ code }) => code), ["LICENSE_MISSING"]);

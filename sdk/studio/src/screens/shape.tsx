@@ -94,7 +94,7 @@ function MacroSliders() {
       <h2>Macros</h2>
       {MACROS.map(({ id, name, low, high }) => (
         <div key={id} title={`${low} to ${high}`}>
-          <Slider label={name} min={-1} max={1} step={0.02} digits={2} value={macros.value[id]} disabled={!author.value} onValue={(value) => setMacro(id, value)} />
+          <Slider label={name} min={-1} max={1} step={0.02} digits={2} value={macros.value[id]} disabled={!author.value} onValue={(value) => setMacro(id, value)} onSettled={endGesture} />
         </div>
       ))}
       <p class="small soft">They start from where the last other edit ended, for all models alike.</p>

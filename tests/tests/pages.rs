@@ -7,17 +7,15 @@ use std::path::Path;
 use htex_host::{LoadedModel, Registry};
 use htex_tests::workspace;
 
-/// Names of all functions in the workspace's sources in Rust and Python.
-fn functions(folder: &Path, names: &mut BTreeSet<String>) {
+/// Calls a function with name and text of each of the workspace's sources in Rust and Python.
+fn sources(folder: &Path, each: &mut dyn FnMut(&str, &str)) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_str().unwrap();
         if path.is_dir() && name != "target" && !name.starts_with('.') {
-            functions(&path, names);
-        } else if let Some(keyword) = keyword_of(name) {
-            let text = std::fs::read_to_string(&path).unwrap();
-            let after = text.split(keyword).skip(1);
-            names.extend(after.filter_map(|rest| rest.split(['(', '<']).next().map(str::to_owned)));
+            sources(&path, each);
+        } else if keyword_of(name).is_some() {
+            each(name, &std::fs::read_to_string(&path).unwrap());
         }
     }
 }
@@ -33,12 +31,41 @@ fn keyword_of(name: &str) -> Option<&'static str> {
 
 fn known_functions() -> BTreeSet<String> {
     let mut known = BTreeSet::new();
-    functions(&workspace(), &mut known);
+    sources(&workspace(), &mut |name, text| {
+        if let Some(keyword) = keyword_of(name) {
+            let after = text.split(keyword).skip(1);
+            let names = after.filter_map(|rest| rest.split(['(', '<']).next());
+            known.extend(names.map(str::to_owned));
+        }
+    });
     known
 }
 
 fn page(name: &str) -> String {
     std::fs::read_to_string(workspace().join(name)).unwrap()
+}
+
+/// Names of the tests in the workspace's sources: functions after `#[test]`, of Python those that pytest takes.
+fn known_tests() -> BTreeSet<String> {
+    let mut tests = BTreeSet::new();
+    sources(&workspace(), &mut |name, text| {
+        let Some(keyword) = keyword_of(name) else {
+            return;
+        };
+        let marked = match keyword {
+            "def " => text.split("\ndef test_").skip(1).collect(),
+            _ => text.split("#[test]").skip(1).collect::<Vec<_>>(),
+        };
+        for rest in marked {
+            let (from, start) = match keyword {
+                "def " => (Some(rest), "test_"),
+                _ => (rest.split_once(keyword).map(|(_, rest)| rest), ""),
+            };
+            let name = from.and_then(|rest| rest.split(['(', '<']).next());
+            tests.extend(name.map(|name| format!("{start}{name}")));
+        }
+    });
+    tests
 }
 
 /// The texts between backticks.
@@ -78,6 +105,32 @@ fn the_tests_that_the_pages_name_are_there() {
         }
     }
     assert!(seen > 80, "{seen} tests are named");
+}
+
+/// Every kind of input has a test that holds what is said of it: a test, a fuzz target, or a file of tests.
+#[test]
+fn each_threat_has_its_test() {
+    let (root, text, tests) = (workspace(), page("docs/threats.md"), known_tests());
+    let is_target = |name: &str| htex_fuzzing::TARGETS.iter().any(|t| t.name == name);
+    let rows = text.lines().filter(|line| line.starts_with("| "));
+    let mut kinds = BTreeSet::new();
+    for row in rows.filter(|line| !line.contains("shown by")) {
+        let cells: Vec<&str> = row.trim_matches(['|', ' ']).split(" | ").collect();
+        let [kind, _, _, shown] = cells[..] else {
+            panic!("not four cells: {row}");
+        };
+        let named: Vec<&str> = code(shown).collect();
+        assert!(!named.is_empty(), "{kind}: no test is named");
+        for name in named {
+            let is_test = match name.contains('/') {
+                true => name.contains("/tests/") && root.join(name).is_file(),
+                false => tests.contains(name) || is_target(name),
+            };
+            assert!(is_test, "{kind}: {name} is no test");
+        }
+        assert!(kinds.insert(kind), "{kind}: two rows");
+    }
+    assert!(kinds.len() > 45, "{} kinds", kinds.len());
 }
 
 #[test]

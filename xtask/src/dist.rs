@@ -20,10 +20,11 @@ pub struct Dist {
 
 /// Files of the header's folder and of the Unity package.
 const HEADERS: [&str; 2] = ["htex.h", "htex.hpp"];
-const UNITY: [&str; 4] = [
+const UNITY: [&str; 5] = [
     "package.json",
     "Runtime/Htex.cs",
     "Runtime/Htex.asmdef",
+    "Runtime/HtexNativeArray.cs",
     "Runtime/HtexSource.cs",
 ];
 

@@ -15,13 +15,13 @@ const VARIABLE: &str = "HTEX_GENERATE";
 /// The test binaries with generated files.
 const TESTS: &[&str] = &[
     "abi",
+    "command",
     "conformance",
     "device_abi",
     "header",
     "measures",
     "page",
     "playing",
-    "python_settings",
     "recording_conformance",
     "regressions",
     "schemas",

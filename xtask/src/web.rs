@@ -12,7 +12,7 @@ use crate::programs::run;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
-const COPIED: [&str; 23] = [
+const COPIED: [&str; 24] = [
     "author-core.js",
     "author-serve.js",
     "author-worker.node.js",
@@ -28,6 +28,7 @@ const COPIED: [&str; 23] = [
     "index.node.js",
     "library.js",
     "manifest.d.ts",
+    "measured.js",
     "node.js",
     "options.js",
     "pointer.js",
@@ -39,10 +40,11 @@ const COPIED: [&str; 23] = [
 ];
 
 /// What the file of the audio worklet is made of. It has no imports: bundlers copy the file of a worklet alone.
-const PROCESSOR: [&str; 8] = [
+const PROCESSOR: [&str; 9] = [
     "guests.js",
     "core.js",
     "options.js",
+    "measured.js",
     "texture.js",
     "stage.js",
     "sources.js",
@@ -51,10 +53,11 @@ const PROCESSOR: [&str; 8] = [
 ];
 
 /// What the file of the worker of pages is made of, for bundlers that copy it alone, too.
-const WORKER: [&str; 7] = [
+const WORKER: [&str; 8] = [
     "guests.js",
     "core.js",
     "options.js",
+    "measured.js",
     "texture.js",
     "stage.js",
     "serve.js",

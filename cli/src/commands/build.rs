@@ -8,7 +8,7 @@ use clap::Args;
 use htex_author::FeltShare;
 use htex_build::{
     Build as Recipe, BuildOptions, Built, Destination, FindingShare, Job, Report, Status,
-    TextureReport, Why,
+    TextureReport, Why, report_failure,
 };
 use htex_finding::{Severity, plain};
 use htex_storage::Location;
@@ -26,7 +26,7 @@ use crate::wasm_limits::WasmLimit;
 /// Build a library of textures from a recipe.
 ///
 /// Fits the recordings that the recipe names and writes DIR/NAME.htexlib, DIR/textures, DIR/build-report.json and the
-/// catalogue DIR/index.html. What has been fitted stays in DIR/.htex-build: a build that was killed goes on where it was, and one
+/// catalogue DIR/index.html. A build that fails writes its error into the report. What has been fitted stays in DIR/.htex-build: a build that was killed goes on where it was, and one
 /// that is run again fits what changed. Recordings and other files of a recipe may be URIs, too.
 ///
 /// Exit status: 0 when every texture was made, 1 when none was, 3 when some were made and others left out (they miss a gate, or with
@@ -105,17 +105,29 @@ struct Work {
 }
 
 impl Build {
-    /// Builds; an error is JSON on standard output, too, for who reads that.
+    /// Builds; an error is in the report, too, and JSON on standard output, for who reads those.
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let is_json = self.json;
         let built = self.build();
-        if let (Err(failure), true) = (&built, is_json) {
-            print_json(&serde_json::json!({ "textures": 0, "error": failure.to_lines() }))?;
+        if let Err(failure) = &built {
+            self.failed(failure)?;
         }
         built
     }
 
-    fn build(self) -> Result<Exit, Failure> {
+    fn failed(&self, failure: &Failure) -> Result<(), Failure> {
+        let lines = failure.to_lines();
+        let to = Destination::parse(&self.output, self.work.as_deref());
+        if let (Ok(to), false, Exit::FAILURE) = (to, self.dry_run, failure.exit_code()) {
+            // A folder in which not even that can be written is what `failure` is about.
+            let _ = report_failure(to.folder(), &tool(), &lines);
+        }
+        match self.json {
+            true => print_json(&serde_json::json!({ "textures": 0, "error": lines })),
+            false => Ok(()),
+        }
+    }
+
+    fn build(&self) -> Result<Exit, Failure> {
         let start = Instant::now();
         let options = BuildOptions::new(tool())
             .with_jobs(self.jobs.map_or(0, usize::from))

@@ -100,6 +100,7 @@ pub(crate) fn assemble(
     let report = Report {
         report: REPORT.to_owned(),
         program: options.program.clone(),
+        error: Vec::new(),
         library: library_report(plan, file, &packed, &textures),
         felt_shares: felt_shares(&textures),
         findings: shares(&textures),
@@ -107,7 +108,7 @@ pub(crate) fn assemble(
     };
     let page = catalogue(&report, options.browser_package.is_some());
     dist.put(Path::new("index.html"), page.as_bytes())?;
-    dist.put(Path::new(REPORT_FILE), &json(&report)?)?;
+    put_report(dist, &report)?;
     remove_stale(before, &report, dist, options)?;
     Ok(Built { report })
 }
@@ -217,13 +218,13 @@ fn copy_package(package: &Path, dist: &Dist) -> Result<(), BuildError> {
     Ok(())
 }
 
-fn json(report: &Report) -> Result<Vec<u8>, BuildError> {
-    let text = serde_json::to_string_pretty(report)?;
-    Ok((text + "\n").into_bytes())
+pub(crate) fn put_report(dist: &Dist, report: &Report) -> Result<(), BuildError> {
+    let text = serde_json::to_string_pretty(report)? + "\n";
+    dist.put(Path::new(REPORT_FILE), text.as_bytes())
 }
 
 /// The report of the build before, if there is one.
-fn previous(dist: &Dist) -> Option<Report> {
+pub(crate) fn previous(dist: &Dist) -> Option<Report> {
     let bytes = dist.get(Path::new(REPORT_FILE), MOST_REPORT_BYTES)?;
     serde_json::from_slice(&bytes).ok()
 }

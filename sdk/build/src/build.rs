@@ -17,6 +17,7 @@ use crate::cache::Cache;
 use crate::dist::Dist;
 use crate::elsewhere::{Elsewhere, folder_of, joined, origin};
 use crate::error::AtPlace;
+use crate::failed::put_failure;
 use crate::hashes::{Hashed, Hashes, hash};
 use crate::job::{Job, Named, Workbench};
 use crate::kept::Kept;
@@ -298,6 +299,14 @@ impl Build {
             return Ok(Some(made));
         }
         Err(BuildError::at(&job.texture, problem))
+    }
+
+    /// Writes an error, line by line, into the report of this build's folder, beside what an earlier build left there.
+    ///
+    /// # Errors
+    /// When the report cannot be written.
+    pub fn report_failure(&self, error: &[String]) -> Result<(), BuildError> {
+        put_failure(&self.dist, &self.options.program, error)
     }
 
     /// Writes the library, the textures, the report and the catalogue.

@@ -23,6 +23,9 @@ pub struct Report {
     pub report: String,
     /// Program and version that built.
     pub program: String,
+    /// The error that ended the build, line by line. All else is then what an earlier build left, if there was one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub error: Vec<String>,
     /// The library.
     pub library: LibraryReport,
     /// Of the textures of the library, by the id of a model, how many it keeps at all their conditions below the difference threshold,

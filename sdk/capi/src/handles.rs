@@ -24,7 +24,7 @@ const _: () = assert!(FIRST << CHUNKS <= 1 << KIND_SHIFT);
 pub(crate) enum Kind {
     Asset = 1,
     Voice = 2,
-    #[cfg(feature = "library")]
+    #[cfg(all(feature = "library", not(target_family = "wasm")))]
     Library = 3,
     #[cfg(feature = "scene")]
     Scene = 4,

@@ -1,4 +1,5 @@
-//! Libraries: files with thousands of textures. Without the feature `library` each call says so.
+//! Libraries: files with thousands of textures. Without the feature `library` each call says so, and so it does in a browser, which has
+//! functions of its own (`browser/library.rs`).
 
 use std::ffi::c_char;
 
@@ -133,13 +134,13 @@ pub unsafe extern "C" fn htex_library_asset(
     unsafe { calls::asset(library, name, options, out) }
 }
 
-#[cfg(feature = "library")]
+#[cfg(all(feature = "library", not(target_family = "wasm")))]
 #[path = "library/calls.rs"]
 mod calls;
-#[cfg(feature = "library")]
+#[cfg(all(feature = "library", not(target_family = "wasm")))]
 pub(crate) use calls::clear;
 
-#[cfg(not(feature = "library"))]
+#[cfg(any(not(feature = "library"), target_family = "wasm"))]
 mod calls {
     //! What a build without libraries returns.
     use super::*;

@@ -89,7 +89,7 @@ impl Reader {
         })
     }
 
-    #[cfg(feature = "library")]
+    #[cfg(all(feature = "library", not(target_family = "wasm")))]
     pub(crate) fn len(&self) -> u64 {
         self.len
     }

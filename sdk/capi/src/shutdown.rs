@@ -18,7 +18,7 @@ pub unsafe extern "C" fn htex_shutdown() -> htex_status {
             crate::scene::clear()?;
             VOICES.clear()?;
             ASSETS.clear()?;
-            #[cfg(feature = "library")]
+            #[cfg(all(feature = "library", not(target_family = "wasm")))]
             crate::library::clear()?;
         }
         forget_log();

@@ -86,6 +86,19 @@ impl Failure {
     }
 }
 
+#[cfg(feature = "library")]
+impl From<htex::library::LibraryError> for Failure {
+    fn from(error: htex::library::LibraryError) -> Self {
+        use htex::library::LibraryError;
+        let status = match &error {
+            LibraryError::Open { .. } | LibraryError::Read { .. } => htex_status::HTEX_STATUS_IO,
+            LibraryError::Absent { .. } => htex_status::HTEX_STATUS_ABSENT,
+            _ => htex_status::HTEX_STATUS_INVALID_LIBRARY,
+        };
+        Self::of(status, error)
+    }
+}
+
 impl From<htex::Error> for Failure {
     fn from(error: htex::Error) -> Self {
         use htex::{Error, HostError, ReadError};

@@ -210,8 +210,18 @@ fn calls_of_each_language_tell_the_same() {
             continue;
         };
         let source = fs::read_to_string(hosts(file)).unwrap();
+        // As a recent Unity compiles it, but for its types.
+        let unity = hosts("../../unity/Runtime/HtexNativeArray.cs");
+        let files = [unity, hosts("NativeArray.cs")].map(|file| file.display().to_string());
+        let [unity, types] = &files;
         let more: &[&str] = match language {
-            Language::Csharp => &["-r:System.Core"],
+            Language::Csharp => &[
+                "-r:System.Core",
+                "-unsafe",
+                "-d:UNITY_2021_2_OR_NEWER",
+                unity,
+                types,
+            ],
             _ => &[],
         };
         let program = project.build_with(&source, more);

@@ -277,3 +277,53 @@ fn ratings_are_exported_by_attribute() {
             .contains("P02.jsonl, line 1")
     );
 }
+
+/// What a spreadsheet would take for a formula, which may open an address or run a program, is text in the table.
+#[test]
+fn cells_that_begin_like_formulas_are_text() {
+    let place = Place::new();
+    let mut session = place.open().unwrap();
+    while session.trials().0 < 3 {
+        act(&mut session);
+    }
+    drop(session);
+    let whole = fs::read_to_string(place.answers()).unwrap();
+    for start in ["=", "+", "-", "@", "\\t", "\\r"] {
+        let evil = format!("{start}HYPERLINK(0)");
+        let mut text = whole.replace(
+            "\"participant\":\"P01\"",
+            &format!("\"participant\":\"{evil}\""),
+        );
+        for key in ["texture", "model", "attribute"] {
+            text = renamed(&text, key, &evil);
+        }
+        fs::write(place.answers(), text).unwrap();
+        let table = export(place.folder.path(), None).unwrap();
+        // Of both attributes, which have one name now.
+        assert_eq!(table.ratings, 6);
+        let mut cells = csv::Reader::from_reader(table.csv.as_bytes());
+        for row in cells.records() {
+            let row = row.unwrap();
+            for column in [0, 1, 2, 5] {
+                let cell = &row[column];
+                assert!(
+                    cell.starts_with('\'') && cell.ends_with("HYPERLINK(0)"),
+                    "{cell:?}"
+                );
+            }
+        }
+    }
+}
+
+/// JSON lines with another text at a key of answers.
+fn renamed(lines: &str, key: &str, to: &str) -> String {
+    let start = format!("\"{key}\":\"");
+    let changed = lines.lines().map(|line| match line.split_once(&start) {
+        Some((before, rest)) if line.contains("\"kind\":\"answer\"") => {
+            let (_, after) = rest.split_once('"').unwrap();
+            format!("{before}{start}{to}\"{after}\n")
+        }
+        _ => format!("{line}\n"),
+    });
+    changed.collect()
+}

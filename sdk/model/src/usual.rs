@@ -4,6 +4,7 @@
 /// The scale on which a range is even.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
+    /// Equal steps are equal differences.
     Linear,
     /// Equal steps are equal ratios.
     Log,
@@ -25,8 +26,11 @@ impl Scale {
 pub struct Usual {
     /// The parameter: a field of the descriptor.
     pub field: &'static str,
+    /// Its lower end.
     pub min: f64,
+    /// Its upper end.
     pub max: f64,
+    /// The scale on which it is even.
     pub scale: Scale,
 }
 

@@ -198,7 +198,10 @@ impl Voice {
     /// # Errors
     /// When the model refuses the parameters.
     pub fn magnitude(&self, frequency_hz: &[f64]) -> Result<Vec<f64>, Error> {
-        if self.asked.is_some_and(|motion| !self.follow.is_felt(motion)) {
+        if self
+            .asked
+            .is_some_and(|motion| !self.follow.is_felt(motion))
+        {
             return Ok(vec![0.0; frequency_hz.len()]);
         }
         let source = self.stream.source();

@@ -35,7 +35,8 @@ impl Build {
             .with_plugins(plugins);
         let to = Destination::parse(&output, work.as_deref()).map_err(raised)?;
         let build = py.detach(|| htex_build::Build::open(&recipe, to.folder(), options));
-        Ok(Self(Mutex::new(Some(build.map_err(raised)?)), to))
+        let build = build.map_err(|error| failed(&to, error))?;
+        Ok(Self(Mutex::new(Some(build)), to))
     }
 
     /// The jobs to do: key, job as JSON, bytes of its recordings.
@@ -57,7 +58,9 @@ impl Build {
     /// Keeps what a job made.
     fn store(&self, py: Python<'_>, key: &str, made: PyBackedBytes) -> PyResult<()> {
         py.detach(|| match &mut *self.lock() {
-            Some(build) => build.store(key, &made).map_err(raised),
+            Some(build) => build
+                .store(key, &made)
+                .map_err(|error| failed_while_open(build, error)),
             None => Err(finished()),
         })
     }
@@ -66,10 +69,12 @@ impl Build {
     fn run(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| match &mut *self.lock() {
             Some(build) => {
-                if build.pending().len() > 0 {
-                    self.1.try_out().map_err(raised)?;
-                }
-                build.run(&|_| ()).map_err(raised)
+                let ready = match build.pending().len() {
+                    0 => Ok(()),
+                    _ => self.1.try_out(),
+                };
+                let ran = ready.and_then(|()| build.run(&|_| ()));
+                ran.map_err(|error| failed_while_open(build, error))
             }
             None => Err(finished()),
         })
@@ -82,7 +87,7 @@ impl Build {
             let built = build.finish()?;
             self.1.publish().map(|_| built)
         });
-        let built = built.map_err(raised)?;
+        let built = built.map_err(|error| failed(&self.1, error))?;
         let report = serde_json::to_value(&built.report);
         from_json(py, &report.map_err(|error| option(error.to_string()))?)
     }
@@ -166,6 +171,23 @@ pub(crate) fn run_job<'py>(py: Python<'py>, key: &str, job: &str) -> PyResult<Bo
         made.to_bytes(key)
     });
     Ok(PyBytes::new(py, &made.map_err(raised)?))
+}
+
+/// Writes an error into the report of the folder, as `htex build` does, and makes its exception.
+fn failed(to: &Destination, error: BuildError) -> PyErr {
+    // A folder in which not even that can be written is what the error is about.
+    let _ = htex_build::report_failure(to.folder(), TOOL, &lines(&error));
+    raised(error)
+}
+
+/// The same for a build that holds its folder.
+fn failed_while_open(build: &htex_build::Build, error: BuildError) -> PyErr {
+    let _ = build.report_failure(&lines(&error));
+    raised(error)
+}
+
+fn lines(error: &BuildError) -> Vec<String> {
+    error.to_string().lines().map(str::to_owned).collect()
 }
 
 fn raised(error: BuildError) -> PyErr {

@@ -200,6 +200,23 @@ def test_tables_as_laboratories_have_them(tmp_path: pathlib.Path) -> None:
     pd.testing.assert_frame_equal(read_ratings(unnumbered).cells, expected.cells)
 
 
+def test_cells_that_begin_like_formulas_are_text() -> None:
+    table = pd.read_csv(GOLDEN / "ratings.csv")
+    starts = ["=", "+", "-", "@"]
+    names = {name: f"{starts[i % 4]}HYPERLINK({i})" for i, name in enumerate(sorted(table["texture"].unique()))}
+    models = {name: f"{starts[i % 4]}cmd({i})" for i, name in enumerate(sorted(table["model"].unique()))}
+    evil = table.assign(texture=table["texture"].map(names), model=table["model"].map(models))
+    seen = set()
+    for name, data in study.analyse(evil).files().items():
+        if name.endswith(".csv"):
+            frame = pd.read_csv(io.BytesIO(data), dtype=str, keep_default_na=False)
+            for cell in [*frame.columns, *frame.to_numpy().ravel()]:
+                if "HYPERLINK" in cell or "cmd(" in cell:
+                    assert not cell.startswith(tuple(starts)), (name, cell)
+                    seen.add(cell)
+    assert len(seen) >= len(names) + len(models)
+
+
 def test_a_missing_cell_does_not_end_the_analysis() -> None:
     table = pd.read_csv(GOLDEN / "ratings.csv")
     one = (table["participant"] == "p03") & (table["texture"] == "vinyl") & (table["model"] == "ar")

@@ -33,6 +33,7 @@ mod columns;
 mod error;
 mod follow;
 mod formats;
+mod hash;
 mod hertz;
 mod input;
 mod options;
@@ -81,7 +82,14 @@ use input::{Opened, file_name};
 /// # Errors
 /// See [`ReadError`]: each names the file, and the place where there is one.
 pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
-    read(path, || Opened::file(path), options)
+    let version = hash::Version::of(path);
+    let mut recording = read(path, || Opened::file(path), options)?;
+    if let Some(version) = version {
+        let hashed = hash::of_file(path, version);
+        let hashed = hashed.map_err(|error| ReadProblem::Io(error).in_file(&file_name(path)));
+        recording.blake3 = hashed?;
+    }
+    Ok(recording)
 }
 
 /// Reads a recording from bytes; `path` is its name and is not opened.
@@ -93,7 +101,11 @@ pub fn recording_from_bytes(
     bytes: &[u8],
     options: &ReadOptions,
 ) -> Result<Recording, ReadError> {
-    read(path, || Opened::bytes(path, bytes), options)
+    let recording = read(path, || Opened::bytes(path, bytes), options)?;
+    Ok(Recording {
+        blake3: Some(hash::of_bytes(bytes)),
+        ..recording
+    })
 }
 
 fn read<'a>(

@@ -71,6 +71,8 @@ pub enum RecordingError {
 pub struct Recording {
     /// File name without its directory, for messages and provenance.
     pub source: String,
+    /// BLAKE3 of the file's bytes, 64 hexadecimal digits, for provenance; `None` where it is of no file, or was read from a pipe.
+    pub blake3: Option<String>,
     /// Samples per second of every signal, hertz.
     pub rate_hz: f64,
     /// Quantity of the axes.
@@ -147,6 +149,7 @@ impl Recording {
         }
         Ok(Self {
             source: source.into(),
+            blake3: None,
             rate_hz,
             quantity,
             axes,

@@ -19,7 +19,7 @@ use xtask::generated::{file, file_with, folder};
 const FOLDER: &str = "spec/scene-conformance";
 
 /// Rules that no conformance file breaks: they take a scene of a megabyte, a device with hardware settings
-/// (tested in `cli/tests/drive.rs`; the file device has none), or a device that is not connected.
+/// (tested in `cli/tests/live/drive.rs`; the file device has none), or a device that is not connected.
 const WITHOUT_FILE: [&str; 3] = ["SCENE_FILE_TOO_LARGE", "DEVICE_HARDWARE", "DEVICE_ABSENT"];
 
 /// The folder of the specification, from that of this package, in which tests run.

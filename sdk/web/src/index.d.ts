@@ -123,7 +123,7 @@ export class Texture {
   readonly hasModules: boolean;
   /** Magnitudes of the texture spectrum at frequencies in Hz, in the unit. */
   spectrum(frequencies: ArrayLike<number>, options?: At): Float64Array;
-  /** Magnitudes at a recorded condition, as a recording of the voice reads them; "unsupported" for sums of sinusoids. */
+  /** Magnitudes at a recorded condition, as a recording of the voice reads them: without chance, and of sums of sinusoids from 20 s of their samples. */
   readSpectrum(options?: { model?: string; condition?: number }): { frequencies: Float64Array; magnitudes: Float64Array };
   /** Level of a representation, RMS in the unit. */
   level(options?: At): number;

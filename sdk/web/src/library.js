@@ -47,6 +47,11 @@ function isBytes(data) {
   return data instanceof ArrayBuffer || ArrayBuffer.isView(data);
 }
 
+/** An address that a caller gives, or one of this package. Bundlers would take `new URL` with another base for one of their files. */
+export function resolved(address) {
+  return address instanceof URL ? address : new URL(address, globalThis.location?.href);
+}
+
 const isAddress = (source) => typeof source === "string" || source instanceof URL;
 
 /** The library's bytes, for threads that cannot be given a module. */
@@ -59,7 +64,7 @@ async function moduleBytes(library, what) {
   if (library instanceof WebAssembly.Module) {
     throw new HtexError("this browser gives no WebAssembly.Module to other threads; give setLibrary the address or the bytes of htex.wasm", "unsupported");
   }
-  const url = new URL(/* @vite-ignore */ library, import.meta.url);
+  const url = resolved(library);
   if (url.protocol === "file:" && host.readFile) return host.readFile(url);
   return new Uint8Array(await (await download(url, what)).arrayBuffer());
 }
@@ -67,7 +72,7 @@ async function moduleBytes(library, what) {
 /** Compiles a module, its address, its bytes or one that is compiled: while it arrives if the server tells its type. `what` stands in errors. */
 export async function compiledFrom(library, what) {
   if (library instanceof WebAssembly.Module) return library;
-  const url = isBytes(library) ? null : new URL(/* @vite-ignore */ library, import.meta.url);
+  const url = isBytes(library) ? null : resolved(library);
   if (url && url.protocol !== "file:" && WebAssembly.compileStreaming) {
     const response = await download(url, what);
     const isTyped = /^application\/wasm\b/.test(response.headers.get("content-type") ?? "");

@@ -2,7 +2,7 @@
 
 import { HtexError } from "./core.js";
 import { GuardedWorker, checkTexture, describe } from "./guarded.js";
-import { compiled, files, libraryBytes } from "./library.js";
+import { compiled, files, libraryBytes, resolved } from "./library.js";
 import { VOICE, checked } from "./options.js";
 
 /** RMS of full scale that a node plays at by default: -20 dB. */
@@ -40,7 +40,7 @@ export async function prepare(context) {
 }
 
 async function load(context) {
-  const url = new URL(files.processor ?? new URL("./processor.js", import.meta.url), import.meta.url);
+  const url = new URL(resolved(files.processor ?? new URL("./processor.js", import.meta.url)).href);
   const failed = failures.get(context) ?? 0;
   // A worklet remembers an address that failed.
   if (failed > 0 && url.protocol !== "data:") url.searchParams.set("retry", failed);
@@ -264,9 +264,10 @@ export class HtexNode extends Base {
   stop() {
     if (this.isStopped) return;
     this.isStopped = true;
-    this.port.postMessage({ stop: true });
-    if (this.context.state === "running") setTimeout(() => this.end(), SILENT_MS);
-    else if (!this.isOffline) this.end();
+    const isHeard = this.context.state === "running" || this.isOffline;
+    this.port.postMessage({ stop: true, isHeard });
+    if (!isHeard) this.end();
+    else if (!this.isOffline) setTimeout(() => this.end(), SILENT_MS);
   }
 
   /** An offline context is not running between its renderings. */

@@ -44,7 +44,8 @@ class HtexProcessor extends AudioWorkletProcessor {
     if (data.alone) for (const { source } of this.tracks) source.isAlone = true;
     if (data.stop) {
       this.stopping = true;
-      for (const track of this.tracks) track.fadeOut(STOP_S * sampleRate);
+      // A context that is suspended renders no fade.
+      for (const track of this.tracks) data.isHeard ? track.fadeOut(STOP_S * sampleRate) : this.leave(track);
     }
   }
 

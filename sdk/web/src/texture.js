@@ -1,14 +1,16 @@
 // Textures and their voices.
 
 import { BLOCK, HtexError, MOTION_SIZE, toBytes } from "./core.js";
+import { GRID_HZ, measured } from "./measured.js";
 import { AT, VOICE, checked, checkedMotion } from "./options.js";
 
 /** Frees what its owner did not free. */
 const abandoned =
   typeof FinalizationRegistry === "undefined" ? null : new FinalizationRegistry(({ core, free, id }) => core.exports[free](id));
 
-/** Distance of the frequencies at which spectra are read, Hz. */
-const GRID_HZ = 5;
+/** Seconds of the samples by which sums of sinusoids are read, and their seed. */
+const READ_S = 20;
+const READ_SEED = 1;
 
 /** What has a handle in the library. */
 export class Handle {
@@ -144,13 +146,34 @@ export class Texture extends Handle {
       const last = this.manifest.conditions.length - 1;
       throw new HtexError(`texture.readSpectrum: there is no condition ${condition}; they are 0 to ${last}`, "invalid-argument");
     }
-    return this.represented({ model }, "texture.readSpectrum", (take, name) => {
-      const frequencies = this.grid;
+    this.guard(model, "texture.readSpectrum");
+    const frequencies = this.grid;
+    try {
+      return { frequencies, magnitudes: this.readMagnitudes(model, condition, frequencies) };
+    } catch (error) {
+      // What is read of a sum of sinusoids, only its samples tell.
+      if (error.code !== "unsupported") throw error;
+      return { frequencies, magnitudes: this.readSamples(model, condition, frequencies) };
+    }
+  }
+
+  readMagnitudes(model, condition, frequencies) {
+    const { core } = this;
+    return core.scope((take) => {
       const numbers = core.putNumbers(take, frequencies);
-      core.call("htex_asset_read_magnitude", this.id, name, condition, numbers, frequencies.length);
-      const magnitudes = new Float64Array(core.exports.memory.buffer, numbers, frequencies.length).slice();
-      return { frequencies, magnitudes };
+      core.call("htex_asset_read_magnitude", this.id, core.putText(take, model), condition, numbers, frequencies.length);
+      return new Float64Array(core.exports.memory.buffer, numbers, frequencies.length).slice();
     });
+  }
+
+  readSamples(model, condition, frequencies) {
+    const { speed_mm_s: speed, force_n: force } = this.manifest.conditions[condition];
+    const motion = speed > 0 && force > 0 ? { speed, force } : undefined;
+    const rate = 4 * frequencies.at(-1);
+    const voice = this.voice({ model, rate, seed: READ_SEED, motion, contact: false });
+    const samples = voice.render(READ_S * rate);
+    voice.free();
+    return measured(samples, rate, frequencies);
   }
 
   /** The frequencies at which spectra are read, Hz. */

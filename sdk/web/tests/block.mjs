@@ -5,7 +5,7 @@ import path from "node:path";
 import { pathToFileURL } from "node:url";
 
 const [, , asset, model] = process.argv;
-const { open } = await import(pathToFileURL(path.join(process.env.HTEX_PACKAGE, "index.js")));
+const { open } = await import(pathToFileURL(path.join(process.env.HTEX_PACKAGE, "index.node.js")));
 const voice = (await open(await readFile(asset))).voice({ model, seed: 7 });
 const samples = new Float32Array(64);
 let least = Infinity;

@@ -8,7 +8,7 @@ import { pathToFileURL } from "node:url";
 
 import { HTEX_PACKAGE, bytes, difference } from "./fixtures.mjs";
 
-const { Library, open } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "index.js")));
+const { Library, open } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "index.node.js")));
 
 /** Serves a file by ranges, and notes them. `change` changes what is sent. */
 async function serve(file, change = {}) {

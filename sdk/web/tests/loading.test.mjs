@@ -207,12 +207,18 @@ test("the voices and textures of nodes that were stopped are freed", async () =>
       node.stop();
       texture.free();
     }
-    await new Promise((done) => setTimeout(done, 500));
+    // In a suspended context, too.
+    await new Promise((done) => setTimeout(done, 300));
+    await context.suspend();
+    const node = new HtexNode(context, await open("/fixtures/vinyl.htex"), { model: "ar" });
+    await node.load(node.texture, { model: "bands" });
+    node.stop();
+    await new Promise((done) => setTimeout(done, 300));
     const counted = new Promise((done) => (new AudioWorkletNode(context, "counts").port.onmessage = ({ data }) => done(data)));
     return counted;
   });
-  assert.equal(counts.htex_voice_new, 60);
-  assert.equal(counts.htex_voice_free, 60);
+  assert.equal(counts.htex_voice_new, 62);
+  assert.equal(counts.htex_voice_free, 62);
   assert.equal(counts.htex_asset_free, counts.htex_asset_from_bytes);
   assert.deepEqual(made.errors, []);
   await made.close();

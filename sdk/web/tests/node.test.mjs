@@ -1,19 +1,21 @@
 // The package in Node.js.
 
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
+import { execFile, execFileSync } from "node:child_process";
 import { cp, mkdir, mkdtemp, readFile, writeFile } from "node:fs/promises";
+import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import test from "node:test";
 import { pathToFileURL } from "node:url";
+import { promisify } from "node:util";
 
 import { HTEX_FIXTURES, HTEX_PACKAGE, MODELS, bytes, difference, samples } from "./fixtures.mjs";
 
 /** The motion of the command's samples. */
 const MOTION = { speed: 80, force: 0.5 };
 
-const { open, GuardedWorker, HtexError, HtexNode } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "index.js")));
+const { open, GuardedWorker, HtexError, HtexNode } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "index.node.js")));
 
 for (const model of MODELS) {
   test(`${model} has the samples of the command`, async () => {
@@ -32,10 +34,12 @@ for (const model of MODELS) {
 }
 
 test("a model that an asset brings along has the samples of the engine", async () => {
+  const options = { model: "bursts", rate: 48000, seed: 7, motion: MOTION };
   const texture = await open(await bytes("bursts.htex"));
   assert.ok(texture.hasModules);
-  const voice = texture.voice({ model: "bursts", rate: 48000, seed: 7, motion: MOTION });
-  assert.equal(difference(voice.render(96000), await samples("bursts.wav")), -1);
+  assert.throws(() => texture.voice(options), { name: "HtexError", code: "untrusted", message: /GuardedWorker.*trusted: true/ });
+  const trusted = await open(await bytes("bursts.htex"), { trusted: true });
+  assert.equal(difference(trusted.voice(options).render(96000), await samples("bursts.wav")), -1);
   const forbidden = await open(await bytes("bursts.htex"), { embedded: false });
   assert.throws(() => forbidden.voice({ model: "bursts" }), { name: "HtexError", code: "no-model" });
 });
@@ -43,7 +47,7 @@ test("a model that an asset brings along has the samples of the engine", async (
 test("all models as modules have the samples of the built-in ones", async () => {
   for (const model of MODELS) {
     const modules = [await bytes(`htex_${model}.wasm`)];
-    const texture = await open(await bytes("vinyl.htex"), { modules });
+    const texture = await open(await bytes("vinyl.htex"), { modules, trusted: true });
     assert.ok(texture.hasModules);
     const voice = texture.voice({ model, rate: 48000, seed: 7, motion: MOTION });
     const expected = await samples(`${model}.wav`);
@@ -65,7 +69,38 @@ test("a texture tells what it is", async () => {
   assert.ok(magnitudes[0] > 0 && magnitudes[2] === 0);
   assert.ok(texture.level() > 0);
   const voice = texture.voice();
-  assert.match(voice.coverage({ speed: 160, force: 0.5 }), /frequencies/);
+  const [{ speed: recorded }] = texture.conditions;
+  const faster = { speed: 2 * recorded, force: 0.5 };
+  const { text, ...coverage } = voice.coverage(faster);
+  assert.match(text, /frequencies are 2\.000 times as high/);
+  const speedReach = { kind: "outside", asked: 2 * recorded, recorded };
+  assert.deepEqual({ kind: coverage.kind, inside: coverage.inside, speed: coverage.speed, force: coverage.force.kind }, { kind: "outside", inside: false, speed: speedReach, force: "inside" });
+  assert.ok(Math.abs(coverage.frequencyFactor - 2) < 1e-9);
+  assert.equal(voice.coverage().kind, "inside");
+  // What plays at the motion that is set is what the texture states for it, times the gain.
+  voice.setMotion(faster.speed, faster.force);
+  assert.equal(voice.coverage().kind, "outside");
+  voice.setGain(0.5);
+  const plays = voice.spectrum([50, 100, 400]);
+  texture.spectrum([50, 100, 400], { at: faster }).forEach((m, i) => assert.ok(Math.abs(plays[i] / (0.5 * m) - 1) < 1e-6));
+  voice.setMotion(0, 0.5);
+  assert.deepEqual([...voice.spectrum([50])], [0]);
+  assert.equal(voice.coverage().kind, "silent");
+  assert.deepEqual([texture.quantity, texture.contact, texture.law.level_force.exponent], ["lateral_force", "finger", 1]);
+  assert.deepEqual(Buffer.from(texture.toBytes()), await bytes("vinyl.htex"));
+  const { alpha, beta } = texture.parameters({ model: "sbeta" });
+  assert.ok(alpha > 0 && beta > 0);
+  const { below_highest: levels } = texture.parameters({ model: "bands" });
+  assert.ok(Array.isArray(levels) && levels.length === 30 && Math.min(...levels) === 0);
+  // A recording reads nearly what the model states, in steps of 5 Hz.
+  const { frequencies, magnitudes: read } = texture.readSpectrum({ model: "ar" });
+  assert.deepEqual([frequencies[0], frequencies.at(-1), read.length], [20, 1000, 197]);
+  const stated = texture.spectrum(frequencies, { model: "ar" });
+  assert.ok(read.slice(10, 150).every((m, i) => Math.abs(20 * Math.log10(m / stated[i + 10])) < 2));
+  // Of a sinusoid in a Hann window three bins are read, with 3 times its mean square.
+  const sinusoids = texture.readSpectrum({ model: "speak" }).magnitudes;
+  const levelRead = Math.sqrt(sinusoids.reduce((sum, m) => sum + m * m, 0) / 3);
+  assert.ok(Math.abs(levelRead / texture.level({ model: "speak" }) - 1) < 0.05, `${levelRead}`);
   const path = voice.renderPath([80, 90], [0.5, 0.4], 64);
   assert.equal(path.length, 128);
 });
@@ -75,7 +110,9 @@ test("bad input is an error of its kind", async () => {
   const error = (code) => (e) => e instanceof HtexError && e.code === code && e.message.length > 10;
   await assert.rejects(open(new Uint8Array(0)), error("invalid-asset"));
   await assert.rejects(open(whole.subarray(0, 200)), error("invalid-asset"));
-  await assert.rejects(open(42), TypeError);
+  await assert.rejects(open(42), error("invalid-argument"));
+  await assert.rejects(open("cloth.htex"), { name: "HtexError", message: /no file is read.*open\(await readFile\("cloth\.htex"\)\)/ });
+  await assert.rejects(open(whole, { trused: true }), { name: "HtexError", message: /did you mean `trusted`/ });
   const texture = await open(whole);
   assert.throws(() => texture.voice({ model: "none" }), error("no-representation"));
   assert.throws(() => texture.voice({ rate: NaN }), HtexError);
@@ -84,9 +121,12 @@ test("bad input is an error of its kind", async () => {
   assert.throws(() => voice.setMotion(NaN, 0.4), error("invalid-motion"));
   assert.throws(() => voice.setMotion(80, -1), error("invalid-motion"));
   assert.throws(() => voice.render(1.5), error("invalid-argument"));
-  assert.throws(() => voice.render([]), TypeError);
+  assert.throws(() => voice.render([]), error("invalid-argument"));
+  assert.throws(() => texture.voice({ rate: "8000" }), { name: "HtexError", message: /`rate` must be of the type number/ });
+  assert.throws(() => texture.voice({ motion: { sped: 80 } }), { name: "HtexError", message: /did you mean `speed`/ });
   assert.throws(() => voice.renderPath([1], [], 8), error("invalid-argument"));
   voice.free();
+  voice[Symbol.dispose]();
   assert.throws(() => voice.render(8), error("bad-handle"));
   assert.throws(() => new HtexNode({}, texture), error("unsupported"));
 });
@@ -103,7 +143,7 @@ test("mutated files never crash", async () => {
     const copy = Uint8Array.from(whole.subarray(0, i % 3 === 0 ? next(whole.length) : whole.length));
     for (let k = next(4); k >= 0 && copy.length > 0; k--) copy[next(copy.length)] = next(256);
     try {
-      const texture = await open(copy, { embedded: i % 50 === 0 });
+      const texture = await open(copy, { embedded: i % 50 === 0, trusted: true });
       const voice = texture.voice();
       assert.ok(voice.render(64).every(Number.isFinite));
       voice.free();
@@ -121,9 +161,9 @@ test("a module above its limits is refused", async () => {
   const asset = await bytes("vinyl.htex");
   // A memory of 2,000 pages of 64 KiB, above the 64 MiB of a model.
   const large = Uint8Array.from([0, 97, 115, 109, 1, 0, 0, 0, 5, 4, 1, 0, 0xd0, 0x0f]);
-  await assert.rejects(open(asset, { modules: [large] }), /memory is limited/);
-  await assert.rejects(open(asset, { modules: [large.subarray(0, 8)] }), /not an htex model/);
-  await assert.rejects(open(asset, { modules: [Uint8Array.of(1, 2, 3)] }), /does not begin/);
+  await assert.rejects(open(asset, { modules: [large], trusted: true }), /memory is limited/);
+  await assert.rejects(open(asset, { modules: [large.subarray(0, 8)], trusted: true }), /not an htex model/);
+  await assert.rejects(open(asset, { modules: [Uint8Array.of(1, 2, 3)], trusted: true }), /does not begin/);
 });
 
 test("a voice tells what it plays", async () => {
@@ -173,20 +213,37 @@ test("a worker stops a module that does not return", async () => {
 });
 
 test("a worker does not keep a program running", () => {
-  const index = JSON.stringify(pathToFileURL(path.join(HTEX_PACKAGE, "index.js")));
+  const index = JSON.stringify(pathToFileURL(path.join(HTEX_PACKAGE, "index.node.js")));
   const program = `const { GuardedWorker } = await import(${index}); new GuardedWorker(); console.log("done");`;
   const arguments_ = ["--input-type=module", "-e", program];
   assert.equal(execFileSync(process.execPath, arguments_, { encoding: "utf8", timeout: 20000 }).trim(), "done");
 });
 
-test("the example of the README runs", async () => {
+test("the examples of the README for Node.js run", async () => {
   const folder = await mkdtemp(path.join(tmpdir(), "htex-web-"));
   await mkdir(path.join(folder, "node_modules"));
   await cp(HTEX_PACKAGE, path.join(folder, "node_modules/htex"), { recursive: true });
   await cp(path.join(HTEX_FIXTURES, "vinyl.htex"), path.join(folder, "cloth.htex"));
+  const library = await bytes("many.htexlib");
+  const server = createServer((_, response) => response.end(library));
+  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
+  const url = `http://127.0.0.1:${server.address().port}/cloth.htexlib`;
   const readme = await readFile(path.join(HTEX_PACKAGE, "README.md"), "utf8");
-  const [, example] = readme.match(/```js\n([\s\S]*?)```/);
-  await writeFile(path.join(folder, "play.mjs"), example);
-  const printed = execFileSync(process.execPath, ["play.mjs"], { cwd: folder, encoding: "utf8" });
-  assert.match(printed, /N 20000/);
+  const examples = [...readme.matchAll(/```js\n([\s\S]*?)```/g)].map(([, text]) => text);
+  // The second one is for a page: `sound.test.mjs` and `bundles.test.mjs` have it.
+  const [plays, , states, searches, measures] = examples;
+  assert.equal(examples.length, 5);
+  const search = searches.replace("https://example.org/cloth.htexlib", url).replace("woven/cotton", "vinyl");
+  const programs = [
+    [plays, /vinyl N 20000/],
+    [states, /lateral_force finger 1[\s\S]*alpha[\s\S]*where 80\.95 mm\/s was recorded[\s\S]*\b3\b/],
+    [`${search} console.log(texture.unit);`, /floor\/0998[\s\S]*\nN\n/],
+    [`${plays.replace("const voice", "const first").replaceAll("voice.", "first.")} ${measures} console.log(level > 0, centroid > 20, bands.length);`, /true true 3/],
+  ];
+  for (const [program, expected] of programs) {
+    await writeFile(path.join(folder, "play.mjs"), program);
+    const { stdout } = await promisify(execFile)(process.execPath, ["play.mjs"], { cwd: folder, maxBuffer: 1 << 24 });
+    assert.match(stdout, expected);
+  }
+  server.close();
 });

@@ -1,5 +1,5 @@
 //! A web server on loopback for tests, in the process of the test: an S3-compatible store (the crates `s3s` and `s3s-fs`) with signatures, and
-//! the files of the bucket `web` without them. It records its requests and fails them as a test asks.
+//! the files of the bucket `web` also without them. It records its requests and fails them as a test asks.
 //!
 //! ```
 //! use htex_object_server::{Fault, Server};
@@ -100,6 +100,8 @@ struct Shared {
     signed: S3Service,
     open: S3Service,
     seen: Mutex<Vec<Seen>>,
+    /// Path and status of each answer.
+    answered: Mutex<Vec<(String, u16)>>,
     /// The rule, and the number of requests since it was set.
     rule: Mutex<(Rule, usize)>,
 }
@@ -107,6 +109,11 @@ struct Shared {
 impl Server {
     /// Starts on a free port, with the empty buckets `surfaces` and `web`.
     pub fn start() -> Self {
+        Self::start_after(Duration::ZERO)
+    }
+
+    /// Starts on a free port, which refuses connections for this time, as that of a server that restarts does.
+    pub fn start_after(time: Duration) -> Self {
         let folder = TempDir::new().unwrap();
         for bucket in ["surfaces", "web"] {
             std::fs::create_dir(folder.path().join(bucket)).unwrap();
@@ -115,12 +122,24 @@ impl Server {
             signed: service(folder.path(), true),
             open: service(folder.path(), false),
             seen: Mutex::default(),
+            answered: Mutex::default(),
             rule: Mutex::new((Box::new(|_, _| Fault::None), 0)),
         });
         let runtime = Runtime::new().unwrap();
         let listener = runtime.block_on(TcpListener::bind("127.0.0.1:0")).unwrap();
         let address = listener.local_addr().unwrap();
-        runtime.spawn(accept(listener, Arc::clone(&shared)));
+        let accepting = Arc::clone(&shared);
+        runtime.spawn(async move {
+            let listener = match time.is_zero() {
+                true => listener,
+                false => {
+                    drop(listener);
+                    tokio::time::sleep(time).await;
+                    TcpListener::bind(address).await.unwrap()
+                }
+            };
+            accept(listener, accepting).await;
+        });
         Self {
             address,
             folder,
@@ -180,6 +199,12 @@ impl Server {
     pub fn fail(&self, rule: impl Fn(usize, &Seen) -> Fault + Send + Sync + 'static) {
         *self.shared.rule.lock().unwrap() = (Box::new(rule), 0);
         self.shared.seen.lock().unwrap().clear();
+        self.shared.answered.lock().unwrap().clear();
+    }
+
+    /// Paths and statuses of the answers since the last call of [`Self::fail`].
+    pub fn answers(&self) -> Vec<(String, u16)> {
+        self.shared.answered.lock().unwrap().clone()
     }
 
     /// The requests since the last call of [`Self::fail`].
@@ -300,11 +325,15 @@ impl Shared {
     }
 
     async fn store(&self, request: Request<Incoming>) -> Result<Response<AnyBody>, Cut> {
-        let service = match request.uri().path().starts_with("/web/") {
+        let path = request.uri().path().to_owned();
+        let is_signed = request.headers().contains_key("authorization");
+        let service = match path.starts_with("/web/") && !is_signed {
             true => &self.open,
             false => &self.signed,
         };
         let response = Service::call(service, request).await.map_err(|_| Cut)?;
+        let status = response.status().as_u16();
+        self.answered.lock().unwrap().push((path, status));
         Ok(response.map(body::of))
     }
 }

@@ -1,4 +1,4 @@
-//! The npm package, in Node.js, in Chromium and in a bundler.
+//! The npm package, in Node.js, in Chromium and in bundlers.
 
 use std::path::Path;
 
@@ -26,16 +26,9 @@ pub(super) fn test(folder: &Path) -> Result<()> {
         .args(quiet)
         .args(["--no-save"])
         .arg(&package))?;
-    let strict = [
-        "tsc",
-        "--strict",
-        "--noUncheckedIndexedAccess",
-        "--noEmit",
-        "--target",
-        "es2022",
-    ];
-    let module = ["--module", "nodenext", "--lib", "es2022,dom", "types.ts"];
-    run(program("npx", &tests).args(strict).args(module))?;
+    for project in ["tsconfig.json", "tsconfig.node.json"] {
+        run(program("npx", &tests).args(["tsc", "--project", project]))?;
+    }
     let chromium = CHROMIUM.find().unwrap_or("chromium");
     let example = workspace().join("examples/web");
     run(program("node", &tests)
@@ -44,9 +37,13 @@ pub(super) fn test(folder: &Path) -> Result<()> {
             "--test-concurrency=1",
             "node.test.mjs",
             "library.test.mjs",
+            "loading.test.mjs",
+            "pointer.test.mjs",
+            "sound.test.mjs",
             "author.test.mjs",
             "author-browser.test.mjs",
             "browser.test.mjs",
+            "bundles.test.mjs",
         ])
         .env("HTEX_PACKAGE", &package)
         .env("HTEX_FIXTURES", &fixtures)

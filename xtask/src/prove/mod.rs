@@ -41,7 +41,12 @@ const PROOFS: &[Proof] = &[
         name: "models",
         takes: "",
         proves: "every model passes the checker, native and as a module, with four seeds more, and each fault of a model fails one check of all",
-        prove: |options| whole_test(options, &["-p", "htex-cli", "--test", "checker"]),
+        prove: |options| {
+            whole_test(
+                options,
+                &["-p", "htex-cli", "--test", "command", "checker::"],
+            )
+        },
     },
     Proof {
         name: "grids",
@@ -56,7 +61,7 @@ const PROOFS: &[Proof] = &[
                  tests take two surfaces and one motion",
         prove: |options| {
             whole_test(options, &["-p", "htex-tests", "--test", "levels"])?;
-            whole_test(options, &["-p", "htex-cli", "--test", "fit"])?;
+            whole_test(options, &["-p", "htex-cli", "--test", "command", "fit::"])?;
             whole_test(options, &["-p", "htex-bake", "--test", "voices"])
         },
     },
@@ -71,7 +76,12 @@ const PROOFS: &[Proof] = &[
         takes: "",
         proves: "10,000 random recipes and tables in a folder with traps touch nothing outside the folder of results and request nothing, \
                  each within 512 MiB and 30 s; tests take 300",
-        prove: |options| whole_test(options, &["-p", "htex-cli", "--test", "random_recipes"]),
+        prove: |options| {
+            whole_test(
+                options,
+                &["-p", "htex-cli", "--test", "command", "random_recipes::"],
+            )
+        },
     },
     Proof {
         name: "fingers",
@@ -79,10 +89,13 @@ const PROOFS: &[Proof] = &[
         proves: "1,000 random scenes and studies put at most 1 V of direct voltage and the limit on a display, and zero within half a second; \
                  1,000 hostile programs at a page lose no answer and delay no press; tests take 20 and 60",
         prove: |options| {
-            whole_test(options, &["-p", "htex-cli", "--test", "finger", "random"])?;
             whole_test(
                 options,
-                &["-p", "htex-cli", "--test", "study", "hostile_programs"],
+                &["-p", "htex-cli", "--test", "live", "finger::random"],
+            )?;
+            whole_test(
+                options,
+                &["-p", "htex-cli", "--test", "live", "hostile_programs"],
             )
         },
     },

@@ -118,9 +118,12 @@ async function listen(texture, button) {
 
 // A second of the texture, rendered here by the browser package, at the loudness of all sounds.
 async function synthesized(texture) {
-  const { open } = await import("./browser/index.js");
+  const { GuardedWorker, open } = await import("./browser/index.js");
   const asset = await open(file("textures", texture.name, "htex"));
-  const samples = asset.voice({ rate: RATE }).render(RATE);
+  // A model that the texture brings along may not return: it runs in a worker, which is ended then.
+  const worker = asset.hasModules ? new GuardedWorker() : null;
+  const samples = worker ? await worker.render(asset, RATE, { rate: RATE }) : asset.voice({ rate: RATE }).render(RATE);
+  worker?.end();
   const rms = Math.sqrt(samples.reduce((sum, x) => sum + x * x, 0) / samples.length);
   const buffer = context.createBuffer(1, samples.length, RATE);
   buffer.copyToChannel(samples.map((x) => (rms > 0 ? (0.1 * x) / rms : 0)), 0);

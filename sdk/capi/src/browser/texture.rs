@@ -104,14 +104,16 @@ fn read_magnitude(
     condition: usize,
 ) -> Result<Vec<f64>, Failure> {
     let condition = asset.manifest().conditions.get(condition);
-    let condition = condition.ok_or(Failure::argument("the texture has no condition of this number"))?;
+    let condition = condition.ok_or(Failure::argument(
+        "the texture has no condition of this number",
+    ))?;
     let motion = condition.speed_mm_s.zip(condition.force_n);
     let motion = motion.map(|(speed, force)| Motion::new(speed, force));
     let loaded = asset.loaded_model(model)?;
     if loaded.descriptor().is_sum_of_sines() {
         return Err(Failure::plain(
             htex_status::HTEX_STATUS_UNSUPPORTED,
-            "the player does not read the spectrum of a sum of sinusoids; render its voice and measure the samples",
+            "what is read of a sum of sinusoids, only its samples tell: render its voice and measure them",
         ));
     }
     let (parameters, level_rms) = asset.parameters(model, motion)?;

@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 
 use htex::Library;
-use htex::library::{LibraryError, LibrarySource, LocalFile};
+use htex::library::{LibrarySource, LocalFile};
 
 use super::htex_library;
 use crate::asset::{htex_asset, keep};
@@ -52,17 +52,6 @@ impl LibrarySource for Source {
 }
 
 static LIBRARIES: Table<Library<Source>> = Table::new(Kind::Library);
-
-impl From<LibraryError> for Failure {
-    fn from(error: LibraryError) -> Self {
-        let status = match &error {
-            LibraryError::Open { .. } | LibraryError::Read { .. } => htex_status::HTEX_STATUS_IO,
-            LibraryError::Absent { .. } => htex_status::HTEX_STATUS_ABSENT,
-            _ => htex_status::HTEX_STATUS_INVALID_LIBRARY,
-        };
-        Self::of(status, error)
-    }
-}
 
 /// Frees all of them.
 ///

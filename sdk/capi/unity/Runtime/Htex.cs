@@ -8,6 +8,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 using System;
 using System.Collections.Generic;
+using System.IO;
 using System.Runtime.InteropServices;
 using System.Text;
 
@@ -174,6 +175,12 @@ namespace Htex
         public bool Installed;
     }
 
+    /// <summary>
+    /// Reads `count` bytes of a file from `offset` on to the start of `buffer`; throws if it cannot. It must not call the library. That of a
+    /// library of textures is called by the threads that open textures, several at a time.
+    /// </summary>
+    public delegate void ReadAt(long offset, byte[] buffer, int count);
+
     /// <summary>An opened asset. Several threads may use it.</summary>
     public sealed class Asset : SafeHandle
     {
@@ -205,6 +212,29 @@ namespace Htex
             {
                 Native.Handle asset;
                 Native.Check(Native.htex_asset_from_bytes(bytes, Native.Length(bytes), ref open.Options, out asset));
+                return new Asset(asset.Id);
+            }
+        }
+
+        /// <summary>Opens an asset of `length` bytes that a function reads, before this returns.</summary>
+        public static Asset FromReader(long length, ReadAt read, OpenOptions options = null)
+        {
+            return FromReader(new FileReader(length, read, null), options);
+        }
+
+        /// <summary>Opens an asset that a stream holds from its start, which can seek and is left open.</summary>
+        public static Asset FromStream(Stream stream, OpenOptions options = null)
+        {
+            return FromReader(FileReader.Of(stream, true), options);
+        }
+
+        private static Asset FromReader(FileReader reader, OpenOptions options)
+        {
+            using (var open = new Native.Open(options))
+            {
+                var file = reader.Held();
+                Native.Handle asset;
+                Native.Check(Native.htex_asset_open_reader(ref file, ref open.Options, out asset));
                 return new Asset(asset.Id);
             }
         }
@@ -318,6 +348,28 @@ namespace Htex
         {
             Native.Handle library;
             Native.Check(Native.htex_library_from_bytes(bytes, Native.Length(bytes), out library));
+            return new Library(library.Id);
+        }
+
+        /// <summary>
+        /// Opens a library of `length` bytes that a function reads, until the library is freed; `close` is then called, also after an error.
+        /// </summary>
+        public static Library FromReader(long length, ReadAt read, Action close = null)
+        {
+            return FromReader(new FileReader(length, read, close));
+        }
+
+        /// <summary>Opens a library that a stream holds from its start, which can seek. It is disposed of when the library is freed.</summary>
+        public static Library FromStream(Stream stream)
+        {
+            return FromReader(FileReader.Of(stream, false));
+        }
+
+        private static Library FromReader(FileReader reader)
+        {
+            var file = reader.Held();
+            Native.Handle library;
+            Native.Check(Native.htex_library_open_reader(ref file, out library));
             return new Library(library.Id);
         }
 
@@ -442,7 +494,7 @@ namespace Htex
                 Native.Check(Native.htex_voice_render(this, ref Native.None, UIntPtr.Zero));
         }
 
-        /// <summary>Renders the next samples to memory, such as that of a NativeArray.</summary>
+        /// <summary>Renders the next samples to memory. HtexNativeArray.cs has the same for the NativeArray of Unity.</summary>
         public void Render(IntPtr samples, int count)
         {
             Native.Check(Native.htex_voice_render_to(this, samples, Native.Count(count)));
@@ -503,6 +555,16 @@ namespace Htex
                 Native.Check(Native.htex_voice_envelope(this, ref envelope, ref bands[0], (UIntPtr)bands.Length));
             return envelope;
         }
+
+#if NETSTANDARD2_1_OR_GREATER || NETCOREAPP || UNITY_2021_2_OR_NEWER
+        /// <summary>What was rendered since the last call, with the bands in a span.</summary>
+        public Envelope Envelope(Span<double> bands)
+        {
+            var envelope = new Envelope { Size = Native.EnvelopeSize };
+            Native.Check(Native.htex_voice_envelope(this, ref envelope, ref MemoryMarshal.GetReference(bands), (UIntPtr)bands.Length));
+            return envelope;
+        }
+#endif
 
         /// <summary>Edges of a number of bands, Hz: one more than bands.</summary>
         public double[] EnvelopeEdges(int bands)
@@ -624,6 +686,24 @@ namespace Htex
             return (int)rendered;
         }
 
+        /// <summary>Renders the next samples to memory; returns their number.</summary>
+        public int Render(IntPtr samples, int count)
+        {
+            UIntPtr rendered;
+            Native.Check(Native.htex_scene_render_to(this, samples, Native.Count(count), out rendered));
+            return (int)rendered;
+        }
+
+#if NETSTANDARD2_1_OR_GREATER || NETCOREAPP || UNITY_2021_2_OR_NEWER
+        /// <summary>Renders the next samples to a span; returns their number.</summary>
+        public int Render(Span<float> samples)
+        {
+            UIntPtr rendered;
+            Native.Check(Native.htex_scene_render(this, ref MemoryMarshal.GetReference(samples), (UIntPtr)samples.Length, out rendered));
+            return (int)rendered;
+        }
+#endif
+
         /// <summary>Ends the scene with a ramp to silence.</summary>
         public void Stop()
         {
@@ -670,12 +750,105 @@ namespace Htex
         }
     }
 
+    /// <summary>A file that the program reads, held until the library has closed it.</summary>
+    internal sealed class FileReader
+    {
+        private static readonly Native.ReadFile Reading = Read;
+        private static readonly Native.CloseFile Closing = Close;
+        private readonly long length;
+        private readonly ReadAt read;
+        private readonly Action close;
+
+        internal FileReader(long length, ReadAt read, Action close)
+        {
+            if (length < 0)
+                throw new ArgumentOutOfRangeException("length", "negative");
+            if (read == null)
+                throw new ArgumentNullException("read");
+            this.length = length;
+            this.read = read;
+            this.close = close;
+        }
+
+        internal static FileReader Of(Stream stream, bool leaveOpen)
+        {
+            if (!stream.CanSeek || !stream.CanRead)
+                throw new ArgumentException("the stream cannot be read or cannot seek; copy it to a MemoryStream", "stream");
+            return new FileReader(stream.Length, (offset, buffer, count) => Fill(stream, offset, buffer, count), leaveOpen ? null : (Action)stream.Dispose);
+        }
+
+        private static void Fill(Stream stream, long offset, byte[] buffer, int count)
+        {
+            // It has one position for all threads.
+            lock (stream)
+            {
+                stream.Position = offset;
+                for (int done = 0; done < count;)
+                {
+                    int got = stream.Read(buffer, done, count - done);
+                    if (got == 0)
+                        throw new EndOfStreamException();
+                    done += got;
+                }
+            }
+        }
+
+        /// <summary>The struct for the library, which closes it once.</summary>
+        internal Native.ReaderC Held()
+        {
+            return new Native.ReaderC
+            {
+                Size = (uint)Marshal.SizeOf(typeof(Native.ReaderC)),
+                Length = (ulong)length,
+                Context = GCHandle.ToIntPtr(GCHandle.Alloc(this)),
+                Read = Marshal.GetFunctionPointerForDelegate(Reading),
+                Close = Marshal.GetFunctionPointerForDelegate(Closing),
+            };
+        }
+
+#if UNITY_5_3_OR_NEWER
+        [AOT.MonoPInvokeCallback(typeof(Native.ReadFile))]
+#endif
+        private static int Read(IntPtr context, ulong offset, IntPtr buffer, UIntPtr length)
+        {
+            try
+            {
+                var bytes = new byte[(int)length];
+                ((FileReader)GCHandle.FromIntPtr(context).Target).read((long)offset, bytes, bytes.Length);
+                Marshal.Copy(bytes, 0, buffer, bytes.Length);
+                return 0;
+            }
+            catch (Exception)
+            {
+                // An exception cannot pass through the library: the file cannot be read.
+                return 1;
+            }
+        }
+
+#if UNITY_5_3_OR_NEWER
+        [AOT.MonoPInvokeCallback(typeof(Native.CloseFile))]
+#endif
+        private static void Close(IntPtr context)
+        {
+            var held = GCHandle.FromIntPtr(context);
+            var close = ((FileReader)held.Target).close;
+            held.Free();
+            try
+            {
+                if (close != null)
+                    close();
+            }
+            catch (Exception)
+            {
+                // Nor can this one; the file is not read any more.
+            }
+        }
+    }
+
     /// <summary>The files of a scene, which a function returns.</summary>
     internal sealed class SceneFiles : IDisposable
     {
         private static readonly Native.OpenFile Opening = Open;
-        private static readonly Native.ReadFile Reading = Read;
-        private static readonly Native.CloseFile Closing = Close;
         private readonly Func<string, byte[]> files;
         private GCHandle self;
 
@@ -720,28 +893,8 @@ namespace Htex
             }
             if (bytes == null)
                 return 1;
-            file.Length = (ulong)bytes.Length;
-            file.Context = GCHandle.ToIntPtr(GCHandle.Alloc(bytes));
-            file.Read = Marshal.GetFunctionPointerForDelegate(Reading);
-            file.Close = Marshal.GetFunctionPointerForDelegate(Closing);
+            file = new FileReader(bytes.Length, (offset, buffer, count) => Array.Copy(bytes, offset, buffer, 0, count), null).Held();
             return 0;
-        }
-
-#if UNITY_5_3_OR_NEWER
-        [AOT.MonoPInvokeCallback(typeof(Native.ReadFile))]
-#endif
-        private static int Read(IntPtr context, ulong offset, IntPtr buffer, UIntPtr length)
-        {
-            Marshal.Copy((byte[])GCHandle.FromIntPtr(context).Target, (int)offset, buffer, (int)length);
-            return 0;
-        }
-
-#if UNITY_5_3_OR_NEWER
-        [AOT.MonoPInvokeCallback(typeof(Native.CloseFile))]
-#endif
-        private static void Close(IntPtr context)
-        {
-            GCHandle.FromIntPtr(context).Free();
         }
     }
 
@@ -964,6 +1117,8 @@ namespace Htex
         [DllImport(Library)] internal static extern Status htex_library_from_bytes(byte[] bytes, UIntPtr length, out Handle library);
         [DllImport(Library)] internal static extern Status htex_asset_open(byte[] path, ref OpenOptionsC options, out Handle asset);
         [DllImport(Library)] internal static extern Status htex_asset_from_bytes(byte[] bytes, UIntPtr length, ref OpenOptionsC options, out Handle asset);
+        [DllImport(Library)] internal static extern Status htex_asset_open_reader(ref ReaderC reader, ref OpenOptionsC options, out Handle asset);
+        [DllImport(Library)] internal static extern Status htex_library_open_reader(ref ReaderC reader, out Handle library);
         [DllImport(Library)] internal static extern Status htex_asset_free(Handle asset);
         [DllImport(Library)] internal static extern Status htex_asset_manifest_json(Asset asset, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
         [DllImport(Library)] internal static extern Status htex_asset_unit(Asset asset, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
@@ -1002,6 +1157,7 @@ namespace Htex
         [DllImport(Library)] internal static extern Status htex_scene_rate_hz(Scene scene, out double rateHz);
         [DllImport(Library)] internal static extern Status htex_scene_set_finger(Scene scene, ref Finger finger);
         [DllImport(Library)] internal static extern Status htex_scene_render(Scene scene, ref float samples, UIntPtr frames, out UIntPtr rendered);
+        [DllImport(Library, EntryPoint = "htex_scene_render")] internal static extern Status htex_scene_render_to(Scene scene, IntPtr samples, UIntPtr frames, out UIntPtr rendered);
         [DllImport(Library)] internal static extern Status htex_scene_stop(Scene scene);
     }
 }

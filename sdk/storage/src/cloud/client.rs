@@ -2,6 +2,7 @@
 //! does, by another client.
 
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use reqwest::redirect::Policy;
 use rustls::ClientConfig;
@@ -10,6 +11,9 @@ use rustls_platform_verifier::BuilderVerifierExt;
 
 use super::addresses::{NamedBy, Resolver};
 use crate::Settings;
+
+/// Most time for a connection; a server that does not answer so soon is tried again.
+const LONGEST_CONNECT: Duration = Duration::from_secs(10);
 
 /// The clients, made when they are first needed and then shared with their connections.
 #[derive(Debug, Default)]
@@ -56,7 +60,7 @@ fn client(settings: &Settings, by: NamedBy) -> Result<reqwest::Client, String> {
         .user_agent(concat!("htex/", env!("CARGO_PKG_VERSION")))
         .tls_backend_preconfigured(tls)
         .http1_only()
-        .connect_timeout(stall)
+        .connect_timeout(stall.min(LONGEST_CONNECT))
         .read_timeout(stall)
         .redirect(Policy::none())
         .referer(false)

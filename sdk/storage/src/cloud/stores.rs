@@ -14,6 +14,9 @@ use super::log::Connector;
 use crate::location::{Scheme, Uri};
 use crate::{Settings, Variables};
 
+/// Most that a pause has of the one before.
+const PAUSE_GROWTH: f64 = 6.0;
+
 /// A store, the key in it, and whether requests are signed.
 pub(crate) struct Opened {
     pub(crate) store: Arc<dyn ObjectStore>,
@@ -48,7 +51,7 @@ impl Parts<'_> {
             backoff: BackoffConfig {
                 init_backoff: self.settings.first_pause,
                 max_backoff: self.settings.longest_pause,
-                base: 2.0,
+                base: PAUSE_GROWTH,
             },
             max_retries: self.settings.retries,
             retry_timeout: self.settings.total,

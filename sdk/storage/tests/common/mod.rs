@@ -9,11 +9,12 @@ use htex_storage::{Location, Settings, Storage, StorageError, Variables};
 /// Most bytes of a read.
 pub const MOST: u64 = 64 << 20;
 
-/// The defaults with pauses of milliseconds, so that a test of seven requests takes no seconds.
+/// The defaults with six retries and pauses of milliseconds, so that a test of seven requests takes no seconds.
 pub fn settings() -> Settings {
     let mut settings = Settings::default();
     settings.total = Duration::from_secs(60);
     settings.stall = Duration::from_secs(20);
+    settings.retries = 6;
     settings.first_pause = Duration::from_millis(1);
     settings.longest_pause = Duration::from_millis(5);
     settings

@@ -1,0 +1,752 @@
+//! Libraries from recipes, as a user builds them.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, SystemTime};
+
+use crate::common::Place;
+use htex_library::{Entry, Library};
+use serde_json::Value;
+
+const RECIPE: &str = r#"
+[library]
+name = "surfaces"
+
+[[textures]]
+recordings = "rec/*.csv"
+pattern = '(?<surface>[a-z-]+)_(?<take>\d)'
+name = "{surface}/{take}"
+models = ["bands", "sbeta"]
+license = "CC0-1.0"
+tags = ["{surface}"]
+at = { speed_mm_s = 80, force_n = 0.4 }
+
+[textures.gates]
+license = true
+min_segments = 1
+"#;
+
+/// A folder with a recipe and recordings of 2 s, two of each of three surfaces.
+fn place() -> Place {
+    let place = Place::new();
+    fs::create_dir(place.path("rec")).unwrap();
+    for surface in ["vinyl", "sandpaper", "fine-fabric"] {
+        for take in ["1", "2"] {
+            let file = format!("rec/{surface}_{take}.csv");
+            let simulate = ["simulate", "--surface", surface, "--seed", take];
+            let run = place.run(&[&simulate[..], &["--seconds", "2", "-o", &file]].concat());
+            assert_eq!(run.code(), 0, "{}", run.error());
+            // Files that have just changed are hashed again the next time.
+            age(&place.path(&file), 60);
+        }
+    }
+    place.write("library.toml", RECIPE);
+    place
+}
+
+fn age(file: &Path, seconds: u64) {
+    let file = fs::File::options().write(true).open(file).unwrap();
+    let then = SystemTime::now() - Duration::from_secs(seconds);
+    file.set_modified(then).unwrap();
+}
+
+/// All files of a folder but what is kept for the next build, by path.
+fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(inside) = folders.pop() {
+        for entry in fs::read_dir(inside).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path
+                .strip_prefix(folder)
+                .unwrap()
+                .to_str()
+                .unwrap()
+                .to_owned();
+            match path.is_dir() {
+                true if name == ".htex-build" => {}
+                true => folders.push(path),
+                false => drop(files.insert(name, fs::read(&path).unwrap())),
+            }
+        }
+    }
+    files
+}
+
+/// The same files with the same bytes, without printing these.
+fn assert_same(left: &BTreeMap<String, Vec<u8>>, right: &BTreeMap<String, Vec<u8>>) {
+    assert!(
+        left.keys().eq(right.keys()),
+        "{:?}, {:?}",
+        left.keys(),
+        right.keys()
+    );
+    for (name, bytes) in left {
+        assert!(right[name] == *bytes, "{name}");
+    }
+}
+
+fn entries(library: &Path) -> Vec<Entry> {
+    let library = Library::open(library).unwrap();
+    library.entries().map(Result::unwrap).collect()
+}
+
+fn build(place: &Place, output: &str, more: &[&str]) -> Value {
+    place.json(&[&["build", "library.toml", "-o", output, "--json"], more].concat())
+}
+
+/// One change after another: what it concerns is fitted again, and nothing else.
+#[test]
+fn what_changed_is_built_and_nothing_else() {
+    let place = place();
+    let first = build(&place, "dist", &[]);
+    assert_eq!(
+        (&first["fitted"], &first["textures"]),
+        (&6.into(), &6.into())
+    );
+    // `bands` keeps more surfaces below the threshold than two numbers do; what repeats is counted apart.
+    let shares = |model: &str| first["felt_shares"][format!("org.htex.{model}")].clone();
+    let below = |model: &str| shares(model)["below_difference_threshold"].as_u64();
+    assert!(below("bands") > below("sbeta"), "{}", first["felt_shares"]);
+    assert_eq!(shares("bands")["textures"], 6);
+    assert!(
+        shares("bands")["within_repeatability"].is_u64() && shares("bands")["either"].is_null()
+    );
+    let built = results(&place.path("dist"));
+    for file in [
+        "surfaces.htexlib",
+        "textures/vinyl/1.htex",
+        "sounds/vinyl/1.wav",
+        "build-report.json",
+        "index.html",
+    ] {
+        assert!(built.contains_key(file), "{file}: {:?}", built.keys());
+    }
+    let fitted_alone = place.run(&[
+        "fit",
+        "rec/vinyl_1.csv",
+        "--model",
+        "bands,sbeta",
+        "--speed",
+        "80",
+        "--force",
+        "0.4",
+        "-o",
+        "1.htex",
+        "--license",
+        "CC0-1.0",
+        "--tag",
+        "vinyl",
+    ]);
+    assert_eq!(fitted_alone.code(), 0, "{}", fitted_alone.error());
+    let alone = place.json(&["info", "1.htex", "--json"]);
+    let ours = place.json(&["info", "dist/textures/vinyl/1.htex", "--json"]);
+    assert_eq!(alone["representations"], ours["representations"]);
+
+    // Nothing changed; then only times did.
+    assert_eq!(build(&place, "dist", &[])["fitted"], 0);
+    age(&place.path("rec/vinyl_1.csv"), 30);
+    assert_eq!(build(&place, "dist", &[])["fitted"], 0);
+    assert_same(&results(&place.path("dist")), &built);
+
+    // A setting of two textures, a recording of one.
+    place.write(
+        "library.toml",
+        RECIPE.to_owned() + "\n[[overrides]]\ntextures = \"vinyl/*\"\nlevel = \"fitted\"\n",
+    );
+    assert_eq!(build(&place, "dist", &[])["fitted"], 2);
+    fs::copy(
+        place.path("rec/sandpaper_2.csv"),
+        place.path("rec/sandpaper_1.csv"),
+    )
+    .unwrap();
+    assert_eq!(build(&place, "dist", &[])["fitted"], 1);
+
+    // A gate concerns no fit; a texture that is gone takes its files along.
+    fs::remove_file(place.path("rec/fine-fabric_1.csv")).unwrap();
+    place.write(
+        "library.toml",
+        RECIPE.replace("min_segments = 1", "min_segments = 1\nmax_bytes = 5000"),
+    );
+    // The setting of two textures is taken back: what was fitted with it before is still there.
+    let last = build(&place, "dist", &[]);
+    assert_eq!((&last["fitted"], &last["textures"]), (&0.into(), &5.into()));
+    let files = results(&place.path("dist"));
+    assert!(
+        !files.contains_key("textures/fine-fabric/1.htex")
+            && !files.contains_key("sounds/fine-fabric/1.wav")
+    );
+}
+
+/// Metadata are laid over what was fitted; what no texture uses any more stays until it is pruned.
+#[test]
+fn metadata_fit_nothing_again() {
+    let place = place();
+    assert_eq!(build(&place, "dist", &[])["fitted"], 6);
+    let other = RECIPE
+        .replace("CC0-1.0", "CC-BY-4.0")
+        .replace("{surface}/{take}", "new/{surface}/{take}")
+        .replace("tags = ", "author = \"A. N. Other\"\ntags = ");
+    place.write("library.toml", &other);
+    let dry = build(&place, "dist", &["--dry-run"]);
+    assert_eq!(
+        (&dry["to_fit"], &dry["as_they_were"]),
+        (&serde_json::json!([]), &6.into())
+    );
+    assert_eq!(build(&place, "dist", &[])["fitted"], 0);
+    let info = place.json(&["info", "dist/textures/new/vinyl/1.htex", "--json"]);
+    assert_eq!(
+        (&info["license"], &info["name"]),
+        (&"CC-BY-4.0".into(), &"new/vinyl/1".into())
+    );
+    assert!(!place.path("dist/textures/vinyl").exists());
+    // As if nothing else had ever been built.
+    build(&place, "alone", &[]);
+    assert_same(
+        &results(&place.path("dist")),
+        &results(&place.path("alone")),
+    );
+    // Metadata that are left out leave nothing behind.
+    place.write(
+        "library.toml",
+        other.replace("author = \"A. N. Other\"\n", ""),
+    );
+    assert_eq!(build(&place, "dist", &[])["fitted"], 0);
+    assert!(place.json(&["info", "dist/textures/new/vinyl/1.htex", "--json"])["author"].is_null());
+    // An option that is taken back, before and after pruning.
+    let with_level = RECIPE.replace("models = ", "level = \"fitted\"\nmodels = ");
+    for (recipe, flags, fitted) in [
+        (&with_level[..], &[][..], 6),
+        (RECIPE, &[], 0),
+        (RECIPE, &["--prune"], 0),
+        (&with_level, &[], 6),
+    ] {
+        place.write("library.toml", recipe);
+        assert_eq!(build(&place, "dist", flags)["fitted"], fitted);
+    }
+    let made = fs::read_dir(place.path("dist/.htex-build/made")).unwrap();
+    assert_eq!(made.count(), 12);
+}
+
+/// A dry run checks what a build would, says why each texture would be fitted, and writes no result.
+#[test]
+fn a_dry_run_checks_and_says_why() {
+    let place = place();
+    let why = |output: &str| -> BTreeMap<String, String> {
+        let dry = build(&place, output, &["--dry-run"]);
+        let text = |value: &Value| value.as_str().unwrap().to_owned();
+        let listed = dry["to_fit"].as_array().unwrap().iter();
+        listed
+            .map(|one| (text(&one["texture"]), text(&one["why"])))
+            .collect()
+    };
+    let new = why("dist");
+    assert!(
+        new.len() == 6 && new.values().all(|why| why == "new"),
+        "{new:?}"
+    );
+    assert!(!place.path("dist/surfaces.htexlib").exists());
+    let run = place.run(&["build", "library.toml", "-o", "dist", "--dry-run"]);
+    assert!(
+        run.text()
+            .contains("6 textures: 6 to fit from 6 recordings"),
+        "{}",
+        run.text()
+    );
+    build(&place, "dist", &[]);
+    assert_eq!(why("dist"), BTreeMap::new());
+    place.write(
+        "library.toml",
+        RECIPE.to_owned() + "[[overrides]]\ntextures = \"vinyl/1\"\nlevel = \"fitted\"\n",
+    );
+    fs::copy(
+        place.path("rec/sandpaper_2.csv"),
+        place.path("rec/sandpaper_1.csv"),
+    )
+    .unwrap();
+    let changed = why("dist");
+    assert_eq!(changed["vinyl/1"], "changed: options");
+    // The same contents under another name are another recording.
+    assert_eq!(changed["sandpaper/1"], "changed: recordings");
+    assert_eq!(changed.len(), 2);
+    for (from, to, said) in [
+        (
+            "models = [\"bands\"",
+            "options.bands.order = 3\nmodels = [\"bands\"",
+            "order",
+        ),
+        ("models = [\"bands\"", "models = [\"spline\"", "spline"),
+        (
+            "min_segments = 1",
+            "max_band_error_db = { ar = 1 }",
+            "gates.max_band_error_db: ar is not fitted",
+        ),
+        (
+            "min_segments = 1",
+            "max_band_error_db = -1",
+            "which no texture meets",
+        ),
+        (
+            "name = \"surfaces\"",
+            "name = \"surfaces\"\nplugins = [\"none.wasm\"]",
+            "none.wasm",
+        ),
+    ] {
+        place.write("library.toml", RECIPE.replace(from, to));
+        for arguments in [
+            &["build", "library.toml", "-o", "dist", "--dry-run"][..],
+            &["validate", "library.toml"],
+        ] {
+            let run = place.run(arguments);
+            let all = run.text() + &run.error();
+            assert!(
+                run.code() == 1 && all.contains(said),
+                "{arguments:?} {to}: {all}"
+            );
+        }
+        // A failure is JSON, too, where that is asked for.
+        let run = place.run(&["build", "library.toml", "-o", "dist", "--dry-run", "--json"]);
+        let error: Value = serde_json::from_str(&run.text()).unwrap();
+        assert!(
+            error["error"]
+                .to_string()
+                .contains(said.split('"').next().unwrap()),
+            "{error}"
+        );
+    }
+    place.write("library.toml", RECIPE);
+    let run = place.run(&["validate", "library.toml"]);
+    assert!(
+        run.code() == 0 && run.text().contains("library.toml: valid"),
+        "{}",
+        run.text()
+    );
+}
+
+/// Globs lead out of the recipe's folder, and links that lead nowhere stop nothing.
+#[cfg(unix)]
+#[test]
+fn globs_find_what_they_say_wherever_it_is() {
+    use std::os::unix::fs::symlink;
+    let place = place();
+    fs::create_dir_all(place.path("recipes/rec")).unwrap();
+    for link in [
+        "recipes/nowhere",
+        "recipes/rec/nowhere.csv",
+        "rec/nowhere.csv",
+    ] {
+        symlink("/nowhere", place.path(link)).unwrap();
+    }
+    symlink("..", place.path("recipes/loop")).unwrap();
+    fs::copy(
+        place.path("rec/vinyl_1.csv"),
+        place.path("recipes/rec/vinyl_1.csv"),
+    )
+    .unwrap();
+    let absolute = place.path("rec").canonicalize().unwrap();
+    let absolute = absolute.display();
+    for (glob, textures) in [
+        ("../rec/*.csv".to_owned(), 6),
+        ("../rec/vinyl_{1,2}.csv".to_owned(), 2),
+        ("../**/sandpaper_1.csv".to_owned(), 1),
+        ("rec/../../rec/vinyl_*.csv".to_owned(), 2),
+        (format!("{absolute}/*.csv"), 6),
+        (format!("{absolute}/vinyl_1.csv"), 1),
+        (format!("file://{absolute}/*_1.csv"), 3),
+        ("rec/*.csv".to_owned(), 1),
+    ] {
+        place.write("recipes/library.toml", RECIPE.replace("rec/*.csv", &glob));
+        let run = place.run(&[
+            "build",
+            "recipes/library.toml",
+            "-o",
+            "dist",
+            "--dry-run",
+            "--json",
+        ]);
+        assert_eq!(run.code(), 0, "{glob}: {}", run.error());
+        let dry: Value = serde_json::from_str(&run.text()).unwrap();
+        assert_eq!(dry["textures"], textures, "{glob}");
+    }
+}
+
+/// Recordings of one texture with one file name are told apart, in reports by their folders and in the asset by their hashes.
+#[test]
+fn an_asset_has_the_name_and_the_hash_of_each_recording() {
+    let place = place();
+    for day in ["monday", "tuesday"] {
+        fs::create_dir_all(place.path(&format!("days/{day}/take"))).unwrap();
+        let from = if day == "monday" {
+            "rec/vinyl_1.csv"
+        } else {
+            "rec/vinyl_2.csv"
+        };
+        fs::copy(
+            place.path(from),
+            place.path(&format!("days/{day}/take/a.csv")),
+        )
+        .unwrap();
+    }
+    let recipe = "[library]\nname = \"days\"\n[[textures]]\nrecordings = \"days/**/*.csv\"\nname = \"one\"\nmodels = [\"bands\"]\n\
+                  at = { speed_mm_s = 80, force_n = 0.4 }\n";
+    place.write("library.toml", recipe);
+    build(&place, "dist", &[]);
+    let asset = htex_format::Asset::open(&place.path("dist/textures/one.htex")).unwrap();
+    let sources = &asset.manifest.provenance.recordings;
+    let names: Vec<&str> = sources.iter().map(|source| &source.file[..]).collect();
+    assert_eq!(names, ["a.csv", "a.csv"]);
+    for (source, file) in sources.iter().zip(["rec/vinyl_1.csv", "rec/vinyl_2.csv"]) {
+        let hash = blake3::hash(&fs::read(place.path(file)).unwrap()).to_hex();
+        assert_eq!(source.blake3.as_deref(), Some(hash.as_str()));
+    }
+    let report: Value =
+        serde_json::from_slice(&fs::read(place.path("dist/build-report.json")).unwrap()).unwrap();
+    assert_eq!(
+        report["textures"][0]["recordings"][1]["file"],
+        "tuesday/take/a.csv"
+    );
+}
+
+/// The same bytes with one job and with three, in another folder, and after a result was damaged.
+#[test]
+fn the_bytes_do_not_depend_on_jobs_folder_or_order() {
+    let place = place();
+    build(&place, "one", &["--jobs", "1"]);
+    build(&place, "three", &["--jobs", "3"]);
+    let expected = results(&place.path("one"));
+    assert_same(&results(&place.path("three")), &expected);
+    let kept = fs::read_dir(place.path("one/.htex-build/made")).unwrap();
+    let kept = kept.map(|entry| entry.unwrap().path()).next().unwrap();
+    let mut bytes = fs::read(&kept).unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    fs::write(&kept, bytes).unwrap();
+    fs::write(place.path("one/textures/vinyl/1.htex"), b"edited").unwrap();
+    fs::write(place.path("one/surfaces.htexlib"), b"edited").unwrap();
+    assert_eq!(build(&place, "one", &[])["fitted"], 1);
+    assert_same(&results(&place.path("one")), &expected);
+    let entries = entries(&place.path("one/surfaces.htexlib"));
+    let names: Vec<&str> = entries.iter().map(|entry| &entry.name[..]).collect();
+    let sorted = [
+        "fine-fabric/1",
+        "fine-fabric/2",
+        "sandpaper/1",
+        "sandpaper/2",
+        "vinyl/1",
+        "vinyl/2",
+    ];
+    assert_eq!(names, sorted);
+}
+
+/// Killed at moments over the length of a build, then run again: as if nothing had happened.
+#[cfg(unix)]
+#[test]
+fn a_killed_build_goes_on_to_the_same_bytes() {
+    let place = place();
+    let start = std::time::Instant::now();
+    build(&place, "whole", &["--jobs", "2"]);
+    let whole = start.elapsed();
+    for kill in 1..=20 {
+        let build = ["build", "library.toml", "-o", "killed", "--jobs", "2"];
+        let mut child = place
+            .command(&build)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        // Moments that are spread over the build by a number that has no period with it.
+        let part = (f64::from(kill) * 0.618).fract();
+        std::thread::sleep(whole.mul_f64(part));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if kill % 4 == 0 {
+            fs::remove_dir_all(place.path("killed/.htex-build/made")).unwrap();
+        }
+    }
+    build(&place, "killed", &[]);
+    assert_same(
+        &results(&place.path("killed")),
+        &results(&place.path("whole")),
+    );
+}
+
+/// What misses a gate is left out with a reason, what cannot be fitted stops the build or is left out; the others stand.
+#[test]
+fn what_fails_is_reported_and_the_others_stand() {
+    let place = place();
+    place.write(
+        "library.toml",
+        RECIPE.replace("min_segments = 1", "max_band_error_db = { sbeta = 0.01 }"),
+    );
+    let run = place.run(&["build", "library.toml", "-o", "dist", "--json"]);
+    assert_eq!(run.code(), 1, "{}", run.error());
+    let summary: Value = serde_json::from_str(&run.text()).unwrap();
+    assert_eq!(
+        (
+            &summary["textures"],
+            summary["left_out"].as_array().unwrap().len()
+        ),
+        (&0.into(), 6)
+    );
+    assert_eq!(
+        summary["left_out"][0]["missed"][0]["gate"],
+        "max_band_error_db"
+    );
+
+    place.write("library.toml", RECIPE);
+    place.write("rec/broken_1.csv", "t_s,lateral_n\n0,1\n0.1,zero\n");
+    let run = place.run(&["build", "library.toml", "-o", "dist"]);
+    assert_eq!(run.code(), 1);
+    assert!(
+        run.error().contains("broken/1") && run.error().contains("zero"),
+        "{}",
+        run.error()
+    );
+    let run = place.run(&["build", "library.toml", "-o", "dist", "--keep-going"]);
+    assert_eq!(run.code(), 3, "{}", run.error());
+    assert!(
+        run.text().contains("left out: broken/1: fit: broken_1.csv"),
+        "{}",
+        run.text()
+    );
+    assert_eq!(entries(&place.path("dist/surfaces.htexlib")).len(), 6);
+    let report: Value =
+        serde_json::from_slice(&fs::read(place.path("dist/build-report.json")).unwrap()).unwrap();
+    let left_out: Vec<&Value> = report["textures"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|t| t["status"] == "left_out")
+        .collect();
+    assert_eq!(
+        (left_out.len(), &left_out[0]["name"]),
+        (1, &"broken/1".into())
+    );
+}
+
+/// Cuts the lateral force of a recording off at 60 % of its largest value.
+fn clip(file: &Path) {
+    let text = fs::read_to_string(file).unwrap();
+    let (head, rows): (Vec<&str>, Vec<&str>) = text
+        .lines()
+        .partition(|line| !line.starts_with(|c: char| c.is_ascii_digit()));
+    let cells: Vec<Vec<f64>> = rows
+        .iter()
+        .map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let most = cells.iter().map(|row| row[1].abs()).fold(0.0, f64::max);
+    let clipped = cells.iter().map(|row| {
+        let mut row = row.clone();
+        row[1] = row[1].clamp(-0.6 * most, 0.6 * most);
+        row.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+    });
+    let lines: Vec<String> = head
+        .iter()
+        .map(ToString::to_string)
+        .chain(clipped)
+        .collect();
+    fs::write(file, lines.join("\n")).unwrap();
+    age(file, 60);
+}
+
+/// Recordings that clip are counted by the code of their finding wherever a build is told of, and gates leave them out.
+#[test]
+fn findings_are_counted_by_code_and_denied_by_gates() {
+    let place = place();
+    for name in ["vinyl_1", "sandpaper_2"] {
+        clip(&place.path(&format!("rec/{name}.csv")));
+    }
+    let run = place.run(&["build", "library.toml", "-o", "dist"]);
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let line = "RECORDING_CLIPPED (error): 2 textures, 2 in the library: sandpaper/2, vinyl/1\n";
+    assert!(run.text().contains(line), "{}", run.text());
+    let again = build(&place, "dist", &[]);
+    let clipped = &again["findings"]["RECORDING_CLIPPED"];
+    assert_eq!(
+        *clipped,
+        serde_json::json!({
+            "severity": "error", "textures": 2, "in_library": 2, "first": ["sandpaper/2", "vinyl/1"],
+        })
+    );
+    let report = |folder: &str| -> Value {
+        let file = place.path(folder).join("build-report.json");
+        serde_json::from_slice(&fs::read(file).unwrap()).unwrap()
+    };
+    let report_of_first = report("dist");
+    assert_eq!(report_of_first["findings"], again["findings"]);
+    let own = &report_of_first["textures"][3]["asset"]["findings"];
+    assert_eq!(report_of_first["textures"][3]["name"], "sandpaper/2");
+    assert!(
+        own.to_string()
+            .contains("\"recordings\":[\"sandpaper_2.csv\"]"),
+        "{own}"
+    );
+    let page = fs::read_to_string(place.path("dist/index.html")).unwrap();
+    assert!(
+        page.contains("\"code\":\"RECORDING_CLIPPED\""),
+        "the catalogue has it"
+    );
+    // Another gate fits nothing again.
+    let gated = |gate: &str| {
+        place.write("library.toml", RECIPE.replace("min_segments = 1", gate));
+        let run = place.run(&["build", "library.toml", "-o", "dist", "--json"]);
+        let built: Value = serde_json::from_str(&run.text()).unwrap();
+        let left_out = built["left_out"].as_array().unwrap().clone();
+        // Some are left out, or all.
+        let code = if left_out.len() == 6 { 1 } else { 3 };
+        assert_eq!((run.code(), &built["fitted"]), (code, &0.into()), "{built}");
+        left_out
+    };
+    let left_out = gated("deny = [\"RECORDING_CLIPPED\"]");
+    let names: Vec<&Value> = left_out.iter().map(|texture| &texture["name"]).collect();
+    assert_eq!(names, ["sandpaper/2", "vinyl/1"]);
+    let reason = left_out[0]["missed"][0]["reason"].as_str().unwrap();
+    assert!(
+        left_out[0]["missed"][0]["gate"] == "deny"
+            && reason.starts_with("RECORDING_CLIPPED (sandpaper_2.csv): "),
+        "{reason}"
+    );
+    assert_eq!(
+        report("dist")["findings"]["RECORDING_CLIPPED"]["in_library"],
+        0
+    );
+    for (gate, value) in [
+        ("max_repeatability_db", "0.001"),
+        ("max_felt_error_db", "0.001"),
+        ("max_felt_error_db", "{ sbeta = 0.001 }"),
+    ] {
+        let left_out = gated(&format!("{gate} = {value}"));
+        assert_eq!(left_out.len(), 6, "{gate}");
+        assert_eq!(left_out[0]["missed"][0]["gate"], gate);
+    }
+}
+
+/// An error that ends a build is in the report, beside what an earlier build left; the next build is as if it had not been.
+#[test]
+fn an_error_that_ends_a_build_is_in_its_report() {
+    let place = place();
+    let report = || -> Value {
+        let report = fs::read(place.path("dist/build-report.json")).unwrap();
+        serde_json::from_slice(&report).unwrap()
+    };
+    let failed = |output: &str| {
+        let run = place.run(&["build", "library.toml", "-o", output, "--json"]);
+        assert_eq!(run.code(), 1, "{}", run.error());
+        serde_json::from_str::<Value>(&run.text()).unwrap()["error"].clone()
+    };
+    place.write("library.toml", "[library\nname = 1\n");
+    failed("dist");
+    assert!(!place.path("dist").exists(), "no build has begun");
+
+    place.write("library.toml", RECIPE.replace("\"sbeta\"", "\"spline\""));
+    let error = failed("dist");
+    assert_eq!(report()["error"], error);
+    assert!(error[0].as_str().unwrap().contains("spline"), "{error}");
+    assert_eq!(report()["textures"], Value::Array(Vec::new()));
+
+    place.write("library.toml", RECIPE);
+    build(&place, "dist", &[]);
+    let whole = report();
+    assert!(whole.get("error").is_none());
+    place.write("rec/broken_1.csv", "t_s,lateral_n\n0,1\n0.1,zero\n");
+    let error = failed("dist");
+    assert!(error[0].as_str().unwrap().contains("broken/1"), "{error}");
+    let mut after = report();
+    assert_eq!(after["error"], error);
+    after.as_object_mut().unwrap().remove("error");
+    assert_eq!(after, whole);
+
+    place.write("library.toml", "[library\nname = 1\n");
+    let before = report();
+    let dry = place.run(&["build", "library.toml", "-o", "dist", "--dry-run"]);
+    assert_eq!((dry.code(), report()), (1, before));
+    let error = failed("dist");
+    assert_eq!(report()["error"], error);
+    assert!(error.as_array().unwrap().len() > 1, "its lines: {error}");
+
+    let fewer = RECIPE.replace("rec/*.csv", "rec/vinyl_*.csv");
+    place.write("library.toml", fewer);
+    build(&place, "dist", &[]);
+    assert!(report().get("error").is_none());
+    assert!(!place.path("dist/textures/sandpaper/1.htex").exists());
+}
+
+/// Wrong recipes say where and what, and make no library.
+#[test]
+fn wrong_recipes_say_where() {
+    let place = place();
+    let cases = [
+        ("models = [\"bands\"", "modles = [\"bands\"", "modles"),
+        (
+            "[[textures]]",
+            "[defaults]\nlicence = \"CC-BY-4.0\"\n[[textures]]",
+            "library.toml: line 6: there is no key `defaults.licence`; did you mean `license`?",
+        ),
+        ("rec/*.csv", "rec/*.tdms", "no file matches rec/*.tdms"),
+        (
+            "{surface}/{take}",
+            "{surfce}",
+            "nothing is called `surfce`; there are file, folder, stem, surface, take",
+        ),
+        (
+            "{surface}/{take}",
+            "../{stem}",
+            "textures[0].name: a part of it is empty, `.` or `..`",
+        ),
+        ("(?<take>", "(?<take", "textures[0].pattern"),
+        ("(?<surface>[a-z-]+)", "(?<surface>x)", "does not match"),
+        ("CC0-1.0", "free for all", "license"),
+        (
+            "speed_mm_s = 80",
+            "speed_mm_s = \"{surface}\"",
+            "speed_mm_s is `fine-fabric`; it is a number",
+        ),
+        (
+            "[textures.gates]",
+            "[[overrides]]\ntextures = \"vynil/*\"\n[overrides.gates]",
+            "no texture has such a name",
+        ),
+        ("\"sbeta\"", "\"spline\"", "spline"),
+        (
+            "min_segments = 1",
+            "deny = [\"RECORDING_CLIPED\"]",
+            "gates.deny: no recording of an asset has a finding RECORDING_CLIPED; there are RECORDING_CLOCK_GAP",
+        ),
+    ];
+    for (from, to, expected) in cases {
+        place.write("library.toml", RECIPE.replace(from, to));
+        let run = place.run(&["build", "library.toml", "-o", "dist"]);
+        assert!(matches!(run.code(), 1 | 2), "{to}");
+        assert!(run.error().contains(expected), "{to}: {}", run.error());
+        assert!(!place.path("dist/surfaces.htexlib").exists(), "{to}");
+    }
+}
+
+/// A table names recordings, conditions and fields.
+#[test]
+fn a_table_says_what_files_do_not() {
+    let place = place();
+    let table = "recording,name,speed_mm_s,force_n,price\nrec/vinyl_1.csv,A,80,0.4,cheap\nrec/vinyl_2.csv,A,160,0.4,cheap\n\
+                 rec/sandpaper_1.csv,B,80,0.4,dear\n";
+    place.write("recordings.csv", table);
+    let recipe = "[library]\nname = \"t\"\n[[textures]]\ntable = \"recordings.csv\"\nmodels = [\"bands\"]\ntags = [\"{price}\"]\n";
+    place.write("library.toml", recipe);
+    let run = place.run(&["build", "library.toml", "-o", "dist"]);
+    // The simulated finger moves at 80 mm/s: a recording that is said to be at 160 has no segment there.
+    assert_eq!(run.code(), 1);
+    assert!(
+        run.error().contains("vinyl_2.csv") && run.error().contains("160"),
+        "{}",
+        run.error()
+    );
+    place.write("recordings.csv", table.replace("160", "80"));
+    build(&place, "dist", &[]);
+    let entries = entries(&place.path("dist/t.htexlib"));
+    assert_eq!(
+        (&entries[0].name[..], &entries[1].tags[0][..]),
+        ("A", "dear")
+    );
+    let recordings = place.json(&["info", "dist/textures/A.htex", "--json"]);
+    assert_eq!(recordings["conditions"].as_array().unwrap().len(), 1);
+}

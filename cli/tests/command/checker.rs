@@ -1,0 +1,258 @@
+//! The checker of models: valid models pass, and each faulty one fails the right check; with more seeds and all
+//! checks by `cargo xtask prove models`.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use htex_check::{CHECKS, Options, Outcome, Report, Runner, check, run_one};
+use htex_host::Registry;
+
+/// A fault of `tests/bad-plugins/bad.c`, and the check that must fail.
+const FAULTS: &[(&str, &str, Outcome)] = &[
+    ("MARKER", "marker", Outcome::Failed),
+    ("EXPORT_MISSING", "exports", Outcome::Failed),
+    ("EXTENSION_MISSING", "exports", Outcome::Failed),
+    ("MOTION_MISSING", "exports", Outcome::Failed),
+    ("DESCRIPTOR_JSON", "descriptor", Outcome::Failed),
+    ("DESCRIPTOR_DEFAULT", "descriptor", Outcome::Failed),
+    ("EXTENSIONS", "extensions", Outcome::Failed),
+    ("FIT_CRASHES", "fit", Outcome::Crashed),
+    ("FIT_RANGE", "fit", Outcome::Failed),
+    ("FIT_HARD", "fit-hard", Outcome::Crashed),
+    ("STORE", "parameters", Outcome::Failed),
+    ("MAGNITUDE_NAN", "magnitude", Outcome::Failed),
+    ("MAGNITUDE_NEGATIVE", "magnitude", Outcome::Failed),
+    ("MAGNITUDE_OUTSIDE", "magnitude", Outcome::Failed),
+    ("MAGNITUDE_GRID", "magnitude-grid", Outcome::Failed),
+    ("RENDER_LOOPS", "render", Outcome::TimedOut),
+    ("RENDER_CRASHES", "render", Outcome::Crashed),
+    // The host refuses NaN and infinite samples, from the first block on.
+    ("NOT_FINITE", "render", Outcome::Failed),
+    ("SUBNORMAL", "samples", Outcome::Failed),
+    ("LEVEL", "level", Outcome::Failed),
+    ("MAGNITUDE_LEVEL", "level", Outcome::Failed),
+    ("SPECTRUM", "spectrum", Outcome::Failed),
+    ("BAND_IGNORED", "narrow-band", Outcome::Failed),
+    ("NOT_REPRODUCIBLE", "reproducible", Outcome::Failed),
+    ("BLOCKS", "blocks", Outcome::Failed),
+    ("SEED_IGNORED", "seeds", Outcome::Failed),
+    ("SHARED_STATE", "voices-apart", Outcome::Failed),
+    ("TOGETHER", "voices-together", Outcome::Failed),
+    ("FREED_HANDLE", "handles", Outcome::Failed),
+    ("CLICK", "retune", Outcome::Failed),
+    ("RETUNE_IGNORED", "retune-follows", Outcome::Failed),
+    ("INTERPOLATE_ENDS", "interpolate", Outcome::Failed),
+    ("ACCEPTS_NAN", "bad-parameters", Outcome::Failed),
+    ("ACCEPTS_BAND", "bad-band", Outcome::Failed),
+    ("ACCEPTS_RATE", "bad-rate", Outcome::Failed),
+    #[cfg(target_os = "linux")]
+    ("RENDER_ALLOCATES", "allocation", Outcome::Failed),
+    #[cfg(target_os = "linux")]
+    ("RETUNE_ALLOCATES", "allocation", Outcome::Failed),
+    ("ACCEPTS_MOTION", "motion", Outcome::Failed),
+    ("ACCEPTS_PLACE", "motion", Outcome::Failed),
+    ("MOTION_BLOCKS", "motion", Outcome::Failed),
+    #[cfg(target_os = "linux")]
+    ("MOTION_ALLOCATES", "motion", Outcome::Failed),
+    ("LEAK", "memory", Outcome::Failed),
+    ("VOICES_LEAK", "memory", Outcome::Failed),
+];
+
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Cargo's build folder for these tests.
+fn built() -> &'static Path {
+    Path::new(env!("CARGO_BIN_EXE_htex")).parent().unwrap()
+}
+
+/// A model as a native library, built where these tests are built.
+fn library(model: &str) -> PathBuf {
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo
+        .args(["rustc", "--quiet", "--lib", "--features", "plugin"])
+        .args(["--crate-type", "cdylib", "--package"])
+        .arg(format!("htex-{model}"))
+        .arg("--target-dir")
+        .arg(built().parent().unwrap())
+        .current_dir(workspace());
+    if built().ends_with("release") {
+        cargo.arg("--release");
+    }
+    assert!(cargo.status().unwrap().success(), "{model} does not build");
+    let suffix = std::env::consts::DLL_SUFFIX;
+    built().join(format!("libhtex_{model}{suffix}"))
+}
+
+/// Compiles the faulty model with a fault, or without, around a valid library.
+fn bad(folder: &Path, good: &Path, fault: &str) -> PathBuf {
+    let out = folder.join(format!("bad-{fault}{}", std::env::consts::DLL_SUFFIX));
+    let status = Command::new("cc")
+        .args([
+            "-std=gnu11",
+            "-O1",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            "-shared",
+            "-fPIC",
+        ])
+        .args(["-Wno-unused-parameter", "-Wno-unused-variable"])
+        .arg(format!("-DFAULT_{fault}"))
+        .arg(format!("-DGOOD_LIBRARY=\"{}\"", good.display()))
+        .arg("-I")
+        .arg(workspace().join("spec/include"))
+        .arg(workspace().join("tests/bad-plugins/bad.c"))
+        .args(["-o".as_ref(), out.as_os_str()])
+        .args(["-ldl", "-lm"])
+        .status();
+    assert!(status.unwrap().success(), "{fault} does not compile");
+    out
+}
+
+fn checked(file: &Path, timeout_s: u64) -> Report {
+    check_some(file, timeout_s, 3, None)
+}
+
+/// The checks of sounds with more seeds: a level or spectrum with a small error fails with some.
+fn checked_by_seeds(file: &Path) {
+    let sounds = ["level", "spectrum", "narrow-band"].map(String::from);
+    let seeds: &[u64] = match xtask::prove::whole() {
+        true => &[0, 1, 2, u64::MAX],
+        false => &[u64::MAX],
+    };
+    for &seed in seeds {
+        let report = check_some(file, 120, seed, Some(sounds.to_vec()));
+        assert!(report.ok, "seed {seed}: {}", report);
+    }
+}
+
+fn check_some(file: &Path, timeout_s: u64, seed: u64, only: Option<Vec<String>>) -> Report {
+    let options = Options {
+        runner: Runner {
+            program: env!("CARGO_BIN_EXE_htex").into(),
+            arguments: vec!["plugin".into(), "check-one".into()],
+            timeout: Duration::from_secs(timeout_s),
+        },
+        seed,
+        only,
+        against: None,
+    };
+    check(file, &options).unwrap()
+}
+
+#[test]
+fn sound_models_pass() {
+    for model in Registry::builtin_names() {
+        let file = library(model);
+        checked_by_seeds(&file);
+        let report = checked(&file, 120);
+        println!("{report}");
+        assert!(report.ok, "{}", report);
+        // The only check that is skipped for a model without a twin beside it.
+        assert_eq!(report.count(Outcome::Skipped), 1, "{}", report);
+    }
+}
+
+#[test]
+fn sound_modules_pass_too() {
+    let Some(folder) = xtask::plugins::wasm_if_there() else {
+        return;
+    };
+    // Their native twins, which they are compared with, are of the same sources.
+    xtask::plugins::native().unwrap();
+    for model in Registry::builtin_names() {
+        let file = folder.join(format!("htex_{model}.wasm"));
+        // The native libraries, which are of the same sources, are checked with other seeds above.
+        if xtask::prove::whole() {
+            checked_by_seeds(&file);
+        }
+        let report = checked(&file, 120);
+        println!("{report}");
+        assert!(report.ok, "{}", report);
+    }
+}
+
+#[test]
+fn each_fault_is_found_by_its_own_check() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = library("sbeta");
+    let sound = checked(&bad(folder.path(), &good, "NONE"), 120);
+    assert!(sound.ok, "without a fault: {}", sound);
+    for (fault, name, outcome) in FAULTS {
+        let file = bad(folder.path(), &good, fault);
+        let timeout_s = if *outcome == Outcome::TimedOut {
+            5
+        } else {
+            120
+        };
+        // That no other check fails, too, is proved by all of them.
+        let only = (!xtask::prove::whole()).then(|| vec![(*name).to_owned()]);
+        let report = check_some(&file, timeout_s, 3, only);
+        assert_eq!(report.bad(), [*name], "{fault}: {}", report);
+        let found = report.checks.iter().find(|c| c.check == *name).unwrap();
+        println!("{fault:20} {name:15} {}", found.finding.message);
+        assert_eq!(found.finding.outcome, *outcome, "{fault}");
+    }
+    let unbroken = CHECKS
+        .iter()
+        .filter(|c| cfg!(target_os = "linux") || c.name != "allocation")
+        .filter(|c| !FAULTS.iter().any(|(_, name, _)| name == &c.name));
+    let unbroken: Vec<&str> = unbroken.map(|check| check.name).collect();
+    // A twin needs two models; a cost is only ever a warning.
+    assert_eq!(unbroken, ["cost", "twin"]);
+}
+
+/// A module that takes memory while it renders, from C; `None` where there is no compiler for it.
+fn growing_module(folder: &Path) -> Option<PathBuf> {
+    let runs = |program| Command::new(program).arg("--version").output().is_ok();
+    if !(runs("clang") && runs("wasm-ld")) {
+        return None;
+    }
+    let out = folder.join("grows.wasm");
+    let status = Command::new("clang")
+        .args(["--target=wasm32", "-std=c11", "-O2", "-Wall", "-Werror"])
+        .args([
+            "-ffp-contract=off",
+            "-fno-math-errno",
+            "-fvisibility=hidden",
+        ])
+        .args(["-ffreestanding", "-nostdlib", "-Wl,--no-entry"])
+        .arg("-I")
+        .arg(workspace().join("spec/include"))
+        .arg("-I")
+        .arg(workspace().join("sdk/check/templates/c"))
+        .arg(workspace().join("tests/bad-plugins/grows.c"))
+        .args(["-o".as_ref(), out.as_os_str()])
+        .status();
+    assert!(status.unwrap().success(), "grows.c does not compile");
+    Some(out)
+}
+
+#[test]
+fn a_module_that_takes_memory_while_it_renders_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(file) = growing_module(folder.path()) else {
+        println!("skipped: clang and lld are not installed");
+        return;
+    };
+    let report = checked(&file, 120);
+    println!("{report}");
+    assert_eq!(report.bad(), ["allocation"], "{}", report);
+}
+
+#[test]
+fn twins_must_agree() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = library("sbeta");
+    let seeded = bad(folder.path(), &good, "SEED_IGNORED");
+    let twin = |other: &Path| run_one(&good, "twin", 3, Some(other)).unwrap();
+    assert_eq!(
+        twin(&bad(folder.path(), &good, "NONE")).outcome,
+        Outcome::Passed
+    );
+    assert_eq!(twin(&seeded).outcome, Outcome::Failed);
+    assert_eq!(twin(Path::new("no-such-file.so")).outcome, Outcome::Failed);
+}

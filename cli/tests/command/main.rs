@@ -1,0 +1,54 @@
+//! The command as a user runs it, on files. One program, in which tests that wait leave room to others.
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+
+#[path = "../common/browser.rs"]
+mod browser;
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bake;
+mod build;
+#[cfg(all(feature = "build", feature = "cloud"))]
+mod build_elsewhere;
+mod by_hand;
+mod catalogue;
+#[cfg(unix)]
+mod checker;
+mod embed;
+mod fit;
+mod flags;
+mod gain;
+mod grid;
+mod lab;
+mod library;
+#[cfg(target_os = "linux")]
+mod memory;
+mod metadata;
+#[cfg(target_os = "linux")]
+mod modules;
+#[cfg(unix)]
+mod new_plugin;
+mod outputs;
+mod play;
+#[cfg(unix)]
+mod plugins;
+mod printed;
+#[cfg(feature = "lab")]
+mod python_settings;
+mod quantities;
+#[cfg(all(target_os = "linux", feature = "build"))]
+mod random_recipes;
+mod readme;
+mod recording_findings;
+mod recordings;
+#[cfg(feature = "lab")]
+mod response;
+mod rigs;
+mod scene;
+#[cfg(feature = "cloud")]
+mod storage;
+#[cfg(all(unix, feature = "build"))]
+mod strangers;
+mod tradeoff;
+mod triangles;
+mod validate;

@@ -1,0 +1,205 @@
+//! Metadata in `fit` and `edit`: it is stored, shown and checked, and nothing else of an asset changes.
+
+use std::collections::BTreeMap;
+use std::io::Read;
+use std::path::Path;
+
+use crate::common::Place;
+use serde_json::Value;
+
+const METADATA: [&str; 16] = [
+    "--name",
+    "Coarse cloth",
+    "--author",
+    "A. Uthor",
+    "--license",
+    "CC-BY-4.0",
+    "--description",
+    "plain weave, 12 threads per cm",
+    "--tag",
+    "cloth,coarse",
+    "--source",
+    "Example University",
+    "--doi",
+    "10.5281/zenodo.1234567",
+    "--sensor",
+    "six-axis force sensor",
+];
+
+/// The entries of an asset, unpacked.
+fn entries(file: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut archive = zip::ZipArchive::new(std::fs::File::open(file).unwrap()).unwrap();
+    let mut entries = BTreeMap::new();
+    for i in 0..archive.len() {
+        let mut entry = archive.by_index(i).unwrap();
+        let mut bytes = Vec::new();
+        entry.read_to_end(&mut bytes).unwrap();
+        entries.insert(entry.name().unwrap().into_owned(), bytes);
+    }
+    entries
+}
+
+fn manifest(entries: &BTreeMap<String, Vec<u8>>) -> Value {
+    serde_json::from_slice(&entries["manifest.json"]).unwrap()
+}
+
+/// Assets with a signed model, recorded spectra, packed parameters and extensions keep all of it.
+#[test]
+fn an_edit_changes_the_metadata_alone() {
+    let spec = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/conformance");
+    for name in [
+        "valid_plugin",
+        "valid_reference",
+        "valid_packed",
+        "valid_extension",
+        "valid_five_models",
+        "valid_newer_minor",
+    ] {
+        let place = Place::new();
+        let file = format!("{name}.htex");
+        let original = std::fs::read(format!("{spec}/{file}")).unwrap();
+        place.write(&file, &original);
+        let edit = [&["edit", &file, "-o", "e.htex"], &METADATA[..]].concat();
+        let run = place.run(&edit);
+        assert_eq!(run.code(), 0, "{name}: {}", run.error());
+        assert_eq!(std::fs::read(place.path(&file)).unwrap(), original);
+
+        let (mut before, mut after) = (entries(&place.path(&file)), entries(&place.path("e.htex")));
+        let (mut was, mut is) = (manifest(&before), manifest(&after));
+        assert_eq!(is["doi"], "10.5281/zenodo.1234567");
+        assert_eq!(is["tags"], serde_json::json!(["cloth", "coarse"]));
+        for key in METADATA.iter().step_by(2).map(|flag| &flag[2..]) {
+            let key = if key == "tag" { "tags" } else { key };
+            for manifest in [&mut was, &mut is] {
+                manifest.as_object_mut().unwrap().remove(key);
+            }
+        }
+        assert_eq!(was, is, "{name}");
+        before.remove("manifest.json");
+        after.remove("manifest.json");
+        assert_eq!(before, after, "{name}");
+        let valid = place.json(&["validate", "e.htex", "--json"]);
+        assert_eq!(valid[0]["valid"], true, "{valid}");
+    }
+}
+
+/// Content that this version would not write again is not lost silently.
+#[test]
+fn an_edit_that_would_lose_something_is_refused() {
+    let spec = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/conformance");
+    let place = Place::new();
+    for (name, words) in [
+        ("entry_unreferenced", "does not refer to the entry"),
+        ("json_unknown_key_inside", "the key /"),
+        ("valid_newer_store", "the key /representations/0/fields/"),
+    ] {
+        let original = std::fs::read(format!("{spec}/{name}.htex")).unwrap();
+        place.write("u.htex", &original);
+        let run = place.run(&["edit", "u.htex", "--author", "A"]);
+        assert_eq!(run.code(), 1, "{name}");
+        assert!(run.error().contains(words), "{name}: {}", run.error());
+        assert_eq!(std::fs::read(place.path("u.htex")).unwrap(), original);
+    }
+}
+
+#[test]
+fn metadata_is_fitted_shown_removed_and_checked() {
+    let place = Place::new();
+    let csv = place.recording("vinyl");
+    let fit = ["fit", &csv, "--model", "sbeta", "-o", "v.htex", "--json"];
+    let finger = ["--finger", "bare index finger"];
+    place.json(&[&fit[..], &METADATA, &finger].concat());
+    let info = place.json(&["info", "v.htex", "--json"]);
+    assert_eq!(info["finger"], "bare index finger");
+    assert_eq!(
+        (&info["name"], &info["htex"]),
+        (&"Coarse cloth".into(), &"1.0".into())
+    );
+    let text = place.run(&["info", "v.htex"]).text();
+    for line in METADATA.chunks(2).chain([&finger[..]]).map(|pair| pair[1]) {
+        assert!(
+            text.contains(&line.replace(',', ", ")) || text.contains(line),
+            "{line}: {text}"
+        );
+    }
+    // In place; an empty text removes an entry.
+    let run = place.run(&["edit", "v.htex", "--doi", "", "--author", "B. Uthor"]);
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let info = place.json(&["info", "v.htex", "--json"]);
+    assert_eq!(
+        (&info["doi"], &info["author"]),
+        (&Value::Null, &"B. Uthor".into())
+    );
+    let kept = std::fs::read(place.path("v.htex")).unwrap();
+    for (wrong, words) in [
+        (
+            &["--doi", "https://doi.org/10.1/x"][..],
+            "without https://doi.org/",
+        ),
+        (&["--license", "CC BY"], "--license"),
+        (&["--name", " "], "--name"),
+        (&[], "nothing to change"),
+        (&["-o", "v.htex", "--author", "C"], "name another file"),
+    ] {
+        let run = place.run(&[&["edit", "v.htex"], wrong].concat());
+        assert_eq!(run.code(), 2, "{wrong:?}");
+        assert!(run.error().contains(words), "{wrong:?}: {}", run.error());
+        assert_eq!(std::fs::read(place.path("v.htex")).unwrap(), kept);
+    }
+}
+
+/// The page of one's own recordings: a row of spectra for each condition, in the unit of the asset.
+#[test]
+fn a_fit_draws_its_report() {
+    let place = Place::new();
+    let csv = place.recording("vinyl");
+    let simulate = [
+        "simulate",
+        "--surface",
+        "vinyl",
+        "--seconds",
+        "4",
+        "--speed",
+        "40",
+    ];
+    assert_eq!(
+        place
+            .run(&[&simulate[..], &["-o", "slow.csv"]].concat())
+            .code(),
+        0
+    );
+    let two = [
+        "fit", &csv, "slow.csv", "-o", "v.htex", "--report", "v.html",
+    ];
+    let run = place.run(&two);
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let page = std::fs::read_to_string(place.path("v.html")).unwrap();
+    assert_eq!(page.matches("class=\"row\"").count(), 2);
+    for words in [
+        "v, 40.",
+        "magnitude / mN",
+        "sBeta",
+        "htex fit vinyl.csv slow.csv",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    let over = place.run(&["fit", &csv, "-o", "v.htex", "--report", &csv]);
+    assert_eq!(over.code(), 2, "{}", over.error());
+
+    let mut rows = String::from("ax_m_s2\n");
+    let tone = |n: u32| (f64::from(n) * 0.07).sin() + (f64::from(n) * 0.031).cos();
+    (0..20_000).for_each(|n| rows += &format!("{:.5}\n", tone(n)));
+    place.write("tool.csv", rows);
+    let tool = [
+        "fit",
+        "tool.csv",
+        "--quantity",
+        "acceleration",
+        "--rate",
+        "5000",
+    ];
+    let run = place.run(&[&tool[..], &["-o", "t.htex", "--report", "t.html"]].concat());
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let page = std::fs::read_to_string(place.path("t.html")).unwrap();
+    assert!(page.contains("magnitude / m/s²") && !page.contains("magnitude / mN"));
+}

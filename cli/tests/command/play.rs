@@ -1,0 +1,159 @@
+//! Played samples agree with the asset's levels and spectra.
+
+use crate::common::{Place, numbers};
+use htex_host::Registry;
+
+#[test]
+fn a_minute_of_each_model_has_its_spectrum_and_its_level() {
+    let place = Place::new();
+    let csv = place.recording("corrugated-paper");
+    let fit = place.json(&["fit", &csv, "-o", "t.htex", "--json"]);
+    for (i, model) in Registry::builtin_names().into_iter().enumerate() {
+        let synth = [
+            "synth",
+            "t.htex",
+            "--model",
+            model,
+            "--seconds",
+            "60",
+            "--rate",
+            "20000",
+        ];
+        let run = place.run(&[&synth[..], &["--seed", "9", "-o", "t.wav"]].concat());
+        assert_eq!(run.code(), 0, "{}", run.error());
+        let mut wav = hound::WavReader::open(place.path("t.wav")).unwrap();
+        assert_eq!((wav.spec().sample_rate, wav.len()), (20_000, 1_200_000));
+        let samples = wav.samples::<f32>().map(|x| f64::from(x.unwrap()));
+        let power = samples.map(|x| x * x).sum::<f64>() / 1_200_000.0;
+        let level = fit["representations"][i]["level_rms"].as_f64().unwrap();
+
+        let stated = place.json(&["spectrum", "t.htex", "--model", model, "--json"]);
+        let process = [
+            "process",
+            "t.wav",
+            "--segments",
+            "windows",
+            "--averaging",
+            "rms",
+        ];
+        let measured = place.json(&[&process[..], &["--scale", "1", "--json"]].concat());
+        let (stated, measured) = (
+            numbers(&stated["magnitude"]),
+            numbers(&measured["magnitude"]),
+        );
+        // In the band's bins; in all it may be more at the band's edges, and lines are in all what they are.
+        let read = (measured.iter().map(|m| m * m).sum::<f64>() / 3.0).sqrt() / level;
+        let in_all = power.sqrt() / level;
+        let ratio = if model == "speak" { in_all } else { read };
+        assert!((0.98..1.1).contains(&in_all), "{model}: {in_all}");
+        let distance = if model == "speak" {
+            let lines = &fit["representations"][i]["parameters"]["frequency_hz"];
+            let bins = numbers(lines)
+                .iter()
+                .map(|f| (f / 5.0) as usize - 4)
+                .collect();
+            distance_db(&stated, &measured, bins)
+        } else {
+            let bins = strongest_bins(&stated);
+            let read = distance_db(&read_as_noise(&stated), &measured, bins.clone());
+            distance_db(&stated, &measured, bins).min(read)
+        };
+        println!("{model:8} level {ratio:.4}, spectrum {distance:.3} dB RMS");
+        assert!(
+            (ratio - 1.0).abs() < 0.02,
+            "{model}: RMS over level {ratio}"
+        );
+        assert!(distance < 1.0, "{model}: {distance} dB");
+    }
+}
+
+/// The bins that hold 99 % of the energy, strongest first.
+fn strongest_bins(magnitude: &[f64]) -> Vec<usize> {
+    let mut bins: Vec<usize> = (0..magnitude.len()).collect();
+    bins.sort_by(|&a, &b| magnitude[b].total_cmp(&magnitude[a]));
+    let total: f64 = magnitude.iter().map(|m| m * m).sum();
+    let mut held = 0.0;
+    let enough = bins.iter().position(|&i| {
+        held += magnitude[i] * magnitude[i];
+        held >= 0.99 * total
+    });
+    bins.truncate(enough.unwrap() + 1);
+    bins
+}
+
+/// What noise of this density reads through the window: two thirds of the power in its own bin, a sixth in each
+/// neighbour. At steep flanks that differs from the magnitude.
+fn read_as_noise(magnitude: &[f64]) -> Vec<f64> {
+    let power = |i: usize| magnitude.get(i).map_or(0.0, |m| m * m);
+    let read = |i: usize| (power(i.wrapping_sub(1)) + 4.0 * power(i) + power(i + 1)) / 6.0;
+    (0..magnitude.len()).map(|i| read(i).sqrt()).collect()
+}
+
+fn distance_db(stated: &[f64], measured: &[f64], bins: Vec<usize>) -> f64 {
+    let squares = bins
+        .iter()
+        .map(|&i| (20.0 * (measured[i] / stated[i]).log10()).powi(2));
+    (squares.sum::<f64>() / bins.len() as f64).sqrt()
+}
+
+#[test]
+fn the_demo_goes_the_whole_way() {
+    let place = Place::new();
+    let run = place.run(&["demo", "out"]);
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let rows = run
+        .text()
+        .lines()
+        .filter(|line| line.split_whitespace().count() == 13)
+        .count();
+    assert_eq!(rows, 31, "a header and 30 rows:\n{}", run.text());
+    let surfaces = [
+        "sandpaper",
+        "fine-fabric",
+        "coarse-fabric",
+        "corrugated-paper",
+        "vinyl",
+    ];
+    let files = surfaces.map(|surface| format!("out/{surface}.htex"));
+    let mut validate = vec!["validate", "--json"];
+    validate.extend(files.iter().map(String::as_str));
+    for answer in place.json(&validate).as_array().unwrap() {
+        assert_eq!(answer["valid"], true);
+        assert_eq!(answer["findings"].as_array().unwrap().len(), 0, "{answer}");
+    }
+    let report = std::fs::read_to_string(place.path("out/report.html")).unwrap();
+    assert!(report.contains("<svg") && report.contains("simulated"));
+    assert!(!report.contains("src=\"http") && !report.contains("href=\"http"));
+    assert!(place.path("out/vinyl-sbeta.wav").exists());
+}
+
+#[test]
+fn the_conformance_files_validate_as_their_reports_say() {
+    let place = Place::new();
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/conformance");
+    let mut files = crate::common::entries(folder.as_ref());
+    files.retain(|name| name.ends_with(".htex"));
+    assert!(files.len() > 20, "{}", files.len());
+    for name in files {
+        let path = format!("{folder}/{name}");
+        let golden = std::fs::read_to_string(path.replace(".htex", ".report.json")).unwrap();
+        let golden: serde_json::Value = serde_json::from_str(&golden).unwrap();
+        if !golden["limits"].is_null() {
+            // Reported under smaller limits than the command's.
+            continue;
+        }
+        let run = place.run(&["validate", &path, "--json"]);
+        let mut got: serde_json::Value = serde_json::from_str(&run.text()).unwrap();
+        for finding in got[0]["findings"].as_array_mut().unwrap() {
+            // The command also validates manifests against their schema, and names its rule.
+            finding.as_object_mut().unwrap().remove("schema_rule");
+        }
+        assert_eq!(got[0]["valid"], golden["valid"], "{name}");
+        assert_eq!(got[0]["findings"], golden["findings"], "{name}");
+        assert_eq!(run.code(), i32::from(golden["valid"] != true), "{name}");
+        for finding in golden["findings"].as_array().unwrap() {
+            let explained = place.run(&["explain", finding["code"].as_str().unwrap()]);
+            assert!(explained.text().contains("What to do"), "{finding}");
+        }
+    }
+}

@@ -1,0 +1,298 @@
+//! Sources of third parties on the command line, recorded as a user does it, and the checker of sources: a valid one passes, and
+//! each faulty one fails the right check.
+
+use std::path::{Path, PathBuf};
+
+use crate::common::Place;
+use crate::common::native::{self, complaints, count};
+use htex_device_check::source::CHECKS;
+use serde_json::Value;
+
+/// A fault of `tests/bad-sources/bad.c`, the check that must fail, and its outcome.
+const FAULTS: &[(&str, &str, &str)] = &[
+    ("MARKER", "marker", "failed"),
+    ("EXPORT_MISSING", "exports", "failed"),
+    ("TARGET", "descriptor", "failed"),
+    ("NO_TEXT", "descriptor", "failed"),
+    ("EXTENSIONS", "extensions", "failed"),
+    ("ENDPOINTS", "endpoints", "failed"),
+    ("RATE_NAN", "open", "failed"),
+    ("NO_CHANNELS", "open", "failed"),
+    ("CHANGES", "open", "failed"),
+    ("ACCEPTS_SETTING", "bad-settings", "failed"),
+    ("READS_EARLY", "start", "failed"),
+    ("READ_TOO_MANY", "read", "failed"),
+    ("READ_CRASHES", "read", "crashed"),
+    ("READ_LOOPS", "read", "timed-out"),
+    ("NAN", "read", "failed"),
+    ("LATE", "timeout", "failed"),
+    ("AFTER_STOP", "stop", "failed"),
+    ("CLOSED_HANDLE", "handles", "failed"),
+    ("TWO", "two", "failed"),
+    ("LEAK", "memory", "failed"),
+    ("OPENINGS_LEAK", "memory", "failed"),
+];
+
+/// The ridges of `examples`.
+fn ridges(place: &Place) -> PathBuf {
+    native::example(place, "source-c-ridges", "ridges.c")
+}
+
+fn bad(place: &Place, good: &Path, fault: &str) -> String {
+    native::bad(place, "bad-sources/bad.c", good, fault)
+}
+
+fn checked(place: &Place, arguments: &[&str]) -> Value {
+    native::checked(place, "source", arguments)
+}
+
+#[test]
+fn sound_sources_pass() {
+    let place = Place::new();
+    let ridges = ridges(&place);
+    let report = checked(&place, &[ridges.to_str().unwrap()]);
+    assert_eq!(count(&report, "passed"), CHECKS.len(), "{report:#}");
+    let name = ridges.file_name().unwrap().to_str().unwrap();
+    let fast = checked(&place, &[name, "--set", "pace=fast"]);
+    assert_eq!(complaints(&fast), []);
+    #[cfg(feature = "lab")]
+    {
+        let path = format!("path={}", place.recording("vinyl"));
+        let file = checked(&place, &["file", "--set", &path, "--set", "pace=fast"]);
+        assert_eq!(complaints(&file), []);
+        // Checks of a library: marker, exports, extensions, settings as lines, handles.
+        assert_eq!(count(&file, "skipped"), 5, "{file:#}");
+    }
+}
+
+#[test]
+fn each_fault_is_found_by_its_own_check() {
+    let place = Place::new();
+    let good = ridges(&place);
+    let sound = checked(&place, &[&bad(&place, &good, "NONE")]);
+    assert_eq!(count(&sound, "passed"), CHECKS.len(), "{sound:#}");
+    // Most of the time is spent waiting for a source that keeps to the clock, or for one that has stopped.
+    for faults in FAULTS.chunks(8) {
+        std::thread::scope(|scope| {
+            for fault in faults {
+                scope.spawn(|| is_found_by_its_own_check(&place, &good, fault));
+            }
+        });
+    }
+    for check in CHECKS {
+        let is_held = FAULTS.iter().any(|(_, name, _)| *name == check.name);
+        assert!(is_held, "no fault breaks `{}`", check.name);
+    }
+}
+
+fn is_found_by_its_own_check(
+    place: &Place,
+    good: &Path,
+    (fault, name, outcome): &(&str, &str, &str),
+) {
+    let timeout_s = if *outcome == "timed-out" { "5" } else { "60" };
+    let more = match *fault {
+        "READ_LOOPS" | "LEAK" => ["--set", "pace=fast"],
+        _ => ["--set", "pace=real"],
+    };
+    let library = bad(place, good, fault);
+    let arguments = [&[&library[..], "--timeout", timeout_s], &more[..]].concat();
+    let report = checked(place, &arguments);
+    let expected = [(name.to_string(), outcome.to_string())];
+    assert_eq!(complaints(&report), expected, "{fault}: {report:#}");
+}
+
+/// The table of the specification lists the checks, in their order and in their words.
+#[test]
+fn the_guarantees_of_the_specification_are_those_that_are_checked() {
+    let checks = CHECKS
+        .iter()
+        .map(|check| (check.name, check.summary, check.needs));
+    native::guarantees_are_checked("spec/source-abi-1.md", checks);
+}
+
+/// A third party's source is recorded, every sample as the library made it, and the recording is fitted.
+#[cfg(feature = "lab")]
+#[test]
+fn the_ridges_are_recorded_and_fitted() {
+    let place = Place::new();
+    let library = ridges(&place);
+    let record = |more: &[&str]| {
+        let base = [
+            "record",
+            "--source",
+            "ridges:0.8",
+            "--set",
+            "pace=fast",
+            "--take",
+            "ridges",
+            "--seconds",
+            "4",
+            "--min-sweeps",
+            "0",
+            "--countdown",
+            "0",
+            "--target-speed",
+            "80",
+            "--target-force",
+            "0.4",
+            "-o",
+            "takes",
+        ];
+        place.command(&[&base, more].concat())
+    };
+    let named = record(&["--source-file", library.to_str().unwrap(), "--json"]);
+    let output = { named }.output().unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{error}");
+    let said: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let csv = std::fs::read_to_string(place.path("takes/ridges-001.csv")).unwrap();
+    let mut lines = csv.lines();
+    let columns: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| columns.iter().position(|c| c.starts_with(name)).unwrap();
+    let (force, normal, speed) = (column("lateral_x"), column("normal"), column("speed"));
+    let mut rows = 0;
+    for (frame, line) in lines.enumerate() {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let way_mm = 80.0 * frame as f64 / 5000.0 % 120.0;
+        let x_mm = if way_mm >= 60.0 {
+            120.0 - way_mm
+        } else {
+            way_mm
+        };
+        let side = if way_mm >= 60.0 { 1.0 } else { -1.0 };
+        let ripple = 0.2 * (std::f64::consts::TAU * x_mm / 0.8).sin();
+        let expected = 0.5 * 0.4 * (ripple + side);
+        assert!(
+            (cells[force] - expected).abs() < 1e-9,
+            "frame {frame}: {line}"
+        );
+        assert!((cells[normal] - 0.4).abs() < 1e-12 && cells[speed] == 80.0);
+        rows += 1;
+    }
+    assert_eq!(rows, 20_000);
+    let fit = said["kept"]["fit"].as_array().unwrap().iter();
+    let fit: Vec<&str> = fit.map(|word| word.as_str().unwrap()).collect();
+    let fit = place.run(&[&["fit"], &fit[..], &["-o", "ridges.htex"]].concat());
+    assert_eq!(fit.code(), 0, "{}", fit.error());
+
+    // By the environment; and the end of a source is the end of its take.
+    let folder = library.parent().unwrap();
+    let mut short = record(&["--set", "seconds=1"]);
+    let output = short.env("HTEX_SOURCE_PATH", folder).output().unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(error.contains("incomplete/ridges-002.csv"), "{error}");
+    let csv = std::fs::read_to_string(place.path("takes/incomplete/ridges-002.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 1 + 5_000);
+}
+
+#[cfg(feature = "lab")]
+#[test]
+fn what_is_no_source_is_refused_with_its_reason() {
+    let place = Place::new();
+    let strip = native::example(&place, "device-c-strip", "strip.c");
+    let good = ridges(&place);
+    let nan = bad(&place, &good, "NAN");
+    let many = bad(&place, &good, "READ_TOO_MANY");
+    let rate = bad(&place, &good, "RATE_NAN");
+    let good = good.to_str().unwrap();
+    let cases = [
+        (
+            strip.to_str().unwrap(),
+            "ridges",
+            1,
+            "it is not an htex source",
+        ),
+        ("no-such.so", "ridges", 1, "no-such.so"),
+        (good, "ridges:0", 2, "`0` is not a number from 0.01 to 10"),
+        (
+            good,
+            "rigdes:1",
+            2,
+            "no source `rigdes`; there are ridges, file, daq",
+        ),
+        (&nan, "ridges:1", 1, "of channel `speed` is NaN"),
+        (&many, "ridges:1", 1, "it delivered"),
+        (&rate, "ridges:1", 1, "stream: "),
+    ];
+    for (library, source, code, words) in cases {
+        let run = place.run(&[
+            "record",
+            "--source-file",
+            library,
+            "--source",
+            source,
+            "--seconds",
+            "1",
+            "--countdown",
+            "0",
+            "--set",
+            "pace=fast",
+            "-o",
+            "takes",
+        ]);
+        let error = run.error();
+        assert!(
+            run.code() == code && error.contains(words),
+            "{words}: {error}"
+        );
+    }
+}
+
+#[test]
+fn sources_are_listed_and_shown() {
+    let place = Place::new();
+    let library = ridges(&place);
+    let named = library.to_str().unwrap();
+    let folder = library.parent().unwrap().to_str().unwrap();
+    let twice = ["--source-file", named, "--source-dir", folder];
+    let list = place.json(&[&["device", "list", "--json"], &twice[..]].concat());
+    let first = &list["sources"][0];
+    assert_eq!(
+        (&first["id"], &first["target"]),
+        (&"org.example.ridges".into(), &"spacing_mm".into())
+    );
+    assert_eq!(first["endpoints"][0]["setting"], "spacing_mm");
+    assert_eq!(first["settings"][3]["name"], "rate_hz");
+    assert!(
+        list["notes"][0]
+            .as_str()
+            .unwrap()
+            .starts_with("source org.example.ridges (")
+    );
+    let ids: Vec<&Value> = list["devices"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|d| &d["id"])
+        .collect();
+    assert!(ids.contains(&&"org.htex.file".into()));
+    let text = place
+        .run(&[&["device", "list"], &twice[..]].concat())
+        .text();
+    for words in [
+        "devices\n  file ",
+        "sources\n  ridges ",
+        "spacing_mm=1  coarse ridges",
+        "settings: spacing_mm=1 speed_mm_s=80",
+        "terminals=default",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let info = place.json(&["source", "info", "--json", named, "--set", "rate_hz=800"]);
+    assert_eq!(info["stream"]["rate_hz"], 800.0);
+    assert_eq!(info["stream"]["channels"][1]["name"], "normal");
+    let text = place.run(&["source", "info", named]).text();
+    assert!(
+        text.contains("rate: 5000 Hz\n  channels: lateral_x in N, normal in N, speed in mm/s"),
+        "{text}"
+    );
+    assert!(text.contains("pace: real or fast [real]"), "{text}");
+    for (arguments, code) in [
+        (&["source", "info", "no-such-source"][..], 2),
+        (&["source", "check", "no-such-source"], 2),
+        (&["device", "list", "--source-file", "no-such.so"], 1),
+    ] {
+        assert_eq!(place.run(arguments).code(), code, "{arguments:?}");
+    }
+}

@@ -58,6 +58,14 @@ for (const [way, address] of [["the file", () => FILE], ["the folder", () => ser
     }
     await page.mouse.up();
     assert.ok(loudest >= 0.02, `the loudest sample is ${loudest}`);
+    await page.waitForFunction(() => htexStudio.finger.value.force === 0);
+    await page.getByRole("button", { name: "Circle" }).click();
+    const places = await page.evaluate(async () => {
+      const { x } = htexStudio.finger.value;
+      await new Promise((resolve) => setTimeout(resolve, 300));
+      return [x, htexStudio.finger.value.x];
+    });
+    assert.notEqual(places[0], places[1]);
     const others = page.requests.filter((url) => !url.startsWith(server.address));
     assert.deepEqual(others, []);
     await closed(page);

@@ -13,6 +13,8 @@ const NEAR = 30;
 /** Steps of the arrow keys. */
 const STEP_DB = 1;
 const STEP_RATIO = 2 ** (1 / 24);
+/** Milliseconds between two drawings of what follows the finger. */
+const LIVE_MS = 33;
 
 export interface SpectrumProps {
   /** Curves that change with the texture. */
@@ -47,14 +49,20 @@ export function Spectrum(props: SpectrumProps) {
     if (!place) return;
     const observer = new ResizeObserver(() => wish());
     observer.observe(place);
+    let timer = 0;
+    const later = () => {
+      timer = 0;
+      wish();
+    };
     const end = effect(() => {
       kept.current.watch?.();
       void scheme.value;
-      wish();
+      timer ||= window.setTimeout(later, LIVE_MS);
     });
     return () => {
       observer.disconnect();
       end();
+      clearTimeout(timer);
       cancelAnimationFrame(kept.current.frame);
     };
   }, []);
@@ -76,9 +84,10 @@ export function Spectrum(props: SpectrumProps) {
   const drag = (event: PointerEvent) => {
     const state = kept.current;
     if (state.dragged < 0 || !state.scale) return;
+    const isWaiting = state.wanted !== null;
     state.wanted = at(event);
     // The hand may be faster than the frames.
-    requestAnimationFrame(() => {
+    if (!isWaiting) requestAnimationFrame(() => {
       if (!state.wanted || !state.scale) return;
       const [x, y] = state.wanted;
       state.wanted = null;

@@ -2,13 +2,13 @@
 
 import { useMemo } from "preact/hooks";
 
-import { author, theAuthor } from "../author.ts";
+import { author, models, theAuthor } from "../author.ts";
 import { Numbers } from "../parts/numbers.tsx";
 import { Slider } from "../parts/slider.tsx";
 import { Spectrum } from "../parts/spectrum.tsx";
 import type { Curve } from "../parts/spectrum-painter.ts";
 import { reference } from "../reference.ts";
-import { motion, played } from "../shadow.ts";
+import { motion, played, shownMotion } from "../shadow.ts";
 import { BANDS } from "../shaping/bands.ts";
 import type { Macros } from "../shaping/shaper.ts";
 import { shaperOf } from "../shaping/shapers.ts";
@@ -33,7 +33,7 @@ const HINTS: Record<string, string> = {
   "org.htex.speak": "Drag the peaks. Double click adds one, Delete removes the chosen one.",
 };
 
-export const nameOf = (id: string) => author.value?.models().find((one) => one.id === id)?.name ?? id.replace("org.htex.", "");
+export const nameOf = (id: string) => models.value.find((one) => one.id === id)?.name ?? id.replace("org.htex.", "");
 
 /** The gesture that is going on; each begins with another number. */
 let gesture = 0;
@@ -79,7 +79,7 @@ function Legend({ curves }: { curves: readonly Curve[] }) {
   const has = (style: Curve["style"]) => curves.some((curve) => curve.style === style);
   return (
     <ul class="legend">
-      <li class="legend-played">plays at {motion.value.speed.toFixed(0)} mm/s, {motion.value.force.toFixed(2)} N</li>
+      <li class="legend-played">plays at {shownMotion.value.speed.toFixed(0)} mm/s, {shownMotion.value.force.toFixed(2)} N</li>
       <li class="legend-model">{model.value ? nameOf(model.value) : "model"}</li>
       {has("recording") && <li class="legend-recording">recording</li>}
       {has("before") && <li class="legend-before">as it was opened</li>}

@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 
 use htex::Library;
-use htex::library::{LibrarySource, LocalFile};
+use htex::library::{LibraryError, LibrarySource, LocalFile};
 
 use super::htex_library;
 use crate::asset::{htex_asset, keep};

@@ -165,7 +165,8 @@ export function run() {
     if (!node) return;
     node.speed.value = speed;
     node.force.value = force;
-    node.position = position;
+    // The models of this page's own follow speed and force alone.
+    if (playing?.hasModules) node.position = position;
   });
   effect(() => {
     if (!isReady.value || !context || !output) return;

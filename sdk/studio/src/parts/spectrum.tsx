@@ -6,7 +6,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { scheme } from "../theme.ts";
 import { paintSpectrum, type Curve } from "./spectrum-painter.ts";
 import { rangeOf, toDb, toHz, toX, toY, type Scale } from "./spectrum-scale.ts";
-import type { Handle } from "../shaping/shaper.ts";
+import type { Drawn, Handle } from "../shaping/shaper.ts";
 
 /** How near a press has to be to a handle, pixels. */
 const NEAR = 30;
@@ -26,6 +26,8 @@ export interface SpectrumProps {
   handles: readonly Handle[];
   hasBars: boolean;
   onMove: (handle: number, hz: number, db: number) => void;
+  /** Bars were drawn across. */
+  onDraw: (drawn: readonly Drawn[]) => void;
   onSettle: () => void;
   onAdd?: ((hz: number, db: number) => void) | undefined;
   onRemove?: ((handle: number) => void) | undefined;
@@ -158,11 +160,8 @@ function draw(state: Painted, x: number, y: number) {
   const start = state.drawnDb ?? toDb(scale, y);
   const end = toDb(scale, y);
   const steps = Math.abs(to - from);
-  for (let i = steps === 0 ? 0 : 1; i <= steps; i++) {
-    const bar = from + Math.sign(to - from) * i;
-    const handle = handles[bar];
-    if (handle) state.onMove(bar, handle.hz, steps === 0 ? end : start + ((end - start) * i) / steps);
-  }
+  const way = Array.from({ length: Math.max(steps, 1) }, (_, i) => (steps === 0 ? 1 : (i + 1) / steps));
+  state.onDraw(way.map((part) => ({ handle: from + Math.round((to - from) * part), db: start + (end - start) * part })));
   state.dragged = to;
   state.drawnDb = end;
 }

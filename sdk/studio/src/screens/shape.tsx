@@ -12,7 +12,7 @@ import { motion, played, shownMotion } from "../shadow.ts";
 import { BANDS } from "../shaping/bands.ts";
 import type { Macros } from "../shaping/shaper.ts";
 import { shaperOf } from "../shaping/shapers.ts";
-import { addHandle, endGesture, handles, macros, model, moveHandle, redraw, removeHandle, setMacro, shown, spec } from "../shaping/session.ts";
+import { addHandle, drawHandles, endGesture, handles, macros, model, moveHandle, redraw, removeHandle, setMacro, shown, spec } from "../shaping/session.ts";
 import { pointDecibels, toDecibels } from "../shaping/spec.ts";
 import { choose, fail, present, texture } from "../state.ts";
 
@@ -127,6 +127,7 @@ export function Shape() {
           hasBars={isBands}
           label={`Spectrum of ${present.value?.name ?? "the texture"}. Left and right choose a handle, up and down raise and lower it${shaper?.add ? ", with Shift left and right move it, Delete removes it" : ", with Shift left and right move it where it can be"}.`}
           onMove={(handle, hz, db) => moveHandle(handle, hz, db, `drag ${gesture}`)}
+          onDraw={(drawn) => drawHandles(drawn, `drag ${gesture}`)}
           onSettle={settle}
           onAdd={shaper?.add ? addHandle : undefined}
           onRemove={shaper?.remove ? removeHandle : undefined}

@@ -95,7 +95,9 @@ export function start() {
   addEventListener("hashchange", () => openLink().catch(fail));
   // Leaving the page in the middle of a stroke leaves no sound behind.
   addEventListener("blur", () => document.visibilityState === "hidden" && silence());
-  const opened = async () => (await openLink()) || (await openLast());
+  // A link that is cut off is told, and the page goes on without it.
+  const or = (error: unknown) => (fail(error), false);
+  const opened = async () => (await openLink().catch(or)) || (await openLast().catch(or));
   player
     .then(() => {
       warm().catch(fail);

@@ -144,6 +144,15 @@ test("a link brings the texture back bit for bit", async () => {
   await closed(page);
 });
 
+test("a link that is cut off is told, and the page goes on", async () => {
+  for (const rest of ["!!", "UEsDBAo"]) {
+    const page = await openStudio(browser, `${FILE}#t=${rest}`);
+    await page.locator(".notice.bad").waitFor();
+    await page.waitForFunction(() => htexStudio.texture.value !== null);
+    await closed(page);
+  }
+});
+
 test("500 random edits that are undone give the first bytes", async () => {
   const page = await openStudio(browser, FILE);
   await goTo(page, "Shelf");

@@ -222,6 +222,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex",
             "htex-author",
             "htex-capi",
+            "htex-device-builtin",
             "htex-dsp",
             "htex-finding",
             "htex-format",

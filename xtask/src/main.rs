@@ -19,7 +19,7 @@ cargo xtask fuzz      fuzzes the TARGETS named, or all of fuzz/fuzz_targets, eac
                       or --executions N, --jobs N (2) at a time; with --address under the address
                       sanitizer, which needs a nightly toolchain; see fuzz/README.md
 cargo xtask dist --prefix DIR [--small]  builds and installs libhtex for C, C++ and C#
-cargo xtask bindings  tests the bindings to other languages and on other processors, all or those named: c, web,
+cargo xtask bindings  tests the bindings to other languages and on other processors, all or those named: c, web, studio,
                       python, processors; says what is missing
 cargo xtask web --out DIR  builds the npm package `htex` for browsers and Node.js
 cargo xtask studio --out DIR  builds the studio: DIR/studio.html, one file, and DIR/static, for a web server

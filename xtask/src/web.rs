@@ -12,7 +12,7 @@ use crate::programs::run;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
-const COPIED: [&str; 24] = [
+const COPIED: [&str; 27] = [
     "author-core.js",
     "author-serve.js",
     "author-worker.node.js",
@@ -32,6 +32,9 @@ const COPIED: [&str; 24] = [
     "node.js",
     "options.js",
     "pointer.js",
+    "scene.d.ts",
+    "scene.js",
+    "scene.node.js",
     "serve.js",
     "stage.js",
     "texture.js",
@@ -80,8 +83,12 @@ const AUTHOR_WORKER: [&str; 5] = [
 pub fn web(out: &Path) -> Result<()> {
     let source = workspace().join("sdk/web");
     let player = module("htex-capi", "small", &["--features", "library"])?.join("htex_c.wasm");
-    let author = module("htex-web-author", "author", &[])?.join("htex_author_c.wasm");
     fs::create_dir_all(out)?;
+    // Each is built to the file of the other.
+    for (feature, name) in [("make", "htex-author.wasm"), ("scene", "htex-scene.wasm")] {
+        let built = module("htex-web-author", "author", &["--features", feature])?;
+        fs::copy(built.join("htex_author_c.wasm"), out.join(name))?;
+    }
     let copy = |from: PathBuf, name: &str| fs::copy(from, out.join(name));
     for name in COPIED {
         copy(source.join("src").join(name), name)?;
@@ -90,7 +97,6 @@ pub fn web(out: &Path) -> Result<()> {
         copy(source.join(name), name)?;
     }
     copy(player, "htex.wasm")?;
-    copy(author, "htex-author.wasm")?;
     join(&source.join("src"), &PROCESSOR, &out.join("processor.js"))?;
     join(&source.join("src"), &WORKER, &out.join("worker.js"))?;
     join(

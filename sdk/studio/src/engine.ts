@@ -49,9 +49,8 @@ export function playingNode() {
   return node;
 }
 
-export function isHeard() {
-  return context?.state === "running";
-}
+/** Whether the audio thread runs. */
+export const isRunning = signal(false);
 
 /** The samples that go to the loudspeaker, for the meter. */
 export function heard(into: Float32Array<ArrayBuffer>) {
@@ -64,6 +63,7 @@ export function heard(into: Float32Array<ArrayBuffer>) {
 export async function warm() {
   if (context) return;
   context = new AudioContext({ latencyHint: "interactive" });
+  context.onstatechange = () => (isRunning.value = context?.state === "running");
   const limiter = new DynamicsCompressorNode(context, { threshold: -8, knee: 4, ratio: 20, attack: 0.002, release: 0.08 });
   output = new GainNode(context, { gain: 0 });
   meter = new AnalyserNode(context, { fftSize: 1024 });
@@ -165,7 +165,8 @@ export function run() {
     if (!node) return;
     node.speed.value = speed;
     node.force.value = force;
-    node.position = position;
+    // The models of this page's own follow speed and force alone.
+    if (playing?.hasModules) node.position = position;
   });
   effect(() => {
     if (!isReady.value || !context || !output) return;

@@ -14,6 +14,11 @@ export function fromLink(address: string): Uint8Array | null {
   const at = address.indexOf(HEAD);
   if (at < 0) return null;
   const base64 = address.slice(at + HEAD.length).replaceAll("-", "+").replaceAll("_", "/");
-  const text = atob(base64);
+  let text: string;
+  try {
+    text = atob(base64);
+  } catch {
+    throw new Error("the link is not complete: what follows #t= is no texture; ask for it again");
+  }
   return Uint8Array.from(text, (letter) => letter.charCodeAt(0));
 }

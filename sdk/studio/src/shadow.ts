@@ -1,6 +1,6 @@
 // A voice on the main thread that makes no sound: it tells what plays at the finger's motion, and whether that was recorded.
 
-import { computed, effect, signal } from "@preact/signals";
+import { batch, computed, effect, signal } from "@preact/signals";
 import type { Texture, Voice } from "htex";
 
 import { tried } from "./engine.ts";
@@ -31,6 +31,25 @@ export const motion = computed(() => {
   return { speed: pilotSpeed.value, force: pilotForce.value, position };
 });
 
+/** Milliseconds between two readings that are shown: as often as numbers can be read. */
+const SHOWN_MS = 120;
+
+/** The finger and the motion as they are shown in numbers and words. */
+export const shownFinger = signal(finger.peek());
+export const shownMotion = signal(motion.peek());
+let timer = 0;
+
+effect(() => {
+  void [finger.value, motion.value];
+  timer ||= window.setTimeout(() => {
+    timer = 0;
+    batch(() => {
+      shownFinger.value = finger.peek();
+      shownMotion.value = motion.peek();
+    });
+  }, SHOWN_MS);
+});
+
 export interface Coverage {
   readonly inside: boolean;
   readonly text: string;
@@ -38,7 +57,7 @@ export interface Coverage {
 
 /** Whether the motion is within the recorded conditions, and how it is played if not. */
 export const coverage = computed<Coverage>(() => {
-  const { speed, force, position } = motion.value;
+  const { speed, force, position } = shownMotion.value;
   const told = voice.value?.coverage({ speed, force, position });
   return told ? { inside: told.kind !== "outside", text: told.text } : { inside: true, text: "" };
 });

@@ -94,8 +94,10 @@ export function start() {
   addEventListener("keydown", keys);
   addEventListener("hashchange", () => openLink().catch(fail));
   // Leaving the page in the middle of a stroke leaves no sound behind.
-  addEventListener("blur", () => document.visibilityState === "hidden" && silence());
-  const opened = async () => (await openLink()) || (await openLast());
+  document.addEventListener("visibilitychange", () => document.visibilityState === "hidden" && silence());
+  // A link that is cut off is told, and the page goes on without it.
+  const or = (error: unknown) => (fail(error), false);
+  const opened = async () => (await openLink().catch(or)) || (await openLast().catch(or));
   player
     .then(() => {
       warm().catch(fail);

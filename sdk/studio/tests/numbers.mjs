@@ -102,7 +102,7 @@ async function inputToSample(page) {
     await page.waitForTimeout(120);
     times.push(...(await page.evaluate(() => window.heardAt.slice(0, 1))));
     await page.mouse.up();
-    await page.waitForTimeout(200);
+    await page.waitForTimeout(500);
   }
   return times;
 }

@@ -58,6 +58,14 @@ for (const [way, address] of [["the file", () => FILE], ["the folder", () => ser
     }
     await page.mouse.up();
     assert.ok(loudest >= 0.02, `the loudest sample is ${loudest}`);
+    await page.waitForFunction(() => htexStudio.finger.value.force === 0);
+    await page.getByRole("button", { name: "Circle" }).click();
+    const places = await page.evaluate(async () => {
+      const { x } = htexStudio.finger.value;
+      await new Promise((resolve) => setTimeout(resolve, 300));
+      return [x, htexStudio.finger.value.x];
+    });
+    assert.notEqual(places[0], places[1]);
     const others = page.requests.filter((url) => !url.startsWith(server.address));
     assert.deepEqual(others, []);
     await closed(page);
@@ -134,6 +142,15 @@ test("a link brings the texture back bit for bit", async () => {
   assert.deepEqual(asked, []);
   await closed(other);
   await closed(page);
+});
+
+test("a link that is cut off is told, and the page goes on", async () => {
+  for (const rest of ["!!", "UEsDBAo"]) {
+    const page = await openStudio(browser, `${FILE}#t=${rest}`);
+    await page.locator(".notice.bad").waitFor();
+    await page.waitForFunction(() => htexStudio.texture.value !== null);
+    await closed(page);
+  }
 });
 
 test("500 random edits that are undone give the first bytes", async () => {

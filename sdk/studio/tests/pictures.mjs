@@ -20,13 +20,13 @@ async function shot(page, name) {
   await page.screenshot({ path: path.join(out, `${name}.png`) });
 }
 
-/** Draws over the bars. */
-async function draw(page) {
+/** Draws a hill over the bars, from a height; 0 is the upper edge. */
+async function draw(page, from) {
   const box = await page.locator(".spectrum canvas").boundingBox();
   const at = (part, height) => [box.x + 50 + part * (box.width - 70), box.y + height * box.height];
-  await page.mouse.move(...at(0.42, 0.4));
+  await page.mouse.move(...at(0.42, from));
   await page.mouse.down();
-  for (let i = 0; i <= 30; i++) await page.mouse.move(...at(0.42 + 0.008 * i, 0.4 - 0.18 * Math.sin((Math.PI * i) / 30)));
+  for (let i = 0; i <= 30; i++) await page.mouse.move(...at(0.42 + 0.008 * i, from + (0.12 * i) / 30 - 0.14 * Math.sin((Math.PI * i) / 30)));
   await page.mouse.up();
 }
 
@@ -35,9 +35,11 @@ async function screens(page, suffix) {
   await shot(page, `shelf-${suffix}`);
   await goTo(page, "Shape");
   await page.waitForFunction(() => htexStudio.handles.value.length > 0);
-  await draw(page);
+  await page.evaluate(() => [...document.querySelectorAll("button")].find((button) => button.textContent === "Circle").click());
+  await draw(page, 0.25);
   await page.evaluate(() => document.querySelector(".notice button")?.click());
   await shot(page, `shape-${suffix}`);
+  await page.keyboard.press("Escape");
   for (const name of ["Mix", "Vary", "Compare"]) {
     await goTo(page, name);
     await shot(page, `${name.toLowerCase()}-${suffix}`);
@@ -63,8 +65,9 @@ async function way(page) {
   await page.getByRole("button", { name: /^Denim/ }).click();
   await goTo(page, "Shape");
   await page.waitForFunction(() => htexStudio.handles.value.length > 0);
-  await page.getByRole("button", { name: "To and fro" }).click();
-  await draw(page);
+  await page.getByRole("button", { name: "Circle" }).click();
+  await draw(page, 0.4);
+  await page.evaluate(() => document.querySelector(".notice button")?.click());
   await shot(page, "way-3-shaped");
   await goTo(page, "Give");
   await page.getByLabel("Name").fill("My denim");

@@ -47,6 +47,24 @@ test("settings are those of the command", async () => {
   assert.throws(() => author.fit(vinyl, { license: "nothing at all" }), { code: "invalid-argument" });
 });
 
+test("the setup's response, a tracker and a grid are read as by the command", async () => {
+  const named = async (name) => ({ name, bytes: await bytes(name) });
+  const models = ["ar", "bands"];
+  const response = await named("response.csv");
+  await isFile(author.fit(vinyl, { name: "compensated", models, response }).texture, "compensated.htex");
+  const tracker = await named("tracker.csv");
+  const { texture } = await fit(await named("sensors.csv"), { name: "tracked", models, tracker, tracker_map: "time=stamp:0.001,x=px,y=py" });
+  await isFile(texture, "tracked.htex");
+  const free = await named("free.csv");
+  const { texture: whole, report } = await fit(free, { name: "grid", models: "bands", grid: "auto" });
+  await isFile(whole, "grid.htex");
+  assert.ok(report.grid && report.conditions.length > 4);
+  const grid = { speed: [80, 160], force: [0.5, 1] };
+  await isFile(author.fit(free, { name: "lines", models: "bands", grid }).texture, "lines.htex");
+  assert.throws(() => author.fit(vinyl, { tracker, tracker_map: "time=none" }), { name: "HtexError", message: /none/ });
+  assert.throws(() => author.fit(free, { grid: { sped: [80] } }), { code: "invalid-argument", message: /sped/ });
+});
+
 test("samples are read of WAV, NPY and FLAC", async () => {
   const name = "samples";
   const wav = { name: "ar.wav", bytes: await bytes("ar.wav") };
@@ -125,6 +143,21 @@ test("a texture is made of parameters, and played", async () => {
   });
   assert.deepEqual([two.conditions.length, two.models.length, two.unit], [2, 2, "m/s2"]);
   assert.ok(author.validate(two.bytes).valid);
+  // Of one condition, the command makes one texture of each model: one of both has the same parameters, levels and bytes of them.
+  const here = { speed: 80, force: 0.5, level: 0.02 };
+  const representations = [
+    { model: "sbeta", conditions: [{ ...here, parameters: at.parameters }] },
+    { model: "mfcc", conditions: [{ ...here, parameters: { cepstrum: [-12, 3.1, 0.4], bands: 26, inverse: 0 } }] },
+  ];
+  const single = author.make({ name: "cepstrum", license: "CC0-1.0", quantity: "acceleration", representations: representations.slice(1) });
+  await isFile(single, "cepstrum.htex");
+  const both = author.make({ name: "both", license: "CC0-1.0", quantity: "acceleration", representations });
+  for (const [model, file] of [["sbeta", "beta.htex"], ["mfcc", "cepstrum.htex"]]) {
+    const made = await open(await bytes(file));
+    const [own, expected] = [both, made].map((texture) => texture.manifest.representations.find((one) => one.model.endsWith(model)));
+    assert.deepEqual({ ...own, path: undefined }, { ...expected, path: undefined });
+    assert.equal(difference(...[both, made].map((texture) => texture.voice({ model, seed: 3 }).render(2000))), -1);
+  }
   const refused = (change) => () => author.make({ name: "no", representations: [{ model: "sbeta", conditions: [{ ...at, ...change }] }] });
   assert.throws(refused({ parameters: { alpha: 2 } }), { code: "invalid-argument", message: /beta/ });
   assert.throws(refused({ parameters: { alpha: 2, beta: -1 } }), { code: "invalid-argument", message: /beta/ });
@@ -148,6 +181,20 @@ test("textures are mixed and edited as by the command", async () => {
   await isFile(author.edit(a, { author: "A. Weaver", contact: "tool" }), "edited.htex");
   assert.throws(() => author.edit(a, {}), { code: "invalid-argument" });
   assert.throws(() => author.mix(a, b, 2), { code: "invalid-argument" });
+});
+
+test("what is felt of a difference is that of its level, and of nothing below the threshold", () => {
+  const made = (level) => author.make({ name: "noise", representations: [{ model: "sbeta", conditions: [{ level, parameters: { alpha: 2, beta: 3 } }] }] });
+  const [one, same, twice, faint, fainter] = [0.1, 0.1, 0.2, 1e-8, 1e-9].map((level) => ({ texture: made(level) }));
+  const none = author.felt(one, same);
+  assert.deepEqual([none.error_rms_db, none.total_error_db, none.below_difference_threshold, none.below_if_sensitive], [0, 0, true, true]);
+  const louder = author.felt(one, twice);
+  assert.ok(Math.abs(louder.total_error_db - 20 * Math.log10(2)) < 0.05 && !louder.below_difference_threshold, JSON.stringify(louder));
+  assert.equal(louder.centre_hz.length, louder.error_db.length);
+  assert.equal(author.felt(faint, fainter).largest_error_db, 0);
+  assert.equal(author.threshold([250], { quantity: "displacement" })[0], 1e-7);
+  assert.throws(() => author.threshold([0]), { name: "HtexError", code: "invalid-argument" });
+  assert.throws(() => author.felt(one, { texture: made(0.1), model: "ar" }), { name: "HtexError" });
 });
 
 test("files are validated", async () => {

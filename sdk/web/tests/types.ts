@@ -16,6 +16,8 @@ import {
   setAuthorLibrary,
   setLibrary,
 } from "htex";
+import { scene, setSceneLibrary } from "htex/scene";
+import type { Scene } from "htex/scene";
 import type { Author, Coverage, FitOptions, Fitted, Law, Manifest } from "htex";
 
 export async function play(context: AudioContext, element: HTMLElement, file: File): Promise<number> {
@@ -90,4 +92,14 @@ export async function make(file: File, signal: AbortSignal): Promise<Uint8Array>
   author.columns({ name: "felt.csv", bytes: new ArrayBuffer(8) }, { form_s: 2 });
   setAuthorLibrary("htex-author.wasm", { worker: () => new Worker("author-worker.js") });
   return author.library({ mixed, made }, { name: "Two" });
+}
+
+export async function playScene(text: ArrayBuffer, texture: Uint8Array): Promise<number> {
+  setSceneLibrary("htex-scene.wasm");
+  using played: Scene = await scene(text, { "cloth.htex": texture }, { device: "file", settings: { quantity: "acceleration" }, quantity_gain: 0.5 });
+  const samples: Float32Array = played.render(new Float32Array(played.rate));
+  const left = played.plan.left_out.map(({ name, reason, surface }) => `${name} of ${surface}: ${reason}`);
+  // @ts-expect-error: a place has a name for each coordinate.
+  played.renderPath([80], 0.4, { position: 3 });
+  return samples.length + played.render(2).length + played.renderPath([80, 90], 0.4, { x: 1, y: [0, 1] }).length + left.length + played.notes.length;
 }

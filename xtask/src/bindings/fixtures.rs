@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 
 use super::{copy, files};
 use crate::places::{cargo, target, workspace};
@@ -27,12 +27,15 @@ pub(crate) fn command() -> Result<PathBuf> {
     Ok(target().join("release").join(name))
 }
 
+/// Scenes of examples/scenes that are rendered and planned.
+const SCENES: [&str; 2] = ["two-swatches", "electrovibration"];
+
 /// Textures of the library beside those of the fixtures: more than a page of its index holds.
 const COPIES: usize = 999;
 
 /// Writes an asset of six models (`vinyl.htex`), one that brings its model along (`bursts.htex`), their samples at 48 kHz, the
-/// spectrum of Bands, what the command tells of the asset, a library (`many.htexlib`) and its list, the models as modules, and a
-/// module that does not return.
+/// spectrum of Bands, what the command tells of the asset, a library (`many.htexlib`) and its list, scenes with their samples and
+/// plans, the models as modules, and a module that does not return.
 pub(super) fn write(folder: &Path) -> Result<()> {
     fs_err::create_dir_all(folder)?;
     let command = command()?;
@@ -64,6 +67,8 @@ pub(super) fn write(folder: &Path) -> Result<()> {
         FORCE,
         "-o",
         "vinyl.csv",
+        "--frf",
+        "response.csv",
     ])?;
     htex(&["fit", "vinyl.csv", "-o", "vinyl.htex"])?;
     let embedded = ["--embed-plugin", "bursts.wasm", "-o", "bursts.htex"];
@@ -86,6 +91,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
     }
     synth("bursts.htex", "bursts")?;
     authored(folder, &htex)?;
+    read_otherwise(folder, &htex)?;
     let printed = |arguments: &[&str], out: &str| {
         let file = fs_err::File::create(folder.join(out))?;
         run(program(&command, folder)
@@ -96,6 +102,16 @@ pub(super) fn write(folder: &Path) -> Result<()> {
     printed(&spectrum, "spectrum.json")?;
     printed(&["info", "vinyl.htex", "--json"], "info.json")?;
     printed(&["process", "vinyl.csv", "--json"], "process.json")?;
+    let scenes = folder.join("scenes");
+    fs_err::create_dir_all(&scenes)?;
+    for file in files(&workspace().join("examples/scenes"))? {
+        copy(&file, &scenes.join(file.file_name().unwrap_or_default()))?;
+    }
+    for scene in SCENES {
+        let file = format!("scenes/{scene}.scene.json");
+        htex(&["render", &file, "-o", &format!("{scene}.wav")])?;
+        printed(&["plan", &file, "--json"], &format!("{scene}.json"))?;
+    }
     copy_many(folder)?;
     let textures = ["many", "vinyl.htex", "bursts.htex"];
     htex(
@@ -143,12 +159,64 @@ fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> 
         ]
         .concat(),
     )?;
+    let beta = &["alpha=2", "beta=5"][..];
+    let cepstrum = &["cepstrum=-12,3.1,0.4", "bands=26", "inverse=0"][..];
+    for (model, set, out) in [
+        ("sbeta", beta, "beta.htex"),
+        ("mfcc", cepstrum, "cepstrum.htex"),
+    ] {
+        let made = ["make", "--model", model, "--set"];
+        let level = ["--level", "0.02", "--at", "speed=80,force=0.5"];
+        let said = ["--quantity", "acceleration", "--license", "CC0-1.0"];
+        htex(&[&made[..], set, &level, &said, &["-o", out]].concat())?;
+    }
     let mixed = ["mix", "vinyl.htex", "hum.htex", "--weight", "0.25"];
     htex(&[&mixed[..], &["--name", "between", "-o", "mixed.htex"]].concat())?;
     let edited = ["edit", "vinyl.htex", "--author", "A. Weaver"];
     htex(&[&edited[..], &["--contact", "tool", "-o", "edited.htex"]].concat())?;
     let pack = ["lib", "pack", "two.htexlib", "--name", "Two"];
     htex(&[&pack[..], &["vinyl.htex", "bursts.htex"]].concat())
+}
+
+/// Textures of the recording with the setup's response, of its forces (`sensors.csv`) with a tracker of 60 Hz (`tracker.csv`), and of a
+/// free motion on grids.
+fn read_otherwise(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
+    let models = ["--model", "ar,bands"];
+    let compensated = ["--frf", "response.csv", "-o", "compensated.htex"];
+    htex(&[&["fit", "vinyl.csv"][..], &models, &compensated].concat())?;
+    let recording = fs_err::read_to_string(folder.join("vinyl.csv"))?;
+    let rows = recording.lines().filter(|line| !line.starts_with('#'));
+    let rows: Vec<Vec<&str>> = rows.skip(1).map(|row| row.split(',').collect()).collect();
+    let mut sensors = "t_s,fx_n,fy_n,fz_n\n".to_owned();
+    let mut tracker = "stamp,px,py\n".to_owned();
+    for (i, row) in rows.iter().enumerate() {
+        let [t_s, fx, fy, fz, x, y] = row[..] else {
+            bail!("vinyl.csv: six columns are expected in {row:?}");
+        };
+        sensors += &format!("{t_s},{fx},{fy},{fz}\n");
+        if i % 333 == 0 {
+            tracker += &format!("{},{x},{y}\n", t_s.parse::<f64>()? * 1000.0);
+        }
+    }
+    fs_err::write(folder.join("sensors.csv"), sensors)?;
+    fs_err::write(folder.join("tracker.csv"), tracker)?;
+    let map = "time=stamp:0.001,x=px,y=py";
+    let tracked = ["--tracker", "tracker.csv", "--tracker-map", map];
+    htex(
+        &[
+            &["fit", "sensors.csv", "-o", "tracked.htex"][..],
+            &models,
+            &tracked,
+        ]
+        .concat(),
+    )?;
+    let free = ["simulate", "--surface", "vinyl", "--motion", "free"];
+    let length = ["--seconds", "30", "--rate", "5000", "-o", "free.csv"];
+    htex(&[&free[..], &length].concat())?;
+    let bands = ["fit", "free.csv", "--model", "bands"];
+    htex(&[&bands[..], &["--grid", "auto", "-o", "grid.htex"]].concat())?;
+    let lines = ["--grid", "speed=80,160", "--grid", "force=0.5,1"];
+    htex(&[&bands[..], &lines, &["-o", "lines.htex"]].concat())
 }
 
 /// Copies the assets to the folder `many`; the module of `bursts.htex` is then in the library twice.

@@ -41,6 +41,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
             "pointer.test.mjs",
             "sound.test.mjs",
             "author.test.mjs",
+            "scene.test.mjs",
             "author-browser.test.mjs",
             "browser.test.mjs",
             "bundles.test.mjs",

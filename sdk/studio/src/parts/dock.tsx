@@ -3,9 +3,9 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 
-import { audible, heard, isHeard, sound, wake } from "../engine.ts";
-import { finger, pilot, pilotForce, pilotSpeed, setPilot, stroke, type Pilot } from "../motion.ts";
-import { coverage } from "../shadow.ts";
+import { audible, heard, isRunning, sound, wake } from "../engine.ts";
+import { pilot, pilotForce, pilotSpeed, setPilot, stroke, type Pilot } from "../motion.ts";
+import { coverage, shownFinger } from "../shadow.ts";
 import { Icon } from "./icons.tsx";
 import { Pad } from "./pad.tsx";
 import { Slider } from "./slider.tsx";
@@ -22,7 +22,7 @@ const PILOTS: { id: Pilot; name: string }[] = [
 ];
 
 function Readings() {
-  const { speed, force } = finger.value;
+  const { speed, force } = shownFinger.value;
   const { inside, text } = coverage.value;
   return (
     <>
@@ -51,7 +51,7 @@ function Readings() {
       </button>
       <p class={inside ? "coverage" : "coverage outside"}>
         {!inside && <Icon name="warn" />}
-        {text || "As it was recorded or made."}
+        {text ? `${text.charAt(0).toUpperCase()}${text.slice(1)}.` : "As it was recorded or made."}
       </p>
     </>
   );
@@ -60,16 +60,21 @@ function Readings() {
 /** What goes to the loudspeaker, in steps of 6 dB. */
 function Meter() {
   const place = useRef<HTMLMeterElement>(null);
+  const runs = isRunning.value;
   useEffect(() => {
+    if (!runs) return;
     const samples = new Float32Array(1024);
     const timer = setInterval(() => {
-      if (!place.current || document.hidden || !isHeard()) return;
+      if (!place.current || document.hidden) return;
       const square = heard(samples).reduce((sum, x) => sum + x * x, 0) / samples.length;
       const value = Math.max(0, 1 + (10 * Math.log10(square + 1e-12)) / 60);
       if (Math.abs(place.current.value - value) > 0.005) place.current.value = value;
     }, 100);
-    return () => clearInterval(timer);
-  }, []);
+    return () => {
+      clearInterval(timer);
+      if (place.current) place.current.value = 0;
+    };
+  }, [runs]);
   return <meter ref={place} min={0} max={1} value={0} aria-label="Loudness" />;
 }
 

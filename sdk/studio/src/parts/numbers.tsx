@@ -2,7 +2,7 @@
 
 import type { ModelField } from "htex";
 
-import { author } from "../author.ts";
+import { models } from "../author.ts";
 import { endGesture, model, setParameter, shown, spec } from "../shaping/session.ts";
 import { Slider } from "./slider.tsx";
 
@@ -45,7 +45,7 @@ function List({ field, values }: { field: ModelField; values: readonly number[] 
 }
 
 export function Numbers() {
-  const descriptor = author.value?.models().find((one) => one.id === model.value);
+  const descriptor = models.value.find((one) => one.id === model.value);
   const point = spec.value?.points[shown.value];
   return (
     <details class="panel">

@@ -9,6 +9,8 @@ import { RELIEF_HZ, TILE, colour, relief } from "./relief.ts";
 
 /** Milliseconds between two reliefs while a texture is edited. */
 const RELIEF_MS = 120;
+/** Milliseconds between two pieces of one. */
+const PIECE_MS = 8;
 /** Part of the finger's way by which the grain moves. */
 const CARRIED = 0.3;
 
@@ -16,6 +18,10 @@ export class PadPainter {
   private tile: HTMLCanvasElement | null = null;
   private frame = 0;
   private timer = 0;
+  /** The relief that is being drawn. */
+  private drawing: Generator<void, HTMLCanvasElement> | null = null;
+  /** Whether the texture has changed since the drawing began. */
+  private isStale = false;
   private offset = { x: 0, y: 0 };
   private before = { x: 0.5, y: 0.5 };
   private readonly ends: (() => void)[];
@@ -27,7 +33,8 @@ export class PadPainter {
       effect(() => {
         void sounding.value;
         void scheme.value;
-        this.timer ||= window.setTimeout(() => this.renew(), this.tile ? RELIEF_MS : 0);
+        if (!this.drawing) this.timer ||= window.setTimeout(() => this.renew(), this.tile ? RELIEF_MS : 0);
+        else this.isStale = true;
       }),
       effect(() => {
         void finger.value;
@@ -41,6 +48,7 @@ export class PadPainter {
     for (const end of this.ends) end();
     cancelAnimationFrame(this.frame);
     clearTimeout(this.timer);
+    this.drawing = null;
   }
 
   private fit() {
@@ -56,8 +64,24 @@ export class PadPainter {
     const now = sounding.peek();
     if (!now) return;
     const magnitude = now.texture.spectrum(RELIEF_HZ, { model: now.model });
-    this.tile = relief(magnitude, colour("--grain-dark"), colour("--grain-light"));
-    this.wish();
+    this.drawing = relief(magnitude, colour("--grain-dark"), colour("--grain-light"));
+    this.draw(this.drawing);
+  }
+
+  /** Goes on with the relief: the first one at once, others in pieces between frames. */
+  private draw(drawing: Generator<void, HTMLCanvasElement>) {
+    if (drawing !== this.drawing) return;
+    for (;;) {
+      const { done, value } = drawing.next();
+      if (done) {
+        this.tile = value;
+        this.drawing = null;
+        if (this.isStale) this.timer ||= window.setTimeout(() => this.renew(), RELIEF_MS);
+        this.isStale = false;
+        return this.wish();
+      }
+      if (this.tile) return void setTimeout(() => this.draw(drawing), PIECE_MS);
+    }
   }
 
   private wish() {

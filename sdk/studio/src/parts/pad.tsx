@@ -51,19 +51,18 @@ function attach(element: HTMLElement) {
   element.addEventListener("pointermove", move);
   element.addEventListener("pointerup", up);
   element.addEventListener("wheel", wheel, { passive: false });
-  const force = (pressure: number) => (type === "pen" ? PEN_N * pressure : pilotForce.peek());
-  const mmPerPixel = () => padSize.width / element.getBoundingClientRect().width;
-  let end = () => {};
+  const force = (pressure: number) => PEN_N * pressure;
+  // Speed and way come in pixels: the pad may change its size while a finger is on it.
   const moved = ({ speed, force: now, position }: { speed: number; force: number; position: number }) => {
-    if (now > 0) byHand({ speed, force: now, position });
+    const mmPerPixel = padSize.width / Math.max(element.clientWidth, 1);
+    const pressed = type === "pen" ? now : pilotForce.peek();
+    if (now > 0) byHand({ speed: speed * mmPerPixel, force: pressed, position: position * mmPerPixel });
     else handLeaves();
   };
-  const follow = () => {
-    end();
+  const end = followPointer(element, moved, { force, mmPerPixel: 1 });
+  const observer = new ResizeObserver(() => {
     padSize.height = (padSize.width * element.clientHeight) / Math.max(element.clientWidth, 1);
-    end = followPointer(element, moved, { force, mmPerPixel: mmPerPixel() });
-  };
-  const observer = new ResizeObserver(follow);
+  });
   observer.observe(element);
   return () => {
     observer.disconnect();

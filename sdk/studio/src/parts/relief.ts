@@ -21,11 +21,15 @@ function numbers(seed: number) {
   };
 }
 
-function heights(magnitude: ArrayLike<number>) {
+/** Waves that are added before others may have their turn. */
+const WAVES_AT_ONCE = 8;
+
+function* heights(magnitude: ArrayLike<number>): Generator<void, Float32Array> {
   const height = new Float32Array(TILE * TILE);
   const next = numbers(11);
   const row = new Float32Array(4 * TILE);
   for (let wave = 0; wave < WAVES; wave++) {
+    if (wave % WAVES_AT_ONCE === WAVES_AT_ONCE - 1) yield;
     const length = LONGEST * ((RELIEF_HZ[wave] ?? LOW_HZ) / LOW_HZ) ** -SPREAD;
     const [angle, phase] = [Math.PI * (0.06 + 0.42 * (next() - 0.5) + (wave % 3 === 0 ? 0.5 : 0)), 2 * Math.PI * next()];
     const kx = Math.round((TILE / length) * Math.cos(angle));
@@ -46,9 +50,10 @@ function heights(magnitude: ArrayLike<number>) {
   return height;
 }
 
-/** Draws the relief to a tile that repeats. `dark` and `light` are the colours of slopes away from the light and towards it. */
-export function relief(magnitude: ArrayLike<number>, dark: Colour, light: Colour): HTMLCanvasElement {
-  const height = heights(magnitude);
+/** Draws the relief to a tile that repeats, in pieces of a millisecond or two. `dark` and `light` are the colours of slopes away from the light and towards it. */
+export function* relief(magnitude: ArrayLike<number>, dark: Colour, light: Colour): Generator<void, HTMLCanvasElement> {
+  const height = yield* heights(magnitude);
+  yield;
   const slope = new Float32Array(height.length);
   let square = 0;
   for (let y = 0, at = 0; y < TILE; y++) {
@@ -60,6 +65,7 @@ export function relief(magnitude: ArrayLike<number>, dark: Colour, light: Colour
       square += (slope[at] as number) ** 2;
     }
   }
+  yield;
   const contrast = 0.85 / (Math.sqrt(square / slope.length) || 1);
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = TILE;

@@ -6,13 +6,15 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { scheme } from "../theme.ts";
 import { paintSpectrum, type Curve } from "./spectrum-painter.ts";
 import { rangeOf, toDb, toHz, toX, toY, type Scale } from "./spectrum-scale.ts";
-import type { Handle } from "../shaping/shaper.ts";
+import type { Drawn, Handle } from "../shaping/shaper.ts";
 
 /** How near a press has to be to a handle, pixels. */
 const NEAR = 30;
 /** Steps of the arrow keys. */
 const STEP_DB = 1;
 const STEP_RATIO = 2 ** (1 / 24);
+/** Milliseconds between two drawings of what follows the finger. */
+const LIVE_MS = 33;
 
 export interface SpectrumProps {
   /** Curves that change with the texture. */
@@ -24,6 +26,8 @@ export interface SpectrumProps {
   handles: readonly Handle[];
   hasBars: boolean;
   onMove: (handle: number, hz: number, db: number) => void;
+  /** Bars were drawn across. */
+  onDraw: (drawn: readonly Drawn[]) => void;
   onSettle: () => void;
   onAdd?: ((hz: number, db: number) => void) | undefined;
   onRemove?: ((handle: number) => void) | undefined;
@@ -47,14 +51,20 @@ export function Spectrum(props: SpectrumProps) {
     if (!place) return;
     const observer = new ResizeObserver(() => wish());
     observer.observe(place);
+    let timer = 0;
+    const later = () => {
+      timer = 0;
+      wish();
+    };
     const end = effect(() => {
       kept.current.watch?.();
       void scheme.value;
-      wish();
+      timer ||= window.setTimeout(later, LIVE_MS);
     });
     return () => {
       observer.disconnect();
       end();
+      clearTimeout(timer);
       cancelAnimationFrame(kept.current.frame);
     };
   }, []);
@@ -76,9 +86,10 @@ export function Spectrum(props: SpectrumProps) {
   const drag = (event: PointerEvent) => {
     const state = kept.current;
     if (state.dragged < 0 || !state.scale) return;
+    const isWaiting = state.wanted !== null;
     state.wanted = at(event);
     // The hand may be faster than the frames.
-    requestAnimationFrame(() => {
+    if (!isWaiting) requestAnimationFrame(() => {
       if (!state.wanted || !state.scale) return;
       const [x, y] = state.wanted;
       state.wanted = null;
@@ -149,11 +160,8 @@ function draw(state: Painted, x: number, y: number) {
   const start = state.drawnDb ?? toDb(scale, y);
   const end = toDb(scale, y);
   const steps = Math.abs(to - from);
-  for (let i = steps === 0 ? 0 : 1; i <= steps; i++) {
-    const bar = from + Math.sign(to - from) * i;
-    const handle = handles[bar];
-    if (handle) state.onMove(bar, handle.hz, steps === 0 ? end : start + ((end - start) * i) / steps);
-  }
+  const way = Array.from({ length: Math.max(steps, 1) }, (_, i) => (steps === 0 ? 1 : (i + 1) / steps));
+  state.onDraw(way.map((part) => ({ handle: from + Math.round((to - from) * part), db: start + (end - start) * part })));
   state.dragged = to;
   state.drawnDb = end;
 }

@@ -2,9 +2,11 @@
 
 import { useEffect } from "preact/hooks";
 
+import { AgainstRecording } from "../parts/against-recording.tsx";
 import { Difference } from "../parts/difference.tsx";
 import { Icon } from "../parts/icons.tsx";
 import { save } from "../save.ts";
+import { nameOf } from "./shape.tsx";
 import { abandon, answer, beginTest, both, chance, choices, correct, heardSide, isMatched, isTesting, play, playX, sides, stop, toCsv, trials, TRIALS, type Side } from "../comparing.ts";
 
 function Chooser({ side }: { side: Side }) {
@@ -128,6 +130,7 @@ export function Compare() {
         <Difference />
         <Abx />
       </div>
+      <AgainstRecording nameOf={nameOf} />
     </section>
   );
 }

@@ -2,17 +2,17 @@
 
 import { useMemo } from "preact/hooks";
 
-import { author, theAuthor } from "../author.ts";
+import { author, models, theAuthor } from "../author.ts";
 import { Numbers } from "../parts/numbers.tsx";
 import { Slider } from "../parts/slider.tsx";
 import { Spectrum } from "../parts/spectrum.tsx";
 import type { Curve } from "../parts/spectrum-painter.ts";
 import { reference } from "../reference.ts";
-import { motion, played } from "../shadow.ts";
+import { motion, played, shownMotion } from "../shadow.ts";
 import { BANDS } from "../shaping/bands.ts";
 import type { Macros } from "../shaping/shaper.ts";
 import { shaperOf } from "../shaping/shapers.ts";
-import { addHandle, endGesture, handles, macros, model, moveHandle, redraw, removeHandle, setMacro, shown, spec } from "../shaping/session.ts";
+import { addHandle, drawHandles, endGesture, handles, macros, model, moveHandle, redraw, removeHandle, setMacro, shown, spec } from "../shaping/session.ts";
 import { pointDecibels, toDecibels } from "../shaping/spec.ts";
 import { choose, fail, present, texture } from "../state.ts";
 
@@ -33,7 +33,7 @@ const HINTS: Record<string, string> = {
   "org.htex.speak": "Drag the peaks. Double click adds one, Delete removes the chosen one.",
 };
 
-export const nameOf = (id: string) => author.value?.models().find((one) => one.id === id)?.name ?? id.replace("org.htex.", "");
+export const nameOf = (id: string) => models.value.find((one) => one.id === id)?.name ?? id.replace("org.htex.", "");
 
 /** The gesture that is going on; each begins with another number. */
 let gesture = 0;
@@ -79,7 +79,7 @@ function Legend({ curves }: { curves: readonly Curve[] }) {
   const has = (style: Curve["style"]) => curves.some((curve) => curve.style === style);
   return (
     <ul class="legend">
-      <li class="legend-played">plays at {motion.value.speed.toFixed(0)} mm/s, {motion.value.force.toFixed(2)} N</li>
+      <li class="legend-played">plays at {shownMotion.value.speed.toFixed(0)} mm/s, {shownMotion.value.force.toFixed(2)} N</li>
       <li class="legend-model">{model.value ? nameOf(model.value) : "model"}</li>
       {has("recording") && <li class="legend-recording">recording</li>}
       {has("before") && <li class="legend-before">as it was opened</li>}
@@ -94,7 +94,7 @@ function MacroSliders() {
       <h2>Macros</h2>
       {MACROS.map(({ id, name, low, high }) => (
         <div key={id} title={`${low} to ${high}`}>
-          <Slider label={name} min={-1} max={1} step={0.02} digits={2} value={macros.value[id]} disabled={!author.value} onValue={(value) => setMacro(id, value)} />
+          <Slider label={name} min={-1} max={1} step={0.02} digits={2} value={macros.value[id]} disabled={!author.value} onValue={(value) => setMacro(id, value)} onSettled={endGesture} />
         </div>
       ))}
       <p class="small soft">They start from where the last other edit ended, for all models alike.</p>
@@ -127,6 +127,7 @@ export function Shape() {
           hasBars={isBands}
           label={`Spectrum of ${present.value?.name ?? "the texture"}. Left and right choose a handle, up and down raise and lower it${shaper?.add ? ", with Shift left and right move it, Delete removes it" : ", with Shift left and right move it where it can be"}.`}
           onMove={(handle, hz, db) => moveHandle(handle, hz, db, `drag ${gesture}`)}
+          onDraw={(drawn) => drawHandles(drawn, `drag ${gesture}`)}
           onSettle={settle}
           onAdd={shaper?.add ? addHandle : undefined}
           onRemove={shaper?.remove ? removeHandle : undefined}

@@ -2,7 +2,7 @@
 
 import type { Author } from "htex";
 
-import { macroGain, macroRatio, type Bench, type Handle, type Macros, type Shaper } from "./shaper.ts";
+import { macroGain, macroRatio, type Bench, type Drawn, type Handle, type Macros, type Shaper } from "./shaper.ts";
 import { anchored, change, clamp, decibels, list, motionOf, pointDecibels, scalar, type Frame, type Parameters, type Spec } from "./spec.ts";
 
 export const BANDS = "org.htex.bands";
@@ -82,6 +82,12 @@ function between(hz: readonly number[], db: readonly number[], at: number) {
   return (db[next - 1] ?? 0) + part * ((db[next] ?? 0) - (db[next - 1] ?? 0));
 }
 
+/** Bars that are drawn to new decibels. */
+function drawn(bench: Bench, spec: Spec, handles: readonly Handle[], all: readonly Drawn[]): Spec {
+  const gains = new Map(all.map(({ handle, db }) => [handle, db - (handles[handle]?.db ?? db)]));
+  return raised(bench, spec, (knot) => gains.get(knot) ?? 0);
+}
+
 export const bandsShaper: Shaper = {
   handles(bench, spec): Handle[] {
     const point = spec.points[bench.shown];
@@ -92,9 +98,11 @@ export const bandsShaper: Shaper = {
   },
 
   move(bench, spec, handle, _, db) {
-    const now = this.handles(bench, spec)[handle];
-    if (!now) return spec;
-    return raised(bench, spec, (knot) => (knot === handle ? db - now.db : 0));
+    return drawn(bench, spec, this.handles(bench, spec), [{ handle, db }]);
+  },
+
+  draw(bench, spec, all) {
+    return drawn(bench, spec, this.handles(bench, spec), all);
   },
 
   macros(bench, spec, macros: Macros) {

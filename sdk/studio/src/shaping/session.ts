@@ -7,7 +7,7 @@ import { author, theAuthor } from "../author.ts";
 import { pilotForce, pilotSpeed } from "../motion.ts";
 import { edit, fail, present, settle, texture } from "../state.ts";
 import { BANDS, redrawn } from "./bands.ts";
-import type { Bench, Handle, Macros } from "./shaper.ts";
+import type { Bench, Drawn, Handle, Macros } from "./shaper.ts";
 import { shaperOf } from "./shapers.ts";
 import { fromDecibels, make, read, type Spec } from "./spec.ts";
 import { MACRO_DB } from "./shaper.ts";
@@ -86,6 +86,16 @@ export function moveHandle(handle: number, hz: number, db: number, gesture: stri
     const shaper = what && shaperOf(what.model);
     const name = handles.peek()[handle]?.name.toLowerCase();
     if (place && what && shaper) take(shaper.move(place, what, handle, hz, db), `move ${name ?? "a handle"}`, gesture);
+  });
+}
+
+/** Draws across bars; calls of one gesture are one step. */
+export function drawHandles(all: readonly Drawn[], gesture: string) {
+  attempt(() => {
+    const [now, what] = [texture.peek(), spec.peek()];
+    const place = now && what && bench(now, what);
+    const shaped = place && what && shaperOf(what.model)?.draw?.(place, what, all);
+    if (shaped) take(shaped, "draw bars", gesture);
   });
 }
 

@@ -13,6 +13,12 @@ export interface Handle {
   readonly moves: "level" | "both";
 }
 
+/** A handle and its new decibels. */
+export interface Drawn {
+  readonly handle: number;
+  readonly db: number;
+}
+
 /** Where an edit takes place: the module that makes, the texture that is changed, and the point that is shown. */
 export interface Bench extends Frame {
   readonly author: Author;
@@ -31,6 +37,8 @@ export interface Shaper {
   handles(bench: Bench, spec: Spec): Handle[];
   /** Moves a handle to a frequency and to decibels at the shown point; other points change alike. */
   move(bench: Bench, spec: Spec, handle: number, hz: number, db: number): Spec;
+  /** Sets decibels of several handles at once, as a hand draws across them. */
+  draw?(bench: Bench, spec: Spec, drawn: readonly Drawn[]): Spec;
   /** Adds a handle; absent where their number is fixed. */
   add?(bench: Bench, spec: Spec, hz: number, db: number): Spec;
   remove?(bench: Bench, spec: Spec, handle: number): Spec;

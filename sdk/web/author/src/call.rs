@@ -8,7 +8,6 @@ use serde::Serialize;
 
 use crate::document::Document;
 use crate::refusal::Refusal;
-use crate::{felt, fit, libraries, made, models, process, validate};
 
 /// The result of a call, in memory that the caller frees: `htex_free(json, json_len)`, `htex_free(bytes, bytes_len)`.
 #[repr(C)]
@@ -42,21 +41,14 @@ impl Answer {
 /// The files that a call is given.
 pub(crate) type Files<'a> = &'a [&'a [u8]];
 
-type Function = fn(Document, Files<'_>) -> Result<Answer, Refusal>;
+pub(crate) type Function = fn(Document, Files<'_>) -> Result<Answer, Refusal>;
 
-const FUNCTIONS: &[(&str, Function)] = &[
-    ("columns", process::columns),
-    ("edit", made::edit),
-    ("explain", validate::explain),
-    ("felt", felt::felt),
-    ("fit", fit::fit),
-    ("library", libraries::pack),
-    ("make", made::make),
-    ("mix", made::mix),
-    ("models", models::models),
-    ("process", process::process),
-    ("threshold", felt::threshold),
-    ("validate", validate::validate),
+/// The functions of each part that the module has.
+const FUNCTIONS: &[&[(&str, Function)]] = &[
+    #[cfg(feature = "make")]
+    crate::making::FUNCTIONS,
+    #[cfg(feature = "scene")]
+    crate::scene::FUNCTIONS,
 ];
 
 /// Calls the function of a name with a document of JSON and the bytes of files. A call that fails has a result, too.
@@ -103,7 +95,11 @@ pub unsafe extern "C" fn htex_author_call(
 }
 
 fn called(name: &str, json: &[u8], files: Files<'_>) -> Result<Answer, Refusal> {
-    let function = FUNCTIONS.iter().find(|(own, _)| *own == name);
+    let function = FUNCTIONS
+        .iter()
+        .copied()
+        .flatten()
+        .find(|(own, _)| *own == name);
     let (_, function) =
         function.ok_or_else(|| Refusal::argument(format!("there is no function {name}")))?;
     function(Document::of_call(json)?, files)

@@ -2,6 +2,7 @@
 //!
 //! They are not read by derived code, which takes a kilobyte and more for each struct. Only the tables of settings are.
 
+#[cfg(feature = "make")]
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
@@ -41,6 +42,7 @@ impl Document {
     }
 
     /// Takes the entries of a table of settings.
+    #[cfg(feature = "make")]
     pub(crate) fn table<T: DeserializeOwned>(
         &mut self,
         names: &[&'static str],

@@ -1,14 +1,8 @@
 //! Errors of calls: the status of libhtex, a code that says a little more, and the text.
 
 use htex::host::HostError;
-use htex_author::by_hand::ByHandError;
-use htex_author::recording::{ReadError, ReadProblem};
-use htex_author::settings::SettingsError;
-use htex_author::{AuthorError, EditError};
 use htex_c::calls::Failure;
 use htex_c::htex_status::{self, *};
-use htex_format::{ReadError as AssetError, WriteError};
-use htex_library::LibraryError;
 use serde::Serialize;
 
 /// The error of a call.
@@ -28,7 +22,7 @@ struct Told<'a> {
 }
 
 impl Refusal {
-    fn new(status: htex_status, code: &str, error: impl ToString) -> Self {
+    pub(crate) fn new(status: htex_status, code: &str, error: impl ToString) -> Self {
         let message = error.to_string();
         let told = Told {
             code,
@@ -46,15 +40,7 @@ impl Refusal {
         Self::new(HTEX_STATUS_INVALID_ARGUMENT, "invalid-argument", error)
     }
 
-    fn recording(error: impl ToString) -> Self {
-        Self::new(HTEX_STATUS_INVALID_ARGUMENT, "invalid-recording", error)
-    }
-
-    fn asset(error: impl ToString) -> Self {
-        Self::new(HTEX_STATUS_INVALID_ASSET, "invalid-asset", error)
-    }
-
-    fn model(error: impl ToString) -> Self {
+    pub(crate) fn model(error: impl ToString) -> Self {
         Self::new(HTEX_STATUS_MODEL, "model", error)
     }
 
@@ -85,83 +71,12 @@ impl From<Refusal> for Failure {
     }
 }
 
-impl From<ReadError> for Refusal {
-    fn from(error: ReadError) -> Self {
-        match error.problem {
-            ReadProblem::Option { .. } | ReadProblem::NoRate => Self::argument(error),
-            _ => Self::recording(error),
-        }
-    }
-}
-
 impl From<HostError> for Refusal {
     fn from(error: HostError) -> Self {
         match error {
             HostError::Option { .. } => Self::argument(error),
             HostError::Call { .. } | HostError::Broken { .. } => Self::model(error),
             other => Self::new(HTEX_STATUS_NO_MODEL, "no-model", other),
-        }
-    }
-}
-
-impl From<SettingsError> for Refusal {
-    fn from(error: SettingsError) -> Self {
-        match error {
-            SettingsError::Model(error) => error.into(),
-            other => Self::argument(other),
-        }
-    }
-}
-
-impl From<AuthorError> for Refusal {
-    fn from(error: AuthorError) -> Self {
-        match error {
-            AuthorError::Model(error) => error.into(),
-            AuthorError::Read(error) => error.into(),
-            AuthorError::Asset(error) => error.into(),
-            AuthorError::NothingFitted { .. } => Self::model(error),
-            AuthorError::GridText { .. } => Self::argument(error),
-            other => Self::recording(other),
-        }
-    }
-}
-
-impl From<ByHandError> for Refusal {
-    fn from(error: ByHandError) -> Self {
-        match error {
-            ByHandError::Model(error) => error.into(),
-            ByHandError::Write(error) => error.into(),
-            other => Self::argument(other),
-        }
-    }
-}
-
-impl From<EditError> for Refusal {
-    fn from(error: EditError) -> Self {
-        Self::asset(error)
-    }
-}
-
-impl From<AssetError> for Refusal {
-    fn from(error: AssetError) -> Self {
-        Self::asset(error)
-    }
-}
-
-impl From<WriteError> for Refusal {
-    fn from(error: WriteError) -> Self {
-        Self::asset(error)
-    }
-}
-
-impl From<LibraryError> for Refusal {
-    fn from(error: LibraryError) -> Self {
-        match error {
-            LibraryError::Name { .. }
-            | LibraryError::Duplicate { .. }
-            | LibraryError::Alike { .. } => Self::argument(error),
-            LibraryError::Asset { .. } => Self::asset(error),
-            other => Self::new(HTEX_STATUS_INVALID_LIBRARY, "invalid-library", other),
         }
     }
 }

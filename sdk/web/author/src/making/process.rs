@@ -4,10 +4,10 @@ use htex_author::recording::{Preview, preview};
 use htex_author::{Reading as Read, Recording, TextureSpectrum, read_take};
 use serde::Serialize;
 
+use super::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
+use super::recordings::Reading;
 use crate::call::{Answer, Files};
-use crate::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
 use crate::document::Document;
-use crate::recordings::Reading;
 use crate::refusal::Refusal;
 
 /// Steps of a picture of the signals.

@@ -6,9 +6,9 @@ use htex_author::{Felt, SpectrumRef, felt as difference, threshold_magnitude};
 use htex_dsp::vibrotactile::Listener;
 use serde::Serialize;
 
+use super::made::quantity;
 use crate::call::{Answer, Files};
 use crate::document::{Document, number};
-use crate::made::quantity;
 use crate::refusal::Refusal;
 
 /// What is felt of a difference: by third-octave band, and in a few numbers.

@@ -7,9 +7,9 @@ use htex_author::settings::ReadingSettings;
 use htex_author::{Exploration, Recording, SpectrumOptions, Take};
 use serde_json::Value;
 
+use super::progress;
 use crate::call::Files;
 use crate::document::Document;
-use crate::progress;
 use crate::refusal::Refusal;
 
 /// A speed in mm/s and a force in N.

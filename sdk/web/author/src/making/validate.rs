@@ -10,8 +10,8 @@ use htex_format::{Limits, Representation, validate_with};
 use htex_library::{EXTENSION, MAGIC, validate_source};
 use serde::Serialize;
 
+use super::describe::{self, DescribedFinding};
 use crate::call::{Answer, Files};
-use crate::describe::{self, DescribedFinding};
 use crate::document::Document;
 use crate::refusal::Refusal;
 

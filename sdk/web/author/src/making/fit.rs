@@ -6,12 +6,12 @@ use htex_author::{AssetRequest, FeltError, FittedAsset, GridReport, fit_asset_wa
 use htex_format::{Condition, LeftOut, Quality};
 use serde::Serialize;
 
-use crate::TOOL;
+use super::TOOL;
+use super::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
+use super::progress;
+use super::recordings::{Given, Reading, given};
 use crate::call::{Answer, Files};
-use crate::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
 use crate::document::Document;
-use crate::progress;
-use crate::recordings::{Given, Reading, given};
 use crate::refusal::Refusal;
 
 /// Fits models to recordings; the bytes are the asset.

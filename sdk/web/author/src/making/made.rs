@@ -9,7 +9,7 @@ use htex_author::settings::Metadata;
 use htex_format::{Asset, Condition};
 use serde_json::Value;
 
-use crate::TOOL;
+use super::TOOL;
 use crate::call::{Answer, Files};
 use crate::document::{Document, number};
 use crate::refusal::Refusal;

@@ -1,0 +1,33 @@
+//! What makes textures, by the names of its functions.
+
+mod describe;
+mod felt;
+mod fit;
+mod libraries;
+mod made;
+mod models;
+mod process;
+mod progress;
+mod recordings;
+mod refusal;
+mod validate;
+
+use crate::call::Function;
+
+pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
+    ("columns", process::columns),
+    ("edit", made::edit),
+    ("explain", validate::explain),
+    ("felt", felt::felt),
+    ("fit", fit::fit),
+    ("library", libraries::pack),
+    ("make", made::make),
+    ("mix", made::mix),
+    ("models", models::models),
+    ("process", process::process),
+    ("threshold", felt::threshold),
+    ("validate", validate::validate),
+];
+
+/// Program and version, for an asset's provenance: those of the command.
+const TOOL: &str = concat!("htex ", env!("CARGO_PKG_VERSION"));

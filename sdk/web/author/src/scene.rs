@@ -1,0 +1,358 @@
+//! Scenes played from memory: opened once, then named by a number until they are freed.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::io;
+use std::path::Path;
+
+use htex::device::{Capabilities, Devices};
+use htex::host::{Registry, Search, WasmEngine, WasmLimits};
+use htex::scene::file::Motion;
+use htex::scene::{
+    Costs, DeviceOverride, Finger, LoadError, LoadedScene, Plan, Renderer, SceneError, SceneFiles,
+    Surroundings, plan,
+};
+use htex_c::htex_status::*;
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::call::{Answer, Files, Function};
+use crate::document::Document;
+use crate::refusal::Refusal;
+
+pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
+    ("scene", open),
+    ("scene-free", free),
+    ("scene-next", next),
+    ("scene-path", path),
+    ("scene-render", render),
+];
+
+/// The longest scene, s.
+const MOST_S: f64 = 1e9;
+
+/// A scene that is open.
+struct Open {
+    bytes: Vec<u8>,
+    files: Named,
+    models: Registry,
+    embedded: bool,
+    devices: Devices,
+    device: DeviceOverride,
+    loaded: LoadedScene,
+    able: Capabilities,
+    /// What plays the next samples, once they were asked for.
+    playing: Option<Renderer>,
+}
+
+/// The files of a scene, by their paths in it.
+struct Named(BTreeMap<String, Vec<u8>>);
+
+impl SceneFiles for Named {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let found = self.0.get(path.to_string_lossy().as_ref()).cloned();
+        found.ok_or_else(|| io::ErrorKind::NotFound.into())
+    }
+}
+
+#[derive(Default)]
+struct Scenes {
+    open: BTreeMap<u64, Open>,
+    last: u64,
+}
+
+thread_local! {
+    static SCENES: RefCell<Scenes> = RefCell::default();
+}
+
+#[derive(Serialize)]
+struct Opened<'a> {
+    id: u64,
+    unit: &'static str,
+    rate: f64,
+    plan: &'a Plan,
+    notes: Vec<String>,
+}
+
+/// Opens a scene: the first file is the scene, the others are those that it names.
+pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
+    let names = call.texts("files")?;
+    let embedded = call.flag("trusted")?;
+    let device = device(call.object("device")?)?;
+    call.finish()?;
+    let [scene, others @ ..] = files else {
+        return Err(Refusal::argument("give the bytes of a scene"));
+    };
+    if names.len() != others.len() {
+        return Err(Refusal::argument("a file is missing"));
+    }
+    let named = names
+        .into_iter()
+        .zip(others.iter().map(|file| file.to_vec()));
+    let models = models(embedded)?;
+    let devices = Devices::new(htex_device_builtin::devices());
+    let files = Named(named.collect());
+    let around = Surroundings {
+        models: &models,
+        embedded,
+        devices: &devices,
+    };
+    let loaded = LoadedScene::from_files(scene, &files, &around, &device)?;
+    let known = devices.find(&loaded.scene.device.adapter);
+    let able = known
+        .and_then(|known| known.adapter.capabilities(&loaded.settings))
+        .map_err(Refusal::scene)?;
+    let open = Open {
+        bytes: scene.to_vec(),
+        files,
+        models,
+        embedded,
+        devices,
+        device,
+        loaded,
+        able,
+        playing: None,
+    };
+    let plan = open.planned(&open.loaded)?;
+    let notes = open.loaded.notes.iter().map(ToString::to_string).collect();
+    let unit = open.able.quantity.unit();
+    let id = SCENES.with_borrow_mut(|scenes| {
+        scenes.last += 1;
+        scenes.open.insert(scenes.last, open);
+        scenes.last
+    });
+    let opened = Opened {
+        id,
+        unit,
+        rate: plan.rate_hz,
+        plan: &plan,
+        notes,
+    };
+    Answer::new(&opened, Vec::new())
+}
+
+/// The built-in models; those that textures bring along run if that is allowed.
+fn models(embedded: bool) -> Result<Registry, Refusal> {
+    let engine = match embedded {
+        true => WasmEngine::Checked,
+        false => WasmEngine::Off,
+    };
+    let limits = WasmLimits::default().with_engine(engine);
+    Ok(Registry::search(&Search::builtin().with_limits(limits))?)
+}
+
+/// The device that is given in place of the scene's, which is not opened.
+fn device(mut given: Document) -> Result<DeviceOverride, Refusal> {
+    let device = DeviceOverride {
+        adapter: given.text("device")?,
+        profile: given.text("profile")?,
+        quantity_gain: given.number("quantity_gain")?,
+        settings: settings(given.object("settings")?)?,
+        rehearsal: true,
+        ..DeviceOverride::default()
+    };
+    given.finish()?;
+    Ok(device)
+}
+
+fn settings(given: Document) -> Result<BTreeMap<String, String>, Refusal> {
+    let text = |(name, value): (String, Value)| match value {
+        Value::String(text) => Ok((name, text)),
+        Value::Number(_) | Value::Bool(_) => Ok((name, value.to_string())),
+        _ => {
+            let name = htex_finding::plain(&name);
+            let sentence = format!("the setting {name} is a text, a number, true or false");
+            Err(Refusal::argument(sentence))
+        }
+    };
+    given.rest().into_iter().map(text).collect()
+}
+
+/// Renders a scene from its start, for its own length or that which is given; the bytes are the samples.
+pub(crate) fn render(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
+    let id = id(&mut call)?;
+    let seconds = call.number("seconds")?;
+    call.finish()?;
+    of_scene(id, |open| {
+        let mut loaded = open.loaded.clone();
+        if let Some(seconds) = seconds {
+            if !(seconds > 0.0 && seconds <= MOST_S) {
+                let sentence = format!("{seconds} seconds; give more than 0, at most {MOST_S}");
+                return Err(Refusal::argument(sentence));
+            }
+            loaded.scene.duration_s = Some(seconds);
+        }
+        let (mut renderer, plan) = open.renderer(&loaded)?;
+        let frames = plan.frames.ok_or_else(|| {
+            Refusal::argument("the scene has no end; give seconds, or add duration_s to it")
+        })?;
+        let mut samples = zeros(usize::try_from(frames).unwrap_or(usize::MAX))?;
+        let rendered = renderer.render(&mut samples);
+        samples.truncate(rendered);
+        answer(&mut renderer, &samples)
+    })
+}
+
+/// Renders the next samples of a scene, fewer at its end; the bytes are the samples.
+pub(crate) fn next(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
+    let id = id(&mut call)?;
+    let frames = count(&mut call, "frames")?;
+    call.finish()?;
+    of_scene(id, |open| {
+        let mut renderer = match open.playing.take() {
+            Some(renderer) => renderer,
+            None => open.renderer(&open.loaded)?.0,
+        };
+        let mut samples = zeros(frames)?;
+        let rendered = renderer.render(&mut samples);
+        samples.truncate(rendered);
+        let answer = answer(&mut renderer, &samples);
+        open.playing = Some(renderer);
+        answer
+    })
+}
+
+/// Renders a scene at another motion, a block of samples for each line of the file: speed, force and place; the bytes are the samples.
+pub(crate) fn path(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
+    let id = id(&mut call)?;
+    let block = count(&mut call, "block")?;
+    call.finish()?;
+    let [lines] = files else {
+        return Err(Refusal::argument("give one motion"));
+    };
+    let (lines, _) = lines.as_chunks::<8>();
+    let numbers: Vec<f64> = lines.iter().map(|x| f64::from_le_bytes(*x)).collect();
+    let (motions, _) = numbers.as_chunks::<4>();
+    if block == 0 {
+        return Err(Refusal::argument("a block has at least one sample"));
+    }
+    of_scene(id, |open| {
+        let loaded = open.live()?;
+        let plan = open.planned(&loaded)?;
+        let mut renderer = Renderer::new(&loaded, &plan)?;
+        let mut samples = zeros(motions.len().saturating_mul(block))?;
+        for (i, (part, motion)) in samples.chunks_mut(block).zip(motions).enumerate() {
+            let [speed_mm_s, force_n, x_mm, y_mm] = *motion;
+            let unknown = x_mm.is_nan() && y_mm.is_nan();
+            let moved = renderer.set_motion(Finger {
+                speed_mm_s,
+                force_n,
+                at_mm: (!unknown).then_some([x_mm, y_mm]),
+            });
+            moved.map_err(|error| Refusal::motion(format!("block {i}: {error}")))?;
+            renderer.render(part);
+        }
+        answer(&mut renderer, &samples)
+    })
+}
+
+/// Frees a scene.
+pub(crate) fn free(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
+    let id = id(&mut call)?;
+    call.finish()?;
+    SCENES.with_borrow_mut(|scenes| scenes.open.remove(&id));
+    Answer::new(&(), Vec::new())
+}
+
+fn id(call: &mut Document) -> Result<u64, Refusal> {
+    Ok(count(call, "id")? as u64)
+}
+
+/// A number that counts.
+fn count(call: &mut Document, name: &'static str) -> Result<usize, Refusal> {
+    let number = call.number(name)?.unwrap_or(-1.0);
+    let is_whole = number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number);
+    match is_whole {
+        true => Ok(number as usize),
+        false => Err(Refusal::argument(format!("{name} is a whole number"))),
+    }
+}
+
+fn of_scene(
+    id: u64,
+    call: impl FnOnce(&mut Open) -> Result<Answer, Refusal>,
+) -> Result<Answer, Refusal> {
+    SCENES.with_borrow_mut(|scenes| match scenes.open.get_mut(&id) {
+        Some(open) => call(open),
+        None => Err(Refusal::argument("the scene was freed; open it again")),
+    })
+}
+
+fn zeros(frames: usize) -> Result<Vec<f32>, Refusal> {
+    let mut samples = Vec::new();
+    samples
+        .try_reserve_exact(frames)
+        .map_err(|_| Refusal::argument(format!("{frames} samples do not fit into memory")))?;
+    samples.resize(frames, 0.0);
+    Ok(samples)
+}
+
+fn answer(renderer: &mut Renderer, samples: &[f32]) -> Result<Answer, Refusal> {
+    if let Some(error) = renderer.take_failure() {
+        return Err(error.into());
+    }
+    let bytes = samples.iter();
+    Answer::new(&(), bytes.flat_map(|x| x.to_le_bytes()).collect())
+}
+
+impl Open {
+    fn planned(&self, loaded: &LoadedScene) -> Result<Plan, Refusal> {
+        Ok(plan(loaded, &self.able, &Costs::embedded())?)
+    }
+
+    /// What plays a scene at its own motion.
+    fn renderer(&self, loaded: &LoadedScene) -> Result<(Renderer, Plan), Refusal> {
+        if loaded.scene.motion == Motion::Live {
+            let sentence = "the motion of the scene is live; give it to renderPath";
+            return Err(Refusal::argument(sentence));
+        }
+        let plan = self.planned(loaded)?;
+        Ok((Renderer::new(loaded, &plan)?, plan))
+    }
+
+    /// Loads the scene for a motion that is given while it plays.
+    fn live(&self) -> Result<LoadedScene, Refusal> {
+        let around = Surroundings {
+            models: &self.models,
+            embedded: self.embedded,
+            devices: &self.devices,
+        };
+        let device = DeviceOverride {
+            live: true,
+            ..self.device.clone()
+        };
+        let mut loaded = LoadedScene::from_files(&self.bytes, &self.files, &around, &device)?;
+        loaded.scene.motion = Motion::Live;
+        loaded.scene.duration_s = None;
+        loaded.trace = None;
+        Ok(loaded)
+    }
+}
+
+impl Refusal {
+    /// A scene that cannot be loaded or played.
+    fn scene(error: impl ToString) -> Self {
+        Self::new(HTEX_STATUS_INVALID_SCENE, "invalid-scene", error)
+    }
+
+    fn motion(error: impl ToString) -> Self {
+        Self::new(HTEX_STATUS_INVALID_MOTION, "invalid-motion", error)
+    }
+}
+
+impl From<LoadError> for Refusal {
+    fn from(error: LoadError) -> Self {
+        Self::scene(error)
+    }
+}
+
+impl From<SceneError> for Refusal {
+    fn from(error: SceneError) -> Self {
+        match error {
+            SceneError::Motion { .. } => Self::motion(error),
+            SceneError::Surface { .. } => Self::model(error),
+            SceneError::NoModel { .. } => Self::new(HTEX_STATUS_NO_MODEL, "no-model", error),
+            _ => Self::scene(error),
+        }
+    }
+}

@@ -1,0 +1,5 @@
+// Scenes in Node.js.
+
+import "./index.node.js";
+
+export * from "./scene.js";

@@ -1,8 +1,11 @@
 //! The model under test, and operations that several checks use.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
-use htex_host::{Band, FitCondition, FitRequest, HostError, LoadedModel, Status, Stream};
+use htex_host::{
+    Band, FitCondition, FitRequest, HostError, LoadedModel, Status, Stream, WasmLimits,
+};
 use htex_model::Fit;
 
 use crate::spectra::{REFERENCES, Reference};
@@ -10,6 +13,16 @@ use htex_check_runner::Finding;
 
 /// Rate at which sounds are checked, hertz: that of the recordings.
 pub(crate) const RATE_HZ: f64 = 20_000.0;
+
+/// Total time of a module in one check. A check does far more than a player, and the runner ends one that takes too long.
+const MODULE_TOTAL: Duration = Duration::from_secs(600);
+
+/// The limits of a player, but for the total time.
+fn limits() -> WasmLimits {
+    let limits = WasmLimits::default();
+    let all = limits.all.with_time(MODULE_TOTAL);
+    limits.with_all(all)
+}
 
 /// A loaded model and the checker's settings.
 pub struct Case {
@@ -32,7 +45,7 @@ impl Case {
     pub(crate) fn load(file: &Path, seed: u64, against: Option<&Path>) -> Result<Self, HostError> {
         Ok(Self {
             file: file.to_owned(),
-            model: LoadedModel::from_file(file)?,
+            model: LoadedModel::from_file_within(file, &limits())?,
             seed,
             against: against.map(Path::to_owned),
         })

@@ -1,15 +1,9 @@
 //! SPDX licence expressions.
 
-use spdx::{Expression, ParseMode};
+mod expression;
 
 use crate::rules as rule;
 use htex_finding::Rule;
-
-/// The standard's grammar and list; deprecated ids are still licences.
-const LISTED: ParseMode = ParseMode {
-    allow_deprecated: true,
-    ..ParseMode::STRICT
-};
 
 /// Error: a text is not an SPDX expression of listed licences.
 #[allow(missing_docs)] // The message says what a field is.
@@ -49,20 +43,12 @@ impl LicenseError {
 /// assert_eq!(error.rule().code, "LICENSE_UNKNOWN");
 /// ```
 pub fn check_license(license: &str) -> Result<(), LicenseError> {
-    let Err(unlisted) = Expression::parse_mode(license, LISTED) else {
-        return Ok(());
-    };
-    let any_id = ParseMode {
-        allow_unknown: true,
-        ..LISTED
-    };
-    match Expression::parse_mode(license, any_id) {
-        Ok(_) => Err(LicenseError::Unlisted {
-            id: license.get(unlisted.span).unwrap_or(license).to_owned(),
-        }),
-        Err(error) => Err(LicenseError::Syntax {
+    match expression::check(license) {
+        Ok(None) => Ok(()),
+        Ok(Some(id)) => Err(LicenseError::Unlisted { id: id.to_owned() }),
+        Err(reason) => Err(LicenseError::Syntax {
             license: license.to_owned(),
-            reason: error.reason.to_string(),
+            reason: reason.to_owned(),
         }),
     }
 }

@@ -19,6 +19,7 @@
 
 mod builtin;
 mod clock;
+mod decimal;
 mod descriptor;
 mod error;
 mod limits;
@@ -53,6 +54,7 @@ mod sections;
 mod wasm;
 
 pub use clock::Instant;
+pub use decimal::decimal;
 pub use descriptor::{DescriptorError, read_descriptor};
 pub use error::{HostError, OptionError};
 pub use htex_dsp::grid::{Band, GRID_HZ};

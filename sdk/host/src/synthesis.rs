@@ -12,7 +12,7 @@ use htex_dsp::resample::Resampler;
 use htex_dsp::seam::Loop;
 use htex_dsp::shaped_noise::economical_rate_hz;
 
-use crate::{HostError, LoadedModel, Stream};
+use crate::{HostError, LoadedModel, Stream, decimal};
 
 /// Default length of a loop, seconds, and default taps of a filter.
 const LOOP_S: f64 = 2.0;
@@ -76,7 +76,7 @@ impl FromStr for Synthesis {
         let synthesis = match (way, number) {
             ("streamed", None) => Some(Self::Streamed),
             ("loop", None) => Some(Self::Loop { seconds: LOOP_S }),
-            ("loop", Some(s)) => s.parse().ok().map(|seconds| Self::Loop { seconds }),
+            ("loop", Some(s)) => decimal(s).map(|seconds| Self::Loop { seconds }),
             ("filter", None) => Some(Self::Filter { taps: TAPS }),
             ("filter", Some(n)) => n.parse().ok().map(|taps| Self::Filter { taps }),
             _ => None,

@@ -342,7 +342,7 @@ impl Reach {
 
 /// Rounds to four digits, the precision of measured speeds and forces.
 fn four_digits(x: f64) -> f64 {
-    format!("{x:.3e}").parse().unwrap_or(x)
+    htex_host::decimal(&format!("{x:.3e}")).unwrap_or(x)
 }
 
 impl fmt::Display for Coverage {

@@ -1,6 +1,6 @@
 /** Textures made: recordings fitted, parameters written, textures mixed and edited. */
 
-import type { Address, Bytes, Readable, Texture } from "./index.js";
+import type { Address, Bytes, Quantity, Readable, Texture } from "./index.js";
 import type { SignalLike, WorkerLike } from "./web.js";
 
 /** A file: its name, which tells what kind of recording it is, and its bytes. */

@@ -49,6 +49,8 @@ mod scene;
 mod storage;
 #[cfg(all(unix, feature = "build"))]
 mod strangers;
+#[cfg(feature = "lab")]
+mod studio;
 mod tradeoff;
 mod triangles;
 mod validate;

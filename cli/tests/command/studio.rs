@@ -1,10 +1,6 @@
 //! `htex studio`: which folder it serves. `sdk/studio/tests/served.test.mjs` opens what is served.
-#![cfg(feature = "lab")]
-#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
-mod common;
-
-use common::Place;
+use crate::common::Place;
 
 #[test]
 fn a_folder_without_the_page_is_refused_with_how_to_build_it() {

@@ -310,7 +310,7 @@ export class HtexNode extends NodeBase {
   readonly gain: AudioParamLike;
   /** Position along the path, mm, for models that follow it. */
   set position(position: number);
-  /** Fades to another texture within 15 ms; resolves when that has begun. Of several calls at a time the last one counts. */
+  /** Fades to another texture within 20 ms; resolves when that has begun. Of several calls at a time the last one counts. */
   load(texture: Texture, options?: LoadOptions): Promise<void>;
   /** Resolves when the voice is made. */
   readonly ready: Promise<void>;

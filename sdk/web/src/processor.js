@@ -8,7 +8,7 @@ const stage = new Stage();
 /** Seconds of the fades of a start, of a stop, and from a texture to another. */
 const START_S = 0.01;
 const STOP_S = 0.01;
-const CHANGE_S = 0.015;
+const CHANGE_S = 0.02;
 /** Most sources that sound at a time: one, and those that fade out. */
 const MOST_TRACKS = 4;
 /** Seconds between two envelopes. */

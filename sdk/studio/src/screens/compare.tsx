@@ -104,7 +104,7 @@ export function Compare() {
         <div>
           <h1 id="compare-title">Compare</h1>
           <p>
-            The key <kbd>C</kbd> changes between A and B, with a cross-fade of 15 ms.
+            The key <kbd>C</kbd> changes between A and B, with a cross-fade of 20 ms.
           </p>
         </div>
         <div class="row">

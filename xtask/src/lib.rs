@@ -12,6 +12,7 @@ mod places;
 pub mod plugins;
 pub mod programs;
 pub mod prove;
+pub mod shelf;
 pub mod studio;
 mod wasm;
 pub mod web;

@@ -45,7 +45,7 @@ fn main() -> Result<ExitCode> {
         ["prove", ref arguments @ ..] => xtask::prove::prove(arguments)?,
         ["web", "--out", out] => xtask::web::web(out.as_ref())?,
         ["studio", "--out", out] => xtask::studio::studio(out.as_ref())?,
-        ["studio-shelf"] => xtask::studio::shelf()?,
+        ["studio-shelf"] => xtask::shelf::shelf()?,
         ["ci"] => {
             let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
             run(Command::new("bash").arg(".ci/run").current_dir(workspace))?;

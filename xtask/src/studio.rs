@@ -43,16 +43,3 @@ pub(crate) fn install(folder: &Path) -> Result<()> {
 pub(crate) fn source() -> PathBuf {
     workspace().join("sdk/studio")
 }
-
-/// Makes the library of the studio's shelf anew, by the `htex` command.
-///
-/// # Errors
-/// As [`studio`].
-pub fn shelf() -> Result<()> {
-    let source = source();
-    let command = crate::bindings::command()?;
-    run(program("node", &source)
-        .arg("shelf/make.mjs")
-        .arg(command)
-        .arg("shelf/shelf.htexlib"))
-}

@@ -4,8 +4,8 @@ use std::ffi::c_char;
 
 use htex_c::calls::{Failure, allocate, guarded, needed_text, place, slice};
 use htex_c::{htex_bytes, htex_status};
-use serde::Serialize;
 
+use crate::answer::{Answer, Files, Function};
 use crate::document::Document;
 use crate::refusal::Refusal;
 
@@ -23,25 +23,6 @@ pub struct htex_author_result {
     /// Their number.
     pub bytes_len: usize,
 }
-
-/// What a function returns: a document, and bytes.
-#[derive(Debug)]
-pub(crate) struct Answer {
-    json: Vec<u8>,
-    bytes: Vec<u8>,
-}
-
-impl Answer {
-    pub(crate) fn new(document: &impl Serialize, bytes: Vec<u8>) -> Result<Self, Refusal> {
-        let json = serde_json::to_vec(document).map_err(Refusal::internal)?;
-        Ok(Self { json, bytes })
-    }
-}
-
-/// The files that a call is given.
-pub(crate) type Files<'a> = &'a [&'a [u8]];
-
-pub(crate) type Function = fn(Document, Files<'_>) -> Result<Answer, Refusal>;
 
 /// The functions of each part that the module has.
 const FUNCTIONS: &[&[(&str, Function)]] = &[

@@ -5,6 +5,7 @@
 //! A call has a name, a document of JSON, and the bytes of files; so has its result. One function for all keeps the layout of structs out of
 //! JavaScript, and costs microseconds beside what the calls do. Names, documents and results are those of `sdk/web/src/author.d.ts`.
 
+mod answer;
 mod call;
 mod document;
 #[cfg(feature = "make")]

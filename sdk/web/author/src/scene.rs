@@ -16,7 +16,7 @@ use htex_c::htex_status::*;
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::call::{Answer, Files, Function};
+use crate::answer::{Answer, Files, Function};
 use crate::document::Document;
 use crate::refusal::Refusal;
 

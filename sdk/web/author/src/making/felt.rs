@@ -7,7 +7,7 @@ use htex_dsp::vibrotactile::Listener;
 use serde::Serialize;
 
 use super::made::quantity;
-use crate::call::{Answer, Files};
+use crate::answer::{Answer, Files};
 use crate::document::{Document, number};
 use crate::refusal::Refusal;
 

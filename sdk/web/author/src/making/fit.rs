@@ -10,7 +10,7 @@ use super::TOOL;
 use super::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
 use super::progress;
 use super::recordings::{Given, Reading, given};
-use crate::call::{Answer, Files};
+use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
 

@@ -1,6 +1,6 @@
 //! Textures to a library.
 
-use crate::call::{Answer, Files};
+use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
 

@@ -10,7 +10,7 @@ use htex_format::{Asset, Condition};
 use serde_json::Value;
 
 use super::TOOL;
-use crate::call::{Answer, Files};
+use crate::answer::{Answer, Files};
 use crate::document::{Document, number};
 use crate::refusal::Refusal;
 

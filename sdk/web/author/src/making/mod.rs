@@ -12,7 +12,7 @@ mod recordings;
 mod refusal;
 mod validate;
 
-use crate::call::Function;
+use crate::answer::Function;
 
 pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
     ("columns", process::columns),

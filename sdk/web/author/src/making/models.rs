@@ -3,7 +3,7 @@
 use htex::host::{Descriptor, Field, FitOption, Kind, LoadedModel, Registry, Usual};
 use serde::Serialize;
 
-use crate::call::{Answer, Files};
+use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
 use super::recordings::Reading;
-use crate::call::{Answer, Files};
+use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
 

@@ -8,7 +8,7 @@ use htex_author::{Exploration, Recording, SpectrumOptions, Take};
 use serde_json::Value;
 
 use super::progress;
-use crate::call::Files;
+use crate::answer::Files;
 use crate::document::Document;
 use crate::refusal::Refusal;
 

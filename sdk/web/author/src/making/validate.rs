@@ -11,7 +11,7 @@ use htex_library::{EXTENSION, MAGIC, validate_source};
 use serde::Serialize;
 
 use super::describe::{self, DescribedFinding};
-use crate::call::{Answer, Files};
+use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
 

@@ -74,7 +74,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Result<Option<&'a str>,
 /// A text that must be there.
 ///
 /// # Safety
-/// As [`text`].
+/// As `text`.
 pub unsafe fn needed_text<'a>(pointer: *const c_char) -> Result<&'a str, Failure> {
     // SAFETY: as here.
     unsafe { text(pointer) }?.ok_or(Failure::argument("a text is NULL"))

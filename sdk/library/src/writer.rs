@@ -48,7 +48,7 @@ impl Writer {
     /// Adds a texture: `asset` are the bytes of a `.htex` file, which is stored as it is.
     ///
     /// # Errors
-    /// When the name breaks a rule of [`check_name`] or was added before, in the same or another case, the asset is not valid or has more tags or longer ones
+    /// When the name breaks a rule of [`check_name`](crate::check_name) or was added before, in the same or another case, the asset is not valid or has more tags or longer ones
     /// than the index holds (64 of 255 bytes), or the bytes cannot be written.
     pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
         self.packer.add(name, asset)

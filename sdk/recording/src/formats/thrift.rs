@@ -4,6 +4,9 @@
 /// Deepest nesting of structures and lists.
 const DEEPEST: usize = 32;
 
+/// The types true and false.
+const TRUTH_VALUES: [u8; 2] = [1, 2];
+
 /// Returns the length of the structure at the beginning of `bytes`.
 ///
 /// # Errors
@@ -74,6 +77,10 @@ impl Walk<'_> {
         if depth > DEEPEST {
             return Err("its header is nested too deeply");
         }
+        // The library takes them for values without bytes, and so reads other lists than this.
+        if kinds.iter().any(|kind| TRUTH_VALUES.contains(kind)) {
+            return Err("its header has a list of truth values, which none of Parquet's has");
+        }
         if count > (self.bytes.len() - self.at) as u64 {
             return Err("its header claims a list longer than the file");
         }
@@ -119,10 +126,12 @@ mod tests {
 
     #[test]
     fn lengths_are_those_of_whole_structures() {
-        // Field 1, i32: 3; field 2, list of two booleans; the end.
-        assert_eq!(struct_len(&[0x15, 0x06, 0x19, 0x21, 1, 2, 0, 9]), Ok(7));
-        // Two thousand million booleans in seven bytes.
-        let long = [0x19, 0xf1, 0xff, 0xff, 0xff, 0xff, 0x07, 0];
+        // Field 1, i32: 3; field 2, list of two bytes; the end.
+        assert_eq!(struct_len(&[0x15, 0x06, 0x19, 0x23, 1, 2, 0, 9]), Ok(7));
+        // The same of truth values.
+        assert!(struct_len(&[0x15, 0x06, 0x19, 0x21, 1, 2, 0, 9]).is_err());
+        // Two thousand million bytes in seven.
+        let long = [0x19, 0xf3, 0xff, 0xff, 0xff, 0xff, 0x07, 0];
         assert!(struct_len(&long).is_err());
         assert!(struct_len(&[0x15]).is_err() && struct_len(&[]).is_err());
         assert!(struct_len(&[0x1c; 100]).is_err());

@@ -40,8 +40,10 @@ fn written_and_read_back_it_is_the_same_recording() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("coarse.csv");
     std::fs::write(&path, bytes).unwrap();
-    let read = read_recording(Path::new(&path), &ReadOptions::default()).unwrap();
+    let mut read = read_recording(Path::new(&path), &ReadOptions::default()).unwrap();
     assert!(read.simulated);
+    // What was read has the hash of its file.
+    assert!(read.blake3.take().is_some());
     assert_eq!(read, simulation.to_recording("coarse.csv").unwrap());
 }
 

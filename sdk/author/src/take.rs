@@ -18,6 +18,6 @@ pub(crate) fn source_of(take: &Take, segments: usize) -> Source {
         file: take.recording.source.clone(),
         rate_hz: take.recording.rate_hz,
         segments: segments as u64,
-        blake3: take.recording.blake3.clone(),
+        blake3: take.recording.file.blake3(),
     }
 }

@@ -59,6 +59,7 @@ pub use columns::row_map::RowMap;
 pub use columns::token::ColumnRef;
 pub use error::{Place, ReadError, ReadProblem};
 pub use formats::{FORMATS, Format, format_names};
+pub use hash::RecordedFile;
 pub use hertz::hertz;
 pub use options::ReadOptions;
 pub use preview::{Preview, PreviewColumn, preview};
@@ -82,14 +83,9 @@ use input::{Opened, file_name};
 /// # Errors
 /// See [`ReadError`]: each names the file, and the place where there is one.
 pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
-    let version = hash::Version::of(path);
-    let mut recording = read(path, || Opened::file(path), options)?;
-    if let Some(version) = version {
-        let hashed = hash::of_file(path, version);
-        let hashed = hashed.map_err(|error| ReadProblem::Io(error).in_file(&file_name(path)));
-        recording.blake3 = hashed?;
-    }
-    Ok(recording)
+    let file = RecordedFile::at(path);
+    let recording = read(path, || Opened::file(path), options)?;
+    Ok(Recording { file, ..recording })
 }
 
 /// Reads a recording from bytes; `path` is its name and is not opened.
@@ -102,10 +98,8 @@ pub fn recording_from_bytes(
     options: &ReadOptions,
 ) -> Result<Recording, ReadError> {
     let recording = read(path, || Opened::bytes(path, bytes), options)?;
-    Ok(Recording {
-        blake3: Some(hash::of_bytes(bytes)),
-        ..recording
-    })
+    let file = RecordedFile::of_bytes(bytes);
+    Ok(Recording { file, ..recording })
 }
 
 fn read<'a>(

@@ -4,6 +4,8 @@ use htex_finding::{Finding, Notice};
 use htex_format::Quantity;
 use thiserror::Error;
 
+use crate::hash::RecordedFile;
+
 /// Highest sample rate, hertz: above that of any force sensor, and low enough that sample counts are exact.
 pub const MAX_RATE_HZ: f64 = 1e9;
 /// Largest magnitude of a sample, in any unit: sums of squares over hours stay finite.
@@ -71,8 +73,8 @@ pub enum RecordingError {
 pub struct Recording {
     /// File name without its directory, for messages and provenance.
     pub source: String,
-    /// BLAKE3 of the file's bytes, 64 hexadecimal digits, for provenance; `None` where it is of no file, or was read from a pipe.
-    pub blake3: Option<String>,
+    /// The file it was read from, whose hash provenance holds.
+    pub file: RecordedFile,
     /// Samples per second of every signal, hertz.
     pub rate_hz: f64,
     /// Quantity of the axes.
@@ -149,7 +151,7 @@ impl Recording {
         }
         Ok(Self {
             source: source.into(),
-            blake3: None,
+            file: RecordedFile::default(),
             rate_hz,
             quantity,
             axes,

@@ -116,7 +116,7 @@ fn a_recording_is_that_of_the_csv_with_the_same_numbers() {
         let found = read_lab(&case.name, &mapped(&map(first, second), given)).unwrap();
         let without_file = |mut recording: Recording| {
             recording.source = String::new();
-            recording.blake3 = None;
+            recording.file = Default::default();
             recording
                 .warnings
                 .retain(|warning| !warning.starts_with("Column"));

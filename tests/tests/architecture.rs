@@ -151,6 +151,17 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "htex-exchange",
+        &[
+            "htex-author",
+            "htex-dsp",
+            "htex-files",
+            "htex-finding",
+            "htex-format",
+            "htex-play",
+        ],
+    ),
+    (
         "htex-cli",
         &[
             "htex",
@@ -163,6 +174,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-device-builtin",
             "htex-device-check",
             "htex-device-guardian",
+            "htex-exchange",
             "htex-lab",
             "htex-library",
             "htex-scene",
@@ -205,6 +217,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-capi",
             "adapter",
             "htex-device",
+            "htex-exchange",
             "htex-finding",
             "htex-format",
             "htex-host",

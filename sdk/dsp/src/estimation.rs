@@ -41,18 +41,19 @@ pub fn yule_walker(segments: &[&[f64]], order: usize) -> LinearPrediction {
 pub fn burg(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let mut errors: Vec<BurgErrors> = segments.iter().map(|s| BurgErrors::new(s)).collect();
     let mut stages = Stages::new(order, autocorrelation(segments, 0)[0]);
+    let mut sums = added(errors.iter().map(BurgErrors::sums));
     while stages.is_open() {
-        let (cross, power) = errors
-            .iter()
-            .map(BurgErrors::sums)
-            .fold((0.0, 0.0), |(cross, power), (c, p)| (cross + c, power + p));
+        let (cross, power) = sums;
         let reflection = 2.0 * cross / power;
         stages.push(reflection);
-        for error in &mut errors {
-            error.advance(reflection);
-        }
+        sums = added(errors.iter_mut().map(|error| error.advance(reflection)));
     }
     stages.finish()
+}
+
+/// Adds the sums of all segments.
+fn added(sums: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+    sums.fold((0.0, 0.0), |(cross, power), (c, p)| (cross + c, power + p))
 }
 
 /// Forward error at n and backward error at n - 1 of one segment.
@@ -77,17 +78,24 @@ impl BurgErrors {
         })
     }
 
-    /// Advances to the next stage: updates both errors and delays the backward one by a sample.
-    fn advance(&mut self, k: f64) {
-        for (forward, backward) in self.forward.iter_mut().zip(&mut self.backward) {
-            let (f, b) = (*forward, *backward);
-            *forward = f - k * b;
-            *backward = b - k * f;
+    /// Advances to the next stage: updates both errors and delays the backward one by a sample. Returns the sums of that stage.
+    fn advance(&mut self, k: f64) -> (f64, f64) {
+        let (forward, backward) = (&mut self.forward[..], &mut self.backward[..]);
+        let (mut cross, mut power) = (0.0, 0.0);
+        let mut delayed = None;
+        for i in 0..forward.len().min(backward.len()) {
+            let (f, b) = (forward[i], backward[i]);
+            let (next, later) = (f - k * b, b - k * f);
+            backward[i] = later;
+            if let Some(earlier) = delayed.replace(later) {
+                forward[i - 1] = next;
+                cross += next * earlier;
+                power = power + next * next + earlier * earlier;
+            }
         }
-        if !self.forward.is_empty() {
-            self.forward.remove(0);
-            self.backward.pop();
-        }
+        self.forward.pop();
+        self.backward.pop();
+        (cross, power)
     }
 }
 

@@ -101,5 +101,11 @@ pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
             lanes[i] += x[i] * y[i];
         }
     }
+    sum(&lanes)
+}
+
+/// Not inlined: its additions across lanes would keep the loop of [`dot`] from being compiled to vectors, which takes half as long again.
+#[inline(never)]
+fn sum(lanes: &[f32; 8]) -> f32 {
     (lanes[0] + lanes[4]) + (lanes[1] + lanes[5]) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))
 }

@@ -83,7 +83,7 @@ fn check_model(representation: &Representation, at: Arguments<'_>, findings: &mu
     findings.require(
         is_model_id(model),
         rule::MODEL_ID_INVALID,
-        format!("{at}/model"),
+        format_args!("{at}/model"),
         || format!("{model:?} is not a model id; write one like org.example.mymodel"),
     );
     let semantic = semver::Version::parse(model_version).is_ok();
@@ -155,7 +155,7 @@ fn check_conditions(
     findings.require(
         !representation.at.is_empty(),
         rule::AT_EMPTY,
-        format!("{at}/at"),
+        format_args!("{at}/at"),
         || "the model is fitted at no condition; fit it or remove it".to_owned(),
     );
     let conditions = manifest.conditions.len();
@@ -185,7 +185,7 @@ fn check_fit(fitted: &AtCondition, quantity: Quantity, at: Arguments<'_>, findin
     findings.require(
         is_size(level) && level <= largest,
         rule::LEVEL_INVALID,
-        format!("{at}/level_rms"),
+        format_args!("{at}/level_rms"),
         || format!("{level} {unit} is not a valid level; write a value from 0 to {largest}"),
     );
     if let Some(quality) = &fitted.quality {

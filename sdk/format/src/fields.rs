@@ -128,15 +128,16 @@ pub fn match_fields<'a>(
 }
 
 fn mismatch(index: usize, stored: &StoredField, model: &Descriptor) -> Option<FieldMismatch> {
-    let name = stored.name.clone();
-    let Some(field) = model.fields.iter().find(|field| field.name == name) else {
+    let name = || stored.name.clone();
+    let Some(field) = model.fields.iter().find(|field| field.name == stored.name) else {
         let names: Vec<&str> = model.fields.iter().map(|f| f.name.as_str()).collect();
         let there = names.join(", ");
+        let name = name();
         return Some(FieldMismatch::Unknown { index, name, there });
     };
     let list = matches!(field.kind, Kind::List { .. });
     if list != stored.list {
-        let [stored, wanted] = [stored.list, list].map(kind);
+        let (name, [stored, wanted]) = (name(), [stored.list, list].map(kind));
         return Some(FieldMismatch::Kind {
             index,
             name,
@@ -147,7 +148,7 @@ fn mismatch(index: usize, stored: &StoredField, model: &Descriptor) -> Option<Fi
     let wanted = stored_unit(&field.unit);
     (wanted != stored.unit).then(|| FieldMismatch::Unit {
         index,
-        name,
+        name: name(),
         stored: stored.unit.clone(),
         wanted: wanted.to_owned(),
     })

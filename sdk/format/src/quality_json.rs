@@ -5,7 +5,7 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::de::{self, IgnoredAny, MapAccess, Visitor};
+use serde::de::{self, DeserializeSeed, IgnoredAny, MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value, json};
@@ -18,6 +18,8 @@ const BANDS: &str = "band_error_db";
 /// Number of bands of `band_error_db`.
 pub(crate) const BAND_COUNT: usize = 9;
 const ROUNDING: &str = "rounding_error_db";
+/// Most keys of an object.
+const KEYS: usize = 2 * Measure::ALL.len() + 2;
 
 /// A key with its value.
 pub(crate) struct Entry<'a> {
@@ -32,6 +34,14 @@ pub(crate) enum Content<'a> {
     Bands(&'a [f64]),
 }
 
+/// Which value of [`Quality`] a key has.
+#[derive(Clone, Copy)]
+pub(crate) enum Place {
+    Measured(By, Measure),
+    Bands,
+    Rounding,
+}
+
 /// Where the value of a key is read to.
 pub(crate) enum Slot<'a> {
     Number(&'a mut Option<f64>),
@@ -42,68 +52,78 @@ pub(crate) enum Slot<'a> {
 pub(crate) trait Entries: Default {
     const NAME: &'static str;
     const DESCRIPTION: &'static str;
+    /// Which value a key has.
+    type Place;
 
     /// Returns all keys in the order of the file, also those without a value.
-    fn entries(&self) -> Vec<Entry<'_>>;
+    fn entries(&self) -> impl Iterator<Item = Entry<'_>>;
 
-    /// Returns the place of a key's value; `None` if the key is not known.
-    fn slot(&mut self, key: &str) -> Option<Slot<'_>>;
+    /// Finds a key of a text, which is not copied; `None` if it is not known.
+    fn known(key: &str) -> Option<(&'static str, Self::Place)>;
+
+    /// Returns where a value is read to.
+    fn slot(&mut self, place: Self::Place) -> Slot<'_>;
 }
 
 impl Entries for Quality {
     const NAME: &'static str = "Quality";
     const DESCRIPTION: &'static str =
         "Agreement with the recorded spectrum, of the model's magnitudes unless stated otherwise.";
+    type Place = Place;
 
-    fn entries(&self) -> Vec<Entry<'_>> {
-        let mut entries = Vec::with_capacity(2 * Measure::ALL.len() + 2);
-        for measure in Measure::stored() {
-            if measure == Measure::NineBand {
-                entries.push(Entry {
-                    key: BANDS,
-                    content: Content::Bands(&self.band_error_db),
-                    required: true,
-                    description: "Energy relative to the recording's in nine bands, decibels.",
-                });
-            }
-            let (row, value) = (measure.row(), self.get(measure));
-            entries.push(Entry {
-                key: row.key,
-                content: Content::Number(value, row.judged),
-                required: row.required,
-                description: row.meaning,
+    fn entries(&self) -> impl Iterator<Item = Entry<'_>> {
+        let by_magnitude = Measure::stored().flat_map(|measure| {
+            let bands = (measure == Measure::NineBand).then_some(Entry {
+                key: BANDS,
+                content: Content::Bands(&self.band_error_db),
+                required: true,
+                description: "Energy relative to the recording's in nine bands, decibels.",
             });
-        }
-        for measure in Measure::stored() {
+            let number = Entry {
+                key: measure.row().key,
+                content: Content::Number(self.get(measure), measure.row().judged),
+                required: measure.row().required,
+                description: measure.row().meaning,
+            };
+            bands.into_iter().chain([number])
+        });
+        let by_samples = Measure::stored().filter_map(|measure| {
             let row = measure.row();
-            entries.extend(row.of_samples.map(|description| Entry {
-                key: measure.key(By::Samples),
+            Some(Entry {
+                key: row.samples_key,
                 content: Content::Number(self.samples(measure), row.judged),
                 required: false,
-                description,
-            }));
-        }
-        entries.push(Entry {
+                description: row.of_samples?,
+            })
+        });
+        let rounding = Entry {
             key: ROUNDING,
             content: Content::Number(self.rounding_error_db, Judged::Error),
             required: false,
             description: "Nine-band RMS difference between the spectra of the fitted and of the stored parameters, decibels.",
-        });
-        entries
+        };
+        by_magnitude.chain(by_samples).chain([rounding])
     }
 
-    fn slot(&mut self, key: &str) -> Option<Slot<'_>> {
-        let mut stored = Measure::stored();
-        match (key, key.strip_prefix("samples_")) {
-            (BANDS, _) => Some(Slot::Bands(&mut self.band_error_db)),
-            (ROUNDING, _) => Some(Slot::Number(&mut self.rounding_error_db)),
-            (_, Some(key)) => {
-                let found = stored.find(|m| m.row().key == key && m.row().of_samples.is_some())?;
-                Some(Slot::Number(self.by_samples.get_mut(found)))
-            }
-            (key, None) => {
-                let found = stored.find(|m| m.row().key == key)?;
-                Some(Slot::Number(self.by_magnitude.get_mut(found)))
+    fn known(key: &str) -> Option<(&'static str, Place)> {
+        let by = match key {
+            BANDS => return Some((BANDS, Place::Bands)),
+            ROUNDING => return Some((ROUNDING, Place::Rounding)),
+            key if key.starts_with("samples_") => By::Samples,
+            _ => By::Magnitude,
+        };
+        let has = |m: &Measure| by == By::Magnitude || m.row().of_samples.is_some();
+        let found = Measure::stored().find(|m| m.key(by) == key && has(m))?;
+        Some((found.key(by), Place::Measured(by, found)))
+    }
+
+    fn slot(&mut self, place: Place) -> Slot<'_> {
+        match place {
+            Place::Bands => Slot::Bands(&mut self.band_error_db),
+            Place::Rounding => Slot::Number(&mut self.rounding_error_db),
+            Place::Measured(By::Samples, measure) => Slot::Number(self.by_samples.get_mut(measure)),
+            Place::Measured(By::Magnitude, measure) => {
+                Slot::Number(self.by_magnitude.get_mut(measure))
             }
         }
     }
@@ -112,20 +132,25 @@ impl Entries for Quality {
 impl Entries for LeftOut {
     const NAME: &'static str = "LeftOut";
     const DESCRIPTION: &'static str = "Leave-one-out error: agreement with the recorded spectrum of what a player interpolates at a condition without its own\nparameters.";
+    type Place = Measure;
 
-    fn entries(&self) -> Vec<Entry<'_>> {
+    fn entries(&self) -> impl Iterator<Item = Entry<'_>> {
         let entry = |measure: Measure| Entry {
-            key: measure.key(By::Magnitude),
+            key: measure.row().key,
             content: Content::Number(self.0.get(measure), measure.row().judged),
             required: measure.row().required,
             description: measure.row().meaning,
         };
-        Self::measures().map(entry).collect()
+        Self::measures().map(entry)
     }
 
-    fn slot(&mut self, key: &str) -> Option<Slot<'_>> {
+    fn known(key: &str) -> Option<(&'static str, Measure)> {
         let found = Self::measures().find(|m| m.row().key == key)?;
-        Some(Slot::Number(self.0.get_mut(found)))
+        Some((found.row().key, found))
+    }
+
+    fn slot(&mut self, measure: Measure) -> Slot<'_> {
+        Slot::Number(self.0.get_mut(measure))
     }
 }
 
@@ -151,29 +176,53 @@ impl<'de, T: Entries> Visitor<'de> for Reader<T> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<T, A::Error> {
-        let (mut object, mut found) = (T::default(), Vec::new());
-        while let Some(key) = map.next_key::<String>()? {
-            match object.slot(&key) {
-                Some(Slot::Number(number)) => *number = map.next_value()?,
-                Some(Slot::Bands(errors)) => *errors = map.next_value()?,
-                None => {
-                    map.next_value::<IgnoredAny>()?;
-                }
+        let (mut object, mut found) = (T::default(), Vec::with_capacity(KEYS));
+        while let Some(known) = map.next_key_seed(Key::<T>(PhantomData))? {
+            let Some((key, place)) = known else {
+                map.next_value::<IgnoredAny>()?;
+                continue;
+            };
+            match object.slot(place) {
+                Slot::Number(number) => *number = map.next_value()?,
+                Slot::Bands(errors) => *errors = map.next_value()?,
             }
             found.push(key);
         }
-        let required = T::default();
-        let mut entries = required.entries().into_iter().filter(|e| e.required);
-        match entries.find(|e| found.iter().all(|key| key != e.key)) {
-            Some(Entry { key, .. }) => Err(de::Error::custom(format!("missing field `{key}`"))),
-            None => Ok(object),
+        let missing = |e: &Entry<'_>| e.required && !found.contains(&e.key);
+        if let Some(Entry { key, .. }) = object.entries().find(missing) {
+            return Err(de::Error::custom(format!("missing field `{key}`")));
         }
+        Ok(object)
+    }
+}
+
+/// A key of a text.
+struct Key<T>(PhantomData<T>);
+
+impl<'de, T: Entries> DeserializeSeed<'de> for Key<T> {
+    type Value = Option<(&'static str, T::Place)>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        deserializer.deserialize_identifier(self)
+    }
+}
+
+impl<T: Entries> Visitor<'_> for Key<T> {
+    type Value = Option<(&'static str, T::Place)>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a key")
+    }
+
+    fn visit_str<E: de::Error>(self, key: &str) -> Result<Self::Value, E> {
+        Ok(T::known(key))
     }
 }
 
 fn schema<T: Entries>() -> Schema {
     let (mut properties, mut required) = (Map::new(), Vec::new());
-    for entry in T::default().entries() {
+    let object = T::default();
+    for entry in object.entries() {
         let mut property = match entry.content {
             Content::Bands(_) => json!({
                 "type": "array", "items": { "type": "number" }, "minItems": BAND_COUNT, "maxItems": BAND_COUNT,

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
+use std::fmt::Arguments;
 
 use serde_json::Value;
 
@@ -130,14 +131,18 @@ impl<'a> Payload<'a, '_> {
     fn parameters(&mut self, manifest: &Manifest) -> Vec<Vec<Vec<f64>>> {
         let all = manifest.representations.iter().enumerate();
         all.map(|(i, representation)| {
-            self.block(representation, &format!("/representations/{i}"))
+            self.block(representation, format_args!("/representations/{i}"))
                 .unwrap_or_default()
         })
         .collect()
     }
 
-    fn block(&mut self, representation: &Representation, at: &str) -> Option<Vec<Vec<f64>>> {
-        let bytes = self.entry(&representation.parameters, format!("{at}/parameters"))?;
+    fn block(
+        &mut self,
+        representation: &Representation,
+        at: Arguments<'_>,
+    ) -> Option<Vec<Vec<f64>>> {
+        let bytes = self.entry(&representation.parameters, format_args!("{at}/parameters"))?;
         let (fields, conditions) = (&representation.fields, representation.at.len());
         match block::decode(fields, conditions, &bytes, &mut self.values_left) {
             Ok(parameters) => Some(parameters),
@@ -158,17 +163,18 @@ impl<'a> Payload<'a, '_> {
     }
 
     /// Returns the bytes of an entry that no other key has named.
-    fn entry(&mut self, name: &str, pointer: String) -> Option<Cow<'a, [u8]>> {
+    fn entry(&mut self, name: &str, pointer: Arguments<'_>) -> Option<Cow<'a, [u8]>> {
         let Some(index) = self.archive.index(name) else {
             let message =
                 format!("there is no entry {name:?}; add it or remove the reference to it");
-            self.findings.add(rule::ENTRY_MISSING, pointer, message);
+            self.findings
+                .add(rule::ENTRY_MISSING, pointer.to_string(), message);
             return None;
         };
         if !self.claimed.insert(name.to_owned()) {
             let message = format!("{name} is already used; use a separate entry");
             self.findings
-                .add(rule::PARAMETERS_ENTRY_INVALID, pointer, message);
+                .add(rule::PARAMETERS_ENTRY_INVALID, pointer.to_string(), message);
             return None;
         }
         Some(std::mem::take(&mut self.archive.entries[index].bytes))
@@ -176,7 +182,7 @@ impl<'a> Payload<'a, '_> {
 
     fn reference(&mut self, manifest: &Manifest) -> Option<Vec<Vec<f32>>> {
         let reference = manifest.reference.as_ref()?;
-        let bytes = self.entry(&reference.file, "/reference/file".to_owned())?;
+        let bytes = self.entry(&reference.file, format_args!("/reference/file"))?;
         let points = grid_points(manifest.band)?;
         let conditions = manifest.conditions.len();
         let values = points.saturating_mul(conditions);
@@ -217,16 +223,16 @@ impl<'a> Payload<'a, '_> {
     fn plugins(&mut self, manifest: &Manifest) -> Vec<Vec<u8>> {
         let all = manifest.plugins.iter().enumerate();
         all.map(|(i, plugin)| {
-            self.module(plugin, &format!("/plugins/{i}"))
+            self.module(plugin, format_args!("/plugins/{i}"))
                 .unwrap_or_default()
         })
         .collect()
     }
 
-    fn module(&mut self, plugin: &Plugin, at: &str) -> Option<Vec<u8>> {
-        let bytes = self.entry(&plugin.file, format!("{at}/file"))?;
+    fn module(&mut self, plugin: &Plugin, at: Arguments<'_>) -> Option<Vec<u8>> {
+        let bytes = self.entry(&plugin.file, format_args!("{at}/file"))?;
         let is_wasm = bytes.starts_with(WASM_MAGIC);
-        let pointer = format!("{at}/file");
+        let pointer = format_args!("{at}/file");
         self.findings
             .require(is_wasm, rule::PLUGIN_NOT_WASM, pointer, || {
                 format!(
@@ -235,7 +241,7 @@ impl<'a> Payload<'a, '_> {
                 )
             });
         let hash = blake3::hash(&bytes).to_hex();
-        let pointer = format!("{at}/blake3");
+        let pointer = format_args!("{at}/blake3");
         self.findings.require(
             hash.as_str() == plugin.blake3,
             rule::PLUGIN_HASH_MISMATCH,

@@ -65,9 +65,15 @@ impl ModelVoice {
         if out.iter().fold(true, |finite, x| finite & x.is_finite()) {
             return Ok(());
         }
+        Err(self.not_finite(out))
+    }
+
+    /// Apart from the check, which each block passes through.
+    #[cold]
+    fn not_finite(&self, out: &[f32]) -> HostError {
         let first = out.iter().position(|x| !x.is_finite()).unwrap_or_default();
         let what = format!("sample {first} of the block is {}", out[first]);
-        Err(self.model.broken("voice_render", what))
+        self.model.broken("voice_render", what)
     }
 
     /// Changes to other parameters without a click.

@@ -138,6 +138,18 @@ impl PassedPower {
         });
         crate::root::sqrt(power / 3.0)
     }
+
+    /// As [`Self::all_pole_level_rms`], behind `(1 - Σ B_i z⁻ⁱ) / (1 - Σ A_i z⁻ⁱ)`. Does not allocate.
+    pub fn rational_level_rms(&self, zeros: &[f64], poles: &[f64]) -> f64 {
+        let mut power = 0.0;
+        wide(RationalPower {
+            turns: &self.turns,
+            zeros,
+            poles,
+            power: &mut power,
+        });
+        crate::root::sqrt(power / 3.0)
+    }
 }
 
 impl Turns {
@@ -167,24 +179,59 @@ impl Work for AllPolePower<'_> {
     #[inline(always)]
     fn run(self) {
         let mut sums = [0.0; TURNS];
-        for Turns { cos, sin, part } in self.turns {
-            // Horner's rule for Σ A_i z⁻ⁱ, with z⁻¹ = cos - i sin.
-            let (mut re, mut im) = ([0.0; TURNS], [0.0; TURNS]);
-            for a in self.coefficients.iter().rev() {
-                for i in 0..TURNS {
-                    let sum = re[i] + a;
-                    (re[i], im[i]) = (sum * cos[i] + im[i] * sin[i], im[i] * cos[i] - sum * sin[i]);
-                }
-            }
+        for turns in self.turns {
+            let (power, part) = (polynomial_power(turns, self.coefficients), &turns.part);
             for i in 0..TURNS {
-                let re = 1.0 - re[i];
-                let heard = part[i] / (re * re + im[i] * im[i]);
+                let heard = part[i] / power[i];
                 // Where the weight is zero, a pole on the circle contributes nothing either.
                 sums[i] += if part[i] > 0.0 { heard } else { 0.0 };
             }
         }
         *self.power = sums.iter().sum();
     }
+}
+
+/// The power of a filter with zeros and poles over all points.
+struct RationalPower<'a> {
+    turns: &'a [Turns],
+    zeros: &'a [f64],
+    poles: &'a [f64],
+    power: &'a mut f64,
+}
+
+impl Work for RationalPower<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let mut sums = [0.0; TURNS];
+        for turns in self.turns {
+            let above = polynomial_power(turns, self.zeros);
+            let below = polynomial_power(turns, self.poles);
+            for i in 0..TURNS {
+                let heard = turns.part[i] * above[i] / below[i];
+                sums[i] += if turns.part[i] > 0.0 { heard } else { 0.0 };
+            }
+        }
+        *self.power = sums.iter().sum();
+    }
+}
+
+/// The squared absolute values of `1 - Σ A_i z⁻ⁱ` at a group of points: Horner's rule, with z⁻¹ = cos - i sin.
+#[inline(always)]
+fn polynomial_power(turns: &Turns, coefficients: &[f64]) -> [f64; TURNS] {
+    let Turns { cos, sin, .. } = turns;
+    let (mut re, mut im) = ([0.0; TURNS], [0.0; TURNS]);
+    for a in coefficients.iter().rev() {
+        for i in 0..TURNS {
+            let sum = re[i] + a;
+            (re[i], im[i]) = (sum * cos[i] + im[i] * sin[i], im[i] * cos[i] - sum * sin[i]);
+        }
+    }
+    let mut power = [0.0; TURNS];
+    for i in 0..TURNS {
+        let re = 1.0 - re[i];
+        power[i] = re * re + im[i] * im[i];
+    }
+    power
 }
 
 #[cfg(test)]
@@ -198,6 +245,15 @@ mod tests {
         for coefficients in [&[][..], &[0.9], &[1.2, -0.8, 0.3, -0.1, 0.05, 0.02, -0.3]] {
             let expected = passed.level_rms(|hz| ar_magnitude(coefficients, hz, 2_050.0));
             let found = passed.all_pole_level_rms(coefficients);
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+            let zeros = [-0.4, 0.3, 0.6];
+            let curve = |hz| {
+                ar_magnitude(coefficients, hz, 2_050.0) / ar_magnitude(&zeros, hz, 2_050.0)
+            };
+            let (expected, found) = (
+                passed.level_rms(curve),
+                passed.rational_level_rms(&zeros, coefficients),
+            );
             assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
         }
     }

@@ -93,7 +93,14 @@ pub fn from_line_spectral_frequencies(lsf: &[f64]) -> Option<Vec<f64>> {
 pub fn coefficients_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     let inside = lsf.iter().all(|&w| w > 0.0 && w < PI);
     let ascend = lsf.windows(2).all(|pair| pair[0] < pair[1]);
-    if !inside || !ascend || lsf.len() > MOST_LINES {
+    inside && ascend && zeros_of_lines(lsf, coefficients)
+}
+
+/// As [`coefficients_of_lines`], of a polynomial that is no denominator: its zeros may lie on the unit circle, where two lines are
+/// equal, or one is 0 or π. Returns false if the lines descend, or there are too many.
+pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
+    let ascend = lsf.windows(2).all(|pair| pair[0] <= pair[1]);
+    if !ascend || lsf.len() > MOST_LINES {
         return false;
     }
     let fixed: [&[f64]; 2] = if lsf.len().is_multiple_of(2) {

@@ -140,6 +140,16 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "htex-exchange",
+        &[
+            "htex-author",
+            "htex-dsp",
+            "htex-format",
+            "htex-host",
+            "htex-schema",
+        ],
+    ),
+    (
         "htex-tradeoff",
         &[
             "htex-author",
@@ -169,6 +179,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-simulate",
             "htex-tradeoff",
             "htex-dsp",
+            "htex-exchange",
             "htex-files",
             "htex-finding",
             "htex-format",
@@ -205,6 +216,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-capi",
             "adapter",
             "htex-device",
+            "htex-exchange",
             "htex-finding",
             "htex-format",
             "htex-host",

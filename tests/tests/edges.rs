@@ -79,4 +79,5 @@ edges! {
     every_byte_of_an_asset: "open_asset", edges::bytes;
     every_byte_of_a_library: "library", edges::bytes;
     every_byte_of_a_part_of_a_take: "take_part", edges::bytes;
+    every_byte_of_a_model_file: "hatt", edges::bytes;
 }

@@ -13,6 +13,7 @@ mod explain;
 mod fit;
 mod gain;
 mod guard;
+mod import;
 mod info;
 mod lib;
 mod make;
@@ -63,6 +64,7 @@ pub(crate) enum Command {
     Build(build::Build),
     Make(make::Make),
     Mix(mix::Mix),
+    Import(import::Import),
     Compare(compare::Compare),
     Tradeoff(tradeoff::Tradeoff),
     #[cfg(feature = "lab")]
@@ -105,6 +107,7 @@ impl Command {
             Self::Build(args) => args.run(),
             Self::Make(args) => args.run(),
             Self::Mix(args) => args.run(),
+            Self::Import(args) => args.run(),
             Self::Compare(args) => args.run(),
             Self::Tradeoff(args) => args.run(),
             #[cfg(feature = "lab")]

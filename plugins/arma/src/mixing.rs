@@ -40,7 +40,7 @@ fn mean(
     field: usize,
     mixed: &mut [f64],
 ) -> Result<(), Error> {
-    let (mut low, mut high) = ([f64::INFINITY; MAX_ORDER], [0.0; MAX_ORDER]);
+    let (mut low, mut high) = ([f64::INFINITY; MAX_ORDER], [0.0f64; MAX_ORDER]);
     let mut lines = [0.0; MAX_ORDER];
     let lines = &mut lines[..mixed.len()];
     for (set, &weight) in sets.iter().zip(weights) {
@@ -74,7 +74,9 @@ fn padded(own: &[f64], field: usize, lines: &mut [f64]) -> Result<(), Error> {
             "a filter with a pole or zero on the unit circle cannot be mixed with one of another order",
         ));
     }
-    for (line, found) in lines.iter_mut().zip(lines_of_reflection(&reflection[..lines.len()])) {
+    let order = lines.len();
+    let found = lines_of_reflection(&reflection[..order]);
+    for (line, found) in lines.iter_mut().zip(found) {
         *line = found;
     }
     Ok(())

@@ -50,7 +50,40 @@ pub fn seeds() -> Vec<Seed> {
     seeds.extend(libraries());
     seeds.extend(studies());
     seeds.extend(parts());
+    seeds.extend(models_of_others());
     seeds
+}
+
+/// Model files of the Penn Haptic Texture Toolkit: of four nodes with triangles, one of them silent, and of one without zeros.
+fn models_of_others() -> Vec<Seed> {
+    let list = |name: &str, values: &[f64]| {
+        let values: String = values.iter().map(|x| format!("<value>{x}</value>")).collect();
+        format!("<{name}>{values}</{name}>")
+    };
+    let node = |i: usize, (speed, force): (f64, f64), variance: f64| {
+        format!(
+            "<model><modNum>{i}</modNum>{}{}{}<var>{variance}</var><gain>2.5</gain><speedMod>{speed}</speedMod><forceMod>{force}</forceMod></model>\n",
+            list("ARcoeff", &[1.0, -0.9, 0.5]),
+            list("ARlsf", &[0.644_033_9, 1.266_103_7]),
+            list("MAcoeff", &[1.0, 0.3, -0.4, 0.2 * i as f64]),
+        )
+    };
+    let corners = [(0.0, 0.0), (240.0, 0.0), (0.0, 3.5), (240.0, 3.5)];
+    let nodes: String = corners
+        .iter()
+        .enumerate()
+        .map(|(i, motion)| node(i + 1, *motion, 0.01 * i as f64))
+        .collect();
+    let whole = format!(
+        "<?xml version=\"1.0\"?>\n<modelSet texture=\"25\"><material>Felt &amp; Co</material><AccelUnits>m/s^2</AccelUnits><SampleRate>1000</SampleRate>\
+         <mu>0.22</mu><numMod>4</numMod><numTri>2</numTri><maxSpeed>240</maxSpeed><maxForce>3.5</maxForce>\n{}{}<numARCoeff>2</numARCoeff>\n{nodes}</modelSet>",
+        list("tri", &[1.0, 2.0, 3.0]),
+        list("tri", &[2.0, 4.0, 3.0]),
+    );
+    let one = "<modelSet><SampleRate>1000</SampleRate><model><ARcoeff><value>1</value><value>-0.5</value></ARcoeff><var>1</var>\
+               <speedMod>80</speedMod><forceMod>1</forceMod></model></modelSet>";
+    let seed = |name: &str, text: &str| ("hatt", name.to_owned(), text.as_bytes().to_vec());
+    vec![seed("four-nodes", &whole), seed("one-node", one)]
 }
 
 /// Part files of takes, as they are and as what the target builds them from: a second of a finger, with a tracker's rows.

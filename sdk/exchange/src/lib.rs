@@ -1,0 +1,4 @@
+//! The texture formats of others.
+#![forbid(unsafe_code)]
+
+pub mod hatt;

@@ -176,6 +176,10 @@ impl RawModel for TableModel {
         self.usual
     }
 
+    fn is_only_named(&self) -> bool {
+        self.is_only_named
+    }
+
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {
         let (low, high) = band.edges();
         // SAFETY: a live slice.

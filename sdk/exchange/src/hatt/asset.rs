@@ -8,7 +8,7 @@ use htex_dsp::line_spectrum::{
 use htex_dsp::linear_prediction::{ar_magnitude, is_stable};
 use htex_format::{
     Asset, AtCondition, Condition, Contact, Manifest, Provenance, Quantity, Representation,
-    VERSION, round_parameters,
+    Steps, StoredAs, VERSION, round_parameters,
 };
 use htex_host::Registry;
 
@@ -35,7 +35,15 @@ pub struct Imported<'a> {
 pub fn asset(texture: &Texture, imported: &Imported<'_>) -> Result<Asset, Fault> {
     let registry = Registry::builtin();
     let model = registry.find(MODEL).map_err(|error| Fault::of_file(error.to_string()))?;
-    let fields = stored_fields(model.descriptor());
+    let mut fields = stored_fields(model.descriptor());
+    if let Some(rate) = fields.last_mut() {
+        // One byte at each node: it is the same at all.
+        rate.store = StoredAs::U8(Steps {
+            scale: texture.rate_hz,
+            offset: 0.0,
+            log: false,
+        });
+    }
     let band = band(texture.rate_hz);
     let (mut at, mut parameters) = (Vec::new(), Vec::new());
     for (condition, node) in texture.nodes.iter().enumerate() {

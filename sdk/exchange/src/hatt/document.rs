@@ -44,7 +44,7 @@ impl Element {
 
     /// The child of a name, of which there is at most one.
     pub(super) fn one(&self, name: &str) -> Result<Option<&Element>, Fault> {
-        let mut found = self.all(name);
+        let mut found = self.children.iter().filter(|child| child.name == name);
         let first = found.next();
         match found.next() {
             Some(second) => Err(second.fault("it is there twice; keep one of them")),

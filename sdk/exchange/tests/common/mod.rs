@@ -26,7 +26,7 @@ pub fn draw(seed: u64, poles: usize, zeros: usize) -> Vec<Model> {
     let mut models = Vec::new();
     for row in 0..ROWS {
         for column in 0..COLUMNS {
-            let bend = 0.35 * f64::from(u8::from(row % (ROWS - 1) != 0 && column % (COLUMNS - 1) != 0));
+            let bend = 0.2 * f64::from(u8::from(row % (ROWS - 1) != 0 && column % (COLUMNS - 1) != 0));
             let place = |at: usize, of: usize, moved: f64| (at as f64 + moved) / (of as f64 - 1.0);
             let speed = 242.346_758 * place(column, COLUMNS, within(-bend, bend));
             let force = 6.558_225 * place(row, ROWS, within(-bend, bend));

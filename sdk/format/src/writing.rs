@@ -41,7 +41,7 @@ impl Asset {
             for (name, bytes) in blocks {
                 archive.store_or_deflate(name, &bytes)?;
             }
-            for (name, bytes) in reference {
+            if let Some((name, bytes)) = reference {
                 archive.store(name, &bytes)?;
             }
             for (plugin, module) in plugins {

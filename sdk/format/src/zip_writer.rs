@@ -54,7 +54,7 @@ impl ZipWriter {
             return self.store(name, bytes);
         }
         let packed = deflated(bytes)?;
-        let is_smaller = packed.len() <= bytes.len() / 8 * 7;
+        let is_smaller = packed.len() <= bytes.len() / 10 * 9;
         match is_smaller && bytes.len() / packed.len().max(1) < MOST_RATIO {
             true => self.add(name, bytes, DEFLATED, &packed),
             false => self.store(name, bytes),

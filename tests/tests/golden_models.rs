@@ -229,8 +229,7 @@ fn arma_is_the_filter_of_its_lines() {
         let grid = band.grid_hz();
         let magnitude = arma.magnitude(&parameters.concat(), band, &grid).unwrap();
         case.hold("/magnitude", &magnitude);
-        let negated =
-            |key: &str| -> Vec<f64> { case.input(key).iter().map(|a| -a).collect() };
+        let negated = |key: &str| -> Vec<f64> { case.input(key).iter().map(|a| -a).collect() };
         let mut samples = case.input("x");
         let mut zeros = htex_dsp::all_zero::AllZero::new(&negated("b")).unwrap();
         zeros.process(&mut samples);
@@ -252,7 +251,11 @@ fn arma_of_the_spectrum_of_a_known_filter_is_near_it() {
     for case in Golden::all("arma") {
         let expected = case.expected("/magnitude");
         let [poles, zeros] = ["a", "b"].map(|key| case.input(key).len().to_string());
-        let options = [("poles", &poles[..]), ("zeros", &zeros[..]), ("rate_hz", "1000")];
+        let options = [
+            ("poles", &poles[..]),
+            ("zeros", &zeros[..]),
+            ("rate_hz", "1000"),
+        ];
         let request = FitRequest {
             band,
             frequency_hz: &grid,

@@ -247,9 +247,8 @@ mod tests {
             let found = passed.all_pole_level_rms(coefficients);
             assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
             let zeros = [-0.4, 0.3, 0.6];
-            let curve = |hz| {
-                ar_magnitude(coefficients, hz, 2_050.0) / ar_magnitude(&zeros, hz, 2_050.0)
-            };
+            let curve =
+                |hz| ar_magnitude(coefficients, hz, 2_050.0) / ar_magnitude(&zeros, hz, 2_050.0);
             let (expected, found) = (
                 passed.level_rms(curve),
                 passed.rational_level_rms(&zeros, coefficients),

@@ -109,7 +109,10 @@ fn the_asset_says_what_it_is() {
     let asset = imported(&file(&draw(1, 6, 4)));
     let manifest = asset.manifest();
     assert_eq!(manifest.name, "Velvet & Co");
-    assert_eq!((manifest.unit.as_str(), manifest.contact.name()), ("m/s2", "tool"));
+    assert_eq!(
+        (manifest.unit.as_str(), manifest.contact.name()),
+        ("m/s2", "tool")
+    );
     assert_eq!((manifest.band.low_hz, manifest.band.high_hz), (20.0, 500.0));
     assert_eq!(manifest.law().frequency_speed.exponent, 0.0);
     assert_eq!(manifest.representations[0].triangles.len(), 56);
@@ -134,33 +137,88 @@ fn said(from: &str, to: &str) -> String {
 fn damaged_files_are_named_with_place() {
     for (from, to, expected) in [
         ("<modelSet", "<set", "line 310, set: this is no XML"),
-        ("<SampleRate>1000", "<SampleRate>fast", "line 6, SampleRate: \"fast\" is no number"),
-        ("<SampleRate>1000", "<SampleRate>1e400", "line 6, SampleRate: \"1e400\" is no number"),
-        ("<SampleRate>1000", "<SampleRate>5", "line 6, SampleRate: 5 is none from 100"),
-        ("<AccelUnits>m/s^2", "<AccelUnits>g", "line 3, AccelUnits: \"g\" is not m/s^2"),
-        ("<numMod>40", "<numMod>41", "line 8, numMod: \"41\" are stated and there are 40"),
-        ("<numTri>56", "<numTri>57", "numTri: \"57\" are stated and there are 56"),
-        ("<tri type=\"array\"><value>1<", "<tri type=\"array\"><value>0<", "value: there is no model 0; they are 1 to 40"),
-        ("<tri type=\"array\"><value>1</value>", "<tri type=\"array\">", "tri: 2 corners; a triangle has three"),
-        ("<ARcoeff><value>1.0", "<ARcoeff><value>2.0", "ARcoeff: the first coefficient is 2"),
-        ("<ARlsf><value>", "<ARlsf><value>0</value><value>", "ARlsf: 7 lines beside 6 coefficients"),
+        (
+            "<SampleRate>1000",
+            "<SampleRate>fast",
+            "line 6, SampleRate: \"fast\" is no number",
+        ),
+        (
+            "<SampleRate>1000",
+            "<SampleRate>1e400",
+            "line 6, SampleRate: \"1e400\" is no number",
+        ),
+        (
+            "<SampleRate>1000",
+            "<SampleRate>5",
+            "line 6, SampleRate: 5 is none from 100",
+        ),
+        (
+            "<AccelUnits>m/s^2",
+            "<AccelUnits>g",
+            "line 3, AccelUnits: \"g\" is not m/s^2",
+        ),
+        (
+            "<numMod>40",
+            "<numMod>41",
+            "line 8, numMod: \"41\" are stated and there are 40",
+        ),
+        (
+            "<numTri>56",
+            "<numTri>57",
+            "numTri: \"57\" are stated and there are 56",
+        ),
+        (
+            "<tri type=\"array\"><value>1<",
+            "<tri type=\"array\"><value>0<",
+            "value: there is no model 0; they are 1 to 40",
+        ),
+        (
+            "<tri type=\"array\"><value>1</value>",
+            "<tri type=\"array\">",
+            "tri: 2 corners; a triangle has three",
+        ),
+        (
+            "<ARcoeff><value>1.0",
+            "<ARcoeff><value>2.0",
+            "ARcoeff: the first coefficient is 2",
+        ),
+        (
+            "<ARlsf><value>",
+            "<ARlsf><value>0</value><value>",
+            "ARlsf: 7 lines beside 6 coefficients",
+        ),
         ("<var>", "<var>x", "var: \"x0\" is no number"),
         ("<speedMod>", "<speed>", "speed"),
         ("</model>", "", "line"),
         ("<gain>", "<gain>1</gain><gain>", "gain: it is there twice"),
-        ("<speedList><value>0", "<speedList><value>5", "speedList: value 1 is 5"),
+        (
+            "<speedList><value>0",
+            "<speedList><value>5",
+            "speedList: value 1 is 5",
+        ),
     ] {
         let said = said(from, to);
-        assert!(said.contains(expected) && said.starts_with("line "), "{from}: {said}");
+        assert!(
+            said.contains(expected) && said.starts_with("line "),
+            "{from}: {said}"
+        );
     }
     // An unstable filter, and a file that ends anywhere.
     let unstable = said("<ARcoeff><value>1.0", "<ARcoeff><value>1.0</value><value>9");
     assert!(unstable.contains("ARcoeff: "), "{unstable}");
     let text = file(&draw(1, 6, 4));
-    assert!(read(b"<set>\n</set>").unwrap_err().to_string().starts_with("line 1, set: a model file"));
+    assert!(
+        read(b"<set>\n</set>")
+            .unwrap_err()
+            .to_string()
+            .starts_with("line 1, set: a model file")
+    );
     for end in (0..text.len()).step_by(997) {
         let fault = read(&text.as_bytes()[..end]).unwrap_err();
-        assert!(!fault.problem.is_empty() && (end < 60 || fault.place.line > 0), "{end}: {fault}");
+        assert!(
+            !fault.problem.is_empty() && (end < 60 || fault.place.line > 0),
+            "{end}: {fault}"
+        );
     }
 }
 
@@ -174,8 +232,18 @@ fn entities_and_sizes_are_refused() {
     let many = format!("<modelSet>{}</modelSet>", "<a/>".repeat(200_001));
     assert!(of(&many).contains("more than 200000 elements"));
     assert!(of(&format!("<a>{}</a>", "x".repeat(5_000))).contains("more than 4096 bytes"));
-    assert!(read(&vec![b' '; MOST_BYTES + 1]).unwrap_err().to_string().contains("the most"));
-    assert!(read(b"<modelSet>\n\xff</modelSet>").unwrap_err().to_string().contains("line 2: this is no UTF-8"));
+    assert!(
+        read(&vec![b' '; MOST_BYTES + 1])
+            .unwrap_err()
+            .to_string()
+            .contains("the most")
+    );
+    assert!(
+        read(b"<modelSet>\n\xff</modelSet>")
+            .unwrap_err()
+            .to_string()
+            .contains("line 2: this is no UTF-8")
+    );
 }
 
 /// Triangles that cover nothing are left out with a note, and the format's own are used.
@@ -186,6 +254,15 @@ fn triangles_that_leave_a_gap_are_left_out() {
     let to = from + text[from..].find('\n').unwrap();
     let texture = read([&text[..from], &text[to..]].concat().as_bytes()).unwrap();
     assert!(texture.triangles.is_empty());
-    assert!(texture.notes[0].contains("the triangles are left out"), "{:?}", texture.notes);
-    assert!(asset(&texture, &Imported::default()).unwrap().to_bytes().is_ok());
+    assert!(
+        texture.notes[0].contains("the triangles are left out"),
+        "{:?}",
+        texture.notes
+    );
+    assert!(
+        asset(&texture, &Imported::default())
+            .unwrap()
+            .to_bytes()
+            .is_ok()
+    );
 }

@@ -57,7 +57,10 @@ pub fn seeds() -> Vec<Seed> {
 /// Model files of the Penn Haptic Texture Toolkit: of four nodes with triangles, one of them silent, and of one without zeros.
 fn models_of_others() -> Vec<Seed> {
     let list = |name: &str, values: &[f64]| {
-        let values: String = values.iter().map(|x| format!("<value>{x}</value>")).collect();
+        let values: String = values
+            .iter()
+            .map(|x| format!("<value>{x}</value>"))
+            .collect();
         format!("<{name}>{values}</{name}>")
     };
     let node = |i: usize, (speed, force): (f64, f64), variance: f64| {

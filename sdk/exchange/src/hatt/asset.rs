@@ -2,13 +2,11 @@
 
 use htex_author::stored_fields;
 use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
-use htex_dsp::line_spectrum::{
-    coefficients_of_lines, line_spectral_frequencies, zeros_of_lines,
-};
+use htex_dsp::line_spectrum::{coefficients_of_lines, line_spectral_frequencies, zeros_of_lines};
 use htex_dsp::linear_prediction::{ar_magnitude, is_stable};
 use htex_format::{
-    Asset, AtCondition, Condition, Contact, Manifest, Provenance, Quantity, Representation,
-    Steps, StoredAs, VERSION, round_parameters,
+    Asset, AtCondition, Condition, Contact, Manifest, Provenance, Quantity, Representation, Steps,
+    StoredAs, VERSION, round_parameters,
 };
 use htex_host::Registry;
 
@@ -34,7 +32,9 @@ pub struct Imported<'a> {
 /// When a filter cannot be stored: its poles or zeros are too close to each other.
 pub fn asset(texture: &Texture, imported: &Imported<'_>) -> Result<Asset, Fault> {
     let registry = Registry::builtin();
-    let model = registry.find(MODEL).map_err(|error| Fault::of_file(error.to_string()))?;
+    let model = registry
+        .find(MODEL)
+        .map_err(|error| Fault::of_file(error.to_string()))?;
     let mut fields = stored_fields(model.descriptor());
     if let Some(rate) = fields.last_mut() {
         // One byte at each node: it is the same at all.
@@ -48,7 +48,8 @@ pub fn asset(texture: &Texture, imported: &Imported<'_>) -> Result<Asset, Fault>
     let (mut at, mut parameters) = (Vec::new(), Vec::new());
     for (condition, node) in texture.nodes.iter().enumerate() {
         let flat = flat(node, texture.rate_hz)?;
-        let stored = round_parameters(&fields, &flat).map_err(|error| of(node, error.to_string()))?;
+        let stored =
+            round_parameters(&fields, &flat).map_err(|error| of(node, error.to_string()))?;
         at.push(AtCondition {
             condition,
             level_rms: level_rms(node, &stored, texture.rate_hz, band)?,
@@ -134,7 +135,8 @@ fn manifest(
 fn flat(node: &Node, rate_hz: f64) -> Result<Vec<f64>, Fault> {
     let lines = |coefficients: &[f64], what: &str| {
         let negated: Vec<f64> = coefficients.iter().map(|a| -a).collect();
-        line_spectral_frequencies(&negated).ok_or_else(|| of(node, format!("the {what} lie outside the unit circle")))
+        line_spectral_frequencies(&negated)
+            .ok_or_else(|| of(node, format!("the {what} lie outside the unit circle")))
     };
     let (poles, zeros) = (lines(&node.ar, "poles")?, lines(&node.ma, "zeros")?);
     Ok([
@@ -151,7 +153,9 @@ fn flat(node: &Node, rate_hz: f64) -> Result<Vec<f64>, Fault> {
 /// magnitude² = 2 P ENBW.
 fn level_rms(node: &Node, stored: &[f64], rate_hz: f64, band: Band) -> Result<f64, Fault> {
     let poles = stored.get(1..=node.ar.len()).unwrap_or_default();
-    let zeros = stored.get(node.ar.len() + 2..).and_then(|rest| rest.get(..node.ma.len()));
+    let zeros = stored
+        .get(node.ar.len() + 2..)
+        .and_then(|rest| rest.get(..node.ma.len()));
     let (mut a, mut b) = (vec![0.0; node.ar.len()], vec![0.0; node.ma.len()]);
     let is_one = coefficients_of_lines(poles, &mut a)
         && zeros_of_lines(zeros.unwrap_or_default(), &mut b)

@@ -4,6 +4,7 @@
 use quick_xml::Reader;
 use quick_xml::events::{BytesRef, BytesStart, Event};
 
+use super::element::Element;
 use super::fault::{Fault, Place, short};
 
 /// Most bytes of a file.
@@ -14,50 +15,6 @@ pub const MOST_ELEMENTS: usize = 200_000;
 const MOST_DEPTH: usize = 16;
 /// Most bytes of an element's text.
 const MOST_TEXT: usize = 4096;
-
-/// An element.
-#[derive(Debug)]
-pub(super) struct Element {
-    pub(super) name: String,
-    pub(super) attributes: Vec<(String, String)>,
-    pub(super) text: String,
-    pub(super) children: Vec<Element>,
-    line: usize,
-}
-
-impl Element {
-    pub(super) fn place(&self) -> Place {
-        Place {
-            line: self.line,
-            element: self.name.clone(),
-        }
-    }
-
-    pub(super) fn fault(&self, problem: impl Into<String>) -> Fault {
-        Fault::at(self.place(), problem)
-    }
-
-    /// The children of a name.
-    pub(super) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
-        self.children.iter().filter(move |child| child.name == name)
-    }
-
-    /// The child of a name, of which there is at most one.
-    pub(super) fn one(&self, name: &str) -> Result<Option<&Element>, Fault> {
-        let mut found = self.children.iter().filter(|child| child.name == name);
-        let first = found.next();
-        match found.next() {
-            Some(second) => Err(second.fault("it is there twice; keep one of them")),
-            None => Ok(first),
-        }
-    }
-
-    /// The child of a name, which must be there.
-    pub(super) fn required(&self, name: &str) -> Result<&Element, Fault> {
-        let found = self.one(name)?;
-        found.ok_or_else(|| self.fault(format!("it has no element {name}")))
-    }
-}
 
 /// Reads the root element.
 pub(super) fn root(bytes: &[u8]) -> Result<Element, Fault> {
@@ -198,7 +155,9 @@ impl<'a> Builder<'a> {
         };
         // The space between elements is no text.
         if !is_blank || !open.text.is_empty() {
-            open.text.push_str(words.trim_start_matches(|c: char| open.text.is_empty() && c.is_whitespace()));
+            open.text.push_str(
+                words.trim_start_matches(|c: char| open.text.is_empty() && c.is_whitespace()),
+            );
         }
         match open.text.trim_end().len() > MOST_TEXT {
             true => Err(open.fault(format!("a text of more than {MOST_TEXT} bytes"))),
@@ -218,7 +177,10 @@ impl<'a> Builder<'a> {
             "apos" => Ok("'".to_owned()),
             "quot" => Ok("\"".to_owned()),
             _ => {
-                let words = format!("the entity {}, which is none of the five of XML", short(&name));
+                let words = format!(
+                    "the entity {}, which is none of the five of XML",
+                    short(&name)
+                );
                 Err(self.fault(words))
             }
         }

@@ -11,10 +11,10 @@
 
 mod asset;
 mod document;
+mod element;
 mod extension;
 mod fault;
 mod node;
-mod numbers;
 mod texture;
 mod zeros;
 

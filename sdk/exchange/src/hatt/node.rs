@@ -4,7 +4,7 @@ use htex_dsp::all_zero::MAX_ORDER;
 use htex_dsp::line_spectrum::line_spectral_frequencies;
 use htex_dsp::linear_prediction::is_stable;
 
-use super::document::Element;
+use super::element::Element;
 use super::fault::{Fault, Place};
 use super::zeros::inside;
 
@@ -35,9 +35,9 @@ impl Node {
         let given = element.required("ARcoeff")?;
         let negated: Vec<f64> = ar.iter().map(|a| -a).collect();
         if !is_stable(&negated) {
-            return Err(given.fault(
-                "the filter is not stable: a pole lies on or outside the unit circle",
-            ));
+            return Err(
+                given.fault("the filter is not stable: a pole lies on or outside the unit circle")
+            );
         }
         let Some((ma, mirrored)) = inside(&ma) else {
             let at = element.one("MAcoeff")?.unwrap_or(element);
@@ -85,7 +85,10 @@ fn coefficients(node: &Element, name: &str, is_required: bool) -> Result<Vec<f64
         return Err(list.fault(format!("the first coefficient is {first}; it is 1")));
     }
     if rest.len() > MAX_ORDER {
-        let words = format!("{} coefficients are more than {MAX_ORDER}, the most", rest.len());
+        let words = format!(
+            "{} coefficients are more than {MAX_ORDER}, the most",
+            rest.len()
+        );
         return Err(list.fault(words));
     }
     Ok(rest.to_vec())

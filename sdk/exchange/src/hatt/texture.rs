@@ -2,7 +2,8 @@
 
 use htex_format::{Triangle, check_triangles};
 
-use super::document::{Element, root};
+use super::document::root;
+use super::element::Element;
 use super::fault::Fault;
 use super::node::Node;
 
@@ -39,7 +40,11 @@ pub fn read(bytes: &[u8]) -> Result<Texture, Fault> {
         let words = "a model file of the toolkit begins with the element modelSet";
         return Err(root.fault(words));
     }
-    for (name, unit) in [("AccelUnits", "m/s^2"), ("SpeedUnits", "mm/s"), ("ForceUnits", "N")] {
+    for (name, unit) in [
+        ("AccelUnits", "m/s^2"),
+        ("SpeedUnits", "mm/s"),
+        ("ForceUnits", "N"),
+    ] {
         check_unit(&root, name, unit)?;
     }
     let mut notes = Vec::new();
@@ -47,9 +52,9 @@ pub fn read(bytes: &[u8]) -> Result<Texture, Fault> {
     let number = |name: &str| root.one(name)?.map(Element::number).transpose();
     let number_of_set = root.attributes.iter().find(|(name, _)| name == "texture");
     Ok(Texture {
-        material: root.one("material")?.map_or_else(String::new, |material| {
-            material.text.trim().to_owned()
-        }),
+        material: root
+            .one("material")?
+            .map_or_else(String::new, |material| material.text.trim().to_owned()),
         number: number_of_set.and_then(|(_, number)| number.trim().parse().ok()),
         rate_hz: root.required("SampleRate")?.number_in(100.0, 1e6)?,
         friction: number("mu")?,
@@ -64,9 +69,10 @@ pub fn read(bytes: &[u8]) -> Result<Texture, Fault> {
 /// Refuses other units than the toolkit's.
 fn check_unit(root: &Element, name: &str, unit: &str) -> Result<(), Fault> {
     match root.one(name)? {
-        Some(given) if given.text.trim() != unit => {
-            Err(given.fault(format!("{} is not {unit}, the unit of the toolkit", given.quoted())))
-        }
+        Some(given) if given.text.trim() != unit => Err(given.fault(format!(
+            "{} is not {unit}, the unit of the toolkit",
+            given.quoted()
+        ))),
         _ => Ok(()),
     }
 }
@@ -89,7 +95,10 @@ fn nodes(root: &Element, notes: &mut Vec<String>) -> Result<Vec<Node>, Fault> {
         if let Some(number) = model.one("modNum")?
             && number.count()? != i + 1
         {
-            return Err(number.fault(format!("this is model {}; they are in ascending order", i + 1)));
+            return Err(number.fault(format!(
+                "this is model {}; they are in ascending order",
+                i + 1
+            )));
         }
     }
     check_list(root, "speedList", &nodes, |node| node.speed_mm_s)?;
@@ -112,10 +121,12 @@ fn check_count(root: &Element, name: &str, of: &str, count: usize) -> Result<(),
 /// Compares an order in the file, if there is one: the toolkit counts without the first coefficient.
 fn check_order(root: &Element, name: &str, order: usize) -> Result<(), Fault> {
     match root.one(name)? {
-        Some(stated) if ![order, order + 1].contains(&stated.count()?) => Err(stated.fault(format!(
-            "{} are stated and the first model has {order} behind the first",
-            stated.quoted()
-        ))),
+        Some(stated) if ![order, order + 1].contains(&stated.count()?) => {
+            Err(stated.fault(format!(
+                "{} are stated and the first model has {order} behind the first",
+                stated.quoted()
+            )))
+        }
         _ => Ok(()),
     }
 }
@@ -165,14 +176,21 @@ fn triangles(
 ) -> Result<Vec<Triangle>, Fault> {
     let elements: Vec<&Element> = root.all("tri").collect();
     check_count(root, "numTri", "tri", elements.len())?;
-    let triangles = elements.iter().map(|element| triangle(element, nodes.len()));
+    let triangles = elements
+        .iter()
+        .map(|element| triangle(element, nodes.len()));
     let triangles = triangles.collect::<Result<Vec<Triangle>, Fault>>()?;
-    let places: Vec<[f64; 2]> = nodes.iter().map(|node| [node.speed_mm_s, node.force_n]).collect();
+    let places: Vec<[f64; 2]> = nodes
+        .iter()
+        .map(|node| [node.speed_mm_s, node.force_n])
+        .collect();
     match check_triangles(&places, &triangles) {
         Ok(()) => Ok(triangles),
         Err(error) => {
             let wrong = error.triangle().and_then(|triangle| elements.get(triangle));
-            let place = wrong.map(|wrong| wrong.place().to_string()).unwrap_or_default();
+            let place = wrong
+                .map(|wrong| wrong.place().to_string())
+                .unwrap_or_default();
             notes.push(format!(
                 "{place}the triangles are left out, and a player finds its own: {error} (models are counted from 0 here)"
             ));

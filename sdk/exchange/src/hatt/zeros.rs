@@ -98,16 +98,23 @@ fn product(zeros: &[Complex<f64>]) -> Vec<f64> {
 /// Whether two polynomials have the same power on the circle, but for the gain of the second.
 fn is_same(a: &[f64], b: &[f64], gain: f64) -> bool {
     let at = |i: u32| TAU / 2.0 * f64::from(i) / f64::from(COMPARED);
-    let powers = (0..=COMPARED).map(at).map(|w| (power(a, w), power(b, w) * gain * gain));
+    let powers = (0..=COMPARED)
+        .map(at)
+        .map(|w| (power(a, w), power(b, w) * gain * gain));
     let powers: Vec<(f64, f64)> = powers.collect();
     let largest = powers.iter().map(|(a, _)| *a).fold(0.0, f64::max);
-    powers.iter().all(|(a, b)| (a - b).abs() <= MOST_ERROR * largest)
+    powers
+        .iter()
+        .all(|(a, b)| (a - b).abs() <= MOST_ERROR * largest)
 }
 
 /// The squared absolute value of `1 + Σ B_i z⁻ⁱ`.
 fn power(coefficients: &[f64], angle: f64) -> f64 {
     let step = turned(1.0, -angle);
-    let sum = coefficients.iter().rev().fold(Complex::new(0.0, 0.0), |sum, b| (sum + b) * step);
+    let sum = coefficients
+        .iter()
+        .rev()
+        .fold(Complex::new(0.0, 0.0), |sum, b| (sum + b) * step);
     (sum + 1.0).norm_sqr()
 }
 
@@ -123,8 +130,14 @@ mod tests {
         for zeros in [
             vec![Complex::new(1.25, 0.0)],
             [pair(2.0, 0.7), pair(0.5, 2.0), pair(1.0, 1.1)].concat(),
-            [&pair(1.001, 0.3)[..], &[Complex::new(-1.0, 0.0), Complex::new(1.0, 0.0)]].concat(),
-            (1..9).flat_map(|i| pair(0.6 + 0.1 * f64::from(i), 0.37 * f64::from(i))).collect(),
+            [
+                &pair(1.001, 0.3)[..],
+                &[Complex::new(-1.0, 0.0), Complex::new(1.0, 0.0)],
+            ]
+            .concat(),
+            (1..9)
+                .flat_map(|i| pair(0.6 + 0.1 * f64::from(i), 0.37 * f64::from(i)))
+                .collect(),
         ] {
             let given = product(&zeros);
             let (found, gain) = inside(&given).unwrap();

@@ -26,7 +26,10 @@ pub fn draw(seed: u64, poles: usize, zeros: usize) -> Vec<Model> {
     let mut models = Vec::new();
     for row in 0..ROWS {
         for column in 0..COLUMNS {
-            let bend = 0.2 * f64::from(u8::from(row % (ROWS - 1) != 0 && column % (COLUMNS - 1) != 0));
+            let bend = 0.2
+                * f64::from(u8::from(
+                    row % (ROWS - 1) != 0 && column % (COLUMNS - 1) != 0,
+                ));
             let place = |at: usize, of: usize, moved: f64| (at as f64 + moved) / (of as f64 - 1.0);
             let speed = 242.346_758 * place(column, COLUMNS, within(-bend, bend));
             let force = 6.558_225 * place(row, ROWS, within(-bend, bend));
@@ -50,9 +53,15 @@ fn rounded(x: f64) -> f64 {
 }
 
 /// A polynomial with its zeros inside the circle, the last of them, if there is one, at minus a radius.
-fn polynomial(order: usize, within: &mut impl FnMut(f64, f64) -> f64, radius: Option<f64>) -> Vec<f64> {
+fn polynomial(
+    order: usize,
+    within: &mut impl FnMut(f64, f64) -> f64,
+    radius: Option<f64>,
+) -> Vec<f64> {
     let free = order.saturating_sub(usize::from(radius.is_some()));
-    let reflection: Vec<f64> = (0..free).map(|i| within(-0.8, 0.8) / (1.0 + 0.2 * i as f64)).collect();
+    let reflection: Vec<f64> = (0..free)
+        .map(|i| within(-0.8, 0.8) / (1.0 + 0.2 * i as f64))
+        .collect();
     let mut made = vec![1.0];
     made.extend(reflection_to_coefficients(&reflection).iter().map(|a| -a));
     if let Some(radius) = radius.filter(|_| order > 0) {
@@ -70,13 +79,16 @@ pub fn file(models: &[Model]) -> String {
     let values = |values: &mut dyn Iterator<Item = String>| -> String {
         values.map(|x| format!("<value>{x}</value>")).collect()
     };
-    let decimals = |all: &[f64], digits: usize| values(&mut all.iter().map(|x| format!("{x:.digits$}")));
+    let decimals =
+        |all: &[f64], digits: usize| values(&mut all.iter().map(|x| format!("{x:.digits$}")));
     let lines = |polynomial: &[f64]| {
         let negated: Vec<f64> = polynomial[1..].iter().map(|b| -b).collect();
         decimals(&line_spectral_frequencies(&negated).unwrap_or_default(), 6)
     };
     let mut triangles = String::new();
-    for corner in (0..ROWS - 1).flat_map(|row| (1..COLUMNS).map(move |column| row * COLUMNS + column)) {
+    for corner in
+        (0..ROWS - 1).flat_map(|row| (1..COLUMNS).map(move |column| row * COLUMNS + column))
+    {
         let (right, above) = (corner + 1, corner + COLUMNS);
         for three in [[corner, right, above], [above + 1, above, right]] {
             let corners = values(&mut three.iter().map(ToString::to_string));

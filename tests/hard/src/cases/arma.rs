@@ -118,7 +118,12 @@ const CASES: &[Case] = &[
         "ARMA",
         "magnitude there",
         Bound(-100.0, "dB", "that 50 Hz beside it"),
-        || [100.0, 250.0, 500.0].map(notch_db).into_iter().fold(f64::NEG_INFINITY, f64::max),
+        || {
+            [100.0, 250.0, 500.0]
+                .map(notch_db)
+                .into_iter()
+                .fold(f64::NEG_INFINITY, f64::max)
+        },
     ),
     within(
         "poles at radius 1 - 1e-9 on and between bins",
@@ -146,7 +151,13 @@ const CASES: &[Case] = &[
         || {
             let recordings = [noise(), friction(), tone(300.0)];
             let spectra = recordings.map(|signal| spectrum(&signal));
-            let orders = [("0", "0"), ("0", "6"), ("6", "0"), ("20", "18"), ("64", "64")];
+            let orders = [
+                ("0", "0"),
+                ("0", "6"),
+                ("6", "0"),
+                ("20", "18"),
+                ("64", "64"),
+            ];
             failures(spectra.iter().flat_map(|magnitude| {
                 orders.map(|(poles, zeros)| {
                     let options = [("poles", poles), ("zeros", zeros)];

@@ -1,8 +1,12 @@
 //! The filter of a parameter set.
 
+use core::f64::consts::PI;
+
+use htex_dsp::band_limit::PassedPower;
 use htex_dsp::grid::{Band, curve_level_rms};
-use htex_dsp::line_spectrum::{coefficients_of_lines, zeros_of_lines};
+use htex_dsp::line_spectrum::coefficients_of_cosines;
 use htex_dsp::linear_prediction::{ar_magnitude, step_down_in_place};
+use htex_dsp::trig::cos;
 use htex_model::{Error, Values};
 
 use crate::{MAX_ORDER, MODEL_RATE, POLE_LINES, ZERO_LINES};
@@ -12,53 +16,67 @@ use crate::{MAX_ORDER, MODEL_RATE, POLE_LINES, ZERO_LINES};
 pub(crate) struct Filter {
     poles: Polynomial,
     zeros: Polynomial,
+    /// Of the denominator.
+    reflection: [f64; MAX_ORDER],
     rate_hz: f64,
 }
 
-/// The coefficients of `1 - Σ A_i z⁻ⁱ`.
+/// `1 - Σ A_i z⁻ⁱ`, and the cosines of its lines.
 #[derive(Clone, Copy)]
 struct Polynomial {
     coefficients: [f64; MAX_ORDER],
+    cosines: [f64; MAX_ORDER],
     order: usize,
 }
 
 impl Polynomial {
-    fn of_lines(lines: &[f64], convert: fn(&[f64], &mut [f64]) -> bool) -> Option<Self> {
-        let mut coefficients = [0.0; MAX_ORDER];
-        let order = lines.len();
-        let is_one = convert(lines, coefficients.get_mut(..order)?);
-        is_one.then_some(Self {
-            coefficients,
-            order,
-        })
+    fn of_lines(lines: &[f64]) -> Option<Self> {
+        let mut polynomial = Self {
+            coefficients: [0.0; MAX_ORDER],
+            cosines: [0.0; MAX_ORDER],
+            order: lines.len(),
+        };
+        let cosines = polynomial.cosines.get_mut(..lines.len())?;
+        for (cosine, line) in cosines.iter_mut().zip(lines) {
+            *cosine = cos(*line);
+        }
+        coefficients_of_cosines(cosines, &mut polynomial.coefficients[..lines.len()]);
+        Some(polynomial)
     }
 
     fn coefficients(&self) -> &[f64] {
         &self.coefficients[..self.order]
     }
 
-    /// Reflection coefficients, and zeros beyond the order; `None` if a zero is not inside the unit circle.
-    fn reflection(&self) -> Option<[f64; MAX_ORDER]> {
-        let mut reflection = self.coefficients;
-        step_down_in_place(&mut reflection[..self.order]).then_some(reflection)
+    fn cosines(&self) -> &[f64] {
+        &self.cosines[..self.order]
     }
 }
 
 impl Filter {
     pub(crate) fn new(parameters: &Values<'_>) -> Result<Self, Error> {
-        let lines = [POLE_LINES, ZERO_LINES].map(|field| parameters.list(field));
-        let filter = Self::of_lines(lines[0], lines[1], parameters.scalar(MODEL_RATE))?;
-        match filter.reflection() {
-            Some(_) => Ok(filter),
-            None => Err(unstable()),
-        }
+        let [poles, zeros] = [POLE_LINES, ZERO_LINES].map(|field| parameters.list(field));
+        Self::of_lines(poles, zeros, parameters.scalar(MODEL_RATE))
     }
 
-    /// The filter of lines, stable to rounding.
     pub(crate) fn of_lines(poles: &[f64], zeros: &[f64], rate_hz: f64) -> Result<Self, Error> {
+        let is_inside = poles.iter().all(|w| *w > 0.0 && *w < PI);
+        if !is_inside || poles.windows(2).any(|pair| pair[0] >= pair[1]) {
+            return Err(unordered());
+        }
+        if zeros.windows(2).any(|pair| pair[0] > pair[1]) {
+            return Err(descending());
+        }
+        let poles = Polynomial::of_lines(poles).ok_or_else(unordered)?;
+        let zeros = Polynomial::of_lines(zeros).ok_or_else(descending)?;
+        let mut reflection = poles.coefficients;
+        if !step_down_in_place(&mut reflection[..poles.order]) {
+            return Err(unstable());
+        }
         Ok(Self {
-            poles: Polynomial::of_lines(poles, coefficients_of_lines).ok_or_else(unordered)?,
-            zeros: Polynomial::of_lines(zeros, zeros_of_lines).ok_or_else(descending)?,
+            poles,
+            zeros,
+            reflection,
             rate_hz,
         })
     }
@@ -73,9 +91,14 @@ impl Filter {
         self.zeros.coefficients()
     }
 
-    /// Reflection coefficients of the denominator; `None` if rounding made it unstable.
-    pub(crate) fn reflection(&self) -> Option<[f64; MAX_ORDER]> {
-        self.poles.reflection()
+    /// Reflection coefficients of the denominator, and zeros beyond its order.
+    pub(crate) fn reflection(&self) -> &[f64; MAX_ORDER] {
+        &self.reflection
+    }
+
+    /// The level of its noise behind the filters at the band's edges.
+    pub(crate) fn passed_level(&self, passed: &PassedPower) -> Result<f64, Error> {
+        finite_level(passed.rational_level_rms(self.zeros.cosines(), self.poles.cosines()))
     }
 
     /// Magnitude `|H|`; zero above the Nyquist frequency of the model rate.
@@ -93,7 +116,7 @@ impl Filter {
 }
 
 /// Checks that a level is usable as a divisor of magnitudes and samples.
-pub(crate) fn finite_level(level: f64) -> Result<f64, Error> {
+fn finite_level(level: f64) -> Result<f64, Error> {
     if level > 0.0 && level.is_finite() {
         return Ok(level);
     }

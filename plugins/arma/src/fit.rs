@@ -52,9 +52,6 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     ]
     .concat();
     let filter = Filter::of_lines(&poles, &zeros, rate_hz).map_err(|_| too_close())?;
-    if filter.reflection().is_none() {
-        return Err(too_close());
-    }
     filter.level(input.band)?;
     // Relative to the largest bin, so that no power over- or underflows.
     let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
@@ -80,20 +77,31 @@ fn too_close() -> Error {
     )
 }
 
-/// The power of the bins below the Nyquist frequency, relative to the largest.
+/// The power of the bins up to the Nyquist frequency, relative to the largest. Bins below the band have that of its first bin: as
+/// empty ones they would draw zeros.
 struct Spectrum {
     frequency_hz: Vec<f64>,
     power: Vec<f64>,
+    /// Part of each bin in correlations: half at 0 Hz and at the Nyquist frequency, whose mirror images are themselves.
+    part: Vec<f64>,
     rate_hz: f64,
 }
 
 impl Spectrum {
     fn new(input: &FitInput<'_>, largest: f64, rate_hz: f64) -> Self {
-        let bins = input.frequency_hz.iter().zip(input.magnitude);
-        let bins = bins.filter(|(f, _)| **f <= 0.5 * rate_hz);
+        let first = input.frequency_hz.first().copied().unwrap_or(0.0);
+        let below = (0..).map(|bin| f64::from(bin) * GRID_HZ);
+        let below = below.take_while(|hz| *hz < first - 0.5 * GRID_HZ);
+        let below = below.map(|hz| (hz, input.magnitude.first().copied().unwrap_or(0.0)));
+        let own = input.frequency_hz.iter().copied();
+        let all = below.chain(own.zip(input.magnitude.iter().copied()));
+        let all = all.filter(|(hz, _)| *hz <= 0.5 * rate_hz);
         let power = |m: f64| ((m / largest) * (m / largest)).max(FLOOR);
-        let (frequency_hz, power) = bins.map(|(f, m)| (*f, power(*m))).unzip();
+        let (frequency_hz, power): (Vec<f64>, _) = all.map(|(hz, m)| (hz, power(m))).unzip();
+        let is_mirrored = |hz: &f64| *hz > 0.0 && *hz < 0.5 * rate_hz;
+        let part = |hz: &f64| if is_mirrored(hz) { 1.0 } else { 0.5 };
         Self {
+            part: frequency_hz.iter().map(part).collect(),
             frequency_hz,
             power,
             rate_hz,
@@ -133,7 +141,7 @@ impl Spectrum {
         let lag = |lag: usize| -> f64 {
             let turn = core::f64::consts::TAU * lag as f64 / self.rate_hz;
             let bins = self.frequency_hz.iter().enumerate();
-            bins.map(|(i, hz)| power(i) / largest * htex_dsp::trig::cos(turn * hz))
+            bins.map(|(i, hz)| self.part[i] * power(i) / largest * htex_dsp::trig::cos(turn * hz))
                 .sum()
         };
         let lags: Vec<f64> = (0..=order).map(lag).collect();

@@ -13,7 +13,7 @@ use htex_dsp::noise::{GROUP as NOISE_GROUP, GaussianNoise};
 use htex_dsp::pipeline::Pipeline;
 use htex_model::{Error, Values, Voice, text};
 
-use crate::filter::{Filter, finite_level, unstable};
+use crate::filter::{Filter, unstable};
 use crate::{MAX_ORDER, MODEL_RATE};
 
 /// Duration of a change of parameters, seconds.
@@ -203,15 +203,14 @@ impl Voice for ArmaVoice {
 
 impl Target {
     fn new(filter: &Filter, rate_hz: f64, passed: &PassedPower) -> Result<Self, Error> {
-        let reflection = filter.reflection().ok_or_else(unstable)?;
         let mut zeros = [0.0; MAX_ORDER];
         zeros[..filter.zeros().len()].copy_from_slice(filter.zeros());
         // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
-        let level = finite_level(passed.rational_level_rms(filter.zeros(), filter.poles()))?;
+        let level = filter.passed_level(passed)?;
         let gain = htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level;
         Ok(Self {
             zeros,
-            reflection,
+            reflection: *filter.reflection(),
             gain,
         })
     }

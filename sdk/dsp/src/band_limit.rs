@@ -139,7 +139,8 @@ impl PassedPower {
         crate::root::sqrt(power / 3.0)
     }
 
-    /// As [`Self::all_pole_level_rms`], behind `(1 - Σ B_i z⁻ⁱ) / (1 - Σ A_i z⁻ⁱ)`. Does not allocate.
+    /// As [`Self::all_pole_level_rms`], behind a filter with zeros and poles, from the cosines of the line spectral frequencies of both.
+    /// Does not allocate.
     pub fn rational_level_rms(&self, zeros: &[f64], poles: &[f64]) -> f64 {
         let mut power = 0.0;
         wide(RationalPower {
@@ -179,10 +180,18 @@ impl Work for AllPolePower<'_> {
     #[inline(always)]
     fn run(self) {
         let mut sums = [0.0; TURNS];
-        for turns in self.turns {
-            let (power, part) = (polynomial_power(turns, self.coefficients), &turns.part);
+        for Turns { cos, sin, part } in self.turns {
+            // Horner's rule for Σ A_i z⁻ⁱ, with z⁻¹ = cos - i sin.
+            let (mut re, mut im) = ([0.0; TURNS], [0.0; TURNS]);
+            for a in self.coefficients.iter().rev() {
+                for i in 0..TURNS {
+                    let sum = re[i] + a;
+                    (re[i], im[i]) = (sum * cos[i] + im[i] * sin[i], im[i] * cos[i] - sum * sin[i]);
+                }
+            }
             for i in 0..TURNS {
-                let heard = part[i] / power[i];
+                let re = 1.0 - re[i];
+                let heard = part[i] / (re * re + im[i] * im[i]);
                 // Where the weight is zero, a pole on the circle contributes nothing either.
                 sums[i] += if part[i] > 0.0 { heard } else { 0.0 };
             }
@@ -204,8 +213,8 @@ impl Work for RationalPower<'_> {
     fn run(self) {
         let mut sums = [0.0; TURNS];
         for turns in self.turns {
-            let above = polynomial_power(turns, self.zeros);
-            let below = polynomial_power(turns, self.poles);
+            let above = lines_power(turns, self.zeros);
+            let below = lines_power(turns, self.poles);
             for i in 0..TURNS {
                 let heard = turns.part[i] * above[i] / below[i];
                 sums[i] += if turns.part[i] > 0.0 { heard } else { 0.0 };
@@ -215,21 +224,36 @@ impl Work for RationalPower<'_> {
     }
 }
 
-/// The squared absolute values of `1 - Σ A_i z⁻ⁱ` at a group of points: Horner's rule, with z⁻¹ = cos - i sin.
+/// The squared absolute values of a polynomial at a group of points, from the cosines of its line spectral frequencies: those of the
+/// symmetric and the antisymmetric polynomial, which are a quarter turn apart, over four.
 #[inline(always)]
-fn polynomial_power(turns: &Turns, coefficients: &[f64]) -> [f64; TURNS] {
-    let Turns { cos, sin, .. } = turns;
-    let (mut re, mut im) = ([0.0; TURNS], [0.0; TURNS]);
-    for a in coefficients.iter().rev() {
+fn lines_power(turns: &Turns, cosines: &[f64]) -> [f64; TURNS] {
+    let (mut symmetric, mut antisymmetric) = ([1.0; TURNS], [1.0; TURNS]);
+    let (pairs, last) = cosines.as_chunks();
+    for [a, b] in pairs {
         for i in 0..TURNS {
-            let sum = re[i] + a;
-            (re[i], im[i]) = (sum * cos[i] + im[i] * sin[i], im[i] * cos[i] - sum * sin[i]);
+            let (x, y) = (2.0 * (turns.cos[i] - a), 2.0 * (turns.cos[i] - b));
+            symmetric[i] *= x * x;
+            antisymmetric[i] *= y * y;
+        }
+    }
+    for a in last {
+        for i in 0..TURNS {
+            let x = 2.0 * (turns.cos[i] - a);
+            symmetric[i] *= x * x;
         }
     }
     let mut power = [0.0; TURNS];
     for i in 0..TURNS {
-        let re = 1.0 - re[i];
-        power[i] = re * re + im[i] * im[i];
+        let sine = turns.sin[i] * turns.sin[i];
+        power[i] = match last.is_empty() {
+            // (1 - cos) = sin² / (1 + cos), which stays precise at low frequencies.
+            true => {
+                let above = 1.0 + turns.cos[i];
+                0.5 * (symmetric[i] * above + antisymmetric[i] * (sine / above))
+            }
+            false => 0.25 * symmetric[i] + antisymmetric[i] * sine,
+        };
     }
     power
 }
@@ -237,6 +261,7 @@ fn polynomial_power(turns: &Turns, coefficients: &[f64]) -> [f64; TURNS] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::line_spectrum::line_spectral_frequencies;
     use crate::linear_prediction::ar_magnitude;
 
     #[test]
@@ -246,14 +271,23 @@ mod tests {
             let expected = passed.level_rms(|hz| ar_magnitude(coefficients, hz, 2_050.0));
             let found = passed.all_pole_level_rms(coefficients);
             assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
-            let zeros = [-0.4, 0.3, 0.6];
-            let curve =
-                |hz| ar_magnitude(coefficients, hz, 2_050.0) / ar_magnitude(&zeros, hz, 2_050.0);
-            let (expected, found) = (
-                passed.level_rms(curve),
-                passed.rational_level_rms(&zeros, coefficients),
-            );
-            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn the_level_of_lines_is_that_of_their_polynomials() {
+        let passed = PassedPower::new(Band::TACTILE, 2_050.0);
+        let cosines = |a: &[f64]| -> Vec<f64> {
+            let lines = line_spectral_frequencies(a).unwrap();
+            lines.iter().map(|w| libm::cos(*w)).collect()
+        };
+        for poles in [&[][..], &[0.9], &[1.2, -0.8, 0.3, -0.1, 0.05, 0.02, -0.3]] {
+            for zeros in [&[][..], &[-0.4, 0.3], &[-0.4, 0.3, 0.6]] {
+                let of = |a: &[f64], hz: f64| ar_magnitude(a, hz, 2_050.0);
+                let expected = passed.level_rms(|hz| of(poles, hz) / of(zeros, hz));
+                let found = passed.rational_level_rms(&cosines(zeros), &cosines(poles));
+                assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+            }
         }
     }
 

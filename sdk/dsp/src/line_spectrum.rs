@@ -99,41 +99,77 @@ pub fn coefficients_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
 /// As [`coefficients_of_lines`], of a polynomial that is no denominator: its zeros may lie on the unit circle, where two lines are
 /// equal, or one is 0 or π. Returns false if the lines descend, or there are too many.
 pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
+    let mut cosines = [0.0; MOST_LINES];
     let ascend = lsf.windows(2).all(|pair| pair[0] <= pair[1]);
-    if !ascend || lsf.len() > MOST_LINES {
+    let Some(cosines) = cosines.get_mut(..lsf.len()).filter(|_| ascend) else {
         return false;
-    }
-    let fixed: [&[f64]; 2] = if lsf.len().is_multiple_of(2) {
-        [&[1.0, 1.0], &[1.0, -1.0]]
-    } else {
-        [&[1.0], &[1.0, 0.0, -1.0]]
     };
-    let symmetric = with_zeros_at(fixed[0], lsf, 0);
-    let antisymmetric = with_zeros_at(fixed[1], lsf, 1);
-    let sums = symmetric.iter().zip(&antisymmetric).skip(1);
-    for (a, (p, q)) in coefficients.iter_mut().zip(sums) {
+    for (cosine, w) in cosines.iter_mut().zip(lsf) {
+        *cosine = crate::trig::cos(*w);
+    }
+    coefficients_of_cosines(cosines, coefficients);
+    true
+}
+
+/// As [`zeros_of_lines`], from the cosines of at most [`MOST_LINES`] lines.
+///
+/// The symmetric and the antisymmetric polynomial are a fixed factor and the quadratics of every second line, whose product is a
+/// palindrome: half of it is computed.
+pub fn coefficients_of_cosines(cosines: &[f64], coefficients: &mut [f64]) {
+    let [symmetric, antisymmetric] = [0, 1].map(|first| palindrome(cosines, first));
+    // (1 + z⁻¹) and (1 - z⁻¹), or 1 and (1 - z⁻²).
+    let (back, added) = match cosines.len().is_multiple_of(2) {
+        true => (1, 1.0),
+        false => (2, 0.0),
+    };
+    let below = |half: &Half, i: usize| i.checked_sub(back).map_or(0.0, |i| half.at(i));
+    for (i, a) in coefficients.iter_mut().enumerate() {
+        let i = i + 1;
+        let p = symmetric.at(i) + added * below(&symmetric, i);
+        let q = antisymmetric.at(i) - below(&antisymmetric, i);
         *a = -0.5 * (p + q);
     }
-    true
 }
 
 /// Maximum number of line spectral frequencies that can be converted back to a model.
 pub const MOST_LINES: usize = 128;
+/// Quadratics of the symmetric polynomial at most.
+const MOST_FACTORS: usize = MOST_LINES / 2;
 
-/// `fixed(z) Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line from `first`.
-fn with_zeros_at(fixed: &[f64], lsf: &[f64], first: usize) -> [f64; MOST_LINES + 3] {
-    let mut product = [0.0; MOST_LINES + 3];
-    product[..fixed.len()].copy_from_slice(fixed);
-    let (mut len, count) = (fixed.len(), (lsf.len() + 1 - first) / 2);
-    for i in spread_order(count) {
-        let middle = -2.0 * crate::trig::cos(lsf[first + 2 * i]);
-        len += 2;
-        for j in (1..len).rev() {
-            let two_below = if j > 1 { product[j - 2] } else { 0.0 };
-            product[j] += two_below + middle * product[j - 1];
-        }
+/// The first half of a palindrome of degree `2 factors`, and the coefficient in its middle.
+struct Half {
+    coefficients: [f64; MOST_FACTORS + 2],
+    factors: usize,
+}
+
+impl Half {
+    fn at(&self, i: usize) -> f64 {
+        let mirrored = (2 * self.factors).checked_sub(i);
+        mirrored.map_or(0.0, |mirrored| self.coefficients[i.min(mirrored)])
     }
-    product
+}
+
+/// `Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line from `first`.
+fn palindrome(cosines: &[f64], first: usize) -> Half {
+    let mut half = Half {
+        coefficients: [0.0; MOST_FACTORS + 2],
+        factors: 0,
+    };
+    half.coefficients[0] = 1.0;
+    for i in spread_order((cosines.len() + 1 - first) / 2) {
+        let middle = -2.0 * cosines[first + 2 * i];
+        let (k, c) = (half.factors, &mut half.coefficients);
+        // The coefficient after the middle one is its mirror image.
+        c[k + 1] = if k == 0 { 0.0 } else { c[k - 1] };
+        let (mut before, mut last) = (0.0, 0.0);
+        for x in &mut c[..k + 2] {
+            let own = *x;
+            *x = (own + before) + middle * last;
+            (before, last) = (last, own);
+        }
+        half.factors += 1;
+    }
+    half
 }
 
 /// `0..n` in bit-reversed order, which separates neighbours. In ascending order the product of the first

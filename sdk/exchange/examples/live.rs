@@ -7,16 +7,16 @@ use htex_exchange::hatt::{Imported, asset, read};
 use htex_play::{Asset, Motion, VoiceOptions};
 
 const RATE_HZ: f64 = 20_000.0;
-/// Samples between two motions: a millisecond.
-const BLOCK: usize = 20;
-const BLOCKS: usize = 50_000;
+/// Samples between two motions.
+const BLOCK: usize = 64;
+const BLOCKS: usize = 20_000;
 const RUNS: usize = 7;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1).ok_or("give a model file")?;
     let made = asset(&read(&std::fs::read(file)?)?, &Imported::default())?;
     let asset = Asset::from_bytes(&made.to_bytes()?)?;
-    for (what, moves) in [("at one motion", false), ("a new motion each millisecond", true)] {
+    for (what, moves) in [("at one motion", false), ("a new motion in each block of 64", true)] {
         let mut least = f64::INFINITY;
         for _ in 0..RUNS {
             let mut options = VoiceOptions::default();

@@ -140,16 +140,6 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     (
-        "htex-exchange",
-        &[
-            "htex-author",
-            "htex-dsp",
-            "htex-format",
-            "htex-host",
-            "htex-schema",
-        ],
-    ),
-    (
         "htex-tradeoff",
         &[
             "htex-author",
@@ -158,6 +148,19 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-format",
             "htex-host",
             "htex-report",
+        ],
+    ),
+    (
+        "htex-exchange",
+        &[
+            "htex-author",
+            "htex-dsp",
+            "htex-files",
+            "htex-finding",
+            "htex-format",
+            "htex-host",
+            "htex-play",
+            "htex-schema",
         ],
     ),
     (
@@ -173,13 +176,13 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-device-builtin",
             "htex-device-check",
             "htex-device-guardian",
+            "htex-exchange",
             "htex-lab",
             "htex-library",
             "htex-scene",
             "htex-simulate",
             "htex-tradeoff",
             "htex-dsp",
-            "htex-exchange",
             "htex-files",
             "htex-finding",
             "htex-format",

@@ -10,7 +10,9 @@ mod demo;
 mod device;
 mod edit;
 mod explain;
+mod export;
 mod fit;
+mod formats;
 mod gain;
 mod guard;
 mod import;
@@ -64,7 +66,9 @@ pub(crate) enum Command {
     Build(build::Build),
     Make(make::Make),
     Mix(mix::Mix),
-    Import(import::Import),
+    Import(Box<import::Import>),
+    Export(export::Export),
+    Formats(formats::Formats),
     Compare(compare::Compare),
     Tradeoff(tradeoff::Tradeoff),
     #[cfg(feature = "lab")]
@@ -108,6 +112,8 @@ impl Command {
             Self::Make(args) => args.run(),
             Self::Mix(args) => args.run(),
             Self::Import(args) => args.run(),
+            Self::Export(args) => args.run(),
+            Self::Formats(args) => args.run(),
             Self::Compare(args) => args.run(),
             Self::Tradeoff(args) => args.run(),
             #[cfg(feature = "lab")]

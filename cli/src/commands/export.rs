@@ -143,14 +143,12 @@ impl Export {
     }
 
     fn text(&self, exported: &Exported) -> String {
-        let (lost, felt) = (&exported.lost, &exported.lost.felt.error);
-        let decibels = |measure: Measure| match lost.quality.get(measure) {
-            Some(db) => format!("{db:+.1} dB"),
-            None => "-".to_owned(),
-        };
+        let lost = &exported.lost.difference;
+        let felt = &lost.felt.error;
+        let nine_bands = lost.quality.get(Measure::NineBand);
         format!(
             "{}: {} bytes, {} s for {}\nlost: felt {:.1} dB RMS, {:.1} dB at most, {:+.1} dB together ({} the difference threshold), \
-             nine bands {}, level {}; the actuator is too weak in {:.0} % of the time\nthe format loses {}\n",
+             nine bands {:.1} dB, level {:+.1} dB; the actuator is too weak in {:.0} % of the time\nthe format loses {}\n",
             shown(&self.output),
             exported.bytes.len(),
             exported.seconds,
@@ -163,8 +161,8 @@ impl Export {
             } else {
                 "above"
             },
-            decibels(Measure::NineBand),
-            decibels(Measure::Level),
+            nine_bands.unwrap_or_default(),
+            exported.lost.level_db,
             100.0 * exported.limited,
             exported.loses,
         )

@@ -1,13 +1,12 @@
 //! Assets as files of other formats, with what is lost.
 
-use htex_author::Difference;
 use htex_play::Asset;
 use serde::Serialize;
 
 use crate::error::ExchangeError;
 use crate::formats::Format;
 use crate::heard::{Heard, Path, Playing};
-use crate::loss::loss;
+use crate::loss::{Loss, loss};
 use crate::profile::{Kind, PROFILES, Profile};
 
 /// Rate at which envelopes are taken and losses measured, hertz.
@@ -92,8 +91,7 @@ pub struct Exported {
     pub format: &'static str,
     pub profile: String,
     pub seconds: f64,
-    /// What the actuator makes of the file, compared with the asset's own samples.
-    pub lost: Difference,
+    pub lost: Loss,
     /// Part of the time in which the actuator is too weak.
     pub limited: f64,
     /// What the format loses of every texture.

@@ -10,7 +10,7 @@
 //! let asset = htex_play::Asset::open("sandpaper.htex")?;
 //! if let Some(format) = Format::named("ahap") {
 //!     let exported = export(&asset, &Export::new(format))?;
-//!     println!("{} bytes, felt difference {} dB", exported.bytes.len(), exported.lost.felt.error.error_rms_db);
+//!     println!("{} bytes, felt difference {} dB", exported.bytes.len(), exported.lost.difference.felt.error.error_rms_db);
 //! }
 //! # Ok::<(), htex_exchange::ExchangeError>(())
 //! ```
@@ -51,6 +51,7 @@ pub use heard::Path;
 pub use hjif::Hjif;
 pub use import::{Fitting, ImportError, Physical, RATE_HZ, imported_asset, recording_of};
 pub use json::MOST_BYTES;
+pub use loss::Loss;
 pub use pattern::{MOST_S, Pattern, Transient, combined, rendered};
 pub use profile::{Kind, PROFILES, Profile, Sourced};
 pub use stroke::Stroke;

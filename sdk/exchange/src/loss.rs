@@ -1,20 +1,30 @@
 //! What is lost: the file that was written is read again and played through the profile, and compared with the asset's own samples.
 
 use htex_author::{
-    Averaging, Difference, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum,
+    AuthorError, Averaging, Difference, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum,
     segment_spectra, spectrum_of_samples,
 };
+
+use htex_dsp::grid::level_rms;
+use serde::Serialize;
 
 use crate::error::ExchangeError;
 use crate::heard::{Heard, acceleration_of};
 use crate::profile::{Kind, Profile};
 
+/// What is lost.
+#[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
+pub struct Loss {
+    /// What the actuator makes of the file, in the asset's unit as far as it is felt, compared with the asset's own samples.
+    #[serde(flatten)]
+    pub difference: Difference,
+    /// Level of that over the asset's, decibels.
+    pub level_db: f64,
+}
+
 /// Compares what an actuator makes of a drive, at the rate of what was heard, with what was heard.
-pub(crate) fn loss(
-    heard: &Heard,
-    drive: &[f64],
-    profile: &Profile,
-) -> Result<Difference, ExchangeError> {
+pub(crate) fn loss(heard: &Heard, drive: &[f64], profile: &Profile) -> Result<Loss, ExchangeError> {
     let recording = Recording::of(
         heard.quantity,
         "the asset",
@@ -47,7 +57,11 @@ pub(crate) fn loss(
         magnitude,
         ..reference.clone()
     };
-    Difference::between(&reference, &other).ok_or(ExchangeError::Author(
-        htex_author::AuthorError::QuantitiesDiffer,
-    ))
+    let level = |spectrum: &TextureSpectrum| level_rms(&spectrum.magnitude);
+    let level_db = 20.0 * libm::log10(level(&other) / level(&reference));
+    let difference = Difference::between(&reference, &other);
+    Ok(Loss {
+        difference: difference.ok_or(AuthorError::QuantitiesDiffer)?,
+        level_db,
+    })
 }

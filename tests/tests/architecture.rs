@@ -155,7 +155,6 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "htex-author",
             "htex-dsp",
-            "htex-files",
             "htex-finding",
             "htex-format",
             "htex-host",

@@ -1,5 +1,5 @@
 use clap::Args;
-use htex_exchange::{FORMATS, PROFILES};
+use htex_exchange::{FORMATS, Format, PROFILES, Reads};
 use serde_json::json;
 
 use crate::exit::Exit;
@@ -27,19 +27,12 @@ impl Formats {
 fn text() -> String {
     let mut text = String::new();
     for format in FORMATS {
-        let ways: Vec<&str> = [
-            format.reads.map(|_| "import"),
-            format.writes.map(|_| "export"),
-        ]
-        .into_iter()
-        .flatten()
-        .collect();
         text += &format!(
             "{:8} {} ({}): {}\n         keeps {}\n         loses {}\n",
             format.name,
             format.title,
             format.dotted(),
-            ways.join(" and "),
+            ways(format),
             format.keeps,
             format.loses,
         );
@@ -49,4 +42,14 @@ fn text() -> String {
         text += &format!("{:10} {}\n", profile.name, profile.title);
     }
     text
+}
+
+/// How its files come in and go out, in words.
+fn ways(format: &Format) -> String {
+    let import = format.reads.as_ref().map(|reads| match reads {
+        Reads::Asset(_) => "import",
+        _ => "import with --full-scale, --speed and --force",
+    });
+    let ways = [import, format.writes.map(|_| "export")];
+    Vec::from_iter(ways.into_iter().flatten()).join("; ")
 }

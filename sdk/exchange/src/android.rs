@@ -5,14 +5,13 @@
 //! envelope of `BasicEnvelopeBuilder` ends at the intensity 0. The amplitude of `WaveformEnvelopeBuilder` is the part of the strongest vibration at
 //! the frequency. The JSON is this project's own: Android has no file of an effect.
 
-use std::fmt::Write as _;
-
 use serde::{Deserialize, Serialize};
 
 use crate::curve::Point;
 use crate::error::Fault;
 use crate::json::{self, within};
 use crate::pattern::Pattern;
+use crate::profile::Profile;
 
 /// Longest duration of a control point that every device takes, milliseconds.
 pub const LONGEST_POINT_MS: u64 = 1_000;
@@ -112,57 +111,12 @@ impl Android {
     }
 
     fn check(&self) -> Result<(), Fault> {
-        let (timings, amplitudes) = (
-            self.waveform.timings_ms.len(),
-            self.waveform.amplitudes.len(),
-        );
-        if timings != amplitudes || timings == 0 {
-            let problem = format!(
-                "it has {timings} timings and {amplitudes} amplitudes; an effect has as many of both, one or more"
-            );
-            return Err(Fault::new("/waveform", problem));
-        }
+        self.waveform.check()?;
         for (index, point) in self.waveform_envelope.control_points.iter().enumerate() {
-            let at = |key: &str| format!("/waveform_envelope/control_points/{index}/{key}");
-            within(
-                || at("amplitude"),
-                "the amplitude",
-                point.amplitude,
-                0.0..=1.0,
-            )?;
-            within(
-                || at("frequency_hz"),
-                "the frequency",
-                point.frequency_hz,
-                1.0..=1e4,
-            )?;
-            within(
-                || at("duration_ms"),
-                "the duration",
-                point.duration_ms as f64,
-                1.0..=LONGEST_POINT_MS as f64,
-            )?;
+            point.check(&format!("/waveform_envelope/control_points/{index}"))?;
         }
         for (index, point) in self.basic_envelope.control_points.iter().enumerate() {
-            let at = |key: &str| format!("/basic_envelope/control_points/{index}/{key}");
-            within(
-                || at("intensity"),
-                "the intensity",
-                point.intensity,
-                0.0..=1.0,
-            )?;
-            within(
-                || at("sharpness"),
-                "the sharpness",
-                point.sharpness,
-                0.0..=1.0,
-            )?;
-            within(
-                || at("duration_ms"),
-                "the duration",
-                point.duration_ms as f64,
-                1.0..=LONGEST_POINT_MS as f64,
-            )?;
+            point.check(&format!("/basic_envelope/control_points/{index}"))?;
         }
         match self.basic_envelope.control_points.last() {
             Some(last) if last.intensity == 0.0 => Ok(()),
@@ -171,6 +125,38 @@ impl Android {
                 "an envelope ends at the intensity 0",
             )),
         }
+    }
+
+    /// Checks what a device takes: the number of control points, and their least duration.
+    ///
+    /// # Errors
+    /// With the envelope or the point that it refuses.
+    pub fn check_device(&self, profile: &Profile) -> Result<(), Fault> {
+        let waveform = self.waveform_envelope.control_points.iter();
+        let basic = self.basic_envelope.control_points.iter();
+        let envelopes: [(&str, Vec<u64>); 2] = [
+            (
+                "waveform_envelope",
+                waveform.map(|p| p.duration_ms).collect(),
+            ),
+            ("basic_envelope", basic.map(|p| p.duration_ms).collect()),
+        ];
+        let (most, least) = (profile.most_points.value, profile.shortest_point_ms.value);
+        for (envelope, durations_ms) in envelopes {
+            let at = format!("/{envelope}/control_points");
+            let count = durations_ms.len() as f64;
+            within(|| at.clone(), "the number of points", count, 1.0..=most)?;
+            for (index, ms) in durations_ms.into_iter().enumerate() {
+                let of = || format!("{at}/{index}/duration_ms");
+                within(
+                    of,
+                    "the duration",
+                    ms as f64,
+                    least..=LONGEST_POINT_MS as f64,
+                )?;
+            }
+        }
+        Ok(())
     }
 
     /// Returns the vibration of `WaveformEnvelopeBuilder`, which begins at the amplitude 0.
@@ -199,44 +185,109 @@ impl Android {
     #[must_use]
     pub fn to_kotlin(&self, name: &str) -> Vec<u8> {
         let name = identifier(name);
-        let mut text = String::from("import android.os.VibrationEffect\n");
-        let _ = write!(
-            text,
-            "\n/** For every device with amplitude control (API 26). */\nfun {name}Waveform(): VibrationEffect =\n    \
-             VibrationEffect.createWaveform(\n        longArrayOf({}),\n        intArrayOf({}),\n        {},\n    )\n",
+        let waveform = format!(
+            "VibrationEffect.createWaveform(\n        longArrayOf({}),\n        intArrayOf({}),\n        {},\n    )",
             joined(self.waveform.timings_ms.iter()),
             joined(self.waveform.amplitudes.iter()),
             self.waveform.repeat,
         );
-        let _ = write!(
-            text,
-            "\n/** For devices with envelopes and a frequency profile (API 36). */\nfun {name}Envelope(): VibrationEffect =\n    \
-             VibrationEffect.WaveformEnvelopeBuilder()\n        .setInitialFrequencyHz({}f)\n",
-            self.waveform_envelope.initial_frequency_hz,
+        let envelope = &self.waveform_envelope;
+        let points = envelope.control_points.iter();
+        let envelope = builder(
+            "WaveformEnvelopeBuilder",
+            &format!("setInitialFrequencyHz({}f)", envelope.initial_frequency_hz),
+            points.map(|p| (p.amplitude, p.frequency_hz, p.duration_ms)),
         );
-        for p in &self.waveform_envelope.control_points {
-            let _ = writeln!(
-                text,
-                "        .addControlPoint({}f, {}f, {}L)",
-                p.amplitude, p.frequency_hz, p.duration_ms
-            );
-        }
-        let _ = write!(
-            text,
-            "        .build()\n\n/** For devices with envelopes (API 36). */\nfun {name}BasicEnvelope(): VibrationEffect =\n    \
-             VibrationEffect.BasicEnvelopeBuilder()\n        .setInitialSharpness({}f)\n",
-            self.basic_envelope.initial_sharpness,
+        let basic = &self.basic_envelope;
+        let points = basic.control_points.iter();
+        let basic = builder(
+            "BasicEnvelopeBuilder",
+            &format!("setInitialSharpness({}f)", basic.initial_sharpness),
+            points.map(|p| (p.intensity, p.sharpness, p.duration_ms)),
         );
-        for p in &self.basic_envelope.control_points {
-            let _ = writeln!(
-                text,
-                "        .addControlPoint({}f, {}f, {}L)",
-                p.intensity, p.sharpness, p.duration_ms
-            );
-        }
-        text.push_str("        .build()\n");
-        text.into_bytes()
+        let functions = [
+            (
+                "every device with amplitude control (API 26)",
+                "Waveform",
+                waveform,
+            ),
+            (
+                "devices with envelopes and a frequency profile (API 36)",
+                "Envelope",
+                envelope,
+            ),
+            ("devices with envelopes (API 36)", "BasicEnvelope", basic),
+        ];
+        let function = |(devices, kind, body): (&str, &str, String)| {
+            format!("\n/** For {devices}. */\nfun {name}{kind}(): VibrationEffect =\n    {body}\n")
+        };
+        let functions: String = functions.into_iter().map(function).collect();
+        format!("import android.os.VibrationEffect\n{functions}").into_bytes()
     }
+}
+
+/// An effect of one of Android's builders.
+fn builder(name: &str, first: &str, points: impl Iterator<Item = (f64, f64, u64)>) -> String {
+    let point =
+        |(a, b, ms): (f64, f64, u64)| format!("        .addControlPoint({a}f, {b}f, {ms}L)\n");
+    let points: String = points.map(point).collect();
+    format!("VibrationEffect.{name}()\n        .{first}\n{points}        .build()")
+}
+
+impl Waveform {
+    fn check(&self) -> Result<(), Fault> {
+        let (timings, amplitudes) = (self.timings_ms.len(), self.amplitudes.len());
+        if timings == amplitudes && timings > 0 {
+            return Ok(());
+        }
+        let problem = format!(
+            "it has {timings} timings and {amplitudes} amplitudes; an effect has as many of both, one or more"
+        );
+        Err(Fault::new("/waveform", problem))
+    }
+}
+
+impl WaveformPoint {
+    fn check(&self, at: &str) -> Result<(), Fault> {
+        let of = |key: &str| format!("{at}/{key}");
+        within(
+            || of("amplitude"),
+            "the amplitude",
+            self.amplitude,
+            0.0..=1.0,
+        )?;
+        within(
+            || of("frequency_hz"),
+            "the frequency",
+            self.frequency_hz,
+            1.0..=1e4,
+        )?;
+        check_duration(at, self.duration_ms)
+    }
+}
+
+impl BasicPoint {
+    fn check(&self, at: &str) -> Result<(), Fault> {
+        let of = |key: &str| format!("{at}/{key}");
+        within(
+            || of("intensity"),
+            "the intensity",
+            self.intensity,
+            0.0..=1.0,
+        )?;
+        within(
+            || of("sharpness"),
+            "the sharpness",
+            self.sharpness,
+            0.0..=1.0,
+        )?;
+        check_duration(at, self.duration_ms)
+    }
+}
+
+fn check_duration(at: &str, ms: u64) -> Result<(), Fault> {
+    let of = || format!("{at}/duration_ms");
+    within(of, "the duration", ms as f64, 1.0..=LONGEST_POINT_MS as f64)
 }
 
 fn joined<T: ToString>(values: impl Iterator<Item = T>) -> String {

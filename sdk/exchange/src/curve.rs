@@ -103,8 +103,8 @@ fn furthest(curve: &[Point], from: usize, to: usize, tolerance: f64) -> Option<u
 
 /// The value of a curve from a time on, or just before it, which differ where two points have this time.
 pub(crate) fn side(curve: &[Point], time_s: f64, before: bool) -> Option<f64> {
-    let first_here = curve.iter().find(|point| point.time_s >= time_s);
-    match first_here {
+    let first_here = curve.partition_point(|point| point.time_s < time_s);
+    match curve.get(first_here) {
         Some(point) if before && point.time_s == time_s => Some(point.value),
         _ => value_at(curve, time_s),
     }

@@ -19,16 +19,28 @@ fn place_of(place: &str) -> String {
     }
 }
 
+/// Most characters of a place or a problem, which quote the file.
+const MOST_QUOTED: usize = 500;
+
+/// One line of a text that may quote a file: its beginning, without characters that steer a terminal.
+fn quoted(text: &str) -> String {
+    let mut shown: String = text.chars().take(MOST_QUOTED).collect();
+    if shown.len() < text.len() {
+        shown.push('…');
+    }
+    htex_finding::plain(&shown).into_owned()
+}
+
 impl Fault {
-    pub(crate) fn new(place: impl Into<String>, problem: impl Into<String>) -> Self {
+    pub(crate) fn new(place: impl AsRef<str>, problem: impl AsRef<str>) -> Self {
         Self {
-            place: place.into(),
-            problem: problem.into(),
+            place: quoted(place.as_ref()),
+            problem: quoted(problem.as_ref()),
         }
     }
 
     /// Of the whole file.
-    pub(crate) fn whole(problem: impl Into<String>) -> Self {
+    pub(crate) fn whole(problem: impl AsRef<str>) -> Self {
         Self::new("", problem)
     }
 }
@@ -52,6 +64,17 @@ pub enum ExchangeError {
     Missing {
         format: &'static str,
         missing: Vec<Missing>,
+    },
+    /// A setting that was given means nothing for this format.
+    #[error("{format}: its {way} takes no `{setting}`; leave it out{}", taken(.takes))]
+    Unused {
+        format: &'static str,
+        /// `import` or `export`.
+        way: &'static str,
+        /// As a keyword: `full_scale`.
+        setting: String,
+        /// What it takes.
+        takes: Vec<&'static str>,
     },
     /// A number that was given is out of its range.
     #[error("{name} {value}: {range}")]
@@ -107,6 +130,16 @@ fn words(missing: &[Missing]) -> String {
 
 fn settings(missing: &[Missing]) -> String {
     list(missing.iter().map(|m| format!("`{}`", m.setting)))
+}
+
+fn taken(settings: &[&'static str]) -> String {
+    match settings.is_empty() {
+        true => String::new(),
+        false => format!(
+            " (it takes {})",
+            list(settings.iter().map(|s| format!("`{s}`")))
+        ),
+    }
 }
 
 /// `a, b and c`.

@@ -4,7 +4,7 @@ use htex_play::Asset;
 use serde::Serialize;
 
 use crate::error::ExchangeError;
-use crate::formats::Format;
+use crate::format::{Format, WriteSignal, Writes};
 use crate::heard::{Heard, Path, Playing};
 use crate::loss::{Loss, loss};
 use crate::profile::{Kind, PROFILES, Profile};
@@ -38,9 +38,10 @@ pub struct Export<'a> {
     pub profile: Option<&'a Profile>,
     /// Length of a condition; a stroke has its own.
     pub seconds: f64,
-    /// Rate of WAV, hertz.
-    pub rate_hz: f64,
-    pub coding: Coding,
+    /// Rate of WAV, hertz; else 8000.
+    pub rate_hz: Option<f64>,
+    /// Coding of `.hjif`; else [`Coding::Vectorial`].
+    pub coding: Option<Coding>,
     /// Whether Android's effect is written as Kotlin instead of JSON.
     pub kotlin: bool,
     pub seed: u64,
@@ -56,8 +57,8 @@ impl<'a> Export<'a> {
             path: Path::Condition(None),
             profile: None,
             seconds: 2.0,
-            rate_hz: RATE_HZ,
-            coding: Coding::default(),
+            rate_hz: None,
+            coding: None,
             kotlin: false,
             seed: 0,
         }
@@ -77,8 +78,37 @@ impl<'a> Export<'a> {
 
     #[must_use]
     pub fn with_coding(mut self, coding: Coding) -> Self {
-        self.coding = coding;
+        self.coding = Some(coding);
         self
+    }
+
+    #[must_use]
+    pub fn with_model(mut self, model: &'a str) -> Self {
+        self.model = Some(model);
+        self
+    }
+
+    pub(crate) fn rate_hz(&self) -> f64 {
+        self.rate_hz.unwrap_or(RATE_HZ)
+    }
+
+    /// The settings that differ from none at all, as keywords.
+    fn given(&self) -> Vec<&'static str> {
+        let (is_stroke, is_moved) = match &self.path {
+            Path::Stroke(_) => (true, false),
+            Path::Condition(motion) => (false, motion.is_some()),
+        };
+        let all = [
+            ("model", self.model.is_some()),
+            ("speed", is_moved),
+            ("stroke", is_stroke),
+            ("profile", self.profile.is_some()),
+            ("seed", self.seed != 0),
+            ("rate", self.rate_hz.is_some()),
+            ("coding", self.coding.is_some()),
+        ];
+        let given = all.into_iter().filter(|(_, is_given)| *is_given);
+        given.map(|(setting, _)| setting).collect()
     }
 }
 
@@ -89,15 +119,24 @@ pub struct Exported {
     #[serde(skip)]
     pub bytes: Vec<u8>,
     pub format: &'static str,
+    /// How the file was played again; `None` where it holds the asset itself.
+    #[serde(flatten)]
+    pub played: Option<Played>,
+    /// What the format loses of every texture.
+    pub loses: &'static str,
+    /// What else is to say, each a sentence.
+    pub notes: Vec<String>,
+}
+
+/// How an actuator plays a file, by its profile.
+#[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
+pub struct Played {
     pub profile: String,
     pub seconds: f64,
     pub lost: Loss,
     /// Part of the time in which the actuator is too weak.
     pub limited: f64,
-    /// What the format loses of every texture.
-    pub loses: &'static str,
-    /// What else is to say, each a sentence.
-    pub notes: Vec<String>,
 }
 
 /// What a writer works on.
@@ -117,70 +156,81 @@ pub struct Written {
     pub(crate) notes: Vec<String>,
 }
 
-/// Writes an asset as a file of another format, reads it again, and measures what is lost.
+/// Writes an asset as a file of another format; what is played of it is read again, and what is lost is measured.
 ///
 /// # Errors
-/// When the format is not written, a number is out of range, the actuator cannot play such files, or the asset cannot be played.
+/// When the format is not written, a setting is given that it does not take, a number is out of range, the actuator cannot play such files, or
+/// the asset cannot be played.
 pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeError> {
     let format = export.format;
-    let Some(writes) = format.writes else {
-        let problem = format!(
-            "it is not written; there are {}",
-            crate::exported().join(", ")
-        );
-        return Err(ExchangeError::Cannot {
+    format.check_export(export.given())?;
+    match format.writes {
+        Some(Writes::Signal { write, profile, .. }) => {
+            let profile = export.profile.map_or_else(|| Profile::find(profile), Ok)?;
+            of_signal(asset, export, write, profile)
+        }
+        Some(Writes::Asset(write)) => Ok(Exported {
+            bytes: write(asset)?,
             format: format.name,
-            problem,
-        });
-    };
-    let profile = match export.profile {
-        Some(profile) => profile,
-        None => Profile::find(format.profile)?,
-    };
-    let seconds = match &export.path {
-        Path::Condition(_) => export.seconds,
-        Path::Stroke(stroke) => stroke.seconds(),
-    };
-    check("seconds", seconds, SECONDS, "0.5 to 600 s")?;
-    let least_hz = 2.0 * asset.band().high_hz;
-    check(
-        "rate",
-        export.rate_hz,
-        least_hz..=MOST_RATE_HZ,
-        "twice the texture's highest frequency to 192,000 Hz",
-    )?;
+            played: None,
+            loses: format.loses,
+            notes: Vec::new(),
+        }),
+        None => Err(ExchangeError::Cannot {
+            format: format.name,
+            problem: format!(
+                "it is not written; there are {}",
+                crate::exported().join(", ")
+            ),
+        }),
+    }
+}
+
+fn of_signal(
+    asset: &Asset,
+    export: &Export<'_>,
+    write: WriteSignal,
+    profile: &Profile,
+) -> Result<Exported, ExchangeError> {
     let job = Job {
         playing: Playing {
             asset,
             model: export.model,
             path: &export.path,
-            seconds,
+            seconds: export.checked_seconds(asset)?,
             seed: export.seed,
         },
         profile,
         export,
     };
-    let written = writes(&job)?;
-    let mut notes = written.notes;
-    if profile.values().iter().any(|(_, value)| value.is_assumed()) {
-        notes.push(format!(
-            "Values of the profile {} are assumed, not measured.",
-            profile.name
-        ));
-    }
-    if let Path::Stroke(stroke) = &export.path {
-        notes.extend(stroke.warnings.iter().cloned());
-    }
+    let written = write(&job)?;
     Ok(Exported {
-        lost: loss(&written.heard, &written.drive, profile)?,
+        played: Some(Played {
+            lost: loss(&written.heard, &written.drive, profile)?,
+            profile: profile.name.clone(),
+            seconds: job.playing.seconds,
+            limited: written.limited,
+        }),
         bytes: written.bytes,
-        format: format.name,
-        profile: profile.name.clone(),
-        seconds,
-        limited: written.limited,
-        loses: format.loses,
-        notes,
+        format: export.format.name,
+        loses: export.format.loses,
+        notes: [written.notes, job.notes()].concat(),
     })
+}
+
+impl Export<'_> {
+    /// Returns the length of what is played, seconds.
+    fn checked_seconds(&self, asset: &Asset) -> Result<f64, ExchangeError> {
+        let seconds = match &self.path {
+            Path::Condition(_) => self.seconds,
+            Path::Stroke(stroke) => stroke.seconds(),
+        };
+        check("seconds", seconds, SECONDS, "0.5 to 600 s")?;
+        let rates_hz = 2.0 * asset.band().high_hz..=MOST_RATE_HZ;
+        let range = "twice the texture's highest frequency to 192,000 Hz";
+        check("rate", self.rate_hz(), rates_hz, range)?;
+        Ok(seconds)
+    }
 }
 
 fn check(
@@ -196,6 +246,22 @@ fn check(
 }
 
 impl Job<'_> {
+    /// What is to say of profile and stroke.
+    fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        let mut values = self.profile.values().into_iter();
+        if values.any(|(_, value)| value.is_assumed()) {
+            let name = &self.profile.name;
+            notes.push(format!(
+                "Values of the profile {name} are assumed, not measured."
+            ));
+        }
+        if let Path::Stroke(stroke) = &self.export.path {
+            notes.extend(stroke.warnings.iter().cloned());
+        }
+        notes
+    }
+
     /// Seconds between points of an envelope: the shortest that actuator and format take, or longer, so that their number is enough.
     pub(crate) fn point_s(&self, most_points: usize) -> f64 {
         let most = (self.profile.most_points.value as usize)
@@ -220,9 +286,13 @@ impl Job<'_> {
 
     /// An error of what was just written, which its own reader refuses.
     pub(crate) fn own(&self, fault: crate::Fault) -> ExchangeError {
+        self.cannot(fault.to_string())
+    }
+
+    pub(crate) fn cannot(&self, problem: String) -> ExchangeError {
         ExchangeError::Cannot {
             format: self.export.format.name,
-            problem: fault.to_string(),
+            problem,
         }
     }
 }

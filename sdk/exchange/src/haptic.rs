@@ -4,12 +4,12 @@
 //! frequency point beyond the end of the amplitude is refused, as it says, but for a last one to which the line across the end leads: earlier
 //! editors wrote it. Frequencies are positions in the range of an actuator, so that a profile says their hertz; without points they are 0.5.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use crate::curve::{Point, value_at};
 use crate::error::Fault;
-use crate::formats::{Context, Signal};
+use crate::format::{Sampling, Signal};
 use crate::json::{self, within};
 use crate::pattern::{MOST_S, Pattern, Transient, rendered};
 use crate::profile::Profile;
@@ -62,8 +62,13 @@ pub struct Continuous {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Envelopes {
     pub amplitude: Vec<Amplitude>,
-    #[serde(default)]
+    /// Absent, null and empty are the same.
+    #[serde(default, deserialize_with = "or_none")]
     pub frequency: Vec<Frequency>,
+}
+
+fn or_none<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Frequency>, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or_default())
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -128,43 +133,19 @@ impl Haptic {
         let points = &self.signals.continuous.envelopes.amplitude;
         let mut before = 0.0;
         for (index, point) in points.iter().enumerate() {
-            let at = |key: &str| format!("{AMPLITUDE}/{index}/{key}");
-            check_time(at("time"), point.time, before)?;
+            let at = format!("{AMPLITUDE}/{index}");
+            check_time(format!("{at}/time"), point.time, before)?;
             before = point.time;
-            within(
-                || at("amplitude"),
-                "the amplitude",
-                point.amplitude,
-                0.0..=1.0,
-            )?;
-            let Some(emphasis) = point.emphasis else {
-                continue;
-            };
-            within(
-                || at("emphasis/frequency"),
-                "the frequency",
-                emphasis.frequency,
-                0.0..=1.0,
-            )?;
-            let least = point.amplitude;
-            within(
-                || at("emphasis/amplitude"),
-                "the emphasis",
-                emphasis.amplitude,
-                least..=1.0,
-            )?;
+            point.check(&at)?;
         }
-        match &points[..] {
-            [first, .., last] if last.time > first.time => Ok((first.time, last.time)),
-            [_, _, ..] => Err(Fault::new(
-                AMPLITUDE,
-                "it has no duration; its last point must be later than its first",
-            )),
-            _ => Err(Fault::new(
-                AMPLITUDE,
-                format!("it has {} points; it needs two or more", points.len()),
-            )),
-        }
+        let problem = match &points[..] {
+            [first, .., last] if last.time > first.time => return Ok((first.time, last.time)),
+            [_, _, ..] => {
+                "it has no duration; its last point must be later than its first".to_owned()
+            }
+            _ => format!("it has {} points; it needs two or more", points.len()),
+        };
+        Err(Fault::new(AMPLITUDE, problem))
     }
 
     fn check_frequency(&self, start_s: f64, end_s: f64) -> Result<(), Fault> {
@@ -274,6 +255,34 @@ impl Haptic {
     }
 }
 
+impl Amplitude {
+    fn check(&self, at: &str) -> Result<(), Fault> {
+        let of = |key: &str| format!("{at}/{key}");
+        within(
+            || of("amplitude"),
+            "the amplitude",
+            self.amplitude,
+            0.0..=1.0,
+        )?;
+        let Some(emphasis) = self.emphasis else {
+            return Ok(());
+        };
+        let range = self.amplitude..=1.0;
+        within(
+            || of("emphasis/amplitude"),
+            "the emphasis",
+            emphasis.amplitude,
+            range,
+        )?;
+        within(
+            || of("emphasis/frequency"),
+            "the frequency",
+            emphasis.frequency,
+            0.0..=1.0,
+        )
+    }
+}
+
 fn check_time(pointer: String, time: f64, before: f64) -> Result<(), Fault> {
     within(|| pointer.clone(), "the time", time, 0.0..=MOST_S)?;
     if time < before {
@@ -320,10 +329,10 @@ fn emphasise(points: &mut Vec<Amplitude>, transient: &Transient, profile: &Profi
 }
 
 /// Reads a file as a signal.
-pub(crate) fn signal(bytes: &[u8], context: &Context<'_>) -> Result<Signal, Fault> {
+pub(crate) fn signal(bytes: &[u8], sampling: Sampling, profile: &Profile) -> Result<Signal, Fault> {
     let haptic = Haptic::from_bytes(bytes)?;
     Ok(Signal {
-        samples: rendered(&[haptic.pattern(context.profile)], context.rate_hz),
+        samples: rendered(&[haptic.pattern(profile)], sampling.rate_hz),
         left_out: haptic.left_out(),
     })
 }

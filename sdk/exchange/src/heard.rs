@@ -46,6 +46,17 @@ pub(crate) struct Block {
     pub(crate) powers: Vec<f64>,
 }
 
+impl Block {
+    /// With the powers of these bands alone.
+    pub(crate) fn only(&self, bands: &[usize]) -> Self {
+        let mut powers = vec![0.0; self.powers.len()];
+        for ((k, own), power) in powers.iter_mut().enumerate().zip(&self.powers) {
+            *own = if bands.contains(&k) { *power } else { 0.0 };
+        }
+        Self { powers }
+    }
+}
+
 impl Playing<'_> {
     /// Plays at a rate, with an envelope of blocks of about `block_s`.
     pub(crate) fn heard(&self, rate_hz: f64, block_s: f64) -> Result<Heard, ExchangeError> {

@@ -1,16 +1,16 @@
 //! Formats of neighbouring systems: what others have comes in, what people own can play it.
 //!
-//! **In.** [`recording_of`] reads a file of Meta, Apple or MPEG as a recording, once it is told what the format does not say; the author SDK fits it.
-//! **Out.** [`export`] plays an asset at a condition or along a stroke, reduces it to what an actuator can do (its [`Profile`]), writes it, reads the
-//! file again, plays it through the profile and compares that with the asset's own samples. [`FORMATS`] is the table of formats, of which commands, help
-//! and documents are made.
+//! [`FORMATS`] is the table of formats, of which commands, help and documents are made. **In.** [`import`] reads a file as an asset, if it states
+//! units, speeds and forces, else as a signal to which models are fitted, once it is told what the file does not say. **Out.** [`export`] plays an
+//! asset at a condition or along a stroke, reduces it to what an actuator can do (its [`Profile`]), writes it, reads the file again, plays it
+//! through the profile and compares that with the asset's own samples.
 //!
 //! ```no_run
 //! use htex_exchange::{Export, Format, export};
 //! let asset = htex_play::Asset::open("sandpaper.htex")?;
 //! if let Some(format) = Format::named("ahap") {
 //!     let exported = export(&asset, &Export::new(format))?;
-//!     println!("{} bytes, felt difference {} dB", exported.bytes.len(), exported.lost.difference.felt.error.error_rms_db);
+//!     println!("{} bytes, loses {}", exported.bytes.len(), exported.loses);
 //! }
 //! # Ok::<(), htex_exchange::ExchangeError>(())
 //! ```
@@ -22,6 +22,7 @@ pub mod android;
 mod curve;
 mod error;
 mod export;
+mod format;
 mod formats;
 pub mod haptic;
 pub mod hatt;
@@ -41,17 +42,18 @@ pub use ahap::Ahap;
 pub use android::Android;
 pub use curve::{Point, simplified, value_at};
 pub use error::{ExchangeError, Fault, Missing};
-pub use export::{Coding, Export, Exported, Job, Written, export, profile_names};
-pub use formats::{
-    Context, FORMATS, Format, Reads, Signal, Writes, exported, formats_table, imported,
-    profiles_table,
+pub use export::{Coding, Export, Exported, Job, Played, Written, export, profile_names};
+pub use format::{
+    Format, Held, Naming, ReadAsset, ReadPositions, ReadSignal, Reads, Sampling, Signal,
+    WriteAsset, WriteSignal, Writes,
 };
+pub use formats::{FORMATS, exported, formats_table, imported};
 pub use haptic::Haptic;
 pub use heard::Path;
 pub use hjif::Hjif;
-pub use import::{Fitting, ImportError, Physical, RATE_HZ, imported_asset, recording_of};
+pub use import::{Import, ImportError, Imported, Physical, RATE_HZ, import, recording_of};
 pub use json::MOST_BYTES;
 pub use loss::Loss;
 pub use pattern::{MOST_S, Pattern, Transient, combined, rendered};
-pub use profile::{Kind, PROFILES, Profile, Sourced};
+pub use profile::{Kind, PROFILES, Profile, Sourced, profiles_table};
 pub use stroke::Stroke;

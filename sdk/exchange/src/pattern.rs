@@ -1,7 +1,6 @@
 //! What the formats of envelopes have in common: a level and a frequency over time, and transients.
 
 use crate::curve::{Point, Reader};
-use crate::error::Fault;
 
 /// Longest pattern that is rendered, seconds.
 pub const MOST_S: f64 = 600.0;
@@ -188,20 +187,5 @@ impl Pattern {
         let level = sounds.then(|| at(&self.level)).flatten()?;
         let amplitude = libm::pow(level, f64::from(self.exponent.max(1)));
         Some((amplitude, at(&self.frequency_hz)?))
-    }
-}
-
-/// Most samples of all patterns together.
-const MOST_SAMPLES: f64 = 4e7;
-
-/// Refuses patterns that would take long to render.
-pub(crate) fn check_work(patterns: &[Pattern], rate_hz: f64) -> Result<(), Fault> {
-    let all: f64 = patterns.iter().map(|p| (p.to_s - p.from_s) * rate_hz).sum();
-    match all <= MOST_SAMPLES {
-        true => Ok(()),
-        false => Err(Fault::new(
-            "/Pattern",
-            format!("its events together have more than {MOST_SAMPLES:e} samples at {rate_hz} Hz"),
-        )),
     }
 }

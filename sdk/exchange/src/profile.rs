@@ -135,3 +135,44 @@ impl Profile {
         part.clamp(0.0, 1.0)
     }
 }
+
+/// Returns the table of the profiles in Markdown, for documents: a value that somebody published has the number of its source in the list
+/// below the table.
+#[must_use]
+pub fn profiles_table() -> String {
+    let mut sources: Vec<&str> = Vec::new();
+    let mut text = String::from(
+        "| name | actuator | resonance | Q | range | strongest | latency | points |\n|---|---|---|---|---|---|---|---|\n",
+    );
+    for p in PROFILES.iter() {
+        let mut cell = |value: &'static Sourced, unit: &str| {
+            if value.is_assumed() {
+                return format!("{}{unit}", value.value);
+            }
+            let known = sources.iter().position(|source| *source == value.source);
+            let number = known.unwrap_or_else(|| {
+                sources.push(&value.source);
+                sources.len() - 1
+            });
+            format!("{}{unit} [{}]", value.value, number + 1)
+        };
+        text += &format!(
+            "| `{}` | {} | {} | {} | {} to {} | {} | {} | {} of {} or longer |\n",
+            p.name,
+            p.title,
+            cell(&p.resonance_hz, " Hz"),
+            cell(&p.q, ""),
+            cell(&p.low_hz, " Hz"),
+            cell(&p.high_hz, " Hz"),
+            cell(&p.strongest_m_s2, " m/s²"),
+            cell(&p.latency_ms, " ms"),
+            cell(&p.most_points, ""),
+            cell(&p.shortest_point_ms, " ms"),
+        );
+    }
+    for (index, source) in sources.iter().enumerate() {
+        text += &format!("\n{}. {source}", index + 1);
+    }
+    text.push('\n');
+    text
+}

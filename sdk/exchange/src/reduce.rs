@@ -213,56 +213,42 @@ pub(crate) struct Several {
 
 /// Reduces to a tone in each of some bands. Bands in which the actuator is weak are felt at its resonance.
 pub(crate) fn tones(heard: &Heard, profile: &Profile, count: usize) -> Several {
-    let middles = heard.middles_hz();
-    let own = middles.len().div_ceil(count.max(1)).max(1);
+    let felt = Felt::new(heard.quantity, heard.middles_hz());
+    let mut sums = vec![0.0f64; heard.blocks.len()];
+    let tone = |(hertz, bands): (f64, Vec<usize>)| {
+        let per_unit = threshold(Quantity::Acceleration, hertz) / profile.strongest_at(hertz);
+        let mut amplitude = Vec::with_capacity(heard.blocks.len());
+        for (index, (block, sum)) in heard.blocks.iter().zip(&mut sums).enumerate() {
+            let part = felt.of(&block.only(&bands)).0 * per_unit;
+            *sum += part;
+            amplitude.push(Point::new(heard.middle_s(index), part.min(1.0)));
+        }
+        (hertz, with_ends(amplitude, heard.seconds()))
+    };
+    let groups = groups(&felt.middles_hz, profile, count);
+    let tones: Vec<(f64, Vec<Point>)> = groups.into_iter().map(tone).collect();
+    let limited = sums.iter().filter(|sum| **sum > 1.0).count() as f64 / sums.len().max(1) as f64;
+    Several { tones, limited }
+}
+
+/// Groups bands: each has a frequency, that of the resonance where the actuator is weak at its own.
+fn groups(middles_hz: &[f64], profile: &Profile, count: usize) -> Vec<(f64, Vec<usize>)> {
+    let own = middles_hz.len().div_ceil(count.max(1)).max(1);
     let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
-    let indices: Vec<usize> = (0..middles.len()).collect();
-    for bands in indices.chunks(own) {
-        let mean = bands
-            .iter()
-            .filter_map(|k| middles.get(*k))
-            .map(|hz| libm::log(*hz))
-            .sum::<f64>()
-            / bands.len() as f64;
-        let hertz = libm::exp(mean);
+    for (group, middles) in middles_hz.chunks(own).enumerate() {
+        let logarithms: f64 = middles.iter().map(|hz| libm::log(*hz)).sum();
+        let hertz = libm::exp(logarithms / middles.len() as f64);
         let hertz = match profile.response(hertz) >= LEAST_RESPONSE {
             true => hertz,
             false => profile.resonance_hz.value,
         };
+        let bands = group * own..group * own + middles.len();
         match groups.iter_mut().find(|(other, _)| *other == hertz) {
             Some((_, all)) => all.extend(bands),
-            None => groups.push((hertz, bands.to_vec())),
+            None => groups.push((hertz, bands.collect())),
         }
     }
-    let felt = Felt::new(heard.quantity, middles);
-    let mut sums = vec![0.0f64; heard.blocks.len()];
-    let tones = groups.into_iter().map(|(hertz, bands)| {
-        let amplitude =
-            heard
-                .blocks
-                .iter()
-                .zip(&mut sums)
-                .enumerate()
-                .map(|(index, (block, sum))| {
-                    let own = Block {
-                        powers: block
-                            .powers
-                            .iter()
-                            .enumerate()
-                            .map(|(k, power)| if bands.contains(&k) { *power } else { 0.0 })
-                            .collect(),
-                    };
-                    let needed = felt.of(&own).0 * threshold(Quantity::Acceleration, hertz);
-                    let part = needed / profile.strongest_at(hertz);
-                    *sum += part;
-                    Point::new(heard.middle_s(index), part.min(1.0))
-                });
-        let amplitude = with_ends(amplitude.collect(), heard.seconds());
-        (hertz, amplitude)
-    });
-    let tones: Vec<(f64, Vec<Point>)> = tones.collect();
-    let limited = sums.iter().filter(|sum| **sum > 1.0).count() as f64 / sums.len().max(1) as f64;
-    Several { tones, limited }
+    groups
 }
 
 /// Samples within ±1 that drive the actuator, and the part of them that was too strong.

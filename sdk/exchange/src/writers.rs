@@ -22,17 +22,13 @@ const TOLERANCE: f64 = 1e-3;
 const LEAST_SL_DB: f64 = 10.0;
 
 pub(crate) fn haptic(job: &Job<'_>) -> Result<Written, ExchangeError> {
+    let manifest = job.playing.asset.manifest();
     let metadata = crate::haptic::Metadata {
         editor: concat!("htex ", env!("CARGO_PKG_VERSION")).to_owned(),
-        source: job.playing.asset.manifest().name.clone(),
-        author: job
-            .playing
-            .asset
-            .manifest()
-            .author
-            .clone()
-            .unwrap_or_default(),
-        tags: job.playing.asset.manifest().tags.clone(),
+        source: manifest.name.clone(),
+        author: manifest.author.clone().unwrap_or_default(),
+        tags: manifest.tags.clone(),
+        description: manifest.description.clone().unwrap_or_default(),
         ..Default::default()
     };
     one_envelope(job, |pattern| {
@@ -91,72 +87,78 @@ fn thin(pattern: &mut Pattern) {
 
 pub(crate) fn android(job: &Job<'_>) -> Result<Written, ExchangeError> {
     let point_s = job.point_s(MANY);
-    let longest_s = LONGEST_POINT_MS as f64 / 1e3;
-    if point_s > longest_s {
+    if point_s > LONGEST_POINT_MS as f64 / 1e3 {
         let problem = format!(
             "{} points of at most 1 s are less than {:.1} s; export a shorter part",
             job.profile.most_points.value, job.playing.seconds
         );
-        return Err(ExchangeError::Cannot {
-            format: "android",
-            problem,
-        });
+        return Err(job.cannot(problem));
     }
     let heard = job.playing.heard(RATE_HZ, point_s)?;
-    let (free, fixed) = (
-        one_tone(&heard, job.profile, false),
-        one_tone(&heard, job.profile, true),
-    );
+    let free = one_tone(&heard, job.profile, false);
+    let fixed = one_tone(&heard, job.profile, true);
     let effect = Android::new(
-        as_waveform(&heard, &fixed.pattern),
-        as_envelope(&heard, &free.pattern),
+        as_waveform(job, &heard, &fixed.pattern),
+        as_envelope(job, &heard, &free.pattern),
         as_basic(job, &heard, &free.pattern),
     );
     let json = effect.to_bytes();
     let read = Android::from_bytes(&json).map_err(|fault| job.own(fault))?;
+    read.check_device(job.profile)
+        .map_err(|fault| job.own(fault))?;
     let bytes = match job.export.kotlin {
         true => effect.to_kotlin(&job.playing.asset.manifest().name),
         false => json,
     };
+    let richest =
+        "The loss is that of the envelope of WaveformEnvelopeBuilder, the richest of the three.";
     Ok(Written {
         drive: rendered(&[played_by(read.pattern(), job.profile)], RATE_HZ),
         bytes,
         heard,
         limited: free.limited,
-        notes: vec!["The loss is that of the envelope of WaveformEnvelopeBuilder, the richest of the three.".to_owned()],
+        notes: vec![richest.to_owned()],
     })
 }
 
-/// Durations of blocks in whole milliseconds, which together last as long.
-fn durations_ms(heard: &Heard) -> Vec<u64> {
-    let ends =
-        (1..=heard.blocks.len()).map(|count| (count as f64 * heard.block_s).min(heard.seconds()));
-    let mut before = 0;
-    ends.map(|end_s| {
-        let end = libm::round(end_s * 1e3) as u64;
-        let own = end.saturating_sub(before).max(1);
-        before += own;
-        own
-    })
-    .collect()
+/// Durations of points in whole milliseconds, which together last as long as what is heard. A last block that is shorter than the shortest point
+/// lengthens the one before.
+fn durations_ms(job: &Job<'_>, heard: &Heard) -> Vec<u64> {
+    let end_s = |count: usize| (count as f64 * heard.block_s).min(heard.seconds());
+    let shortest_ms = (libm::ceil(job.profile.shortest_point_ms.value) as u64).max(1);
+    let (mut before, mut durations) = (0, Vec::new());
+    for count in 1..=heard.blocks.len() {
+        let end = libm::round(end_s(count) * 1e3) as u64;
+        let own = end.saturating_sub(before);
+        before = end;
+        match durations.last_mut() {
+            Some(last) if own < shortest_ms => *last += own,
+            _ => durations.push(own.max(1)),
+        }
+    }
+    durations
 }
 
-fn as_waveform(heard: &Heard, fixed: &Pattern) -> Waveform {
-    let level = |block: usize| value_at(&fixed.level, heard.middle_s(block)).unwrap_or(0.0);
+fn as_waveform(job: &Job<'_>, heard: &Heard, fixed: &Pattern) -> Waveform {
+    let timings_ms = durations_ms(job, heard);
+    let mut from_ms = 0;
+    let amplitude = |ms: &u64| {
+        let middle_s = (from_ms as f64 + 0.5 * *ms as f64) / 1e3;
+        from_ms += ms;
+        libm::round(255.0 * value_at(&fixed.level, middle_s).unwrap_or(0.0)) as u8
+    };
     Waveform {
-        timings_ms: durations_ms(heard),
-        amplitudes: (0..heard.blocks.len())
-            .map(|block| libm::round(255.0 * level(block)) as u8)
-            .collect(),
+        amplitudes: timings_ms.iter().map(amplitude).collect(),
+        timings_ms,
         repeat: -1,
     }
 }
 
 /// The points at the ends of blocks, and one that ends it.
-fn points(heard: &Heard, pattern: &Pattern) -> Vec<(f64, f64, u64)> {
+fn points(job: &Job<'_>, heard: &Heard, pattern: &Pattern) -> Vec<(f64, f64, u64)> {
     let mut time_s = 0.0;
     let mut points: Vec<(f64, f64, u64)> = Vec::new();
-    let durations = durations_ms(heard);
+    let durations = durations_ms(job, heard);
     let last = durations.len().saturating_sub(1);
     for (index, ms) in durations.into_iter().enumerate() {
         time_s += ms as f64 / 1e3;
@@ -175,9 +177,9 @@ fn points(heard: &Heard, pattern: &Pattern) -> Vec<(f64, f64, u64)> {
     points
 }
 
-fn as_envelope(heard: &Heard, free: &Pattern) -> WaveformEnvelope {
+fn as_envelope(job: &Job<'_>, heard: &Heard, free: &Pattern) -> WaveformEnvelope {
     let control_points =
-        points(heard, free)
+        points(job, heard, free)
             .into_iter()
             .map(|(amplitude, frequency_hz, duration_ms)| WaveformPoint {
                 amplitude,
@@ -204,13 +206,14 @@ fn as_basic(job: &Job<'_>, heard: &Heard, free: &Pattern) -> BasicEnvelope {
         .map(|step| above_db(range(step), 1.0))
         .fold(1.0, f64::max);
     let rounded = |x: f64| libm::round(x * 1e4) / 1e4;
-    let control_points = points(heard, free)
-        .into_iter()
-        .map(|(amplitude, hertz, duration_ms)| BasicPoint {
-            intensity: rounded((above_db(hertz, amplitude) / most_db).clamp(0.0, 1.0)),
-            sharpness: rounded(profile.part_of(hertz)),
-            duration_ms,
-        });
+    let control_points =
+        points(job, heard, free)
+            .into_iter()
+            .map(|(amplitude, hertz, duration_ms)| BasicPoint {
+                intensity: rounded((above_db(hertz, amplitude) / most_db).clamp(0.0, 1.0)),
+                sharpness: rounded(profile.part_of(hertz)),
+                duration_ms,
+            });
     BasicEnvelope {
         initial_sharpness: rounded(
             profile.part_of(free.frequency_hz.first().map_or(1.0, |p| p.value)),
@@ -240,30 +243,9 @@ fn space(job: &Job<'_>) -> Space {
 pub(crate) fn hjif(job: &Job<'_>) -> Result<Written, ExchangeError> {
     job.check_samples()?;
     let space = space(job);
-    let name = &job.playing.asset.manifest().name;
-    let (file, heard, limited) = match job.export.coding {
-        Coding::Vectorial => {
-            let heard = job.playing.heard(RATE_HZ, job.point_s(MANY))?;
-            let several = tones(&heard, job.profile, TONES);
-            let tone = |(hertz, amplitude): (f64, Vec<Point>)| Tone {
-                hertz,
-                amplitude: simplified(&amplitude, TOLERANCE)
-                    .iter()
-                    .map(|p| Point::new(p.time_s, libm::round(p.value * 1e4) / 1e4))
-                    .collect(),
-            };
-            let all: Vec<Tone> = several.tones.into_iter().map(tone).collect();
-            (
-                vectorial(&all, job.profile, space, name),
-                heard,
-                several.limited,
-            )
-        }
-        Coding::Wavelet => {
-            let heard = job.playing.heard(space.rate_hz(), job.point_s(MANY))?;
-            let (samples, limited) = drive(&heard, job.profile);
-            (waveform(&samples, job.profile, space, name), heard, limited)
-        }
+    let (file, heard, limited) = match job.export.coding.unwrap_or_default() {
+        Coding::Vectorial => vectorial_file(job, space)?,
+        Coding::Wavelet => wavelet_file(job, space)?,
     };
     let bytes = file.to_bytes();
     let read = Hjif::from_bytes(&bytes).map_err(|fault| job.own(fault))?;
@@ -271,24 +253,61 @@ pub(crate) fn hjif(job: &Job<'_>) -> Result<Written, ExchangeError> {
     let drive = read
         .rendered(heard.rate_hz, speed)
         .map_err(|fault| job.own(fault))?;
-    let notes = match space.speed_mm_s {
-        Some(speed) => vec![format!(
+    let over_way = |speed: f64| {
+        format!(
             "It lies over the way of the finger, and is felt as the asset at {speed} mm/s alone."
-        )],
-        None => Vec::new(),
+        )
     };
     Ok(Written {
         bytes,
         heard,
         drive,
         limited,
-        notes,
+        notes: space.speed_mm_s.map(over_way).into_iter().collect(),
     })
+}
+
+type Coded = (Hjif, Heard, f64);
+
+fn vectorial_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
+    let heard = job.playing.heard(RATE_HZ, job.point_s(MANY))?;
+    let several = tones(&heard, job.profile, TONES);
+    let rounded = |p: &Point| Point::new(p.time_s, libm::round(p.value * 1e4) / 1e4);
+    let tone = |(hertz, amplitude): (f64, Vec<Point>)| Tone {
+        hertz,
+        amplitude: simplified(&amplitude, TOLERANCE)
+            .iter()
+            .map(rounded)
+            .collect(),
+    };
+    let all: Vec<Tone> = several.tones.into_iter().map(tone).collect();
+    let name = &job.playing.asset.manifest().name;
+    Ok((
+        vectorial(&all, job.profile, space, name),
+        heard,
+        several.limited,
+    ))
+}
+
+fn wavelet_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
+    let least_hz = 2.0 * job.playing.asset.band().high_hz;
+    if space.rate_hz() < least_hz {
+        let problem = format!(
+            "at {} mm/s its smallest steps of way are {:.0} samples in a second, and the texture needs {least_hz:.0}; choose a higher speed, or vectorial coding",
+            space.speed_mm_s.unwrap_or_default(),
+            space.rate_hz()
+        );
+        return Err(job.cannot(problem));
+    }
+    let heard = job.playing.heard(space.rate_hz(), job.point_s(MANY))?;
+    let (samples, limited) = drive(&heard, job.profile);
+    let name = &job.playing.asset.manifest().name;
+    Ok((waveform(&samples, job.profile, space, name), heard, limited))
 }
 
 pub(crate) fn wav(job: &Job<'_>) -> Result<Written, ExchangeError> {
     job.check_samples()?;
-    let rate_hz = libm::round(job.export.rate_hz);
+    let rate_hz = libm::round(job.export.rate_hz());
     let heard = job.playing.heard(rate_hz, job.point_s(MANY))?;
     let (samples, limited) = drive(&heard, job.profile);
     let bytes = crate::wav::to_bytes(&samples, rate_hz as u32).map_err(|fault| job.own(fault))?;

@@ -1,6 +1,8 @@
 //! The texture formats of others.
 
+use htex_exchange::haptic::Metadata;
 use htex_exchange::hatt::{Imported, asset, read};
+use htex_exchange::{Ahap, Haptic, Hjif, PROFILES, Pattern, Physical, combined, recording_of};
 
 use crate::promise::sentence;
 
@@ -32,6 +34,79 @@ pub fn hatt(input: &[u8]) -> bool {
         }
     }
     true
+}
+
+/// Full scale of what is imported.
+const FULL_SCALE: f64 = 0.25;
+
+/// A file of Meta: what is read is a recording within its full scale, and is the same after it was written.
+pub fn haptic(input: &[u8]) -> bool {
+    let read = Haptic::from_bytes(input);
+    if let Ok(file) = &read {
+        let pattern = file.pattern(&PROFILES[0]);
+        let metadata = Metadata::default();
+        let again = Haptic::of(&pattern, &PROFILES[0], metadata).to_bytes();
+        let again = Haptic::from_bytes(&again).expect("what was written is read");
+        same_end(&pattern, &again.pattern(&PROFILES[0]));
+    }
+    recorded("fuzzed.haptic", input, read.is_ok())
+}
+
+/// A file of Apple: as [`haptic`].
+pub fn ahap(input: &[u8]) -> bool {
+    let read = Ahap::from_bytes(input);
+    if let Ok(file) = &read {
+        let patterns = file.patterns(&PROFILES[0]);
+        // Combining many patterns compares each with each.
+        if patterns.len() < 100 {
+            let pattern = combined(&patterns);
+            let again = Ahap::of(&pattern, &PROFILES[0]).to_bytes();
+            let again = Ahap::from_bytes(&again).expect("what was written is read");
+            same_end(&pattern, &combined(&again.patterns(&PROFILES[0])));
+        }
+    }
+    recorded("fuzzed.ahap", input, read.is_ok())
+}
+
+/// A file of MPEG: as [`haptic`].
+pub fn hjif(input: &[u8]) -> bool {
+    let read = Hjif::from_bytes(input);
+    if let Ok(file) = &read {
+        let again = Hjif::from_bytes(&file.to_bytes()).expect("what was written is read");
+        assert_eq!(again.left_out(), file.left_out());
+    }
+    recorded("fuzzed.hjif", input, read.is_ok())
+}
+
+fn same_end(before: &Pattern, after: &Pattern) {
+    if before.to_s > before.from_s {
+        assert!(
+            (before.to_s - after.to_s).abs() < 1e-6,
+            "{before:?} {after:?}"
+        );
+    }
+}
+
+/// Reads a file as a recording; one that no reader takes is none.
+fn recorded(name: &str, input: &[u8], is_read: bool) -> bool {
+    let physical = Physical {
+        full_scale: Some(FULL_SCALE),
+        speed_mm_s: Some(80.0),
+        force_n: Some(0.4),
+        ..Physical::default()
+    };
+    match recording_of(name, input, &physical, None) {
+        Ok(recording) => {
+            assert!(is_read, "{name} is read and is not");
+            let samples = recording.axes.iter().flatten();
+            assert!(samples.into_iter().all(|x| x.abs() <= FULL_SCALE));
+            for warning in &recording.warnings {
+                sentence(warning);
+            }
+            true
+        }
+        Err(error) => refused(&error),
+    }
 }
 
 fn refused(error: &impl std::fmt::Display) -> bool {

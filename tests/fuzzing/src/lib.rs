@@ -42,7 +42,7 @@ pub use capi::c_calls;
 pub use compile::compile_limits;
 pub use container::{container, with_checksums};
 pub use descriptor::descriptor;
-pub use exchange::hatt;
+pub use exchange::{ahap, haptic, hatt, hjif};
 pub use lab::{arrow, column_map, flac, hdf5, mat, parquet, tdms};
 pub use library::library;
 pub use manifest::manifest;
@@ -103,6 +103,9 @@ pub const TARGETS: &[Target] = &[
     target("recipe_folder", recipe_folder),
     target("take_part", take_part),
     target("hatt", hatt),
+    target("haptic", haptic),
+    target("ahap", ahap),
+    target("hjif", hjif),
 ];
 
 const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::error::Fault;
-use crate::formats::{Context, Signal};
+use crate::format::{Sampling, Signal};
 use crate::json;
 use number::{whole, whole_or_none};
 
@@ -282,6 +282,11 @@ impl Hjif {
         if channels > 1 {
             left_out.push(format!("The first of {channels} channels is read."));
         }
+        let bent = |band: &Band| band.curve_type.as_deref().is_some_and(|c| c != "Linear");
+        if (self.chosen()).is_some_and(|chosen| chosen.channel.bands.iter().any(bent)) {
+            left_out
+                .push("Its curves are read as straight lines between their keyframes.".to_owned());
+        }
         left_out
     }
 }
@@ -301,10 +306,10 @@ impl Chosen<'_> {
 }
 
 /// Reads a file as a signal.
-pub(crate) fn signal(bytes: &[u8], context: &Context<'_>) -> Result<Signal, Fault> {
+pub(crate) fn signal(bytes: &[u8], sampling: Sampling) -> Result<Signal, Fault> {
     let hjif = Hjif::from_bytes(bytes)?;
     Ok(Signal {
-        samples: hjif.rendered(context.rate_hz, context.speed_mm_s)?,
+        samples: hjif.rendered(sampling.rate_hz, sampling.speed_mm_s)?,
         left_out: hjif.left_out(),
     })
 }

@@ -1,5 +1,7 @@
 //! What the bands of a channel sound like.
 
+use std::collections::BTreeMap;
+
 use super::{Band, BandType, BaseSignal, Chosen, Effect, EffectType, Hjif, Keyframe, synthesised};
 use crate::curve::{Point, Reader};
 use crate::error::Fault;
@@ -7,13 +9,16 @@ use crate::pattern::MOST_S;
 
 /// Length of a transient, seconds: two periods of a sine (source/Types/include/Band.h).
 const TRANSIENT_S: f64 = 0.022;
-/// Most samples of all effects together.
-const MOST_SAMPLES: f64 = 4e7;
+/// Most samples and keyframes of all effects together, those of a referenced effect counted at each reference.
+const MOST_WORK: f64 = 4e7;
+
+/// The effects of a library that bands refer to.
+type Library<'a> = BTreeMap<i64, &'a Effect>;
 
 /// A band at a rate, in seconds.
 struct Timed<'a> {
     band: &'a Band,
-    library: &'a [Effect],
+    library: &'a Library<'a>,
     /// Seconds of a tick.
     tick_s: f64,
     /// Hertz of a unit of frequency.
@@ -36,9 +41,11 @@ impl Hjif {
         } else {
             1.0
         };
+        let library = chosen.perception.effect_library.iter();
+        let library: Library<'_> = library.filter_map(|e| Some((e.id?, e))).collect();
         let bands = chosen.channel.bands.iter().map(|band| Timed {
             band,
-            library: &chosen.perception.effect_library,
+            library: &library,
             tick_s: chosen.tick(self.timescale) / speed,
             per_s: speed,
             rate_hz,
@@ -58,26 +65,26 @@ impl Hjif {
 
 /// Samples to the end of the last effect.
 fn length(bands: &[Timed<'_>], chosen: &Chosen<'_>, rate_hz: f64) -> Result<usize, Fault> {
-    let (mut end_s, mut all) = (0.0f64, 0.0);
+    let (mut end_s, mut work) = (0.0f64, 0.0);
     for (index, band) in bands.iter().enumerate() {
+        let at = || format!("{}/bands/{index}", chosen.pointer);
         for effect in band.effects() {
             let (from_s, to_s) = (band.start_s(&effect), band.end_s(&effect));
+            if to_s > MOST_S {
+                let problem = format!("it ends at {to_s:.0} s, and {MOST_S} s are read at most");
+                return Err(Fault::new(at(), problem));
+            }
             end_s = end_s.max(to_s);
-            all += (to_s - from_s) * rate_hz;
-            let is_long = to_s > MOST_S;
-            if is_long || all > MOST_SAMPLES {
-                let place = format!("{}/bands/{index}", chosen.pointer);
-                let problem = match is_long {
-                    true => format!("it ends at {to_s:.0} s, and {MOST_S} s are read at most"),
-                    false => format!(
-                        "its effects have more than {MOST_SAMPLES:e} samples at {rate_hz} Hz; choose a lower rate"
-                    ),
-                };
-                return Err(Fault::new(place, problem));
+            work += (to_s - from_s) * rate_hz + effect.effect.keyframes.len() as f64;
+            if work > MOST_WORK {
+                let problem = format!(
+                    "its effects have more than {MOST_WORK:e} samples and keyframes at {rate_hz} Hz; leave some out"
+                );
+                return Err(Fault::new(at(), problem));
             }
         }
     }
-    Ok(libm::ceil(end_s * rate_hz) as usize)
+    Ok(first_from(end_s, rate_hz))
 }
 
 /// An effect at a position: its own, or that of a reference to it.
@@ -92,7 +99,7 @@ impl<'a> Timed<'a> {
         self.band.effects.iter().filter_map(move |effect| {
             let position = effect.position;
             let effect = match effect.effect_type {
-                EffectType::Reference => library.iter().find(|known| known.id == effect.id)?,
+                EffectType::Reference => library.get(&effect.id?).copied()?,
                 _ => effect,
             };
             Some(Placed { effect, position })
@@ -129,7 +136,7 @@ impl<'a> Timed<'a> {
     fn add_to(&self, samples: &mut [f64]) {
         for placed in self.effects() {
             let clock = Clock::new(self.start_s(&placed), self.rate_hz);
-            let end = libm::ceil(self.end_s(&placed) * self.rate_hz).max(0.0) as usize;
+            let end = first_from(self.end_s(&placed), self.rate_hz);
             let end = samples.len().min(end);
             let Some(own) = samples.get_mut(clock.first.min(end)..end) else {
                 continue;
@@ -212,6 +219,11 @@ impl<'a> Timed<'a> {
     }
 }
 
+/// The first sample from a time on; one that is off by rounding is at it.
+fn first_from(time_s: f64, rate_hz: f64) -> usize {
+    libm::ceil(time_s * rate_hz - 1e-6).max(0.0) as usize
+}
+
 /// The samples of an effect in time.
 #[derive(Clone, Copy)]
 struct Clock {
@@ -223,7 +235,7 @@ struct Clock {
 
 impl Clock {
     fn new(from_s: f64, rate_hz: f64) -> Self {
-        let first = libm::ceil(from_s * rate_hz).max(0.0) as usize;
+        let first = first_from(from_s, rate_hz);
         Self {
             from_s,
             rate_hz,
@@ -238,8 +250,7 @@ impl Clock {
 
     /// The first of its samples from a time after its start on.
     fn index(self, into_s: f64) -> usize {
-        let sample = libm::ceil((self.from_s + into_s) * self.rate_hz).max(0.0) as usize;
-        sample.saturating_sub(self.first)
+        first_from(self.from_s + into_s, self.rate_hz).saturating_sub(self.first)
     }
 }
 

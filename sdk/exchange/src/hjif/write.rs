@@ -56,7 +56,8 @@ impl Space {
         let most = BLOCK as f64 * f64::from(self.timescale()) * self.per_s() / LEAST_RATE_HZ;
         match self.speed_mm_s {
             None => 200,
-            Some(_) => 1 << libm::floor(libm::log2(most.max(1.0))) as i64,
+            // The samples in a metre of 2^13 ticks are the last that are whole.
+            Some(_) => 1 << libm::floor(libm::log2(most.max(1.0))).min(13.0) as i64,
         }
     }
 

@@ -6,13 +6,12 @@ use htex_dsp::band_limit::PassedPower;
 use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::line_spectrum::coefficients_of_cosines;
 use htex_dsp::linear_prediction::{ar_magnitude, step_down_in_place};
-use htex_dsp::trig::cos;
+use htex_dsp::trig::half_turn_cosines;
 use htex_model::{Error, Values};
 
 use crate::{MAX_ORDER, MODEL_RATE, POLE_LINES, ZERO_LINES};
 
 /// `(1 - Σ B_i z⁻ⁱ) / (1 - Σ A_i z⁻ⁱ)`.
-#[derive(Clone, Copy)]
 pub(crate) struct Filter {
     poles: Polynomial,
     zeros: Polynomial,
@@ -22,7 +21,6 @@ pub(crate) struct Filter {
 }
 
 /// `1 - Σ A_i z⁻ⁱ`, and the cosines of its lines.
-#[derive(Clone, Copy)]
 struct Polynomial {
     coefficients: [f64; MAX_ORDER],
     cosines: [f64; MAX_ORDER],
@@ -30,18 +28,23 @@ struct Polynomial {
 }
 
 impl Polynomial {
-    fn of_lines(lines: &[f64]) -> Option<Self> {
-        let mut polynomial = Self {
-            coefficients: [0.0; MAX_ORDER],
-            cosines: [0.0; MAX_ORDER],
-            order: lines.len(),
+    const ONE: Self = Self {
+        coefficients: [0.0; MAX_ORDER],
+        cosines: [0.0; MAX_ORDER],
+        order: 0,
+    };
+
+    /// Becomes that of some lines; false if there are too many.
+    fn set(&mut self, lines: &[f64]) -> bool {
+        let order = lines.len();
+        let Some(cosines) = self.cosines.get_mut(..order) else {
+            return false;
         };
-        let cosines = polynomial.cosines.get_mut(..lines.len())?;
-        for (cosine, line) in cosines.iter_mut().zip(lines) {
-            *cosine = cos(*line);
-        }
-        coefficients_of_cosines(cosines, &mut polynomial.coefficients[..lines.len()]);
-        Some(polynomial)
+        half_turn_cosines(lines, cosines);
+        coefficients_of_cosines(cosines, &mut self.coefficients[..order]);
+        self.coefficients[order..].fill(0.0);
+        self.order = order;
+        true
     }
 
     fn coefficients(&self) -> &[f64] {
@@ -54,12 +57,35 @@ impl Polynomial {
 }
 
 impl Filter {
+    /// The filter that changes nothing, at a rate.
+    pub(crate) fn one(rate_hz: f64) -> Self {
+        Self {
+            poles: Polynomial::ONE,
+            zeros: Polynomial::ONE,
+            reflection: [0.0; MAX_ORDER],
+            rate_hz,
+        }
+    }
+
     pub(crate) fn new(parameters: &Values<'_>) -> Result<Self, Error> {
-        let [poles, zeros] = [POLE_LINES, ZERO_LINES].map(|field| parameters.list(field));
-        Self::of_lines(poles, zeros, parameters.scalar(MODEL_RATE))
+        let mut filter = Self::one(parameters.scalar(MODEL_RATE));
+        filter.set(parameters)?;
+        Ok(filter)
     }
 
     pub(crate) fn of_lines(poles: &[f64], zeros: &[f64], rate_hz: f64) -> Result<Self, Error> {
+        let mut filter = Self::one(rate_hz);
+        filter.set_lines(poles, zeros)?;
+        Ok(filter)
+    }
+
+    /// Becomes the filter of some parameters, of the same rate. Copies no filter: voices do this for each motion. After an error it is
+    /// none.
+    pub(crate) fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        self.set_lines(parameters.list(POLE_LINES), parameters.list(ZERO_LINES))
+    }
+
+    fn set_lines(&mut self, poles: &[f64], zeros: &[f64]) -> Result<(), Error> {
         let is_inside = poles.iter().all(|w| *w > 0.0 && *w < PI);
         if !is_inside || poles.windows(2).any(|pair| pair[0] >= pair[1]) {
             return Err(unordered());
@@ -67,18 +93,19 @@ impl Filter {
         if zeros.windows(2).any(|pair| pair[0] > pair[1]) {
             return Err(descending());
         }
-        let poles = Polynomial::of_lines(poles).ok_or_else(unordered)?;
-        let zeros = Polynomial::of_lines(zeros).ok_or_else(descending)?;
-        let mut reflection = poles.coefficients;
-        if !step_down_in_place(&mut reflection[..poles.order]) {
-            return Err(unstable());
+        if !self.poles.set(poles) {
+            return Err(unordered());
         }
-        Ok(Self {
-            poles,
-            zeros,
-            reflection,
-            rate_hz,
-        })
+        if !self.zeros.set(zeros) {
+            return Err(descending());
+        }
+        let (own, beyond) = self.reflection.split_at_mut(poles.len());
+        own.copy_from_slice(self.poles.coefficients());
+        beyond.fill(0.0);
+        match step_down_in_place(own) {
+            true => Ok(()),
+            false => Err(unstable()),
+        }
     }
 
     /// `A_1` to `A_p`.
@@ -89,6 +116,11 @@ impl Filter {
     /// `B_1` to `B_q`.
     pub(crate) fn zeros(&self) -> &[f64] {
         self.zeros.coefficients()
+    }
+
+    /// As [`Self::zeros`], and zeros beyond their order.
+    pub(crate) fn zeros_of_any_order(&self) -> &[f64; MAX_ORDER] {
+        &self.zeros.coefficients
     }
 
     /// Reflection coefficients of the denominator, and zeros beyond its order.

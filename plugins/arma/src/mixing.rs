@@ -41,26 +41,26 @@ fn mean(
     mixed: &mut [f64],
 ) -> Result<(), Error> {
     let (mut low, mut high) = ([f64::INFINITY; MAX_ORDER], [0.0f64; MAX_ORDER]);
-    let mut lines = [0.0; MAX_ORDER];
-    let lines = &mut lines[..mixed.len()];
+    let mut room = [0.0; MAX_ORDER];
     for (set, &weight) in sets.iter().zip(weights) {
-        padded(set.list(field), field, lines)?;
-        for (i, (sum, &line)) in mixed.iter_mut().zip(&*lines).enumerate() {
+        let lines = padded(set.list(field), field, &mut room[..mixed.len()])?;
+        let ends = low.iter_mut().zip(&mut high);
+        for ((sum, (low, high)), &line) in mixed.iter_mut().zip(ends).zip(lines) {
             *sum += weight * line;
-            (low[i], high[i]) = (low[i].min(line), high[i].max(line));
+            *low = if line < *low { line } else { *low };
+            *high = if line > *high { line } else { *high };
         }
     }
-    for (i, line) in mixed.iter_mut().enumerate() {
-        *line = line.max(low[i]).min(high[i]);
+    for (line, (low, high)) in mixed.iter_mut().zip(low.iter().zip(&high)) {
+        *line = line.max(*low).min(*high);
     }
     Ok(())
 }
 
-/// Writes the lines of a polynomial, padded with zero coefficients to the length of `lines`.
-fn padded(own: &[f64], field: usize, lines: &mut [f64]) -> Result<(), Error> {
-    if own.len() == lines.len() {
-        lines.copy_from_slice(own);
-        return Ok(());
+/// The lines of a polynomial, padded with zero coefficients to the length of `room`.
+fn padded<'a>(own: &'a [f64], field: usize, room: &'a mut [f64]) -> Result<&'a [f64], Error> {
+    if own.len() == room.len() {
+        return Ok(own);
     }
     let convert = match field {
         POLE_LINES => coefficients_of_lines,
@@ -74,10 +74,9 @@ fn padded(own: &[f64], field: usize, lines: &mut [f64]) -> Result<(), Error> {
             "a filter with a pole or zero on the unit circle cannot be mixed with one of another order",
         ));
     }
-    let order = lines.len();
-    let found = lines_of_reflection(&reflection[..order]);
-    for (line, found) in lines.iter_mut().zip(found) {
+    let found = lines_of_reflection(&reflection[..room.len()]);
+    for (line, found) in room.iter_mut().zip(found) {
         *line = found;
     }
-    Ok(())
+    Ok(room)
 }

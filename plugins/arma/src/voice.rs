@@ -3,6 +3,7 @@
 //! A change of parameters moves the coefficients of the zeros and the reflection coefficients of the poles in a straight line, so that
 //! each filter on the way is stable.
 
+use alloc::boxed::Box;
 use alloc::sync::Arc;
 
 use htex_dsp::all_pole::{AllPole, GROUP, Group};
@@ -35,8 +36,10 @@ pub struct ArmaVoice {
     poles: AllPole,
     edges: Pipeline,
     gain: f64,
-    target: Target,
-    step: Target,
+    target: Box<Target>,
+    /// What becomes the target with the next change, if it can.
+    spare: Box<Target>,
+    step: Step,
     ramp_len: u32,
     ramp_left: u32,
     /// Unused samples of the last group.
@@ -44,9 +47,14 @@ pub struct ArmaVoice {
     taken: usize,
 }
 
-/// Coefficients of the zeros, reflection coefficients of the poles, and the gain of the noise.
-#[derive(Clone, Copy)]
+/// A filter, and the gain of the noise before it.
 struct Target {
+    filter: Filter,
+    gain: f64,
+}
+
+/// What is added for each sample of a change to the coefficients of the zeros, the reflection coefficients of the poles, and the gain.
+struct Step {
     zeros: [f64; MAX_ORDER],
     reflection: [f64; MAX_ORDER],
     gain: f64,
@@ -72,7 +80,7 @@ impl ArmaVoice {
         // A filter without energy in the band may have some just outside it.
         filter.level(band)?;
         let passed = PassedPower::shared(band, rate_hz);
-        let target = Target::new(&filter, rate_hz, &passed)?;
+        let gain = gain(&filter, rate_hz, &passed)?;
         let mut voice = Self {
             rate_hz,
             passed,
@@ -80,9 +88,17 @@ impl ArmaVoice {
             zeros: AllZero::new(filter.zeros()).ok_or_else(unstable)?,
             poles: AllPole::with_max_order(filter.poles(), MAX_ORDER).ok_or_else(unstable)?,
             edges: band_limit(band, rate_hz),
-            gain: target.gain,
-            target,
-            step: target,
+            gain,
+            target: Box::new(Target { filter, gain }),
+            spare: Box::new(Target {
+                filter: Filter::one(rate_hz),
+                gain,
+            }),
+            step: Step {
+                zeros: [0.0; MAX_ORDER],
+                reflection: [0.0; MAX_ORDER],
+                gain: 0.0,
+            },
             ramp_len: libm::ceil(RAMP_S * rate_hz).max(1.0) as u32,
             ramp_left: 0,
             ready: [0.0; GROUP],
@@ -144,16 +160,23 @@ impl ArmaVoice {
     /// Advances the ramp by one sample.
     fn ramp(&mut self) {
         self.ramp_left -= 1;
-        let is_done = self.ramp_left == 0;
-        let moved = |now: f64, target: f64, step: f64| if is_done { target } else { now + step };
-        for (i, zero) in self.zeros.coefficients_mut().iter_mut().enumerate() {
-            *zero = moved(*zero, self.target.zeros[i], self.step.zeros[i]);
+        let (zeros, reflection) = (self.zeros.coefficients_mut(), self.poles.reflection_mut());
+        if self.ramp_left == 0 {
+            let Target { filter, gain } = &*self.target;
+            let orders = [zeros.len(), reflection.len()];
+            zeros.copy_from_slice(&filter.zeros_of_any_order()[..orders[0]]);
+            reflection.copy_from_slice(&filter.reflection()[..orders[1]]);
+            self.gain = *gain;
+            return;
         }
-        for (i, k) in self.poles.reflection_mut().iter_mut().enumerate() {
-            *k = moved(*k, self.target.reflection[i], self.step.reflection[i]);
-        }
-        self.gain = moved(self.gain, self.target.gain, self.step.gain);
+        add(zeros, &self.step.zeros);
+        add(reflection, &self.step.reflection);
+        self.gain += self.step.gain;
     }
+}
+
+fn add(to: &mut [f64], step: &[f64; MAX_ORDER]) {
+    to.iter_mut().zip(step).for_each(|(x, step)| *x += step);
 }
 
 /// A group of output samples.
@@ -184,34 +207,34 @@ impl Voice for ArmaVoice {
                 " Hz accepts filters of this rate only",
             ]));
         }
-        let filter = Filter::new(parameters)?;
-        self.target = Target::new(&filter, self.rate_hz, &self.passed)?;
+        let next = &mut *self.spare;
+        next.filter.set(parameters)?;
+        next.gain = gain(&next.filter, self.rate_hz, &self.passed)?;
+        core::mem::swap(&mut self.target, &mut self.spare);
+        let Target { filter, gain } = &*self.target;
         self.zeros.raise_order(filter.zeros().len());
         self.poles.raise_order(filter.poles().len());
         self.ramp_left = self.ramp_len;
         let scale = 1.0 / f64::from(self.ramp_len);
-        self.step.gain = (self.target.gain - self.gain) * scale;
-        for (i, zero) in self.zeros.coefficients_mut().iter().enumerate() {
-            self.step.zeros[i] = (self.target.zeros[i] - zero) * scale;
-        }
-        for (i, k) in self.poles.reflection_mut().iter().enumerate() {
-            self.step.reflection[i] = (self.target.reflection[i] - k) * scale;
-        }
+        self.step.gain = (gain - self.gain) * scale;
+        let zeros = (&*self.zeros.coefficients_mut(), filter.zeros_of_any_order());
+        spread(&mut self.step.zeros, zeros, scale);
+        let reflection = (&*self.poles.reflection_mut(), filter.reflection());
+        spread(&mut self.step.reflection, reflection, scale);
         Ok(())
     }
 }
 
-impl Target {
-    fn new(filter: &Filter, rate_hz: f64, passed: &PassedPower) -> Result<Self, Error> {
-        let mut zeros = [0.0; MAX_ORDER];
-        zeros[..filter.zeros().len()].copy_from_slice(filter.zeros());
-        // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
-        let level = filter.passed_level(passed)?;
-        let gain = htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level;
-        Ok(Self {
-            zeros,
-            reflection: *filter.reflection(),
-            gain,
-        })
+/// Writes the steps from the present coefficients to others.
+fn spread(step: &mut [f64; MAX_ORDER], (now, to): (&[f64], &[f64; MAX_ORDER]), scale: f64) {
+    for ((step, now), to) in step.iter_mut().zip(now).zip(to) {
+        *step = (to - now) * scale;
     }
+}
+
+/// The gain of the noise before a filter that makes samples of unit RMS.
+fn gain(filter: &Filter, rate_hz: f64, passed: &PassedPower) -> Result<f64, Error> {
+    // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
+    let level = filter.passed_level(passed)?;
+    Ok(htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level)
 }

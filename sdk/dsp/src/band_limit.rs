@@ -12,7 +12,7 @@ use crate::chebyshev::chebyshev;
 use crate::grid::{Band, GRID_HZ, read_part};
 use crate::pipeline::Pipeline;
 use crate::shared::Shared;
-use crate::wide::{Work, wide};
+use crate::wide::{Work, very_wide, wide};
 
 /// 80 dB a decade, as steep at the edge as a Butterworth filter of twice the order: half a bin outside the
 /// band almost no power passes.
@@ -143,23 +143,28 @@ impl PassedPower {
     /// Does not allocate.
     pub fn rational_level_rms(&self, zeros: &[f64], poles: &[f64]) -> f64 {
         let mut power = 0.0;
-        wide(RationalPower {
+        let work = RationalPower {
             turns: &self.turns,
             zeros,
             poles,
             power: &mut power,
-        });
+        };
+        if let Err(work) = very_wide(work) {
+            wide(work);
+        }
         crate::root::sqrt(power / 3.0)
     }
 }
 
 impl Turns {
+    const NONE: Self = Self {
+        cos: [1.0; TURNS],
+        sin: [0.0; TURNS],
+        part: [0.0; TURNS],
+    };
+
     fn of(points: &[(f64, f64)], rate_hz: f64) -> Self {
-        let mut turns = Self {
-            cos: [1.0; TURNS],
-            sin: [0.0; TURNS],
-            part: [0.0; TURNS],
-        };
+        let mut turns = Self::NONE;
         for (i, (hz, part)) in points.iter().enumerate() {
             let angle = core::f64::consts::TAU * hz / rate_hz;
             (turns.sin[i], turns.cos[i]) = crate::trig::sincos(angle);
@@ -220,39 +225,43 @@ impl Work for RationalPower<'_> {
                 sums[i] += if turns.part[i] > 0.0 { heard } else { 0.0 };
             }
         }
-        *self.power = sums.iter().sum();
+        // A factor for each pair of lines, exact as a power of two.
+        let [above, below] = [self.zeros, self.poles].map(|lines| lines.len() / 2);
+        let power: f64 = sums.iter().sum();
+        let power = (0..above).fold(power, |power, _| 4.0 * power);
+        *self.power = (0..below).fold(power, |power, _| 0.25 * power);
     }
 }
 
-/// The squared absolute values of a polynomial at a group of points, from the cosines of its line spectral frequencies: those of the
-/// symmetric and the antisymmetric polynomial, which are a quarter turn apart, over four.
+/// The squared absolute values of a polynomial at a group of points, over 4 for each pair of lines, from the cosines of its line
+/// spectral frequencies: those of the symmetric and the antisymmetric polynomial, which are a quarter turn apart.
 #[inline(always)]
 fn lines_power(turns: &Turns, cosines: &[f64]) -> [f64; TURNS] {
     let (mut symmetric, mut antisymmetric) = ([1.0; TURNS], [1.0; TURNS]);
     let (pairs, last) = cosines.as_chunks();
     for [a, b] in pairs {
         for i in 0..TURNS {
-            let (x, y) = (2.0 * (turns.cos[i] - a), 2.0 * (turns.cos[i] - b));
-            symmetric[i] *= x * x;
-            antisymmetric[i] *= y * y;
+            symmetric[i] *= turns.cos[i] - a;
+            antisymmetric[i] *= turns.cos[i] - b;
         }
     }
     for a in last {
         for i in 0..TURNS {
-            let x = 2.0 * (turns.cos[i] - a);
-            symmetric[i] *= x * x;
+            symmetric[i] *= turns.cos[i] - a;
         }
     }
     let mut power = [0.0; TURNS];
     for i in 0..TURNS {
         let sine = turns.sin[i] * turns.sin[i];
+        let s = symmetric[i] * symmetric[i];
+        let a = antisymmetric[i] * antisymmetric[i];
         power[i] = match last.is_empty() {
             // (1 - cos) = sin² / (1 + cos), which stays precise at low frequencies.
             true => {
                 let above = 1.0 + turns.cos[i];
-                0.5 * (symmetric[i] * above + antisymmetric[i] * (sine / above))
+                0.5 * (s * above + a * (sine / above))
             }
-            false => 0.25 * symmetric[i] + antisymmetric[i] * sine,
+            false => s + a * sine,
         };
     }
     power

@@ -114,20 +114,12 @@ pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
 /// As [`zeros_of_lines`], from the cosines of at most [`MOST_LINES`] lines.
 ///
 /// The symmetric and the antisymmetric polynomial are a fixed factor and the quadratics of every second line, whose product is a
-/// palindrome: half of it is computed.
+/// palindrome: half of it is computed, of both together.
 pub fn coefficients_of_cosines(cosines: &[f64], coefficients: &mut [f64]) {
-    let [symmetric, antisymmetric] = [0, 1].map(|first| palindrome(cosines, first));
-    // (1 + z⁻¹) and (1 - z⁻¹), or 1 and (1 - z⁻²).
-    let (back, added) = match cosines.len().is_multiple_of(2) {
-        true => (1, 1.0),
-        false => (2, 0.0),
-    };
-    let below = |half: &Half, i: usize| i.checked_sub(back).map_or(0.0, |i| half.at(i));
-    for (i, a) in coefficients.iter_mut().enumerate() {
-        let i = i + 1;
-        let p = symmetric.at(i) + added * below(&symmetric, i);
-        let q = antisymmetric.at(i) - below(&antisymmetric, i);
-        *a = -0.5 * (p + q);
+    // Memory for few lines is cleared in less time than for many.
+    match cosines.len() {
+        0..=24 => Halves::<14>::of(cosines).write(coefficients),
+        _ => Halves::<{ MOST_FACTORS + 2 }>::of(cosines).write(coefficients),
     }
 }
 
@@ -136,40 +128,71 @@ pub const MOST_LINES: usize = 128;
 /// Quadratics of the symmetric polynomial at most.
 const MOST_FACTORS: usize = MOST_LINES / 2;
 
-/// The first half of a palindrome of degree `2 factors`, and the coefficient in its middle.
-struct Half {
-    coefficients: [f64; MOST_FACTORS + 2],
-    factors: usize,
+/// The first halves of two palindromes, of the symmetric and the antisymmetric polynomial, each of degree `2 factors`:
+/// `Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line. The coefficient in the middle is the last.
+struct Halves<const N: usize> {
+    coefficients: [[f64; 2]; N],
+    factors: [usize; 2],
 }
 
-impl Half {
-    fn at(&self, i: usize) -> f64 {
-        let mirrored = (2 * self.factors).checked_sub(i);
-        mirrored.map_or(0.0, |mirrored| self.coefficients[i.min(mirrored)])
+impl<const N: usize> Halves<N> {
+    fn of(cosines: &[f64]) -> Self {
+        let mut halves = Self {
+            coefficients: [[0.0; 2]; N],
+            factors: [0; 2],
+        };
+        halves.coefficients[0] = [1.0; 2];
+        let (pairs, last) = cosines.as_chunks::<2>();
+        for i in spread_order(pairs.len()) {
+            halves.multiply(pairs[i].map(|cosine| -2.0 * cosine));
+        }
+        if let [cosine] = last {
+            // The symmetric polynomial of an odd number has one more.
+            let other = halves.coefficients;
+            halves.multiply([-2.0 * cosine, 0.0]);
+            let own = halves.coefficients.iter_mut();
+            own.zip(other).for_each(|(c, other)| c[1] = other[1]);
+            halves.factors[1] -= 1;
+        }
+        halves
     }
-}
 
-/// `Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line from `first`.
-fn palindrome(cosines: &[f64], first: usize) -> Half {
-    let mut half = Half {
-        coefficients: [0.0; MOST_FACTORS + 2],
-        factors: 0,
-    };
-    half.coefficients[0] = 1.0;
-    for i in spread_order((cosines.len() + 1 - first) / 2) {
-        let middle = -2.0 * cosines[first + 2 * i];
-        let (k, c) = (half.factors, &mut half.coefficients);
+    /// Multiplies each by a quadratic with a coefficient in its middle.
+    fn multiply(&mut self, middle: [f64; 2]) {
+        let ([k, _], c) = (self.factors, &mut self.coefficients);
         // The coefficient after the middle one is its mirror image.
-        c[k + 1] = if k == 0 { 0.0 } else { c[k - 1] };
-        let (mut before, mut last) = (0.0, 0.0);
+        c[k + 1] = if k == 0 { [0.0; 2] } else { c[k - 1] };
+        let (mut before, mut last) = ([0.0; 2], [0.0; 2]);
         for x in &mut c[..k + 2] {
             let own = *x;
-            *x = (own + before) + middle * last;
+            for i in 0..2 {
+                x[i] = (own[i] + before[i]) + middle[i] * last[i];
+            }
             (before, last) = (last, own);
         }
-        half.factors += 1;
+        self.factors = self.factors.map(|factors| factors + 1);
     }
-    half
+
+    /// Writes the coefficients of the half of their sum, times the fixed factors: `(1 + z⁻¹)` and `(1 - z⁻¹)`, or 1 and `(1 - z⁻²)`.
+    fn write(&self, coefficients: &mut [f64]) {
+        let (back, added) = match coefficients.len().is_multiple_of(2) {
+            true => (1, 1.0),
+            false => (2, 0.0),
+        };
+        // Behind two zeros, and before others.
+        let mut whole = [[[0.0; 2]; 2]; N];
+        let whole = whole.as_flattened_mut();
+        for (which, k) in self.factors.into_iter().enumerate() {
+            for (i, c) in self.coefficients[..=k].iter().enumerate() {
+                whole[2 + i][which] = c[which];
+                whole[2 + 2 * k - i][which] = c[which];
+            }
+        }
+        let own = whole[3..].iter();
+        for (a, (own, below)) in coefficients.iter_mut().zip(own.zip(&whole[3 - back..])) {
+            *a = -0.5 * ((own[0] + added * below[0]) + (own[1] - below[1]));
+        }
+    }
 }
 
 /// `0..n` in bit-reversed order, which separates neighbours. In ascending order the product of the first

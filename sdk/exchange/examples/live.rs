@@ -16,7 +16,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1).ok_or("give a model file")?;
     let made = asset(&read(&std::fs::read(file)?)?, &Imported::default())?;
     let asset = Asset::from_bytes(&made.to_bytes()?)?;
-    for (what, moves) in [("at one motion", false), ("a new motion in each block of 64", true)] {
+    for (what, moves) in [
+        ("at one motion", false),
+        ("a new motion in each block of 64", true),
+    ] {
         let mut least = f64::INFINITY;
         for _ in 0..RUNS {
             let mut options = VoiceOptions::default();

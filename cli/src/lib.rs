@@ -13,6 +13,7 @@ mod devices;
 mod exit;
 mod failure;
 mod gains;
+mod given;
 mod grid;
 mod hints;
 #[cfg(feature = "lab")]

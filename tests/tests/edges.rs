@@ -79,4 +79,8 @@ edges! {
     every_byte_of_an_asset: "open_asset", edges::bytes;
     every_byte_of_a_library: "library", edges::bytes;
     every_byte_of_a_part_of_a_take: "take_part", edges::bytes;
+    every_byte_of_a_model_file: "hatt", edges::bytes;
+    every_value_of_envelopes_of_meta: "haptic", edges::json;
+    every_value_of_a_pattern_of_apple: "ahap", edges::json;
+    every_value_of_bands_of_mpeg: "hjif", edges::json;
 }

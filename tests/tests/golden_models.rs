@@ -215,6 +215,67 @@ fn bands_of_whole_and_narrow_spectra() {
 }
 
 #[test]
+fn arma_is_the_filter_of_its_lines() {
+    let arma = model("arma");
+    for case in Golden::all("arma") {
+        let [poles, zeros] = ["pole_lines", "zero_lines"].map(|key| case.input(key));
+        let counts = [&poles, &zeros].map(|lines| vec![lines.len() as f64]);
+        let rate_hz = case.input("rate_hz");
+        let parameters = [&counts[0], &poles, &counts[1], &zeros, &rate_hz].map(|part| &part[..]);
+        let band = Band {
+            low_hz: 20.0,
+            high_hz: 500.0,
+        };
+        let grid = band.grid_hz();
+        let magnitude = arma.magnitude(&parameters.concat(), band, &grid).unwrap();
+        case.hold("/magnitude", &magnitude);
+        let negated = |key: &str| -> Vec<f64> { case.input(key).iter().map(|a| -a).collect() };
+        let mut samples = case.input("x");
+        let mut zeros = htex_dsp::all_zero::AllZero::new(&negated("b")).unwrap();
+        zeros.process(&mut samples);
+        let mut poles = htex_dsp::all_pole::AllPole::new(&negated("a")).unwrap();
+        poles.process(samples.as_chunks_mut().0);
+        case.hold("/y", &samples);
+    }
+}
+
+/// The spectrum of a known filter is described by as many poles and zeros to half a decibel.
+#[test]
+fn arma_of_the_spectrum_of_a_known_filter_is_near_it() {
+    let arma = model("arma");
+    let band = Band {
+        low_hz: 20.0,
+        high_hz: 500.0,
+    };
+    let grid = band.grid_hz();
+    for case in Golden::all("arma") {
+        let expected = case.expected("/magnitude");
+        let [poles, zeros] = ["a", "b"].map(|key| case.input(key).len().to_string());
+        let options = [
+            ("poles", &poles[..]),
+            ("zeros", &zeros[..]),
+            ("rate_hz", "1000"),
+        ];
+        let request = FitRequest {
+            band,
+            frequency_hz: &grid,
+            magnitude: &expected,
+            signal: &[],
+            signal_rate_hz: 1_000.0,
+            options: &arma.options(&options).unwrap(),
+        };
+        let fit = arma.fit(&request).unwrap();
+        let magnitude = arma.magnitude(&fit.parameters, band, &grid).unwrap();
+        // The last bins are next to a zero at the Nyquist frequency.
+        let errors = magnitude.iter().zip(&expected).take(93);
+        let errors = errors.map(|(m, e)| 20.0 * (m * fit.level_rms / e).log10());
+        let rms = (errors.map(|db| db * db).sum::<f64>() / 93.0).sqrt();
+        println!("{}: {rms:.3} dB", case.name());
+        assert!(rms < 1.0, "{}: {rms} dB", case.name());
+    }
+}
+
+#[test]
 fn ar_of_the_spectrum_of_a_known_filter_is_that_filter() {
     // Yule–Walker on the exact one-sided spectrum of an AR(2) process at 2 kHz, whole band.
     let band = Band {

@@ -1,6 +1,7 @@
 //! Models as WASM modules stay small enough to travel in assets.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
+use htex_host::Registry;
 use htex_tests::deflated_bytes;
 use xtask::plugins;
 
@@ -8,12 +9,25 @@ use xtask::plugins;
 /// one states the reason in `docs/modules.md`.
 const BOUNDS: &[(&str, usize)] = &[
     ("ar", 41_700),
+    ("arma", 45_000),
     ("bands", 28_600),
     ("mfcc", 31_500),
     ("sbeta", 31_200),
     ("speak", 19_800),
     ("sslope", 24_600),
 ];
+
+/// The bindings' fixtures are fitted by the command, and their models are listed without it.
+#[test]
+fn models_of_the_fixtures_are_those_that_are_fitted_by_default() {
+    let registry = Registry::builtin();
+    let mut fitted: Vec<&str> = registry
+        .by_default()
+        .map(|model| model.short_name())
+        .collect();
+    fitted.sort_unstable();
+    assert_eq!(plugins::fitted_by_default().unwrap(), fitted);
+}
 
 #[test]
 fn modules_stay_small() {

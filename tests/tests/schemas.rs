@@ -258,13 +258,14 @@ fn ajv_says_the_same_where_it_is() {
     assert_eq!(told, ours);
 }
 
-/// Documents of a laboratory that other programs read: takes, answers, and gains of persons.
+/// Documents of a laboratory that other programs read (takes, answers, gains of persons), and extensions of assets.
 #[test]
 fn generated_schemas_of_the_laboratory_are_fresh() {
     for (name, schema) in [
         ("take-1", htex_lab::record::take_schema()),
         ("answers-1", htex_lab::study::answers_schema()),
         ("gains-1", htex_scene::gains_schema()),
+        ("hatt-1", htex_exchange::hatt::extension_schema()),
     ] {
         let text = format!("{schema:#}\n");
         xtask::generated::file(format!("spec/schemas/{name}.json"), text.as_bytes());

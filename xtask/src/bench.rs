@@ -33,7 +33,8 @@ pub fn bench(options: &[&str]) -> Result<()> {
 }
 
 /// The Python of `target/peers`, else `python3`, if it has NumPy and SciPy.
-fn python() -> Option<PathBuf> {
+#[must_use]
+pub fn python() -> Option<PathBuf> {
     let own = target().join("peers/bin/python");
     [own, "python3".into()].into_iter().find(|python| {
         let mut imports = Command::new(python);

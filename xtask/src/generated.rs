@@ -19,6 +19,7 @@ const TESTS: &[&str] = &[
     "conformance",
     "device_abi",
     "header",
+    "losses",
     "measures",
     "page",
     "playing",

@@ -105,6 +105,18 @@ pub fn wasm_if_there() -> Option<PathBuf> {
     Some(wasm().unwrap_or_else(|error| panic!("{error:#}")))
 }
 
+/// Models that a program fits only where they are named, as `htex_host` has them; a test holds the two to each other.
+const NAMED: [&str; 1] = ["arma"];
+
+/// The short names of the models that are fitted where none is named, in the order of the alphabet.
+///
+/// # Errors
+/// As [`models`].
+pub fn fitted_by_default() -> Result<Vec<String>> {
+    let is_usual = |model: &String| !NAMED.contains(&&model[..]);
+    Ok(models()?.into_iter().filter(is_usual).collect())
+}
+
 fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Result<()> {
     let package = format!("htex-{model}");
     run(cargo

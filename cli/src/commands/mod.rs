@@ -10,9 +10,12 @@ mod demo;
 mod device;
 mod edit;
 mod explain;
+mod export;
 mod fit;
+mod formats;
 mod gain;
 mod guard;
+mod import;
 mod info;
 mod lib;
 mod make;
@@ -63,6 +66,9 @@ pub(crate) enum Command {
     Build(build::Build),
     Make(make::Make),
     Mix(mix::Mix),
+    Import(Box<import::Import>),
+    Export(export::Export),
+    Formats(formats::Formats),
     Compare(compare::Compare),
     Tradeoff(tradeoff::Tradeoff),
     #[cfg(feature = "lab")]
@@ -105,6 +111,9 @@ impl Command {
             Self::Build(args) => args.run(),
             Self::Make(args) => args.run(),
             Self::Mix(args) => args.run(),
+            Self::Import(args) => args.run(),
+            Self::Export(args) => args.run(),
+            Self::Formats(args) => args.run(),
             Self::Compare(args) => args.run(),
             Self::Tradeoff(args) => args.run(),
             #[cfg(feature = "lab")]

@@ -146,7 +146,7 @@ impl Tradeoff {
 
     fn named<'a>(&self, registry: &'a Registry) -> Result<Vec<&'a LoadedModel>, Failure> {
         if self.only.is_empty() {
-            return Ok(registry.models().iter().collect());
+            return Ok(registry.by_default().collect());
         }
         let mut models: Vec<&LoadedModel> = Vec::new();
         for name in &self.only {

@@ -20,7 +20,7 @@ fn fit_info_and_the_file_agree_and_are_the_same_twice() {
         std::fs::metadata(place.path("a.htex")).unwrap().len()
     );
     assert!(fit["repeatability_rms_db"].as_f64().unwrap() > 0.0);
-    for (i, loaded) in Registry::builtin().models().iter().enumerate() {
+    for (i, loaded) in Registry::builtin().by_default().enumerate() {
         let model = loaded.id();
         let (fitted, read) = (&fit["representations"][i], &info["representations"][i]);
         assert_eq!(fitted["model"], model);

@@ -58,6 +58,18 @@ const FLAGS: &[(&str, &str)] = &[
         "--seconds=@ --set=encoding=@",
     ),
     (
+        "import hum.haptic --model bands -o hum.htex",
+        "--full-scale=@ --speed=@ --force=@",
+    ),
+    (
+        "import hum.haptic --model bands --speed 80 --force 0.4 -o hum.htex",
+        "--full-scale=@ --option=bands.bands=@",
+    ),
+    (
+        "export cloth.htex --to wav -o cloth.wav",
+        "--speed=@ --force=@ --seconds=@ --rate=@ --seed=@",
+    ),
+    (
         "play cloth.htex --device file --set path=played.wav",
         "--seconds=@",
     ),
@@ -75,6 +87,9 @@ fn flags_at_edges_end_well_or_in_a_sentence() {
     let scene = r#"{"htex_scene": "1.0", "surfaces": [{"asset": "cloth.htex"}],
         "motion": {"constant": {"speed_mm_s": 80, "force_n": 0.4}}, "duration_s": 0.1}"#;
     place.write("scene.json", scene);
+    let hum = r#"{"version": {"major": 1}, "signals": {"continuous": {"envelopes": {
+        "amplitude": [{"time": 0, "amplitude": 0.5}, {"time": 1, "amplitude": 0.5}]}}}}"#;
+    place.write("hum.haptic", hum);
     let (mut runs, mut refused) = (0, 0);
     for (command, flags) in FLAGS {
         for flag in flags.split_whitespace() {

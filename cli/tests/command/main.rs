@@ -15,6 +15,7 @@ mod catalogue;
 #[cfg(unix)]
 mod checker;
 mod embed;
+mod exchange;
 mod fit;
 mod flags;
 mod gain;

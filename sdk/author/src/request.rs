@@ -43,8 +43,8 @@ impl ModelRequest {
 /// let registry = Registry::builtin();
 /// let request = AssetRequest::new("linen")
 ///     .with_license("CC-BY-4.0".to_owned())
-///     .with_models(registry.models().iter().map(ModelRequest::new));
-/// assert_eq!(request.models.len(), registry.models().len());
+///     .with_models(registry.by_default().map(ModelRequest::new));
+/// assert_eq!(request.models.len(), registry.by_default().count());
 /// ```
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]

@@ -12,7 +12,7 @@ use crate::chebyshev::chebyshev;
 use crate::grid::{Band, GRID_HZ, read_part};
 use crate::pipeline::Pipeline;
 use crate::shared::Shared;
-use crate::wide::{Work, wide};
+use crate::wide::{Work, very_wide, wide};
 
 /// 80 dB a decade, as steep at the edge as a Butterworth filter of twice the order: half a bin outside the
 /// band almost no power passes.
@@ -138,15 +138,33 @@ impl PassedPower {
         });
         crate::root::sqrt(power / 3.0)
     }
+
+    /// As [`Self::all_pole_level_rms`], behind a filter with zeros and poles, from the cosines of the line spectral frequencies of both.
+    /// Does not allocate.
+    pub fn rational_level_rms(&self, zeros: &[f64], poles: &[f64]) -> f64 {
+        let mut power = 0.0;
+        let work = RationalPower {
+            turns: &self.turns,
+            zeros,
+            poles,
+            power: &mut power,
+        };
+        if let Err(work) = very_wide(work) {
+            wide(work);
+        }
+        crate::root::sqrt(power / 3.0)
+    }
 }
 
 impl Turns {
+    const NONE: Self = Self {
+        cos: [1.0; TURNS],
+        sin: [0.0; TURNS],
+        part: [0.0; TURNS],
+    };
+
     fn of(points: &[(f64, f64)], rate_hz: f64) -> Self {
-        let mut turns = Self {
-            cos: [1.0; TURNS],
-            sin: [0.0; TURNS],
-            part: [0.0; TURNS],
-        };
+        let mut turns = Self::NONE;
         for (i, (hz, part)) in points.iter().enumerate() {
             let angle = core::f64::consts::TAU * hz / rate_hz;
             (turns.sin[i], turns.cos[i]) = crate::trig::sincos(angle);
@@ -187,9 +205,72 @@ impl Work for AllPolePower<'_> {
     }
 }
 
+/// The power of a filter with zeros and poles over all points.
+struct RationalPower<'a> {
+    turns: &'a [Turns],
+    zeros: &'a [f64],
+    poles: &'a [f64],
+    power: &'a mut f64,
+}
+
+impl Work for RationalPower<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let mut sums = [0.0; TURNS];
+        for turns in self.turns {
+            let above = lines_power(turns, self.zeros);
+            let below = lines_power(turns, self.poles);
+            for i in 0..TURNS {
+                let heard = turns.part[i] * above[i] / below[i];
+                sums[i] += if turns.part[i] > 0.0 { heard } else { 0.0 };
+            }
+        }
+        // A factor for each pair of lines, exact as a power of two.
+        let [above, below] = [self.zeros, self.poles].map(|lines| lines.len() / 2);
+        let power: f64 = sums.iter().sum();
+        let power = (0..above).fold(power, |power, _| 4.0 * power);
+        *self.power = (0..below).fold(power, |power, _| 0.25 * power);
+    }
+}
+
+/// The squared absolute values of a polynomial at a group of points, over 4 for each pair of lines, from the cosines of its line
+/// spectral frequencies: those of the symmetric and the antisymmetric polynomial, which are a quarter turn apart.
+#[inline(always)]
+fn lines_power(turns: &Turns, cosines: &[f64]) -> [f64; TURNS] {
+    let (mut symmetric, mut antisymmetric) = ([1.0; TURNS], [1.0; TURNS]);
+    let (pairs, last) = cosines.as_chunks();
+    for [a, b] in pairs {
+        for i in 0..TURNS {
+            symmetric[i] *= turns.cos[i] - a;
+            antisymmetric[i] *= turns.cos[i] - b;
+        }
+    }
+    for a in last {
+        for i in 0..TURNS {
+            symmetric[i] *= turns.cos[i] - a;
+        }
+    }
+    let mut power = [0.0; TURNS];
+    for i in 0..TURNS {
+        let sine = turns.sin[i] * turns.sin[i];
+        let s = symmetric[i] * symmetric[i];
+        let a = antisymmetric[i] * antisymmetric[i];
+        power[i] = match last.is_empty() {
+            // (1 - cos) = sin² / (1 + cos), which stays precise at low frequencies.
+            true => {
+                let above = 1.0 + turns.cos[i];
+                0.5 * (s * above + a * (sine / above))
+            }
+            false => s + a * sine,
+        };
+    }
+    power
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::line_spectrum::line_spectral_frequencies;
     use crate::linear_prediction::ar_magnitude;
 
     #[test]
@@ -199,6 +280,23 @@ mod tests {
             let expected = passed.level_rms(|hz| ar_magnitude(coefficients, hz, 2_050.0));
             let found = passed.all_pole_level_rms(coefficients);
             assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn the_level_of_lines_is_that_of_their_polynomials() {
+        let passed = PassedPower::new(Band::TACTILE, 2_050.0);
+        let cosines = |a: &[f64]| -> Vec<f64> {
+            let lines = line_spectral_frequencies(a).unwrap();
+            lines.iter().map(|w| libm::cos(*w)).collect()
+        };
+        for poles in [&[][..], &[0.9], &[1.2, -0.8, 0.3, -0.1, 0.05, 0.02, -0.3]] {
+            for zeros in [&[][..], &[-0.4, 0.3], &[-0.4, 0.3, 0.6]] {
+                let of = |a: &[f64], hz: f64| ar_magnitude(a, hz, 2_050.0);
+                let expected = passed.level_rms(|hz| of(poles, hz) / of(zeros, hz));
+                let found = passed.rational_level_rms(&cosines(zeros), &cosines(poles));
+                assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+            }
         }
     }
 

@@ -12,6 +12,7 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 extern crate alloc;
 pub mod all_pole;
+pub mod all_zero;
 pub mod band_limit;
 pub mod bands;
 pub mod beta;

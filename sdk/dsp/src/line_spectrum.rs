@@ -93,40 +93,106 @@ pub fn from_line_spectral_frequencies(lsf: &[f64]) -> Option<Vec<f64>> {
 pub fn coefficients_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     let inside = lsf.iter().all(|&w| w > 0.0 && w < PI);
     let ascend = lsf.windows(2).all(|pair| pair[0] < pair[1]);
-    if !inside || !ascend || lsf.len() > MOST_LINES {
+    inside && ascend && zeros_of_lines(lsf, coefficients)
+}
+
+/// As [`coefficients_of_lines`], of a polynomial that is no denominator: its zeros may lie on the unit circle, where two lines are
+/// equal, or one is 0 or π. Returns false if the lines descend, or there are too many.
+pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
+    let mut cosines = [0.0; MOST_LINES];
+    let ascend = lsf.windows(2).all(|pair| pair[0] <= pair[1]);
+    let Some(cosines) = cosines.get_mut(..lsf.len()).filter(|_| ascend) else {
         return false;
-    }
-    let fixed: [&[f64]; 2] = if lsf.len().is_multiple_of(2) {
-        [&[1.0, 1.0], &[1.0, -1.0]]
-    } else {
-        [&[1.0], &[1.0, 0.0, -1.0]]
     };
-    let symmetric = with_zeros_at(fixed[0], lsf, 0);
-    let antisymmetric = with_zeros_at(fixed[1], lsf, 1);
-    let sums = symmetric.iter().zip(&antisymmetric).skip(1);
-    for (a, (p, q)) in coefficients.iter_mut().zip(sums) {
-        *a = -0.5 * (p + q);
+    for (cosine, w) in cosines.iter_mut().zip(lsf) {
+        *cosine = crate::trig::cos(*w);
     }
+    coefficients_of_cosines(cosines, coefficients);
     true
+}
+
+/// As [`zeros_of_lines`], from the cosines of at most [`MOST_LINES`] lines.
+///
+/// The symmetric and the antisymmetric polynomial are a fixed factor and the quadratics of every second line, whose product is a
+/// palindrome: half of it is computed, of both together.
+pub fn coefficients_of_cosines(cosines: &[f64], coefficients: &mut [f64]) {
+    // Memory for few lines is cleared in less time than for many.
+    match cosines.len() {
+        0..=24 => Halves::<14>::of(cosines).write(coefficients),
+        _ => Halves::<{ MOST_FACTORS + 2 }>::of(cosines).write(coefficients),
+    }
 }
 
 /// Maximum number of line spectral frequencies that can be converted back to a model.
 pub const MOST_LINES: usize = 128;
+/// Quadratics of the symmetric polynomial at most.
+const MOST_FACTORS: usize = MOST_LINES / 2;
 
-/// `fixed(z) Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line from `first`.
-fn with_zeros_at(fixed: &[f64], lsf: &[f64], first: usize) -> [f64; MOST_LINES + 3] {
-    let mut product = [0.0; MOST_LINES + 3];
-    product[..fixed.len()].copy_from_slice(fixed);
-    let (mut len, count) = (fixed.len(), (lsf.len() + 1 - first) / 2);
-    for i in spread_order(count) {
-        let middle = -2.0 * crate::trig::cos(lsf[first + 2 * i]);
-        len += 2;
-        for j in (1..len).rev() {
-            let two_below = if j > 1 { product[j - 2] } else { 0.0 };
-            product[j] += two_below + middle * product[j - 1];
+/// The first halves of two palindromes, of the symmetric and the antisymmetric polynomial, each of degree `2 factors`:
+/// `Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line. The coefficient in the middle is the last.
+struct Halves<const N: usize> {
+    coefficients: [[f64; 2]; N],
+    factors: [usize; 2],
+}
+
+impl<const N: usize> Halves<N> {
+    fn of(cosines: &[f64]) -> Self {
+        let mut halves = Self {
+            coefficients: [[0.0; 2]; N],
+            factors: [0; 2],
+        };
+        halves.coefficients[0] = [1.0; 2];
+        let (pairs, last) = cosines.as_chunks::<2>();
+        for i in spread_order(pairs.len()) {
+            halves.multiply(pairs[i].map(|cosine| -2.0 * cosine));
+        }
+        if let [cosine] = last {
+            // The symmetric polynomial of an odd number has one more.
+            let other = halves.coefficients;
+            halves.multiply([-2.0 * cosine, 0.0]);
+            let own = halves.coefficients.iter_mut();
+            own.zip(other).for_each(|(c, other)| c[1] = other[1]);
+            halves.factors[1] -= 1;
+        }
+        halves
+    }
+
+    /// Multiplies each by a quadratic with a coefficient in its middle.
+    fn multiply(&mut self, middle: [f64; 2]) {
+        let ([k, _], c) = (self.factors, &mut self.coefficients);
+        // The coefficient after the middle one is its mirror image.
+        c[k + 1] = if k == 0 { [0.0; 2] } else { c[k - 1] };
+        let (mut before, mut last) = ([0.0; 2], [0.0; 2]);
+        for x in &mut c[..k + 2] {
+            let own = *x;
+            for i in 0..2 {
+                x[i] = (own[i] + before[i]) + middle[i] * last[i];
+            }
+            (before, last) = (last, own);
+        }
+        self.factors = self.factors.map(|factors| factors + 1);
+    }
+
+    /// Writes the coefficients of the half of their sum, times the fixed factors: `(1 + z⁻¹)` and `(1 - z⁻¹)`, or 1 and `(1 - z⁻²)`.
+    fn write(&self, coefficients: &mut [f64]) {
+        let (back, added) = match coefficients.len().is_multiple_of(2) {
+            true => (1, 1.0),
+            false => (2, 0.0),
+        };
+        // Behind two zeros, and before others.
+        let mut whole = [[[0.0; 2]; 2]; N];
+        let whole = whole.as_flattened_mut();
+        for (which, k) in self.factors.into_iter().enumerate() {
+            for (i, c) in self.coefficients[..=k].iter().enumerate() {
+                whole[2 + i][which] = c[which];
+                whole[2 + 2 * k - i][which] = c[which];
+            }
+        }
+        let own = whole[3..].iter();
+        for (a, (own, below)) in coefficients.iter_mut().zip(own.zip(&whole[3 - back..])) {
+            *a = -0.5 * ((own[0] + added * below[0]) + (own[1] - below[1]));
         }
     }
-    product
 }
 
 /// `0..n` in bit-reversed order, which separates neighbours. In ascending order the product of the first

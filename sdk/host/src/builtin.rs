@@ -52,7 +52,8 @@ macro_rules! model {
 }
 
 /// The models. One that is added here is in every program that links this crate. Without `usual` its parameters have the ranges of its
-/// descriptor alone; without `knobs` a sweep spans the ranges of its options.
+/// descriptor alone; without `knobs` a sweep spans the ranges of its options. One that is `only_named` is fitted where it is named, and
+/// is none of those that a program takes by itself.
 fn tables() -> Vec<TableModel> {
     vec![
         model!(htex_ar, knobs, usual),
@@ -61,6 +62,7 @@ fn tables() -> Vec<TableModel> {
         model!(htex_sbeta, knobs, usual),
         model!(htex_sslope, knobs, usual),
         model!(htex_bands, knobs, usual),
+        model!(htex_arma, knobs, usual).only_named(),
     ]
 }
 

@@ -225,6 +225,11 @@ impl LoadedModel {
         self.raw.usual()
     }
 
+    /// Returns whether a program takes the model only where it is named ([`Registry::by_default`](crate::Registry::by_default)).
+    pub fn is_only_named(&self) -> bool {
+        self.raw.is_only_named()
+    }
+
     /// Fits the model to a spectrum. Needs the feature `fit`.
     ///
     /// # Errors

@@ -43,6 +43,10 @@ pub(crate) trait RawModel: Send + Sync {
     fn usual(&self) -> &'static [Usual] {
         &[]
     }
+    /// Returns whether a program takes the model only where it is named.
+    fn is_only_named(&self) -> bool {
+        false
+    }
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64;
     /// Makes a voice; an error is a status.
     fn voice_new(

@@ -265,6 +265,12 @@ impl Registry {
         &self.models
     }
 
+    /// Returns the models that a program fits where none is named: all but those that are fitted only by name
+    /// ([`LoadedModel::is_only_named`]).
+    pub fn by_default(&self) -> impl Iterator<Item = &LoadedModel> {
+        self.models.iter().filter(|model| !model.is_only_named())
+    }
+
     /// Returns notes for the user: models that shadow others, and plugins that could not be loaded.
     pub fn notes(&self) -> &[Note] {
         &self.notes

@@ -17,6 +17,7 @@ pub(crate) struct TableModel {
     motion: Option<&'static MotionTable>,
     knobs: Option<&'static Knobs>,
     usual: &'static [Usual],
+    is_only_named: bool,
 }
 
 impl TableModel {
@@ -27,6 +28,15 @@ impl TableModel {
             motion: None,
             knobs: None,
             usual: &[],
+            is_only_named: false,
+        }
+    }
+
+    /// Takes the model out of those that a program takes by itself.
+    pub(crate) fn only_named(self) -> Self {
+        Self {
+            is_only_named: true,
+            ..self
         }
     }
 
@@ -164,6 +174,10 @@ impl RawModel for TableModel {
 
     fn usual(&self) -> &'static [Usual] {
         self.usual
+    }
+
+    fn is_only_named(&self) -> bool {
+        self.is_only_named
     }
 
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {

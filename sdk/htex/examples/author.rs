@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         recording: simulate(&options)?.to_recording("simulated")?,
     };
     let registry = Registry::builtin();
-    let models = registry.models().iter().map(ModelRequest::new);
+    let models = registry.by_default().map(ModelRequest::new);
     let request = AssetRequest::new("Coarse cloth").with_models(models);
     let fitted = fit_asset(&[take], &request)?;
     fitted.asset.write(&path)?;

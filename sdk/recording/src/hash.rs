@@ -30,7 +30,8 @@ impl RecordedFile {
         Self(known().unwrap_or_default())
     }
 
-    pub(crate) fn of_bytes(bytes: &[u8]) -> Self {
+    /// A file that is in memory.
+    pub fn of_bytes(bytes: &[u8]) -> Self {
         Self(Known::Hash(blake3::hash(bytes).to_hex().to_string()))
     }
 

@@ -66,7 +66,9 @@ pub use preview::{Preview, PreviewColumn, preview};
 pub use recording::{MAX_RATE_HZ, Recording, RecordingError};
 pub use response::{Raised, SetupResponse, raised, read_response, response_from_bytes};
 pub use sums::Sums;
-pub use trace::{TraceColumns, read_trace, trace_from_bytes};
+pub use trace::{
+    StrokeColumns, TraceColumns, read_stroke, read_trace, stroke_from_bytes, trace_from_bytes,
+};
 pub use tracker::Tracker;
 pub use value_limit::MOST_VALUES;
 pub use velocity::velocity;

@@ -54,8 +54,85 @@ pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadEr
     read.map_err(|fault| fault.in_file(file))
 }
 
-fn trace(opened: Opened<'_>) -> Result<TraceColumns, Fault> {
+/// The columns of a stroke, of equal length, at least two rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StrokeColumns {
+    /// Time, seconds, strictly ascending.
+    pub t_s: Vec<f64>,
+    /// Sliding speed, mm/s, not negative.
+    pub speed_mm_s: Vec<f64>,
+    /// Normal force, newtons.
+    pub force_n: Vec<f64>,
+    /// Assumptions: units without a name, unused columns.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a stroke from a CSV with time, speed and force (`t_s`, `speed_mm_s`, `force_n`); one without a speed is read as a trace, whose speed is that
+/// of its positions.
+///
+/// # Errors
+/// As [`read_trace`].
+pub fn read_stroke(path: &Path) -> Result<StrokeColumns, ReadError> {
+    let read = Opened::file(path).and_then(stroke);
+    read.map_err(|fault| fault.in_file(&file_name(path)))
+}
+
+/// Reads a stroke from bytes; `file` is its name.
+///
+/// # Errors
+/// As [`read_stroke`].
+pub fn stroke_from_bytes(file: &str, bytes: &[u8]) -> Result<StrokeColumns, ReadError> {
+    let read = Opened::bytes(Path::new(file), bytes).and_then(stroke);
+    read.map_err(|fault| fault.in_file(file))
+}
+
+fn stroke(opened: Opened<'_>) -> Result<StrokeColumns, Fault> {
     let mut csv = Csv::open(opened, ValueLimit::default())?;
+    let columns = csv.columns();
+    let mut warnings = Vec::new();
+    if find(columns, Role::Speed, &mut warnings)?.is_none() {
+        return Ok(along(traced(csv)?));
+    }
+    let mut found = Vec::new();
+    for role in [Role::Time, Role::Speed, Role::Normal] {
+        found.push(find(columns, role, &mut warnings)?.ok_or_else(|| missing(columns, role))?);
+    }
+    let wanted: Vec<usize> = found.iter().map(|(column, _)| *column).collect();
+    let numbers = csv.numbers(&wanted)?.columns.into_iter().zip(&found);
+    let mut columns = numbers.map(|(values, (_, scale))| scaled(values, *scale));
+    let mut next = || columns.next().unwrap_or_default();
+    let (t_s, mut speed_mm_s, force_n) = (next(), next(), next());
+    check_time(&csv, &t_s)?;
+    for column in [&t_s, &speed_mm_s, &force_n] {
+        check_size(&csv, column)?;
+    }
+    speed_mm_s.iter_mut().for_each(|speed| *speed = speed.abs());
+    warnings.dedup();
+    Ok(StrokeColumns {
+        t_s,
+        speed_mm_s,
+        force_n,
+        warnings,
+    })
+}
+
+/// The stroke of a trace.
+fn along(trace: TraceColumns) -> StrokeColumns {
+    let of = |position: &[f64]| crate::velocity(&trace.t_s, position, trace.t_s.iter().copied());
+    let speeds = of(&trace.x_mm).into_iter().zip(of(&trace.y_mm));
+    StrokeColumns {
+        speed_mm_s: speeds.map(|(x, y)| libm::hypot(x, y)).collect(),
+        t_s: trace.t_s,
+        force_n: trace.force_n,
+        warnings: trace.warnings,
+    }
+}
+
+fn trace(opened: Opened<'_>) -> Result<TraceColumns, Fault> {
+    traced(Csv::open(opened, ValueLimit::default())?)
+}
+
+fn traced(mut csv: Csv<'_>) -> Result<TraceColumns, Fault> {
     let columns = csv.columns();
     let mut warnings = Vec::new();
     let mut found = Vec::new();

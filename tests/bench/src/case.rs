@@ -101,7 +101,7 @@ pub fn request<'a>(spectrum: &'a TextureSpectrum, options: &'a [f64]) -> FitRequ
 /// An asset of all models, as `htex fit` makes it.
 fn asset(registry: &Registry, recording: htex_author::Recording) -> Result<Vec<u8>, Failure> {
     let mut models = Vec::new();
-    for model in registry.models() {
+    for model in registry.by_default() {
         let options = model.options(&[])?;
         let model = model.clone();
         models.push(ModelRequest::new(&model).with_options(options));

@@ -16,6 +16,7 @@ mod compile;
 mod container;
 mod descriptor;
 pub mod edges;
+mod exchange;
 mod heavy;
 mod lab;
 mod library;
@@ -41,6 +42,7 @@ pub use capi::c_calls;
 pub use compile::compile_limits;
 pub use container::{container, with_checksums};
 pub use descriptor::descriptor;
+pub use exchange::{ahap, haptic, hatt, hjif};
 pub use lab::{arrow, column_map, flac, hdf5, mat, parquet, tdms};
 pub use library::library;
 pub use manifest::manifest;
@@ -100,6 +102,10 @@ pub const TARGETS: &[Target] = &[
     target("recipe", recipe),
     target("recipe_folder", recipe_folder),
     target("take_part", take_part),
+    target("hatt", hatt),
+    target("haptic", haptic),
+    target("ahap", ahap),
+    target("hjif", hjif),
 ];
 
 const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {

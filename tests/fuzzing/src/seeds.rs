@@ -50,7 +50,93 @@ pub fn seeds() -> Vec<Seed> {
     seeds.extend(libraries());
     seeds.extend(studies());
     seeds.extend(parts());
+    seeds.extend(models_of_others());
+    seeds.extend(signals_of_others());
     seeds
+}
+
+/// Model files of the Penn Haptic Texture Toolkit: of four nodes with triangles, one of them silent, and of one without zeros.
+fn models_of_others() -> Vec<Seed> {
+    let list = |name: &str, values: &[f64]| {
+        let values: String = values
+            .iter()
+            .map(|x| format!("<value>{x}</value>"))
+            .collect();
+        format!("<{name}>{values}</{name}>")
+    };
+    let node = |i: usize, (speed, force): (f64, f64), variance: f64| {
+        format!(
+            "<model><modNum>{i}</modNum>{}{}{}<var>{variance}</var><gain>2.5</gain><speedMod>{speed}</speedMod><forceMod>{force}</forceMod></model>\n",
+            list("ARcoeff", &[1.0, -0.9, 0.5]),
+            list("ARlsf", &[0.644_033_9, 1.266_103_7]),
+            list("MAcoeff", &[1.0, 0.3, -0.4, 0.2 * i as f64]),
+        )
+    };
+    let corners = [(0.0, 0.0), (240.0, 0.0), (0.0, 3.5), (240.0, 3.5)];
+    let nodes: String = corners
+        .iter()
+        .enumerate()
+        .map(|(i, motion)| node(i + 1, *motion, 0.01 * i as f64))
+        .collect();
+    let whole = format!(
+        "<?xml version=\"1.0\"?>\n<modelSet texture=\"25\"><material>Felt &amp; Co</material><AccelUnits>m/s^2</AccelUnits><SampleRate>1000</SampleRate>\
+         <mu>0.22</mu><numMod>4</numMod><numTri>2</numTri><maxSpeed>240</maxSpeed><maxForce>3.5</maxForce>\n{}{}<numARCoeff>2</numARCoeff>\n{nodes}</modelSet>",
+        list("tri", &[1.0, 2.0, 3.0]),
+        list("tri", &[2.0, 4.0, 3.0]),
+    );
+    let one = "<modelSet><SampleRate>1000</SampleRate><model><ARcoeff><value>1</value><value>-0.5</value></ARcoeff><var>1</var>\
+               <speedMod>80</speedMod><forceMod>1</forceMod></model></modelSet>";
+    let seed = |name: &str, text: &str| ("hatt", name.to_owned(), text.as_bytes().to_vec());
+    vec![seed("four-nodes", &whole), seed("one-node", one)]
+}
+
+/// Files of Meta, Apple and MPEG: envelopes and transients, as they are written here, and what is only read.
+fn signals_of_others() -> Vec<Seed> {
+    let profile = &htex_exchange::PROFILES[0];
+    let point = |time_s, value| htex_exchange::Point { time_s, value };
+    let pattern = htex_exchange::Pattern {
+        from_s: 0.0,
+        to_s: 0.2,
+        level: vec![point(0.0, 0.2), point(0.1, 1.0), point(0.2, 0.5)],
+        exponent: 1,
+        frequency_hz: vec![point(0.0, 80.0), point(0.2, 120.0)],
+        transients: vec![htex_exchange::Transient {
+            time_s: 0.1,
+            amplitude: 1.0,
+            frequency_hz: 150.0,
+        }],
+    };
+    let haptic = htex_exchange::Haptic::of(&pattern, profile, Default::default()).to_bytes();
+    let ahap = htex_exchange::Ahap::of(&pattern, profile).to_bytes();
+    let controls = br#"{"Version": 1.0, "Metadata": {"Project": "seed"}, "Pattern": [
+        {"Event": {"Time": 0.0, "EventType": "HapticContinuous", "EventDuration": 0.3, "EventParameters": [
+            {"ParameterID": "HapticIntensity", "ParameterValue": 0.8}, {"ParameterID": "AttackTime", "ParameterValue": 0.1}]}},
+        {"Event": {"Time": 0.1, "EventType": "AudioCustom", "EventParameters": []}},
+        {"Parameter": {"ParameterID": "HapticSharpnessControl", "ParameterValue": -0.5, "Time": 0.1}}]}"#;
+    let samples: Vec<f64> = (0..600).map(|i| (0.1 * f64::from(i)).sin()).collect();
+    let wavelets = |speed_mm_s| {
+        let space = htex_exchange::hjif::Space { speed_mm_s };
+        htex_exchange::hjif::waveform(&samples, profile, space, "seed").to_bytes()
+    };
+    let bands = br#"{"perceptions": [{"id": 0, "perception_modality": "Vibrotactile", "effect_library": [
+        {"effect_type": "Basis", "id": 3, "position": 0, "keyframes": [{"relative_position": 0, "amplitude_modulation": 0.5,
+            "frequency_modulation": 90}, {"relative_position": 50, "amplitude_modulation": 0}]}], "tracks": [{"id": 0, "bands": [
+        {"band_type": "VectorialWave", "lower_frequency_limit": 0, "upper_frequency_limit": 300, "effects": [
+            {"effect_type": "Reference", "id": 3, "position": 10}, {"effect_type": "Reference", "id": 3, "position": 80}]},
+        {"band_type": "Curve", "curve_type": "Akima", "lower_frequency_limit": 0, "upper_frequency_limit": 60, "effects": [
+            {"position": 0, "keyframes": [{"relative_position": 0, "amplitude_modulation": 0.1},
+            {"relative_position": 90, "amplitude_modulation": -0.1}]}]},
+        {"band_type": "Transient", "lower_frequency_limit": 0, "upper_frequency_limit": 300, "effects": [
+            {"position": 40, "base_signal": "Square", "keyframes": [{"relative_position": 5, "amplitude_modulation": 1}]}]}]}]}]}"#;
+    let seed = |target, name: &str, bytes: Vec<u8>| (target, name.to_owned(), bytes);
+    vec![
+        seed("haptic", "emphasis", haptic),
+        seed("ahap", "curves", ahap),
+        seed("ahap", "controls", controls.to_vec()),
+        seed("hjif", "wavelets", wavelets(None)),
+        seed("hjif", "way", wavelets(Some(80.0))),
+        seed("hjif", "bands", bands.to_vec()),
+    ]
 }
 
 /// Part files of takes, as they are and as what the target builds them from: a second of a finger, with a tracker's rows.

@@ -49,6 +49,7 @@ sections! {
     recordings: "Recordings",
     prediction: "Linear prediction",
     autoregression: "AR",
+    arma: "ARMA",
     mixing: "Interpolation",
     beta: "Beta density",
     slope: "Slopes",

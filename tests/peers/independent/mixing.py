@@ -66,6 +66,24 @@ def mix_ar(sets, weights):
     return [filter_of(frequencies), sets[0][1]]
 
 
+def mix_arma(sets, weights):
+    require_equal(sets, 2, "model rates")
+    return [mix_lines([values[0] for values in sets], weights), mix_lines([values[1] for values in sets], weights), sets[0][2]]
+
+
+def mix_lines(sets, weights):
+    """The mean of each line; a polynomial of a lower order is padded with zero coefficients first."""
+    order = max(len(lines) for lines in sets)
+    return mean([lines if len(lines) == order else padded_lines(lines, order) for lines in sets], weights)
+
+
+def padded_lines(lines, order):
+    coefficients = filter_of(lines)
+    if len(coefficients) and np.max(np.abs(np.roots(np.concatenate([[1.0], -np.asarray(coefficients)])))) >= 1:
+        raise Refusal("a zero on the unit circle, and another order")
+    return line_frequencies(coefficients + [0.0] * (order - len(coefficients)))
+
+
 def sum_and_difference(a: list[float]) -> tuple[np.ndarray, np.ndarray]:
     """Coefficients of A(z) +- z^-(p+1) A(1/z), in ascending powers of 1/z."""
     whole = np.concatenate([[1.0], -np.asarray(a, dtype=float), [0.0]])
@@ -115,6 +133,7 @@ def filter_of(frequencies: list[float]) -> list[float]:
 
 MIXES = {
     "org.htex.ar": mix_ar,
+    "org.htex.arma": mix_arma,
     "org.htex.mfcc": mix_mfcc,
     "org.htex.speak": mix_speak,
     "org.htex.sbeta": mix_scalars,

@@ -65,6 +65,32 @@ def ar(values: Values, band: Band) -> Callable:
     return normed(shape, band)
 
 
+def arma(values: Values, band: Band) -> Callable:
+    poles, zeros, rate = values
+    inside = all(0 < w < math.pi for w in poles)
+    if not inside or any(a >= b for a, b in zip(poles, poles[1:])):
+        raise Refusal("the lines of the poles do not ascend between 0 and pi")
+    if any(a > b for a, b in zip(zeros, zeros[1:])):
+        raise Refusal("the lines of the zeros descend")
+
+    def shape(f):
+        turn = 2 * np.pi * f / rate
+        with np.errstate(divide="ignore", over="ignore"):
+            power = lines_power(zeros, turn) / lines_power(poles, turn)
+        return np.where(f <= rate / 2, np.sqrt(power), 0.0)
+
+    return normed(shape, band)
+
+
+def lines_power(lines: list, turn: np.ndarray) -> np.ndarray:
+    """The squared absolute value on the unit circle of the polynomial with these line spectral frequencies: that of the symmetric one
+    and that of the antisymmetric one, which are a quarter turn apart, over four."""
+    factors = [np.prod([4 * (np.cos(turn) - math.cos(w)) ** 2 for w in lines[i::2]] or [np.ones_like(turn)], axis=0) for i in (0, 1)]
+    if len(lines) % 2 == 0:
+        return factors[0] * np.cos(turn / 2) ** 2 + factors[1] * np.sin(turn / 2) ** 2
+    return (factors[0] + 4 * factors[1] * np.sin(turn) ** 2) / 4
+
+
 def window_lobe(d: np.ndarray) -> np.ndarray:
     """sinc(d) / (1 - d^2), 1/2 at d = +-1."""
     near = np.abs(np.abs(d) - 1) < 1e-9
@@ -201,6 +227,7 @@ def non_negative(weights: np.ndarray, energies: np.ndarray) -> np.ndarray:
 
 SHAPES = {
     "org.htex.ar": ar,
+    "org.htex.arma": arma,
     "org.htex.mfcc": mfcc,
     "org.htex.speak": speak,
     "org.htex.sbeta": sbeta,

@@ -86,7 +86,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
         let motion = ["--speed", SPEED, "--force", FORCE];
         htex(&[&what[..], &length, &motion].concat())
     };
-    for model in &plugins::models()? {
+    for model in &plugins::fitted_by_default()? {
         synth("vinyl.htex", model)?;
     }
     synth("bursts.htex", "bursts")?;

@@ -117,7 +117,8 @@ fn written(
             &["process", &csv, "--json"],
             Some(&format!("{surface}.json")),
         )?;
-        htex(&["fit", &csv, "-o", &asset, "--keep-reference"], None)?;
+        let fit = ["fit", &csv, "--model", "all,arma", "-o", &asset];
+        htex(&[&fit[..], &["--keep-reference"]].concat(), None)?;
         for model in &models()? {
             let out = format!("{surface}-{model}.wav");
             let what = [

@@ -26,7 +26,7 @@ settings! {
     /// # Ok::<(), htex_author::settings::SettingsError>(())
     /// ```
     pub struct FitSettings {
-        /// Models by short name or id, in the order of the representations; all when absent.
+        /// Models by short name or id, in the order of the representations; all that are fitted by default when absent.
         #[cfg_attr(feature = "clap", arg(
             long = "model",
             default_value = "all",
@@ -193,7 +193,7 @@ impl FitSettings {
         let lines = self.grid.as_deref().unwrap_or_default();
         let grid = (!lines.is_empty()).then(|| Grid::parse(lines.iter().map(String::as_str)));
         // The models that come with this program: a plugin runs only where it is asked for.
-        let builtin = registry.models().iter();
+        let builtin = registry.by_default();
         let builtin = builtin.filter(|model| *model.origin() == Origin::Builtin);
         Ok(AssetRequest::new(name)
             .with_models(self.models(registry)?)
@@ -211,20 +211,20 @@ impl FitSettings {
     }
 }
 
-/// Returns the models of these names, each once. Without names, or when one of them is `all`, returns all; those that are
-/// written in another language of the running program last.
+/// Returns the models of these names, each once. `all`, and no name, stand for those that a program takes by itself
+/// ([`Registry::by_default`]); those of them that are written in another language of the running program come last.
 ///
 /// # Errors
 /// When a model is not known.
 pub fn named_models(registry: &Registry, names: &[String]) -> Result<Vec<LoadedModel>, HostError> {
+    let mut models: Vec<LoadedModel> = Vec::new();
     if names.is_empty() || names.iter().any(|name| name == "all") {
-        let all = registry.models().iter().cloned();
+        let all = registry.by_default().cloned();
         let is_other = |model: &LoadedModel| matches!(model.origin(), Origin::Runtime(_));
         let (others, own): (Vec<_>, Vec<_>) = all.partition(is_other);
-        return Ok([own, others].concat());
+        models = [own, others].concat();
     }
-    let mut models: Vec<LoadedModel> = Vec::new();
-    for name in names {
+    for name in names.iter().filter(|name| *name != "all") {
         let model = registry.find(name)?;
         if !models.iter().any(|m| m.id() == model.id()) {
             models.push(model.clone());

@@ -7,9 +7,9 @@
 #include <htex.h>
 #include <stdio.h>
 
-enum { MODELS = 6, FIRST = 64 << 10, LEFT = 256 << 10 };
+enum { MODELS = 7, FIRST = 64 << 10, LEFT = 256 << 10 };
 
-static const char *const NAMES[MODELS] = {"ar", "bands", "mfcc", "sbeta", "speak", "sslope"};
+static const char *const NAMES[MODELS] = {"ar", "arma", "bands", "mfcc", "sbeta", "speak", "sslope"};
 
 int main(int argc, char **argv)
 {

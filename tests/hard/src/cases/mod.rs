@@ -1,5 +1,6 @@
 //! The rows, by kind.
 
+mod arma;
 mod autoregression;
 mod beta;
 mod cepstrum;
@@ -21,6 +22,7 @@ pub(crate) fn sections() -> Vec<Section> {
         recordings::SECTION,
         prediction::SECTION,
         autoregression::SECTION,
+        arma::SECTION,
         mixing::SECTION,
         beta::SECTION,
         slope::SECTION,

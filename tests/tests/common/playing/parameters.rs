@@ -1,5 +1,6 @@
 //! Parameters of each model, drawn in ranges that cover its cases.
 
+use htex_dsp::line_spectrum::line_spectral_frequencies_of_reflection;
 use htex_dsp::linear_prediction::reflection_to_coefficients;
 use htex_dsp::uniform::Uniform;
 
@@ -11,6 +12,7 @@ pub fn parameters(model: &str, asset: usize, condition: usize) -> Vec<f64> {
     let mut draw = Draw(Uniform::new(seed + (100 * asset + condition) as u64));
     match model {
         "ar" => ar(&mut draw, asset, condition),
+        "arma" => arma(&mut draw, asset, condition),
         "mfcc" => mfcc(&mut draw, asset),
         "speak" => speak(&mut draw, asset, condition),
         "sbeta" => vec![draw.within(0.5, 8.0), draw.within(0.5, 8.0)],
@@ -51,6 +53,18 @@ fn ar(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
         vec![rate_hz],
     ]
     .concat()
+}
+
+/// Orders 0 to 12 of poles and 0 to 6 of zeros, within an asset too.
+fn arma(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
+    let poles = [0, 2, 4, 6, 8][asset % 5] + 2 * (condition % 3);
+    let zeros = [0, 1, 3, 4, 2][asset % 5] + condition % 3;
+    let rate_hz = [2_000.0, 2_000.0, 4_000.0, 1_000.0, 1_500.0][asset % 5];
+    let mut lines = |count: usize| {
+        let reflection = draw.list(count, -0.8, 0.8);
+        line_spectral_frequencies_of_reflection(&reflection)
+    };
+    [list(&lines(poles)), list(&lines(zeros)), vec![rate_hz]].concat()
 }
 
 /// All three inverses; fewer coefficients than bands, and more.

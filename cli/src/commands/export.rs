@@ -1,0 +1,246 @@
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use htex_exchange::{
+    Coding, ExchangeError, Exported, Format, Path, Played, Profile, Stroke, exported, profile_names,
+};
+use htex_format::Measure;
+use serde::Serialize;
+
+use crate::commands::spectrum::ChoiceArgs;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::given::Given;
+use crate::located;
+use crate::of_file::{OfFile, ResultOfFile};
+use crate::output::{note, print, print_json, write_file};
+use crate::outputs::check_outputs;
+use crate::plugins::PlayerArgs;
+use crate::shown::shown;
+
+/// Write a texture at a condition, or along a stroke, as a file that phones, controllers and engines play.
+///
+/// The profile of an actuator decides what of the spectrum it can do. The file is read again, played through the profile, and
+/// compared with the asset's own samples: that difference is printed.
+#[derive(Args)]
+pub(crate) struct Export {
+    /// The asset
+    #[arg(value_parser = located::ASSET)]
+    asset: PathBuf,
+
+    /// The format to write; `htex formats` describes them
+    #[arg(long, value_name = "FORMAT", value_parser = exported())]
+    to: String,
+
+    #[command(flatten)]
+    given: Given<Settings>,
+
+    #[command(flatten)]
+    player: PlayerArgs,
+
+    /// The file to write; with --to android, Kotlin if it ends in .kt, else JSON
+    #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
+    output: PathBuf,
+
+    /// Print JSON instead of sentences
+    #[arg(long)]
+    json: bool,
+}
+
+/// Settings of which each format takes its own.
+#[derive(Args)]
+struct Settings {
+    #[command(flatten)]
+    choice: ChoiceArgs,
+
+    /// A stroke instead of a condition: a CSV of time, speed and force (t_s, speed_mm_s, force_n), or of time, position
+    /// and force
+    #[arg(long, value_name = "CSV", value_parser = located::RECORDING, conflicts_with_all = ["speed", "force", "seconds"])]
+    stroke: Option<PathBuf>,
+
+    /// The actuator [default: the format's own]
+    #[arg(long, value_name = "NAME", value_parser = profile_names())]
+    profile: Option<String>,
+
+    /// Length of a condition, s
+    #[arg(long, default_value_t = 2.0, value_name = "S")]
+    seconds: f64,
+
+    /// Sampling rate of WAV, Hz [default: 8000]
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(100..=192_000))]
+    rate: Option<u32>,
+
+    /// How hjif codes a texture [default: vectorial]
+    #[arg(long, value_enum, value_name = "CODING")]
+    coding: Option<CodingArg>,
+
+    /// The same seed gives the same samples
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum CodingArg {
+    /// Seven tones
+    Vectorial,
+    /// Samples
+    Wavelet,
+}
+
+impl From<CodingArg> for Coding {
+    fn from(coding: CodingArg) -> Self {
+        match coding {
+            CodingArg::Vectorial => Self::Vectorial,
+            CodingArg::Wavelet => Self::Wavelet,
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct Written<'a> {
+    file: String,
+    bytes: usize,
+    #[serde(flatten)]
+    exported: &'a Exported,
+}
+
+impl Export {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
+        let inputs = [&self.asset].into_iter().chain(&self.given.values.stroke);
+        check_outputs([self.output.as_path()], inputs.map(PathBuf::as_path))?;
+        let unknown = || Failure::Usage(format!("--to {}: there is no such format", self.to));
+        let format = Format::named(&self.to).ok_or_else(unknown)?;
+        format.check_export(self.given.settings.iter().map(String::as_str))?;
+        let asset = self.player.open(&self.asset)?;
+        let export = self.export(format, &asset)?;
+        let exported =
+            htex_exchange::export(&asset, &export).map_err(|error| self.failure(error))?;
+        write_file(&self.output, &exported.bytes)?;
+        self.tell(&exported)?;
+        Ok(Exit::SUCCESS)
+    }
+
+    fn export<'a>(
+        &'a self,
+        format: &'static Format,
+        asset: &htex::Asset,
+    ) -> Result<htex_exchange::Export<'a>, Failure> {
+        let settings = &self.given.values;
+        let mut export = htex_exchange::Export::new(format);
+        export.path = self.path(asset)?;
+        export.model = settings.choice.model.as_deref();
+        export.profile = settings.profile.as_deref().map(Profile::find).transpose()?;
+        export.seconds = settings.seconds;
+        export.rate_hz = settings.rate.map(f64::from);
+        export.seed = settings.seed;
+        export.kotlin = self.output.extension().is_some_and(|e| e == "kt");
+        export.coding = settings.coding.map(Into::into);
+        Ok(export)
+    }
+
+    fn path(&self, asset: &htex::Asset) -> Result<Path, Failure> {
+        let settings = &self.given.values;
+        if let Some(stroke) = &settings.stroke {
+            return Ok(Path::Stroke(Stroke::open(stroke)?));
+        }
+        let beyond = settings.choice.beyond(asset, htex::Effects::default());
+        note(&Vec::from_iter(beyond.of(&self.asset)?));
+        Ok(Path::Condition(settings.choice.motion(asset)))
+    }
+
+    /// An error of playing names the asset.
+    fn failure(&self, error: ExchangeError) -> Failure {
+        match error {
+            ExchangeError::Play(error) => error.of(&self.asset),
+            error => error.into(),
+        }
+    }
+
+    fn tell(&self, exported: &Exported) -> Result<(), Failure> {
+        if self.json {
+            return print_json(&Written {
+                file: self.output.display().to_string(),
+                bytes: exported.bytes.len(),
+                exported,
+            });
+        }
+        let played = exported.played.as_ref().map(played).unwrap_or_default();
+        print(&format!(
+            "{}: {} bytes{played}\nthe format loses {}\n",
+            shown(&self.output),
+            exported.bytes.len(),
+            exported.loses,
+        ))?;
+        note(&exported.notes);
+        Ok(())
+    }
+}
+
+/// What is lost as the file is played, in words.
+fn played(played: &Played) -> String {
+    let lost = &played.lost;
+    let felt = &lost.difference.felt.error;
+    let threshold = match felt.below_difference_threshold {
+        true => "below",
+        false => "above",
+    };
+    let nine_bands = lost.difference.quality.get(Measure::NineBand);
+    format!(
+        ", {} s for {}\nlost: felt {:.1} dB RMS, {:.1} dB at most, {:+.1} dB together ({threshold} the difference threshold), \
+         nine bands {:.1} dB, level {:+.1} dB; the actuator is too weak in {:.0} % of the time",
+        played.seconds,
+        played.profile,
+        felt.error_rms_db,
+        felt.largest_error_db,
+        felt.total_error_db,
+        nine_bands.unwrap_or_default(),
+        lost.level_db,
+        100.0 * played.limited,
+    )
+}
+
+impl From<ExchangeError> for Failure {
+    fn from(error: ExchangeError) -> Self {
+        use ExchangeError::{
+            Missing, NoSamples, OutOfRange, UnknownFormat, UnknownProfile, Unused,
+        };
+        let flag = |setting: &str| format!("--{}", setting.replace('_', "-"));
+        match error {
+            Missing { format, missing } => {
+                let flags: Vec<String> = missing.iter().map(|m| flag(m.setting)).collect();
+                let words: Vec<&str> = missing.iter().map(|m| m.words).collect();
+                Self::Usage(format!(
+                    "{format} does not say {}; give {}",
+                    words.join(", "),
+                    flags.join(", ")
+                ))
+            }
+            Unused {
+                format,
+                way,
+                setting,
+                takes,
+            } => {
+                let takes = match takes.is_empty() {
+                    true => String::new(),
+                    false => {
+                        let flags: Vec<String> = takes.into_iter().map(flag).collect();
+                        format!(" (it takes {})", flags.join(", "))
+                    }
+                };
+                let unused = flag(&setting);
+                Self::Usage(format!(
+                    "{format}: its {way} takes no {unused}; leave it out{takes}"
+                ))
+            }
+            OutOfRange { name, value, range } => {
+                Self::Usage(format!("{} {value}: {range}", flag(name)))
+            }
+            ExchangeError::Author(error) => error.into(),
+            error @ (UnknownFormat { .. } | UnknownProfile { .. } | NoSamples { .. }) => {
+                Self::Usage(error.to_string())
+            }
+            error => Self::Other(error.to_string()),
+        }
+    }
+}

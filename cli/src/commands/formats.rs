@@ -1,0 +1,55 @@
+use clap::Args;
+use htex_exchange::{FORMATS, Format, PROFILES, Reads};
+use serde_json::json;
+
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::output::{print, print_json};
+
+/// List the formats that are imported and exported, what each keeps and loses, and the profiles of actuators.
+#[derive(Args)]
+pub(crate) struct Formats {
+    /// Print JSON instead of lists
+    #[arg(long)]
+    json: bool,
+}
+
+impl Formats {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
+        match self.json {
+            true => print_json(&json!({ "formats": FORMATS, "profiles": &*PROFILES }))?,
+            false => print(&text())?,
+        }
+        Ok(Exit::SUCCESS)
+    }
+}
+
+fn text() -> String {
+    let mut text = String::new();
+    for format in FORMATS {
+        text += &format!(
+            "{:8} {} ({}): {}\n         keeps {}\n         loses {}\n",
+            format.name,
+            format.title,
+            format.dotted(),
+            ways(format),
+            format.keeps,
+            format.loses,
+        );
+    }
+    text += "\nprofiles of actuators:\n";
+    for profile in PROFILES.iter() {
+        text += &format!("{:10} {}\n", profile.name, profile.title);
+    }
+    text
+}
+
+/// How its files come in and go out, in words.
+fn ways(format: &Format) -> String {
+    let import = format.reads.as_ref().map(|reads| match reads {
+        Reads::Asset(_) => "import",
+        _ => "import with --full-scale, --speed and --force",
+    });
+    let ways = [import, format.writes.map(|_| "export")];
+    Vec::from_iter(ways.into_iter().flatten()).join("; ")
+}

@@ -1,0 +1,155 @@
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use clap::Args;
+use htex_author::settings::{FitSettings, Metadata};
+use htex_exchange::{Format, ImportError, MOST_BYTES, Physical, Profile, imported, profile_names};
+use htex_files::{AtFile, read_regular};
+use htex_format::Quantity;
+
+use crate::assets::AssetSummary;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::given::Given;
+use crate::located;
+use crate::metadata::checked;
+use crate::models::tool;
+use crate::output::{note, print, print_json, warn, write_file};
+use crate::outputs::check_outputs;
+use crate::plugins::PluginArgs;
+use crate::shown::shown;
+
+/// Read a file of another haptic format as a texture.
+///
+/// A model file of the Penn Haptic Texture Toolkit states units, speeds and forces, and becomes a texture as it is. The others
+/// are signals that know none of it, and are fitted as a recording is: say how strong 1 is (--full-scale), and at which speed
+/// and force the file is felt. `htex formats` lists what is kept and lost.
+#[derive(Args)]
+pub(crate) struct Import {
+    #[arg(help = format!("The file: {}", imported()))]
+    #[arg(value_parser = located::RECORDING)]
+    file: PathBuf,
+
+    #[command(flatten)]
+    given: Given<Settings>,
+
+    /// The asset to write
+    #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT, display_order = 3)]
+    output: PathBuf,
+
+    #[command(flatten)]
+    metadata: Metadata,
+
+    #[command(flatten)]
+    plugins: PluginArgs,
+
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+/// Settings of which each format takes its own.
+#[derive(Args)]
+struct Settings {
+    /// The unit at full scale, which the file calls 1: newtons, or m/s² with --quantity acceleration
+    #[arg(long, value_name = "UNIT", display_order = 1)]
+    full_scale: Option<f64>,
+
+    /// What the full scale is of
+    #[arg(long, value_enum, default_value_t, display_order = 1)]
+    quantity: Quantity,
+
+    /// Speed of the finger, mm/s
+    #[arg(long, value_name = "MM_S", display_order = 1)]
+    speed: Option<f64>,
+
+    /// Its normal force, N
+    #[arg(long, value_name = "N", display_order = 1)]
+    force: Option<f64>,
+
+    /// The actuator whose range the file's frequencies are positions in [default: the format's own]
+    #[arg(long, value_name = "NAME", value_parser = profile_names(), display_order = 1)]
+    profile: Option<String>,
+
+    #[command(flatten)]
+    fit: FitSettings,
+
+    /// A fit option of a model, e.g. ar.order=6 or mfcc.inverse=nnls; may be given several times
+    #[arg(long, value_name = "MODEL.NAME=VALUE", display_order = 1)]
+    option: Vec<String>,
+}
+
+impl Import {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
+        let plugins = self.plugins.files().iter().map(PathBuf::as_path);
+        let inputs = [self.file.as_path()].into_iter().chain(plugins);
+        check_outputs([self.output.as_path()], inputs)?;
+        checked(&self.metadata)?;
+        let name = self.file.file_name().unwrap_or_default().to_string_lossy();
+        let given = self.given.settings.iter().map(String::as_str);
+        Format::of_file(&name)?.check_import(given)?;
+        let bytes = read_regular(&self.file, MOST_BYTES).reading(&self.file)?;
+        let registry = self.plugins.registry()?;
+        let stem = self
+            .output
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy();
+        let tool = tool();
+        let how = self.how(&stem, &tool)?;
+        let imported = htex_exchange::import(&name, &bytes, &how, &registry)?;
+        self.write(imported)
+    }
+
+    fn how<'a>(&self, name: &'a str, tool: &'a str) -> Result<htex_exchange::Import<'a>, Failure> {
+        let settings = &self.given.values;
+        let mut fit = settings.fit.clone();
+        fit.add_options(&settings.option)?;
+        Ok(htex_exchange::Import {
+            name,
+            physical: Physical {
+                full_scale: settings.full_scale,
+                quantity: settings.quantity,
+                speed_mm_s: settings.speed,
+                force_n: settings.force,
+            },
+            profile: settings.profile.as_deref().map(Profile::find).transpose()?,
+            fit,
+            metadata: self.metadata.clone(),
+            tool,
+        })
+    }
+
+    fn write(&self, imported: htex_exchange::Imported) -> Result<Exit, Failure> {
+        let bytes = imported.asset.to_bytes()?;
+        write_file(&self.output, &bytes)?;
+        let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &imported.asset)
+            .with_felt(&imported.felt);
+        if self.json {
+            let known: BTreeSet<String> = summary.warnings.iter().cloned().collect();
+            let warnings = imported.warnings.iter().map(ToString::to_string);
+            let new = warnings.filter(|warning| !known.contains(warning));
+            summary.warnings.extend(new);
+            let notes = imported.notes.iter().map(ToString::to_string);
+            summary.notes.extend(notes);
+            return print_json(&summary).map(|()| Exit::SUCCESS);
+        }
+        warn(&imported.warnings);
+        note(&imported.notes);
+        summary.warnings.clear();
+        let text = summary.to_text();
+        print(&format!("imported {}\n{text}", shown(&self.file)))?;
+        Ok(Exit::SUCCESS)
+    }
+}
+
+impl From<ImportError> for Failure {
+    fn from(error: ImportError) -> Self {
+        match error {
+            ImportError::Exchange(error) => error.into(),
+            ImportError::Settings(error) => error.into(),
+            ImportError::Author(error) => error.into(),
+            error => Self::Other(error.to_string()),
+        }
+    }
+}

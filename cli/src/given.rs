@@ -1,0 +1,47 @@
+//! Arguments, and which of them the command line has: what has a default is not what a person asked for.
+
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
+
+/// Arguments, with the names of those that were given.
+pub(crate) struct Given<T> {
+    pub(crate) values: T,
+    /// As keywords: `full_scale` of `--full-scale`.
+    pub(crate) settings: Vec<String>,
+}
+
+impl<T: Args> Given<T> {
+    fn settings_of(matches: &ArgMatches) -> Vec<String> {
+        let command = T::augment_args(Command::new("given"));
+        let given = command.get_arguments().filter(|argument| {
+            let source = matches.value_source(argument.get_id().as_str());
+            source == Some(ValueSource::CommandLine)
+        });
+        let long = given.filter_map(|argument| argument.get_long());
+        long.map(|long| long.replace('-', "_")).collect()
+    }
+}
+
+impl<T: Args> FromArgMatches for Given<T> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        Ok(Self {
+            settings: Self::settings_of(matches),
+            values: T::from_arg_matches(matches)?,
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        self.settings = Self::settings_of(matches);
+        self.values.update_from_arg_matches(matches)
+    }
+}
+
+impl<T: Args> Args for Given<T> {
+    fn augment_args(command: Command) -> Command {
+        T::augment_args(command)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        T::augment_args_for_update(command)
+    }
+}

@@ -1,0 +1,349 @@
+//! `htex import`, `htex export` and `htex formats`, as a user runs them.
+
+use serde_json::{Value, json};
+
+use crate::common::Place;
+
+/// Half a second of a hum that grows.
+fn haptic() -> String {
+    json!({"version": {"major": 1, "minor": 0, "patch": 0}, "metadata": {}, "signals": {"continuous": {"envelopes": {
+        "amplitude": [{"time": 0, "amplitude": 0.4}, {"time": 0.5, "amplitude": 0.6}],
+        "frequency": [{"time": 0, "frequency": 0.5}],
+    }}}})
+    .to_string()
+}
+
+/// A model file of the Penn Haptic Texture Toolkit with four nodes, of which two are silent.
+fn hatt() -> String {
+    let node = |number: usize, speed: f64, force: f64, variance: f64| {
+        format!(
+            "<model><modNum>{number}</modNum><ARcoeff><value>1</value><value>-0.9</value><value>0.5</value></ARcoeff>\
+             <MAcoeff><value>1</value><value>0.3</value></MAcoeff><var>{variance}</var><gain>2.5</gain>\
+             <speedMod>{speed}</speedMod><forceMod>{force}</forceMod></model>"
+        )
+    };
+    let nodes = [
+        node(1, 0.0, 0.0, 0.0),
+        node(2, 240.0, 0.0, 0.0),
+        node(3, 0.0, 3.0, 0.01),
+        node(4, 240.0, 3.0, 0.02),
+    ];
+    format!(
+        "<?xml version=\"1.0\"?>\n<modelSet texture=\"7\">\n<material>Felt</material>\n<AccelUnits>m/s^2</AccelUnits>\n\
+         <SpeedUnits>mm/s</SpeedUnits>\n<ForceUnits>N</ForceUnits>\n<SampleRate>1000</SampleRate>\n<numMod>4</numMod>\n{}\n</modelSet>\n",
+        nodes.concat()
+    )
+}
+
+const GIVEN: &str = "--full-scale 0.2 --speed 80 --force 0.4";
+
+fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
+}
+
+/// Runs a line, and expects a status.
+fn run(place: &Place, line: &str, code: i32) -> (String, String) {
+    let run = place.run(&words(line));
+    assert_eq!(run.code(), code, "{line}: {}{}", run.text(), run.error());
+    (run.text(), run.error())
+}
+
+fn imported() -> Place {
+    let place = Place::new();
+    place.write("hum.haptic", haptic());
+    run(
+        &place,
+        &format!("import hum.haptic {GIVEN} --model bands --license CC0-1.0 -o hum.htex"),
+        0,
+    );
+    place
+}
+
+#[test]
+fn a_signal_is_imported_with_what_it_does_not_say() {
+    let place = Place::new();
+    place.write("hum.haptic", haptic());
+    let line = format!(
+        "import hum.haptic {GIVEN} --model bands --option bands.bands=12 --license CC0-1.0 -o hum.htex"
+    );
+    let (text, error) = run(&place, &line, 0);
+    assert!(
+        text.starts_with("imported hum.haptic\nhum.htex: "),
+        "{text}"
+    );
+    assert!(
+        error.contains("Its 0.500 s are repeated 8 times."),
+        "{error}"
+    );
+    let made = place.json(&words(&format!("{line} --json")));
+    assert_eq!(made["license"], "CC0-1.0");
+    assert_eq!(
+        made["conditions"],
+        json!([{"speed_mm_s": 80.0, "force_n": 0.4}])
+    );
+    assert_eq!(made["representations"].as_array().unwrap().len(), 1);
+    assert!(
+        made["warnings"].to_string().contains("repeated 8 times"),
+        "{made}"
+    );
+    run(&place, "validate hum.htex", 0);
+
+    // What the file does not say is asked for, by flags.
+    let (_, error) = run(&place, "import hum.haptic --speed 80 -o other.htex", 2);
+    assert!(
+        error.contains("does not say how strong 1 is, at which force; give --full-scale, --force"),
+        "{error}"
+    );
+    let (_, error) = run(
+        &place,
+        "import hum.haptic --full-scale 0 --speed 80 --force 1 -o other.htex",
+        2,
+    );
+    assert!(
+        error.contains("--full-scale 0: more than 0, at most 1e6"),
+        "{error}"
+    );
+    assert!(!place.path("other.htex").exists());
+}
+
+#[test]
+fn a_model_file_states_all_and_takes_no_flag_of_a_signal() {
+    let place = Place::new();
+    place.write("felt.xml", hatt());
+    let made = place.json(&words(
+        "import felt.xml --license CC-BY-4.0 -o felt.htex --json",
+    ));
+    assert_eq!(made["license"], "CC-BY-4.0");
+    assert_eq!(made["quantity"], "acceleration");
+    assert_eq!(made["conditions"].as_array().unwrap().len(), 4);
+    run(&place, "validate felt.htex", 0);
+    for flag in [
+        "--full-scale 1",
+        "--speed 80",
+        "--force 1",
+        "--quantity acceleration",
+        "--profile quest",
+        "--model arma",
+        "--model all",
+        "--level recording",
+        "--keep-reference",
+        "--option arma.poles=2",
+        "--grid auto",
+    ] {
+        let (_, error) = run(&place, &format!("import felt.xml {flag} -o other.htex"), 2);
+        let name = flag.split(' ').next().unwrap();
+        assert!(
+            error.contains(&format!("its import takes no {name}; leave it out")),
+            "{error}"
+        );
+    }
+    assert!(!place.path("other.htex").exists());
+}
+
+#[test]
+fn an_import_takes_no_flag_that_the_format_has_no_use_for() {
+    let place = Place::new();
+    place.write("hum.haptic", haptic());
+    let (_, error) = run(
+        &place,
+        &format!("import hum.haptic {GIVEN} --grid auto -o hum.htex"),
+        2,
+    );
+    assert!(
+        error.contains("takes no --grid; leave it out (it takes --full-scale, --quantity"),
+        "{error}"
+    );
+    place.write("hum.hjif", "{}");
+    let (_, error) = run(
+        &place,
+        &format!("import hum.hjif {GIVEN} --profile quest -o hum.htex"),
+        2,
+    );
+    assert!(error.contains("its import takes no --profile"), "{error}");
+}
+
+#[test]
+fn files_that_are_none_are_refused_with_their_place() {
+    let place = Place::new();
+    let bad = haptic().replace("0.6", "1.6");
+    place.write("loud.haptic", bad);
+    place.write("cut.ahap", "{\"Version\": 1,\n \"Pattern\": [");
+    place.write("set.xml", "<modelSet>\n<material>Felt</modelSet>");
+    place.write("hum.mp3", "");
+    for (file, expected) in [
+        (
+            "loud.haptic",
+            "loud.haptic: /signals/continuous/envelopes/amplitude/1/amplitude: the amplitude is 1.6; it must be 0 to 1",
+        ),
+        ("cut.ahap", "cut.ahap: line 2 column 13: it is not JSON"),
+    ] {
+        let (_, error) = run(&place, &format!("import {file} {GIVEN} -o out.htex"), 1);
+        assert!(error.contains(expected), "{error}");
+    }
+    let (_, error) = run(&place, "import set.xml -o out.htex", 1);
+    assert!(error.contains("set.xml: line "), "{error}");
+    let (_, error) = run(&place, "import hum.mp3 -o out.htex", 2);
+    assert!(error.contains("hum.mp3: no format that is read has this extension; there are .xml, .haptic, .ahap and .hjif"), "{error}");
+    let (_, error) = run(
+        &place,
+        &format!("import loud.haptic {GIVEN} -o loud.haptic"),
+        1,
+    );
+    assert!(error.contains("loud.haptic"), "{error}");
+    assert!(!place.path("out.htex").exists());
+}
+
+#[test]
+fn an_export_says_what_is_lost() {
+    let place = imported();
+    for (to, file) in [
+        ("haptic", "out.haptic"),
+        ("ahap", "out.ahap"),
+        ("android", "out.json"),
+        ("android", "out.kt"),
+        ("hjif", "out.hjif"),
+        ("wav", "out.wav"),
+    ] {
+        let line = format!("export hum.htex --to {to} -o {file}");
+        let (text, error) = run(&place, &line, 0);
+        for part in ["lost: felt ", "nine bands ", "level ", "the format loses "] {
+            assert!(text.contains(part), "{to}: {text}");
+        }
+        assert!(error.contains("are assumed, not measured"), "{to}: {error}");
+        let first = std::fs::read(place.path(file)).unwrap();
+        let told = place.json(&words(&format!("{line} --json")));
+        assert_eq!(told["format"], to);
+        assert_eq!(told["bytes"], first.len());
+        assert_eq!(told["seconds"], 2.0);
+        assert!(told["lost"]["level_db"].is_f64() && told["limited"].is_number());
+        assert!(told["lost"].to_string().contains("nine_band"), "{told}");
+        assert_eq!(std::fs::read(place.path(file)).unwrap(), first, "{to}");
+    }
+    let kotlin = std::fs::read_to_string(place.path("out.kt")).unwrap();
+    assert!(
+        kotlin.starts_with("import android.os.VibrationEffect\n"),
+        "{kotlin}"
+    );
+    // What was written comes in again.
+    for file in ["out.haptic", "out.ahap", "out.hjif"] {
+        run(
+            &place,
+            &format!("import {file} {GIVEN} --model bands -o again.htex"),
+            0,
+        );
+    }
+}
+
+#[test]
+fn an_export_follows_condition_stroke_and_profile() {
+    let place = imported();
+    let mut stroke = String::from("t_s,speed_mm_s,force_n\n");
+    for i in 0..=20 {
+        stroke += &format!("{},{},0.4\n", 0.1 * f64::from(i), 40 + 4 * i);
+    }
+    place.write("stroke.csv", stroke);
+    let bytes = |rest: &str| {
+        let told = place.json(&words(&format!(
+            "export hum.htex --to haptic {rest} -o out.haptic --json"
+        )));
+        let file: Value =
+            serde_json::from_slice(&std::fs::read(place.path("out.haptic")).unwrap()).unwrap();
+        (told, file)
+    };
+    let (_, plain) = bytes("");
+    let (told, fast) = bytes("--speed 160 --force 0.4 --seconds 1");
+    assert_eq!(told["seconds"], 1.0);
+    assert_ne!(plain, fast);
+    let (told, along) = bytes("--stroke stroke.csv");
+    assert_eq!(told["seconds"], 2.0);
+    assert_ne!(plain, along);
+    let (told, _) = bytes("--profile erm --model bands");
+    assert_eq!(told["profile"], "erm");
+    let (_, error) = run(
+        &place,
+        "export hum.htex --to haptic --stroke stroke.csv --speed 80 -o out.haptic",
+        2,
+    );
+    assert!(error.contains("cannot be used with"), "{error}");
+}
+
+#[test]
+fn an_export_takes_no_flag_that_the_format_has_no_use_for() {
+    let place = imported();
+    for (to, flag) in [
+        ("wav", "--coding wavelet"),
+        ("haptic", "--coding vectorial"),
+        ("haptic", "--rate 8000"),
+        ("hjif", "--rate 8000"),
+        ("android", "--rate 8000"),
+    ] {
+        let (_, error) = run(
+            &place,
+            &format!("export hum.htex --to {to} {flag} -o out.bin"),
+            2,
+        );
+        let name = flag.split(' ').next().unwrap();
+        assert!(
+            error.contains(&format!("its export takes no {name}; leave it out")),
+            "{error}"
+        );
+    }
+    for (rest, expected) in [
+        ("--to hatt", "invalid value 'hatt'"),
+        ("--to png", "invalid value 'png'"),
+        ("--to wav --profile phone", "invalid value 'phone'"),
+        ("--to wav --profile erm", "choose haptic, ahap or android"),
+        ("--to wav --seconds 0.1", "--seconds 0.1: 0.5 to 600 s"),
+        (
+            "--to wav --rate 1000",
+            "--rate 1000: twice the texture's highest frequency",
+        ),
+        ("--to wav --model nothing", "nothing"),
+    ] {
+        let (_, error) = run(&place, &format!("export hum.htex {rest} -o out.bin"), 2);
+        assert!(error.contains(expected), "{rest}: {error}");
+    }
+    run(&place, "export hum.htex --to wav -o hum.htex", 1);
+    assert!(!place.path("out.bin").exists());
+}
+
+#[test]
+fn formats_lists_what_is_kept_and_lost() {
+    let place = Place::new();
+    let (text, _) = run(&place, "formats", 0);
+    for part in [
+        "hatt     Penn Haptic Texture Toolkit, XML (.xml): import\n",
+        "haptic   Meta .haptic, version 1 (.haptic): import with --full-scale, --speed and --force; export\n",
+        "wav      WAV that drives an actuator (.wav): export\n",
+        "         keeps level and one frequency over time\n",
+        "profiles of actuators:\nquest ",
+    ] {
+        assert!(text.contains(part), "{text}");
+    }
+    let told = place.json(&["formats", "--json"]);
+    let formats = told["formats"].as_array().unwrap();
+    let names: Vec<&str> = formats
+        .iter()
+        .map(|f| f["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["hatt", "haptic", "ahap", "android", "hjif", "wav"]);
+    assert_eq!(formats[0]["import"], "asset");
+    assert_eq!(formats[0]["import_settings"], json!([]));
+    assert_eq!(formats[0]["export"], Value::Null);
+    assert_eq!(
+        formats[4]["export_settings"]
+            .as_array()
+            .unwrap()
+            .last()
+            .unwrap(),
+        "coding"
+    );
+    let profile = &told["profiles"][0];
+    assert_eq!(profile["name"], "quest");
+    assert!(
+        profile["low_hz"]["source"]
+            .as_str()
+            .unwrap()
+            .contains("MetaQuest.acf")
+    );
+}

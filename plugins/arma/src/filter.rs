@@ -1,0 +1,170 @@
+//! The filter of a parameter set.
+
+use core::f64::consts::PI;
+
+use htex_dsp::band_limit::PassedPower;
+use htex_dsp::grid::{Band, curve_level_rms};
+use htex_dsp::line_spectrum::coefficients_of_cosines;
+use htex_dsp::linear_prediction::{ar_magnitude, step_down_in_place};
+use htex_dsp::trig::half_turn_cosines;
+use htex_model::{Error, Values};
+
+use crate::{MAX_ORDER, MODEL_RATE, POLE_LINES, ZERO_LINES};
+
+/// `(1 - Σ B_i z⁻ⁱ) / (1 - Σ A_i z⁻ⁱ)`.
+pub(crate) struct Filter {
+    poles: Polynomial,
+    zeros: Polynomial,
+    /// Of the denominator.
+    reflection: [f64; MAX_ORDER],
+    rate_hz: f64,
+}
+
+/// `1 - Σ A_i z⁻ⁱ`, and the cosines of its lines.
+struct Polynomial {
+    coefficients: [f64; MAX_ORDER],
+    cosines: [f64; MAX_ORDER],
+    order: usize,
+}
+
+impl Polynomial {
+    const ONE: Self = Self {
+        coefficients: [0.0; MAX_ORDER],
+        cosines: [0.0; MAX_ORDER],
+        order: 0,
+    };
+
+    /// Becomes that of some lines; false if there are too many.
+    fn set(&mut self, lines: &[f64]) -> bool {
+        let order = lines.len();
+        let Some(cosines) = self.cosines.get_mut(..order) else {
+            return false;
+        };
+        half_turn_cosines(lines, cosines);
+        coefficients_of_cosines(cosines, &mut self.coefficients[..order]);
+        self.coefficients[order..].fill(0.0);
+        self.order = order;
+        true
+    }
+
+    fn coefficients(&self) -> &[f64] {
+        &self.coefficients[..self.order]
+    }
+
+    fn cosines(&self) -> &[f64] {
+        &self.cosines[..self.order]
+    }
+}
+
+impl Filter {
+    /// The filter that changes nothing, at a rate.
+    pub(crate) fn one(rate_hz: f64) -> Self {
+        Self {
+            poles: Polynomial::ONE,
+            zeros: Polynomial::ONE,
+            reflection: [0.0; MAX_ORDER],
+            rate_hz,
+        }
+    }
+
+    pub(crate) fn new(parameters: &Values<'_>) -> Result<Self, Error> {
+        let mut filter = Self::one(parameters.scalar(MODEL_RATE));
+        filter.set(parameters)?;
+        Ok(filter)
+    }
+
+    pub(crate) fn of_lines(poles: &[f64], zeros: &[f64], rate_hz: f64) -> Result<Self, Error> {
+        let mut filter = Self::one(rate_hz);
+        filter.set_lines(poles, zeros)?;
+        Ok(filter)
+    }
+
+    /// Becomes the filter of some parameters, of the same rate. Copies no filter: voices do this for each motion. After an error it is
+    /// none.
+    pub(crate) fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        self.set_lines(parameters.list(POLE_LINES), parameters.list(ZERO_LINES))
+    }
+
+    fn set_lines(&mut self, poles: &[f64], zeros: &[f64]) -> Result<(), Error> {
+        let is_inside = poles.iter().all(|w| *w > 0.0 && *w < PI);
+        if !is_inside || poles.windows(2).any(|pair| pair[0] >= pair[1]) {
+            return Err(unordered());
+        }
+        if zeros.windows(2).any(|pair| pair[0] > pair[1]) {
+            return Err(descending());
+        }
+        if !self.poles.set(poles) {
+            return Err(unordered());
+        }
+        if !self.zeros.set(zeros) {
+            return Err(descending());
+        }
+        let (own, beyond) = self.reflection.split_at_mut(poles.len());
+        own.copy_from_slice(self.poles.coefficients());
+        beyond.fill(0.0);
+        match step_down_in_place(own) {
+            true => Ok(()),
+            false => Err(unstable()),
+        }
+    }
+
+    /// `A_1` to `A_p`.
+    pub(crate) fn poles(&self) -> &[f64] {
+        self.poles.coefficients()
+    }
+
+    /// `B_1` to `B_q`.
+    pub(crate) fn zeros(&self) -> &[f64] {
+        self.zeros.coefficients()
+    }
+
+    /// As [`Self::zeros`], and zeros beyond their order.
+    pub(crate) fn zeros_of_any_order(&self) -> &[f64; MAX_ORDER] {
+        &self.zeros.coefficients
+    }
+
+    /// Reflection coefficients of the denominator, and zeros beyond its order.
+    pub(crate) fn reflection(&self) -> &[f64; MAX_ORDER] {
+        &self.reflection
+    }
+
+    /// The level of its noise behind the filters at the band's edges.
+    pub(crate) fn passed_level(&self, passed: &PassedPower) -> Result<f64, Error> {
+        finite_level(passed.rational_level_rms(self.zeros.cosines(), self.poles.cosines()))
+    }
+
+    /// Magnitude `|H|`; zero above the Nyquist frequency of the model rate.
+    pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
+        if frequency_hz > 0.5 * self.rate_hz {
+            return 0.0;
+        }
+        let inverse = |of: &Polynomial| ar_magnitude(of.coefficients(), frequency_hz, self.rate_hz);
+        inverse(&self.poles) / inverse(&self.zeros)
+    }
+
+    pub(crate) fn level(&self, band: Band) -> Result<f64, Error> {
+        finite_level(curve_level_rms(band, |f| self.at(f)))
+    }
+}
+
+/// Checks that a level is usable as a divisor of magnitudes and samples.
+fn finite_level(level: f64) -> Result<f64, Error> {
+    if level > 0.0 && level.is_finite() {
+        return Ok(level);
+    }
+    Err(Error::parameters(
+        "the filter has no finite energy in the band",
+    ))
+}
+
+pub(crate) fn unstable() -> Error {
+    Error::parameters("the filter is not stable: a pole lies on or outside the unit circle")
+}
+
+fn unordered() -> Error {
+    Error::parameters("the lines of the poles do not ascend between 0 and pi")
+}
+
+fn descending() -> Error {
+    Error::parameters("the lines of the zeros descend")
+}

@@ -1,0 +1,161 @@
+//! Estimation of poles and zeros from a power spectrum.
+//!
+//! The poles of a spectrum that is divided by that of the zeros are found by Yule–Walker, and the zeros as the poles of the inverse
+//! spectrum, multiplied by that of the poles; in turns, since each depends on the other. Of all rounds the one is kept under which the
+//! spectrum is likeliest as that of Gaussian noise (the Itakura–Saito distance, whatever the level). No resonance is narrower than a
+//! bin, as in AR: the spectrum cannot show one.
+
+use alloc::vec::Vec;
+
+use htex_dsp::grid::{Band, GRID_HZ, level_rms};
+use htex_dsp::line_spectrum::lines_of_reflection;
+use htex_dsp::linear_prediction::{
+    ar_magnitude, levinson_durbin, step_down_in_place, within_radius,
+};
+use htex_model::{Error, Fit, FitInput};
+
+use crate::filter::Filter;
+
+const POLES: usize = 0;
+const ZEROS: usize = 1;
+const RATE: usize = 2;
+/// Half-power width of the narrowest resonance of a fit, hertz.
+const NARROWEST_HZ: f64 = GRID_HZ;
+/// Rounds in which poles and zeros are estimated.
+const ROUNDS: usize = 12;
+/// Least power of a bin, relative to the largest: the inverse of an empty bin would be all there is.
+const FLOOR: f64 = 1e-8;
+
+pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+    let largest = input.magnitude.iter().fold(0.0f64, |a, &m| a.max(m));
+    if largest == 0.0 {
+        return Err(Error::cannot_fit(
+            "the spectrum is silent: there is no filter to find",
+        ));
+    }
+    // A band that ends below the tactile one was recorded at twice its upper edge.
+    let rate_hz = if input.band.high_hz < Band::TACTILE.high_hz {
+        input.options[RATE].min(2.0 * input.band.high_hz)
+    } else {
+        input.options[RATE]
+    };
+    let spectrum = Spectrum::new(input, largest, rate_hz);
+    let orders = [POLES, ZEROS].map(|option| input.options[option] as usize);
+    let (poles, zeros) = spectrum.likeliest(orders);
+    let (poles, zeros) = (stored_lines(&poles)?, stored_lines(&zeros)?);
+    let parameters = [
+        &[poles.len() as f64],
+        &poles[..],
+        &[zeros.len() as f64],
+        &zeros,
+        &[rate_hz],
+    ]
+    .concat();
+    let filter = Filter::of_lines(&poles, &zeros, rate_hz).map_err(|_| too_close())?;
+    filter.level(input.band)?;
+    // Relative to the largest bin, so that no power over- or underflows.
+    let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
+    Ok(Fit {
+        parameters,
+        level_rms: largest * level_rms(&relative),
+    })
+}
+
+/// The lines of a stable polynomial as a file holds them.
+fn stored_lines(coefficients: &[f64]) -> Result<Vec<f64>, Error> {
+    let mut reflection = coefficients.to_vec();
+    if !step_down_in_place(&mut reflection) {
+        return Err(too_close());
+    }
+    let stored = |line: f64| f64::from(line as f32);
+    Ok(lines_of_reflection(&reflection).map(stored).collect())
+}
+
+fn too_close() -> Error {
+    Error::cannot_fit(
+        "the poles are too close to each other and to the unit circle for 32-bit floats; choose fewer, or a lower rate_hz",
+    )
+}
+
+/// The power of the bins up to the Nyquist frequency, relative to the largest. Bins below the band have that of its first bin: as
+/// empty ones they would draw zeros.
+struct Spectrum {
+    frequency_hz: Vec<f64>,
+    power: Vec<f64>,
+    /// Part of each bin in correlations: half at 0 Hz and at the Nyquist frequency, whose mirror images are themselves.
+    part: Vec<f64>,
+    rate_hz: f64,
+}
+
+impl Spectrum {
+    fn new(input: &FitInput<'_>, largest: f64, rate_hz: f64) -> Self {
+        let first = input.frequency_hz.first().copied().unwrap_or(0.0);
+        let below = (0..).map(|bin| f64::from(bin) * GRID_HZ);
+        let below = below.take_while(|hz| *hz < first - 0.5 * GRID_HZ);
+        let below = below.map(|hz| (hz, input.magnitude.first().copied().unwrap_or(0.0)));
+        let own = input.frequency_hz.iter().copied();
+        let all = below.chain(own.zip(input.magnitude.iter().copied()));
+        let all = all.filter(|(hz, _)| *hz <= 0.5 * rate_hz);
+        let power = |m: f64| ((m / largest) * (m / largest)).max(FLOOR);
+        let (frequency_hz, power): (Vec<f64>, _) = all.map(|(hz, m)| (hz, power(m))).unzip();
+        let is_mirrored = |hz: &f64| *hz > 0.0 && *hz < 0.5 * rate_hz;
+        let part = |hz: &f64| if is_mirrored(hz) { 1.0 } else { 0.5 };
+        Self {
+            part: frequency_hz.iter().map(part).collect(),
+            frequency_hz,
+            power,
+            rate_hz,
+        }
+    }
+
+    /// The likeliest poles and zeros of these orders.
+    fn likeliest(&self, [poles, zeros]: [usize; 2]) -> (Vec<f64>, Vec<f64>) {
+        let mut above = Vec::new();
+        let mut best = (f64::INFINITY, Vec::new(), Vec::new());
+        let rounds = if zeros == 0 { 1 } else { ROUNDS };
+        for _ in 0..rounds {
+            let numerator = self.inverse_power(&above);
+            let below = self.poles_of(|i| self.power[i] * numerator[i], poles);
+            let denominator = self.inverse_power(&below);
+            above = self.poles_of(|i| denominator[i] / self.power[i], zeros);
+            let distance = self.distance(&denominator, &self.inverse_power(&above));
+            if distance < best.0 || best.0 == f64::INFINITY {
+                best = (distance, below, above.clone());
+            }
+        }
+        (best.1, best.2)
+    }
+
+    /// `1 / |1 - Σ A_i z⁻ⁱ|²` at the bins.
+    fn inverse_power(&self, coefficients: &[f64]) -> Vec<f64> {
+        let at = |hz: &f64| {
+            let m = ar_magnitude(coefficients, *hz, self.rate_hz);
+            m * m
+        };
+        self.frequency_hz.iter().map(at).collect()
+    }
+
+    /// The all-pole filter of a power spectrum, by Yule–Walker.
+    fn poles_of(&self, power: impl Fn(usize) -> f64, order: usize) -> Vec<f64> {
+        let largest = (0..self.power.len()).map(&power).fold(0.0, f64::max);
+        let lag = |lag: usize| -> f64 {
+            let turn = core::f64::consts::TAU * lag as f64 / self.rate_hz;
+            let bins = self.frequency_hz.iter().enumerate();
+            bins.map(|(i, hz)| self.part[i] * power(i) / largest * htex_dsp::trig::cos(turn * hz))
+                .sum()
+        };
+        let lags: Vec<f64> = (0..=order).map(lag).collect();
+        let radius = libm::exp(-core::f64::consts::PI * NARROWEST_HZ / self.rate_hz);
+        within_radius(&levinson_durbin(&lags, order).coefficients, radius)
+    }
+
+    /// The Itakura–Saito distance of the spectrum from a filter's at its best level, up to a constant: of the ratios of their powers, the
+    /// logarithm of the mean less the mean of the logarithms.
+    fn distance(&self, denominator: &[f64], numerator: &[f64]) -> f64 {
+        let filter = denominator.iter().zip(numerator).map(|(d, n)| d / n);
+        let ratios: Vec<f64> = self.power.iter().zip(filter).map(|(p, h)| p / h).collect();
+        let count = ratios.len() as f64;
+        let mean: f64 = ratios.iter().sum::<f64>() / count;
+        libm::log(mean) - ratios.iter().map(|r| libm::log(*r)).sum::<f64>() / count
+    }
+}

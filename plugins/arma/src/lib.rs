@@ -1,0 +1,128 @@
+//! Poles and zeros: the spectrum is that of white noise through a filter with poles and zeros (ARMA; the models of the Penn
+//! Haptic Texture Toolkit, Culbertson et al. 2014).
+//!
+//! Both polynomials are stored as line spectral frequencies, of which every weighted mean is again a stable filter. Zeros outside
+//! the unit circle are none of the parameters: noise through them has the spectrum of noise through their mirror images inside.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+#![no_std]
+
+#[macro_use]
+extern crate alloc;
+
+mod filter;
+mod fit;
+mod knobs;
+mod mixing;
+mod usual;
+mod voice;
+
+use htex_dsp::all_zero;
+use htex_dsp::grid::Band;
+use htex_model::{
+    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Values,
+};
+
+use filter::Filter;
+pub use knobs::KNOBS;
+pub use usual::USUAL;
+pub use voice::ArmaVoice;
+
+const POLE_LINES: usize = 0;
+const ZERO_LINES: usize = 1;
+const MODEL_RATE: usize = 2;
+
+/// Highest number of poles, and of zeros.
+pub(crate) const MAX_ORDER: usize = all_zero::MAX_ORDER;
+/// The highest line: π, as 32-bit floats have it, which is more.
+const MAX_LINE: f64 = core::f32::consts::PI as f64;
+
+pub struct PolesAndZeros;
+
+htex_model::export_model!(PolesAndZeros, symbols: "plugin");
+
+impl Model for PolesAndZeros {
+    type Voice = ArmaVoice;
+
+    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+        "org.htex.arma",
+        "ARMA",
+        env!("CARGO_PKG_VERSION"),
+        "White noise through a filter with poles and zeros: line spectral frequencies of both.",
+    )
+    .fields(&[
+        StaticField::list(
+            "pole_lines",
+            "rad",
+            (0.0, MAX_LINE),
+            MAX_ORDER as u32,
+            "Line spectral frequencies of the denominator, a sample at the model rate; they ascend inside 0 to pi.",
+        ),
+        StaticField::list(
+            "zero_lines",
+            "rad",
+            (0.0, MAX_LINE),
+            MAX_ORDER as u32,
+            "Line spectral frequencies of the numerator; of a zero on the unit circle two are equal.",
+        ),
+        StaticField::scalar(
+            "model_rate_hz",
+            "Hz",
+            (50.0, 1e6),
+            "Rate at which the filter runs.",
+        ),
+    ])
+    .options(&[
+        StaticOption::integer("poles", (0, MAX_ORDER as u32), 8, "Number of poles."),
+        StaticOption::integer("zeros", (0, MAX_ORDER as u32), 4, "Number of zeros."),
+        StaticOption::number(
+            "rate_hz",
+            "Hz",
+            (50.0, 1e6),
+            2000.0,
+            "Model rate; at most twice the band's upper edge is used by a narrower band.",
+        ),
+    ]);
+
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+        fit::fit(input)
+    }
+
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error> {
+        let filter = Filter::new(parameters)?;
+        let level = filter.level(band)?;
+        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
+            *m = if band.contains(f) {
+                filter.at(f) / level
+            } else {
+                0.0
+            };
+        }
+        Ok(())
+    }
+
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
+        mixing::mix(sets, weights, out)
+    }
+
+    fn voice_rate_hz(parameters: &Values<'_>, _: Band, _: f64) -> f64 {
+        parameters.scalar(MODEL_RATE)
+    }
+
+    fn voice(
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self::Voice, Error> {
+        ArmaVoice::new(parameters, band, rate_hz, seed)
+    }
+}

@@ -1,0 +1,143 @@
+//! The controls of a file over time, and what they make of its events.
+
+use super::{
+    ControlPoint, Entry, Event, INTENSITY, INTENSITY_CONTROL, SHARPNESS, SHARPNESS_CONTROL,
+};
+use crate::curve::{Point, side, value_at};
+use crate::pattern::{Pattern, Transient};
+use crate::profile::Profile;
+
+/// Both controls.
+pub(super) struct Controls {
+    intensity: Control,
+    sharpness: Control,
+}
+
+impl Controls {
+    pub(super) fn of(entries: &[Entry]) -> Self {
+        Self {
+            intensity: Control::of(entries, INTENSITY_CONTROL, 1.0),
+            sharpness: Control::of(entries, SHARPNESS_CONTROL, 0.0),
+        }
+    }
+
+    /// How many points change an event.
+    pub(super) fn points_during(&self, event: &Event) -> usize {
+        self.intensity.during(event).len() + self.sharpness.during(event).len()
+    }
+
+    /// The vibration of a continuous event.
+    pub(super) fn pattern(&self, event: &Event, profile: &Profile) -> Pattern {
+        Pattern {
+            from_s: event.time,
+            to_s: event.end_s(),
+            level: self.intensity.over(event, |c| level(event, c)),
+            exponent: 2,
+            frequency_hz: self.sharpness.over(event, |c| hertz(event, c, profile)),
+            transients: Vec::new(),
+        }
+    }
+
+    pub(super) fn transient(&self, event: &Event, profile: &Profile) -> Transient {
+        Transient {
+            time_s: event.time,
+            amplitude: libm::pow(level(event, self.intensity.at(event.time)), 2.0),
+            frequency_hz: hertz(event, self.sharpness.at(event.time), profile),
+        }
+    }
+}
+
+fn level(event: &Event, control: f64) -> f64 {
+    (event.parameter(INTENSITY, 1.0) * control).clamp(0.0, 1.0)
+}
+
+fn hertz(event: &Event, control: f64, profile: &Profile) -> f64 {
+    profile.hertz_of((event.parameter(SHARPNESS, 0.5) + control).clamp(0.0, 1.0))
+}
+
+/// A control over time, and its value before its first point.
+struct Control {
+    points: Vec<Point>,
+    usual: f64,
+}
+
+impl Control {
+    fn of(entries: &[Entry], id: &str, usual: f64) -> Self {
+        let mut curves: Vec<Vec<Point>> = entries
+            .iter()
+            .filter_map(|entry| own_curve(entry, id))
+            .collect();
+        curves.sort_by(|a, b| start_s(a).total_cmp(&start_s(b)));
+        let mut points: Vec<Point> = Vec::new();
+        for curve in curves {
+            // Between curves the control stays.
+            if let (Some(last), Some(first)) = (points.last().copied(), curve.first())
+                && last.time_s < first.time_s
+            {
+                points.push(Point::new(first.time_s, last.value));
+            }
+            points.extend(curve);
+        }
+        points.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+        points.dedup();
+        Self { points, usual }
+    }
+
+    fn at(&self, time_s: f64) -> f64 {
+        match self.points.first() {
+            Some(first) if first.time_s <= time_s => {
+                value_at(&self.points, time_s).unwrap_or(self.usual)
+            }
+            _ => self.usual,
+        }
+    }
+
+    /// The control's points during an event and at its ends, each changed to what it makes of the event.
+    fn over(&self, event: &Event, made: impl Fn(f64) -> f64) -> Vec<Point> {
+        let (from_s, to_s) = (event.time, event.end_s());
+        let point = |time_s: f64, control: f64| Point::new(time_s, made(control));
+        let mut over = vec![point(from_s, self.at(from_s))];
+        let first = self.points.first();
+        for (index, p) in self.during(event).iter().enumerate() {
+            // A jump from the usual value to that of the first point.
+            let begins = index == 0 && first.is_some_and(|first| first.time_s == p.time_s);
+            if begins && self.usual != p.value {
+                over.push(point(p.time_s, self.usual));
+            }
+            over.push(point(p.time_s, p.value));
+        }
+        let end = match first {
+            Some(first) if first.time_s < to_s => {
+                side(&self.points, to_s, true).unwrap_or(self.usual)
+            }
+            _ => self.usual,
+        };
+        over.push(point(to_s, end));
+        over
+    }
+
+    /// The points between the ends of an event.
+    fn during(&self, event: &Event) -> &[Point] {
+        let from = self.points.partition_point(|p| p.time_s <= event.time);
+        let to = self.points.partition_point(|p| p.time_s < event.end_s());
+        self.points.get(from..to).unwrap_or_default()
+    }
+}
+
+/// The points of an entry that changes a control, at their own times.
+fn own_curve(entry: &Entry, id: &str) -> Option<Vec<Point>> {
+    match entry {
+        Entry::ParameterCurve(curve) if curve.id == id => {
+            let at = |p: &ControlPoint| Point::new(curve.time + p.time, p.parameter_value);
+            Some(curve.points.iter().map(at).collect())
+        }
+        Entry::Parameter(parameter) if parameter.id == id => {
+            Some(vec![Point::new(parameter.time, parameter.value)])
+        }
+        _ => None,
+    }
+}
+
+fn start_s(curve: &[Point]) -> f64 {
+    curve.first().map_or(0.0, |point| point.time_s)
+}

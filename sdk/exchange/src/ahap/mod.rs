@@ -1,0 +1,302 @@
+//! `.ahap` of Apple's Core Haptics, version 1: events that are continuous or transient, and curves of control points that change them.
+//!
+//! Read of Apple's documentation (*Representing haptic patterns in AHAP files*; `CHHapticParameterCurve`, `CHHapticEvent.ParameterID`): an
+//! intensity control multiplies, a sharpness control adds, a control applies to all events from its first point on and is linear between
+//! points, whose times count from the curve's. Apple states neither what an intensity is nor a sharpness. Here an intensity is the square root of an
+//! amplitude, as in Meta's conversion (core/haptic_data/src/ahap.rs of facebook/meta-haptics-sdk), and a sharpness the position in a range of
+//! frequencies, as in the reference software of ISO/IEC 23090-31.
+
+mod control;
+mod write;
+
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::Fault;
+use crate::format::{Sampling, Signal};
+use crate::json::{self, within};
+use crate::pattern::{MOST_S, Pattern, rendered};
+use crate::profile::Profile;
+use control::Controls;
+
+/// Longest continuous event, seconds (documentation of `CHHapticEvent.EventType.hapticContinuous`).
+pub const LONGEST_EVENT_S: f64 = 30.0;
+/// Most control points that one curve is written with.
+pub const POINTS_OF_A_CURVE: usize = 16;
+
+/// A file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "PascalCase")]
+pub struct Ahap {
+    pub version: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub metadata: Option<serde_json::Map<String, serde_json::Value>>,
+    pub pattern: Vec<Entry>,
+}
+
+/// An entry of the pattern.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Entry {
+    Event(Event),
+    Parameter(Parameter),
+    ParameterCurve(Curve),
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "PascalCase")]
+pub struct Event {
+    /// Seconds.
+    pub time: f64,
+    pub event_type: EventType,
+    /// Seconds, of a continuous event.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub event_duration: Option<f64>,
+    #[serde(default)]
+    pub event_parameters: Vec<Value>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum EventType {
+    HapticContinuous,
+    HapticTransient,
+    AudioContinuous,
+    AudioCustom,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Value {
+    #[serde(rename = "ParameterID")]
+    pub id: String,
+    #[serde(rename = "ParameterValue")]
+    pub value: f64,
+}
+
+/// A control that changes at once.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Parameter {
+    #[serde(rename = "ParameterID")]
+    pub id: String,
+    #[serde(rename = "ParameterValue")]
+    pub value: f64,
+    #[serde(rename = "Time")]
+    pub time: f64,
+}
+
+/// A control that follows lines.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Curve {
+    #[serde(rename = "ParameterID")]
+    pub id: String,
+    /// Seconds; those of the points count from here.
+    #[serde(rename = "Time")]
+    pub time: f64,
+    #[serde(rename = "ParameterCurveControlPoints")]
+    pub points: Vec<ControlPoint>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "PascalCase")]
+pub struct ControlPoint {
+    pub time: f64,
+    pub parameter_value: f64,
+}
+
+/// Most points of curves during all events, each counted for each event that it changes.
+const MOST_POINTS: usize = 1_000_000;
+/// Most seconds of all events together.
+const MOST_TOGETHER_S: f64 = 4_000.0;
+
+const INTENSITY: &str = "HapticIntensity";
+const SHARPNESS: &str = "HapticSharpness";
+const INTENSITY_CONTROL: &str = "HapticIntensityControl";
+const SHARPNESS_CONTROL: &str = "HapticSharpnessControl";
+
+impl Ahap {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// When it is no JSON, has another version or shape, or a number is out of its range; with the place.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
+        let ahap: Self = json::read(bytes)?;
+        if ahap.version != 1.0 {
+            let problem = format!("version {} is not known; version 1 is read", ahap.version);
+            return Err(Fault::new("/Version", problem));
+        }
+        for (index, entry) in ahap.pattern.iter().enumerate() {
+            entry.check(&format!("/Pattern/{index}"))?;
+        }
+        ahap.check_work()?;
+        Ok(ahap)
+    }
+
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        json::written(self)
+    }
+
+    /// What of the file is not read, each a sentence.
+    #[must_use]
+    pub fn left_out(&self) -> Vec<String> {
+        let events = || self.events();
+        let has = |id: &str| events().any(|e| e.event_parameters.iter().any(|p| p.id == id));
+        let mut left_out = Vec::new();
+        if events().any(|e| !e.is_haptic()) {
+            left_out.push("Its audio events are left out.".to_owned());
+        }
+        if ["AttackTime", "DecayTime", "ReleaseTime", "Sustained"]
+            .into_iter()
+            .any(has)
+        {
+            left_out.push("The attack, decay and release of its events are left out.".to_owned());
+        }
+        let known = [INTENSITY_CONTROL, SHARPNESS_CONTROL];
+        let controls = self.pattern.iter().filter_map(Entry::control);
+        if controls.into_iter().any(|id| !known.contains(&id)) {
+            left_out.push("Its controls beside intensity and sharpness are left out.".to_owned());
+        }
+        left_out
+    }
+
+    fn events(&self) -> impl Iterator<Item = &Event> {
+        self.pattern.iter().filter_map(|entry| match entry {
+            Entry::Event(event) => Some(event),
+            _ => None,
+        })
+    }
+
+    /// Returns the vibrations for an actuator: one for each continuous event, and one with all transients.
+    #[must_use]
+    pub fn patterns(&self, profile: &Profile) -> Vec<Pattern> {
+        let controls = Controls::of(&self.pattern);
+        let of = |kind: EventType| self.events().filter(move |e| e.event_type == kind);
+        let continuous = of(EventType::HapticContinuous).map(|e| controls.pattern(e, profile));
+        let transients = of(EventType::HapticTransient).map(|e| controls.transient(e, profile));
+        let pulses = Pattern {
+            exponent: 1,
+            transients: transients.collect(),
+            ..Pattern::default()
+        };
+        let pulses = Some(pulses).filter(|pulses| !pulses.transients.is_empty());
+        continuous.chain(pulses).collect()
+    }
+
+    /// Refuses events and curves that together take long to play.
+    fn check_work(&self) -> Result<(), Fault> {
+        let controls = Controls::of(&self.pattern);
+        let points: usize = self
+            .events()
+            .map(|event| controls.points_during(event))
+            .sum();
+        let seconds: f64 = self.events().filter_map(|event| event.event_duration).sum();
+        if points > MOST_POINTS || seconds > MOST_TOGETHER_S {
+            let problem = format!(
+                "its events have {points} points of curves and last {seconds} s together; at most {MOST_POINTS} and {MOST_TOGETHER_S} s are read"
+            );
+            return Err(Fault::new("/Pattern", problem));
+        }
+        Ok(())
+    }
+}
+
+impl Entry {
+    /// What it controls, if it does.
+    fn control(&self) -> Option<&str> {
+        match self {
+            Self::Event(_) => None,
+            Self::Parameter(parameter) => Some(&parameter.id),
+            Self::ParameterCurve(curve) => Some(&curve.id),
+        }
+    }
+
+    fn check(&self, at: &str) -> Result<(), Fault> {
+        match self {
+            Self::Event(event) => event.check(&format!("{at}/Event")),
+            Self::Parameter(parameter) => {
+                let at = format!("{at}/Parameter");
+                check_time(&at, parameter.time)?;
+                check_value(&at, parameter.value, -1.0..=1.0)
+            }
+            Self::ParameterCurve(curve) => curve.check(&format!("{at}/ParameterCurve")),
+        }
+    }
+}
+
+fn check_time(at: &str, seconds: f64) -> Result<(), Fault> {
+    within(|| format!("{at}/Time"), "the time", seconds, 0.0..=MOST_S)
+}
+
+fn check_value(at: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), Fault> {
+    within(|| format!("{at}/ParameterValue"), "the value", value, range)
+}
+
+impl Curve {
+    fn check(&self, at: &str) -> Result<(), Fault> {
+        check_time(at, self.time)?;
+        let mut before = 0.0;
+        for (index, point) in self.points.iter().enumerate() {
+            let at = format!("{at}/ParameterCurveControlPoints/{index}");
+            check_time(&at, point.time)?;
+            if point.time < before {
+                let problem = format!(
+                    "{} s is before the point before; sort the points",
+                    point.time
+                );
+                return Err(Fault::new(format!("{at}/Time"), problem));
+            }
+            before = point.time;
+            check_value(&at, point.parameter_value, -1.0..=1.0)?;
+        }
+        Ok(())
+    }
+}
+
+impl Event {
+    fn check(&self, at: &str) -> Result<(), Fault> {
+        check_time(at, self.time)?;
+        if self.event_type == EventType::HapticContinuous && self.event_duration.is_none() {
+            let problem = "a continuous event has no EventDuration; give it in seconds";
+            return Err(Fault::new(at, problem));
+        }
+        let duration = self.event_duration.unwrap_or(0.0);
+        let of = || format!("{at}/EventDuration");
+        within(of, "the duration", duration, 0.0..=MOST_S)?;
+        for (index, parameter) in self.event_parameters.iter().enumerate() {
+            let range = match &parameter.id[..] {
+                INTENSITY | SHARPNESS => 0.0..=1.0,
+                _ => -MOST_S..=MOST_S,
+            };
+            check_value(
+                &format!("{at}/EventParameters/{index}"),
+                parameter.value,
+                range,
+            )?;
+        }
+        Ok(())
+    }
+
+    fn is_haptic(&self) -> bool {
+        matches!(
+            self.event_type,
+            EventType::HapticContinuous | EventType::HapticTransient
+        )
+    }
+
+    fn parameter(&self, id: &str, usual: f64) -> f64 {
+        let own = self.event_parameters.iter().find(|p| p.id == id);
+        own.map_or(usual, |parameter| parameter.value)
+    }
+
+    fn end_s(&self) -> f64 {
+        self.time + self.event_duration.unwrap_or(0.0)
+    }
+}
+
+/// Reads a file as a signal.
+pub(crate) fn signal(bytes: &[u8], sampling: Sampling, profile: &Profile) -> Result<Signal, Fault> {
+    let ahap = Ahap::from_bytes(bytes)?;
+    Ok(Signal {
+        samples: rendered(&ahap.patterns(profile), sampling.rate_hz),
+        left_out: ahap.left_out(),
+    })
+}

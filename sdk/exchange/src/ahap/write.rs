@@ -1,0 +1,90 @@
+//! A file of a vibration.
+
+use super::{
+    Ahap, ControlPoint, Curve, Entry, Event, EventType, INTENSITY, INTENSITY_CONTROL,
+    LONGEST_EVENT_S, POINTS_OF_A_CURVE, SHARPNESS, SHARPNESS_CONTROL, Value,
+};
+use crate::curve::{Point, value_at};
+use crate::pattern::{Pattern, Transient};
+use crate::profile::Profile;
+
+impl Ahap {
+    /// Makes a file of a vibration whose levels are amplitudes: curves of at most [`POINTS_OF_A_CURVE`] points over events of at most
+    /// [`LONGEST_EVENT_S`]. The controls change transients, too, so that an intensity of theirs is divided by the control there, up to 1.
+    #[must_use]
+    pub fn of(pattern: &Pattern, profile: &Profile) -> Self {
+        let root = |p: &Point| Point::new(p.time_s, libm::sqrt(p.value.clamp(0.0, 1.0)));
+        let levels: Vec<Point> = pattern.level.iter().map(root).collect();
+        let part = |p: &Point| Point::new(p.time_s, profile.part_of(p.value));
+        let parts: Vec<Point> = pattern.frequency_hz.iter().map(part).collect();
+        let mut entries = curves(INTENSITY_CONTROL, &levels);
+        entries.extend(curves(SHARPNESS_CONTROL, &parts));
+        if pattern.to_s > pattern.from_s {
+            entries.extend(events(pattern.from_s, pattern.to_s));
+        }
+        let transient = |t: &Transient| transient(t, &levels, &parts, profile);
+        entries.extend(pattern.transients.iter().map(transient));
+        Self {
+            version: 1.0,
+            metadata: None,
+            pattern: entries,
+        }
+    }
+}
+
+/// A curve in parts, of which each begins with the last point of the one before: between curves a control stays.
+fn curves(id: &'static str, points: &[Point]) -> Vec<Entry> {
+    let step = POINTS_OF_A_CURVE - 1;
+    let count = points.len().saturating_sub(1).div_ceil(step).max(1);
+    let part = |index: usize| {
+        let from = index * step;
+        let part = points.get(from..points.len().min(from + POINTS_OF_A_CURVE))?;
+        let time = part.first()?.time_s;
+        let point = |p: &Point| ControlPoint {
+            time: p.time_s - time,
+            parameter_value: p.value,
+        };
+        Some(Entry::ParameterCurve(Curve {
+            id: id.to_owned(),
+            time,
+            points: part.iter().map(point).collect(),
+        }))
+    };
+    (0..count).filter_map(part).collect()
+}
+
+fn events(from_s: f64, to_s: f64) -> impl Iterator<Item = Entry> {
+    let count = libm::ceil((to_s - from_s) / LONGEST_EVENT_S).max(1.0) as usize;
+    (0..count).map(move |index| {
+        let time = from_s + index as f64 * LONGEST_EVENT_S;
+        Entry::Event(Event {
+            time,
+            event_type: EventType::HapticContinuous,
+            event_duration: Some((to_s - time).min(LONGEST_EVENT_S)),
+            event_parameters: parameters(1.0, 0.0),
+        })
+    })
+}
+
+fn parameters(intensity: f64, sharpness: f64) -> Vec<Value> {
+    let value = |id: &str, value: f64| Value {
+        id: id.to_owned(),
+        value,
+    };
+    vec![value(INTENSITY, intensity), value(SHARPNESS, sharpness)]
+}
+
+fn transient(t: &Transient, levels: &[Point], parts: &[Point], profile: &Profile) -> Entry {
+    let control = |points: &[Point], usual: f64| match points.first() {
+        Some(first) if first.time_s <= t.time_s => value_at(points, t.time_s).unwrap_or(usual),
+        _ => usual,
+    };
+    let intensity = libm::sqrt(t.amplitude.clamp(0.0, 1.0)) / control(levels, 1.0).max(1e-6);
+    let sharpness = profile.part_of(t.frequency_hz) - control(parts, 0.0);
+    Entry::Event(Event {
+        time: t.time_s,
+        event_type: EventType::HapticTransient,
+        event_duration: None,
+        event_parameters: parameters(intensity.min(1.0), sharpness.clamp(0.0, 1.0)),
+    })
+}

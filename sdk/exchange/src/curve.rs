@@ -1,0 +1,111 @@
+//! Curves of straight lines through points in time, which all formats of envelopes have.
+
+use serde::{Deserialize, Serialize};
+
+/// A point of a curve.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// Time, seconds.
+    pub time_s: f64,
+    pub value: f64,
+}
+
+impl Point {
+    #[must_use]
+    pub const fn new(time_s: f64, value: f64) -> Self {
+        Self { time_s, value }
+    }
+}
+
+/// Returns the value of a curve at a time: linear between points, that of the first before it and that of the last after it; at points of
+/// equal time, the last one's. `None` of no points.
+///
+/// ```
+/// use htex_exchange::{Point, value_at};
+/// let curve = [Point::new(0.0, 0.0), Point::new(1.0, 0.5), Point::new(1.0, 1.0)];
+/// assert_eq!(value_at(&curve, 0.5), Some(0.25));
+/// assert_eq!(value_at(&curve, 1.0), Some(1.0));
+/// assert_eq!(value_at(&[], 1.0), None);
+/// ```
+#[must_use]
+pub fn value_at(curve: &[Point], time_s: f64) -> Option<f64> {
+    let after = curve.partition_point(|point| point.time_s <= time_s);
+    let before = after.checked_sub(1).and_then(|index| curve.get(index));
+    match (before, curve.get(after)) {
+        (Some(a), Some(b)) => {
+            let part = (time_s - a.time_s) / (b.time_s - a.time_s);
+            Some(a.value + part * (b.value - a.value))
+        }
+        (Some(held), None) | (None, Some(held)) => Some(held.value),
+        (None, None) => None,
+    }
+}
+
+/// A curve that is read at ascending times.
+pub(crate) struct Reader<'a> {
+    curve: &'a [Point],
+    after: usize,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(curve: &'a [Point]) -> Self {
+        Self { curve, after: 0 }
+    }
+
+    /// As [`value_at`], in constant time for times that ascend.
+    pub(crate) fn at(&mut self, time_s: f64) -> Option<f64> {
+        while (self.curve.get(self.after)).is_some_and(|point| point.time_s <= time_s) {
+            self.after += 1;
+        }
+        let from = self.after.saturating_sub(1);
+        let around = self.curve.get(from..self.curve.len().min(self.after + 1));
+        value_at(around.unwrap_or_default(), time_s)
+    }
+}
+
+/// Leaves out points that lie within `tolerance` of the straight line between those that stay (Ramer 1972; Douglas & Peucker 1973).
+#[must_use]
+pub fn simplified(curve: &[Point], tolerance: f64) -> Vec<Point> {
+    let mut keeps = vec![false; curve.len()];
+    if let (Some(first), Some(last)) = (keeps.first().copied(), curve.len().checked_sub(1)) {
+        let mut open = vec![(0, last)];
+        keeps.iter_mut().take(1).for_each(|keep| *keep = !first);
+        keeps.iter_mut().skip(last).for_each(|keep| *keep = true);
+        while let Some((from, to)) = open.pop() {
+            if let Some(at) = furthest(curve, from, to, tolerance) {
+                keeps
+                    .iter_mut()
+                    .skip(at)
+                    .take(1)
+                    .for_each(|keep| *keep = true);
+                open.extend([(from, at), (at, to)]);
+            }
+        }
+    }
+    let kept = curve.iter().zip(keeps).filter(|(_, keep)| *keep);
+    kept.map(|(point, _)| *point).collect()
+}
+
+/// The point between two that is furthest from their line, if that is further than the tolerance.
+fn furthest(curve: &[Point], from: usize, to: usize, tolerance: f64) -> Option<usize> {
+    let (a, b) = (curve.get(from)?, curve.get(to)?);
+    let ends = [*a, *b];
+    let inner = curve.get(from + 1..to)?.iter().enumerate();
+    let distance = |point: &Point| {
+        let line = value_at(&ends, point.time_s).unwrap_or(point.value);
+        (point.value - line).abs()
+    };
+    let (at, most) = inner
+        .map(|(index, point)| (from + 1 + index, distance(point)))
+        .max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    (most > tolerance).then_some(at)
+}
+
+/// The value of a curve from a time on, or just before it, which differ where two points have this time.
+pub(crate) fn side(curve: &[Point], time_s: f64, before: bool) -> Option<f64> {
+    let first_here = curve.partition_point(|point| point.time_s < time_s);
+    match curve.get(first_here) {
+        Some(point) if before && point.time_s == time_s => Some(point.value),
+        _ => value_at(curve, time_s),
+    }
+}

@@ -1,0 +1,152 @@
+//! Errors of import and export. Each says what is wrong, where in the file, and what to do.
+
+use htex_author::AuthorError;
+
+/// What is wrong in a file, and where.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}{problem}", place_of(.place))]
+pub struct Fault {
+    /// A JSON pointer (RFC 6901), or `line 3 column 7`; empty for the whole file.
+    pub place: String,
+    /// What is wrong there, and what to do.
+    pub problem: String,
+}
+
+fn place_of(place: &str) -> String {
+    match place.is_empty() {
+        true => String::new(),
+        false => format!("{place}: "),
+    }
+}
+
+/// Most characters of a place or a problem, which quote the file.
+const MOST_QUOTED: usize = 500;
+
+/// One line of a text that may quote a file: its beginning, without characters that steer a terminal.
+fn quoted(text: &str) -> String {
+    let mut shown: String = text.chars().take(MOST_QUOTED).collect();
+    if shown.len() < text.len() {
+        shown.push('…');
+    }
+    htex_finding::plain(&shown).into_owned()
+}
+
+impl Fault {
+    pub(crate) fn new(place: impl AsRef<str>, problem: impl AsRef<str>) -> Self {
+        Self {
+            place: quoted(place.as_ref()),
+            problem: quoted(problem.as_ref()),
+        }
+    }
+
+    /// Of the whole file.
+    pub(crate) fn whole(problem: impl AsRef<str>) -> Self {
+        Self::new("", problem)
+    }
+}
+
+/// An error of an import or an export.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExchangeError {
+    /// The extension is of no format that is read.
+    #[error("{file}: no format that is read has this extension; there are {there}")]
+    UnknownFormat {
+        file: String,
+        /// The formats that are read, with their extensions.
+        there: String,
+    },
+    /// The file is not what its format says.
+    #[error("{file}: {fault}")]
+    File { file: String, fault: Fault },
+    /// The format does not say what an asset needs, and nobody else did.
+    #[error("{format} does not say {}; give {}", words(.missing), settings(.missing))]
+    Missing {
+        format: &'static str,
+        missing: Vec<Missing>,
+    },
+    /// A setting that was given means nothing for this format.
+    #[error("{format}: its {way} takes no `{setting}`; leave it out{}", taken(.takes))]
+    Unused {
+        format: &'static str,
+        /// `import` or `export`.
+        way: &'static str,
+        /// As a keyword: `full_scale`.
+        setting: String,
+        /// What it takes.
+        takes: Vec<&'static str>,
+    },
+    /// A number that was given is out of its range.
+    #[error("{name} {value}: {range}")]
+    OutOfRange {
+        /// The setting, as a keyword: `full_scale`.
+        name: &'static str,
+        value: f64,
+        range: &'static str,
+    },
+    /// There is no profile of this name.
+    #[error("there is no profile `{wanted}`; there are {there}")]
+    UnknownProfile { wanted: String, there: String },
+    /// The actuator cannot play this kind of file.
+    #[error(
+        "{profile} is a motor whose frequency follows its level, and {format} holds samples; choose {instead}"
+    )]
+    NoSamples {
+        profile: String,
+        format: &'static str,
+        /// Formats that it can play.
+        instead: String,
+    },
+    /// The format cannot hold this.
+    #[error("{format}: {problem}")]
+    Cannot {
+        format: &'static str,
+        problem: String,
+    },
+    /// The asset cannot be played.
+    #[error(transparent)]
+    Play(#[from] htex_play::Error),
+    /// The signal cannot be read as a recording, or no model can be fitted to it.
+    #[error(transparent)]
+    Author(#[from] AuthorError),
+    /// The signal is no recording.
+    #[error(transparent)]
+    Recording(#[from] htex_author::recording::RecordingError),
+}
+
+/// What a format does not say, and has to be given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Missing {
+    /// The setting, as a keyword: `full_scale`.
+    pub setting: &'static str,
+    /// What it is, in words.
+    pub words: &'static str,
+}
+
+fn words(missing: &[Missing]) -> String {
+    list(missing.iter().map(|m| m.words.to_owned()))
+}
+
+fn settings(missing: &[Missing]) -> String {
+    list(missing.iter().map(|m| format!("`{}`", m.setting)))
+}
+
+fn taken(settings: &[&'static str]) -> String {
+    match settings.is_empty() {
+        true => String::new(),
+        false => format!(
+            " (it takes {})",
+            list(settings.iter().map(|s| format!("`{s}`")))
+        ),
+    }
+}
+
+/// `a, b and c`.
+pub(crate) fn list(parts: impl Iterator<Item = String>) -> String {
+    let parts: Vec<String> = parts.collect();
+    match &parts[..] {
+        [before @ .., last] if !before.is_empty() => format!("{} and {last}", before.join(", ")),
+        parts => parts.concat(),
+    }
+}

@@ -1,0 +1,304 @@
+//! Assets as files of other formats, with what is lost.
+
+use htex_play::Asset;
+use serde::Serialize;
+
+use crate::error::ExchangeError;
+use crate::format::{Format, WriteSignal, Writes};
+use crate::heard::{Heard, Path, Playing};
+use crate::loss::{Loss, loss};
+use crate::profile::{Kind, PROFILES, Profile};
+
+/// Rate at which envelopes are taken and losses measured, hertz.
+pub(crate) const RATE_HZ: f64 = 8_000.0;
+/// Shortest and longest export, seconds: a texture's spectrum takes 0.2 s.
+const SECONDS: std::ops::RangeInclusive<f64> = 0.5..=crate::pattern::MOST_S;
+/// Highest rate of samples, hertz.
+const MOST_RATE_HZ: f64 = 192_000.0;
+
+/// How `.hjif` codes a texture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Coding {
+    /// At most seven tones.
+    #[default]
+    Vectorial,
+    /// Samples.
+    Wavelet,
+}
+
+/// What is exported, and for what.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Export<'a> {
+    pub format: &'static Format,
+    /// The representation, by its model's id or short name; else the one with the smallest nine-band error.
+    pub model: Option<&'a str>,
+    pub path: Path,
+    /// Else the format's own.
+    pub profile: Option<&'a Profile>,
+    /// Length of a condition; a stroke has its own.
+    pub seconds: f64,
+    /// Rate of WAV, hertz; else 8000.
+    pub rate_hz: Option<f64>,
+    /// Coding of `.hjif`; else [`Coding::Vectorial`].
+    pub coding: Option<Coding>,
+    /// Whether Android's effect is written as Kotlin instead of JSON.
+    pub kotlin: bool,
+    pub seed: u64,
+}
+
+impl<'a> Export<'a> {
+    /// Two seconds at the asset's first condition.
+    #[must_use]
+    pub fn new(format: &'static Format) -> Self {
+        Self {
+            format,
+            model: None,
+            path: Path::Condition(None),
+            profile: None,
+            seconds: 2.0,
+            rate_hz: None,
+            coding: None,
+            kotlin: false,
+            seed: 0,
+        }
+    }
+
+    #[must_use]
+    pub fn with_path(mut self, path: Path) -> Self {
+        self.path = path;
+        self
+    }
+
+    #[must_use]
+    pub fn with_profile(mut self, profile: impl Into<Option<&'a Profile>>) -> Self {
+        self.profile = profile.into();
+        self
+    }
+
+    #[must_use]
+    pub fn with_coding(mut self, coding: Coding) -> Self {
+        self.coding = Some(coding);
+        self
+    }
+
+    #[must_use]
+    pub fn with_model(mut self, model: &'a str) -> Self {
+        self.model = Some(model);
+        self
+    }
+
+    pub(crate) fn rate_hz(&self) -> f64 {
+        self.rate_hz.unwrap_or(RATE_HZ)
+    }
+
+    /// The settings that differ from none at all, as keywords.
+    fn given(&self) -> Vec<&'static str> {
+        let (is_stroke, is_moved) = match &self.path {
+            Path::Stroke(_) => (true, false),
+            Path::Condition(motion) => (false, motion.is_some()),
+        };
+        let all = [
+            ("model", self.model.is_some()),
+            ("speed", is_moved),
+            ("stroke", is_stroke),
+            ("profile", self.profile.is_some()),
+            ("seed", self.seed != 0),
+            ("rate", self.rate_hz.is_some()),
+            ("coding", self.coding.is_some()),
+        ];
+        let given = all.into_iter().filter(|(_, is_given)| *is_given);
+        given.map(|(setting, _)| setting).collect()
+    }
+}
+
+/// A file, and what is lost.
+#[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
+pub struct Exported {
+    #[serde(skip)]
+    pub bytes: Vec<u8>,
+    pub format: &'static str,
+    /// How the file was played again; `None` where it holds the asset itself.
+    #[serde(flatten)]
+    pub played: Option<Played>,
+    /// What the format loses of every texture.
+    pub loses: &'static str,
+    /// What else is to say, each a sentence.
+    pub notes: Vec<String>,
+}
+
+/// How an actuator plays a file, by its profile.
+#[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
+pub struct Played {
+    pub profile: String,
+    pub seconds: f64,
+    pub lost: Loss,
+    /// Part of the time in which the actuator is too weak.
+    pub limited: f64,
+}
+
+/// What a writer works on.
+pub struct Job<'a> {
+    pub(crate) playing: Playing<'a>,
+    pub(crate) profile: &'a Profile,
+    pub(crate) export: &'a Export<'a>,
+}
+
+/// What a writer made.
+pub struct Written {
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) heard: Heard,
+    /// What the file, read again, drives the actuator with, at the rate of what was heard.
+    pub(crate) drive: Vec<f64>,
+    pub(crate) limited: f64,
+    pub(crate) notes: Vec<String>,
+}
+
+/// Writes an asset as a file of another format; what is played of it is read again, and what is lost is measured.
+///
+/// # Errors
+/// When the format is not written, a setting is given that it does not take, a number is out of range, the actuator cannot play such files, or
+/// the asset cannot be played.
+pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeError> {
+    let format = export.format;
+    format.check_export(export.given())?;
+    match format.writes {
+        Some(Writes::Signal { write, profile, .. }) => {
+            let profile = export.profile.map_or_else(|| Profile::find(profile), Ok)?;
+            of_signal(asset, export, write, profile)
+        }
+        Some(Writes::Asset(write)) => Ok(Exported {
+            bytes: write(asset)?,
+            format: format.name,
+            played: None,
+            loses: format.loses,
+            notes: Vec::new(),
+        }),
+        None => Err(ExchangeError::Cannot {
+            format: format.name,
+            problem: format!(
+                "it is not written; there are {}",
+                crate::exported().join(", ")
+            ),
+        }),
+    }
+}
+
+fn of_signal(
+    asset: &Asset,
+    export: &Export<'_>,
+    write: WriteSignal,
+    profile: &Profile,
+) -> Result<Exported, ExchangeError> {
+    let job = Job {
+        playing: Playing {
+            asset,
+            model: export.model,
+            path: &export.path,
+            seconds: export.checked_seconds(asset)?,
+            seed: export.seed,
+        },
+        profile,
+        export,
+    };
+    let written = write(&job)?;
+    Ok(Exported {
+        played: Some(Played {
+            lost: loss(&written.heard, &written.drive, profile)?,
+            profile: profile.name.clone(),
+            seconds: job.playing.seconds,
+            limited: written.limited,
+        }),
+        bytes: written.bytes,
+        format: export.format.name,
+        loses: export.format.loses,
+        notes: [written.notes, job.notes()].concat(),
+    })
+}
+
+impl Export<'_> {
+    /// Returns the length of what is played, seconds.
+    fn checked_seconds(&self, asset: &Asset) -> Result<f64, ExchangeError> {
+        let seconds = match &self.path {
+            Path::Condition(_) => self.seconds,
+            Path::Stroke(stroke) => stroke.seconds(),
+        };
+        check("seconds", seconds, SECONDS, "0.5 to 600 s")?;
+        let rates_hz = 2.0 * asset.band().high_hz..=MOST_RATE_HZ;
+        let range = "twice the texture's highest frequency to 192,000 Hz";
+        check("rate", self.rate_hz(), rates_hz, range)?;
+        Ok(seconds)
+    }
+}
+
+fn check(
+    name: &'static str,
+    value: f64,
+    within: std::ops::RangeInclusive<f64>,
+    range: &'static str,
+) -> Result<(), ExchangeError> {
+    match within.contains(&value) {
+        true => Ok(()),
+        false => Err(ExchangeError::OutOfRange { name, value, range }),
+    }
+}
+
+impl Job<'_> {
+    /// What is to say of profile and stroke.
+    fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        let mut values = self.profile.values().into_iter();
+        if values.any(|(_, value)| value.is_assumed()) {
+            let name = &self.profile.name;
+            notes.push(format!(
+                "Values of the profile {name} are assumed, not measured."
+            ));
+        }
+        if let Path::Stroke(stroke) = &self.export.path {
+            notes.extend(stroke.warnings.iter().cloned());
+        }
+        notes
+    }
+
+    /// Seconds between points of an envelope: the shortest that actuator and format take, or longer, so that their number is enough.
+    pub(crate) fn point_s(&self, most_points: usize) -> f64 {
+        let most = (self.profile.most_points.value as usize)
+            .min(most_points)
+            .max(4);
+        // Two more points than blocks.
+        let longest = self.playing.seconds / (most - 2) as f64;
+        longest.max(self.profile.shortest_point_ms.value / 1e3)
+    }
+
+    /// Refuses an actuator that plays no samples.
+    pub(crate) fn check_samples(&self) -> Result<(), ExchangeError> {
+        if self.profile.kind == Kind::Resonant {
+            return Ok(());
+        }
+        Err(ExchangeError::NoSamples {
+            profile: self.profile.name.clone(),
+            format: self.export.format.name,
+            instead: "haptic, ahap or android".to_owned(),
+        })
+    }
+
+    /// An error of what was just written, which its own reader refuses.
+    pub(crate) fn own(&self, fault: crate::Fault) -> ExchangeError {
+        self.cannot(fault.to_string())
+    }
+
+    pub(crate) fn cannot(&self, problem: String) -> ExchangeError {
+        ExchangeError::Cannot {
+            format: self.export.format.name,
+            problem,
+        }
+    }
+}
+
+/// Returns the names of the profiles.
+#[must_use]
+pub fn profile_names() -> Vec<&'static str> {
+    PROFILES.iter().map(|profile| &profile.name[..]).collect()
+}

@@ -1,0 +1,243 @@
+//! What a format is: how its files come in, how they go out, and which settings either takes.
+
+use serde::Serialize;
+
+use crate::error::{ExchangeError, Fault};
+use crate::export::{Job, Written};
+use crate::profile::Profile;
+
+/// A format.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Format {
+    /// As `--to` has it.
+    pub name: &'static str,
+    /// What it is, in words.
+    pub title: &'static str,
+    /// Extensions of its files, in lower case.
+    pub extensions: &'static [&'static str],
+    /// How a file comes in, if it is imported.
+    pub reads: Option<Reads>,
+    /// How an asset goes out, if it is exported.
+    pub writes: Option<Writes>,
+    /// What of a texture it keeps.
+    pub keeps: &'static str,
+    /// What it loses.
+    pub loses: &'static str,
+}
+
+/// How a file comes in.
+#[derive(Debug, Clone, Copy)]
+pub enum Reads {
+    /// As a signal within ±1 to fit, whose frequencies are positions in an actuator's range: that of a profile, unless another is given.
+    Positions {
+        read: ReadPositions,
+        profile: &'static str,
+    },
+    /// As a signal within ±1 to fit, whose frequencies are hertz, or waves in a metre.
+    Signal(ReadSignal),
+    /// As an asset: the file states units, speeds and forces.
+    Asset(ReadAsset),
+}
+
+pub type ReadPositions = fn(&[u8], Sampling, &Profile) -> Result<Signal, Fault>;
+pub type ReadSignal = fn(&[u8], Sampling) -> Result<Signal, Fault>;
+pub type ReadAsset = fn(&[u8], &Naming<'_>) -> Result<Held, Fault>;
+
+/// How an asset goes out.
+#[derive(Debug, Clone, Copy)]
+pub enum Writes {
+    /// What it plays at a motion, as far as an actuator can.
+    Signal {
+        write: WriteSignal,
+        /// The profile where none is given.
+        profile: &'static str,
+        /// Settings beside those that all signals take.
+        settings: &'static [&'static str],
+    },
+    /// The asset itself, of which nothing is lost.
+    Asset(WriteAsset),
+}
+
+pub type WriteSignal = fn(&Job<'_>) -> Result<Written, ExchangeError>;
+pub type WriteAsset = fn(&htex_play::Asset) -> Result<Vec<u8>, ExchangeError>;
+
+/// How a signal is sampled.
+#[derive(Debug, Clone, Copy)]
+pub struct Sampling {
+    /// Rate of the samples, hertz.
+    pub rate_hz: f64,
+    /// Speed of a finger over a file that lies over space, mm/s.
+    pub speed_mm_s: f64,
+}
+
+/// A signal within ±1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Signal {
+    pub samples: Vec<f64>,
+    /// What of the file was not read, each a sentence.
+    pub left_out: Vec<String>,
+}
+
+/// What an asset has that its file does not.
+#[derive(Debug, Clone, Copy)]
+pub struct Naming<'a> {
+    /// Name of the texture, if the file gives none.
+    pub name: &'a str,
+    /// Program and version, for the provenance.
+    pub tool: &'a str,
+}
+
+/// The asset that a file holds.
+#[derive(Debug)]
+pub struct Held {
+    pub asset: htex_format::Asset,
+    /// What a person should know of the file, each a sentence.
+    pub warnings: Vec<String>,
+}
+
+/// Settings of imports that are fitted.
+const FITTED: &[&str] = &[
+    "full_scale",
+    "quantity",
+    "speed",
+    "force",
+    "model",
+    "option",
+    "level",
+    "keep_reference",
+];
+/// Settings of exports of what an asset plays.
+const PLAYED: &[&str] = &[
+    "model", "speed", "force", "seconds", "stroke", "profile", "seed",
+];
+
+impl Reads {
+    /// Returns the settings that it takes, as keywords, beside metadata.
+    #[must_use]
+    pub fn settings(&self) -> Vec<&'static str> {
+        match self {
+            Self::Positions { .. } => [FITTED, &["profile"]].concat(),
+            Self::Signal(_) => FITTED.to_vec(),
+            Self::Asset(_) => Vec::new(),
+        }
+    }
+
+    const fn kind(&self) -> &'static str {
+        match self {
+            Self::Positions { .. } | Self::Signal(_) => "signal",
+            Self::Asset(_) => "asset",
+        }
+    }
+}
+
+impl Writes {
+    /// Returns the settings that it takes, as keywords.
+    #[must_use]
+    pub fn settings(&self) -> Vec<&'static str> {
+        match self {
+            Self::Signal { settings, .. } => [PLAYED, *settings].concat(),
+            Self::Asset(_) => Vec::new(),
+        }
+    }
+
+    const fn kind(&self) -> &'static str {
+        match self {
+            Self::Signal { .. } => "signal",
+            Self::Asset(_) => "asset",
+        }
+    }
+}
+
+impl Format {
+    /// Checks that an import takes settings, which are keywords: `full_scale`.
+    ///
+    /// # Errors
+    /// With the first that it does not take.
+    ///
+    /// ```
+    /// use htex_exchange::Format;
+    /// let hatt = Format::of_file("cork.xml")?;
+    /// assert!(hatt.check_import(["full_scale"]).unwrap_err().to_string().contains("takes no `full_scale`"));
+    /// # Ok::<(), htex_exchange::ExchangeError>(())
+    /// ```
+    pub fn check_import<'a>(
+        &self,
+        given: impl IntoIterator<Item = &'a str>,
+    ) -> Result<(), ExchangeError> {
+        let takes = self.reads.as_ref().map(Reads::settings);
+        self.check("import", takes.unwrap_or_default(), given)
+    }
+
+    /// As [`Self::check_import`], of an export.
+    ///
+    /// # Errors
+    /// With the first that it does not take.
+    pub fn check_export<'a>(
+        &self,
+        given: impl IntoIterator<Item = &'a str>,
+    ) -> Result<(), ExchangeError> {
+        let takes = self.writes.as_ref().map(Writes::settings);
+        self.check("export", takes.unwrap_or_default(), given)
+    }
+
+    fn check<'a>(
+        &self,
+        way: &'static str,
+        takes: Vec<&'static str>,
+        given: impl IntoIterator<Item = &'a str>,
+    ) -> Result<(), ExchangeError> {
+        match given.into_iter().find(|setting| !takes.contains(setting)) {
+            None => Ok(()),
+            Some(setting) => Err(ExchangeError::Unused {
+                format: self.title,
+                way,
+                setting: setting.to_owned(),
+                takes,
+            }),
+        }
+    }
+
+    /// Its extensions, with their points.
+    #[must_use]
+    pub fn dotted(&self) -> String {
+        let dotted: Vec<String> = self.extensions.iter().map(|e| format!(".{e}")).collect();
+        dotted.join(", ")
+    }
+}
+
+/// What `htex formats --json` tells of a format.
+#[derive(Serialize)]
+struct Described<'a> {
+    name: &'a str,
+    title: &'a str,
+    extensions: &'a [&'a str],
+    /// `signal` or `asset`.
+    import: Option<&'a str>,
+    import_settings: Vec<&'a str>,
+    export: Option<&'a str>,
+    export_settings: Vec<&'a str>,
+    keeps: &'a str,
+    loses: &'a str,
+}
+
+impl Serialize for Format {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let described = Described {
+            name: self.name,
+            title: self.title,
+            extensions: self.extensions,
+            import: self.reads.as_ref().map(Reads::kind),
+            import_settings: self.reads.as_ref().map(Reads::settings).unwrap_or_default(),
+            export: self.writes.as_ref().map(Writes::kind),
+            export_settings: self
+                .writes
+                .as_ref()
+                .map(Writes::settings)
+                .unwrap_or_default(),
+            keeps: self.keeps,
+            loses: self.loses,
+        };
+        described.serialize(serializer)
+    }
+}

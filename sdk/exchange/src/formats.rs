@@ -1,0 +1,160 @@
+//! The formats, in one table: commands, help, messages and documents are made of it.
+
+use crate::error::{ExchangeError, list};
+use crate::format::{Format, Reads, Writes};
+use crate::{ahap, haptic, hjif, import, writers};
+
+/// Every format.
+pub const FORMATS: &[Format] = &[
+    Format {
+        name: "hatt",
+        title: "Penn Haptic Texture Toolkit, XML",
+        extensions: &["xml"],
+        reads: Some(Reads::Asset(import::hatt)),
+        writes: None,
+        keeps: "the filter of each node, speed and force, the unit, triangles, friction",
+        loses: "nothing that is played; between nodes levels are mixed, not variances",
+    },
+    Format {
+        name: "haptic",
+        title: "Meta .haptic, version 1",
+        extensions: &["haptic"],
+        reads: Some(Reads::Positions {
+            read: haptic::signal,
+            profile: "quest",
+        }),
+        writes: Some(Writes::Signal {
+            write: writers::haptic,
+            profile: "quest",
+            settings: &[],
+        }),
+        keeps: "level and one frequency over time",
+        loses: "the spectrum, speed and force, the unit; frequencies are positions in an actuator's range",
+    },
+    Format {
+        name: "ahap",
+        title: "Apple .ahap, version 1",
+        extensions: &["ahap"],
+        reads: Some(Reads::Positions {
+            read: ahap::signal,
+            profile: "iphone",
+        }),
+        writes: Some(Writes::Signal {
+            write: writers::ahap,
+            profile: "iphone",
+            settings: &[],
+        }),
+        keeps: "level and one sharpness over time",
+        loses: "the spectrum, speed and force, the unit; how sharp a sharpness is",
+    },
+    Format {
+        name: "android",
+        title: "Android VibrationEffect, as JSON or Kotlin",
+        extensions: &["json", "kt"],
+        reads: None,
+        writes: Some(Writes::Signal {
+            write: writers::android,
+            profile: "android",
+            settings: &[],
+        }),
+        keeps: "level and one frequency over time, in as many points as the device takes",
+        loses: "the spectrum, speed and force, the unit; what changes faster than the points",
+    },
+    Format {
+        name: "hjif",
+        title: "MPEG .hjif, ISO/IEC 23090-31",
+        extensions: &["hjif"],
+        reads: Some(Reads::Signal(hjif::signal)),
+        writes: Some(Writes::Signal {
+            write: writers::hjif,
+            profile: "quest",
+            settings: &["coding"],
+        }),
+        keeps: "seven tones over way or time (vectorial), or the samples (wavelet)",
+        loses: "how the spectrum follows speed and force, the unit; with tones what lies between them",
+    },
+    Format {
+        name: "wav",
+        title: "WAV that drives an actuator",
+        extensions: &["wav"],
+        reads: None,
+        writes: Some(Writes::Signal {
+            write: writers::wav,
+            profile: "console",
+            settings: &["rate"],
+        }),
+        keeps: "the samples, as far as the actuator plays them",
+        loses: "speed and force, the unit; what is outside the actuator's range",
+    },
+];
+
+impl Format {
+    /// Finds a format by its name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<&'static Self> {
+        FORMATS.iter().find(|format| format.name == name)
+    }
+
+    /// Finds the format that reads a file, by its extension.
+    ///
+    /// # Errors
+    /// When none that is imported has it; the error lists those that are.
+    pub fn of_file(file: &str) -> Result<&'static Self, ExchangeError> {
+        let extension = file
+            .rsplit_once('.')
+            .map_or("", |(_, extension)| extension)
+            .to_ascii_lowercase();
+        let has =
+            |format: &&Self| format.reads.is_some() && format.extensions.contains(&&extension[..]);
+        FORMATS
+            .iter()
+            .find(has)
+            .ok_or_else(|| ExchangeError::UnknownFormat {
+                file: file.to_owned(),
+                there: imported(),
+            })
+    }
+}
+
+/// Returns what is imported, in words: `.haptic, .ahap and .hjif`.
+#[must_use]
+pub fn imported() -> String {
+    let read = FORMATS.iter().filter(|format| format.reads.is_some());
+    list(read.map(Format::dotted))
+}
+
+/// Returns the names of what is exported.
+#[must_use]
+pub fn exported() -> Vec<&'static str> {
+    let written = FORMATS.iter().filter(|format| format.writes.is_some());
+    written.map(|format| format.name).collect()
+}
+
+/// Returns the table of the formats in Markdown, for documents.
+#[must_use]
+pub fn formats_table() -> String {
+    let mut text = String::from(
+        "| name | format | files | in | out | keeps | loses |\n|---|---|---|---|---|---|---|\n",
+    );
+    for f in FORMATS {
+        let comes_in = match &f.reads {
+            Some(Reads::Asset(_)) => "as an asset",
+            Some(_) => "to be fitted",
+            None => "",
+        };
+        let goes_out = match &f.writes {
+            Some(Writes::Asset(_)) => "the asset",
+            Some(Writes::Signal { .. }) => "what is played",
+            None => "",
+        };
+        text += &format!(
+            "| `{}` | {} | {} | {comes_in} | {goes_out} | {} | {} |\n",
+            f.name,
+            f.title,
+            f.dotted(),
+            f.keeps,
+            f.loses
+        );
+    }
+    text
+}

@@ -1,0 +1,181 @@
+//! The asset of a texture.
+
+use htex_author::stored_fields;
+use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
+use htex_dsp::line_spectrum::{coefficients_of_lines, line_spectral_frequencies, zeros_of_lines};
+use htex_dsp::linear_prediction::{ar_magnitude, is_stable};
+use htex_format::{
+    Asset, AtCondition, Condition, Contact, Manifest, Provenance, Quantity, Representation, Steps,
+    StoredAs, VERSION, round_parameters,
+};
+use htex_host::Registry;
+
+use super::extension::{EXTENSION, Hatt};
+use super::fault::Fault;
+use super::node::Node;
+use super::texture::Texture;
+
+const MODEL: &str = "org.htex.arma";
+
+/// What an asset has that is not in the file.
+#[derive(Debug, Clone, Default)]
+pub struct Imported<'a> {
+    /// Name of the texture, if the file gives no material.
+    pub name: &'a str,
+    /// Program and version, for the provenance.
+    pub tool: &'a str,
+}
+
+/// Makes the asset of a texture. It has no licence: the file has none.
+///
+/// # Errors
+/// When a filter cannot be stored: its poles or zeros are too close to each other.
+pub fn asset(texture: &Texture, imported: &Imported<'_>) -> Result<Asset, Fault> {
+    let registry = Registry::builtin();
+    let model = registry
+        .find(MODEL)
+        .map_err(|error| Fault::of_file(error.to_string()))?;
+    let mut fields = stored_fields(model.descriptor());
+    if let Some(rate) = fields.last_mut() {
+        // One byte at each node: it is the same at all.
+        rate.store = StoredAs::U8(Steps {
+            scale: texture.rate_hz,
+            offset: 0.0,
+            log: false,
+        });
+    }
+    let band = band(texture.rate_hz);
+    let (mut at, mut parameters) = (Vec::new(), Vec::new());
+    for (condition, node) in texture.nodes.iter().enumerate() {
+        let flat = flat(node, texture.rate_hz)?;
+        let stored =
+            round_parameters(&fields, &flat).map_err(|error| of(node, error.to_string()))?;
+        at.push(AtCondition {
+            condition,
+            level_rms: level_rms(node, &stored, texture.rate_hz, band)?,
+            quality: None,
+            left_out: None,
+        });
+        parameters.push(stored);
+    }
+    let representation = Representation {
+        model: MODEL.to_owned(),
+        model_version: model.descriptor().version.clone(),
+        fields,
+        at,
+        triangles: texture.triangles.clone(),
+        parameters: "parameters/arma.bin".to_owned(),
+    };
+    Ok(Asset {
+        manifest: manifest(texture, imported, band, representation)?,
+        parameters: vec![parameters],
+        reference: None,
+        plugins: Vec::new(),
+        notes: Vec::new(),
+    })
+}
+
+/// The band of textures, as far as the filters' rate has it.
+fn band(rate_hz: f64) -> Band {
+    Band {
+        high_hz: (0.5 * rate_hz).min(Band::TACTILE.high_hz),
+        ..Band::TACTILE
+    }
+}
+
+fn manifest(
+    texture: &Texture,
+    imported: &Imported<'_>,
+    band: Band,
+    representation: Representation,
+) -> Result<Manifest, Fault> {
+    let condition = |node: &Node| Condition {
+        speed_mm_s: Some(node.speed_mm_s),
+        force_n: Some(node.force_n),
+        ..Condition::default()
+    };
+    let numbers = serde_json::to_value(Hatt::of(texture));
+    let numbers = numbers.map_err(|error| Fault::of_file(error.to_string()))?;
+    let name = match texture.material.is_empty() {
+        true => imported.name,
+        false => &texture.material,
+    };
+    Ok(Manifest {
+        htex: VERSION.to_owned(),
+        name: name.to_owned(),
+        license: None,
+        author: None,
+        tags: Vec::new(),
+        description: None,
+        source: Some("Penn Haptic Texture Toolkit".to_owned()),
+        doi: None,
+        sensor: None,
+        finger: Some("a rigid tool".to_owned()),
+        contact: Contact::Tool,
+        quantity: Quantity::Acceleration,
+        unit: Quantity::Acceleration.unit().to_owned(),
+        band,
+        provenance: Provenance {
+            tool: imported.tool.to_owned(),
+            warnings: texture.notes.clone(),
+            ..Provenance::default()
+        },
+        conditions: texture.nodes.iter().map(condition).collect(),
+        law: None,
+        representations: vec![representation],
+        reference: None,
+        plugins: Vec::new(),
+        extensions: [(EXTENSION.to_owned(), numbers)].into(),
+        extensions_required: Vec::new(),
+        other: Default::default(),
+    })
+}
+
+/// The parameters of a node.
+fn flat(node: &Node, rate_hz: f64) -> Result<Vec<f64>, Fault> {
+    let lines = |coefficients: &[f64], what: &str| {
+        let negated: Vec<f64> = coefficients.iter().map(|a| -a).collect();
+        line_spectral_frequencies(&negated)
+            .ok_or_else(|| of(node, format!("the {what} lie outside the unit circle")))
+    };
+    let (poles, zeros) = (lines(&node.ar, "poles")?, lines(&node.ma, "zeros")?);
+    Ok([
+        &[poles.len() as f64],
+        &poles[..],
+        &[zeros.len() as f64],
+        &zeros,
+        &[rate_hz],
+    ]
+    .concat())
+}
+
+/// The level at which the stored shape is the filter's magnitude: noise of variance s² has the one-sided density 2 s² / rate, read as
+/// magnitude² = 2 P ENBW.
+fn level_rms(node: &Node, stored: &[f64], rate_hz: f64, band: Band) -> Result<f64, Fault> {
+    let poles = stored.get(1..=node.ar.len()).unwrap_or_default();
+    let zeros = stored
+        .get(node.ar.len() + 2..)
+        .and_then(|rest| rest.get(..node.ma.len()));
+    let (mut a, mut b) = (vec![0.0; node.ar.len()], vec![0.0; node.ma.len()]);
+    let is_one = coefficients_of_lines(poles, &mut a)
+        && zeros_of_lines(zeros.unwrap_or_default(), &mut b)
+        && is_stable(&a);
+    if !is_one {
+        return Err(of(
+            node,
+            "the poles are so near each other and the unit circle that 32-bit floats do not hold the filter",
+        ));
+    }
+    let curve = |hz: f64| ar_magnitude(&a, hz, rate_hz) / ar_magnitude(&b, hz, rate_hz);
+    let gain = (4.0 * 1.5 * GRID_HZ / rate_hz).sqrt();
+    let level_rms = node.deviation() * gain * curve_level_rms(band, curve);
+    match level_rms.is_finite() {
+        true => Ok(level_rms),
+        false => Err(of(node, "its level is not finite")),
+    }
+}
+
+/// A fault of a node.
+fn of(node: &Node, problem: impl Into<String>) -> Fault {
+    Fault::at(node.place.clone(), problem)
+}

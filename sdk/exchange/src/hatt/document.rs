@@ -1,0 +1,225 @@
+//! The elements of an XML document: names, texts and lines. No document type definition, thus no entity but the five of XML, and
+//! limits of size that a model file of the toolkit, of some 0.2 MB, is far from.
+
+use quick_xml::Reader;
+use quick_xml::events::{BytesRef, BytesStart, Event};
+
+use super::element::Element;
+use super::fault::{Fault, Place, short};
+
+/// Most bytes of a file.
+pub const MOST_BYTES: usize = 16 << 20;
+/// Most elements of a file.
+pub const MOST_ELEMENTS: usize = 200_000;
+/// Most elements in each other.
+const MOST_DEPTH: usize = 16;
+/// Most bytes of an element's text.
+const MOST_TEXT: usize = 4096;
+
+/// Reads the root element.
+pub(super) fn root(bytes: &[u8]) -> Result<Element, Fault> {
+    if bytes.len() > MOST_BYTES {
+        let words = format!("{} bytes are more than {MOST_BYTES}, the most", bytes.len());
+        return Err(Fault::of_file(words));
+    }
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let line = line_of(bytes, error.valid_up_to());
+        let place = Place {
+            line,
+            element: String::new(),
+        };
+        Fault::at(place, "this is no UTF-8; save the file as UTF-8")
+    })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    Builder::new(text).build()
+}
+
+fn line_of(bytes: &[u8], at: usize) -> usize {
+    let before = bytes.get(..at).unwrap_or(bytes);
+    1 + before.iter().filter(|byte| **byte == b'\n').count()
+}
+
+struct Builder<'a> {
+    text: &'a str,
+    reader: Reader<&'a [u8]>,
+    /// Elements that are not closed, the outermost first.
+    open: Vec<Element>,
+    root: Option<Element>,
+    count: usize,
+    /// The last position of which the line is known, and the line.
+    known: (usize, usize),
+}
+
+impl<'a> Builder<'a> {
+    fn new(text: &'a str) -> Self {
+        Self {
+            text,
+            reader: Reader::from_str(text),
+            open: Vec::new(),
+            root: None,
+            count: 0,
+            known: (0, 1),
+        }
+    }
+
+    fn build(mut self) -> Result<Element, Fault> {
+        loop {
+            let event = self.reader.read_event();
+            let event = event.map_err(|error| {
+                let at = self.reader.error_position();
+                self.here(at, format!("this is no XML: {}", short(&error.to_string())))
+            })?;
+            if !self.take(event)? {
+                break;
+            }
+        }
+        if let Some(left) = self.open.pop() {
+            return Err(left.fault("it is not closed; the file seems cut off"));
+        }
+        let root = self.root.take();
+        root.ok_or_else(|| Fault::of_file("it holds no element; give a model file of the toolkit"))
+    }
+
+    /// Takes an event; returns false at the end of the file.
+    fn take(&mut self, event: Event<'a>) -> Result<bool, Fault> {
+        match event {
+            Event::Start(start) => self.start(&start)?,
+            Event::Empty(start) => {
+                self.start(&start)?;
+                self.close();
+            }
+            Event::End(_) => self.close(),
+            Event::Text(text) => self.words(&decoded(text.decode()))?,
+            Event::CData(text) => self.words(&decoded(text.decode()))?,
+            Event::GeneralRef(reference) => {
+                let word = self.resolved(&reference)?;
+                self.words(&word)?;
+            }
+            Event::DocType(_) => {
+                let words = "a document type definition, which could name entities and other files; remove it";
+                return Err(self.fault(words));
+            }
+            Event::Eof => return Ok(false),
+            Event::Comment(_) | Event::Decl(_) | Event::PI(_) => {}
+        }
+        Ok(true)
+    }
+
+    fn start(&mut self, start: &BytesStart<'_>) -> Result<(), Fault> {
+        self.count += 1;
+        if self.count > MOST_ELEMENTS {
+            return Err(self.fault(format!("more than {MOST_ELEMENTS} elements")));
+        }
+        if self.open.len() >= MOST_DEPTH {
+            return Err(self.fault(format!("more than {MOST_DEPTH} elements in each other")));
+        }
+        if self.open.is_empty() && self.root.is_some() {
+            return Err(self.fault("a second element beside the first; a document has one"));
+        }
+        let mut attributes = Vec::new();
+        for attribute in start.attributes() {
+            let attribute = attribute.map_err(|error| self.fault(short(&error.to_string())))?;
+            attributes.push((
+                lossy(attribute.key.as_ref()),
+                lossy(attribute.value.as_ref()),
+            ));
+        }
+        let line = self.line();
+        self.open.push(Element {
+            name: lossy(start.name().as_ref()),
+            attributes,
+            text: String::new(),
+            children: Vec::new(),
+            line,
+        });
+        Ok(())
+    }
+
+    fn close(&mut self) {
+        let Some(closed) = self.open.pop() else {
+            return;
+        };
+        match self.open.last_mut() {
+            Some(parent) => parent.children.push(closed),
+            None => self.root = Some(closed),
+        }
+    }
+
+    fn words(&mut self, words: &str) -> Result<(), Fault> {
+        let is_blank = words.trim().is_empty();
+        let Some(open) = self.open.last_mut() else {
+            return match is_blank {
+                true => Ok(()),
+                false => Err(self.fault("a text outside of all elements")),
+            };
+        };
+        // The space between elements is no text.
+        if !is_blank || !open.text.is_empty() {
+            open.text.push_str(
+                words.trim_start_matches(|c: char| open.text.is_empty() && c.is_whitespace()),
+            );
+        }
+        match open.text.trim_end().len() > MOST_TEXT {
+            true => Err(open.fault(format!("a text of more than {MOST_TEXT} bytes"))),
+            false => Ok(()),
+        }
+    }
+
+    fn resolved(&mut self, reference: &BytesRef<'_>) -> Result<String, Fault> {
+        let name = decoded(reference.decode());
+        if let Ok(Some(character)) = reference.resolve_char_ref() {
+            return Ok(character.to_string());
+        }
+        match &name[..] {
+            "lt" => Ok("<".to_owned()),
+            "gt" => Ok(">".to_owned()),
+            "amp" => Ok("&".to_owned()),
+            "apos" => Ok("'".to_owned()),
+            "quot" => Ok("\"".to_owned()),
+            _ => {
+                let words = format!(
+                    "the entity {}, which is none of the five of XML",
+                    short(&name)
+                );
+                Err(self.fault(words))
+            }
+        }
+    }
+
+    /// The line at which the last event ended.
+    fn line(&mut self) -> usize {
+        self.line_at(self.reader.buffer_position())
+    }
+
+    fn line_at(&mut self, position: u64) -> usize {
+        let at = usize::try_from(position).unwrap_or(usize::MAX);
+        let at = at.min(self.text.len());
+        let (from, line) = self.known;
+        let passed = self.text.as_bytes().get(from..at).unwrap_or_default();
+        self.known = (
+            from.max(at),
+            line + passed.iter().filter(|byte| **byte == b'\n').count(),
+        );
+        self.known.1
+    }
+
+    fn fault(&mut self, problem: impl Into<String>) -> Fault {
+        self.here(self.reader.buffer_position(), problem)
+    }
+
+    fn here(&mut self, position: u64, problem: impl Into<String>) -> Fault {
+        let line = self.line_at(position);
+        let element = self.open.last().map(|open| open.name.clone());
+        let element = element.unwrap_or_default();
+        Fault::at(Place { line, element }, problem)
+    }
+}
+
+/// The text of bytes that are UTF-8, as the whole file is.
+fn decoded<E>(text: Result<std::borrow::Cow<'_, str>, E>) -> String {
+    text.map(std::borrow::Cow::into_owned).unwrap_or_default()
+}
+
+fn lossy(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}

@@ -1,0 +1,79 @@
+//! An element of a document, and what it holds.
+
+use super::fault::{Fault, Place, short};
+
+/// An element.
+#[derive(Debug)]
+pub(super) struct Element {
+    pub(super) name: String,
+    pub(super) attributes: Vec<(String, String)>,
+    pub(super) text: String,
+    pub(super) children: Vec<Element>,
+    pub(super) line: usize,
+}
+
+impl Element {
+    pub(super) fn place(&self) -> Place {
+        Place {
+            line: self.line,
+            element: self.name.clone(),
+        }
+    }
+
+    pub(super) fn fault(&self, problem: impl Into<String>) -> Fault {
+        Fault::at(self.place(), problem)
+    }
+
+    /// The children of a name.
+    pub(super) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
+        self.children.iter().filter(move |child| child.name == name)
+    }
+
+    /// The child of a name, of which there is at most one.
+    pub(super) fn one(&self, name: &str) -> Result<Option<&Element>, Fault> {
+        let mut found = self.children.iter().filter(|child| child.name == name);
+        let first = found.next();
+        match found.next() {
+            Some(second) => Err(second.fault("it is there twice; keep one of them")),
+            None => Ok(first),
+        }
+    }
+
+    /// The child of a name, which must be there.
+    pub(super) fn required(&self, name: &str) -> Result<&Element, Fault> {
+        let found = self.one(name)?;
+        found.ok_or_else(|| self.fault(format!("it has no element {name}")))
+    }
+
+    /// The beginning of its text, in quotation marks.
+    pub(super) fn quoted(&self) -> String {
+        format!("\"{}\"", short(self.text.trim()))
+    }
+
+    /// The number that the element holds.
+    pub(super) fn number(&self) -> Result<f64, Fault> {
+        let number = self.text.trim().parse::<f64>().ok();
+        let number = number.filter(|number| number.is_finite());
+        number.ok_or_else(|| self.fault(format!("{} is no number", self.quoted())))
+    }
+
+    /// As [`Self::number`], within a range.
+    pub(super) fn number_in(&self, low: f64, high: f64) -> Result<f64, Fault> {
+        let number = self.number()?;
+        match (low..=high).contains(&number) {
+            true => Ok(number),
+            false => Err(self.fault(format!("{number} is none from {low} to {high}"))),
+        }
+    }
+
+    /// A count.
+    pub(super) fn count(&self) -> Result<usize, Fault> {
+        let count = self.text.trim().parse().ok();
+        count.ok_or_else(|| self.fault(format!("{} is no count", self.quoted())))
+    }
+
+    /// The elements of a list, named `value`.
+    pub(super) fn values(&self) -> Result<Vec<f64>, Fault> {
+        self.all("value").map(Element::number).collect()
+    }
+}

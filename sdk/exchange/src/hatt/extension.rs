@@ -1,0 +1,49 @@
+//! What a model file has beside the texture, as an extension of the asset.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::texture::Texture;
+
+/// The extension's name in an asset.
+pub const EXTENSION: &str = "org.htex.hatt/1";
+
+/// Numbers of a model file of the Penn Haptic Texture Toolkit that no player of the texture needs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Hatt {
+    /// Number of the texture in the toolkit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub texture: Option<u32>,
+    /// Coefficient of kinetic friction between tool and surface, a force over a force.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_coefficient: Option<f64>,
+    /// Rate at which the toolkit runs its filters, hertz.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub sample_rate_hz: f64,
+    /// Speed that the toolkit's renderer plays for all higher ones, mm/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_speed_mm_s: Option<f64>,
+    /// Force that the toolkit's renderer plays for all higher ones, newtons.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_force_n: Option<f64>,
+}
+
+impl Hatt {
+    pub(super) fn of(texture: &Texture) -> Self {
+        Self {
+            texture: texture.number,
+            friction_coefficient: texture.friction,
+            sample_rate_hz: texture.rate_hz,
+            max_speed_mm_s: texture.max_speed_mm_s,
+            max_force_n: texture.max_force_n,
+        }
+    }
+}
+
+/// Returns the JSON Schema of the extension: `spec/schemas/hatt-1.json`.
+pub fn extension_schema() -> Value {
+    let title = "extension org.htex.hatt/1 of htex assets";
+    htex_schema::document::<Hatt>("hatt-1.json", title)
+}

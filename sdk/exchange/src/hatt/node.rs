@@ -1,0 +1,127 @@
+//! A node: a filter at a speed and a force.
+
+use htex_dsp::all_zero::MAX_ORDER;
+use htex_dsp::line_spectrum::line_spectral_frequencies;
+use htex_dsp::linear_prediction::is_stable;
+
+use super::element::Element;
+use super::fault::{Fault, Place};
+use super::zeros::inside;
+
+/// Largest difference of a line in the file from that of the coefficients, radians, without a warning.
+const LINE_ERROR: f64 = 1e-3;
+
+/// A filter at a speed and a force: the acceleration is noise of `variance` through `gain (1 + Σ ma_i z⁻ⁱ) / (1 + Σ ar_i z⁻ⁱ)`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Node {
+    pub speed_mm_s: f64,
+    pub force_n: f64,
+    /// Coefficients of the denominator behind the first, which is 1.
+    pub ar: Vec<f64>,
+    /// Coefficients of the numerator behind the first, which is 1; all zeros inside the unit circle.
+    pub ma: Vec<f64>,
+    /// Variance of the noise, (m/s²)²; 0 at a silent node.
+    pub variance: f64,
+    pub gain: f64,
+    /// Where it is in the file.
+    pub place: Place,
+}
+
+impl Node {
+    pub(super) fn read(element: &Element, notes: &mut Vec<String>) -> Result<Self, Fault> {
+        let ar = coefficients(element, "ARcoeff", true)?;
+        let ma = coefficients(element, "MAcoeff", false)?;
+        let of = |name: &str, most: f64| element.required(name)?.number_in(0.0, most);
+        let given = element.required("ARcoeff")?;
+        let negated: Vec<f64> = ar.iter().map(|a| -a).collect();
+        if !is_stable(&negated) {
+            return Err(
+                given.fault("the filter is not stable: a pole lies on or outside the unit circle")
+            );
+        }
+        let Some((ma, mirrored)) = inside(&ma) else {
+            let at = element.one("MAcoeff")?.unwrap_or(element);
+            return Err(at.fault("the zeros of these coefficients cannot be found"));
+        };
+        compare_lines(element, "ARlsf", &ar, notes)?;
+        if mirrored == 1.0 {
+            compare_lines(element, "MAlsf", &ma, notes)?;
+        }
+        let gain = match element.one("gain")? {
+            Some(gain) => gain.number_in(-1e6, 1e6)?.abs(),
+            None => 1.0,
+        };
+        Ok(Self {
+            speed_mm_s: of("speedMod", 1e5)?,
+            force_n: of("forceMod", 1e4)?,
+            variance: of("var", 1e12)?,
+            gain: gain * mirrored,
+            place: element.place(),
+            ar,
+            ma,
+        })
+    }
+
+    /// Standard deviation of the noise behind the gain, m/s²; 0 at a silent node.
+    pub fn deviation(&self) -> f64 {
+        self.gain * self.variance.sqrt()
+    }
+}
+
+/// The coefficients of a polynomial behind the first, which is 1.
+fn coefficients(node: &Element, name: &str, is_required: bool) -> Result<Vec<f64>, Fault> {
+    let list = match is_required {
+        true => Some(node.required(name)?),
+        false => node.one(name)?,
+    };
+    let Some(list) = list else {
+        return Ok(Vec::new());
+    };
+    let values = list.values()?;
+    let Some((first, rest)) = values.split_first() else {
+        return Err(list.fault("it has no value; the first coefficient is 1"));
+    };
+    if (first - 1.0).abs() > 1e-9 {
+        return Err(list.fault(format!("the first coefficient is {first}; it is 1")));
+    }
+    if rest.len() > MAX_ORDER {
+        let words = format!(
+            "{} coefficients are more than {MAX_ORDER}, the most",
+            rest.len()
+        );
+        return Err(list.fault(words));
+    }
+    Ok(rest.to_vec())
+}
+
+/// Compares the lines in the file, if there are any, with those of the coefficients.
+fn compare_lines(
+    node: &Element,
+    name: &str,
+    coefficients: &[f64],
+    notes: &mut Vec<String>,
+) -> Result<(), Fault> {
+    let Some(list) = node.one(name)? else {
+        return Ok(());
+    };
+    let given = list.values()?;
+    if given.len() != coefficients.len() {
+        let words = format!(
+            "{} lines beside {} coefficients; each coefficient but the first has one",
+            given.len(),
+            coefficients.len()
+        );
+        return Err(list.fault(words));
+    }
+    let negated: Vec<f64> = coefficients.iter().map(|b| -b).collect();
+    let own = line_spectral_frequencies(&negated).unwrap_or_default();
+    let pairs = own.iter().zip(&given);
+    let error = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    if error > LINE_ERROR {
+        notes.push(format!(
+            "{}the lines differ from those of the coefficients, which are used, by {error:.4} rad",
+            list.place()
+        ));
+    }
+    Ok(())
+}

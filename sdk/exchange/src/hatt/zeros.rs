@@ -1,0 +1,153 @@
+//! The mirror image of zeros outside the unit circle: noise through both has the same spectrum, but for a gain.
+
+use std::f64::consts::TAU;
+
+use htex_dsp::linear_prediction::step_down_in_place;
+use htex_dsp::spectrum::Complex;
+
+/// Largest radius of a zero that was moved.
+const MOST_RADIUS: f64 = 1.0 - 1e-7;
+/// Rounds in which roots are improved, some ten of which suffice unless roots are equal.
+const ROUNDS: usize = 500;
+/// Angles at which the result is compared with the polynomial.
+const COMPARED: u32 = 512;
+/// Most by which they differ, relative to the largest power.
+const MOST_ERROR: f64 = 1e-6;
+
+/// Returns the coefficients `B_1` to `B_q` of `1 + Σ B_i z⁻ⁱ` with all zeros inside the unit circle, and the gain by which it is the
+/// polynomial given in absolute value on the circle; `None` if the zeros cannot be found.
+pub(super) fn inside(coefficients: &[f64]) -> Option<(Vec<f64>, f64)> {
+    let mut reflection: Vec<f64> = coefficients.iter().map(|b| -b).collect();
+    if step_down_in_place(&mut reflection) {
+        return Some((coefficients.to_vec(), 1.0));
+    }
+    let order = coefficients.iter().rposition(|b| *b != 0.0)? + 1;
+    let used = coefficients.get(..order)?;
+    let (mut gain, mut zeros) = (1.0, roots(used)?);
+    for zero in &mut zeros {
+        let radius = zero.norm_sqr().sqrt();
+        if radius > 1.0 {
+            gain *= radius;
+            *zero /= radius * radius;
+        }
+        let moved = zero.norm_sqr().sqrt();
+        if moved > MOST_RADIUS {
+            *zero *= MOST_RADIUS / moved;
+        }
+    }
+    let mut made = product(&zeros);
+    is_same(used, &made, gain).then(|| {
+        made.resize(coefficients.len(), 0.0);
+        (made, gain)
+    })
+}
+
+/// The zeros of `z^n + Σ B_i z^(n-i)`, all at once (Aberth 1973).
+fn roots(coefficients: &[f64]) -> Option<Vec<Complex<f64>>> {
+    let order = coefficients.len();
+    let last = coefficients.last()?.abs();
+    let radius = libm::pow(last, 1.0 / order as f64).max(1e-3);
+    let start = |i: usize| turned(radius, TAU * (i as f64 + 0.25) / order as f64);
+    let mut zeros: Vec<Complex<f64>> = (0..order).map(start).collect();
+    for _ in 0..ROUNDS {
+        let mut moved = 0.0f64;
+        for i in 0..order {
+            let at = *zeros.get(i)?;
+            let (value, slope) = value_and_slope(coefficients, at);
+            let newton = value / slope;
+            let others = zeros.iter().enumerate().filter(|(j, _)| *j != i);
+            let pushed: Complex<f64> = others.map(|(_, other)| (at - other).inv()).sum();
+            let step = newton / (Complex::new(1.0, 0.0) - newton * pushed);
+            if step.re.is_finite() && step.im.is_finite() {
+                *zeros.get_mut(i)? -= step;
+                moved = moved.max(step.norm_sqr() / at.norm_sqr().max(1e-30));
+            }
+        }
+        if moved < 1e-30 {
+            break;
+        }
+    }
+    Some(zeros)
+}
+
+fn value_and_slope(coefficients: &[f64], at: Complex<f64>) -> (Complex<f64>, Complex<f64>) {
+    let one = Complex::new(1.0, 0.0);
+    let begin = (one, Complex::new(0.0, 0.0));
+    coefficients.iter().fold(begin, |(value, slope), b| {
+        (value * at + b, slope * at + value)
+    })
+}
+
+fn turned(radius: f64, angle: f64) -> Complex<f64> {
+    Complex::new(radius * libm::cos(angle), radius * libm::sin(angle))
+}
+
+/// The coefficients `B_1` and on of the polynomial with these zeros, in conjugate pairs.
+fn product(zeros: &[Complex<f64>]) -> Vec<f64> {
+    let mut made = vec![Complex::new(1.0, 0.0)];
+    for zero in zeros {
+        let before = made.clone();
+        made.push(Complex::new(0.0, 0.0));
+        for (b, previous) in made.iter_mut().skip(1).zip(before) {
+            *b -= previous * zero;
+        }
+    }
+    made.iter().skip(1).map(|b| b.re).collect()
+}
+
+/// Whether two polynomials have the same power on the circle, but for the gain of the second.
+fn is_same(a: &[f64], b: &[f64], gain: f64) -> bool {
+    let at = |i: u32| TAU / 2.0 * f64::from(i) / f64::from(COMPARED);
+    let powers = (0..=COMPARED)
+        .map(at)
+        .map(|w| (power(a, w), power(b, w) * gain * gain));
+    let powers: Vec<(f64, f64)> = powers.collect();
+    let largest = powers.iter().map(|(a, _)| *a).fold(0.0, f64::max);
+    powers
+        .iter()
+        .all(|(a, b)| (a - b).abs() <= MOST_ERROR * largest)
+}
+
+/// The squared absolute value of `1 + Σ B_i z⁻ⁱ`.
+fn power(coefficients: &[f64], angle: f64) -> f64 {
+    let step = turned(1.0, -angle);
+    let sum = coefficients
+        .iter()
+        .rev()
+        .fold(Complex::new(0.0, 0.0), |sum, b| (sum + b) * step);
+    (sum + 1.0).norm_sqr()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+mod tests {
+    use super::*;
+
+    /// Zeros outside, on, and inside the circle, single and in pairs; what is inside is left as it is.
+    #[test]
+    fn mirror_images_have_the_same_power() {
+        let pair = |radius: f64, angle: f64| [turned(radius, angle), turned(radius, -angle)];
+        for zeros in [
+            vec![Complex::new(1.25, 0.0)],
+            [pair(2.0, 0.7), pair(0.5, 2.0), pair(1.0, 1.1)].concat(),
+            [
+                &pair(1.001, 0.3)[..],
+                &[Complex::new(-1.0, 0.0), Complex::new(1.0, 0.0)],
+            ]
+            .concat(),
+            (1..9)
+                .flat_map(|i| pair(0.6 + 0.1 * f64::from(i), 0.37 * f64::from(i)))
+                .collect(),
+        ] {
+            let given = product(&zeros);
+            let (found, gain) = inside(&given).unwrap();
+            let mut reflection: Vec<f64> = found.iter().map(|b| -b).collect();
+            assert!(step_down_in_place(&mut reflection), "{zeros:?}");
+            assert!(is_same(&given, &found, gain));
+            assert!(gain >= 1.0);
+        }
+        assert_eq!(inside(&[0.5, 0.1]), Some((vec![0.5, 0.1], 1.0)));
+        assert_eq!(inside(&[]), Some((vec![], 1.0)));
+        assert_eq!(inside(&[0.0, 0.0]), Some((vec![0.0, 0.0], 1.0)));
+    }
+}

@@ -1,0 +1,315 @@
+//! `.hjif` of MPEG (ISO/IEC 23090-31, the readable format): perceptions of channels of bands of effects of keyframes.
+//!
+//! Read of the reference software (MPEGGroup/HapticReferenceSoftware: source/IOHaptics/src/IOJson.cpp for the keys and the rules,
+//! source/Types/src/Effect.cpp for what a keyframe sounds like, source/WaveletDecoder for wavelets), and of the names of perceptions in
+//! draft-ietf-avtcore-rtp-haptics. Keys of its earlier drafts (`tracks`, `mixing_weight`) are read, too. Of a file, the first channel of the
+//! first perception that vibrates is read.
+
+mod check;
+mod number;
+mod render;
+mod wavelet;
+mod write;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::error::Fault;
+use crate::format::{Sampling, Signal};
+use crate::json;
+use number::{whole, whole_or_none};
+
+pub use wavelet::{analysed, synthesised};
+pub(crate) use write::Tone;
+pub(crate) use write::vectorial;
+pub use write::{Space, waveform};
+
+/// A file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Hjif {
+    #[serde(default)]
+    pub version: String,
+    #[serde(default = "main_profile")]
+    pub profile: String,
+    #[serde(default = "one")]
+    pub level: u32,
+    #[serde(default)]
+    pub date: String,
+    #[serde(default)]
+    pub description: String,
+    /// Ticks of a position in a second, or in a metre.
+    #[serde(default = "thousand")]
+    pub timescale: u32,
+    #[serde(default)]
+    pub avatars: Vec<Value>,
+    pub perceptions: Vec<Perception>,
+    #[serde(default)]
+    pub syncs: Vec<Value>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Perception {
+    pub id: i64,
+    #[serde(default)]
+    pub avatar_id: i64,
+    #[serde(default)]
+    pub description: String,
+    pub perception_modality: String,
+    /// Power of ten of the unit of positions; −3 of milliseconds and millimetres.
+    #[serde(default = "milli")]
+    pub unit_exponent: i32,
+    #[serde(default)]
+    pub perception_unit_exponent: i32,
+    #[serde(default)]
+    pub reference_devices: Vec<ReferenceDevice>,
+    #[serde(default)]
+    pub effect_library: Vec<Effect>,
+    #[serde(alias = "tracks")]
+    pub channels: Vec<Channel>,
+}
+
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ReferenceDevice {
+    pub id: i64,
+    pub name: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub maximum_frequency: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub minimum_frequency: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resonance_frequency: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub maximum_amplitude: Option<f64>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Channel {
+    pub id: i64,
+    #[serde(default)]
+    pub description: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference_device_id: Option<i64>,
+    #[serde(default = "unity")]
+    pub gain: f64,
+    #[serde(default = "unity", alias = "mixing_weight")]
+    pub mixing_coefficient: f64,
+    #[serde(default)]
+    pub body_part_mask: u32,
+    pub bands: Vec<Band>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Band {
+    pub band_type: BandType,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve_type: Option<String>,
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        serialize_with = "whole_or_none"
+    )]
+    pub block_length: Option<f64>,
+    #[serde(serialize_with = "whole")]
+    pub lower_frequency_limit: f64,
+    /// Of a wavelet band, its samples in a second or in a metre.
+    #[serde(serialize_with = "whole")]
+    pub upper_frequency_limit: f64,
+    pub effects: Vec<Effect>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BandType {
+    Curve,
+    VectorialWave,
+    WaveletWave,
+    Transient,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Effect {
+    #[serde(default)]
+    pub effect_type: EffectType,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<i64>,
+    /// Ticks.
+    #[serde(default)]
+    pub position: i64,
+    /// Radians.
+    #[serde(default)]
+    pub phase: f64,
+    #[serde(default)]
+    pub base_signal: BaseSignal,
+    #[serde(default)]
+    pub keyframes: Vec<Keyframe>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum EffectType {
+    #[default]
+    Basis,
+    Reference,
+    #[serde(alias = "Timeline")]
+    Composite,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum BaseSignal {
+    #[default]
+    Sine,
+    Square,
+    Triangle,
+    SawToothUp,
+    SawToothDown,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Keyframe {
+    /// Ticks after the effect's position.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relative_position: Option<i64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub amplitude_modulation: Option<f64>,
+    /// Hertz, or waves in a metre.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        serialize_with = "whole_or_none"
+    )]
+    pub frequency_modulation: Option<f64>,
+}
+
+fn main_profile() -> String {
+    "Main".to_owned()
+}
+
+const fn one() -> u32 {
+    1
+}
+
+const fn thousand() -> u32 {
+    1000
+}
+
+const fn milli() -> i32 {
+    -3
+}
+
+const fn unity() -> f64 {
+    1.0
+}
+
+/// The modality of a texture over space.
+pub const TEXTURE: &str = "Vibrotactile Texture";
+/// The modality of a vibration over time.
+pub const VIBRATION: &str = "Vibrotactile";
+
+/// Modalities that are read as a vibration over time; the last are names of drafts.
+const OVER_TIME: [&str; 7] = [
+    VIBRATION,
+    "Other",
+    "Acceleration",
+    "Force",
+    "Vibration",
+    "Kinesthetic",
+    "User-defined Temporal",
+];
+/// Modalities that are read as a vibration over space.
+const OVER_SPACE: [&str; 4] = [
+    TEXTURE,
+    "VibrotactileTexture",
+    "Texture",
+    "User-defined Spatial",
+];
+
+impl Hjif {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// When it is no JSON, has another shape, or a number is out of its range; with the place.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
+        let hjif: Self = json::read(bytes)?;
+        check::check(&hjif)?;
+        Ok(hjif)
+    }
+
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = serde_json::to_vec(self).unwrap_or_default();
+        bytes.push(b'\n');
+        bytes
+    }
+
+    /// Whether the vibration lies over space instead of time, so that its speed has to be given.
+    #[must_use]
+    pub fn is_over_space(&self) -> bool {
+        self.chosen()
+            .is_some_and(|chosen| OVER_SPACE.contains(&&chosen.perception.perception_modality[..]))
+    }
+
+    /// The channel that is read.
+    fn chosen(&self) -> Option<Chosen<'_>> {
+        let vibrates = |p: &&Perception| {
+            let modality = &p.perception_modality[..];
+            (OVER_TIME.contains(&modality) || OVER_SPACE.contains(&modality))
+                && !p.channels.is_empty()
+        };
+        let perception = self.perceptions.iter().find(vibrates)?;
+        let index = self
+            .perceptions
+            .iter()
+            .position(|p| std::ptr::eq(p, perception))?;
+        Some(Chosen {
+            perception,
+            channel: perception.channels.first()?,
+            pointer: format!("/perceptions/{index}/channels/0"),
+        })
+    }
+
+    /// What of the file is not read, each a sentence.
+    #[must_use]
+    pub fn left_out(&self) -> Vec<String> {
+        let mut left_out = Vec::new();
+        if self.perceptions.len() > 1 {
+            left_out.push(format!(
+                "One of its {} perceptions is read.",
+                self.perceptions.len()
+            ));
+        }
+        let channels = self
+            .chosen()
+            .map_or(0, |chosen| chosen.perception.channels.len());
+        if channels > 1 {
+            left_out.push(format!("The first of {channels} channels is read."));
+        }
+        let bent = |band: &Band| band.curve_type.as_deref().is_some_and(|c| c != "Linear");
+        if (self.chosen()).is_some_and(|chosen| chosen.channel.bands.iter().any(bent)) {
+            left_out
+                .push("Its curves are read as straight lines between their keyframes.".to_owned());
+        }
+        left_out
+    }
+}
+
+/// The channel that is read, and where it is.
+struct Chosen<'a> {
+    perception: &'a Perception,
+    channel: &'a Channel,
+    pointer: String,
+}
+
+impl Chosen<'_> {
+    /// Seconds or metres of a tick.
+    fn tick(&self, timescale: u32) -> f64 {
+        libm::pow(10.0, f64::from(self.perception.unit_exponent + 3)) / f64::from(timescale.max(1))
+    }
+}
+
+/// Reads a file as a signal.
+pub(crate) fn signal(bytes: &[u8], sampling: Sampling) -> Result<Signal, Fault> {
+    let hjif = Hjif::from_bytes(bytes)?;
+    Ok(Signal {
+        samples: hjif.rendered(sampling.rate_hz, sampling.speed_mm_s)?,
+        left_out: hjif.left_out(),
+    })
+}

@@ -1,0 +1,23 @@
+//! Numbers without a fraction as JSON's integers, which the reference software asks for.
+
+use serde::Serializer;
+
+/// Largest integer up to which every integer is exact in binary64.
+const EXACT: f64 = 9_007_199_254_740_992.0;
+
+pub(super) fn whole<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    match *number == libm::trunc(*number) && number.abs() <= EXACT {
+        true => serializer.serialize_i64(*number as i64),
+        false => serializer.serialize_f64(*number),
+    }
+}
+
+pub(super) fn whole_or_none<S: Serializer>(
+    number: &Option<f64>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match number {
+        Some(number) => whole(number, serializer),
+        None => serializer.serialize_none(),
+    }
+}

@@ -1,0 +1,271 @@
+//! What the bands of a channel sound like.
+
+use std::collections::BTreeMap;
+
+use super::{Band, BandType, BaseSignal, Chosen, Effect, EffectType, Hjif, Keyframe, synthesised};
+use crate::curve::{Point, Reader};
+use crate::error::Fault;
+use crate::pattern::MOST_S;
+
+/// Length of a transient, seconds: two periods of a sine (source/Types/include/Band.h).
+const TRANSIENT_S: f64 = 0.022;
+/// Most samples and keyframes of all effects together, those of a referenced effect counted at each reference.
+const MOST_WORK: f64 = 4e7;
+
+/// The effects of a library that bands refer to.
+type Library<'a> = BTreeMap<i64, &'a Effect>;
+
+/// A band at a rate, in seconds.
+struct Timed<'a> {
+    band: &'a Band,
+    library: &'a Library<'a>,
+    /// Seconds of a tick.
+    tick_s: f64,
+    /// Hertz of a unit of frequency.
+    per_s: f64,
+    rate_hz: f64,
+}
+
+impl Hjif {
+    /// Renders the channel at a rate, within ±1. A texture over space is rendered at a speed, mm/s.
+    ///
+    /// # Errors
+    /// When it is longer than ten minutes, or its effects together take too many samples.
+    pub fn rendered(&self, rate_hz: f64, speed_mm_s: f64) -> Result<Vec<f64>, Fault> {
+        let Some(chosen) = self.chosen() else {
+            return Err(Fault::new("/perceptions", "no perception vibrates"));
+        };
+        // A file over space is played at a speed, metres in a second.
+        let speed = if self.is_over_space() {
+            speed_mm_s / 1e3
+        } else {
+            1.0
+        };
+        let library = chosen.perception.effect_library.iter();
+        let library: Library<'_> = library.filter_map(|e| Some((e.id?, e))).collect();
+        let bands = chosen.channel.bands.iter().map(|band| Timed {
+            band,
+            library: &library,
+            tick_s: chosen.tick(self.timescale) / speed,
+            per_s: speed,
+            rate_hz,
+        });
+        let bands: Vec<Timed<'_>> = bands.collect();
+        let mut samples = vec![0.0; length(&bands, &chosen, rate_hz)?];
+        for band in &bands {
+            band.add_to(&mut samples);
+        }
+        let gain = chosen.channel.gain * chosen.channel.mixing_coefficient;
+        samples
+            .iter_mut()
+            .for_each(|x| *x = (gain * *x).clamp(-1.0, 1.0));
+        Ok(samples)
+    }
+}
+
+/// Samples to the end of the last effect.
+fn length(bands: &[Timed<'_>], chosen: &Chosen<'_>, rate_hz: f64) -> Result<usize, Fault> {
+    let (mut end_s, mut work) = (0.0f64, 0.0);
+    for (index, band) in bands.iter().enumerate() {
+        let at = || format!("{}/bands/{index}", chosen.pointer);
+        for effect in band.effects() {
+            let (from_s, to_s) = (band.start_s(&effect), band.end_s(&effect));
+            if to_s > MOST_S {
+                let problem = format!("it ends at {to_s:.0} s, and {MOST_S} s are read at most");
+                return Err(Fault::new(at(), problem));
+            }
+            end_s = end_s.max(to_s);
+            work += (to_s - from_s) * rate_hz + effect.effect.keyframes.len() as f64;
+            if work > MOST_WORK {
+                let problem = format!(
+                    "its effects have more than {MOST_WORK:e} samples and keyframes at {rate_hz} Hz; leave some out"
+                );
+                return Err(Fault::new(at(), problem));
+            }
+        }
+    }
+    Ok(first_from(end_s, rate_hz))
+}
+
+/// An effect at a position: its own, or that of a reference to it.
+struct Placed<'a> {
+    effect: &'a Effect,
+    position: i64,
+}
+
+impl<'a> Timed<'a> {
+    fn effects(&self) -> impl Iterator<Item = Placed<'a>> {
+        let library = self.library;
+        self.band.effects.iter().filter_map(move |effect| {
+            let position = effect.position;
+            let effect = match effect.effect_type {
+                EffectType::Reference => library.get(&effect.id?).copied()?,
+                _ => effect,
+            };
+            Some(Placed { effect, position })
+        })
+    }
+
+    fn start_s(&self, placed: &Placed<'_>) -> f64 {
+        placed.position as f64 * self.tick_s
+    }
+
+    fn end_s(&self, placed: &Placed<'_>) -> f64 {
+        let keyframes = &placed.effect.keyframes;
+        let last = keyframes
+            .iter()
+            .filter_map(|k| k.relative_position)
+            .max()
+            .unwrap_or(0);
+        let own_s = match self.band.band_type {
+            BandType::WaveletWave => self.block_s(keyframes.len().saturating_sub(1)),
+            BandType::Transient => last as f64 * self.tick_s + TRANSIENT_S,
+            BandType::Curve | BandType::VectorialWave => last as f64 * self.tick_s,
+        };
+        self.start_s(placed) + own_s
+    }
+
+    /// Length of a block of wavelets, whose rate is the upper limit.
+    fn block_s(&self, samples: usize) -> f64 {
+        match self.band.upper_frequency_limit * self.per_s {
+            rate if rate > 0.0 => samples as f64 / rate,
+            _ => 0.0,
+        }
+    }
+
+    fn add_to(&self, samples: &mut [f64]) {
+        for placed in self.effects() {
+            let clock = Clock::new(self.start_s(&placed), self.rate_hz);
+            let end = first_from(self.end_s(&placed), self.rate_hz);
+            let end = samples.len().min(end);
+            let Some(own) = samples.get_mut(clock.first.min(end)..end) else {
+                continue;
+            };
+            match self.band.band_type {
+                BandType::VectorialWave => self.add_wave(placed.effect, own, clock),
+                BandType::WaveletWave => self.add_block(placed.effect, own, clock),
+                BandType::Transient => self.add_transients(placed.effect, own, clock),
+                BandType::Curve => self.add_curve(placed.effect, own, clock),
+            }
+        }
+    }
+
+    /// A curve of the keyframes' values over seconds.
+    fn curve(&self, effect: &Effect, value: impl Fn(&Keyframe) -> Option<f64>) -> Vec<Point> {
+        let point = |k: &Keyframe| {
+            Some(Point::new(
+                k.relative_position.unwrap_or(0) as f64 * self.tick_s,
+                value(k)?,
+            ))
+        };
+        effect.keyframes.iter().filter_map(point).collect()
+    }
+
+    fn add_wave(&self, effect: &Effect, own: &mut [f64], clock: Clock) {
+        let (low, high) = (
+            self.band.lower_frequency_limit,
+            self.band.upper_frequency_limit,
+        );
+        let amplitude = self.curve(effect, |k| k.amplitude_modulation);
+        let limited = |hz: f64| hz.clamp(low, high) * self.per_s;
+        let frequency = self.curve(effect, |k| k.frequency_modulation.map(limited));
+        let (mut amplitude, mut frequency) = (Reader::new(&amplitude), Reader::new(&frequency));
+        let mut periods = effect.phase / std::f64::consts::TAU;
+        let mut before_s = 0.0;
+        for (index, sample) in own.iter_mut().enumerate() {
+            let time_s = clock.into_s(index);
+            // Frequencies are linear between keyframes: the middle of a step has its mean.
+            let hz = frequency.at(0.5 * (before_s + time_s)).unwrap_or(0.0);
+            periods += hz * (time_s - before_s);
+            before_s = time_s;
+            *sample += amplitude.at(time_s).unwrap_or(1.0) * base(effect.base_signal, periods);
+        }
+    }
+
+    fn add_block(&self, effect: &Effect, own: &mut [f64], clock: Clock) {
+        let values = effect
+            .keyframes
+            .iter()
+            .map(|k| k.amplitude_modulation.unwrap_or(0.0));
+        let mut coefficients: Vec<f64> = values.collect();
+        let scale = coefficients.pop().unwrap_or(0.0);
+        coefficients.iter_mut().for_each(|c| *c *= scale);
+        let block = synthesised(&coefficients);
+        let per_s = self.band.upper_frequency_limit * self.per_s;
+        for (index, sample) in own.iter_mut().enumerate() {
+            // The sample that is held, as the reference software plays it.
+            let at = libm::floor(clock.into_s(index) * per_s + 1e-6).max(0.0) as usize;
+            *sample += block.get(at).copied().unwrap_or(0.0);
+        }
+    }
+
+    fn add_transients(&self, effect: &Effect, own: &mut [f64], clock: Clock) {
+        for at in self.curve(effect, |k| k.amplitude_modulation) {
+            let (from, to) = (clock.index(at.time_s), clock.index(at.time_s + TRANSIENT_S));
+            for (index, sample) in own.iter_mut().enumerate().take(to).skip(from) {
+                let part = (clock.into_s(index) - at.time_s) / TRANSIENT_S;
+                *sample += at.value * libm::sin(2.0 * std::f64::consts::TAU * part);
+            }
+        }
+    }
+
+    /// Curves are read as lines; other kinds of curves pass through the same points.
+    fn add_curve(&self, effect: &Effect, own: &mut [f64], clock: Clock) {
+        let curve = self.curve(effect, |k| k.amplitude_modulation);
+        let mut curve = Reader::new(&curve);
+        for (index, sample) in own.iter_mut().enumerate() {
+            *sample += curve.at(clock.into_s(index)).unwrap_or(0.0);
+        }
+    }
+}
+
+/// The first sample from a time on; one that is off by rounding is at it.
+fn first_from(time_s: f64, rate_hz: f64) -> usize {
+    libm::ceil(time_s * rate_hz - 1e-6).max(0.0) as usize
+}
+
+/// The samples of an effect in time.
+#[derive(Clone, Copy)]
+struct Clock {
+    from_s: f64,
+    rate_hz: f64,
+    /// The first sample from its start on.
+    first: usize,
+}
+
+impl Clock {
+    fn new(from_s: f64, rate_hz: f64) -> Self {
+        let first = first_from(from_s, rate_hz);
+        Self {
+            from_s,
+            rate_hz,
+            first,
+        }
+    }
+
+    /// Seconds from the effect's start to one of its samples.
+    fn into_s(self, index: usize) -> f64 {
+        (self.first + index) as f64 / self.rate_hz - self.from_s
+    }
+
+    /// The first of its samples from a time after its start on.
+    fn index(self, into_s: f64) -> usize {
+        first_from(self.from_s + into_s, self.rate_hz).saturating_sub(self.first)
+    }
+}
+
+/// A base signal after some periods.
+fn base(signal: BaseSignal, periods: f64) -> f64 {
+    let saw = 2.0 * (periods - libm::floor(periods + 0.5));
+    match signal {
+        BaseSignal::Sine => libm::sin(std::f64::consts::TAU * periods),
+        BaseSignal::Square if periods - libm::floor(periods) < 0.5 => 1.0,
+        BaseSignal::Square => -1.0,
+        BaseSignal::Triangle => {
+            let quarter = periods - 0.25;
+            1.0 - 4.0 * (quarter - libm::round(quarter)).abs()
+        }
+        BaseSignal::SawToothUp => saw,
+        BaseSignal::SawToothDown => -saw,
+    }
+}

@@ -1,0 +1,318 @@
+//! Files of other formats as assets.
+//!
+//! A file that states units, speeds and forces is an asset (HaTT). The others are signals within ±1 and know no newtons, no speed and no force: a
+//! signal becomes a recording by the full scale that is given, at the condition that is given, and is fitted. A signal that is shorter than some
+//! seconds is repeated, since a texture lasts.
+
+use htex_author::recording::RecordedFile;
+use htex_author::settings::{FitSettings, Metadata, ReadingSettings, SettingsError};
+use htex_author::{
+    Averaging, Exploration, FeltError, Level, Recording, SegmentChoice, Take, fit_asset,
+};
+use htex_finding::Notice;
+use htex_format::Quantity;
+use htex_host::Registry;
+
+use crate::error::{ExchangeError, Fault, Missing};
+use crate::format::{Format, Held, Naming, Reads, Sampling, Signal};
+use crate::profile::Profile;
+
+/// Rate of signals, hertz.
+pub const RATE_HZ: f64 = 8_000.0;
+/// A signal is repeated until it is this long, seconds.
+const LEAST_S: f64 = 4.0;
+
+/// What a signal does not say.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Physical {
+    /// The quantity's unit at ±1: newtons of a lateral force.
+    pub full_scale: Option<f64>,
+    pub quantity: Quantity,
+    /// Speed of the finger, mm/s.
+    pub speed_mm_s: Option<f64>,
+    /// Its normal force, newtons.
+    pub force_n: Option<f64>,
+}
+
+const FULL_SCALE: Missing = Missing {
+    setting: "full_scale",
+    words: "how strong 1 is",
+};
+const SPEED: Missing = Missing {
+    setting: "speed",
+    words: "at which speed it is felt",
+};
+const FORCE: Missing = Missing {
+    setting: "force",
+    words: "at which force",
+};
+/// Largest normal force, newtons.
+const MOST_FORCE_N: f64 = 1e3;
+
+/// How a file is imported.
+#[derive(Debug, Clone, Default)]
+pub struct Import<'a> {
+    /// The asset's name, where the file has none.
+    pub name: &'a str,
+    pub physical: Physical,
+    /// The actuator whose range a file's frequencies are positions in; else the format's own.
+    pub profile: Option<&'a Profile>,
+    pub fit: FitSettings,
+    pub metadata: Metadata,
+    /// Program and version, for the provenance.
+    pub tool: &'a str,
+}
+
+/// An asset that was imported, with what its file does not hold.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Imported {
+    pub asset: htex_format::Asset,
+    /// What is felt of the difference from the signal, of each representation at each condition; empty where nothing was fitted.
+    pub felt: Vec<Vec<Option<FeltError>>>,
+    /// What a person should know.
+    pub warnings: Vec<Notice>,
+    pub notes: Vec<Notice>,
+}
+
+/// Reads a file as an asset; `file` is its name, by whose extension the format is found.
+///
+/// # Errors
+/// When no format has the extension, a setting is given that the format does not take, something that it does not say is not given, the file is
+/// not what it says (with the place), or no model can be fitted.
+///
+/// ```
+/// use htex_author::settings::FitSettings;
+/// use htex_exchange::{Import, Physical, import};
+/// let file = br#"{"version": {"major": 1}, "signals": {"continuous": {"envelopes": {
+///     "amplitude": [{"time": 0, "amplitude": 0.5}, {"time": 1, "amplitude": 0.5}]}}}}"#;
+/// let registry = htex_play::Registry::builtin();
+/// let mut how = Import { name: "buzz", ..Import::default() };
+/// let error = import("buzz.haptic", file, &how, &registry).unwrap_err();
+/// assert!(error.to_string().contains("`full_scale`"));
+/// how.physical = Physical { full_scale: Some(0.2), speed_mm_s: Some(80.0), force_n: Some(0.5), ..Physical::default() };
+/// how.fit = FitSettings { models: Some(vec!["bands".to_owned()]), ..FitSettings::default() };
+/// assert_eq!(import("buzz.haptic", file, &how, &registry)?.asset.manifest.name, "buzz");
+/// # Ok::<(), htex_exchange::ImportError>(())
+/// ```
+pub fn import(
+    file: &str,
+    bytes: &[u8],
+    how: &Import<'_>,
+    registry: &Registry,
+) -> Result<Imported, ImportError> {
+    let format = Format::of_file(file)?;
+    format.check_import(how.given())?;
+    let mut imported = match format.reads {
+        Some(Reads::Asset(read)) => held(file, read(bytes, &how.naming()))?,
+        _ => {
+            let recording = recording_of(file, bytes, &how.physical, how.profile)?;
+            fitted(recording, how, registry)?
+        }
+    };
+    how.metadata.apply(&mut imported.asset.manifest);
+    Ok(imported)
+}
+
+impl Import<'_> {
+    const fn naming(&self) -> Naming<'_> {
+        Naming {
+            name: self.name,
+            tool: self.tool,
+        }
+    }
+
+    /// The settings that differ from none at all, as keywords.
+    fn given(&self) -> Vec<&'static str> {
+        let (physical, fit) = (&self.physical, &self.fit);
+        let is_all = |models: &Vec<String>| models[..] == ["all"];
+        let all = [
+            ("full_scale", physical.full_scale.is_some()),
+            ("quantity", physical.quantity != Quantity::default()),
+            ("speed", physical.speed_mm_s.is_some()),
+            ("force", physical.force_n.is_some()),
+            ("profile", self.profile.is_some()),
+            ("model", fit.models.as_ref().is_some_and(|m| !is_all(m))),
+            ("option", !fit.options.is_empty()),
+            ("level", fit.level.is_some_and(|l| l != Level::default())),
+            ("keep_reference", fit.keep_reference == Some(true)),
+            ("grid", fit.grid.is_some()),
+        ];
+        let given = all.into_iter().filter(|(_, is_given)| *is_given);
+        given.map(|(setting, _)| setting).collect()
+    }
+}
+
+fn in_file(file: &str) -> impl Fn(Fault) -> ExchangeError + '_ {
+    move |fault| ExchangeError::File {
+        file: file.to_owned(),
+        fault,
+    }
+}
+
+fn held(file: &str, read: Result<Held, Fault>) -> Result<Imported, ExchangeError> {
+    let Held { asset, warnings } = read.map_err(in_file(file))?;
+    Ok(Imported {
+        asset,
+        felt: Vec::new(),
+        warnings: warnings.into_iter().map(Into::into).collect(),
+        notes: Vec::new(),
+    })
+}
+
+/// A model file of the Penn Haptic Texture Toolkit.
+pub(crate) fn hatt(bytes: &[u8], naming: &Naming<'_>) -> Result<Held, Fault> {
+    let of = |fault: crate::hatt::Fault| {
+        Fault::new(
+            fault.place.to_string().trim_end_matches(": "),
+            fault.problem,
+        )
+    };
+    let texture = crate::hatt::read(bytes).map_err(of)?;
+    let imported = crate::hatt::Imported {
+        name: naming.name,
+        tool: naming.tool,
+    };
+    Ok(Held {
+        asset: crate::hatt::asset(&texture, &imported).map_err(of)?,
+        warnings: texture.notes,
+    })
+}
+
+/// Reads a file as a recording, as [`import`] does before it fits.
+///
+/// # Errors
+/// Those of [`import`], and when the file is no signal but an asset.
+pub fn recording_of(
+    file: &str,
+    bytes: &[u8],
+    physical: &Physical,
+    profile: Option<&Profile>,
+) -> Result<Recording, ExchangeError> {
+    let format = Format::of_file(file)?;
+    let (full_scale, speed_mm_s) = physical.checked(format)?;
+    let sampling = Sampling {
+        rate_hz: RATE_HZ,
+        speed_mm_s,
+    };
+    let signal = signal(format, bytes, sampling, profile)?.map_err(in_file(file))?;
+    let mut samples: Vec<f64> = signal.samples.iter().map(|x| full_scale * x).collect();
+    let mut warnings = signal.left_out;
+    if !samples.iter().any(|x| *x != 0.0) {
+        let silent = Fault::whole("it is silent, and nothing can be fitted to it");
+        return Err(in_file(file)(silent));
+    }
+    let least = (LEAST_S * RATE_HZ) as usize;
+    if samples.len() < least {
+        let times = least.div_ceil(samples.len().max(1));
+        let seconds = samples.len() as f64 / RATE_HZ;
+        warnings.push(format!("Its {seconds:.3} s are repeated {times} times."));
+        samples = samples.repeat(times);
+    }
+    let mut recording = Recording::of(physical.quantity, file, RATE_HZ, vec![samples])?;
+    recording.file = RecordedFile::of_bytes(bytes);
+    recording.warnings = warnings.into_iter().map(Into::into).collect();
+    Ok(recording)
+}
+
+/// The signal of a file, or what is wrong with the file.
+fn signal(
+    format: &'static Format,
+    bytes: &[u8],
+    sampling: Sampling,
+    given: Option<&Profile>,
+) -> Result<Result<Signal, Fault>, ExchangeError> {
+    Ok(match format.reads {
+        Some(Reads::Positions { read, profile }) => {
+            let profile = given.map_or_else(|| Profile::find(profile), Ok)?;
+            read(bytes, sampling, profile)
+        }
+        Some(Reads::Signal(read)) => read(bytes, sampling),
+        Some(Reads::Asset(_)) | None => {
+            return Err(ExchangeError::Cannot {
+                format: format.name,
+                problem: "its files are no signals".to_owned(),
+            });
+        }
+    })
+}
+
+impl Physical {
+    /// Returns full scale and speed.
+    fn checked(&self, format: &Format) -> Result<(f64, f64), ExchangeError> {
+        let all = [
+            (FULL_SCALE, self.full_scale),
+            (SPEED, self.speed_mm_s),
+            (FORCE, self.force_n),
+        ];
+        let (Some(full_scale), Some(speed), Some(force)) =
+            (self.full_scale, self.speed_mm_s, self.force_n)
+        else {
+            let missing = all.iter().filter(|(_, given)| given.is_none());
+            return Err(ExchangeError::Missing {
+                format: format.title,
+                missing: missing.map(|(missing, _)| *missing).collect(),
+            });
+        };
+        let above = |name, value: f64, most: f64, range| match value > 0.0 && value <= most {
+            true => Ok(()),
+            false => Err(ExchangeError::OutOfRange { name, value, range }),
+        };
+        let most_mm_s = Exploration::MOST_SPEED_MM_S;
+        above("full_scale", full_scale, 1e6, "more than 0, at most 1e6")?;
+        above(
+            "speed",
+            speed,
+            most_mm_s,
+            "more than 0 mm/s, at most 10,000 mm/s",
+        )?;
+        above(
+            "force",
+            force,
+            MOST_FORCE_N,
+            "more than 0 N, at most 1000 N",
+        )?;
+        Ok((full_scale, speed))
+    }
+}
+
+/// Fits an asset to a recording.
+fn fitted(
+    recording: Recording,
+    how: &Import<'_>,
+    registry: &Registry,
+) -> Result<Imported, ImportError> {
+    let reading = ReadingSettings::default();
+    let mut request = how.fit.request(registry, &reading, how.name, how.tool)?;
+    request.spectrum = request
+        .spectrum
+        .with_segments(SegmentChoice::Windows)
+        .with_averaging(Averaging::Rms);
+    if let Some(full_scale) = how.physical.full_scale {
+        let options = &mut request.recorded_options;
+        options.insert("full-scale".to_owned(), full_scale.to_string());
+    }
+    let given = Exploration {
+        speed_mm_s: how.physical.speed_mm_s,
+        force_n: how.physical.force_n,
+    };
+    let fitted = fit_asset(&[Take { recording, given }], &request)?;
+    Ok(Imported {
+        asset: fitted.asset,
+        felt: fitted.felt,
+        warnings: fitted.warnings,
+        notes: fitted.notes,
+    })
+}
+
+/// Why a file is not imported.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImportError {
+    #[error(transparent)]
+    Exchange(#[from] ExchangeError),
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    #[error(transparent)]
+    Author(#[from] htex_author::AuthorError),
+}

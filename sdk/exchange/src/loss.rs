@@ -1,0 +1,67 @@
+//! What is lost: the file that was written is read again and played through the profile, and compared with the asset's own samples.
+
+use htex_author::{
+    AuthorError, Averaging, Difference, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum,
+    segment_spectra, spectrum_of_samples,
+};
+
+use htex_dsp::grid::level_rms;
+use serde::Serialize;
+
+use crate::error::ExchangeError;
+use crate::heard::{Heard, acceleration_of};
+use crate::profile::{Kind, Profile};
+
+/// What is lost.
+#[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
+pub struct Loss {
+    /// What the actuator makes of the file, in the asset's unit as far as it is felt, compared with the asset's own samples.
+    #[serde(flatten)]
+    pub difference: Difference,
+    /// Level of that over the asset's, decibels.
+    pub level_db: f64,
+}
+
+/// Compares what an actuator makes of a drive, at the rate of what was heard, with what was heard.
+pub(crate) fn loss(heard: &Heard, drive: &[f64], profile: &Profile) -> Result<Loss, ExchangeError> {
+    let recording = Recording::of(
+        heard.quantity,
+        "the asset",
+        heard.rate_hz,
+        vec![heard.samples.clone()],
+    )?;
+    let options = SpectrumOptions::default()
+        .with_segments(SegmentChoice::Windows)
+        .with_averaging(Averaging::Rms);
+    let reference =
+        TextureSpectrum::average(&[segment_spectra(&recording, &options)?], options.averaging)?;
+    let mut samples: Vec<f32> = drive.iter().map(|x| *x as f32).collect();
+    samples.resize(heard.samples.len(), 0.0);
+    let driven = spectrum_of_samples(&samples, heard.rate_hz, 1.0, reference.as_ref())?;
+    let in_unit = |(hertz, drive): (&f64, &f64)| {
+        let strongest = match profile.kind {
+            Kind::Resonant => profile.strongest_at(*hertz),
+            // The square of the level is in the drive.
+            Kind::Rotating => profile.strongest_m_s2.value,
+        };
+        drive * strongest / acceleration_of(heard.quantity, *hertz)
+    };
+    let magnitude = reference
+        .frequency_hz
+        .iter()
+        .zip(&driven)
+        .map(in_unit)
+        .collect();
+    let other = TextureSpectrum {
+        magnitude,
+        ..reference.clone()
+    };
+    let level = |spectrum: &TextureSpectrum| level_rms(&spectrum.magnitude);
+    let level_db = 20.0 * libm::log10(level(&other) / level(&reference));
+    let difference = Difference::between(&reference, &other);
+    Ok(Loss {
+        difference: difference.ok_or(AuthorError::QuantitiesDiffer)?,
+        level_db,
+    })
+}

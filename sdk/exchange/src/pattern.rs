@@ -1,0 +1,191 @@
+//! What the formats of envelopes have in common: a level and a frequency over time, and transients.
+
+use crate::curve::{Point, Reader};
+
+/// Longest pattern that is rendered, seconds.
+pub const MOST_S: f64 = 600.0;
+/// Periods of the sine that stands for a transient. Renderers play one or two of a square wave (Meta, *.haptic File Specification 1.0*,
+/// Emphasis Object).
+const PERIODS: f64 = 2.0;
+
+/// A vibration of one actuator: a sine whose level and frequency follow curves, and transients.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Pattern {
+    /// When it begins and ends, seconds.
+    pub from_s: f64,
+    pub to_s: f64,
+    /// Level over time, 0 to 1, whose power `exponent` is the part of the strongest vibration at the frequency.
+    pub level: Vec<Point>,
+    /// 1 where levels are parts of the strongest vibration, 2 where they are its square root, as in `.ahap`.
+    pub exponent: i32,
+    /// Frequency over time, hertz.
+    pub frequency_hz: Vec<Point>,
+    pub transients: Vec<Transient>,
+}
+
+/// A short pulse.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Transient {
+    /// Its start, seconds.
+    pub time_s: f64,
+    /// 0 to 1 of the strongest vibration.
+    pub amplitude: f64,
+    pub frequency_hz: f64,
+}
+
+impl Pattern {
+    /// Returns the end of the pattern and of its transients, seconds.
+    #[must_use]
+    pub fn end_s(&self) -> f64 {
+        let ends = self.transients.iter().map(Transient::end_s);
+        ends.fold(self.to_s, f64::max)
+    }
+
+    /// Adds the vibration to samples at a rate, from time 0 on; 1 is the strongest that the actuator plays.
+    pub fn add_to(&self, samples: &mut [f64], rate_hz: f64) {
+        self.add_sine(samples, rate_hz);
+        for transient in &self.transients {
+            transient.add_to(samples, rate_hz);
+        }
+    }
+
+    fn add_sine(&self, samples: &mut [f64], rate_hz: f64) {
+        let (mut level, mut frequency) =
+            (Reader::new(&self.level), Reader::new(&self.frequency_hz));
+        let mut phase = 0.0;
+        let first = libm::ceil(self.from_s * rate_hz).max(0.0) as usize;
+        for (index, sample) in samples.iter_mut().enumerate().skip(first) {
+            let time_s = index as f64 / rate_hz;
+            if time_s >= self.to_s {
+                break;
+            }
+            let Some((level, hertz)) = level.at(time_s).zip(frequency.at(time_s)) else {
+                break;
+            };
+            *sample += libm::pow(level, f64::from(self.exponent.max(1))) * libm::sin(phase);
+            phase += std::f64::consts::TAU * hertz / rate_hz;
+            if phase > std::f64::consts::TAU {
+                phase -= std::f64::consts::TAU * libm::floor(phase / std::f64::consts::TAU);
+            }
+        }
+    }
+}
+
+impl Transient {
+    /// When it ends, seconds.
+    #[must_use]
+    pub fn end_s(&self) -> f64 {
+        self.time_s + PERIODS / self.frequency_hz.max(1.0)
+    }
+
+    fn add_to(&self, samples: &mut [f64], rate_hz: f64) {
+        let first = libm::ceil(self.time_s * rate_hz).max(0.0) as usize;
+        for (index, sample) in samples.iter_mut().enumerate().skip(first) {
+            let into_s = index as f64 / rate_hz - self.time_s;
+            if self.time_s + into_s >= self.end_s() {
+                break;
+            }
+            *sample +=
+                self.amplitude * libm::sin(std::f64::consts::TAU * self.frequency_hz * into_s);
+        }
+    }
+}
+
+/// Renders patterns together, held within ±1 as an actuator holds them, from time 0 to the last end.
+#[must_use]
+pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
+    let end_s = patterns.iter().map(Pattern::end_s).fold(0.0, f64::max);
+    let len = libm::ceil(end_s.clamp(0.0, MOST_S) * rate_hz) as usize;
+    let mut samples = vec![0.0; len];
+    for pattern in patterns {
+        pattern.add_to(&mut samples, rate_hz);
+    }
+    samples.iter_mut().for_each(|x| *x = x.clamp(-1.0, 1.0));
+    samples
+}
+
+/// Combines patterns to the one that a format of one envelope holds: at each time the strongest, and all transients. The levels' exponent
+/// becomes 1 at the points; between them the lines stay straight.
+#[must_use]
+pub fn combined(patterns: &[Pattern]) -> Pattern {
+    let sounding: Vec<&Pattern> = patterns.iter().filter(|p| p.to_s > p.from_s).collect();
+    let mut times: Vec<f64> = sounding.iter().flat_map(|p| p.times()).collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let mut all = Pattern {
+        exponent: 1,
+        ..Pattern::default()
+    };
+    for &time_s in &times {
+        // Before and after a jump.
+        let sides = [
+            strongest(&sounding, time_s, true),
+            strongest(&sounding, time_s, false),
+        ];
+        for (level, hertz) in sides.into_iter().flatten() {
+            push(&mut all.level, Point::new(time_s, level));
+            push(&mut all.frequency_hz, Point::new(time_s, hertz));
+        }
+    }
+    all.from_s = times.first().copied().unwrap_or(0.0);
+    all.to_s = times.last().copied().unwrap_or(0.0);
+    all.transients = patterns
+        .iter()
+        .flat_map(|p| p.transients.iter().copied())
+        .collect();
+    all.transients.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+    all
+}
+
+fn push(curve: &mut Vec<Point>, point: Point) {
+    if curve.last() != Some(&point) {
+        curve.push(point);
+    }
+}
+
+/// Level and frequency of the strongest pattern just before a time, or from it on; silence where none sounds inside the whole.
+fn strongest(patterns: &[&Pattern], time_s: f64, before: bool) -> Option<(f64, f64)> {
+    let (first, last) = patterns.iter().fold((f64::MAX, f64::MIN), |(a, b), p| {
+        (a.min(p.from_s), b.max(p.to_s))
+    });
+    let is_outside = if before {
+        time_s <= first
+    } else {
+        time_s >= last
+    };
+    if is_outside && first < last {
+        return None;
+    }
+    let here = patterns.iter().filter_map(|p| p.side(time_s, before));
+    let silent = || {
+        patterns
+            .first()
+            .and_then(|p| Some((0.0, p.frequency_hz.first()?.value)))
+    };
+    here.max_by(|a, b| a.0.total_cmp(&b.0)).or_else(silent)
+}
+
+impl Pattern {
+    fn times(&self) -> impl Iterator<Item = f64> + '_ {
+        let points = self
+            .level
+            .iter()
+            .chain(&self.frequency_hz)
+            .map(|p| p.time_s);
+        let (from_s, to_s) = (self.from_s, self.to_s);
+        let inner = points.filter(move |t| (from_s..=to_s).contains(t));
+        [from_s, to_s].into_iter().chain(inner)
+    }
+
+    /// The amplitude and frequency just before a time, or from it on, if it sounds there.
+    fn side(&self, time_s: f64, before: bool) -> Option<(f64, f64)> {
+        let sounds = match before {
+            true => self.from_s < time_s && time_s <= self.to_s,
+            false => self.from_s <= time_s && time_s < self.to_s,
+        };
+        let at = |curve: &[Point]| crate::curve::side(curve, time_s, before);
+        let level = sounds.then(|| at(&self.level)).flatten()?;
+        let amplitude = libm::pow(level, f64::from(self.exponent.max(1)));
+        Some((amplitude, at(&self.frequency_hz)?))
+    }
+}

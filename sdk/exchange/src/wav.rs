@@ -1,0 +1,34 @@
+//! WAV: one channel of 32-bit floats within ±1, which a voice coil or an amplifier is driven by.
+
+use std::io::Cursor;
+
+use hound::{SampleFormat, WavReader, WavSpec, WavWriter};
+
+use crate::error::Fault;
+
+pub(crate) fn to_bytes(samples: &[f64], rate_hz: u32) -> Result<Vec<u8>, Fault> {
+    let spec = WavSpec {
+        channels: 1,
+        sample_rate: rate_hz,
+        bits_per_sample: 32,
+        sample_format: SampleFormat::Float,
+    };
+    let failed = |error: hound::Error| Fault::whole(error.to_string());
+    let mut bytes = Cursor::new(Vec::new());
+    let mut wav = WavWriter::new(&mut bytes, spec).map_err(failed)?;
+    for sample in samples {
+        wav.write_sample(*sample as f32).map_err(failed)?;
+    }
+    wav.finalize().map_err(failed)?;
+    Ok(bytes.into_inner())
+}
+
+/// Reads what [`to_bytes`] wrote.
+pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Vec<f64>, Fault> {
+    let failed = |error: hound::Error| Fault::whole(error.to_string());
+    let reader = WavReader::new(bytes).map_err(failed)?;
+    let samples = reader.into_samples::<f32>();
+    samples
+        .map(|sample| sample.map(f64::from).map_err(failed))
+        .collect()
+}

@@ -1,0 +1,115 @@
+//! The texture formats of others.
+
+use htex_exchange::haptic::Metadata;
+use htex_exchange::hatt::{Imported, asset, read};
+use htex_exchange::{Ahap, Haptic, Hjif, PROFILES, Pattern, Physical, combined, recording_of};
+
+use crate::promise::sentence;
+
+/// A model file of the Penn Haptic Texture Toolkit: what is read becomes an asset that opens, and has finite magnitudes at each node.
+pub fn hatt(input: &[u8]) -> bool {
+    let imported = Imported {
+        name: "fuzzed",
+        tool: "fuzz",
+    };
+    let texture = match read(input) {
+        Ok(texture) => texture,
+        Err(fault) => return refused(&fault),
+    };
+    let made = match asset(&texture, &imported) {
+        Ok(made) => made,
+        Err(fault) => return refused(&fault),
+    };
+    let bytes = match made.to_bytes() {
+        Ok(bytes) => bytes,
+        Err(error) => return refused(&error),
+    };
+    let asset = htex::Asset::from_bytes(&bytes).expect("what was written opens");
+    let grid = asset.band().grid_hz();
+    for node in &texture.nodes {
+        let motion = htex::Motion::new(node.speed_mm_s, node.force_n);
+        let magnitude = asset.recorded_magnitude(None, Some(motion), &grid);
+        if let Ok(magnitude) = magnitude {
+            assert!(magnitude.iter().all(|m| m.is_finite() && *m >= 0.0));
+        }
+    }
+    true
+}
+
+/// Full scale of what is imported.
+const FULL_SCALE: f64 = 0.25;
+
+/// A file of Meta: what is read is a recording within its full scale, and is the same after it was written.
+pub fn haptic(input: &[u8]) -> bool {
+    let read = Haptic::from_bytes(input);
+    if let Ok(file) = &read {
+        let pattern = file.pattern(&PROFILES[0]);
+        let metadata = Metadata::default();
+        let again = Haptic::of(&pattern, &PROFILES[0], metadata).to_bytes();
+        let again = Haptic::from_bytes(&again).expect("what was written is read");
+        same_end(&pattern, &again.pattern(&PROFILES[0]));
+    }
+    recorded("fuzzed.haptic", input, read.is_ok())
+}
+
+/// A file of Apple: as [`haptic`].
+pub fn ahap(input: &[u8]) -> bool {
+    let read = Ahap::from_bytes(input);
+    if let Ok(file) = &read {
+        let patterns = file.patterns(&PROFILES[0]);
+        // Combining many patterns compares each with each.
+        if patterns.len() < 100 {
+            let pattern = combined(&patterns);
+            let again = Ahap::of(&pattern, &PROFILES[0]).to_bytes();
+            let again = Ahap::from_bytes(&again).expect("what was written is read");
+            same_end(&pattern, &combined(&again.patterns(&PROFILES[0])));
+        }
+    }
+    recorded("fuzzed.ahap", input, read.is_ok())
+}
+
+/// A file of MPEG: as [`haptic`].
+pub fn hjif(input: &[u8]) -> bool {
+    let read = Hjif::from_bytes(input);
+    if let Ok(file) = &read {
+        let again = Hjif::from_bytes(&file.to_bytes()).expect("what was written is read");
+        assert_eq!(again.left_out(), file.left_out());
+    }
+    recorded("fuzzed.hjif", input, read.is_ok())
+}
+
+fn same_end(before: &Pattern, after: &Pattern) {
+    if before.to_s > before.from_s {
+        assert!(
+            (before.to_s - after.to_s).abs() < 1e-6,
+            "{before:?} {after:?}"
+        );
+    }
+}
+
+/// Reads a file as a recording; one that no reader takes is none.
+fn recorded(name: &str, input: &[u8], is_read: bool) -> bool {
+    let physical = Physical {
+        full_scale: Some(FULL_SCALE),
+        speed_mm_s: Some(80.0),
+        force_n: Some(0.4),
+        ..Physical::default()
+    };
+    match recording_of(name, input, &physical, None) {
+        Ok(recording) => {
+            assert!(is_read, "{name} is read and is not");
+            let samples = recording.axes.iter().flatten();
+            assert!(samples.into_iter().all(|x| x.abs() <= FULL_SCALE));
+            for warning in &recording.warnings {
+                sentence(warning);
+            }
+            true
+        }
+        Err(error) => refused(&error),
+    }
+}
+
+fn refused(error: &impl std::fmt::Display) -> bool {
+    sentence(error);
+    false
+}

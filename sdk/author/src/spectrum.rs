@@ -137,7 +137,7 @@ impl TextureSpectrum {
         averaging: Averaging,
     ) -> Self {
         let frequency_hz = band.grid_hz();
-        let len = 4 * band.last_bin();
+        let (signal, signal_rate_hz) = overlap_add(band, all);
         Self {
             quantity,
             band,
@@ -145,8 +145,8 @@ impl TextureSpectrum {
             segments: all.len(),
             repeatability_rms_db: repeatability_rms_db(band, all, spans, averaging),
             frequency_hz,
-            signal: overlap_add(band, all, len),
-            signal_rate_hz: len as f64 * GRID_HZ,
+            signal,
+            signal_rate_hz,
         }
     }
 
@@ -414,11 +414,26 @@ fn without_line(segment: &[f64]) -> Vec<f64> {
     samples().map(|(i, x)| x - slope * place(i)).collect()
 }
 
-/// Overlap-adds the half-overlapping windowed segments to one signal, of which each segment has `len` samples.
-pub(crate) fn overlap_add(band: Band, all: &[&[Complex<f64>]], len: usize) -> Vec<f64> {
+/// Overlap-adds the half-overlapping windowed segments to one signal at four times the band's top.
+fn overlap_add(band: Band, all: &[&[Complex<f64>]]) -> (Vec<f64>, f64) {
+    let len = 4 * band.last_bin();
+    let mut signal = vec![0.0; (all.len() + 1) * (len / 2)];
+    each_frame(band, all, len, |i, frame| {
+        let place = &mut signal[i * (len / 2)..];
+        place.iter_mut().zip(frame).for_each(|(s, x)| *s += x);
+    });
+    (signal, len as f64 * GRID_HZ)
+}
+
+/// Calls `add` with the index and the `len` samples of each windowed segment.
+pub(crate) fn each_frame(
+    band: Band,
+    all: &[&[Complex<f64>]],
+    len: usize,
+    mut add: impl FnMut(usize, &[f64]),
+) {
     let mut fft = RealFft::new(len);
     let (mut bins, mut frame) = (fft.make_bins(), vec![0.0; len]);
-    let mut signal = vec![0.0; (all.len() + 1) * (len / 2)];
     for (i, spectrum) in all.iter().enumerate() {
         bins.fill(Complex::new(0.0, 0.0));
         for (bin, x) in bins[band.first_bin()..].iter_mut().zip(*spectrum) {
@@ -426,8 +441,6 @@ pub(crate) fn overlap_add(band: Band, all: &[&[Complex<f64>]], len: usize) -> Ve
             *bin = x * 0.25;
         }
         fft.inverse(&bins, &mut frame);
-        let place = &mut signal[i * (len / 2)..];
-        place.iter_mut().zip(&frame).for_each(|(s, x)| *s += x);
+        add(i, &frame);
     }
-    signal
 }

@@ -54,7 +54,7 @@ fn a_loop_has_the_spectrum_of_its_recording() {
 fn a_loop_is_the_recorded_signal() {
     let hertz = 150.0;
     let sample = |i: usize| 0.2 * (std::f64::consts::TAU * hertz * i as f64 / 8000.0).sin();
-    let samples: Vec<f64> = (0..8000).map(sample).collect();
+    let samples: Vec<f64> = (0..24_000).map(sample).collect();
     let take = Take {
         recording: Recording::new("tone", 8000.0, vec![samples.clone()]).unwrap(),
         given: Exploration::default(),

@@ -7,8 +7,10 @@ import { VOICE, checked } from "./options.js";
 
 /** RMS of full scale that a node plays at by default: -20 dB. */
 const LEVEL = 0.1;
-/** Milliseconds after which a node that was stopped is taken to be silent, if its context renders no more. */
-const SILENT_MS = 200;
+/** Milliseconds between two looks whether a node that was stopped is silent: its context renders no more, or it has rendered so many seconds
+ * without an end being told. */
+const LOOK_MS = 200;
+const SILENT_S = 1;
 
 const { rate: _, gain, ...VOICE_OF_NODE } = VOICE;
 const LOAD = { ...VOICE_OF_NODE, gain, trusted: "boolean" };
@@ -267,7 +269,14 @@ export class HtexNode extends Base {
     const isHeard = this.context.state === "running" || this.isOffline;
     this.port.postMessage({ stop: true, isHeard });
     if (!isHeard) this.end();
-    else if (!this.isOffline) setTimeout(() => this.end(), SILENT_MS);
+    else if (!this.isOffline) this.endWhenSilent(this.context.currentTime + SILENT_S);
+  }
+
+  /** Ends the node where the worklet does not tell that it has faded out. An audio thread that is late fades late: it is not cut off. */
+  endWhenSilent(until) {
+    const { state, currentTime } = this.context;
+    if (state !== "running" || currentTime > until) this.end();
+    else if (!this.isEnded) setTimeout(() => this.endWhenSilent(until), LOOK_MS);
   }
 
   /** An offline context is not running between its renderings. */

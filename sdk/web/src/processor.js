@@ -71,8 +71,15 @@ class HtexProcessor extends AudioWorkletProcessor {
     const frames = (this.tracks.length > 0 ? CHANGE_S : START_S) * sampleRate;
     for (const track of this.tracks) track.fadeOut(frames);
     this.tracks.push(new Track(source, { gain, parameter: this.gain, frames }));
-    if (this.tracks.length > MOST_TRACKS) this.leave(this.tracks.reduce((a, b) => (b.isLeaving && b.way < a.way ? b : a)));
+    this.thin();
     this.port.postMessage({ id, started: true });
+  }
+
+  /** Of too many sources the quietest one fades out within the next block. */
+  thin() {
+    for (const track of this.tracks) if (track.isOver) this.leave(track);
+    const leaving = this.tracks.filter(({ isLeaving }) => isLeaving);
+    if (this.tracks.length > MOST_TRACKS) leaving.reduce((a, b) => (b.way < a.way ? b : a)).fadeOut(this.block.length);
   }
 
   leave(track) {

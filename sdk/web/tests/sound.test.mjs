@@ -152,6 +152,60 @@ test("load fades to another texture and its gain", async () => {
   assert.ok(level(3) > 1.5 * level(1), `${level(3)} ${level(1)}`);
 });
 
+test("swaps in quick succession have no click", async () => {
+  // At the last one, the first texture and three others still fade.
+  const heard = await offline(
+    async (node, at, { open }) => {
+      node.speed.value = 80;
+      node.force.value = 0.5;
+      const texture = await open("/fixtures/vinyl.htex");
+      const motion = { speed: 80, force: 0.5 };
+      [0, 4, 6, 7].forEach((quanta, seed) => at(1 + (128 * quanta) / 48000, () => node.load(texture, { model: "bands", seed, motion })));
+    },
+    { options: MOVING },
+  );
+  const own = largestStep(heard, 0.1 * RATE, RATE - 1);
+  const swapping = largestStep(heard, RATE - 1, 1.05 * RATE);
+  console.log(`four swaps in 19 ms: largest step ${swapping.toFixed(5)}, ${own.toFixed(5)} before`);
+  assert.ok(swapping <= 1.5 * own, `${swapping} ${own}`);
+});
+
+test("a node that is stopped while the audio thread is late fades out, too", async () => {
+  const made = await here.page();
+  const ends = await made.evaluate(async () => {
+    const { open, prepare, HtexNode } = await import("/htex/index.js");
+    const context = new AudioContext({ sampleRate: 48000 });
+    await context.resume();
+    await prepare(context);
+    const texture = await open("/fixtures/vinyl.htex");
+    const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+    const ends = [];
+    for (let seed = 0; seed < 4; seed++) {
+      const node = new HtexNode(context, texture, { model: "bands", seed, motion: { speed: 80, force: 0.5 } });
+      node.speed.value = 80;
+      node.force.value = 0.5;
+      await window.record(node);
+      await wait(300);
+      await window.hold(context, 700);
+      node.stop();
+      for (const before = context.currentTime; context.currentTime < before + 0.2; ) await wait(50);
+      while (!node.isEnded) await wait(50);
+      ends.push(await window.recorded());
+    }
+    await context.close();
+    return ends;
+  });
+  for (const heard of ends) {
+    const last = heard.findLastIndex((x) => x !== 0);
+    const own = largestStep(heard, last - 4800, last - 960);
+    const stopping = largestStep(heard, last - 960);
+    assert.ok(rms(heard.slice(last - 4800, last - 960)) > 0.03);
+    assert.ok(stopping <= 1.5 * own, `${stopping} ${own}`);
+  }
+  assert.deepEqual(made.errors, []);
+  await made.close();
+});
+
 test("load in a running context, of a module too, has no click and tells the envelope", async () => {
   const made = await here.page();
   const played = await made.evaluate(async () => {
@@ -175,7 +229,8 @@ test("load in a running context, of a module too, has no click and tells the env
     await Promise.all([1, 2, 3, 4, 5].map((seed) => node.load(smooth, { model: "ar", seed, motion })));
     await wait(300);
     node.stop();
-    await wait(300);
+    while (!node.isEnded) await wait(50);
+    for (const before = context.currentTime; context.currentTime < before + 0.15; ) await wait(50);
     const heard = await window.recorded();
     await context.close();
     return { heard, envelopes, edges: Array.from(node.envelopeEdges), error: node.error?.message, missed: node.missed };

@@ -153,6 +153,12 @@ const MOUSE = { Start: "mousePressed", Move: "mouseMoved", End: "mouseReleased" 
 /** RMS of numbers. */
 export const rms = (numbers) => Math.sqrt(numbers.reduce((sum, x) => sum + x * x, 0) / Math.max(numbers.length, 1));
 
+/** The largest RMS of a tenth of a second at 48 kHz: of what sounds while an input goes on, which a busy machine hears late. */
+export function loudest(numbers, frames = 4800) {
+  const starts = Array.from({ length: Math.max(Math.ceil(numbers.length / frames), 1) }, (_, i) => i * frames);
+  return Math.max(...starts.map((start) => rms(numbers.slice(start, start + frames))));
+}
+
 /** The largest step between neighbours, of those from `start` to `end`. */
 export function largestStep(numbers, start = 0, end = numbers.length) {
   let largest = 0;

@@ -353,10 +353,21 @@ test("a player page plays alone", async () => {
   const { name, bytes } = await saved(page, () => page.getByRole("button", { name: "Save a player page" }).click());
   const file = path.join(folder, name);
   await writeFile(file, bytes);
-  const player = await openStudio(browser, pathToFileURL(file).href);
+  const listen = () => {
+    const { connect } = AudioNode.prototype;
+    AudioNode.prototype.connect = function (to, ...rest) {
+      if (to instanceof AudioDestinationNode) connect.call(this, (window.meter = new AnalyserNode(this.context)));
+      return connect.call(this, to, ...rest);
+    };
+  };
+  const player = await openStudio(browser, pathToFileURL(file).href, { init: listen });
   await player.locator("#pad").focus();
   await player.keyboard.down("ArrowRight");
-  await player.waitForTimeout(300);
+  await player.waitForFunction(() => {
+    const samples = new Float32Array(2048);
+    window.meter.getFloatTimeDomainData(samples);
+    return Math.max(...samples) > 0.02;
+  });
   assert.deepEqual(player.requests, []);
   await closed(player);
   await closed(page);

@@ -140,7 +140,7 @@ test("a texture is baked to the bytes and the source code of the command", async
   assert.equal(one.c, (await bytes("block.h")).toString());
   assert.equal(one.rust, (await bytes("block.rs")).toString());
   const grid = { speed: [40, 100, 160], force: [0.5] };
-  const many = author.bake(texture, { name: "many-block", model: "ar", rate: 4000, grid });
+  const many = author.bake(texture, { name: "many-block", model: "ar", rate: 6000, grid });
   assert.equal(many.c, (await bytes("many-block.h")).toString());
   assert.throws(() => author.bake(texture, { grid: { speed: [0], force: [0.5] } }), { code: "invalid-argument" });
   assert.throws(() => author.bake(texture, { within: 0 }), { code: "invalid-argument", message: /within/ });

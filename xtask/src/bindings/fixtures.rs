@@ -173,7 +173,7 @@ fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> 
     for out in ["block.bin", "block.h", "block.rs"] {
         htex(&["bake", "vinyl.htex", "--model", "bands", "-o", out])?;
     }
-    let grid = ["--grid", "speed=40:160:3,force=0.5", "--rate", "4000"];
+    let grid = ["--grid", "speed=40:160:3,force=0.5", "--rate", "6000"];
     let baked = ["bake", "vinyl.htex", "--model", "ar", "-o", "many-block.h"];
     htex(&[&baked[..], &grid].concat())?;
     let mixed = ["mix", "vinyl.htex", "hum.htex", "--weight", "0.25"];

@@ -261,11 +261,11 @@ test("a recording is compared by ear with its models, with matched levels, blind
   await page.getByRole("button", { name: "Steady" }).click();
   /** What is heard of a side: its level, and how much of it is a stretch of the recording. */
   const listen = async (side) => {
-    await page.getByRole("button", { name: new RegExp(`^${side}`) }).click();
+    await page.locator(".side", { hasText: new RegExp(`^${side}`) }).click();
     return page.evaluate(async (text) => {
-      const [loop] = htexStudio.author.value.recorded({ name: "felt.csv", bytes: new TextEncoder().encode(text) }, { rate: 48000 });
       const wait = (seconds) => new Promise((resolve) => setTimeout(resolve, 1e3 * seconds));
       const context = htexStudio.audioContext();
+      const [loop] = htexStudio.author.value.recorded({ name: "felt.csv", bytes: new TextEncoder().encode(text) }, { rate: context.sampleRate });
       for (const until = context.currentTime + 0.3; context.currentTime < until; ) await wait(0.02);
       let [power, count, last] = [0, 0, null];
       for (let i = 0; i < 60; i++) {
@@ -278,11 +278,12 @@ test("a recording is compared by ear with its models, with matched levels, blind
         const sum = (one) => one.reduce((all, x) => all + x * x, 0);
         const own = sum(heard);
         let most = 0;
-        for (let at = 0; at + heard.length <= samples.length; at++) {
+        for (let at = 0; at < samples.length; at++) {
           let [both, power] = [0, 0];
           for (let i = 0; i < heard.length; i += 4) {
-            both += heard[i] * samples[at + i];
-            power += samples[at + i] ** 2;
+            const sample = samples[(at + i) % samples.length];
+            both += heard[i] * sample;
+            power += sample ** 2;
           }
           most = Math.max(most, (4 * both) / Math.sqrt(own * 4 * power));
         }

@@ -23,11 +23,16 @@ fn spectrum(recording: &Recording, options: &SpectrumOptions) -> TextureSpectrum
     TextureSpectrum::average(&[part], options.averaging).unwrap()
 }
 
+/// Largest errors of nine bands, dB: of windows, which share their signal with their neighbours, and of the eight segments of four sweeps, each
+/// second of which fades to another stretch, and is read with it by windows that lie across both.
+const WITHIN_DB: [f64; 2] = [0.5, 0.6];
+
 /// Two turns of a loop have the spectrum and the level of its recording, of windows and of sweeps.
 #[test]
 fn a_loop_has_the_spectrum_of_its_recording() {
     for surface in [Surface::Vinyl, Surface::Sandpaper, Surface::CorrugatedPaper] {
-        for choice in [SegmentChoice::Windows, SegmentChoice::Auto] {
+        let choices = [SegmentChoice::Windows, SegmentChoice::Auto];
+        for (choice, within_db) in choices.into_iter().zip(WITHIN_DB) {
             let options = SpectrumOptions::default().with_segments(choice);
             let take = take(surface);
             let made = RecordedLoop::of(&take, &options, false, RATE_HZ).unwrap();
@@ -44,7 +49,7 @@ fn a_loop_has_the_spectrum_of_its_recording() {
                 "{surface} {choice:?}: {error_db:.3} dB, {} segments",
                 made.segments
             );
-            assert!(error_db < 0.5, "{surface} {choice:?}: {error_db} dB");
+            assert!(error_db < within_db, "{surface} {choice:?}: {error_db} dB");
         }
     }
 }

@@ -235,6 +235,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "htex",
             "htex-author",
+            "htex-bake",
             "htex-capi",
             "htex-device-builtin",
             "htex-dsp",

@@ -12,7 +12,7 @@ use crate::programs::run;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
-const COPIED: [&str; 27] = [
+const COPIED: [&str; 28] = [
     "author-core.js",
     "author-serve.js",
     "author-worker.node.js",
@@ -27,6 +27,7 @@ const COPIED: [&str; 27] = [
     "index.js",
     "index.node.js",
     "library.js",
+    "loop.js",
     "manifest.d.ts",
     "measured.js",
     "node.js",

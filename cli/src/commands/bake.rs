@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex::{Asset, Motion};
+use htex::Motion;
 use htex_bake::{BakeError, Baked, Grid};
 use serde_json::json;
 
@@ -11,7 +11,6 @@ use crate::of_file::{OfFile, ResultOfFile};
 use crate::output::{print, print_json, warn};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
-use crate::scenes::USUAL;
 use crate::shown::shown;
 use htex_files::AtFile;
 
@@ -69,7 +68,7 @@ impl Bake {
         let asset = self.player.open(&self.asset)?;
         let grid = match given {
             Some(grid) => grid,
-            None => first_condition(&asset).of(&self.asset)?,
+            None => Grid::of_first_condition(&asset).of(&self.asset)?,
         };
         let baked = htex_bake::bake(&asset, self.model.as_deref(), &grid, self.rate, self.within)
             .of(&self.asset)?;
@@ -169,13 +168,6 @@ fn named(output: &Path) -> Result<(String, Format), Failure> {
         }
     };
     Ok((stem, format))
-}
-
-fn first_condition(asset: &Asset) -> Result<Grid, BakeError> {
-    let first = asset.manifest().conditions.first();
-    let speed = first.and_then(|c| c.speed_mm_s).unwrap_or(USUAL.0);
-    let force = first.and_then(|c| c.force_n).unwrap_or(USUAL.1);
-    Grid::new(vec![speed], vec![force])
 }
 
 /// Reads `speed=…,force=…`.

@@ -152,6 +152,15 @@ pub enum AuthorError {
         /// The ranges of speed and force.
         motion: String,
     },
+    /// A recording cannot be played at this rate.
+    #[error(
+        "{rate_hz} Hz: a loop has a rate above {least_hz} Hz, up to {most_hz} Hz, in steps of 10 Hz"
+    )]
+    LoopRate {
+        rate_hz: f64,
+        least_hz: f64,
+        most_hz: f64,
+    },
     /// A model could not be fitted or measured.
     #[error(transparent)]
     Model(#[from] HostError),

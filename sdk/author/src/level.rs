@@ -78,7 +78,7 @@ fn fitted_level(
 }
 
 /// Returns the RMS of magnitudes, computed relative to the largest to avoid overflow and underflow.
-fn recorded_level(magnitude: &[f64]) -> f64 {
+pub(crate) fn recorded_level(magnitude: &[f64]) -> f64 {
     let largest = magnitude.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 {
         return 0.0;

@@ -417,9 +417,23 @@ fn without_line(segment: &[f64]) -> Vec<f64> {
 /// Overlap-adds the half-overlapping windowed segments to one signal at four times the band's top.
 fn overlap_add(band: Band, all: &[&[Complex<f64>]]) -> (Vec<f64>, f64) {
     let len = 4 * band.last_bin();
+    let mut signal = vec![0.0; (all.len() + 1) * (len / 2)];
+    each_frame(band, all, len, |i, frame| {
+        let place = &mut signal[i * (len / 2)..];
+        place.iter_mut().zip(frame).for_each(|(s, x)| *s += x);
+    });
+    (signal, len as f64 * GRID_HZ)
+}
+
+/// Calls `add` with the index and the `len` samples of each windowed segment.
+pub(crate) fn each_frame(
+    band: Band,
+    all: &[&[Complex<f64>]],
+    len: usize,
+    mut add: impl FnMut(usize, &[f64]),
+) {
     let mut fft = RealFft::new(len);
     let (mut bins, mut frame) = (fft.make_bins(), vec![0.0; len]);
-    let mut signal = vec![0.0; (all.len() + 1) * (len / 2)];
     for (i, spectrum) in all.iter().enumerate() {
         bins.fill(Complex::new(0.0, 0.0));
         for (bin, x) in bins[band.first_bin()..].iter_mut().zip(*spectrum) {
@@ -427,8 +441,6 @@ fn overlap_add(band: Band, all: &[&[Complex<f64>]]) -> (Vec<f64>, f64) {
             *bin = x * 0.25;
         }
         fft.inverse(&bins, &mut frame);
-        let place = &mut signal[i * (len / 2)..];
-        place.iter_mut().zip(&frame).for_each(|(s, x)| *s += x);
+        add(i, &frame);
     }
-    (signal, len as f64 * GRID_HZ)
 }

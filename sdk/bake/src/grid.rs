@@ -1,11 +1,14 @@
 //! The grid of baked conditions.
 
-use htex_play::Motion;
+use htex_play::{Asset, Motion};
 use htex_player::layout::{
     LEAST_FORCE_N, MIN_SLIDING_MM_S, MOST_FORCE_N, MOST_ON_AXIS, MOST_SPEED_MM_S,
 };
 
 use crate::BakeError;
+
+/// Speed, mm/s, and force, newtons, where an asset states none: those of the command.
+const USUAL: (f64, f64) = (80.0, 0.4);
 
 /// Speeds and forces; a block has a condition for each combination.
 ///
@@ -66,6 +69,21 @@ impl Grid {
             }),
             None => Ok(grid),
         }
+    }
+
+    /// Makes the grid of an asset's first condition; a speed or a force that it does not state is 80 mm/s or 0.4 N.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_first_condition(asset: &Asset) -> Result<Self, BakeError> {
+        let first = asset.manifest().conditions.first();
+        let speed = first.and_then(|c| c.speed_mm_s);
+        let force = first.and_then(|c| c.force_n);
+        let (usual_mm_s, usual_n) = USUAL;
+        Self::new(
+            vec![speed.unwrap_or(usual_mm_s)],
+            vec![force.unwrap_or(usual_n)],
+        )
     }
 
     /// Returns the speeds, mm/s, ascending.

@@ -1,17 +1,17 @@
 // Two sides that are compared, with levels matched; and blind trials.
 
 import { batch, computed, effect, signal } from "@preact/signals";
-import type { Texture } from "htex";
+import type { RecordedLoop, Texture } from "htex";
 
 import { tried } from "./engine.ts";
-import { opened } from "./reference.ts";
+import { opened, presentWork, recordedLoop } from "./reference.ts";
 import { motion } from "./shadow.ts";
 import { items } from "./shelf.ts";
 import { present, texture } from "./state.ts";
 
 export type Side = "a" | "b";
 
-/** What a side is: "present", "opened", "model ID" of the present texture, or an item of the shelf. */
+/** What a side is: "present", "opened", "model ID" of the present texture, "recording NAME" that it was fitted to, or an item of the shelf. */
 export const sides = signal<Record<Side, string>>({ a: "present", b: "opened" });
 export const isMatched = signal(true);
 export const heardSide = signal<Side | "x" | null>(null);
@@ -25,29 +25,41 @@ interface Played {
   readonly name: string;
   readonly texture: Texture;
   readonly model: string;
+  /** The recording, which sounds in place of the texture. */
+  readonly loop?: RecordedLoop;
 }
+
+const RECORDING = "recording ";
 
 export const choices = computed(() => {
   const models = texture.value?.models ?? [];
   const own = models.length > 1 ? models.map((id) => ({ id: `model ${id}`, name: `This texture by ${id.replace("org.htex.", "")}` })) : [];
-  return [{ id: "present", name: `${present.value?.name ?? "The present texture"}, now` }, { id: "opened", name: "As it was opened" }, ...own, ...items.value.map(({ id, name }) => ({ id, name: `Shelf: ${name}` }))];
+  const recorded = presentWork.value?.names.map((name) => ({ id: RECORDING + name, name: `The recording ${name}` })) ?? [];
+  return [{ id: "present", name: `${present.value?.name ?? "The present texture"}, now` }, { id: "opened", name: "As it was opened" }, ...recorded, ...own, ...items.value.map(({ id, name }) => ({ id, name: `Shelf: ${name}` }))];
 });
 
 function played(id: string): Played | null {
   const [now, document] = [texture.value, present.value];
   if (!now || !document) return null;
+  const loop = id.startsWith(RECORDING) ? recordedLoop(id.slice(RECORDING.length)) : null;
+  if (loop) return { name: `the recording ${loop.recording}`, texture: now, model: modelOf(now, document.model), loop };
   if (id === "opened" && opened.value) return { name: "as it was opened", ...opened.value };
   const model = id.startsWith("model ") ? id.slice(6) : null;
   if (model && now.models.includes(model)) return { name: model.replace("org.htex.", ""), texture: now, model };
   const item = items.value.find((one) => one.id === id);
   if (item) return { name: item.name, texture: item.texture, model: item.model };
-  return { name: document.name, texture: now, model: now.models.includes(document.model) ? document.model : now.models[0] ?? "" };
+  return { name: document.name, texture: now, model: modelOf(now, document.model) };
+}
+
+function modelOf({ models }: Texture, wanted: string) {
+  return models.includes(wanted) ? wanted : models[0] ?? "";
 }
 
 export const both = computed(() => ({ a: played(sides.value.a), b: played(sides.value.b) }));
 
-/** The level of a side at the motion of the pad's sliders. */
-function levelOf({ texture: of, model }: Played) {
+/** The level of a side at the motion of the pad's sliders; that of a recording is its own. */
+function levelOf({ texture: of, model, loop }: Played) {
+  if (loop) return loop.level_rms;
   const { speed, force } = motion.peek();
   return of.level({ model, at: { speed, force } });
 }
@@ -59,7 +71,7 @@ export function play(side: Side | "x", actual: Side = side === "x" ? "a" : side)
   if (!a || !b || !chosen) return;
   const factor = actual === "b" && isMatched.peek() ? levelOf(a) / Math.max(levelOf(b), 1e-12) : 1;
   batch(() => {
-    tried.value = { texture: chosen.texture, model: chosen.model, gain: factor };
+    tried.value = { texture: chosen.texture, model: chosen.model, gain: factor, loop: chosen.loop };
     heardSide.value = side;
   });
 }

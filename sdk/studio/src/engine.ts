@@ -1,7 +1,7 @@
 // The sound: an audio context, the node that plays, the limiter, and what follows the finger.
 
 import { effect, signal } from "@preact/signals";
-import { HtexNode, prepare, type Texture } from "htex";
+import { HtexNode, prepare, type Loop, type Texture } from "htex";
 
 import { finger } from "./motion.ts";
 import { fail, origin, present, texture } from "./state.ts";
@@ -14,6 +14,8 @@ export interface Sounding {
   readonly gain?: number;
   /** Its own usual loudness instead of that of the piece of work: for textures that are looked through. */
   readonly own?: boolean;
+  /** A recording that sounds in place of the texture that was made of it. */
+  readonly loop?: Loop;
 }
 
 /** RMS of full scale at which a texture plays. */
@@ -130,10 +132,10 @@ function start(sounding: Sounding, at: number) {
 /** Plays a texture instead of what plays now, without a step. */
 function sounds(sounding: Sounding, piece: Texture) {
   const at = sounding.own ? usualGain(sounding.texture, sounding.model) : gain * (sounding.gain ?? 1);
-  if (!node) start(sounding, at);
-  else {
-    node.load(sounding.texture, { model: sounding.model, gain: at, bands: BANDS }).catch(fail);
-  }
+  const isNew = !node;
+  if (isNew) start(sounding, at);
+  if (sounding.loop) node?.load(sounding.loop, { gain: at }).catch(fail);
+  else if (!isNew) node?.load(sounding.texture, { model: sounding.model, gain: at, bands: BANDS }).catch(fail);
   playing = piece;
 }
 

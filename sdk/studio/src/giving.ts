@@ -75,6 +75,17 @@ export function saveSound() {
   say(`${WAV_S} s at ${motion.speed.toFixed(0)} mm/s and ${motion.force.toFixed(2)} N, in ${now.unit}: a full-scale sample is 1 ${now.unit}.`);
 }
 
+/** A block for the player on microcontrollers, as a C header: the texture's first condition by the present model. */
+export async function saveBlock() {
+  const [now, document] = [texture.peek(), present.peek()];
+  if (!now || !document) return;
+  const file = fileName(document.name, "h");
+  const baked = (await theAuthor()).bake(now, { name: file.replace(/\.h$/, ""), model: document.model });
+  save(new TextEncoder().encode(baked.c), file, "text/x-c");
+  const at = `${baked.speeds.map((x) => x.toFixed(0)).join(", ")} mm/s and ${baked.forces.map((x) => x.toFixed(2)).join(", ")} N`;
+  say(`${baked.bytes.length} bytes for a player at ${baked.rate_hz} Hz, of ${at}; nine bands err by up to ${baked.error_at_conditions_db.toFixed(2)} dB there.`);
+}
+
 export function link() {
   const document = present.value;
   return document ? toLink(document.bytes, location.href) : "";

@@ -33,6 +33,11 @@ export const fitted = signal<Fitted | null>(null);
 export const license = signal("CC0-1.0");
 export const isReading = signal(false);
 
+/** The fit that was made last: its recordings, and the settings that they were read with. */
+let lastFit: { all: readonly Recording[]; read: ReturnType<typeof settings> } | null = null;
+/** Rate of recordings as sound, Hz. */
+const LOOP_HZ = 48_000;
+
 let aborting: AbortController | null = null;
 
 /** The settings of all recordings, and the map of one. */
@@ -82,9 +87,10 @@ export async function fitAll() {
   if (!first) return;
   aborting = new AbortController();
   progress.value = { done: 0, of: 1, text: "begin" };
+  const read = settings(first.name);
   try {
     const result = await fit(all.map(({ name, bytes }) => ({ name, bytes })), {
-      ...settings(first.name),
+      ...read,
       name: stem(first.name),
       ...(license.peek() ? { license: license.peek() } : {}),
       onProgress: (now) => (progress.value = now),
@@ -92,6 +98,7 @@ export async function fitAll() {
     });
     fitted.peek()?.texture.free();
     fitted.value = result;
+    lastFit = { all, read };
     say(`${result.report.ranked.length} models fitted.`, "good");
   } catch (error) {
     if ((error as { code?: string }).code !== "aborted") throw error;
@@ -108,12 +115,13 @@ export function abort() {
 
 /** Puts the fitted texture on the pad, played by a model, with its recorded spectra behind. */
 export async function toPad(model?: string) {
-  const result = fitted.peek();
-  if (!result) return;
+  const [result, last, made] = [fitted.peek(), lastFit, await theAuthor()];
+  if (!result || !last) return;
   const bytes = result.texture.toBytes();
   const { report } = result;
   const conditions = report.conditions.map((condition) => ({ speed: (condition["speed_mm_s"] as number | undefined) ?? null, force: (condition["force_n"] as number | undefined) ?? null }));
-  recordedWork.value = { bytes, spectra: report.spectra, conditions };
+  const loops = () => made.recorded([...last.all], { ...last.read, rate: LOOP_HZ });
+  recordedWork.value = { bytes, names: last.all.map(({ name }) => name), loops, spectra: report.spectra, conditions };
   await begin(bytes, "fit a recording", model ?? report.ranked[0]);
   screen.value = "shape";
 }

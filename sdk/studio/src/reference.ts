@@ -1,7 +1,7 @@
 // What the present texture is compared with: itself as it was opened, and the recording it was fitted to.
 
 import { computed, effect, signal } from "@preact/signals";
-import { open, type MakeOptions, type RecordedSpectrum, type Texture } from "htex";
+import { open, type MakeOptions, type RecordedLoop, type RecordedSpectrum, type Texture } from "htex";
 
 import { author } from "./author.ts";
 
@@ -35,13 +35,30 @@ effect(() => {
   }, () => {});
 });
 
-/** Recorded spectra of the texture that was fitted here, with their conditions; of the bytes that were fitted. */
+/** The recordings of the texture that was fitted here, with their spectra and conditions; of the bytes that were fitted. */
 export interface RecordedWork {
   readonly bytes: Uint8Array;
+  readonly names: readonly string[];
+  /** Makes the loops of the recordings, as they were read for the fit. */
+  readonly loops: () => readonly RecordedLoop[];
   readonly spectra: readonly RecordedSpectrum[];
   readonly conditions: readonly { speed: number | null; force: number | null }[];
 }
 export const recordedWork = signal<RecordedWork | null>(null);
+
+/** That of the present piece of work, if it was fitted here. */
+export const presentWork = computed(() => {
+  const work = recordedWork.value;
+  return work && origin.value?.bytes === work.bytes ? work : null;
+});
+
+/** The recordings as sound; they are read when one is first heard. */
+const loops = computed(() => presentWork.value?.loops() ?? []);
+
+/** The loop of a recording of the present piece of work. */
+export function recordedLoop(name: string): RecordedLoop | null {
+  return loops.value.find(({ recording }) => recording === name) ?? null;
+}
 
 /** The condition nearest to a motion. */
 function conditionAt({ conditions }: Texture, speed: number, force: number) {
@@ -75,8 +92,7 @@ const thresholdDrawn = computed<Drawn | null>(() => {
 });
 
 export const reference = computed<Reference>(() => {
-  const work = recordedWork.value;
-  const isThis = work !== null && origin.value?.bytes === work.bytes;
+  const work = presentWork.value;
   const [speed, force] = [pilotSpeed.value, pilotForce.value];
-  return { opened: openedDrawn.value, recorded: isThis ? nearestRecorded(work, speed, force) : null, threshold: thresholdDrawn.value };
+  return { opened: openedDrawn.value, recorded: work ? nearestRecorded(work, speed, force) : null, threshold: thresholdDrawn.value };
 });

@@ -69,8 +69,8 @@ async function slide(page) {
   await page.mouse.move(pad.x + 40, pad.y + 80);
   await page.mouse.down();
   let loudest = 0;
-  for (let i = 0; i < 80 && loudest < 0.02; i++) {
-    await page.mouse.move(pad.x + 40 + 3 * i, pad.y + 80);
+  for (let i = 0; i < 400 && loudest < 0.02; i++) {
+    await page.mouse.move(pad.x + 40 + 3 * (i % 80), pad.y + 80);
     await new Promise((resolve) => setTimeout(resolve, 20));
     loudest = await page.evaluate(() => Math.max(...htexStudio.heard(new Float32Array(1024))));
   }

@@ -51,6 +51,16 @@ async function screens(page, suffix) {
   await shot(page, `record-${suffix}`);
   await goTo(page, "Give");
   await shot(page, `give-${suffix}`);
+  await goTo(page, "Record");
+  await page.getByRole("button", { name: "To the pad" }).first().click();
+  await page.getByText("recording", { exact: true }).waitFor();
+  await goTo(page, "Compare");
+  await page.getByRole("button", { name: "Compare by ear" }).first().click();
+  await page.getByText(/plays as it was recorded/).waitFor();
+  await page.locator(".side").first().click();
+  await page.evaluate(() => document.querySelector(".notice button")?.click());
+  await shot(page, `compare-recording-${suffix}`);
+  await page.keyboard.press("Escape");
 }
 
 /** From opening to a saved texture. */

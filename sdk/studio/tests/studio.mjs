@@ -48,9 +48,10 @@ export function launch(options = {}) {
   return chromium.launch({ executablePath: HTEX_CHROMIUM, args: ["--no-sandbox", "--disable-gpu", "--disable-background-networking"], ...options });
 }
 
-/** Opens the page, and waits until it is ready; `page.errors` has what it complained of, `page.requests` what it asked for. */
-export async function openStudio(browser, address, options = {}) {
+/** Opens the page, in which `init` runs first, and waits until it is ready; `page.errors` has what it complained of, `page.requests` what it asked for. */
+export async function openStudio(browser, address, { init, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, acceptDownloads: true, ...options });
+  if (init) await context.addInitScript(init);
   const page = await context.newPage();
   Object.assign(page, { errors: [], requests: [] });
   page.on("pageerror", (error) => page.errors.push(String(error)));

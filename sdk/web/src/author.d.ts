@@ -195,6 +195,53 @@ export interface Processed {
   picture: { from_s: number; step_s: number; steps: number; signals: Record<string, { least: Float32Array; greatest: Float32Array }> };
 }
 
+/** What is read of a recording as sound: a loop without a seam, in the band, compensated and of one axis as its spectrum is. */
+export interface RecordedLoop {
+  /** Name of the recording. */
+  recording: string;
+  condition: { speed: number | null; force: number | null };
+  quantity: RecordedQuantity;
+  unit: string;
+  rate_hz: number;
+  /** RMS of the samples: the level of models that are fitted to the recording. */
+  level_rms: number;
+  segments: number;
+  samples: Float32Array<ArrayBuffer>;
+}
+
+export interface BakeOptions {
+  /** Name of the array. */
+  name?: string;
+  /** Default: the representation of least error. */
+  model?: string;
+  /** Sampling rate of the player, Hz. Default 8000. */
+  rate?: number;
+  /** Largest error of nine bands between conditions, dB. Default 0.3. */
+  within?: number;
+  /** Speeds, mm/s, and forces, N, which are all combined. Default: the first condition. */
+  grid?: { speed: number[]; force: number[] };
+}
+
+/** A block for the player on microcontrollers; see `docs/microcontroller.md`. */
+export interface Baked {
+  bytes: Uint8Array;
+  model: string;
+  quantity: RecordedQuantity;
+  unit: string;
+  /** A magnitude that samples rarely exceed. */
+  full_scale: number;
+  rate_hz: number;
+  speeds: number[];
+  forces: number[];
+  /** Largest errors of nine bands: at the conditions, midway between them, and beyond them, where that is known. */
+  error_at_conditions_db: number;
+  error_between_db: number;
+  error_beyond_db: number | null;
+  /** The block as a C header, and as Rust. */
+  c: string;
+  rust: string;
+}
+
 /** What is felt of the difference between a model and the recording; see `spec/htex-1.md`. */
 export interface FeltError {
   error_rms_db: number;
@@ -277,8 +324,12 @@ export interface Author {
   /** What the columns of a recording are taken to be. */
   columns(recording: NamedBytes, settings?: ReadingSettings): Columns;
   process(recording: NamedBytes, settings?: ReadingSettings): Processed;
+  /** What is read of recordings as sound, at a rate that is a multiple of 10 Hz. */
+  recorded(recordings: NamedBytes | NamedBytes[], settings: ReadingSettings & { rate: number; conditions?: FitSettings["conditions"] }): RecordedLoop[];
   /** Fits models to recordings; `fit` does it in a worker. */
   fit(recordings: NamedBytes | NamedBytes[], settings?: FitSettings): Fitted;
+  /** Bakes a block for the player on microcontrollers. */
+  bake(texture: Texture | Bytes, options?: BakeOptions): Baked;
   /** Packs textures, by their names, to a `.htexlib` file. */
   library(textures: Record<string, Texture | Bytes>, options?: { name?: string }): Uint8Array;
 }

@@ -169,6 +169,19 @@ export class Author {
     return { ...document, picture: pictureOf(document.picture, bytes) };
   }
 
+  /** What is read of recordings, in the band and at the level of models that are fitted to it, as loops without a seam. */
+  recorded(recordings, { rate, ...settings } = {}) {
+    const { request, files } = callOf(eachOf(filesOf(recordings, settings), named), settings);
+    const { document, bytes } = this.core.call("recorded", { ...request, rate }, files);
+    return loopsOf(document, bytes);
+  }
+
+  /** Bakes a block for the player on microcontrollers; `c` and `rust` are its source code. */
+  bake(texture, { name = "texture", model, rate, within, grid } = {}) {
+    const { document, bytes } = this.core.call("bake", { name, model, rate, within, grid }, [bytesOfTexture(texture)]);
+    return { ...document, bytes };
+  }
+
   /** Fits models to recordings of a texture. */
   fit(recordings, settings = {}) {
     const { request, files } = callOf(eachOf(filesOf(recordings, settings), named), settings);
@@ -194,6 +207,13 @@ function pictureOf({ signals, steps, ...picture }, bytes) {
   const part = (i) => numbers.subarray(i * steps, (i + 1) * steps);
   const drawn = signals.map((signal, i) => [signal, { least: part(2 * i), greatest: part(2 * i + 1) }]);
   return { ...picture, steps, signals: Object.fromEntries(drawn) };
+}
+
+/** Loops, whose samples stand one after the other. */
+function loopsOf(loops, bytes) {
+  const numbers = new Float32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4);
+  let end = 0;
+  return loops.map(({ samples, ...told }) => ({ ...told, samples: numbers.slice(end, (end += samples)) }));
 }
 
 /** Starts the worker of a page. */

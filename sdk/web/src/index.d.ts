@@ -80,6 +80,15 @@ export interface VoiceOptions {
   bands?: number;
 }
 
+/** Samples that a node plays again and again, such as those of `author.recorded`. */
+export interface Loop {
+  /** In the unit of the recorded quantity. */
+  readonly samples: Float32Array;
+  readonly rate_hz: number;
+  /** RMS of the samples, by which the usual gain is set. */
+  readonly level_rms: number;
+}
+
 /** What a voice played since it was last asked: for phones, pads and motors, which take level and frequency. */
 export interface Envelope {
   /** RMS of the samples, in the texture's unit, exactly; 0 for none. */
@@ -312,6 +321,8 @@ export class HtexNode extends NodeBase {
   set position(position: number);
   /** Fades to another texture within 20 ms; resolves when that has begun. Of several calls at a time the last one counts. */
   load(texture: Texture, options?: LoadOptions): Promise<void>;
+  /** Fades to a recording, which plays as it is while a finger slides, at any speed and force. */
+  load(loop: Loop, options?: { gain?: number }): Promise<void>;
   /** Resolves when the voice is made. */
   readonly ready: Promise<void>;
   /** Is called with the error after which the node is silent; the worklet's own errors, too. */

@@ -3,19 +3,31 @@
 import { HtexError } from "./core.js";
 import { GuardedWorker, checkTexture, describe } from "./guarded.js";
 import { compiled, files, libraryBytes, resolved } from "./library.js";
+import { Loops, checkLoop } from "./loop.js";
 import { VOICE, checked } from "./options.js";
+import { Texture } from "./texture.js";
 
 /** RMS of full scale that a node plays at by default: -20 dB. */
 const LEVEL = 0.1;
-/** Milliseconds after which a node that was stopped is taken to be silent, if its context renders no more. */
-const SILENT_MS = 200;
+/** Milliseconds between two looks whether a node that was stopped is silent: its context renders no more, or it has rendered so many seconds
+ * without an end being told. */
+const LOOK_MS = 200;
+const SILENT_S = 1;
 
 const { rate: _, gain, ...VOICE_OF_NODE } = VOICE;
 const LOAD = { ...VOICE_OF_NODE, gain, trusted: "boolean" };
 const NODE = { ...LOAD, worker: "object", limit: "number", pitch: "number" };
 
-/** The gain at which a texture plays at that level: by what the file states, since no model runs here. */
+const LOOP = { gain: "number" };
+
+/** Whether a node is to play a loop, and not a texture. */
+function isLoop(given) {
+  return given?.samples !== undefined && !(given instanceof Texture);
+}
+
+/** The gain at which a texture or a loop plays at that level: by what the file states, since no model runs here. */
 function usualGain(texture, model) {
+  if (isLoop(texture)) return texture.level_rms > 0 ? LEVEL / texture.level_rms : 0;
   const chosen = texture.chosenModel(model);
   const level = texture.manifest.representations.find((representation) => representation.model === chosen).at[0].level_rms;
   return level > 0 ? LEVEL / level : 0;
@@ -106,7 +118,7 @@ export class HtexNode extends Base {
       super(context, "htex", shape(null));
       isSent = false;
     }
-    Object.assign(this, { missed: 0, onerror: null, onenvelope: null, limit, sharedWorker: worker, loads: new Map(), lastLoad: 0 });
+    Object.assign(this, { missed: 0, onerror: null, onenvelope: null, limit, sharedWorker: worker, loads: new Map(), lastLoad: 0, loops: new Loops() });
     /** The options that a later `load` takes over, the gain of the texture's usual level, and the voice in a worker. */
     Object.assign(this, { bands: options.bands, pitch: options.pitch, usual: usualGain(texture, options.model), playing: null, texture });
     this.port.onmessage = ({ data }) => this.receive(data);
@@ -141,10 +153,15 @@ export class HtexNode extends Base {
     return this.bands > 0 ? Float64Array.from({ length: this.bands + 1 }, (_, k) => low * (high / low) ** (k / this.bands)) : new Float64Array(0);
   }
 
-  /** Fades to another texture. Of several calls at a time the last one counts. The gain keeps its ratio to the usual one. */
+  /** Fades to another texture, or to a loop. Of several calls at a time the last one counts. The gain keeps its ratio to the usual one. */
   async load(texture, options = {}) {
-    checked(options, LOAD, "node.load");
-    checkTexture(texture, "node.load");
+    if (isLoop(texture)) {
+      checked(options, LOOP, "node.load of a loop");
+      checkLoop(texture, "node.load");
+    } else {
+      checked(options, LOAD, "node.load");
+      checkTexture(texture, "node.load");
+    }
     if (this.isStopped) throw new HtexError("node.load: the node was stopped; make a new one", "invalid-argument");
     // Throws if there is no such representation.
     this.wanted = { texture, options, usual: usualGain(texture, options.model) };
@@ -159,35 +176,58 @@ export class HtexNode extends Base {
       this.wanted = null;
       const before = this.gain.value;
       const gain = options.gain ?? (this.usual > 0 ? (usual * before) / this.usual : usual);
-      const bands = options.bands ?? this.bands;
-      const { trusted = texture.options.trusted || !texture.hasModules } = options;
-      const id = (this.lastLoad += 1);
-      await this.send({ id, description: describeFor(this.context, texture, { ...options, bands, pitch: this.pitch }), gain }, { trusted });
-      Object.assign(this, { texture, bands, usual });
+      await (isLoop(texture) ? this.changeToLoop(texture, gain) : this.changeTo(texture, options, gain));
+      this.usual = usual;
       // Until now the old texture played with the old gain; a gain that was set meanwhile stays.
       if (this.gain.value === before) this.gain.value = gain;
     }
   }
 
+  async changeTo(texture, options, gain) {
+    const bands = options.bands ?? this.bands;
+    const { trusted = texture.options.trusted || !texture.hasModules } = options;
+    const description = describeFor(this.context, texture, { ...options, bands, pitch: this.pitch });
+    await this.send({ id: this.nextId(), description, gain }, { trusted });
+    Object.assign(this, { texture, bands });
+  }
+
+  async changeToLoop(loop, gain) {
+    const described = this.loops.describe(loop, { contextRate: this.context.sampleRate, pitch: this.pitch });
+    const id = this.nextId();
+    await this.begun(id, () => this.port.postMessage({ load: { id, loop: described, gain } }));
+    this.playing?.forget();
+    this.playing = null;
+  }
+
+  nextId() {
+    this.lastLoad += 1;
+    return this.lastLoad;
+  }
+
   /** Has a voice made and faded to; the promise is of its start. */
   async send(voice, { trusted }) {
     const { id, description, gain } = voice;
-    const started = new Promise((resolve, reject) => this.loads.set(id, { resolve, reject }));
     let playing = null;
-    if (trusted) this.post(voice);
-    else {
+    await this.begun(id, () => {
+      if (trusted) return void this.post(voice);
       const { port1, port2 } = new MessageChannel();
       this.port.postMessage({ load: { id, samples: port1, gain } }, [port1]);
       playing = this.guarded().play(description, port2, (error) => this.workerFailed(id, error));
       playing.ready.catch(() => {});
-    }
+    });
+    this.playing?.forget();
+    this.playing = playing;
+  }
+
+  /** Posts a load; the promise is of its start. */
+  async begun(id, post) {
+    const started = new Promise((resolve, reject) => this.loads.set(id, { resolve, reject }));
+    post();
     try {
       await started;
     } finally {
       this.loads.delete(id);
     }
-    this.playing?.forget();
-    this.playing = playing;
   }
 
   /** Posts a voice to the worklet, with the library's bytes where the compiled one cannot be sent. A worklet that has played a voice has the
@@ -267,7 +307,14 @@ export class HtexNode extends Base {
     const isHeard = this.context.state === "running" || this.isOffline;
     this.port.postMessage({ stop: true, isHeard });
     if (!isHeard) this.end();
-    else if (!this.isOffline) setTimeout(() => this.end(), SILENT_MS);
+    else if (!this.isOffline) this.endWhenSilent(this.context.currentTime + SILENT_S);
+  }
+
+  /** Ends the node where the worklet does not tell that it has faded out. An audio thread that is late fades late: it is not cut off. */
+  endWhenSilent(until) {
+    const { state, currentTime } = this.context;
+    if (state !== "running" || currentTime > until) this.end();
+    else if (!this.isEnded) setTimeout(() => this.endWhenSilent(until), LOOK_MS);
   }
 
   /** An offline context is not running between its renderings. */

@@ -1,6 +1,6 @@
 // The audio worklet: plays a source, and fades to another one.
 
-import { Here, There } from "./sources.js";
+import { Here, Loop, There } from "./sources.js";
 import { Stage } from "./stage.js";
 import { Track } from "./track.js";
 
@@ -32,6 +32,8 @@ class HtexProcessor extends AudioWorkletProcessor {
     this.tracks = [];
     this.block = new Float32Array(128);
     this.unreported = 0;
+    /** The samples of the last loop. */
+    this.looped = null;
     this.port.onmessage = ({ data }) => this.receive(data);
     // A page that is a file cannot send a compiled library through a port.
     this.port.onmessageerror = () => this.port.postMessage({ unusable: true });
@@ -49,9 +51,14 @@ class HtexProcessor extends AudioWorkletProcessor {
     }
   }
 
-  /** Starts a voice: of a description, or one whose samples arrive at a port. */
-  load({ id, description, samples, gain }) {
+  /** Starts a voice: of a description, or one whose samples arrive at a port; or a loop, of the last samples unless it brings others. */
+  load({ id, description, samples, loop, gain }) {
     if (this.stopping) return;
+    if (loop) {
+      this.looped = loop.samples ?? this.looped;
+      this.start(new Loop(this.looped, loop.step), id, gain);
+      return;
+    }
     if (samples) {
       const source = new There(samples, () => this.start(source, id, gain));
       return;
@@ -71,8 +78,15 @@ class HtexProcessor extends AudioWorkletProcessor {
     const frames = (this.tracks.length > 0 ? CHANGE_S : START_S) * sampleRate;
     for (const track of this.tracks) track.fadeOut(frames);
     this.tracks.push(new Track(source, { gain, parameter: this.gain, frames }));
-    if (this.tracks.length > MOST_TRACKS) this.leave(this.tracks.reduce((a, b) => (b.isLeaving && b.way < a.way ? b : a)));
+    this.thin();
     this.port.postMessage({ id, started: true });
+  }
+
+  /** Of too many sources the quietest one fades out within the next block. */
+  thin() {
+    for (const track of this.tracks) if (track.isOver) this.leave(track);
+    const leaving = this.tracks.filter(({ isLeaving }) => isLeaving);
+    if (this.tracks.length > MOST_TRACKS) leaving.reduce((a, b) => (b.way < a.way ? b : a)).fadeOut(this.block.length);
   }
 
   leave(track) {

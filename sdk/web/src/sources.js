@@ -40,6 +40,68 @@ export class Here {
   }
 }
 
+/** Samples that are played again and again while a finger slides, as they are at any speed and force. */
+export class Loop {
+  /** `step`: the samples that are gone on by in each frame. */
+  constructor(samples, step) {
+    this.samples = samples;
+    this.step = step;
+    this.at = 0;
+    this.weight = 0;
+    this.isTouched = false;
+    this.power = 0;
+    this.frames = 0;
+    this.turns = 0;
+    this.isHigh = false;
+  }
+
+  setMotion(speed, force) {
+    this.isTouched = speed > 0 && force > 0;
+  }
+
+  /** Renders a block; no sample lacks. The loop stands still while nothing is heard. */
+  render(block) {
+    const ramp = (this.isTouched ? 1 : -1) / (RAMP_S * sampleRate);
+    for (let i = 0; i < block.length; i++) {
+      this.weight = Math.min(Math.max(this.weight + ramp, 0), 1);
+      block[i] = this.weight > 0 ? this.weight * this.next() : 0;
+      this.measure(block[i]);
+    }
+    return 0;
+  }
+
+  /** The sample at the present place, on the line between two. */
+  next() {
+    const { samples, at } = this;
+    const whole = Math.floor(at);
+    const [a, b] = [samples[whole], samples[(whole + 1) % samples.length]];
+    this.at = (at + this.step) % samples.length;
+    return a + (at - whole) * (b - a);
+  }
+
+  measure(sample) {
+    this.power += sample * sample;
+    this.frames += 1;
+    const isHigh = sample > 0;
+    if (isHigh !== this.isHigh) this.turns += 1;
+    this.isHigh = isHigh;
+  }
+
+  /** What was played since the last call: its level, and, for its centroid, half the rate at which it changes its sign. */
+  envelope() {
+    const { power, frames, turns } = this;
+    Object.assign(this, { power: 0, frames: 0, turns: 0 });
+    if (frames === 0) return null;
+    return { level: Math.sqrt(power / frames), centroid: (0.5 * turns * sampleRate) / frames, frames, bands: new Float64Array(0) };
+  }
+
+  get isOver() {
+    return false;
+  }
+
+  free() {}
+}
+
 /** A voice in a worker, which renders ahead: blocks that arrive at `port`, asked for as they are used. */
 export class There {
   /** `started` is called when the first block has arrived. */

@@ -106,6 +106,50 @@ test("a recording is read as the command reads it", async () => {
   assert.deepEqual(mapped.spectrum, read.spectrum);
 });
 
+/** The magnitude of a loop at a frequency of which it has a whole number of periods. */
+function magnitudeOf({ samples, rate_hz }, hertz) {
+  const turn = (2 * Math.PI * hertz) / rate_hz;
+  let [re, im] = [0, 0];
+  samples.forEach((x, i) => ([re, im] = [re + x * Math.cos(turn * i), im + x * Math.sin(turn * i)]));
+  return Math.hypot(re, im) / samples.length;
+}
+
+test("a recording is a loop: its level, its band and no seam", () => {
+  const [loop] = author.recorded(vinyl, { rate: 48000 });
+  const { spectrum, condition } = author.process(vinyl);
+  assert.deepEqual([loop.recording, loop.unit, loop.condition], ["vinyl.csv", "N", condition]);
+  const rms = (numbers) => Math.sqrt(numbers.reduce((sum, x) => sum + x * x, 0) / numbers.length);
+  assert.ok(Math.abs(rms(loop.samples) / loop.level_rms - 1) < 1e-4);
+  // Bins of a Hann window: their power is that of one and a half.
+  assert.ok(Math.abs(Math.sqrt(spectrum.magnitude.reduce((sum, m) => sum + m * m, 0) / 3) / loop.level_rms - 1) < 1e-9);
+  const steps = loop.samples.map((x, i) => Math.abs(loop.samples[(i + 1) % loop.samples.length] - x));
+  assert.ok(steps.at(-1) <= 1.5 * steps.slice(0, -1).reduce((most, step) => Math.max(most, step)));
+  // RMS of the frequencies of a range relative to all: beyond the band, whose ends reach 10 Hz, two bins of the window, farther, is little.
+  const period = loop.rate_hz / loop.samples.length;
+  const between = (low, high) => {
+    const [first, last] = [Math.ceil(low / period), Math.floor(high / period)];
+    const power = Array.from({ length: last - first + 1 }, (_, k) => 2 * magnitudeOf(loop, (first + k) * period) ** 2);
+    return Math.sqrt(power.reduce((sum, x) => sum + x, 0)) / loop.level_rms;
+  };
+  const [inside, below, above] = [between(120, 180), between(period, 8), between(1100, 1300)];
+  assert.ok(inside > 0.1 && below < 0.05 && above < 1e-4, `${below}, ${inside}, ${above}`);
+  assert.throws(() => author.recorded(vinyl, { rate: 1000 }), { code: "invalid-argument", message: /2000 Hz/ });
+  assert.throws(() => author.recorded(vinyl), { code: "invalid-argument", message: /rate/ });
+});
+
+test("a texture is baked to the bytes and the source code of the command", async () => {
+  const texture = await open(await bytes("vinyl.htex"));
+  const one = author.bake(texture, { name: "block", model: "bands" });
+  assert.ok(Buffer.from(one.bytes).equals(await bytes("block.bin")));
+  assert.equal(one.c, (await bytes("block.h")).toString());
+  assert.equal(one.rust, (await bytes("block.rs")).toString());
+  const grid = { speed: [40, 100, 160], force: [0.5] };
+  const many = author.bake(texture, { name: "many-block", model: "ar", rate: 6000, grid });
+  assert.equal(many.c, (await bytes("many-block.h")).toString());
+  assert.throws(() => author.bake(texture, { grid: { speed: [0], force: [0.5] } }), { code: "invalid-argument" });
+  assert.throws(() => author.bake(texture, { within: 0 }), { code: "invalid-argument", message: /within/ });
+});
+
 test("a finding says what it means, and a column without a role what to do", () => {
   const silent = "t_s,fx_n\n" + Array.from({ length: 4000 }, (_, i) => `${i / 2000},0.25\n`).join("");
   const { findings } = author.process({ name: "silent.csv", bytes: Buffer.from(silent) });

@@ -16,19 +16,42 @@ const ELSEWHERE = "elsewhere.example";
 
 const SURFACE = '<div id=surface tabindex=0 style="width:600px;height:300px"></div>';
 
-/** Records what an audio node plays: `record(node)`, then `await recorded()`. */
+/** Records what an audio node plays: `record(node)`, then `await recorded()`. A quantum without input, as that of a node that was disconnected,
+ * is silent; one that was not rendered would be an error, since it would look like a click. `hold(context, ms)` has the audio thread do nothing
+ * else for a while, as on a machine that is busy. */
 const RECORDER = `
 const source = \`registerProcessor("record", class extends AudioWorkletProcessor {
   constructor() { super(); this.blocks = []; this.port.onmessage = () => this.port.postMessage(this.blocks.splice(0)); }
-  process([[input]]) { this.blocks.push(input ? input.slice() : new Float32Array(128)); return true; } });\`;
+  process([[input]]) { this.blocks.push({ frame: currentFrame, samples: input ? input.slice() : new Float32Array(128) }); return true; } });
+registerProcessor("hold", class extends AudioWorkletProcessor {
+  constructor() { super(); this.port.onmessage = ({ data }) => { this.port.postMessage(0); for (const end = Date.now() + data; Date.now() < end; ); }; }
+  process() { return true; } });\`;
+const modules = new WeakMap();
+const added = (context) => {
+  if (!modules.has(context)) modules.set(context, context.audioWorklet.addModule("data:text/javascript," + encodeURIComponent(source)));
+  return modules.get(context);
+};
 window.record = async (node) => {
-  await node.context.audioWorklet.addModule("data:text/javascript," + encodeURIComponent(source));
+  await added(node.context);
   const recorder = new AudioWorkletNode(node.context, "record", { numberOfOutputs: 0, channelCount: 1, channelCountMode: "explicit" });
   node.connect(recorder);
-  window.recorded = () => new Promise((done) => {
-    recorder.port.onmessage = ({ data }) => done(data.flatMap((block) => Array.from(block)));
+  window.recorded = () => new Promise((done, fail) => {
+    recorder.port.onmessage = ({ data }) => {
+      // Chromium tells the frame of the quantum before of some, which have their samples.
+      const places = data.map(({ frame }, i) => frame - 128 * i);
+      const skipped = places.findIndex((place) => place > Math.max(...places.slice(0, 2)));
+      if (skipped > 0) fail(new Error("quanta were skipped before frame " + data[skipped].frame));
+      else done(data.flatMap(({ samples }) => Array.from(samples)));
+    };
     recorder.port.postMessage(0);
   });
+};
+window.hold = async (context, ms) => {
+  await added(context);
+  const { port } = new AudioWorkletNode(context, "hold");
+  const held = new Promise((done) => (port.onmessage = done));
+  port.postMessage(ms);
+  await held;
 };`;
 
 /** Starts both; `close` ends them. */
@@ -129,6 +152,12 @@ const MOUSE = { Start: "mousePressed", Move: "mouseMoved", End: "mouseReleased" 
 
 /** RMS of numbers. */
 export const rms = (numbers) => Math.sqrt(numbers.reduce((sum, x) => sum + x * x, 0) / Math.max(numbers.length, 1));
+
+/** The largest RMS of a tenth of a second at 48 kHz: of what sounds while an input goes on, which a busy machine hears late. */
+export function loudest(numbers, frames = 4800) {
+  const starts = Array.from({ length: Math.max(Math.ceil(numbers.length / frames), 1) }, (_, i) => i * frames);
+  return Math.max(...starts.map((start) => rms(numbers.slice(start, start + frames))));
+}
 
 /** The largest step between neighbours, of those from `start` to `end`. */
 export function largestStep(numbers, start = 0, end = numbers.length) {

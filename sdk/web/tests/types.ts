@@ -91,6 +91,9 @@ export async function make(file: File, signal: AbortSignal): Promise<Uint8Array>
   // @ts-expect-error: a setting of no table.
   author.columns({ name: "felt.csv", bytes: new ArrayBuffer(8) }, { form_s: 2 });
   setAuthorLibrary("htex-author.wasm", { worker: () => new Worker("author-worker.js") });
+  const [loop] = author.recorded({ name: "felt.csv", bytes: new ArrayBuffer(8) }, { rate: 48000, from_s: 2 });
+  if (loop) await new HtexNode(new AudioContext(), texture).load(loop, { gain: 1 });
+  console.log(loop?.samples.length, loop?.level_rms, author.bake(texture, { name: "made", grid: { speed: [40, 80], force: [0.5] } }).c);
   return author.library({ mixed, made }, { name: "Two" });
 }
 

@@ -125,7 +125,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
 }
 
 /// What the command makes of the same as the author module of the npm package: textures of a part of a recording, of samples, by hand, mixed
-/// and edited, a library of two, and what is read of a recording (`process.json`).
+/// and edited, baked blocks, a library of two, and what is read of a recording (`process.json`).
 fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
     for name in ["pcm16.flac", "pcm16.wav"] {
         let source = workspace().join("sdk/recording/tests/lab").join(name);
@@ -170,6 +170,12 @@ fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> 
         let said = ["--quantity", "acceleration", "--license", "CC0-1.0"];
         htex(&[&made[..], set, &level, &said, &["-o", out]].concat())?;
     }
+    for out in ["block.bin", "block.h", "block.rs"] {
+        htex(&["bake", "vinyl.htex", "--model", "bands", "-o", out])?;
+    }
+    let grid = ["--grid", "speed=40:160:3,force=0.5", "--rate", "6000"];
+    let baked = ["bake", "vinyl.htex", "--model", "ar", "-o", "many-block.h"];
+    htex(&[&baked[..], &grid].concat())?;
     let mixed = ["mix", "vinyl.htex", "hum.htex", "--weight", "0.25"];
     htex(&[&mixed[..], &["--name", "between", "-o", "mixed.htex"]].concat())?;
     let edited = ["edit", "vinyl.htex", "--author", "A. Weaver"];

@@ -42,6 +42,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
             "sound.test.mjs",
             "author.test.mjs",
             "scene.test.mjs",
+            "scene-browser.test.mjs",
             "author-browser.test.mjs",
             "browser.test.mjs",
             "bundles.test.mjs",

@@ -2,13 +2,14 @@
 
 import { words } from "./difference.tsx";
 import { fitted } from "../recordings.ts";
-import { recordedWork } from "../reference.ts";
+import { presentWork } from "../reference.ts";
 import { sides } from "../comparing.ts";
-import { origin, texture } from "../state.ts";
+import { texture } from "../state.ts";
 
 export function AgainstRecording({ nameOf }: { nameOf: (id: string) => string }) {
   const report = fitted.value?.report;
-  if (!report || !recordedWork.value || origin.value?.bytes !== recordedWork.value.bytes) return null;
+  const recording = presentWork.value?.names[0];
+  if (!report || recording === undefined) return null;
   const hasModel = (id: string) => texture.value?.models.includes(id);
   return (
     <div class="panel stack below">
@@ -25,8 +26,8 @@ export function AgainstRecording({ nameOf }: { nameOf: (id: string) => string })
                 </p>
               </div>
               {hasModel(id) && (
-                <button class="button" onClick={() => (sides.value = { ...sides.peek(), b: `model ${id}` })}>
-                  As B
+                <button class="button" onClick={() => (sides.value = { a: `recording ${recording}`, b: `model ${id}` })}>
+                  Compare by ear
                 </button>
               )}
             </li>

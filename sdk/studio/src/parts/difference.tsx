@@ -4,6 +4,7 @@ import type { Felt } from "htex";
 
 import { author, theAuthor } from "../author.ts";
 import { both } from "../comparing.ts";
+import { fitted } from "../recordings.ts";
 import { pilotForce, pilotSpeed } from "../motion.ts";
 import { fail } from "../state.ts";
 
@@ -18,7 +19,7 @@ export function words({ below_difference_threshold, below_if_sensitive, largest_
 function difference() {
   const made = author.value;
   const { a, b } = both.value;
-  if (!made || !a || !b) return null;
+  if (!made || !a || !b || a.loop || b.loop) return null;
   const at = { speed: pilotSpeed.value, force: pilotForce.value };
   return made.felt({ texture: a.texture, model: a.model, at }, { texture: b.texture, model: b.model, at });
 }
@@ -44,9 +45,19 @@ function Bars({ of }: { of: Felt }) {
   );
 }
 
+/** What the fit measured of a model and its recordings; null unless one side is a recording. */
+function ofRecording() {
+  const { a, b } = both.value;
+  const [recorded, other] = a?.loop ? [a, b] : [b, a];
+  if (!recorded?.loop || !other) return null;
+  const felt = fitted.value?.report.models.find(({ model }) => model === other.model && other.texture === recorded.texture && !other.loop)?.felt;
+  return felt ? `${words(felt)} All recordings against the model as it was fitted, at the condition where most is felt.` : "What is felt between a recording and this side was not measured: choose a model of this texture as the other side.";
+}
+
 export function Difference() {
   if (!author.value) theAuthor().catch(fail);
   const found = difference();
+  const told = ofRecording();
   return (
     <div class="panel stack">
       <h2>What is felt of the difference</h2>
@@ -59,7 +70,7 @@ export function Difference() {
           </p>
         </>
       ) : (
-        <p class="soft">{both.value.a && both.value.b ? "…" : "Choose two textures."}</p>
+        <p class={told ? "" : "soft"}>{told ?? (both.value.a && both.value.b ? "…" : "Choose two textures.")}</p>
       )}
     </div>
   );

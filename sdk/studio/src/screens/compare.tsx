@@ -1,6 +1,7 @@
 // Compare: two textures on one key, blind trials, and what is felt of the difference.
 
 import { useEffect } from "preact/hooks";
+import type { RecordedLoop } from "htex";
 
 import { AgainstRecording } from "../parts/against-recording.tsx";
 import { Difference } from "../parts/difference.tsx";
@@ -21,6 +22,18 @@ function Chooser({ side }: { side: Side }) {
         ))}
       </select>
     </label>
+  );
+}
+
+/** What a side does that plays a recording. */
+function AsRecorded({ of }: { of: RecordedLoop | undefined }) {
+  if (!of) return null;
+  const { speed, force } = of.condition;
+  const at = [speed === null ? "" : `${speed.toFixed(0)} mm/s`, force === null ? "" : `${force.toFixed(2)} N`].filter(Boolean).join(" and ");
+  return (
+    <p class="soft small">
+      It plays as it was recorded{at && `, at ${at}`}, {(of.samples.length / of.rate_hz).toFixed(1)} s again and again, while the finger slides; it does not follow the finger. For a fair comparison slide steadily{at && ", as fast and with this force"}.
+    </p>
   );
 }
 
@@ -120,10 +133,12 @@ export function Compare() {
         <div class="panel stack">
           <Chooser side="a" />
           <Play side="a" name={a?.name ?? ""} />
+          <AsRecorded of={a?.loop} />
         </div>
         <div class="panel stack">
           <Chooser side="b" />
           <Play side="b" name={b?.name ?? ""} />
+          <AsRecorded of={b?.loop} />
         </div>
       </div>
       <div class="columns below">

@@ -3,7 +3,7 @@
 import { useState } from "preact/hooks";
 
 import { theAuthor, author } from "../author.ts";
-import { keepOnShelf, labelOf, link, savePlayer, saveSound, saveTexture, write, type Label } from "../giving.ts";
+import { keepOnShelf, labelOf, link, saveBlock, savePlayer, saveSound, saveTexture, write, type Label } from "../giving.ts";
 import { Icon } from "../parts/icons.tsx";
 import { pilotForce, pilotSpeed } from "../motion.ts";
 import { fileName } from "../save.ts";
@@ -131,8 +131,11 @@ export function Give() {
               <button class="button" onClick={after(keepOnShelf)}>Keep on my shelf</button>
               <button class="button" onClick={after(saveSound)}>Save as WAV</button>
               <button class="button" onClick={after(savePlayer)}>Save a player page</button>
+              <button class="button" onClick={after(saveBlock)}>Save as C block</button>
             </div>
-            <p class="small soft">The player page is one file that plays this texture, without a network.</p>
+            <p class="small soft">
+              The player page is one file that plays this texture, without a network. The C block is a header for the player on microcontrollers, at the first condition; <code>htex bake</code> makes blocks of several.
+            </p>
             <Report />
           </div>
           <Link first={() => writing()} />

@@ -1,5 +1,6 @@
 //! What makes textures, by the names of its functions.
 
+mod bake;
 mod describe;
 mod felt;
 mod fit;
@@ -8,6 +9,7 @@ mod made;
 mod models;
 mod process;
 mod progress;
+mod recorded;
 mod recordings;
 mod refusal;
 mod validate;
@@ -15,6 +17,7 @@ mod validate;
 use crate::answer::Function;
 
 pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
+    ("bake", bake::bake),
     ("columns", process::columns),
     ("edit", made::edit),
     ("explain", validate::explain),
@@ -25,6 +28,7 @@ pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
     ("mix", made::mix),
     ("models", models::models),
     ("process", process::process),
+    ("recorded", recorded::recorded),
     ("threshold", felt::threshold),
     ("validate", validate::validate),
 ];

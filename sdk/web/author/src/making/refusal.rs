@@ -45,7 +45,7 @@ impl From<AuthorError> for Refusal {
             AuthorError::Read(error) => error.into(),
             AuthorError::Asset(error) => error.into(),
             AuthorError::NothingFitted { .. } => Self::model(error),
-            AuthorError::GridText { .. } => Self::argument(error),
+            AuthorError::GridText { .. } | AuthorError::LoopRate { .. } => Self::argument(error),
             other => Self::recording(other),
         }
     }

@@ -1,0 +1,143 @@
+//! A recording as sound: what is read of it, in the band, as a loop.
+//!
+//! The segments of a spectrum are windowed (Hann), and half overlap. They are windowed once more and added, since the frequencies outside of the
+//! band, which they have no more, were what made their ends zero: without it there is a step every 0.1 s. The sum is divided by that of the squared
+//! windows, which gives the recorded signal back. Two segments of different stretches share no signal: where one fades to the other,
+//! the sum is divided by the root of the sum of the fourth powers, which keeps the power. The last segment fades to the first one in this
+//! way, so that the loop has no seam.
+
+use htex_dsp::bands::rms;
+use htex_dsp::grid::{Band, GRID_HZ};
+use htex_format::Quantity;
+
+use crate::level::recorded_level;
+use crate::reading::read_take;
+use crate::segments::Segments;
+use crate::spectrum::each_frame;
+use crate::take::Take;
+use crate::{AuthorError, Exploration, SegmentSpectra, SpectrumOptions, TextureSpectrum};
+
+/// Highest rate of a loop, hertz.
+const MOST_RATE_HZ: f64 = 192_000.0;
+/// Most segments of a loop: those of 30 s.
+const MOST_SEGMENTS: usize = 300;
+
+/// What is read of a recording, as samples that are played again and again.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct RecordedLoop {
+    /// Speed and force: the given values, else the medians of the measured ones.
+    pub condition: Exploration,
+    /// The recorded quantity, which has the unit of the samples.
+    pub quantity: Quantity,
+    /// The samples, in the band of the spectrum; compensated and of one axis, as it is.
+    pub samples: Vec<f64>,
+    pub rate_hz: f64,
+    /// RMS of the samples: the level of models that are fitted to the recording.
+    pub level_rms: f64,
+    /// Number of segments in the loop: those of the first 30 s that are read.
+    pub segments: usize,
+}
+
+impl RecordedLoop {
+    /// Reads a recording and makes its loop at a rate.
+    ///
+    /// # Errors
+    /// As [`read_take`], and for a rate that is no multiple of 10 Hz, that is not above twice the band's highest frequency, or above
+    /// 192 kHz.
+    pub fn of(
+        take: &Take,
+        options: &SpectrumOptions,
+        strict: bool,
+        rate_hz: f64,
+    ) -> Result<Self, AuthorError> {
+        let reading = read_take(take, options, strict)?;
+        let part = &reading.part;
+        let spectrum = TextureSpectrum::average(std::slice::from_ref(part), options.averaging)?;
+        let len = frame_len(rate_hz, part.band)?;
+        let mut samples = joined(part, len);
+        let level_rms = recorded_level(&spectrum.magnitude);
+        set_level(&mut samples, level_rms);
+        Ok(Self {
+            condition: reading.condition,
+            quantity: part.quantity,
+            segments: samples.len() / (len / 2),
+            samples,
+            rate_hz,
+            level_rms,
+        })
+    }
+}
+
+/// Samples of a segment at a rate: an even number, since half of it is a step.
+fn frame_len(rate_hz: f64, band: Band) -> Result<usize, AuthorError> {
+    let len = rate_hz / GRID_HZ;
+    let is_whole = len % 2.0 == 0.0 && rate_hz <= MOST_RATE_HZ;
+    match is_whole && len > 2.0 * band.last_bin() as f64 {
+        true => Ok(len as usize),
+        false => Err(AuthorError::LoopRate {
+            rate_hz,
+            least_hz: 2.0 * GRID_HZ * band.last_bin() as f64,
+            most_hz: MOST_RATE_HZ,
+        }),
+    }
+}
+
+/// Adds the segments, of `len` samples each, around the loop, which has a step of half a segment for each of them.
+fn joined(part: &SegmentSpectra, len: usize) -> Vec<f64> {
+    let half = len / 2;
+    let spectra = part.spectra.iter().take(MOST_SEGMENTS);
+    let all: Vec<_> = spectra.map(Vec::as_slice).collect();
+    let window: Vec<f64> = (0..len).map(|k| hann(k, len)).collect();
+    let (first, last) = window.split_at(half);
+    let mut samples = vec![0.0; all.len() * half];
+    each_frame(part.band, &all, len, |i, frame| {
+        let (rising, falling) = frame.split_at(half);
+        add(&mut samples, i * half, rising, first);
+        add(&mut samples, (i + 1) % all.len() * half, falling, last);
+    });
+    for (i, join) in samples.chunks_mut(half).enumerate() {
+        let of = if follows(&part.segments, i) {
+            square_sum
+        } else {
+            power_sum
+        };
+        let weights = first.iter().zip(last).map(|(a, b)| of(*a, *b));
+        join.iter_mut().zip(weights).for_each(|(s, w)| *s /= w);
+    }
+    samples
+}
+
+/// The window of segments.
+fn hann(k: usize, len: usize) -> f64 {
+    0.5 - 0.5 * libm::cos(std::f64::consts::TAU * k as f64 / len as f64)
+}
+
+/// Adds half a segment, windowed, at a sample.
+fn add(samples: &mut [f64], at: usize, half: &[f64], window: &[f64]) {
+    let windowed = half.iter().zip(window).map(|(x, w)| x * w);
+    let place = samples.iter_mut().skip(at);
+    place.zip(windowed).for_each(|(s, x)| *s += x);
+}
+
+/// Whether a segment overlaps with the one before it, so that both have the same signal there.
+fn follows(segments: &Segments, i: usize) -> bool {
+    let step = segments.len.div_ceil(2);
+    let before = i.checked_sub(1).and_then(|k| segments.starts.get(k));
+    before.is_some_and(|start| segments.starts.get(i) == Some(&(start + step)))
+}
+
+fn square_sum(a: f64, b: f64) -> f64 {
+    a * a + b * b
+}
+
+fn power_sum(a: f64, b: f64) -> f64 {
+    (a * a * a * a + b * b * b * b).sqrt()
+}
+
+fn set_level(samples: &mut [f64], level_rms: f64) {
+    let own = rms(samples);
+    if own > 0.0 {
+        samples.iter_mut().for_each(|s| *s *= level_rms / own);
+    }
+}

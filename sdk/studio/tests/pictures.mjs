@@ -1,6 +1,8 @@
 // Takes the pictures of `docs/studio.md`: each screen, and the way from opening to a saved texture, by pointer and keys.
 //
-//   HTEX_STUDIO=DIR HTEX_COMMAND=htex node pictures.mjs OUT
+//   HTEX_STUDIO=DIR HTEX_COMMAND=htex node pictures.mjs OUT [ONLY]
+//
+// ONLY is a size and a scheme, such as wide-light, whose screens alone are taken.
 
 import { mkdir, mkdtemp } from "node:fs/promises";
 import { tmpdir } from "node:os";
@@ -8,7 +10,7 @@ import path from "node:path";
 
 import { FILE, goTo, htex, launch, openStudio } from "./studio.mjs";
 
-const out = process.argv[2];
+const [out, only] = process.argv.slice(2);
 const browser = await launch();
 await mkdir(out, { recursive: true });
 const folder = await mkdtemp(path.join(tmpdir(), "htex-pictures-"));
@@ -49,6 +51,7 @@ async function screens(page, suffix) {
   await page.getByRole("button", { name: "Fit all models" }).click();
   await page.locator(".ranked li").first().waitFor();
   await shot(page, `record-${suffix}`);
+  await page.evaluate(() => document.querySelector(".notice button")?.click());
   await goTo(page, "Give");
   await shot(page, `give-${suffix}`);
   await goTo(page, "Record");
@@ -89,12 +92,12 @@ async function way(page) {
 
 for (const colorScheme of ["light", "dark"]) {
   for (const [size, width, height] of [["wide", 1240, 800], ["phone", 390, 844]]) {
+    if (only && only !== `${size}-${colorScheme}`) continue;
     const page = await openStudio(browser, FILE, { viewport: { width, height }, colorScheme, hasTouch: size === "phone" });
     await page.locator("body").press("Shift");
     await screens(page, `${size}-${colorScheme}`);
     await page.context().close();
   }
 }
-const page = await openStudio(browser, FILE, { viewport: { width: 1240, height: 800 } });
-await way(page);
+if (!only) await way(await openStudio(browser, FILE, { viewport: { width: 1240, height: 800 } }));
 await browser.close();

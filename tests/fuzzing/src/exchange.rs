@@ -2,7 +2,9 @@
 
 use htex_exchange::haptic::Metadata;
 use htex_exchange::hatt::{Imported, asset, read};
-use htex_exchange::{Ahap, Haptic, Hjif, PROFILES, Pattern, Physical, combined, recording_of};
+use htex_exchange::{
+    Ahap, Haptic, Hjif, MOST_S, PROFILES, Pattern, Physical, combined, recording_of,
+};
 
 use crate::promise::sentence;
 
@@ -57,8 +59,9 @@ pub fn ahap(input: &[u8]) -> bool {
     let read = Ahap::from_bytes(input);
     if let Ok(file) = &read {
         let patterns = file.patterns(&PROFILES[0]);
-        // Combining many patterns compares each with each.
-        if patterns.len() < 100 {
+        // Combining many patterns compares each with each; what is longer is not read again.
+        let is_short = patterns.iter().all(|pattern| pattern.end_s() <= MOST_S);
+        if patterns.len() < 100 && is_short {
             let pattern = combined(&patterns);
             let again = Ahap::of(&pattern, &PROFILES[0]).to_bytes();
             let again = Ahap::from_bytes(&again).expect("what was written is read");

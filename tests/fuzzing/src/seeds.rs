@@ -113,11 +113,15 @@ fn signals_of_others() -> Vec<Seed> {
             {"ParameterID": "HapticIntensity", "ParameterValue": 0.8}, {"ParameterID": "AttackTime", "ParameterValue": 0.1}]}},
         {"Event": {"Time": 0.1, "EventType": "AudioCustom", "EventParameters": []}},
         {"Parameter": {"ParameterID": "HapticSharpnessControl", "ParameterValue": -0.5, "Time": 0.1}}]}"#;
-    let samples: Vec<f64> = (0..600).map(|i| (0.1 * f64::from(i)).sin()).collect();
-    let wavelets = |speed_mm_s| {
-        let space = htex_exchange::hjif::Space { speed_mm_s };
-        htex_exchange::hjif::waveform(&samples, profile, space, "seed").to_bytes()
-    };
+    let way = br#"{"version": "2023", "profile": "Main", "level": 1, "date": "1970-01-01", "description": "seed", "timescale": 10000,
+        "avatars": [], "syncs": [], "perceptions": [{"id": 0, "avatar_id": 0, "description": "", "unit_exponent": -3,
+        "perception_modality": "Vibrotactile Texture", "reference_devices": [{"id": 1, "name": "coil", "minimum_frequency": 20,
+        "resonance_frequency": 60, "maximum_frequency": 300}], "effect_library": [], "channels": [{"id": 0, "description": "",
+        "reference_device_id": 1, "gain": 1, "mixing_coefficient": 1, "body_part_mask": 0, "bands": [{"band_type": "WaveletWave",
+        "block_length": 8, "lower_frequency_limit": 0, "upper_frequency_limit": 2500, "effects": [{"effect_type": "Basis", "position": 0,
+        "phase": 0, "base_signal": "Sine", "keyframes": [{"relative_position": 0, "amplitude_modulation": 1},
+        {"amplitude_modulation": -0.5}, {"amplitude_modulation": 0.2}, {"amplitude_modulation": 0}, {"amplitude_modulation": 0.1},
+        {"amplitude_modulation": 0}, {"amplitude_modulation": 0}, {"amplitude_modulation": -0.3}, {"amplitude_modulation": 0.8}]}]}]}]}]}"#;
     let bands = br#"{"perceptions": [{"id": 0, "perception_modality": "Vibrotactile", "effect_library": [
         {"effect_type": "Basis", "id": 3, "position": 0, "keyframes": [{"relative_position": 0, "amplitude_modulation": 0.5,
             "frequency_modulation": 90}, {"relative_position": 50, "amplitude_modulation": 0}]}], "tracks": [{"id": 0, "bands": [
@@ -133,8 +137,7 @@ fn signals_of_others() -> Vec<Seed> {
         seed("haptic", "emphasis", haptic),
         seed("ahap", "curves", ahap),
         seed("ahap", "controls", controls.to_vec()),
-        seed("hjif", "wavelets", wavelets(None)),
-        seed("hjif", "way", wavelets(Some(80.0))),
+        seed("hjif", "way", way.to_vec()),
         seed("hjif", "bands", bands.to_vec()),
     ]
 }

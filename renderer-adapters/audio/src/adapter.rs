@@ -81,5 +81,6 @@ fn descriptor() -> Descriptor {
         summary: "Sound through a sound card, the same on all its channels.".to_owned(),
         settings: vec![device, buffer],
         profiles: Vec::new(),
+        mapping: None,
     }
 }

@@ -84,6 +84,13 @@ pub const SDL: Need = Need {
     for_wasm: false,
 };
 
+/// Finds runtimes of OpenXR.
+pub const OPENXR: Need = Need {
+    what: "the loader of OpenXR",
+    how: "apt-get install libopenxr-loader1",
+    for_wasm: false,
+};
+
 /// Builds Rust for boards with a Cortex-M4F.
 pub const BARE_TARGET: Need = Need {
     what: "a Rust toolchain for Cortex-M4F",

@@ -12,7 +12,7 @@ use crate::programs::run;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
-const COPIED: [&str; 27] = [
+const COPIED: [&str; 28] = [
     "author-core.js",
     "author-serve.js",
     "author-worker.node.js",
@@ -31,6 +31,7 @@ const COPIED: [&str; 27] = [
     "measured.js",
     "node.js",
     "options.js",
+    "pad.js",
     "pointer.js",
     "scene.d.ts",
     "scene.js",

@@ -14,7 +14,10 @@ mod plan;
 mod worker;
 
 pub use paced::Paced;
-pub use plan::{Plan, number, rate_error, reducing_settings, setting};
+pub use plan::{
+    DEFAULT_GAIN, Plan, buffer_setting, has_usual_buffer, number, rate_error, reducing_settings,
+    setting,
+};
 
 use htex_dsp::envelope::Measured;
 
@@ -26,7 +29,7 @@ pub trait Motor: Send {
     /// The reason, as a sentence; the motor is then stopped.
     fn play(&mut self, block: &Block<'_>) -> Result<(), String>;
 
-    /// Comes to rest after the last block, which is over.
+    /// Comes to rest after the last block, whose time is over; waits until that is so.
     ///
     /// # Errors
     /// The reason, as a sentence.
@@ -37,6 +40,11 @@ pub trait Motor: Send {
     /// # Errors
     /// The reason, as a sentence.
     fn stop(&mut self) -> Result<(), String>;
+
+    /// Time from [`Self::play`] until a block comes out, seconds.
+    fn delay_s(&self) -> f64 {
+        0.0
+    }
 }
 
 /// A block of samples, and what was measured of it.

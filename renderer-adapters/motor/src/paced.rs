@@ -15,6 +15,8 @@ pub struct Paced {
     can: Capabilities,
     rate_hz: f64,
     block_frames: usize,
+    /// Frames that the motor keeps until they come out.
+    delayed: usize,
     capacity: usize,
     shared: Arc<Shared>,
     /// `None` after the end.
@@ -42,6 +44,7 @@ impl Paced {
         let block_frames = plan.block_frames(rate_hz);
         let least = 2 * block_frames.max(format.block_frames as usize);
         let capacity = ((plan.buffer_s * rate_hz) as usize).max(least);
+        let delayed = (motor.delay_s() * rate_hz).round() as usize;
         let shared = Arc::new(Shared::default());
         shared.lock().waiting.reserve_exact(capacity);
         let worker = Worker {
@@ -62,6 +65,7 @@ impl Paced {
             can,
             rate_hz,
             block_frames,
+            delayed,
             capacity,
             shared,
             thread: Some(thread),
@@ -137,12 +141,15 @@ impl Device for Paced {
 
     fn status(&self) -> Status {
         let state = self.shared.lock();
-        let block = if state.ended { 0 } else { self.block_frames };
+        let on_the_way = match state.ended {
+            true => 0,
+            false => state.waiting.len() + self.block_frames + self.delayed,
+        };
         Status {
             frames_written: self.written,
             frames_played: state.played,
             underruns: state.underruns,
-            latency_s: (state.waiting.len() + block) as f64 / self.rate_hz,
+            latency_s: on_the_way as f64 / self.rate_hz,
             peak: self.peak,
         }
     }

@@ -7,6 +7,10 @@ use htex_device::{
 /// Lowest and highest rate, hertz: frequencies of textures reach 1 kHz.
 const RATES_HZ: (f64, f64) = (2_000.0, 192_000.0);
 const DEFAULT_RATE_HZ: f64 = 8_000.0;
+/// Defaults of the setting `buffer_ms`: otherwise, and with a live motion.
+const DEFAULT_BUFFER_MS: [&str; 2] = ["100", "30"];
+/// Default of the setting `gain`.
+pub const DEFAULT_GAIN: &str = "3";
 
 /// A setting of a person or of the hardware: no scene changes it.
 pub fn setting(name: &str, kind: SettingKind, default: &str, description: &str) -> Setting {
@@ -30,7 +34,7 @@ pub fn reducing_settings() -> Vec<Setting> {
     let gain = setting(
         "gain",
         number(0.0, 100.0),
-        "3",
+        DEFAULT_GAIN,
         "Strength of a level (RMS) of full scale, of which a motor has at most 1: a third of full scale is then all it has, about \
          what noise can reach without clipping.",
     );
@@ -40,18 +44,27 @@ pub fn reducing_settings() -> Vec<Setting> {
         "10",
         "Length of a block, of which the motor has one strength and one frequency, milliseconds.",
     );
+    vec![gain, block, buffer_setting()]
+}
+
+/// `buffer_ms`, shorter with a live motion.
+pub fn buffer_setting() -> Setting {
     let buffer = setting(
         "buffer_ms",
         number(10.0, 10_000.0),
-        "100",
+        DEFAULT_BUFFER_MS[0],
         "Samples kept ready, milliseconds, at least two blocks: more is safer, less is quicker.",
     );
-    let buffer = Setting {
-        live_default: Some("30".to_owned()),
+    Setting {
+        live_default: Some(DEFAULT_BUFFER_MS[1].to_owned()),
         from_scene: FromScene::Less,
         ..buffer
-    };
-    vec![gain, block, buffer]
+    }
+}
+
+/// Whether nobody has given `buffer_ms` another value.
+pub fn has_usual_buffer(settings: &Settings) -> bool {
+    DEFAULT_BUFFER_MS.contains(&settings.text("buffer_ms"))
 }
 
 /// The error of a rate that a device does not have.

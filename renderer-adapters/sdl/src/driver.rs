@@ -2,13 +2,12 @@
 #![allow(unsafe_code)] // The library's functions are C.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use htex_device::DeviceError;
 use htex_native::Library;
 
-use crate::table::{Table, TableError};
+use crate::table::Table;
 
 /// Names of the installed library, tried in turn.
 #[cfg(windows)]
@@ -77,44 +76,26 @@ fn start(table: &Table) -> Result<(), DeviceError> {
 }
 
 fn installed() -> Result<Table, DeviceError> {
-    let mut reasons = Vec::new();
-    for name in NAMES {
-        match of_system(name) {
-            Ok(table) => return Ok(table),
-            Err(reason) => reasons.push(reason.to_string()),
-        }
-    }
-    let reasons = reasons.join("; ");
     let package = if cfg!(target_os = "linux") {
         "the package `libsdl2-2.0-0` (Debian, Ubuntu) or `SDL2`"
     } else {
         "SDL 2 from libsdl.org"
     };
-    Err(DeviceError::Missing(format!(
-        "SDL 2 is not installed: {reasons}. Install {package}, or name the library by the setting `driver`"
-    )))
+    // SAFETY: SDL's own names.
+    let table = Table::of(unsafe { Library::installed(NAMES) });
+    table.map_err(|reason| {
+        DeviceError::Missing(format!(
+            "SDL 2 is not installed: {reason}. Install {package}, or name the library by the setting `driver`"
+        ))
+    })
 }
 
 /// A path, or a bare name, which is a file of the current folder, else a library of the system.
 fn named(path: &str) -> Result<Table, DeviceError> {
-    let file = Path::new(path);
-    let is_bare = file.components().count() == 1 && !file.is_absolute();
-    let table = match is_bare && !file.is_file() {
-        true => of_system(path),
-        // SAFETY: the user named this library as a driver.
-        false => table(unsafe { Library::from_file(file) }),
-    };
+    // SAFETY: the user named this library as a driver.
+    let table = Table::of(unsafe { Library::named(path) });
     table.map_err(|reason| DeviceError::Setting {
         name: "driver".to_owned(),
         what: format!("`{path}` cannot be loaded as SDL 2: {reason}"),
     })
-}
-
-fn of_system(name: &str) -> Result<Table, TableError> {
-    // SAFETY: SDL's own name, or one that the user gave.
-    table(unsafe { Library::from_system(name) })
-}
-
-fn table(library: Result<Library, htex_native::LoadError>) -> Result<Table, TableError> {
-    Table::of(library.map_err(TableError::Load)?)
 }

@@ -87,7 +87,10 @@ impl Motor for Rumble {
             return Err("it was disconnected".to_owned());
         }
         let strength = self.scale.strength(block.measured.level_rms);
-        self.tell(two_motors(strength, block.measured.centroid_hz), self.hold_ms)
+        self.tell(
+            two_motors(strength, block.measured.centroid_hz),
+            self.hold_ms,
+        )
     }
 
     fn end(&mut self) -> Result<(), String> {

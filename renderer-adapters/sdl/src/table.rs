@@ -34,8 +34,9 @@ macro_rules! table {
             /// The functions of a library.
             ///
             /// # Errors
-            /// When the library lacks one.
-            pub(crate) fn of(library: Library) -> Result<Self, TableError> {
+            /// When it is not loaded, or lacks one.
+            pub(crate) fn of(library: Result<Library, LoadError>) -> Result<Self, TableError> {
+                let library = library.map_err(TableError::Load)?;
                 $(
                     // SAFETY: the name is SDL's, and its header states the type.
                     let $name = unsafe { library.symbol($symbol) };

@@ -72,10 +72,10 @@ pub struct Point {
 /// let scale = Scale { gain: 1.0, low_hz: 0.0, high_hz: 500.0 };
 /// let mut points = Points::default();
 /// let block = Measured { level_rms: 0.5, centroid_hz: 250.0, frames: 80 };
-/// let made: Vec<_> = points.block(&block, &scale, 8_000.0).flatten().collect();
+/// let made: Vec<_> = points.block(&block, &scale, 8_000.0).collect();
 /// assert_eq!(made.iter().map(|p| p.time_ns).collect::<Vec<_>>(), [0, 10_000_000]);
 /// assert_eq!(made[1].strength, 0.5);
-/// assert_eq!(points.block(&block, &scale, 8_000.0).flatten().count(), 1);
+/// assert_eq!(points.block(&block, &scale, 8_000.0).count(), 1);
 /// assert_eq!(points.end(8_000.0).strength, 0.0);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -93,7 +93,7 @@ impl Points {
         measured: &Measured,
         scale: &Scale,
         rate_hz: f64,
-    ) -> impl Iterator<Item = Option<Point>> + use<> {
+    ) -> impl Iterator<Item = Point> + use<> {
         let is_first = self.frames == 0;
         self.frames += measured.frames;
         if measured.centroid_hz > 0.0 {
@@ -103,8 +103,11 @@ impl Points {
             strength: scale.strength(measured.level_rms) as f32,
             ..self.end(rate_hz)
         };
-        let first = is_first.then_some(Point { time_ns: 0, ..point });
-        [first, Some(point)].into_iter()
+        let first = is_first.then_some(Point {
+            time_ns: 0,
+            ..point
+        });
+        first.into_iter().chain(Some(point))
     }
 
     /// Returns the point that ends the stream: silence where the last block ended.
@@ -134,7 +137,7 @@ mod tests {
             let mut last_ns = 0;
             for (level_rms, centroid_hz, frames) in blocks {
                 let measured = Measured { level_rms, centroid_hz, frames };
-                for point in points.block(&measured, &scale, rate_hz).flatten() {
+                for point in points.block(&measured, &scale, rate_hz) {
                     prop_assert!((0.0..=1.0).contains(&point.strength) && (0.0..=1.0).contains(&point.place));
                     prop_assert!(point.time_ns >= last_ns);
                     last_ns = point.time_ns;

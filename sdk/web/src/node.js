@@ -15,7 +15,7 @@ const LOAD = { ...VOICE_OF_NODE, gain, trusted: "boolean" };
 const NODE = { ...LOAD, worker: "object", limit: "number", pitch: "number" };
 
 /** The gain at which a texture plays at that level: by what the file states, since no model runs here. */
-function usualGain(texture, model) {
+export function usualGain(texture, model) {
   const chosen = texture.chosenModel(model);
   const level = texture.manifest.representations.find((representation) => representation.model === chosen).at[0].level_rms;
   return level > 0 ? LEVEL / level : 0;

@@ -209,7 +209,7 @@ fn samples_are_played_as_they_are_at_the_rate_of_the_controller() {
 #[test]
 fn both_hands_share_a_session_and_each_has_one_device() {
     let Some(mock) = Mock::new() else { return };
-    let mut left = mock.open(&[("hand", "left")]).unwrap();
+    let mut left = mock.open_at(RATE_HZ, &[("hand", "left")]).unwrap();
     let mut right = mock
         .open(&[("hand", "right"), ("buffer_ms", "1000")])
         .unwrap();

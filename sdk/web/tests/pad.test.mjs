@@ -99,7 +99,7 @@ test("samples are those of the voice, within full scale, where the gamepad plays
     };
     const motion = { speed: 80, force: 0.5 };
     const options = { model: "ar", seed: 3, motion };
-    const player = playOnPad(pad({ playPCM }), texture, { ...options, gain: 40 });
+    const player = playOnPad(pad({ playPCM }), texture, { ...options, gain: 4000 });
     assert.equal(player.way, "pcm");
     await wait(100);
     await player.stop();
@@ -107,7 +107,7 @@ test("samples are those of the voice, within full scale, where the gamepad plays
     const expected = texture.voice({ ...options, rate: 8000, bands: 1 }).render(4000);
     const played = [...sounds[0].samples, ...sounds[1].samples];
     assert.ok(sounds.every(({ length, sampleRate, numberOfChannels }) => length === 2000 && sampleRate === 8000 && numberOfChannels === 1));
-    assert.ok(played.every((x, n) => x === Math.fround(Math.min(Math.max(40 * expected[n], -1), 1))));
+    assert.ok(played.every((x, n) => x === Math.fround(Math.min(Math.max(4000 * expected[n], -1), 1))));
     assert.ok(played.some((x) => Math.abs(x) === 1), "some are limited");
 
     // One that plays no samples says so, and gets strengths.

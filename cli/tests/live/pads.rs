@@ -41,7 +41,7 @@ fn runtime(place: &Place) -> String {
 
 fn texture(place: &Place) {
     let csv = place.recording("corrugated-paper");
-    let fit = place.run(&["fit", &csv, "-o", "t.htex", "--models", "ar"]);
+    let fit = place.run(&["fit", &csv, "-o", "t.htex", "--model", "ar"]);
     assert_eq!(fit.code(), 0, "{}", fit.error());
 }
 

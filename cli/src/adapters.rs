@@ -78,6 +78,7 @@ pub(crate) fn listed_json<A: AdapterKind + ?Sized>(known: &Known<A>) -> Value {
         "origin": known.origin.to_string(),
         "settings": descriptor.settings,
         "profiles": descriptor.profiles,
+        "mapping": descriptor.mapping,
         "endpoints": endpoints,
     });
     if let (Some(problem), Some(listed)) = (problem, listed.as_object_mut()) {

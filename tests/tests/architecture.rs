@@ -58,7 +58,39 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     ("htex-device", &["htex-native", "htex-schema"]),
     ("adapter", &["htex-device", "htex-files", "htex-native"]),
-    ("htex-device-builtin", &["adapter", "htex-device"]),
+    ("htex-device-motor", &["htex-device", "htex-dsp"]),
+    (
+        "htex-device-channels",
+        &["adapter", "htex-device", "htex-device-motor"],
+    ),
+    (
+        "htex-device-parametric",
+        &[
+            "htex-device",
+            "htex-device-motor",
+            "htex-dsp",
+            "htex-native",
+        ],
+    ),
+    (
+        "htex-device-sdl",
+        &[
+            "htex-device",
+            "htex-device-motor",
+            "htex-dsp",
+            "htex-native",
+        ],
+    ),
+    (
+        "htex-device-builtin",
+        &[
+            "adapter",
+            "htex-device",
+            "htex-device-channels",
+            "htex-device-parametric",
+            "htex-device-sdl",
+        ],
+    ),
     ("htex-device-guardian", &["htex-device"]),
     ("htex-check-runner", &[]),
     ("htex-device-check", &["htex-check-runner", "htex-device"]),
@@ -284,8 +316,12 @@ fn dependencies_follow_the_arrows() {
         match package.name.as_str() {
             "htex-device"
             | "htex-device-builtin"
+            | "htex-device-channels"
             | "htex-device-check"
-            | "htex-device-guardian" => package.name.to_string(),
+            | "htex-device-guardian"
+            | "htex-device-motor"
+            | "htex-device-parametric"
+            | "htex-device-sdl" => package.name.to_string(),
             _ if path.contains("/plugins/") => "plugin".to_owned(),
             _ if path.contains("/renderer-adapters/") => "adapter".to_owned(),
             name => name.to_owned(),

@@ -77,6 +77,20 @@ pub const ALSA: Need = Need {
     for_wasm: false,
 };
 
+/// Gamepads.
+pub const SDL: Need = Need {
+    what: "SDL 2",
+    how: "apt-get install libsdl2-dev",
+    for_wasm: false,
+};
+
+/// Finds runtimes of OpenXR.
+pub const OPENXR: Need = Need {
+    what: "the loader of OpenXR",
+    how: "apt-get install libopenxr-loader1",
+    for_wasm: false,
+};
+
 /// Builds Rust for boards with a Cortex-M4F.
 pub const BARE_TARGET: Need = Need {
     what: "a Rust toolchain for Cortex-M4F",

@@ -32,6 +32,7 @@ const COPIED: [&str; 28] = [
     "measured.js",
     "node.js",
     "options.js",
+    "pad.js",
     "pointer.js",
     "scene.d.ts",
     "scene.js",

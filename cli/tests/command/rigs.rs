@@ -41,6 +41,9 @@ fn what_a_file_may_ask_of_devices() {
     ] {
         allowed.push(format!("org.htex.daq {setting}"));
     }
+    for device in ["channels", "parametric", "sdl"] {
+        allowed.push(format!("org.htex.{device} buffer_ms less"));
+    }
     if cfg!(feature = "audio") {
         allowed.push("org.htex.audio buffer_ms less".to_owned());
     }

@@ -21,6 +21,8 @@ mod finger;
 mod hostile;
 #[cfg(unix)]
 mod live;
+#[cfg(target_os = "linux")]
+mod pads;
 #[cfg(feature = "lab")]
 mod record;
 #[cfg(all(unix, feature = "lab"))]

@@ -6,7 +6,7 @@ use htex_device::{
 };
 
 use crate::card::{self, Card, DEFAULT, Side};
-use crate::sound::Sound;
+use crate::sound::{Channels, Sound};
 
 /// The adapter; see the crate's documentation.
 pub struct Audio {
@@ -48,7 +48,12 @@ impl Adapter for Audio {
     ) -> Result<Box<dyn Device>, DeviceError> {
         let card = Card::find(settings.text("device"), Side::Output)?;
         let buffer_s = settings.number("buffer_ms") / 1e3;
-        Ok(Box::new(Sound::open(&card, buffer_s, format)?))
+        Ok(Box::new(Sound::open(
+            &card,
+            buffer_s,
+            format,
+            Channels::All,
+        )?))
     }
 }
 
@@ -81,5 +86,6 @@ fn descriptor() -> Descriptor {
         summary: "Sound through a sound card, the same on all its channels.".to_owned(),
         settings: vec![device, buffer],
         profiles: Vec::new(),
+        mapping: None,
     }
 }

@@ -11,6 +11,8 @@ const FORMATS: [SampleFormat; 4] = [
     SampleFormat::I16,
     SampleFormat::U8,
 ];
+/// Rate that is preferred where the card's own one is not there, hertz.
+const USUAL_RATE_HZ: f64 = 48_000.0;
 /// Preferred frames in a block.
 const BLOCK_FRAMES: u32 = 256;
 /// Highest rate that is reported, hertz: plugins of ALSA report unlimited ranges.
@@ -55,6 +57,18 @@ impl Card {
         }
     }
 
+    /// The card with the configurations of so many channels only.
+    pub(crate) fn with_channels(mut self, channels: u16) -> Result<Self, DeviceError> {
+        self.configs.retain(|config| config.channels() == channels);
+        match self.configs.is_empty() {
+            true => {
+                let what = format!("it does not take {channels} channels");
+                Err(missing(self.side, &self.name, &what))
+            }
+            false => Ok(self),
+        }
+    }
+
     /// What the card prefers: rate, hertz, and number of channels.
     pub(crate) fn preferred(&self) -> Result<(f64, u16), DeviceError> {
         let preferred = match self.side {
@@ -70,12 +84,25 @@ impl Card {
         Ok(Capabilities {
             quantity: Quantity::Sound,
             rates: self.rates(),
-            default_rate_hz: self.preferred()?.0,
+            default_rate_hz: self.usual_rate_hz()?,
             limit: Some(1.0),
             step: None,
             carrier_hz: None,
             paced: true,
             block_frames: BLOCK_FRAMES,
+        })
+    }
+
+    /// The rate that the card prefers; without it, as with so many channels, the highest up to 48 kHz.
+    fn usual_rate_hz(&self) -> Result<f64, DeviceError> {
+        let (preferred_hz, rates) = (self.preferred()?.0, self.rates());
+        Ok(match &rates {
+            _ if rates.has(preferred_hz) => preferred_hz,
+            Rates::List(all) => {
+                let low = all.iter().copied().filter(|hz| *hz <= USUAL_RATE_HZ);
+                low.last().or(all.first().copied()).unwrap_or(preferred_hz)
+            }
+            Rates::Range { min_hz, max_hz } => USUAL_RATE_HZ.clamp(*min_hz, *max_hz),
         })
     }
 

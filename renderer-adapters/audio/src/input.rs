@@ -129,5 +129,6 @@ fn descriptor() -> Descriptor {
             ),
         ],
         profiles: Vec::new(),
+        mapping: None,
     }
 }

@@ -16,6 +16,8 @@ mod adapter;
 #[cfg(feature = "cpal")]
 mod card;
 #[cfg(feature = "cpal")]
+mod channels;
+#[cfg(feature = "cpal")]
 mod failure;
 #[cfg(feature = "cpal")]
 mod input;
@@ -30,5 +32,7 @@ mod sound;
 
 #[cfg(feature = "cpal")]
 pub use adapter::Audio;
+#[cfg(feature = "cpal")]
+pub use channels::{capabilities_of_channels, open_channels, outputs};
 #[cfg(feature = "cpal")]
 pub use input::AudioInput;

@@ -44,6 +44,8 @@ impl Shared {
 /// Takes samples from the ring. Does not allocate or wait.
 pub(crate) struct Player {
     ring: Consumer<f32>,
+    /// What each channel plays of a sample.
+    factors: Vec<f32>,
     shared: Arc<Shared>,
     last: f32,
     gain: f32,
@@ -54,9 +56,15 @@ pub(crate) struct Player {
 }
 
 impl Player {
-    pub(crate) fn new(ring: Consumer<f32>, shared: Arc<Shared>, rate_hz: f64) -> Self {
+    pub(crate) fn new(
+        ring: Consumer<f32>,
+        shared: Arc<Shared>,
+        rate_hz: f64,
+        factors: Vec<f32>,
+    ) -> Self {
         Self {
             ring,
+            factors,
             shared,
             last: 0.0,
             gain: 1.0,
@@ -66,20 +74,17 @@ impl Player {
         }
     }
 
-    /// Fills interleaved frames, the same sample on all channels. `delay` frames are output before these.
-    pub(crate) fn fill<T: Copy>(
-        &mut self,
-        out: &mut [T],
-        channels: usize,
-        delay: u64,
-        convert: impl Fn(f32) -> T,
-    ) {
+    /// Fills interleaved frames. `delay` frames are output before these.
+    pub(crate) fn fill<T: Copy>(&mut self, out: &mut [T], delay: u64, convert: impl Fn(f32) -> T) {
         let wish = self.shared.wish.load(Ordering::Acquire);
-        let channels = channels.max(1);
+        let channels = self.factors.len().max(1);
         // One block more than the delay, since some systems only estimate it.
         let silent = self.quiet > delay + (out.len() / channels) as u64;
         for frame in out.chunks_mut(channels) {
-            frame.fill(convert(self.next(wish)));
+            let sample = self.next(wish);
+            for (to, factor) in frame.iter_mut().zip(&self.factors) {
+                *to = convert(sample * factor);
+            }
         }
         self.shared.delay.store(delay, Ordering::Relaxed);
         self.shared.silent.store(silent, Ordering::Release);
@@ -117,14 +122,14 @@ mod tests {
     fn player() -> (Producer<f32>, Arc<Shared>, Player) {
         let (writer, ring) = RingBuffer::new(64);
         let shared = Arc::new(Shared::default());
-        let player = Player::new(ring, Arc::clone(&shared), 1_000.0);
+        let player = Player::new(ring, Arc::clone(&shared), 1_000.0, vec![1.0, -0.5]);
         (writer, shared, player)
     }
 
     fn played(player: &mut Player, frames: usize, delay: u64) -> Vec<f32> {
         let mut out = vec![9.0; 2 * frames];
-        player.fill(&mut out, 2, delay, |x| x);
-        assert!(out.chunks(2).all(|frame| frame[0] == frame[1]));
+        player.fill(&mut out, delay, |x| x);
+        assert!(out.chunks(2).all(|frame| frame[1] == -0.5 * frame[0]));
         out.into_iter().step_by(2).collect()
     }
 

@@ -16,6 +16,16 @@ use crate::player::{Player, Shared, Wish};
 
 /// Number of channels that is preferred.
 const CHANNELS: u16 = 2;
+
+/// Which channel plays what.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Channels<'a> {
+    /// All play the samples, however many there are.
+    All,
+    /// The card has so many, and each plays the samples times its factor.
+    Factors(&'a [f32]),
+}
+
 /// Time between two checks for space.
 const LOOK: Duration = Duration::from_millis(2);
 /// Time without a call from the card after which it is regarded as stopped.
@@ -41,13 +51,22 @@ impl Sound {
         card: &Card,
         buffer_s: f64,
         format: &StreamFormat,
+        channels: Channels<'_>,
     ) -> Result<Self, DeviceError> {
-        let (config, sample_format) = card.config(format.rate_hz, CHANNELS)?;
+        let preferred = match channels {
+            Channels::All => CHANNELS,
+            Channels::Factors(factors) => factors.len() as u16,
+        };
+        let (config, sample_format) = card.config(format.rate_hz, preferred)?;
+        let factors = match channels {
+            Channels::All => vec![1.0; usize::from(config.channels)],
+            Channels::Factors(factors) => factors.to_vec(),
+        };
         let buffered = (buffer_s * format.rate_hz) as usize;
         let (ring, samples) =
             RingBuffer::new(buffered.max(2 * format.block_frames as usize).max(2));
         let shared = Arc::new(Shared::default());
-        let player = Player::new(samples, Arc::clone(&shared), format.rate_hz);
+        let player = Player::new(samples, Arc::clone(&shared), format.rate_hz, factors);
         let failure = Failure::default();
         let counted = Arc::clone(&shared);
         let report = reporter(failure.clone(), move || {
@@ -189,11 +208,11 @@ fn build<T: SizedSample + FromSample<f32>>(
     mut player: Player,
     report: Box<dyn FnMut(cpal::Error) + Send>,
 ) -> Result<cpal::Stream, cpal::Error> {
-    let (channels, rate_hz) = (usize::from(config.channels), f64::from(config.sample_rate));
+    let rate_hz = f64::from(config.sample_rate);
     let fill = move |out: &mut [T], info: &OutputCallbackInfo| {
         let at = info.timestamp();
         let delay = at.playback.duration_since(at.callback).as_secs_f64() * rate_hz;
-        player.fill(out, channels, delay as u64, T::from_sample);
+        player.fill(out, delay as u64, T::from_sample);
     };
     device.build_output_stream(config, fill, report, None)
 }

@@ -20,6 +20,12 @@ pub fn devices() -> Vec<Arc<dyn Adapter>> {
         Arc::new(htex_device_daq::Daq::new()),
         #[cfg(feature = "audio")]
         Arc::new(htex_device_audio::Audio::new()),
+        #[cfg(not(target_family = "wasm"))]
+        Arc::new(htex_device_channels::Channels::new()),
+        #[cfg(not(target_family = "wasm"))]
+        Arc::new(htex_device_sdl::Sdl::new()),
+        #[cfg(not(target_family = "wasm"))]
+        Arc::new(htex_device_parametric::Parametric::new()),
     ]
 }
 

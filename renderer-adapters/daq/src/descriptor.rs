@@ -16,6 +16,7 @@ pub(crate) fn descriptor() -> Descriptor {
             .to_owned(),
         settings: settings(),
         profiles: vec![paper(), generic()],
+        mapping: None,
     }
 }
 

@@ -78,6 +78,7 @@ fn descriptor() -> Descriptor {
             ),
         ],
         profiles: Vec::new(),
+        mapping: None,
     }
 }
 

@@ -24,6 +24,25 @@ pub struct Descriptor {
     /// Settings that belong together, such as those of a rig.
     #[serde(default)]
     pub profiles: Vec<Profile>,
+    /// What it makes of the samples and what is lost; absent: it plays the samples themselves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mapping: Option<Mapping>,
+}
+
+/// What a device that cannot play samples makes of them.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+pub struct Mapping {
+    /// What it plays, such as level and mean frequency of blocks.
+    pub plays: String,
+    /// What is lost on the way.
+    pub loses: String,
+}
+
+impl std::fmt::Display for Mapping {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "plays {}; lost: {}", self.plays, self.loses)
+    }
 }
 
 /// One setting.

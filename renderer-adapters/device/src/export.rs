@@ -16,7 +16,7 @@
 /// # static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| Descriptor {
 /// #     id: "org.example.nowhere".to_owned(), name: "Nowhere".to_owned(),
 /// #     version: "1.0.0".to_owned(), summary: "Takes nothing.".to_owned(),
-/// #     settings: vec![], profiles: vec![],
+/// #     settings: vec![], profiles: vec![], mapping: None,
 /// # });
 /// # impl Adapter for Nowhere {
 /// #     fn descriptor(&self) -> &Descriptor { &DESCRIPTOR }

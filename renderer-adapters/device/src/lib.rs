@@ -42,7 +42,8 @@ pub mod source;
 pub use adapter::{Adapter, Device, Status, StreamFormat};
 pub use capabilities::{Capabilities, CapabilitiesError, Quantity, RATE_PER_CARRIER, Rates};
 pub use descriptor::{
-    Descriptor, DescriptorError, Endpoint, FromScene, Profile, Setting, SettingFault, SettingKind,
+    Descriptor, DescriptorError, Endpoint, FromScene, Mapping, Profile, Setting, SettingFault,
+    SettingKind,
 };
 pub use devices::{Devices, KnownDevice};
 pub use direct::{DIRECT_LIMIT_V, DIRECT_SETTING, DIRECT_WINDOW_S, DirectVoltage, Excess};

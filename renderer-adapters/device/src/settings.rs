@@ -288,6 +288,7 @@ mod tests {
                 summary: "A small one.".to_owned(),
                 settings: BTreeMap::from([("limit_v".to_owned(), "20".to_owned())]),
             }],
+            mapping: None,
         }
     }
 

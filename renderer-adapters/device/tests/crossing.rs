@@ -24,6 +24,7 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| Descriptor {
     summary: "Fails.".to_owned(),
     settings: Vec::new(),
     profiles: Vec::new(),
+    mapping: None,
 });
 
 impl Adapter for Bad {

@@ -36,6 +36,7 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| Descriptor {
         description: "What is wrong.".to_owned(),
     }],
     profiles: Vec::new(),
+    mapping: None,
 });
 
 impl SourceAdapter for Counter {

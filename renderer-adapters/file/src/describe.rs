@@ -14,6 +14,7 @@ pub(crate) static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| Descriptor
     summary: "Writes the samples to a file: WAV, CSV, NPY or raw, of any length.".to_owned(),
     settings: settings(),
     profiles: Vec::new(),
+    mapping: None,
 });
 
 fn settings() -> Vec<Setting> {

@@ -47,3 +47,16 @@ impl Adapter for FileAdapter {
         Ok(Box::new(device))
     }
 }
+
+/// Opens a WAV file of sound, of 32-bit floats, with a channel for each factor: what the channel plays of each sample.
+///
+/// # Errors
+/// When the rate is none of a WAV file, or the file cannot be made.
+pub fn open_channels(
+    path: std::path::PathBuf,
+    factors: &[f32],
+    rate_hz: f64,
+) -> Result<Box<dyn Device>, DeviceError> {
+    let plan = Plan::channels(path, factors.to_vec());
+    Ok(Box::new(FileDevice::create(&plan, rate_hz)?))
+}

@@ -30,7 +30,10 @@ pub(crate) struct Plan {
     pub(crate) form: Form,
     pub(crate) encoding: Encoding,
     pub(crate) quantity: Quantity,
-    limit_v: Option<f64>,
+    /// What each channel plays of a sample; only a WAV file has several.
+    pub(crate) factors: Vec<f32>,
+    /// Largest magnitude, in the quantity's unit.
+    limit: Option<f64>,
     carrier_hz: Option<f64>,
 }
 
@@ -48,18 +51,32 @@ impl Plan {
             path,
             form,
             quantity,
-            limit_v: of_voltage(settings, quantity, "limit_v")?,
+            factors: vec![1.0],
+            limit: of_voltage(settings, quantity, "limit_v")?,
             carrier_hz: of_voltage(settings, quantity, "carrier_hz")?,
         };
-        if quantity == Quantity::DisplayVoltage && plan.limit_v.is_none() {
+        if quantity == Quantity::DisplayVoltage && plan.limit.is_none() {
             return refuse("limit_v", "a display_voltage must have a limit above 0 V");
         }
         Ok(plan)
     }
 
+    /// A WAV file of sound with a channel for each factor.
+    pub(crate) fn channels(path: PathBuf, factors: Vec<f32>) -> Self {
+        Self {
+            path,
+            form: Form::Wav,
+            encoding: Encoding::F32,
+            quantity: Quantity::Sound,
+            factors,
+            limit: Some(1.0),
+            carrier_hz: None,
+        }
+    }
+
     pub(crate) fn capabilities(&self) -> Capabilities {
         let integer = self.encoding.step_and_limit();
-        let limits = [integer.map(|(_, limit)| limit), self.limit_v];
+        let limits = [integer.map(|(_, limit)| limit), self.limit];
         let carried = self.carrier_hz.map_or(0.0, |hz| PER_PERIOD * hz);
         Capabilities {
             quantity: self.quantity,

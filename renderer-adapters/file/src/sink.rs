@@ -18,6 +18,8 @@ const MAX_WAV_BYTES: u64 = u32::MAX as u64 - 128;
 pub(crate) struct Sink {
     form: Form,
     encoding: Encoding,
+    /// What each channel of a WAV file plays of a sample.
+    factors: Vec<f32>,
     rate_hz: f64,
     frames: u64,
     out: Out,
@@ -34,7 +36,7 @@ impl Sink {
         let mut file = BufWriter::with_capacity(BUFFER, file);
         let out = match plan.form {
             Form::Wav => {
-                let spec = wav_spec(plan.encoding, rate_hz);
+                let spec = wav_spec(plan.encoding, plan.factors.len() as u16, rate_hz);
                 Out::Wav(WavWriter::new(file, spec).map_err(wav_error)?)
             }
             Form::Csv => {
@@ -50,6 +52,7 @@ impl Sink {
         Ok(Self {
             form: plan.form,
             encoding: plan.encoding,
+            factors: plan.factors.clone(),
             rate_hz,
             frames: 0,
             out,
@@ -62,8 +65,9 @@ impl Sink {
         let (form, encoding, rate_hz) = (self.form, self.encoding, self.rate_hz);
         match &mut self.out {
             Out::Wav(wav) => {
-                check_wav_size(after, encoding, rate_hz)?;
-                write_wav(wav, encoding, samples).map_err(wav_error)?;
+                let channels = self.factors.len() as u64;
+                check_wav_size(after * channels, encoding, rate_hz * channels as f64)?;
+                write_wav(wav, encoding, samples, &self.factors).map_err(wav_error)?;
             }
             Out::Plain(out) if form == Form::Csv => {
                 for (i, sample) in samples.iter().enumerate() {
@@ -93,9 +97,9 @@ impl Sink {
     }
 }
 
-fn wav_spec(encoding: Encoding, rate_hz: f64) -> WavSpec {
+fn wav_spec(encoding: Encoding, channels: u16, rate_hz: f64) -> WavSpec {
     WavSpec {
-        channels: 1,
+        channels,
         // A whole number of at most a million, by `Plan::check_rate`.
         sample_rate: rate_hz as u32,
         bits_per_sample: 8 * encoding.bytes(),
@@ -110,19 +114,25 @@ fn write_wav(
     wav: &mut WavWriter<BufWriter<File>>,
     encoding: Encoding,
     samples: &[f32],
+    factors: &[f32],
 ) -> hound::Result<()> {
-    let mut all = samples.iter();
+    let frame = |sample: &f32| {
+        let sample = *sample;
+        factors.iter().map(move |factor| sample * factor)
+    };
+    let mut all = samples.iter().flat_map(frame);
     match encoding {
-        Encoding::F32 => all.try_for_each(|&sample| wav.write_sample(sample)),
+        Encoding::F32 => all.try_for_each(|sample| wav.write_sample(sample)),
         Encoding::Integer { step, .. } => {
-            all.try_for_each(|&sample| wav.write_sample(code(sample, step)))
+            all.try_for_each(|sample| wav.write_sample(code(sample, step)))
         }
     }
 }
 
-fn check_wav_size(frames: u64, encoding: Encoding, rate_hz: f64) -> io::Result<()> {
+/// Whether a WAV file can hold so many samples, of which there are `rate_hz` a second.
+fn check_wav_size(samples: u64, encoding: Encoding, rate_hz: f64) -> io::Result<()> {
     let most = MAX_WAV_BYTES / u64::from(encoding.bytes());
-    if frames <= most {
+    if samples <= most {
         return Ok(());
     }
     let hours = most as f64 / rate_hz / 3600.0;

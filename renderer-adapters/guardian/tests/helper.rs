@@ -44,6 +44,7 @@ impl Bench {
             summary: "A display of the test.".to_owned(),
             settings: vec![setting],
             profiles: vec![],
+            mapping: None,
         }))])
     }
 }

@@ -50,6 +50,7 @@ pub mod pipeline;
 mod polyphase;
 pub mod quad;
 mod random_lanes;
+pub mod reduced;
 pub mod resample;
 pub mod root;
 pub mod seam;

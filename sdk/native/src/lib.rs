@@ -20,6 +20,14 @@ pub struct LoadError(String);
 #[derive(Debug, Clone, Copy)]
 pub struct Library(&'static Loaded);
 
+/// Where a bare name was looked for.
+const SEARCHED: &str = if cfg!(windows) {
+    "; the current folder has no such file, and the system finds none in its folders and those of PATH"
+} else {
+    "; the current folder has no such file, and the system's loader was asked for it (LD_LIBRARY_PATH, the cache of \
+     ldconfig, /lib, /usr/lib)"
+};
+
 #[cfg(any(unix, windows))]
 use libloading::Library as Loaded;
 
@@ -53,6 +61,45 @@ impl Library {
     pub unsafe fn from_system(name: &str) -> Result<Self, LoadError> {
         // SAFETY: guaranteed by the caller.
         unsafe { load(OsStr::new(name)) }
+    }
+
+    /// Loads the library that a person names in a setting: a path, or a bare name, which is a file of the current folder, else a
+    /// library of the system.
+    ///
+    /// # Safety
+    /// Runs the library's initialisers with all rights of this program.
+    ///
+    /// # Errors
+    /// When there is none, or it cannot be loaded.
+    pub unsafe fn named(path: &str) -> Result<Self, LoadError> {
+        let file = Path::new(path);
+        let is_bare = file.components().count() == 1 && !file.is_absolute();
+        if !is_bare || file.is_file() {
+            // SAFETY: guaranteed by the caller.
+            return unsafe { Self::from_file(file) };
+        }
+        // SAFETY: guaranteed by the caller.
+        let found = unsafe { Self::from_system(path) };
+        found.map_err(|LoadError(reason)| LoadError(format!("{reason}{SEARCHED}")))
+    }
+
+    /// Loads the first of these that the system's loader finds.
+    ///
+    /// # Safety
+    /// Runs the library's initialisers with all rights of this program.
+    ///
+    /// # Errors
+    /// When there is none; the reason of each.
+    pub unsafe fn installed(names: &[&str]) -> Result<Self, LoadError> {
+        let mut reasons = Vec::new();
+        for name in names {
+            // SAFETY: guaranteed by the caller.
+            match unsafe { Self::from_system(name) } {
+                Ok(library) => return Ok(library),
+                Err(LoadError(reason)) => reasons.push(reason),
+            }
+        }
+        Err(LoadError(reasons.join("; ")))
     }
 
     /// Returns the function or variable of this name.

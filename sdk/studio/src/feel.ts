@@ -1,6 +1,7 @@
 // Motors that follow the level of what plays: a gamepad's, a phone's.
 
 import { effect, signal } from "@preact/signals";
+import { dualRumble } from "htex";
 
 import { envelope, playingNode } from "./engine.ts";
 
@@ -10,8 +11,8 @@ export const feelOn = signal<Feel>("none");
 
 /** Milliseconds that a motor is told to run at a time. */
 const PULSE_MS = 60;
-/** Pitch above which the small motor of a gamepad takes over, Hz. */
-const SMALL_MOTOR_HZ = 180;
+/** Strength of a level of full scale at which motors run at full strength: a third. */
+const STRENGTH = 3;
 
 let last = 0;
 
@@ -23,34 +24,29 @@ export function gamepadThere() {
   return pads().some((pad) => pad.vibrationActuator);
 }
 
-/** The level relative to that of full scale at which the texture plays, 0 to 1. */
-function strength(level: number) {
-  const gain = playingNode()?.gain.value ?? 0;
-  return Math.min(3 * gain * level, 1);
+/** The strengths of two motors for what plays. */
+function strengths(told: { level: number; centroid: number }) {
+  return dualRumble(told, { gain: STRENGTH * (playingNode()?.gain.value ?? 0), duration: PULSE_MS * 2 });
 }
 
-function rumble(level: number, centroid: number) {
-  const part = strength(level);
-  const high = Math.min(Math.max((centroid - 60) / (2 * SMALL_MOTOR_HZ), 0), 1);
-  for (const pad of pads()) {
-    const effects = { duration: PULSE_MS * 2, strongMagnitude: part * (1 - high), weakMagnitude: part * high };
-    pad.vibrationActuator?.playEffect("dual-rumble", effects).catch(() => {});
-  }
+function rumble(told: { level: number; centroid: number }) {
+  for (const pad of pads()) pad.vibrationActuator?.playEffect("dual-rumble", strengths(told)).catch(() => {});
 }
 
-function pulse(level: number) {
-  const part = strength(level);
+function pulse(told: { level: number; centroid: number }) {
+  const { strongMagnitude, weakMagnitude } = strengths(told);
+  const part = strongMagnitude + weakMagnitude;
   if (part > 0.05) navigator.vibrate(Math.round(PULSE_MS * part));
 }
 
 effect(() => {
-  const { level, centroid } = envelope.value;
+  const told = envelope.value;
   const way = feelOn.value;
   const now = performance.now();
   if (way === "none" || now - last < PULSE_MS) return;
   last = now;
-  if (way === "gamepad") rumble(level, centroid);
-  else pulse(level);
+  if (way === "gamepad") rumble(told);
+  else pulse(told);
 });
 
 export function startFeeling(way: Feel) {

@@ -352,6 +352,59 @@ export class GuardedWorker {
   [Symbol.dispose](): void;
 }
 
+/** A gamepad of `navigator.getGamepads()`, as far as it is used. */
+export interface PadLike {
+  readonly vibrationActuator?: ActuatorLike | null;
+}
+
+/** Its haptics. */
+export interface ActuatorLike {
+  playEffect(type: "dual-rumble", effect: RumbleEffect): Promise<unknown>;
+  reset?(): Promise<unknown>;
+  /** The extension that plays samples; resolves to false where the gamepad does not. */
+  playPCM?(sound: any): Promise<boolean>;
+}
+
+/** The parameters of the effect "dual-rumble": times in ms, strengths from 0 to 1 of the large and the small motor. */
+export interface RumbleEffect {
+  startDelay: number;
+  duration: number;
+  strongMagnitude: number;
+  weakMagnitude: number;
+}
+
+/** The strengths of the two motors of a gamepad for an envelope: all on the large one up to a mean frequency of 60 Hz, all on the small one from
+ * 420 Hz. `gain`: strength of a level of 1, of which a motor has at most 1; default 3, for levels of full scale. `duration`: of the effect, ms.
+ * Default 100. */
+export function dualRumble(envelope: { readonly level: number; readonly centroid: number }, options?: { gain?: number; duration?: number }): RumbleEffect;
+
+export interface PadOptions {
+  /** The model of the representation. Default: the representation of least error. */
+  model?: string;
+  /** Seed of the noise. Default 0. */
+  seed?: number | bigint;
+  /** The motion of the start. Default: at rest, until `setMotion`. */
+  motion?: Motion;
+  /** Factor from the texture's unit to full scale. Default: an RMS of 0.1 at the first condition. */
+  gain?: number;
+}
+
+/** A texture that plays on a gamepad. */
+export interface PadPlayer {
+  /** What is played: the samples, or two strengths every 50 ms. */
+  readonly way: "pcm" | "dual-rumble";
+  /** Sets the motion: mm/s, N, mm along the path. Samples follow 0.25 s later, strengths 50 ms later. */
+  setMotion(speed: number, force: number, position?: number): void;
+  /** Stops the motors, and frees the voice. */
+  stop(): Promise<void>;
+  /** Resolves when it was stopped; rejects with an HtexError when the gamepad fails. */
+  readonly ended: Promise<void>;
+}
+
+/** Plays a texture on a gamepad until it is stopped: its samples where the browser has `playPCM` and the gamepad plays them (between blocks of 0.25 s a
+ * browser may leave a gap), else the level and the mean frequency on its two motors. */
+export function playOnPad(pad: PadLike, texture: Texture, options?: PadOptions): PadPlayer;
+
 export interface PointerOptions {
   /** Millimetres of a CSS pixel. Default 25.4 / 96. */
   mmPerPixel?: number;

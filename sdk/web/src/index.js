@@ -8,3 +8,4 @@ export { Library } from "./htexlib.js";
 export { HtexNode, prepare } from "./node.js";
 export { GuardedWorker } from "./guarded.js";
 export { follow, followPointer } from "./pointer.js";
+export { dualRumble, playOnPad } from "./pad.js";

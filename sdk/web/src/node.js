@@ -26,7 +26,7 @@ function isLoop(given) {
 }
 
 /** The gain at which a texture or a loop plays at that level: by what the file states, since no model runs here. */
-function usualGain(texture, model) {
+export function usualGain(texture, model) {
   if (isLoop(texture)) return texture.level_rms > 0 ? LEVEL / texture.level_rms : 0;
   const chosen = texture.chosenModel(model);
   const level = texture.manifest.representations.find((representation) => representation.model === chosen).at[0].level_rms;

@@ -7,18 +7,23 @@ import {
   Library,
   Texture,
   Voice,
+  dualRumble,
   fit,
   follow,
   followPointer,
   loadAuthor,
   open,
+  playOnPad,
   prepare,
   setAuthorLibrary,
   setLibrary,
 } from "htex";
 import { scene, setSceneLibrary } from "htex/scene";
 import type { Scene } from "htex/scene";
+import type { PadPlayer } from "htex";
 import type { Author, Coverage, FitOptions, Fitted, Law, Manifest } from "htex";
+
+const pads: PadPlayer[] = [];
 
 export async function play(context: AudioContext, element: HTMLElement, file: File): Promise<number> {
   setLibrary(new URL("htex.wasm", "https://example.org/"), { processor: "/processor.js", worker: new URL("https://example.org/worker.js") });
@@ -32,6 +37,8 @@ export async function play(context: AudioContext, element: HTMLElement, file: Fi
   node.onenvelope = ({ level, bands }) => console.log(level, bands[0], node.envelopeEdges[0]);
   await node.load(await open(file), { gain: 0.5 });
   const end: () => void = follow(element, node, { force: (pressure) => pressure, defaultForce: 0.4 });
+  for (const pad of navigator.getGamepads()) if (pad) pads.push(playOnPad(pad, texture, { model: "ar", seed: 7n, gain: 1, motion: { speed: 80 } }));
+  console.log(dualRumble({ level: 0.1, centroid: 200 }, { gain: 3, duration: 100 }).strongMagnitude, pads[0]?.way);
   followPointer(element, ({ speed, force, position }) => console.log(speed + force + position));
   const voice: Voice = texture.voice({ synthesis: "loop:2", motion: { speed: 80 } });
   const samples: Float32Array = voice.render(voice.renderPath([80], [0.4], 64));

@@ -38,6 +38,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
             "node.test.mjs",
             "library.test.mjs",
             "loading.test.mjs",
+            "pad.test.mjs",
             "pointer.test.mjs",
             "sound.test.mjs",
             "author.test.mjs",

@@ -1,5 +1,5 @@
 use clap::Args;
-use htex_device::Capabilities;
+use htex_device::{Capabilities, Mapping};
 use serde_json::json;
 
 use crate::adapters::descriptor_text;
@@ -8,7 +8,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json, tamed};
 
-/// Show a device's settings and profiles, and its capabilities with these settings.
+/// Show a device's settings and profiles, what it makes of the samples, and its capabilities with these settings.
 #[derive(Args)]
 pub(crate) struct Info {
     /// The device, by short name, id or library file
@@ -45,12 +45,22 @@ impl Info {
                 Ok(capabilities) => can_text(&capabilities),
                 Err(problem) => format!("  not known, set so: {problem}\n"),
             };
+            let descriptor = tamed(descriptor);
+            let maps = mapping_text(descriptor.mapping.as_ref());
             print(&format!(
-                "{}\ncan do\n{can}",
-                descriptor_text(&tamed(descriptor))
+                "{}\nmapping\n{maps}\ncan do\n{can}",
+                descriptor_text(&descriptor)
             ))?;
         }
         Ok(Exit::SUCCESS)
+    }
+}
+
+/// What becomes of the samples.
+fn mapping_text(mapping: Option<&Mapping>) -> String {
+    match mapping {
+        Some(Mapping { plays, loses }) => format!("  plays: {plays}\n  lost: {loses}\n"),
+        None => "  plays: the samples\n".to_owned(),
     }
 }
 

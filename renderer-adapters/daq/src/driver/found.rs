@@ -1,8 +1,6 @@
 //! Finds the driver's library: the installed one, or the one that the setting `driver` names.
 #![allow(unsafe_code)] // A loader: the user asked to run the driver's initialisers.
 
-use std::path::Path;
-
 use htex_device::DeviceError;
 use htex_native::{Library, LoadError};
 
@@ -29,34 +27,16 @@ pub(super) fn installed() -> Result<Table, DeviceError> {
 /// The library that a setting names: a path, or a bare name, which is a file of the current folder, else a library of
 /// the system.
 pub(super) fn named(path: &str) -> Result<Table, DeviceError> {
-    let file = Path::new(path);
-    let is_bare = file.components().count() == 1 && !file.is_absolute();
-    let (table, searched) = if is_bare && !file.is_file() {
-        (of_system(path), SEARCHED)
-    } else {
-        (of_file(file), "")
-    };
+    // SAFETY: the user named this library as a driver.
+    let table = table(unsafe { Library::named(path) });
     table.map_err(|reason| DeviceError::Setting {
         name: "driver".to_owned(),
-        what: format!("`{path}` cannot be loaded as the NI-DAQmx library: {reason}{searched}"),
+        what: format!("`{path}` cannot be loaded as the NI-DAQmx library: {reason}"),
     })
 }
 
-/// Where a bare name was looked for.
-const SEARCHED: &str = if cfg!(windows) {
-    "; the current folder has no such file, and the system finds none in its folders and those of PATH"
-} else {
-    "; the current folder has no such file, and the system's loader was asked for it (LD_LIBRARY_PATH, the cache of \
-     ldconfig, /lib, /usr/lib)"
-};
-
-fn of_file(path: &Path) -> Result<Table, TableError> {
-    // SAFETY: the user named this library as a driver.
-    table(unsafe { Library::from_file(path) })
-}
-
 fn of_system(name: &str) -> Result<Table, TableError> {
-    // SAFETY: NI-DAQmx's own name, or one that the user gave.
+    // SAFETY: NI-DAQmx's own name.
     table(unsafe { Library::from_system(name) })
 }
 

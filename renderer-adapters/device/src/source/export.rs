@@ -20,7 +20,7 @@
 /// #         name: "port".to_owned(), kind: SettingKind::Text, default: Some(String::new()),
 /// #         live_default: None, from_scene: FromScene::Never, description: "The port.".to_owned(),
 /// #     }],
-/// #     profiles: vec![],
+/// #     profiles: vec![], mapping: None,
 /// # });
 /// # impl SourceAdapter for Nowhere {
 /// #     fn descriptor(&self) -> &Descriptor { &DESCRIPTOR }

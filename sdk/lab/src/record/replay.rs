@@ -38,6 +38,7 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| Descriptor {
         ),
     ],
     profiles: Vec::new(),
+    mapping: None,
 });
 
 fn setting(name: &str, kind: SettingKind, default: Option<&str>, description: &str) -> Setting {

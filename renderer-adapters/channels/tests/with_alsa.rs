@@ -1,0 +1,40 @@
+//! The tests of the feature `audio`, where ALSA is installed: `cargo test` builds
+//! without it, so that a machine without ALSA passes all other tests.
+#![cfg(all(not(feature = "audio"), target_os = "linux"))]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+use std::path::Path;
+use std::process::Command;
+
+#[test]
+fn four_channels_through_alsa() {
+    let alsa = Command::new("pkg-config")
+        .args(["--exists", "alsa"])
+        .status();
+    if !xtask::needs::ALSA.met(alsa.is_ok_and(|status| status.success())) {
+        return;
+    }
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
+    let tests = Command::new(cargo)
+        .args([
+            "test",
+            "--locked",
+            "--features",
+            "audio",
+            "--test",
+            "alsa",
+            "--manifest-path",
+        ])
+        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(target)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&tests.stdout);
+    let errors = String::from_utf8_lossy(&tests.stderr);
+    assert!(
+        tests.status.success() && said.contains("1 passed"),
+        "{said}{errors}"
+    );
+}

@@ -1,0 +1,121 @@
+//! Settings that these devices share, and what follows from them.
+
+use htex_device::{
+    Capabilities, DeviceError, FromScene, Quantity, Rates, Setting, SettingKind, Settings,
+};
+
+/// Lowest and highest rate, hertz: frequencies of textures reach 1 kHz.
+const RATES_HZ: (f64, f64) = (2_000.0, 192_000.0);
+const DEFAULT_RATE_HZ: f64 = 8_000.0;
+/// Defaults of the setting `buffer_ms`: otherwise, and with a live motion.
+const DEFAULT_BUFFER_MS: [&str; 2] = ["100", "30"];
+/// Default of the setting `gain`.
+pub const DEFAULT_GAIN: &str = "3";
+
+/// A setting of a person or of the hardware: no scene changes it.
+pub fn setting(name: &str, kind: SettingKind, default: &str, description: &str) -> Setting {
+    Setting {
+        name: name.to_owned(),
+        kind,
+        default: Some(default.to_owned()),
+        live_default: None,
+        from_scene: FromScene::Never,
+        description: description.to_owned(),
+    }
+}
+
+/// A number of a range.
+pub fn number(min: f64, max: f64) -> SettingKind {
+    SettingKind::Number { min, max }
+}
+
+/// `gain`, `block_ms` and `buffer_ms`.
+pub fn reducing_settings() -> Vec<Setting> {
+    let gain = setting(
+        "gain",
+        number(0.0, 100.0),
+        DEFAULT_GAIN,
+        "Strength of a level (RMS) of full scale, of which a motor has at most 1: a third of full scale is then all it has, about \
+         what noise can reach without clipping.",
+    );
+    let block = setting(
+        "block_ms",
+        number(5.0, 100.0),
+        "10",
+        "Length of a block, of which the motor has one strength and one frequency, milliseconds.",
+    );
+    vec![gain, block, buffer_setting()]
+}
+
+/// `buffer_ms`, shorter with a live motion.
+pub fn buffer_setting() -> Setting {
+    let buffer = setting(
+        "buffer_ms",
+        number(10.0, 10_000.0),
+        DEFAULT_BUFFER_MS[0],
+        "Samples kept ready, milliseconds, at least two blocks: more is safer, less is quicker.",
+    );
+    Setting {
+        live_default: Some(DEFAULT_BUFFER_MS[1].to_owned()),
+        from_scene: FromScene::Less,
+        ..buffer
+    }
+}
+
+/// Whether nobody has given `buffer_ms` another value.
+pub fn has_usual_buffer(settings: &Settings) -> bool {
+    DEFAULT_BUFFER_MS.contains(&settings.text("buffer_ms"))
+}
+
+/// The error of a rate that a device does not have.
+pub fn rate_error(device: &str, rate_hz: f64, can: &Capabilities) -> DeviceError {
+    DeviceError::Rate {
+        device: device.to_owned(),
+        rate_hz,
+        rates: can.rates.to_string(),
+    }
+}
+
+/// The values of the shared settings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plan {
+    /// Strength of a level of 1.
+    pub gain: f64,
+    /// Length of a block, seconds.
+    pub block_s: f64,
+    /// Length of the buffer, seconds.
+    pub buffer_s: f64,
+}
+
+impl Plan {
+    /// Reads the settings.
+    pub fn new(settings: &Settings) -> Self {
+        Self {
+            gain: settings.number("gain"),
+            block_s: settings.number("block_ms") / 1e3,
+            buffer_s: settings.number("buffer_ms") / 1e3,
+        }
+    }
+
+    /// The samples of a block at a rate.
+    pub fn block_frames(&self, rate_hz: f64) -> usize {
+        (self.block_s * rate_hz).round().max(1.0) as usize
+    }
+
+    /// What such a device takes: sound, which a clock takes.
+    pub fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            quantity: Quantity::Sound,
+            rates: Rates::Range {
+                min_hz: RATES_HZ.0,
+                max_hz: RATES_HZ.1,
+            },
+            default_rate_hz: DEFAULT_RATE_HZ,
+            limit: Some(1.0),
+            step: None,
+            carrier_hz: None,
+            paced: true,
+            block_frames: self.block_frames(DEFAULT_RATE_HZ) as u32,
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! The thread that takes blocks at the pace of the clock.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use htex_device::DeviceError;
+use htex_dsp::envelope::Analyser;
+use htex_dsp::grid::Band;
+
+use crate::{Block, Motor};
+
+/// What the writer wishes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Wish {
+    /// Wait for samples before the first block.
+    #[default]
+    Wait,
+    Play,
+    /// Play what is there, then rest.
+    Drain,
+    /// Rest now.
+    Stop,
+}
+
+/// What writer and thread share.
+#[derive(Debug, Default)]
+pub(crate) struct State {
+    pub(crate) waiting: VecDeque<f32>,
+    pub(crate) wish: Wish,
+    /// Frames of blocks that are over.
+    pub(crate) played: u64,
+    pub(crate) underruns: u64,
+    /// An error that the next call returns, once.
+    pub(crate) error: Option<DeviceError>,
+    /// The motor is at rest for good.
+    pub(crate) ended: bool,
+}
+
+#[derive(Debug, Default)]
+pub(crate) struct Shared {
+    state: Mutex<State>,
+    changed: Condvar,
+}
+
+impl Shared {
+    pub(crate) fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(crate) fn changed(&self) {
+        self.changed.notify_all();
+    }
+
+    /// Waits for a change, at most so long.
+    pub(crate) fn wait<'a>(
+        &'a self,
+        state: MutexGuard<'a, State>,
+        most: Duration,
+    ) -> MutexGuard<'a, State> {
+        let waited = self.changed.wait_timeout(state, most);
+        waited.unwrap_or_else(PoisonError::into_inner).0
+    }
+
+    /// Waits until a time, or until the wish is to stop.
+    fn wait_until(&self, due: Instant) -> MutexGuard<'_, State> {
+        let mut state = self.lock();
+        while state.wish != Wish::Stop {
+            let left = due.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                break;
+            }
+            state = self.wait(state, left);
+        }
+        state
+    }
+
+    fn wait_for_start(&self) {
+        let mut state = self.lock();
+        while state.wish == Wish::Wait {
+            state = self.wait(state, Duration::from_secs(3_600));
+        }
+    }
+}
+
+/// What the thread does.
+pub(crate) struct Worker {
+    pub(crate) name: String,
+    pub(crate) motor: Box<dyn Motor>,
+    pub(crate) shared: Arc<Shared>,
+    pub(crate) rate_hz: f64,
+    pub(crate) block_frames: usize,
+}
+
+/// What is next when a block is over.
+enum Next {
+    Block,
+    End,
+    Stop,
+    Dry,
+}
+
+impl Worker {
+    pub(crate) fn run(mut self) {
+        self.shared.wait_for_start();
+        let rested = self.play();
+        let Self { shared, motor, .. } = self;
+        // The motor is closed before the device is known as ended.
+        drop(motor);
+        let mut state = shared.lock();
+        state.waiting.clear();
+        state.ended = true;
+        if let Err(error) = rested {
+            state.error = Some(error);
+        }
+        drop(state);
+        shared.changed();
+    }
+
+    /// Plays until the end, a stop or an error; the motor is at rest afterwards.
+    fn play(&mut self) -> Result<(), DeviceError> {
+        let mut analyser = Analyser::new(1, Band::TACTILE, self.rate_hz);
+        let mut samples = Vec::with_capacity(self.block_frames);
+        let mut due = Instant::now();
+        loop {
+            let next = self.next(due, &mut samples);
+            self.shared.changed();
+            match next {
+                Next::Block => {}
+                Next::End => return self.motor.end().map_err(|what| self.failed(what)),
+                Next::Stop => return self.stop(),
+                Next::Dry => return self.stop().and(Err(self.ran_dry())),
+            }
+            analyser.push(&samples);
+            let measured = analyser.read(&mut []);
+            let block = Block {
+                samples: &samples,
+                measured,
+            };
+            if let Err(what) = self.motor.play(&block) {
+                // It has failed, and its reason says more than that of the stop.
+                let _ = self.motor.stop();
+                return Err(self.failed(what));
+            }
+            let length = Duration::from_secs_f64(samples.len() as f64 / self.rate_hz);
+            // A program that was held up does not play what it missed all at once.
+            let latest = Instant::now().checked_sub(length).unwrap_or(due);
+            due = (due + length).max(latest);
+        }
+    }
+
+    /// Waits until the block in `samples` is over, and puts the next one there.
+    fn next(&self, due: Instant, samples: &mut Vec<f32>) -> Next {
+        let mut state = self.shared.wait_until(due);
+        if state.wish == Wish::Stop {
+            return Next::Stop;
+        }
+        state.played += samples.len() as u64;
+        samples.clear();
+        let there = state.waiting.len().min(self.block_frames);
+        match (there == self.block_frames, state.wish) {
+            (false, Wish::Drain) if there == 0 => return Next::End,
+            (false, Wish::Drain) | (true, _) => {}
+            (false, _) => {
+                state.underruns += 1;
+                return Next::Dry;
+            }
+        }
+        samples.extend(state.waiting.drain(..there));
+        Next::Block
+    }
+
+    fn stop(&mut self) -> Result<(), DeviceError> {
+        self.motor.stop().map_err(|what| self.failed(what))
+    }
+
+    fn failed(&self, what: String) -> DeviceError {
+        DeviceError::Failed {
+            device: self.name.clone(),
+            what,
+        }
+    }
+
+    fn ran_dry(&self) -> DeviceError {
+        DeviceError::Underflow {
+            device: self.name.clone(),
+            frames: self.shared.lock().played,
+            advice: "give samples earlier, or a larger `buffer_ms`".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! Each gamepad belongs to one open device: SDL itself lets any number of users change its motors.
+
+use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
+
+use htex_device::DeviceError;
+
+use crate::driver::Driver;
+use crate::pads::Pad;
+
+/// Library and instance of each that is open.
+static CLAIMED: Mutex<BTreeSet<(String, i32)>> = Mutex::new(BTreeSet::new());
+
+/// Released when dropped.
+pub(crate) struct Claim((String, i32));
+
+impl Claim {
+    pub(crate) fn take(driver: &Driver, pad: &Pad) -> Result<Self, DeviceError> {
+        let key = (driver.path.clone(), pad.instance);
+        let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
+        match claimed.insert(key.clone()) {
+            true => Ok(Self(key)),
+            false => Err(DeviceError::Busy(format!(
+                "{} is open already; finish or drop that device first",
+                pad.name
+            ))),
+        }
+    }
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
+        claimed.remove(&self.0);
+    }
+}

@@ -1,0 +1,104 @@
+// Motors and actuators of gamepads: two strengths of an envelope (`dual-rumble`), or the samples themselves (`playPCM`).
+
+import { HtexError } from "./core.js";
+import { checkTexture } from "./guarded.js";
+import { usualGain } from "./node.js";
+import { checked } from "./options.js";
+
+/** Strength of a level (RMS) of full scale, of which a motor has at most 1. */
+const STRENGTH = 3;
+/** Mean frequencies up to which the large motor of a gamepad has all, and from which the small one has, Hz; `htex_dsp::reduced` has the same. */
+const LARGE_MOTOR_HZ = 60;
+const SMALL_MOTOR_HZ = 420;
+/** Rate of the samples: the lowest that all browsers have in an AudioBuffer, Hz. */
+const RATE = 8000;
+/** Length of what is told at a time: of two strengths, and of samples, between which a browser may leave a gap, s. */
+const RUMBLE_S = 0.05;
+const SAMPLES_S = 0.25;
+/** An effect lasts for two blocks, so that it ends by itself when the page hangs. */
+const HELD = 2;
+
+const RUMBLE = { gain: "number", duration: "number" };
+const PLAYER = { model: "string", seed: "integer", motion: "object", gain: "number" };
+
+const unit = (x) => (Number.isNaN(x) ? 0 : Math.min(Math.max(x, 0), 1));
+
+/** The parameters of the effect "dual-rumble" for an envelope: `gain` is the strength of a level of 1, `duration` that of the effect, ms. */
+export function dualRumble({ level, centroid }, options = {}) {
+  const { gain = STRENGTH, duration = 1e3 * HELD * RUMBLE_S } = checked(options, RUMBLE, "dualRumble");
+  const strength = unit(gain * level);
+  const small = unit((centroid - LARGE_MOTOR_HZ) / (SMALL_MOTOR_HZ - LARGE_MOTOR_HZ));
+  return { startDelay: 0, duration, strongMagnitude: strength * (1 - small), weakMagnitude: strength * small };
+}
+
+/** Plays a texture on a gamepad until it is stopped. */
+class PadPlayer {
+  constructor(actuator, texture, options) {
+    const { gain = usualGain(texture, options.model), ...voice } = options;
+    this.actuator = actuator;
+    this.gain = gain;
+    this.voice = texture.voice({ ...voice, rate: RATE, bands: 1, motion: options.motion ?? { speed: 0, force: 0 } });
+    /** "pcm" or "dual-rumble". */
+    this.way = typeof actuator.playPCM === "function" && typeof AudioBuffer === "function" ? "pcm" : "dual-rumble";
+    this.isStopped = false;
+    /** Resolves when it was stopped; rejects when the gamepad fails. */
+    this.ended = this.play().finally(() => this.rest());
+    this.ended.catch(() => {});
+  }
+
+  setMotion(speed, force, position) {
+    if (!this.isStopped) this.voice.setMotion(speed, force, position);
+  }
+
+  stop() {
+    this.isStopped = true;
+    this.wake?.();
+    return this.ended;
+  }
+
+  async play() {
+    try {
+      while (!this.isStopped) await (this.way === "pcm" ? this.playSamples() : this.playRumble());
+    } catch (error) {
+      throw new HtexError(`playOnPad: the gamepad failed: ${error.message}`, "io");
+    }
+  }
+
+  /** The promise tells when the samples have been played: `false` for an actuator that plays none. */
+  async playSamples() {
+    const samples = this.voice.render(SAMPLES_S * RATE).map((x) => Math.min(Math.max(this.gain * x, -1), 1));
+    const buffer = new AudioBuffer({ length: samples.length, sampleRate: RATE, numberOfChannels: 1 });
+    buffer.copyToChannel(samples, 0);
+    const played = await Promise.race([this.actuator.playPCM(buffer), this.stopped()]);
+    if (played === false) this.way = "dual-rumble";
+  }
+
+  async playRumble() {
+    this.voice.render(RUMBLE_S * RATE);
+    const effect = dualRumble(this.voice.envelope(), { gain: STRENGTH * this.gain });
+    // The promise is of the end of the effect, and the next one comes before: a failure is seen then.
+    this.actuator.playEffect("dual-rumble", effect).catch((error) => (this.failure ??= error));
+    await Promise.race([new Promise((resolve) => setTimeout(resolve, 1e3 * RUMBLE_S)), this.stopped()]);
+    if (this.failure) throw this.failure;
+  }
+
+  stopped() {
+    return new Promise((resolve) => (this.wake = resolve));
+  }
+
+  async rest() {
+    this.isStopped = true;
+    this.voice.free();
+    const none = dualRumble({ level: 0, centroid: 0 }, { duration: 1 });
+    await (this.actuator.reset?.() ?? this.actuator.playEffect("dual-rumble", none)).catch(() => {});
+  }
+}
+
+/** Plays a texture on a gamepad: its samples where the browser has `playPCM` and the gamepad plays them, else the level and the mean frequency on
+ * its two motors. */
+export function playOnPad(pad, texture, options = {}) {
+  const actuator = pad?.vibrationActuator;
+  if (!actuator) throw new HtexError("playOnPad: the gamepad has no vibrationActuator; this browser or this gamepad has no haptics", "unsupported");
+  checkTexture(texture, "playOnPad");
+  return new PadPlayer(actuator, texture, checked(options, PLAYER, "playOnPad"));
+}

@@ -12,7 +12,7 @@ use crate::programs::run;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
-const COPIED: [&str; 28] = [
+const COPIED: [&str; 29] = [
     "author-core.js",
     "author-serve.js",
     "author-worker.node.js",

@@ -24,7 +24,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for _ in 0..RUNS {
             least = least.min(run_s(&asset, samples, moves)?);
         }
-        println!("{what}: {:.1} ns a sample at 20 kHz", 1e9 * least / SAMPLES as f64);
+        println!(
+            "{what}: {:.1} ns a sample at 20 kHz",
+            1e9 * least / SAMPLES as f64
+        );
     }
     Ok(())
 }

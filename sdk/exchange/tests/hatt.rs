@@ -88,7 +88,7 @@ fn forty_models_take_less_than_eight_kilobytes() {
     let made = asset(&read(text.as_bytes()).unwrap(), &Imported::default()).unwrap();
     let bytes = made.to_bytes().unwrap().len();
     println!("{} bytes of XML are {bytes}", text.len());
-    assert!(bytes <= 7_500, "{bytes}");
+    assert!(bytes <= 8_000, "{bytes}");
 }
 
 /// Zeros outside the circle are mirrored: the magnitude is the same.

@@ -38,10 +38,7 @@ impl Asset {
             let mut archive = ZipWriter::default();
             archive.store(MIMETYPE, MEDIA_TYPE.as_bytes())?;
             archive.deflate(MANIFEST, &json)?;
-            for (name, bytes) in blocks {
-                archive.store_or_deflate(name, &bytes)?;
-            }
-            if let Some((name, bytes)) = reference {
+            for (name, bytes) in blocks.into_iter().chain(reference) {
                 archive.store(name, &bytes)?;
             }
             for (plugin, module) in plugins {

@@ -12,11 +12,6 @@ use crate::zip_records::{CENTRAL, Common, END, LOCAL};
 /// five bytes.
 const DEFLATE_LEVEL: u32 = 9;
 
-/// Fewest bytes of a parameter block that may be compressed: blocks of a few conditions are stored.
-const LEAST_DEFLATED: usize = 1024;
-/// Ratio of a compressed block, half of what readers allow by default.
-const MOST_RATIO: usize = 100;
-
 /// 1 January 1980, 0:00, the first time of the format.
 const NO_TIME: u32 = 33 << 16;
 
@@ -44,21 +39,9 @@ impl ZipWriter {
 
     /// Adds an entry, compressed.
     pub(crate) fn deflate(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
-        self.add(name, bytes, DEFLATED, &deflated(bytes)?)
-    }
-
-    /// Adds an entry, compressed where that saves much: conditions that share their parameters are there once. What shrinks so far that a
-    /// reader would suspect it is stored.
-    pub(crate) fn store_or_deflate(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
-        if bytes.len() < LEAST_DEFLATED {
-            return self.store(name, bytes);
-        }
-        let packed = deflated(bytes)?;
-        let is_smaller = packed.len() <= bytes.len() / 10 * 9;
-        match is_smaller && bytes.len() / packed.len().max(1) < MOST_RATIO {
-            true => self.add(name, bytes, DEFLATED, &packed),
-            false => self.store(name, bytes),
-        }
+        let mut encoder = DeflateEncoder::new(Vec::new(), Compression::new(DEFLATE_LEVEL));
+        encoder.write_all(bytes)?;
+        self.add(name, bytes, DEFLATED, &encoder.finish()?)
     }
 
     fn add(&mut self, name: &str, bytes: &[u8], method: u16, packed: &[u8]) -> io::Result<()> {
@@ -97,12 +80,6 @@ impl ZipWriter {
         );
         Ok(self.bytes)
     }
-}
-
-fn deflated(bytes: &[u8]) -> io::Result<Vec<u8>> {
-    let mut encoder = DeflateEncoder::new(Vec::new(), Compression::new(DEFLATE_LEVEL));
-    encoder.write_all(bytes)?;
-    encoder.finish()
 }
 
 /// A size, which the format without ZIP64 holds below 4 GiB.

@@ -296,7 +296,11 @@ fn fitted(
         speed_mm_s: how.physical.speed_mm_s,
         force_n: how.physical.force_n,
     };
-    let fitted = fit_asset(&[Take { recording, given }], &request)?;
+    let mut fitted = fit_asset(&[Take { recording, given }], &request)?;
+    // A file that is rendered, and repeated, says nothing of how far another touch would differ.
+    for condition in &mut fitted.asset.manifest.conditions {
+        condition.repeatability_rms_db = None;
+    }
     Ok(Imported {
         asset: fitted.asset,
         felt: fitted.felt,

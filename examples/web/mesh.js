@@ -57,6 +57,7 @@ function show(made) {
   camera.position.copy(center).add(new Vector3(0, 0, size / (2 * Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360))));
   camera.near = size / 100;
   camera.far = size * 100;
+  camera.updateProjectionMatrix();
   camera.lookAt(center);
   last = null;
 }
@@ -148,12 +149,24 @@ function draw() {
     surface = null;
     return failed(error);
   }
+  fit();
+  renderer.render(scene, camera);
+  tell();
+}
+
+/** Gives the picture the size of the view, where that has changed. */
+function fit() {
   const [width, height] = [view.clientWidth, view.clientHeight];
+  const size = renderer.getSize(new Vector2());
+  if (size.x === width && size.y === height && renderer.getPixelRatio() === devicePixelRatio) return;
   renderer.setPixelRatio(devicePixelRatio);
   renderer.setSize(width, height, false);
   camera.aspect = width / height;
   camera.updateProjectionMatrix();
-  renderer.render(scene, camera);
+}
+
+/** Tells the level of the sound. */
+function tell() {
   const samples = new Float32Array(2048);
   analyser.getFloatTimeDomainData(samples);
   const rms = Math.hypot(...samples) / Math.sqrt(samples.length);

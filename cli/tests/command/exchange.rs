@@ -380,7 +380,12 @@ fn formats_lists_what_is_kept_and_lost() {
         .iter()
         .map(|f| f["name"].as_str().unwrap())
         .collect();
-    assert_eq!(names, ["hatt", "haptic", "ahap", "android", "hjif", "wav"]);
+    assert_eq!(
+        names,
+        ["hatt", "haptic", "ahap", "android", "hjif", "wav", "gltf"]
+    );
+    assert_eq!(formats[6]["export"], "asset");
+    assert_eq!(formats[6]["export_settings"], json!([]));
     assert_eq!(formats[0]["import"], "asset");
     assert_eq!(formats[0]["import_settings"], json!([]));
     assert_eq!(formats[0]["export"], Value::Null);

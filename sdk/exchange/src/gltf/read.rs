@@ -12,7 +12,7 @@ use crate::error::Fault;
 use crate::format::{Held, Naming};
 use crate::json;
 
-/// Media types of buffers in data URIs (glTF 2.0, section 3.6.1.1).
+/// Media types of buffers in data URIs (glTF 2.0, section 3.6.1).
 const BUFFER_TYPES: [&str; 2] = ["application/octet-stream", "application/gltf-buffer"];
 /// A buffer in a container may be shorter than its chunk by this many bytes.
 const MOST_PADDING: usize = 3;

@@ -83,4 +83,5 @@ edges! {
     every_value_of_envelopes_of_meta: "haptic", edges::json;
     every_value_of_a_pattern_of_apple: "ahap", edges::json;
     every_value_of_bands_of_mpeg: "hjif", edges::json;
+    every_byte_of_a_mesh: "gltf", edges::bytes;
 }

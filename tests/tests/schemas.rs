@@ -266,6 +266,7 @@ fn generated_schemas_of_the_laboratory_are_fresh() {
         ("answers-1", htex_lab::study::answers_schema()),
         ("gains-1", htex_scene::gains_schema()),
         ("hatt-1", htex_exchange::hatt::extension_schema()),
+        ("gltf-material-1", htex_exchange::gltf::material_schema()),
     ] {
         let text = format!("{schema:#}\n");
         xtask::generated::file(format!("spec/schemas/{name}.json"), text.as_bytes());

@@ -133,6 +133,13 @@ pub const AJV: Need = Need {
     for_wasm: false,
 };
 
+/// The validator of glTF files of Khronos.
+pub const GLTF_VALIDATOR: Need = Need {
+    what: "gltf-validator",
+    how: "npm install --prefix target/node gltf-validator@2.0.0-dev.3.10",
+    for_wasm: false,
+};
+
 impl Need {
     /// Returns `there`, whether the software is installed. If it is not, the running test is listed at the end of `cargo test`
     /// ([`told`]).

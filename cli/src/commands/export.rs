@@ -2,8 +2,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use htex_exchange::{
-    Coding, ExchangeError, Exported, Format, Path, Played, Profile, Stroke, exported, profile_names,
+    Coding, ExchangeError, Exported, Format, MOST_BYTES, Path, Played, Profile, Stroke, Writes,
+    exported, profile_names,
 };
+use htex_files::{AtFile, read_regular};
 use htex_format::Measure;
 use serde::Serialize;
 
@@ -38,7 +40,8 @@ pub(crate) struct Export {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write; with --to android, Kotlin if it ends in .kt, else JSON
+    /// The file to write; with --to android, Kotlin if it ends in .kt, else JSON; with --to gltf, JSON if it ends in .gltf, else a
+    /// .glb
     #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
     output: PathBuf,
 
@@ -112,7 +115,8 @@ impl Export {
         let format = Format::named(&self.to).ok_or_else(unknown)?;
         format.check_export(self.given.settings.iter().map(String::as_str))?;
         let asset = self.player.open(&self.asset)?;
-        let export = self.export(format, &asset)?;
+        let file = self.file(format)?;
+        let export = self.export(format, &asset, file.as_deref())?;
         let exported =
             htex_exchange::export(&asset, &export).map_err(|error| self.failure(error))?;
         write_file(&self.output, &exported.bytes)?;
@@ -124,6 +128,7 @@ impl Export {
         &'a self,
         format: &'static Format,
         asset: &htex::Asset,
+        file: Option<&'a [u8]>,
     ) -> Result<htex_exchange::Export<'a>, Failure> {
         let settings = &self.given.values;
         let mut export = htex_exchange::Export::new(format);
@@ -133,9 +138,21 @@ impl Export {
         export.seconds = settings.seconds;
         export.rate_hz = settings.rate.map(f64::from);
         export.seed = settings.seed;
-        export.kotlin = self.output.extension().is_some_and(|e| e == "kt");
+        export.extension = self.output.extension().and_then(|e| e.to_str());
+        export.file = file;
         export.coding = settings.coding.map(Into::into);
         Ok(export)
+    }
+
+    /// The asset's file, where the export holds it.
+    fn file(&self, format: &Format) -> Result<Option<Vec<u8>>, Failure> {
+        match format.writes {
+            Some(Writes::Asset(_)) => {
+                let bytes = read_regular(&self.asset, MOST_BYTES).reading(&self.asset)?;
+                Ok(Some(bytes))
+            }
+            _ => Ok(None),
+        }
     }
 
     fn path(&self, asset: &htex::Asset) -> Result<Path, Failure> {

@@ -21,9 +21,9 @@ use crate::shown::shown;
 
 /// Read a file of another haptic format as a texture.
 ///
-/// A model file of the Penn Haptic Texture Toolkit states units, speeds and forces, and becomes a texture as it is. The others
-/// are signals that know none of it, and are fitted as a recording is: say how strong 1 is (--full-scale), and at which speed
-/// and force the file is felt. `htex formats` lists what is kept and lost.
+/// A model file of the Penn Haptic Texture Toolkit states units, speeds and forces, and becomes a texture as it is; a glTF file
+/// gives out the texture that its material carries, bit for bit. The others are signals that know none of it, and are fitted as a
+/// recording is: say how strong 1 is (--full-scale), and at which speed and force the file is felt. `htex formats` lists what is kept and lost.
 #[derive(Args)]
 pub(crate) struct Import {
     #[arg(help = format!("The file: {}", imported()))]
@@ -121,7 +121,7 @@ impl Import {
     }
 
     fn write(&self, imported: htex_exchange::Imported) -> Result<Exit, Failure> {
-        let bytes = imported.asset.to_bytes()?;
+        let bytes = imported.to_bytes()?;
         write_file(&self.output, &bytes)?;
         let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &imported.asset)
             .with_felt(&imported.felt);

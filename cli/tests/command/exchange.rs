@@ -183,7 +183,7 @@ fn files_that_are_none_are_refused_with_their_place() {
     let (_, error) = run(&place, "import set.xml -o out.htex", 1);
     assert!(error.contains("set.xml: line "), "{error}");
     let (_, error) = run(&place, "import hum.mp3 -o out.htex", 2);
-    assert!(error.contains("hum.mp3: no format that is read has this extension; there are .xml, .haptic, .ahap and .hjif"), "{error}");
+    assert!(error.contains("hum.mp3: no format that is read has this extension; there are .xml, .haptic, .ahap, .hjif, .glb and .gltf"), "{error}");
     let (_, error) = run(
         &place,
         &format!("import loud.haptic {GIVEN} -o loud.haptic"),
@@ -232,6 +232,60 @@ fn an_export_says_what_is_lost() {
             0,
         );
     }
+}
+
+/// The file comes back bit for bit, unless metadata is given; what is wrong is named by its pointer.
+#[test]
+fn a_mesh_carries_the_file_there_and_back() {
+    let place = imported();
+    let file = std::fs::read(place.path("hum.htex")).unwrap();
+    for mesh in ["hum.glb", "hum.gltf"] {
+        let (text, error) = run(&place, &format!("export hum.htex --to gltf -o {mesh}"), 0);
+        assert!(
+            text.contains("the format loses nothing of a texture"),
+            "{text}"
+        );
+        assert!(
+            !text.contains("lost: felt") && error.is_empty(),
+            "{text}{error}"
+        );
+        let told = place.json(&words(&format!("import {mesh} -o again.htex --json")));
+        assert_eq!(told["license"], "CC0-1.0");
+        assert_eq!(std::fs::read(place.path("again.htex")).unwrap(), file);
+    }
+    let told = place.json(&words("export hum.htex --to gltf -o hum.gltf --json"));
+    assert_eq!(told["format"], "gltf");
+    let text = std::fs::read_to_string(place.path("hum.gltf")).unwrap();
+    let mut mesh: Value = serde_json::from_str(&text).unwrap();
+    run(
+        &place,
+        "import hum.glb --license CC-BY-4.0 -o other.htex",
+        0,
+    );
+    assert_ne!(std::fs::read(place.path("other.htex")).unwrap(), file);
+
+    mesh["bufferViews"][4]["byteLength"] = json!(1 << 30);
+    place.write("wrong.gltf", mesh.to_string());
+    let (_, error) = run(&place, "import wrong.gltf -o none.htex", 1);
+    assert!(
+        error.contains("wrong.gltf: /bufferViews/4/byteLength: "),
+        "{error}"
+    );
+    for flag in ["--speed 80 --force 0.4", "--profile quest", "--seed 1"] {
+        let (_, error) = run(
+            &place,
+            &format!("export hum.htex --to gltf {flag} -o none.glb"),
+            2,
+        );
+        let name = flag.split(' ').next().unwrap();
+        assert!(
+            error.contains(&format!("its export takes no {name}; leave it out")),
+            "{error}"
+        );
+    }
+    let (_, error) = run(&place, "import hum.glb --speed 80 -o none.htex", 2);
+    assert!(error.contains("its import takes no --speed"), "{error}");
+    assert!(!place.path("none.htex").exists() && !place.path("none.glb").exists());
 }
 
 #[test]
@@ -331,7 +385,12 @@ fn formats_lists_what_is_kept_and_lost() {
         .iter()
         .map(|f| f["name"].as_str().unwrap())
         .collect();
-    assert_eq!(names, ["hatt", "haptic", "ahap", "android", "hjif", "wav"]);
+    assert_eq!(
+        names,
+        ["hatt", "haptic", "ahap", "android", "hjif", "wav", "gltf"]
+    );
+    assert_eq!(formats[6]["export"], "asset");
+    assert_eq!(formats[6]["export_settings"], json!([]));
     assert_eq!(formats[0]["import"], "asset");
     assert_eq!(formats[0]["import_settings"], json!([]));
     assert_eq!(formats[0]["export"], Value::Null);

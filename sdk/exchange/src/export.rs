@@ -1,5 +1,7 @@
 //! Assets as files of other formats, with what is lost.
 
+use std::borrow::Cow;
+
 use htex_play::Asset;
 use serde::Serialize;
 
@@ -42,8 +44,10 @@ pub struct Export<'a> {
     pub rate_hz: Option<f64>,
     /// Coding of `.hjif`; else [`Coding::Vectorial`].
     pub coding: Option<Coding>,
-    /// Whether Android's effect is written as Kotlin instead of JSON.
-    pub kotlin: bool,
+    /// The one of the format's extensions whose kind of file is written: Kotlin or JSON, `.gltf` or `.glb`; else the first.
+    pub extension: Option<&'a str>,
+    /// The asset's file, which an export of the asset itself holds bit for bit; without it, the asset is written anew.
+    pub file: Option<&'a [u8]>,
     pub seed: u64,
 }
 
@@ -59,7 +63,8 @@ impl<'a> Export<'a> {
             seconds: 2.0,
             rate_hz: None,
             coding: None,
-            kotlin: false,
+            extension: None,
+            file: None,
             seed: 0,
         }
     }
@@ -146,6 +151,29 @@ pub struct Job<'a> {
     pub(crate) export: &'a Export<'a>,
 }
 
+/// What a writer of the asset itself works on.
+pub struct AssetJob<'a> {
+    pub(crate) asset: &'a Asset,
+    pub(crate) export: &'a Export<'a>,
+}
+
+impl AssetJob<'_> {
+    /// The asset's file.
+    pub(crate) fn file(&self) -> Result<Cow<'_, [u8]>, ExchangeError> {
+        if let Some(file) = self.export.file {
+            return Ok(Cow::Borrowed(file));
+        }
+        let written = self.asset.data().to_bytes();
+        written
+            .map(Cow::Owned)
+            .map_err(|error| self.cannot(error.to_string()))
+    }
+
+    pub(crate) fn cannot(&self, problem: String) -> ExchangeError {
+        self.export.cannot(problem)
+    }
+}
+
 /// What a writer made.
 pub struct Written {
     pub(crate) bytes: Vec<u8>,
@@ -170,7 +198,7 @@ pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeEr
             of_signal(asset, export, write, profile)
         }
         Some(Writes::Asset(write)) => Ok(Exported {
-            bytes: write(asset)?,
+            bytes: write(&AssetJob { asset, export })?,
             format: format.name,
             played: None,
             loses: format.loses,
@@ -219,6 +247,13 @@ fn of_signal(
 }
 
 impl Export<'_> {
+    fn cannot(&self, problem: String) -> ExchangeError {
+        ExchangeError::Cannot {
+            format: self.format.name,
+            problem,
+        }
+    }
+
     /// Returns the length of what is played, seconds.
     fn checked_seconds(&self, asset: &Asset) -> Result<f64, ExchangeError> {
         let seconds = match &self.path {
@@ -290,10 +325,7 @@ impl Job<'_> {
     }
 
     pub(crate) fn cannot(&self, problem: String) -> ExchangeError {
-        ExchangeError::Cannot {
-            format: self.export.format.name,
-            problem,
-        }
+        self.export.cannot(problem)
     }
 }
 

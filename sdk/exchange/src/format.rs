@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::error::{ExchangeError, Fault};
-use crate::export::{Job, Written};
+use crate::export::{AssetJob, Job, Written};
 use crate::profile::Profile;
 
 /// A format.
@@ -60,7 +60,7 @@ pub enum Writes {
 }
 
 pub type WriteSignal = fn(&Job<'_>) -> Result<Written, ExchangeError>;
-pub type WriteAsset = fn(&htex_play::Asset) -> Result<Vec<u8>, ExchangeError>;
+pub type WriteAsset = fn(&AssetJob<'_>) -> Result<Vec<u8>, ExchangeError>;
 
 /// How a signal is sampled.
 #[derive(Debug, Clone, Copy)]
@@ -92,6 +92,8 @@ pub struct Naming<'a> {
 #[derive(Debug)]
 pub struct Held {
     pub asset: htex_format::Asset,
+    /// The asset's file, if the file that comes in has it in it.
+    pub bytes: Option<Vec<u8>>,
     /// What a person should know of the file, each a sentence.
     pub warnings: Vec<String>,
 }

@@ -2,7 +2,7 @@
 
 use crate::error::{ExchangeError, list};
 use crate::format::{Format, Reads, Writes};
-use crate::{ahap, haptic, hjif, import, writers};
+use crate::{ahap, gltf, haptic, hjif, import, writers};
 
 /// Every format.
 pub const FORMATS: &[Format] = &[
@@ -86,6 +86,15 @@ pub const FORMATS: &[Format] = &[
         keeps: "the samples, as far as the actuator plays them",
         loses: "speed and force, the unit; what is outside the actuator's range",
     },
+    Format {
+        name: "gltf",
+        title: "glTF 2.0 with the extension HTEX_texture",
+        extensions: &["glb", "gltf"],
+        reads: Some(Reads::Asset(gltf::held)),
+        writes: Some(Writes::Asset(gltf::written)),
+        keeps: "the asset's file, bit for bit, on the material of a mesh",
+        loses: "nothing of a texture; of a file that comes in, the meshes",
+    },
 ];
 
 impl Format {
@@ -120,7 +129,7 @@ impl Format {
 #[must_use]
 pub fn imported() -> String {
     let read = FORMATS.iter().filter(|format| format.reads.is_some());
-    list(read.map(Format::dotted))
+    list(read.flat_map(|format| format.extensions.iter().map(|e| format!(".{e}"))))
 }
 
 /// Returns the names of what is exported.

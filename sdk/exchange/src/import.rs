@@ -1,6 +1,6 @@
 //! Files of other formats as assets.
 //!
-//! A file that states units, speeds and forces is an asset (HaTT). The others are signals within ±1 and know no newtons, no speed and no force: a
+//! A file that states units, speeds and forces is an asset (HaTT), or has one in it (glTF). The others are signals within ±1 and know no newtons, no speed and no force: a
 //! signal becomes a recording by the full scale that is given, at the condition that is given, and is fitted. A signal that is shorter than some
 //! seconds is repeated, since a texture lasts.
 
@@ -68,6 +68,8 @@ pub struct Import<'a> {
 #[non_exhaustive]
 pub struct Imported {
     pub asset: htex_format::Asset,
+    /// The asset's file, if the file that came in has it in it and metadata changed nothing.
+    held: Option<Vec<u8>>,
     /// What is felt of the difference from the signal, of each representation at each condition; empty where nothing was fitted.
     pub felt: Vec<Vec<Option<FeltError>>>,
     /// What a person should know.
@@ -110,7 +112,7 @@ pub fn import(
             fitted(recording, how, registry)?
         }
     };
-    how.metadata.apply(&mut imported.asset.manifest);
+    imported.apply(&how.metadata);
     Ok(imported)
 }
 
@@ -143,6 +145,27 @@ impl Import<'_> {
     }
 }
 
+impl Imported {
+    fn apply(&mut self, metadata: &Metadata) {
+        let before = self.asset.manifest.clone();
+        metadata.apply(&mut self.asset.manifest);
+        if self.asset.manifest != before {
+            self.held = None;
+        }
+    }
+
+    /// Returns the asset's file: bit for bit that which the imported file has in it, else a new one.
+    ///
+    /// # Errors
+    /// When the asset breaks a rule of its format.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, htex_format::WriteError> {
+        match &self.held {
+            Some(bytes) => Ok(bytes.clone()),
+            None => self.asset.to_bytes(),
+        }
+    }
+}
+
 fn in_file(file: &str) -> impl Fn(Fault) -> ExchangeError + '_ {
     move |fault| ExchangeError::File {
         file: file.to_owned(),
@@ -151,11 +174,12 @@ fn in_file(file: &str) -> impl Fn(Fault) -> ExchangeError + '_ {
 }
 
 fn held(file: &str, read: Result<Held, Fault>) -> Result<Imported, ExchangeError> {
-    let Held { asset, warnings } = read.map_err(in_file(file))?;
+    let held = read.map_err(in_file(file))?;
     Ok(Imported {
-        asset,
+        asset: held.asset,
+        held: held.bytes,
         felt: Vec::new(),
-        warnings: warnings.into_iter().map(Into::into).collect(),
+        warnings: held.warnings.into_iter().map(Into::into).collect(),
         notes: Vec::new(),
     })
 }
@@ -175,6 +199,7 @@ pub(crate) fn hatt(bytes: &[u8], naming: &Naming<'_>) -> Result<Held, Fault> {
     };
     Ok(Held {
         asset: crate::hatt::asset(&texture, &imported).map_err(of)?,
+        bytes: None,
         warnings: texture.notes,
     })
 }
@@ -303,6 +328,7 @@ fn fitted(
     }
     Ok(Imported {
         asset: fitted.asset,
+        held: None,
         felt: fitted.felt,
         warnings: fitted.warnings,
         notes: fitted.notes,

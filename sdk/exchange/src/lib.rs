@@ -1,7 +1,7 @@
 //! Formats of neighbouring systems: what others have comes in, what people own can play it.
 //!
 //! [`FORMATS`] is the table of formats, of which commands, help and documents are made. **In.** [`import`] reads a file as an asset, if it states
-//! units, speeds and forces, else as a signal to which models are fitted, once it is told what the file does not say. **Out.** [`export`] plays an
+//! units, speeds and forces or has an asset in it, else as a signal to which models are fitted, once it is told what the file does not say. **Out.** [`export`] plays an
 //! asset at a condition or along a stroke, reduces it to what an actuator can do (its [`Profile`]), writes it, reads the file again, plays it
 //! through the profile and compares that with the asset's own samples.
 //!
@@ -24,6 +24,7 @@ mod error;
 mod export;
 mod format;
 mod formats;
+pub mod gltf;
 pub mod haptic;
 pub mod hatt;
 mod heard;
@@ -42,7 +43,7 @@ pub use ahap::Ahap;
 pub use android::Android;
 pub use curve::{Point, simplified, value_at};
 pub use error::{ExchangeError, Fault, Missing};
-pub use export::{Coding, Export, Exported, Job, Played, Written, export, profile_names};
+pub use export::{AssetJob, Coding, Export, Exported, Job, Played, Written, export, profile_names};
 pub use format::{
     Format, Held, Naming, ReadAsset, ReadPositions, ReadSignal, Reads, Sampling, Signal,
     WriteAsset, WriteSignal, Writes,

@@ -106,9 +106,9 @@ pub(crate) fn android(job: &Job<'_>) -> Result<Written, ExchangeError> {
     let read = Android::from_bytes(&json).map_err(|fault| job.own(fault))?;
     read.check_device(job.profile)
         .map_err(|fault| job.own(fault))?;
-    let bytes = match job.export.kotlin {
-        true => effect.to_kotlin(&job.playing.asset.manifest().name),
-        false => json,
+    let bytes = match job.export.extension {
+        Some("kt") => effect.to_kotlin(&job.playing.asset.manifest().name),
+        _ => json,
     };
     let richest =
         "The loss is that of the envelope of WaveformEnvelopeBuilder, the richest of the three.";

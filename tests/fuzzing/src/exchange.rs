@@ -3,7 +3,8 @@
 use htex_exchange::haptic::Metadata;
 use htex_exchange::hatt::{Imported, asset, read};
 use htex_exchange::{
-    Ahap, Haptic, Hjif, MOST_S, PROFILES, Pattern, Physical, combined, recording_of,
+    Ahap, Export, Format, Haptic, Hjif, Import, MOST_S, PROFILES, Pattern, Physical, combined,
+    export, import, recording_of,
 };
 
 use crate::promise::sentence;
@@ -79,6 +80,35 @@ pub fn hjif(input: &[u8]) -> bool {
         assert_eq!(again.left_out(), file.left_out());
     }
     recorded("fuzzed.hjif", input, read.is_ok())
+}
+
+/// A glTF file: its asset, if it is one, comes back from a file that is written of it, bit for bit.
+pub fn gltf(input: &[u8]) -> bool {
+    let read = htex_exchange::gltf::read(input);
+    if let Ok(texture) = &read {
+        assert!(texture.bytes.len() <= input.len(), "bytes from nowhere");
+    }
+    let registry = htex::Registry::builtin();
+    let imported = match import("fuzzed.glb", input, &Import::default(), &registry) {
+        Ok(imported) => imported,
+        Err(error) => return refused(&error),
+    };
+    let bytes = imported.to_bytes().expect("it is held");
+    assert_eq!(
+        read.ok().map(|texture| texture.bytes).as_ref(),
+        Some(&bytes)
+    );
+    let format = Format::named("gltf").expect("it is in the table");
+    let mut how = Export::new(format);
+    how.file = Some(&bytes);
+    let asset = htex::Asset::with_registry(imported.asset, registry);
+    let again = match export(&asset, &how) {
+        Ok(exported) => exported.bytes,
+        Err(error) => return refused(&error),
+    };
+    let again = htex_exchange::gltf::read(&again).expect("what was written is read");
+    assert_eq!(again.bytes, bytes);
+    true
 }
 
 fn same_end(before: &Pattern, after: &Pattern) {

@@ -52,6 +52,7 @@ pub fn seeds() -> Vec<Seed> {
     seeds.extend(parts());
     seeds.extend(models_of_others());
     seeds.extend(signals_of_others());
+    seeds.extend(meshes(&registry));
     seeds
 }
 
@@ -140,6 +141,22 @@ fn signals_of_others() -> Vec<Seed> {
         seed("hjif", "way", way.to_vec()),
         seed("hjif", "bands", bands.to_vec()),
     ]
+}
+
+/// Meshes whose material carries an asset of the first model: a container, and a text with its buffer.
+fn meshes(registry: &Registry) -> Vec<Seed> {
+    let model = registry.models().first().expect("a built-in model");
+    let bytes = asset(model).to_bytes().expect("a sound asset");
+    let opened = htex::Asset::from_bytes(&bytes).expect("what was written opens");
+    let format = htex_exchange::Format::named("gltf").expect("it is in the table");
+    let mesh = |extension| {
+        let mut how = htex_exchange::Export::new(format);
+        how.extension = Some(extension);
+        how.file = Some(&bytes);
+        let made = htex_exchange::export(&opened, &how).expect("an asset is exported");
+        ("gltf", extension.to_owned(), made.bytes)
+    };
+    ["glb", "gltf"].map(mesh).to_vec()
 }
 
 /// Part files of takes, as they are and as what the target builds them from: a second of a finger, with a tracker's rows.

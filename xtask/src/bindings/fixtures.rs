@@ -33,7 +33,7 @@ const SCENES: [&str; 2] = ["two-swatches", "electrovibration"];
 /// Textures of the library beside those of the fixtures: more than a page of its index holds.
 const COPIES: usize = 999;
 
-/// Writes an asset of six models (`vinyl.htex`), one that brings its model along (`bursts.htex`), their samples at 48 kHz, the
+/// Writes an asset of six models (`vinyl.htex`), a mesh that carries it (`vinyl.glb`), an asset that brings its model along (`bursts.htex`), their samples at 48 kHz, the
 /// spectrum of Bands, what the command tells of the asset, a library (`many.htexlib`) and its list, scenes with their samples and
 /// plans, the models as modules, and a module that does not return.
 pub(super) fn write(folder: &Path) -> Result<()> {
@@ -71,6 +71,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
         "response.csv",
     ])?;
     htex(&["fit", "vinyl.csv", "-o", "vinyl.htex"])?;
+    htex(&["export", "vinyl.htex", "--to", "gltf", "-o", "vinyl.glb"])?;
     let embedded = ["--embed-plugin", "bursts.wasm", "-o", "bursts.htex"];
     htex(
         &[

@@ -46,6 +46,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
             "scene-browser.test.mjs",
             "author-browser.test.mjs",
             "browser.test.mjs",
+            "mesh.test.mjs",
             "bundles.test.mjs",
         ])
         .env("HTEX_PACKAGE", &package)

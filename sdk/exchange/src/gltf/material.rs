@@ -1,0 +1,61 @@
+//! The extension's properties.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::error::Fault;
+
+/// The extension's name in a glTF file.
+pub const EXTENSION: &str = "HTEX_texture";
+
+/// The extension `HTEX_texture` of a material of glTF 2.0: what a finger feels that slides over surfaces of this material. Properties that are
+/// not described here, `extensions` and `extras` among them, are allowed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase")]
+pub struct Material {
+    /// Index of the buffer view whose bytes are a `.htex` file.
+    pub buffer_view: u32,
+    /// Media type of these bytes.
+    pub mime_type: MediaType,
+    /// Number of the set of texture coordinates that say where on the surface a point is: n of `TEXCOORD_n`.
+    #[serde(default)]
+    pub tex_coord: u32,
+    /// Millimetres of the surface along one unit of the first and of the second texture coordinate. Without it, the geometry says how long a
+    /// way is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0}))]
+    pub tex_coord_size_mm: Option<[f64; 2]>,
+}
+
+/// Media types of assets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum MediaType {
+    /// A `.htex` file.
+    #[serde(rename = "application/vnd.htex+zip")]
+    Htex,
+}
+
+impl Material {
+    /// Checks what types do not say; `pointer` leads to the extension.
+    pub(super) fn check(&self, pointer: &str) -> Result<(), Fault> {
+        let sizes = self.tex_coord_size_mm.iter().flatten();
+        for (i, size_mm) in sizes.enumerate() {
+            // Not a number is neither.
+            if !(*size_mm > 0.0 && size_mm.is_finite()) {
+                return Err(Fault::new(
+                    format!("{pointer}/texCoordSizeMm/{i}"),
+                    format!("{size_mm} mm; a surface is longer than 0 mm"),
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Returns the JSON Schema of the extension: `spec/schemas/gltf-material-1.json`.
+#[must_use]
+pub fn material_schema() -> Value {
+    let title = "extension HTEX_texture of materials of glTF 2.0";
+    htex_schema::document::<Material>("gltf-material-1.json", title)
+}

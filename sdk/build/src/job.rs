@@ -10,13 +10,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use htex_author::recording::{ReadError, ReadProblem, Recording, read_recording};
-use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
+use htex_author::settings::{FitSettings, Metadata, ReadingSettings, SettingsError};
 use htex_author::{
-    AuthorError, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
+    AssetRequest, AuthorError, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
 };
-use htex_files::{AtFile, FileError};
+use htex_exchange::{Import, MOST_BYTES, Physical, Profile, SignalSettings, signal_request};
+use htex_files::{AtFile, FileError, read_regular};
 use htex_format::Asset;
 use htex_host::{Registry, Search, WasmLimits};
+use htex_play::Motion;
 use htex_storage::Location;
 use serde::{Deserialize, Serialize};
 
@@ -26,15 +28,16 @@ use crate::error::AtPlace;
 use crate::findings::by_code;
 use crate::gates::check_gates;
 use crate::hashes::{Hashed, Hashes, Stamp, changed, hash_local};
+use crate::imports::{FileKind, strongest};
 use crate::inputs::slashed;
 use crate::made::{Made, Outcome, Record};
 use crate::plan::PlannedTexture;
 use crate::recipe::Gates;
 use crate::sound::sound;
-use crate::thumbnail::thumbnail;
+use crate::thumbnail::{Thumbnail, of_magnitudes, thumbnail};
 
 /// The meaning of jobs and of what is made of them. Another one makes everything again.
-const JOB: &str = "htex-job/4";
+const JOB: &str = "htex-job/5";
 
 /// What is felt of the difference from the recordings, of each model at its worst recorded condition.
 fn felt(fitted: &FittedAsset) -> BTreeMap<String, FeltError> {
@@ -95,13 +98,19 @@ impl Named {
     }
 }
 
-/// The fit of one texture.
+/// What makes one texture: a fit, or an import.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Job {
     /// Kind and version of the job, and the program that fits.
     pub program: String,
     pub texture: String,
     pub recordings: Vec<JobRecording>,
+    /// What these files are.
+    #[serde(default)]
+    pub kind: FileKind,
+    /// What signals do not say.
+    #[serde(default)]
+    pub signal: SignalSettings,
     /// How they are read; files are in `files`.
     pub reading: ReadingSettings,
     pub fit: FitSettings,
@@ -217,6 +226,8 @@ impl Job {
             program: program.to_owned(),
             texture: texture.name.clone(),
             recordings: recordings.collect::<Result<_, _>>()?,
+            kind: texture.kind,
+            signal: texture.settings.signal.clone(),
             response: reading.response.clone().map(file).transpose()?,
             reading,
             fit: texture.settings.fit(),
@@ -258,7 +269,10 @@ impl Job {
                 "recordings",
                 serde_json::json!(recordings.collect::<Vec<_>>()),
             ),
-            ("reading", serde_json::json!([reading, response])),
+            (
+                "reading",
+                serde_json::json!([reading, response, self.kind, self.signal]),
+            ),
             ("options", serde_json::json!([self.fit, plays])),
             ("plugins", serde_json::json!([plugins, self.embedded])),
             ("program", serde_json::json!(self.program)),
@@ -268,7 +282,7 @@ impl Job {
 
     /// What [`Self::check`] depends on.
     pub(crate) fn checked_by(&self, gates: &Gates) -> String {
-        serde_json::json!([self.reading, self.fit, self.plugins, gates]).to_string()
+        serde_json::json!([self.kind, self.reading, self.fit, self.plugins, gates]).to_string()
     }
 
     /// Checks plugins, settings and gates as far as that is possible without a fit.
@@ -281,6 +295,10 @@ impl Job {
         let here = without.copied(&workbench.elsewhere)?;
         let job = here.as_ref().unwrap_or(&without);
         let registry = workbench.registry(job).at("plugins")?;
+        if self.kind == FileKind::Asset {
+            // It is not fitted, and the plan has refused settings and gates of fits.
+            return Ok(());
+        }
         let reading = ReadingSettings {
             response: None,
             ..self.reading.clone()
@@ -354,42 +372,71 @@ impl Job {
     fn run_here(&self, workbench: &mut Workbench) -> Result<Made, BuildError> {
         self.check_files()?;
         let registry = workbench.registry(self);
-        let fitted = registry.and_then(|registry| self.fitted(registry));
+        let made = registry.and_then(|registry| self.made(registry));
         // What was read is what was hashed, or the key is wrong.
         self.check_files()?;
-        Ok(match fitted {
-            Err(error) => Made::refused(outcome(error)?),
-            Ok((fitted, asset, sound)) => Made {
-                record: Record {
-                    outcome: Outcome::Fitted,
-                    segments: fitted.spectra.iter().map(|s| s.segments).collect(),
-                    felt: felt(&fitted),
-                    findings: by_code(&fitted.findings),
-                    thumbnail: fitted.spectra.first().map(thumbnail).unwrap_or_default(),
-                },
-                asset,
-                sound,
-            },
-        })
+        match made {
+            Err(error) => Ok(Made::refused(outcome(error)?)),
+            Ok(made) => Ok(made),
+        }
     }
 
-    fn fitted(&self, registry: &Registry) -> Result<Fitted, Box<dyn Error>> {
-        let reading = ReadingSettings {
-            tracker: Some(self.trackers().map(|file| file.path.clone()).collect()),
-            ..self.reading.clone()
+    fn made(&self, registry: &Registry) -> Result<Made, Box<dyn Error>> {
+        let (mut asset, record, motion) = match self.kind {
+            FileKind::Asset => self.imported(registry)?,
+            FileKind::Recording | FileKind::Signal => self.fitted(registry)?,
         };
-        let request = self
-            .fit
-            .request(registry, &reading, UNNAMED, &self.program)?;
-        let takes = self.recordings.iter().map(|recording| self.take(recording));
-        let takes = takes.collect::<Result<Vec<Take>, _>>()?;
-        let mut fitted = fit_asset(&takes, &request)?;
         let plays = Metadata {
             contact: self.metadata.contact,
             law: self.metadata.law,
             ..Metadata::default()
         };
-        plays.apply(&mut fitted.asset.manifest);
+        plays.apply(&mut asset.manifest);
+        let travelling = self.plugins.len() - self.embedded.min(self.plugins.len());
+        let files: Vec<PathBuf> = self.plugins[travelling..]
+            .iter()
+            .map(|f| f.path.clone())
+            .collect();
+        embed_plugins(&mut asset, registry, &files, None)?;
+        let bytes = asset.to_bytes()?;
+        let sound = sound(&bytes, motion, registry)?;
+        Ok(Made {
+            record,
+            asset: bytes,
+            sound,
+        })
+    }
+
+    /// Takes the texture that a file of another format states.
+    fn imported(&self, registry: &Registry) -> Result<Unfinished, Box<dyn Error>> {
+        let [recording] = &self.recordings[..] else {
+            return Err("a texture that is stated has one file".into());
+        };
+        let bytes = recording.bytes()?;
+        let how = Import {
+            name: UNNAMED,
+            tool: &self.program,
+            ..Import::default()
+        };
+        let asset = htex_exchange::import(&recording.name, &bytes, &how, registry)?.asset;
+        let manifest = &asset.manifest;
+        let motion = manifest.representations.first();
+        let motion = motion.and_then(|r| strongest(r, &manifest.conditions));
+        let record = Record {
+            outcome: Outcome::Fitted,
+            segments: Vec::new(),
+            felt: BTreeMap::new(),
+            findings: Vec::new(),
+            thumbnail: played(&asset, motion, registry)?,
+        };
+        Ok((asset, record, motion))
+    }
+
+    fn fitted(&self, registry: &Registry) -> Result<Unfinished, Box<dyn Error>> {
+        let takes = self.recordings.iter().map(|recording| self.take(recording));
+        let request = self.request(registry)?;
+        let takes = takes.collect::<Result<Vec<Take>, _>>()?;
+        let mut fitted = fit_asset(&takes, &request)?;
         for source in &mut fitted.asset.manifest.provenance.recordings {
             let mut recordings = self.recordings.iter();
             if let Some(recording) = recordings.find(|recording| recording.name == source.file) {
@@ -398,19 +445,37 @@ impl Job {
                 source.blake3 = Some(recording.file.hashed.blake3.clone());
             }
         }
-        let travelling = self.plugins.len() - self.embedded.min(self.plugins.len());
-        let files: Vec<PathBuf> = self.plugins[travelling..]
-            .iter()
-            .map(|f| f.path.clone())
-            .collect();
-        embed_plugins(&mut fitted.asset, registry, &files, None)?;
-        let bytes = fitted.asset.to_bytes()?;
-        let sound = sound(&bytes, registry)?;
-        Ok((fitted, bytes, sound))
+        let record = Record {
+            outcome: Outcome::Fitted,
+            segments: fitted.spectra.iter().map(|s| s.segments).collect(),
+            felt: felt(&fitted),
+            findings: by_code(&fitted.findings),
+            thumbnail: fitted.spectra.first().map(thumbnail).unwrap_or_default(),
+        };
+        Ok((fitted.asset, record, None))
     }
 
-    /// Reads a recording.
+    /// Returns the request of the fit.
+    fn request(&self, registry: &Registry) -> Result<AssetRequest, SettingsError> {
+        if self.kind == FileKind::Signal {
+            let reading = ReadingSettings::default();
+            let request = self
+                .fit
+                .request(registry, &reading, UNNAMED, &self.program)?;
+            return Ok(signal_request(request, self.signal.full_scale));
+        }
+        let reading = ReadingSettings {
+            tracker: Some(self.trackers().map(|file| file.path.clone()).collect()),
+            ..self.reading.clone()
+        };
+        self.fit.request(registry, &reading, UNNAMED, &self.program)
+    }
+
+    /// Reads a recording, or a signal.
     fn take(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
+        if self.kind == FileKind::Signal {
+            return self.signal(recording);
+        }
         let reading = ReadingSettings {
             tracker: recording
                 .tracker
@@ -438,6 +503,27 @@ impl Job {
             }) => Err(Box::new(BuildError::from(FileError::reading(file, error)))),
             Err(error) => Err(error.into()),
         }
+    }
+
+    /// Reads a signal of another format.
+    fn signal(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
+        let bytes = recording.bytes()?;
+        let physical = Physical {
+            full_scale: self.signal.full_scale,
+            quantity: self.reading.quantity.unwrap_or_default(),
+            speed_mm_s: recording.speed_mm_s,
+            force_n: recording.force_n,
+        };
+        let profile = self.signal.profile.as_deref().map(Profile::find);
+        let profile = profile.transpose()?;
+        let read = htex_exchange::recording_of(&recording.name, &bytes, &physical, profile)?;
+        Ok(Take {
+            recording: read,
+            given: Exploration {
+                speed_mm_s: recording.speed_mm_s,
+                force_n: recording.force_n,
+            },
+        })
     }
 
     fn trackers(&self) -> impl Iterator<Item = &JobFile> {
@@ -475,8 +561,28 @@ impl Job {
     }
 }
 
-/// The fit, its asset as bytes, and its sound.
-type Fitted = (FittedAsset, Vec<u8>, Vec<u8>);
+impl JobRecording {
+    /// Reads a file of another format.
+    fn bytes(&self) -> Result<Vec<u8>, BuildError> {
+        let path = &self.file.path;
+        Ok(read_regular(path, MOST_BYTES).reading(path)?)
+    }
+}
+
+/// An asset without plugins, what is known of it, and the motion of its sound.
+type Unfinished = (Asset, Record, Option<Motion>);
+
+/// The spectrum that an asset plays at a motion, else at its first condition.
+fn played(
+    asset: &Asset,
+    motion: Option<Motion>,
+    registry: &Registry,
+) -> Result<Thumbnail, htex_play::Error> {
+    let frequency_hz = asset.manifest.band.grid_hz();
+    let asset = htex_play::Asset::with_registry(asset.clone(), registry.clone());
+    let magnitude = asset.magnitude(None, motion, &frequency_hz)?;
+    Ok(of_magnitudes(&frequency_hz, &magnitude))
+}
 
 /// Returns the result that the error of a fit is. A [`BuildError`] is none: a file that cannot be read now may be read later.
 fn outcome(error: Box<dyn Error>) -> Result<Outcome, BuildError> {
@@ -572,7 +678,7 @@ fn told_apart(texture: &PlannedTexture) -> Vec<String> {
 }
 
 /// The path of a recording, or of a URI without its query.
-fn shown_path(file: &Path) -> PathBuf {
+pub(crate) fn shown_path(file: &Path) -> PathBuf {
     match elsewhere(file) {
         Ok(Some(location)) => {
             let text = location.to_string();

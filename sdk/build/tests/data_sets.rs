@@ -219,14 +219,24 @@ fn strokes_of_textsense() {
         wav.finalize().unwrap();
     }
     let report = set.built_with_a_licence();
-    assert_eq!(names(&report), ["text24", "text3", "text54", "text9"]);
+    assert_eq!(report.textures.len(), 20);
     for texture in &report.textures {
-        let asset = texture.asset.as_ref().unwrap();
-        assert_eq!(
-            (asset.conditions, asset.speed_mm_s),
-            (5, Some([20.0, 60.0]))
-        );
+        let speed = texture.asset.as_ref().unwrap().speed_mm_s.unwrap()[0];
+        let (name, stated) = texture.name.split_once('/').unwrap();
+        assert!(name.starts_with("text") && stated == speed.to_string());
     }
+    // With a force, a texture has all of its speeds.
+    let recipe = fs::read_to_string(set.path("library.toml")).unwrap();
+    let at = "name = \"{texture}\"\nat = { force_n = 0.5 }";
+    let recipe = recipe.replace("name = \"{texture}/{speed_mm_s}\"", at);
+    set.write("library.toml", recipe);
+    let report = set.built();
+    assert_eq!(names(&report), ["text24", "text3", "text54", "text9"]);
+    let asset = report.textures[0].asset.as_ref().unwrap();
+    assert_eq!(
+        (asset.conditions, asset.speed_mm_s),
+        (5, Some([20.0, 60.0]))
+    );
 }
 
 /// The form of SENS3 is filled in with columns of forces and places; a column that is not there is named, with those that are.

@@ -231,17 +231,19 @@ fn by_keys(error: &ExchangeError) -> String {
     }
 }
 
-/// The motion at which a representation is strongest, which stands for a texture whose first conditions may be silent.
+/// The sliding motion at which a representation is strongest, which stands for a texture whose first conditions may be silent.
 pub(crate) fn strongest(
     representation: &Representation,
     conditions: &[Condition],
 ) -> Option<Motion> {
-    let by_level = |a: &&htex_format::AtCondition, b: &&htex_format::AtCondition| {
-        a.level_rms.total_cmp(&b.level_rms)
-    };
-    let at = representation.at.iter().max_by(by_level)?;
-    let condition = conditions.get(at.condition)?;
-    Some(Motion::new(condition.speed_mm_s?, condition.force_n?))
+    let sliding = representation.at.iter().filter_map(|at| {
+        let condition = conditions.get(at.condition)?;
+        let (speed_mm_s, force_n) = (condition.speed_mm_s?, condition.force_n?);
+        let slides = speed_mm_s > 0.0 && force_n > 0.0;
+        slides.then(|| (at.level_rms, Motion::new(speed_mm_s, force_n)))
+    });
+    let strongest = sliding.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    Some(strongest.1)
 }
 
 #[cfg(test)]

@@ -310,8 +310,7 @@ fn textures_without_a_licence_are_not_packed() {
     let run = place.run(&[&pack[..], &["--unlicensed"]].concat());
     assert_eq!(run.code(), 0, "{}", run.error());
     assert!(run.text().starts_with("more.htexlib: 5 textures in "));
-    let bare = "all/bare.htex";
-    let edit = ["edit", bare, "-o", bare, "--license", "MIT"];
+    let edit = ["edit", "all/bare.htex", "--license", "MIT"];
     assert_eq!(place.run(&edit).code(), 0);
     assert_eq!(place.run(&one).code(), 0);
 }

@@ -48,6 +48,7 @@ mod job;
 mod kept;
 mod keys;
 mod made;
+mod making;
 mod plan;
 mod publish;
 mod reasons;

@@ -74,7 +74,7 @@ impl Unlicensed {
             count => format!("{file} and {} other textures state no licence", count - 1),
         };
         Err(Failure::Other(format!(
-            "{which}, and a library is passed on; state it (htex edit {file} --license SPDX -o {file}), or pack with --unlicensed"
+            "{which}, and a library is passed on; state it (htex edit {file} --license SPDX), or pack with --unlicensed"
         )))
     }
 }

@@ -29,6 +29,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         "htex-build",
         &[
             "htex-author",
+            "htex-exchange",
             "htex-files",
             "htex-finding",
             "htex-format",

@@ -25,7 +25,7 @@ use crate::wasm_limits::WasmLimit;
 
 /// Build a library of textures from a recipe.
 ///
-/// Fits the recordings that the recipe names and writes DIR/NAME.htexlib, DIR/textures, DIR/build-report.json and the
+/// Fits the recordings that the recipe names, imports the files that `htex import` takes, and writes DIR/NAME.htexlib, DIR/textures, DIR/build-report.json and the
 /// catalogue DIR/index.html. A build that fails writes its error into the report. What has been fitted stays in DIR/.htex-build: a build that was killed goes on where it was, and one
 /// that is run again fits what changed. Recordings and other files of a recipe may be URIs, too.
 ///

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use htex_author::settings::{FitSettings, Metadata};
-use htex_exchange::{Format, ImportError, MOST_BYTES, Physical, Profile, imported, profile_names};
+use htex_exchange::{Format, ImportError, MOST_BYTES, Physical, Profile, SignalSettings, imported};
 use htex_files::{AtFile, read_regular};
 use htex_format::Quantity;
 
@@ -51,9 +51,8 @@ pub(crate) struct Import {
 /// Settings of which each format takes its own.
 #[derive(Args)]
 struct Settings {
-    /// The unit at full scale, which the file calls 1: newtons, or m/s² with --quantity acceleration
-    #[arg(long, value_name = "UNIT", display_order = 1)]
-    full_scale: Option<f64>,
+    #[command(flatten)]
+    signal: SignalSettings,
 
     /// What the full scale is of
     #[arg(long, value_enum, default_value_t, display_order = 1)]
@@ -66,10 +65,6 @@ struct Settings {
     /// Its normal force, N
     #[arg(long, value_name = "N", display_order = 1)]
     force: Option<f64>,
-
-    /// The actuator whose range the file's frequencies are positions in [default: the format's own]
-    #[arg(long, value_name = "NAME", value_parser = profile_names(), display_order = 1)]
-    profile: Option<String>,
 
     #[command(flatten)]
     fit: FitSettings,
@@ -105,15 +100,16 @@ impl Import {
         let settings = &self.given.values;
         let mut fit = settings.fit.clone();
         fit.add_options(&settings.option)?;
+        let profile = settings.signal.profile.as_deref();
         Ok(htex_exchange::Import {
             name,
             physical: Physical {
-                full_scale: settings.full_scale,
+                full_scale: settings.signal.full_scale,
                 quantity: settings.quantity,
                 speed_mm_s: settings.speed,
                 force_n: settings.force,
             },
-            profile: settings.profile.as_deref().map(Profile::find).transpose()?,
+            profile: profile.map(Profile::find).transpose()?,
             fit,
             metadata: self.metadata.clone(),
             tool,

@@ -88,6 +88,18 @@ fn a_signal_is_imported_with_what_it_does_not_say() {
     );
     run(&place, "validate hum.htex", 0);
 
+    // A licence is asked for.
+    assert!(!error.contains("no licence"), "{error}");
+    let (_, error) = run(
+        &place,
+        &format!("import hum.haptic {GIVEN} --model bands -o bare.htex"),
+        0,
+    );
+    assert!(
+        error.contains("It states no licence") && error.contains("--license"),
+        "{error}"
+    );
+
     // What the file does not say is asked for, by flags.
     let (_, error) = run(&place, "import hum.haptic --speed 80 -o other.htex", 2);
     assert!(

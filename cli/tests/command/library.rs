@@ -285,6 +285,36 @@ fn what_cannot_be_packed_is_refused_and_nothing_is_left() {
     assert_eq!(std::fs::read(place.path("all.htexlib")).unwrap(), kept);
 }
 
+/// A texture that states no licence is packed where a person says so, and the message names it and what to do.
+#[test]
+fn textures_without_a_licence_are_not_packed() {
+    let place = packed();
+    for name in ["all/bare.htex", "all/cloth/bare.htex"] {
+        let edit = ["edit", "all/vinyl.htex", "-o", name, "--license", ""];
+        assert_eq!(place.run(&edit).code(), 0);
+    }
+    let before = entries(&place.path(""));
+    let pack = ["lib", "pack", "more.htexlib", "all"];
+    let run = place.run(&pack);
+    assert_eq!(run.code(), 1);
+    let error = run.error();
+    assert!(
+        error.contains("bare.htex and another texture state no licence"),
+        "{error}"
+    );
+    assert!(error.contains("--license SPDX") && error.contains("--unlicensed"));
+    let one = ["lib", "pack", "one.htexlib", "all/bare.htex"];
+    let error = place.run(&one).error();
+    assert!(error.contains("all/bare.htex states no licence"), "{error}");
+    assert_eq!(entries(&place.path("")), before);
+    let run = place.run(&[&pack[..], &["--unlicensed"]].concat());
+    assert_eq!(run.code(), 0, "{}", run.error());
+    assert!(run.text().starts_with("more.htexlib: 5 textures in "));
+    let edit = ["edit", "all/bare.htex", "--license", "MIT"];
+    assert_eq!(place.run(&edit).code(), 0);
+    assert_eq!(place.run(&one).code(), 0);
+}
+
 /// What `lib unpack` refuses of a file (sizes, names, hashes), `htex validate` and `lib verify` refuse, too: a valid file unpacks whole.
 #[test]
 fn what_is_valid_unpacks() {

@@ -30,7 +30,7 @@ pub(crate) fn missed(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
         missed.push(Missed::new("min_segments", reason));
     }
     if gates.license == Some(true) && asset.license.is_none() {
-        let reason = "it states no licence; set `license` to an SPDX expression such as CC0-1.0";
+        let reason = "it states no licence; set `license` to an SPDX expression such as CC0-1.0, or `gates.license` to false";
         missed.push(Missed::new("license", reason));
     }
     if let Some(most) = gates.max_bytes

@@ -4,16 +4,14 @@
 //! metadata but those that decide how it plays (`contact`, `law`): they are laid over what was fitted when it is put together
 //! ([`Job::named`]).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use htex_author::recording::{ReadError, ReadProblem, Recording, read_recording};
+use htex_author::AuthorError;
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
-use htex_author::{
-    AuthorError, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
-};
+use htex_exchange::SignalSettings;
 use htex_files::{AtFile, FileError};
 use htex_format::Asset;
 use htex_host::{Registry, Search, WasmLimits};
@@ -23,33 +21,16 @@ use serde::{Deserialize, Serialize};
 use crate::BuildError;
 use crate::elsewhere::{Elsewhere, elsewhere, is_elsewhere, joined};
 use crate::error::AtPlace;
-use crate::findings::by_code;
 use crate::gates::check_gates;
 use crate::hashes::{Hashed, Hashes, Stamp, changed, hash_local};
+use crate::imports::FileKind;
 use crate::inputs::slashed;
-use crate::made::{Made, Outcome, Record};
+use crate::made::{Made, Outcome};
 use crate::plan::PlannedTexture;
 use crate::recipe::Gates;
-use crate::sound::sound;
-use crate::thumbnail::thumbnail;
 
 /// The meaning of jobs and of what is made of them. Another one makes everything again.
-const JOB: &str = "htex-job/4";
-
-/// What is felt of the difference from the recordings, of each model at its worst recorded condition.
-fn felt(fitted: &FittedAsset) -> BTreeMap<String, FeltError> {
-    let models = fitted.asset.manifest.representations.iter();
-    let worst = models
-        .zip(&fitted.felt)
-        .filter_map(|(representation, felt)| {
-            let worst = felt.iter().copied().flatten().reduce(FeltError::worse)?;
-            Some((representation.model.clone(), worst))
-        });
-    worst.collect()
-}
-
-/// The name of a texture until it is put together.
-const UNNAMED: &str = "texture";
+const JOB: &str = "htex-job/5";
 
 /// The plugins that a person and a recipe name, and where the recipe is.
 #[derive(Debug)]
@@ -95,13 +76,19 @@ impl Named {
     }
 }
 
-/// The fit of one texture.
+/// What makes one texture: a fit, or an import.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Job {
     /// Kind and version of the job, and the program that fits.
     pub program: String,
     pub texture: String,
     pub recordings: Vec<JobRecording>,
+    /// What these files are.
+    #[serde(default)]
+    pub kind: FileKind,
+    /// What signals do not say.
+    #[serde(default)]
+    pub signal: SignalSettings,
     /// How they are read; files are in `files`.
     pub reading: ReadingSettings,
     pub fit: FitSettings,
@@ -217,6 +204,8 @@ impl Job {
             program: program.to_owned(),
             texture: texture.name.clone(),
             recordings: recordings.collect::<Result<_, _>>()?,
+            kind: texture.kind,
+            signal: texture.settings.signal.clone(),
             response: reading.response.clone().map(file).transpose()?,
             reading,
             fit: texture.settings.fit(),
@@ -258,7 +247,10 @@ impl Job {
                 "recordings",
                 serde_json::json!(recordings.collect::<Vec<_>>()),
             ),
-            ("reading", serde_json::json!([reading, response])),
+            (
+                "reading",
+                serde_json::json!([reading, response, self.kind, self.signal]),
+            ),
             ("options", serde_json::json!([self.fit, plays])),
             ("plugins", serde_json::json!([plugins, self.embedded])),
             ("program", serde_json::json!(self.program)),
@@ -268,7 +260,7 @@ impl Job {
 
     /// What [`Self::check`] depends on.
     pub(crate) fn checked_by(&self, gates: &Gates) -> String {
-        serde_json::json!([self.reading, self.fit, self.plugins, gates]).to_string()
+        serde_json::json!([self.kind, self.reading, self.fit, self.plugins, gates]).to_string()
     }
 
     /// Checks plugins, settings and gates as far as that is possible without a fit.
@@ -281,6 +273,10 @@ impl Job {
         let here = without.copied(&workbench.elsewhere)?;
         let job = here.as_ref().unwrap_or(&without);
         let registry = workbench.registry(job).at("plugins")?;
+        if self.kind == FileKind::Asset {
+            // It is not fitted, and the plan has refused settings and gates of fits.
+            return Ok(());
+        }
         let reading = ReadingSettings {
             response: None,
             ..self.reading.clone()
@@ -354,96 +350,13 @@ impl Job {
     fn run_here(&self, workbench: &mut Workbench) -> Result<Made, BuildError> {
         self.check_files()?;
         let registry = workbench.registry(self);
-        let fitted = registry.and_then(|registry| self.fitted(registry));
+        let made = registry.and_then(|registry| self.made(registry));
         // What was read is what was hashed, or the key is wrong.
         self.check_files()?;
-        Ok(match fitted {
-            Err(error) => Made::refused(outcome(error)?),
-            Ok((fitted, asset, sound)) => Made {
-                record: Record {
-                    outcome: Outcome::Fitted,
-                    segments: fitted.spectra.iter().map(|s| s.segments).collect(),
-                    felt: felt(&fitted),
-                    findings: by_code(&fitted.findings),
-                    thumbnail: fitted.spectra.first().map(thumbnail).unwrap_or_default(),
-                },
-                asset,
-                sound,
-            },
-        })
-    }
-
-    fn fitted(&self, registry: &Registry) -> Result<Fitted, Box<dyn Error>> {
-        let reading = ReadingSettings {
-            tracker: Some(self.trackers().map(|file| file.path.clone()).collect()),
-            ..self.reading.clone()
-        };
-        let request = self
-            .fit
-            .request(registry, &reading, UNNAMED, &self.program)?;
-        let takes = self.recordings.iter().map(|recording| self.take(recording));
-        let takes = takes.collect::<Result<Vec<Take>, _>>()?;
-        let mut fitted = fit_asset(&takes, &request)?;
-        let plays = Metadata {
-            contact: self.metadata.contact,
-            law: self.metadata.law,
-            ..Metadata::default()
-        };
-        plays.apply(&mut fitted.asset.manifest);
-        for source in &mut fitted.asset.manifest.provenance.recordings {
-            let mut recordings = self.recordings.iter();
-            if let Some(recording) = recordings.find(|recording| recording.name == source.file) {
-                // A folder has no meaning on other machines; the hash tells recordings of one name apart.
-                source.file = recording.file.name();
-                source.blake3 = Some(recording.file.hashed.blake3.clone());
-            }
+        match made {
+            Err(error) => Ok(Made::refused(outcome(error)?)),
+            Ok(made) => Ok(made),
         }
-        let travelling = self.plugins.len() - self.embedded.min(self.plugins.len());
-        let files: Vec<PathBuf> = self.plugins[travelling..]
-            .iter()
-            .map(|f| f.path.clone())
-            .collect();
-        embed_plugins(&mut fitted.asset, registry, &files, None)?;
-        let bytes = fitted.asset.to_bytes()?;
-        let sound = sound(&bytes, registry)?;
-        Ok((fitted, bytes, sound))
-    }
-
-    /// Reads a recording.
-    fn take(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
-        let reading = ReadingSettings {
-            tracker: recording
-                .tracker
-                .as_ref()
-                .map(|file| vec![file.path.clone()]),
-            ..self.reading.clone()
-        };
-        let options = reading.read_options(1)?.pop().unwrap_or_default();
-        let given = Exploration {
-            speed_mm_s: recording.speed_mm_s,
-            force_n: recording.force_n,
-        };
-        let file = &recording.file.path;
-        match read_recording(file, &options) {
-            Ok(read) => Ok(Take {
-                recording: Recording {
-                    source: recording.name.clone(),
-                    ..read
-                },
-                given,
-            }),
-            Err(ReadError {
-                problem: ReadProblem::Io(error),
-                ..
-            }) => Err(Box::new(BuildError::from(FileError::reading(file, error)))),
-            Err(error) => Err(error.into()),
-        }
-    }
-
-    fn trackers(&self) -> impl Iterator<Item = &JobFile> {
-        self.recordings
-            .iter()
-            .filter_map(|recording| recording.tracker.as_ref())
     }
 
     fn files(&self) -> impl Iterator<Item = &JobFile> {
@@ -474,9 +387,6 @@ impl Job {
         Ok(())
     }
 }
-
-/// The fit, its asset as bytes, and its sound.
-type Fitted = (FittedAsset, Vec<u8>, Vec<u8>);
 
 /// Returns the result that the error of a fit is. A [`BuildError`] is none: a file that cannot be read now may be read later.
 fn outcome(error: Box<dyn Error>) -> Result<Outcome, BuildError> {
@@ -572,7 +482,7 @@ fn told_apart(texture: &PlannedTexture) -> Vec<String> {
 }
 
 /// The path of a recording, or of a URI without its query.
-fn shown_path(file: &Path) -> PathBuf {
+pub(crate) fn shown_path(file: &Path) -> PathBuf {
     match elsewhere(file) {
         Ok(Some(location)) => {
             let text = location.to_string();

@@ -1,5 +1,8 @@
 //! Recipes: recordings in, a checked library of textures out.
 //!
+//! A recording may also be a file of another haptic format: a signal, which is fitted, or a file that states its texture, which is taken as it is
+//! (`imports`).
+//!
 //! A recipe is data, a build is a function of it. The key of a texture is the hash of everything its bytes depend on: the contents
 //! of its recordings, its settings, the program and the plugins. What has been made for a key is kept, so that going on after a kill,
 //! building only what changed and building on many machines ([`Build::pending`], [`Job::run`], [`Build::store`]) are one mechanism.
@@ -39,11 +42,13 @@ mod findings;
 mod gates;
 mod globs;
 mod hashes;
+mod imports;
 mod inputs;
 mod job;
 mod kept;
 mod keys;
 mod made;
+mod making;
 mod plan;
 mod publish;
 mod reasons;
@@ -60,6 +65,7 @@ pub use error::BuildError;
 pub use failed::report_failure;
 pub use findings::{FindingReport, FindingShare};
 pub use hashes::{Hashed, Stamp};
+pub use imports::FileKind;
 pub use job::{Job, JobFile, JobRecording, Workbench};
 pub use made::{Made, Outcome, Record};
 pub use plan::{Plan, PlannedRecording, PlannedTexture};

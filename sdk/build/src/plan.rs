@@ -10,6 +10,7 @@ use crate::BuildError;
 use crate::elsewhere::Elsewhere;
 use crate::error::AtPlace;
 use crate::globs::glob_set;
+use crate::imports::{FileKind, check_files};
 use crate::inputs::{Input, MOST_RECORDINGS, inputs, slashed, too_many};
 use crate::recipe::{Gates, NumberOrTemplate, Recipe, Settings, Textures};
 use crate::template::{Fields, fill};
@@ -29,6 +30,8 @@ pub struct PlannedTexture {
     pub name: String,
     /// Its recordings, sorted by file.
     pub recordings: Vec<PlannedRecording>,
+    /// What these files are.
+    pub kind: FileKind,
     /// Its settings, with files relative to the recipe.
     pub settings: Settings,
     /// Its metadata, with templates filled.
@@ -101,6 +104,7 @@ impl Plan {
         let mut textures: Vec<PlannedTexture> = textures.into_values().collect();
         for texture in &mut textures {
             texture.recordings.sort_by(|a, b| a.file.cmp(&b.file));
+            check_files(texture)?;
         }
         check_folders(&textures)?;
         Ok(Self {
@@ -178,6 +182,7 @@ fn planned(
     Ok(PlannedTexture {
         name,
         recordings: vec![recording],
+        kind: FileKind::default(),
         settings,
         metadata,
         gates,

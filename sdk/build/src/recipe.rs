@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use htex_author::Exploration;
 use htex_author::settings::{FitSettings, Metadata, OneOrMore, ReadingSettings, one_or_more};
+use htex_exchange::SignalSettings;
 use htex_files::{AtFile, read_regular_text};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
@@ -64,7 +65,8 @@ pub struct LibraryPart {
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Textures {
-    /// Files by glob, relative to the recipe: `rec/**/*.csv`.
+    /// Files by glob, relative to the recipe: `rec/**/*.csv`. Recordings, and what `htex import` takes: models of HaTT (`.xml`), `.haptic`, `.ahap`,
+    /// `.hjif`.
     #[serde(default, deserialize_with = "one_or_more")]
     #[schemars(with = "OneOrMore", extend("default" = []))]
     pub recordings: Vec<String>,
@@ -105,6 +107,9 @@ pub struct Settings {
     /// How recordings are read; files are relative to the recipe, that of the tracker is a template.
     #[serde(flatten)]
     pub reading: ReadingSettings,
+    /// What haptic signals of other formats do not say.
+    #[serde(flatten)]
+    pub signal: SignalSettings,
     /// How models are fitted.
     #[serde(flatten)]
     pub fit: FitSettings,
@@ -172,7 +177,7 @@ pub struct Gates {
     pub min_segments: Option<usize>,
     /// Whether recordings may have no findings that are errors or warnings: a steady motion on target, no clipping, …
     pub strict: Option<bool>,
-    /// Whether a licence must be stated.
+    /// Whether a licence must be stated; of files of other haptic formats it must unless this is false.
     pub license: Option<bool>,
     /// Largest size of the asset, bytes.
     pub max_bytes: Option<u64>,
@@ -232,6 +237,7 @@ impl Settings {
     pub(crate) fn over(self, under: Self) -> Self {
         Self {
             reading: self.reading.over(under.reading),
+            signal: self.signal.over(under.signal),
             fit: self.fit.over(under.fit),
             metadata: self.metadata.over(under.metadata),
             embed_plugins: self.embed_plugins.or(under.embed_plugins),

@@ -130,7 +130,7 @@ pub struct AssetReport {
     /// Normal forces of the conditions, least and largest, newtons.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_n: Option<[f64; 2]>,
-    /// Fewest segments of a condition.
+    /// Fewest segments of a condition; 0 of a texture that a file of another format states.
     pub segments: usize,
     /// Largest repeatability of a condition, which an error is compared with: the RMS over nine bands of the difference between odd and even
     /// blocks of time, over √2, decibels.
@@ -147,7 +147,7 @@ pub struct AssetReport {
     /// Warnings of the fit, those of the findings among them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
-    /// The recorded spectrum of the first condition: 48 points evenly spaced in log frequency; 63 is the largest magnitude, 0 is 40 dB
+    /// The recorded spectrum of the first condition, or of a texture that a file states, that of its strongest: 48 points evenly spaced in log frequency; 63 is the largest magnitude, 0 is 40 dB
     /// below or less.
     #[schemars(with = "Vec<u8>")]
     pub spectrum: Thumbnail,
@@ -189,15 +189,19 @@ impl AssetReport {
     fn new(made: &Made, asset: &Asset) -> Self {
         let manifest = &asset.manifest;
         let conditions = || manifest.conditions.iter();
-        let errors = manifest.representations.iter().map(|representation| {
-            let qualities = representation
-                .at
-                .iter()
-                .filter_map(|at| at.quality.as_ref());
-            let errors = qualities.filter_map(|q| q.get(Measure::NineBand));
-            let worst = errors.fold(0.0, f64::max);
-            (representation.model.clone(), worst)
-        });
+        // A representation that a file of another format states has none.
+        let errors = manifest
+            .representations
+            .iter()
+            .filter_map(|representation| {
+                let qualities = representation
+                    .at
+                    .iter()
+                    .filter_map(|at| at.quality.as_ref());
+                let errors = qualities.filter_map(|q| q.get(Measure::NineBand));
+                let worst = errors.reduce(f64::max)?;
+                Some((representation.model.clone(), worst))
+            });
         Self {
             bytes: made.asset.len() as u64,
             blake3: blake3::hash(&made.asset).to_hex().to_string(),

@@ -7,9 +7,10 @@
 use htex_author::recording::RecordedFile;
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings, SettingsError};
 use htex_author::{
-    Averaging, Exploration, FeltError, Level, Recording, SegmentChoice, Take, fit_asset,
+    AssetRequest, Averaging, Exploration, FeltError, Level, Recording, SegmentChoice, Take,
+    fit_asset,
 };
-use htex_finding::Notice;
+use htex_finding::{Hint, Notice};
 use htex_format::Quantity;
 use htex_host::Registry;
 
@@ -46,6 +47,9 @@ const FORCE: Missing = Missing {
     setting: "force",
     words: "at which force",
 };
+/// What is said of an asset without a licence.
+const UNLICENSED: &str =
+    "It states no licence, without which nobody may pass it on; state that of the file.";
 /// Largest normal force, newtons.
 const MOST_FORCE_N: f64 = 1e3;
 
@@ -74,6 +78,7 @@ pub struct Imported {
     pub felt: Vec<Vec<Option<FeltError>>>,
     /// What a person should know.
     pub warnings: Vec<Notice>,
+    /// What a person may want to know; that a licence is missing is among them.
     pub notes: Vec<Notice>,
 }
 
@@ -113,6 +118,10 @@ pub fn import(
         }
     };
     imported.apply(&how.metadata);
+    if imported.asset.manifest.license.is_none() {
+        let asked = Notice::new(UNLICENSED, Hint::new(&["license"]));
+        imported.notes.push(asked);
+    }
     Ok(imported)
 }
 
@@ -263,6 +272,14 @@ fn signal(
 }
 
 impl Physical {
+    /// Checks that all of it is given, and in its range.
+    ///
+    /// # Errors
+    /// With what is missing, or the first number that is out of its range.
+    pub fn check(&self, format: &Format) -> Result<(), ExchangeError> {
+        self.checked(format).map(drop)
+    }
+
     /// Returns full scale and speed.
     fn checked(&self, format: &Format) -> Result<(f64, f64), ExchangeError> {
         let all = [
@@ -301,6 +318,21 @@ impl Physical {
     }
 }
 
+/// Returns the request of a fit to signals ([`recording_of`]): their spectra are read in evenly spaced windows, and provenance keeps the full
+/// scale.
+#[must_use]
+pub fn signal_request(mut request: AssetRequest, full_scale: Option<f64>) -> AssetRequest {
+    request.spectrum = request
+        .spectrum
+        .with_segments(SegmentChoice::Windows)
+        .with_averaging(Averaging::Rms);
+    if let Some(full_scale) = full_scale {
+        let options = &mut request.recorded_options;
+        options.insert("full-scale".to_owned(), full_scale.to_string());
+    }
+    request
+}
+
 /// Fits an asset to a recording.
 fn fitted(
     recording: Recording,
@@ -308,15 +340,8 @@ fn fitted(
     registry: &Registry,
 ) -> Result<Imported, ImportError> {
     let reading = ReadingSettings::default();
-    let mut request = how.fit.request(registry, &reading, how.name, how.tool)?;
-    request.spectrum = request
-        .spectrum
-        .with_segments(SegmentChoice::Windows)
-        .with_averaging(Averaging::Rms);
-    if let Some(full_scale) = how.physical.full_scale {
-        let options = &mut request.recorded_options;
-        options.insert("full-scale".to_owned(), full_scale.to_string());
-    }
+    let request = how.fit.request(registry, &reading, how.name, how.tool)?;
+    let request = signal_request(request, how.physical.full_scale);
     let given = Exploration {
         speed_mm_s: how.physical.speed_mm_s,
         force_n: how.physical.force_n,

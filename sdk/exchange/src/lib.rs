@@ -35,6 +35,7 @@ mod loss;
 mod pattern;
 mod profile;
 mod reduce;
+mod settings;
 mod stroke;
 mod wav;
 mod writers;
@@ -52,9 +53,12 @@ pub use formats::{FORMATS, exported, formats_table, imported};
 pub use haptic::Haptic;
 pub use heard::Path;
 pub use hjif::Hjif;
-pub use import::{Import, ImportError, Imported, Physical, RATE_HZ, import, recording_of};
+pub use import::{
+    Import, ImportError, Imported, Physical, RATE_HZ, import, recording_of, signal_request,
+};
 pub use json::MOST_BYTES;
 pub use loss::Loss;
 pub use pattern::{MOST_S, Pattern, Transient, combined, rendered};
 pub use profile::{Kind, PROFILES, Profile, Sourced, profiles_table};
+pub use settings::SignalSettings;
 pub use stroke::Stroke;

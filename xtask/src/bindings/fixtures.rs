@@ -117,7 +117,14 @@ pub(super) fn write(folder: &Path) -> Result<()> {
     let textures = ["many", "vinyl.htex", "bursts.htex"];
     htex(
         &[
-            &["lib", "pack", "many.htexlib", "--name", "Many"][..],
+            &[
+                "lib",
+                "pack",
+                "many.htexlib",
+                "--name",
+                "Many",
+                "--unlicensed",
+            ][..],
             &textures,
         ]
         .concat(),
@@ -181,7 +188,14 @@ fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> 
     htex(&[&mixed[..], &["--name", "between", "-o", "mixed.htex"]].concat())?;
     let edited = ["edit", "vinyl.htex", "--author", "A. Weaver"];
     htex(&[&edited[..], &["--contact", "tool", "-o", "edited.htex"]].concat())?;
-    let pack = ["lib", "pack", "two.htexlib", "--name", "Two"];
+    let pack = [
+        "lib",
+        "pack",
+        "two.htexlib",
+        "--name",
+        "Two",
+        "--unlicensed",
+    ];
     htex(&[&pack[..], &["vinyl.htex", "bursts.htex"]].concat())
 }
 

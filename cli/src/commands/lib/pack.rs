@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_format::{Limits, manifest_json};
 use htex_library::{EXTENSION, Packed, Writer};
 use serde_json::{Value, json};
 
@@ -18,7 +19,8 @@ use crate::shown::shown;
 /// Pack textures into a library.
 ///
 /// A texture is called as its file without `.htex`; one of a folder as its path in that folder, such as wood/oak. The same
-/// textures give the same file, in any order, on any machine.
+/// textures give the same file, in any order, on any machine. Each states a licence (`htex edit --license`), since a library is
+/// passed on.
 #[derive(Args)]
 pub(crate) struct Pack {
     /// The library to write
@@ -33,9 +35,48 @@ pub(crate) struct Pack {
     #[arg(long)]
     name: Option<String>,
 
+    /// Pack textures that state no licence, too, which nobody but who made them may pass on
+    #[arg(long)]
+    unlicensed: bool,
+
     /// Print JSON
     #[arg(long)]
     json: bool,
+}
+
+/// The textures that state no licence: the first, and how many.
+#[derive(Default)]
+struct Unlicensed {
+    first: Option<PathBuf>,
+    count: usize,
+}
+
+impl Unlicensed {
+    /// Looks into the bytes of a valid asset.
+    fn look(&mut self, path: &Path, bytes: &[u8]) {
+        let manifest = manifest_json(bytes, &Limits::default()).unwrap_or_default();
+        if manifest["license"].is_string() {
+            return;
+        }
+        self.first.get_or_insert_with(|| path.to_owned());
+        self.count += 1;
+    }
+
+    /// Refuses to pack them.
+    fn refuse(&self) -> Result<(), Failure> {
+        let Some(first) = &self.first else {
+            return Ok(());
+        };
+        let file = shown(first);
+        let which = match self.count {
+            1 => format!("{file} states no licence"),
+            2 => format!("{file} and another texture state no licence"),
+            count => format!("{file} and {} other textures state no licence", count - 1),
+        };
+        Err(Failure::Other(format!(
+            "{which}, and a library is passed on; state it (htex edit {file} --license SPDX), or pack with --unlicensed"
+        )))
+    }
 }
 
 impl Pack {
@@ -61,12 +102,17 @@ impl Pack {
             .clone()
             .unwrap_or(stem.unwrap_or_default().into_owned());
         let mut writer = Writer::create(&self.output, &name).of(&self.output)?;
+        let mut unlicensed = Unlicensed::default();
         let bar = bar(sources.len() as u64);
         for (name, path) in &sources {
             let bytes = read_asset(path)?;
             writer.add(name, &bytes).of(path)?;
+            if !self.unlicensed {
+                unlicensed.look(path, &bytes);
+            }
             bar.inc(1);
         }
+        unlicensed.refuse()?;
         let packed = writer.finish().of(&self.output)?;
         bar.finish_and_clear();
         if self.json {

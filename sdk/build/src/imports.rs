@@ -1,0 +1,282 @@
+//! Files of other haptic formats in a recipe, by their extension: signals, which are fitted as recordings are once full scale, speed and force are
+//! given, and files that state a texture, which become assets as they are. They take the settings of `htex import`, under the keys of recipes.
+
+use std::path::Path;
+
+use htex_exchange::{ExchangeError, Format, Missing, Physical, Profile, Reads, SignalSettings};
+use htex_format::{Condition, Representation};
+use htex_play::Motion;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::BuildError;
+use crate::error::AtPlace;
+use crate::inputs::slashed;
+use crate::job::shown_path;
+use crate::plan::{PlannedRecording, PlannedTexture};
+use crate::recipe::Gates;
+
+/// What the files of a texture are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FileKind {
+    /// Recordings.
+    #[default]
+    Recording,
+    /// Signals of another haptic format, which are fitted.
+    Signal,
+    /// A file of another haptic format that states a texture.
+    Asset,
+}
+
+/// Keys of recipes, and the settings of imports that they are. A key that is not here is a setting of no import.
+const KEYS: [(&str, &str); 10] = [
+    ("full_scale", "full_scale"),
+    ("quantity", "quantity"),
+    ("at.speed_mm_s", "speed"),
+    ("at.force_n", "force"),
+    ("profile", "profile"),
+    ("models", "model"),
+    ("options", "option"),
+    ("level", "level"),
+    ("keep_reference", "keep_reference"),
+    ("grid", "grid"),
+];
+/// Gates of every texture; the others judge recordings and fits.
+const GATES_OF_ALL: [&str; 2] = ["license", "max_bytes"];
+
+/// The format of a file that is imported; `None` for a recording.
+pub(crate) fn format_of(file: &Path) -> Option<&'static Format> {
+    Format::of_file(&slashed(&shown_path(file))).ok()
+}
+
+impl FileKind {
+    fn of(format: Option<&Format>) -> Self {
+        match format.and_then(|format| format.reads) {
+            None => Self::Recording,
+            Some(Reads::Asset(_)) => Self::Asset,
+            Some(Reads::Positions { .. } | Reads::Signal(_)) => Self::Signal,
+        }
+    }
+
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Recording => "a recording",
+            Self::Signal => "a haptic signal",
+            Self::Asset => "a file that states a texture",
+        }
+    }
+}
+
+/// Sets what the files of a texture are, checks that they go together and that its settings are theirs. A licence is asked for unless the recipe
+/// says that none has to be stated: files of others have one, which seldom stands in them.
+pub(crate) fn check_files(texture: &mut PlannedTexture) -> Result<(), BuildError> {
+    texture.kind = kind(texture).at(&texture.name)?;
+    check_settings(texture).at(&texture.name)?;
+    if texture.kind != FileKind::Recording {
+        texture.gates.license.get_or_insert(true);
+    }
+    Ok(())
+}
+
+fn kind(texture: &PlannedTexture) -> Result<FileKind, String> {
+    let of = |recording: &PlannedRecording| FileKind::of(format_of(&recording.file));
+    let Some(first) = texture.recordings.first() else {
+        return Ok(FileKind::Recording);
+    };
+    let kind = of(first);
+    if let Some(other) = texture.recordings.iter().find(|r| of(r) != kind) {
+        return Err(format!(
+            "{} is {} and {} is {}; give them other names, so that each is a texture",
+            slashed(&first.file),
+            kind.words(),
+            slashed(&other.file),
+            of(other).words()
+        ));
+    }
+    match (kind, &texture.recordings[..]) {
+        (FileKind::Asset, [first, second, ..]) => Err(format!(
+            "{} and {} state a texture each; give them other names",
+            slashed(&first.file),
+            slashed(&second.file)
+        )),
+        _ => Ok(kind),
+    }
+}
+
+fn check_settings(texture: &PlannedTexture) -> Result<(), String> {
+    for recording in &texture.recordings {
+        match format_of(&recording.file) {
+            Some(format) => check_import(texture, recording, format)?,
+            None => check_recording(&texture.settings.signal, recording)?,
+        }
+    }
+    Ok(())
+}
+
+/// Refuses settings of signals of what is none.
+fn check_recording(signal: &SignalSettings, recording: &PlannedRecording) -> Result<(), String> {
+    match keys(signal, "").first() {
+        None => Ok(()),
+        Some(key) => Err(format!(
+            "`{key}` is of haptic signals ({}), and {} is a recording; leave it out (the unit at full scale of a recording is `scale`)",
+            htex_exchange::imported(),
+            slashed(&recording.file)
+        )),
+    }
+}
+
+/// Refuses settings that the import of a file does not take, and asks for those that it needs.
+fn check_import(
+    texture: &PlannedTexture,
+    recording: &PlannedRecording,
+    format: &Format,
+) -> Result<(), String> {
+    let of_file = |problem: String| format!("{}: {problem}", slashed(&recording.file));
+    let given = given(texture, recording);
+    let unused = given.iter().find(|key| !takes(format, key));
+    if let Some(key) = unused {
+        return Err(of_file(format!(
+            "{} takes no `{key}`; give it to the [[textures]] of other files alone",
+            format.title
+        )));
+    }
+    if texture.kind == FileKind::Asset {
+        return Ok(());
+    }
+    let signal = &texture.settings.signal;
+    if let Some(name) = &signal.profile {
+        Profile::find(name).map_err(|error| of_file(error.to_string()))?;
+    }
+    let physical = Physical {
+        full_scale: signal.full_scale,
+        quantity: texture.settings.reading.quantity.unwrap_or_default(),
+        speed_mm_s: recording.speed_mm_s,
+        force_n: recording.force_n,
+    };
+    physical
+        .check(format)
+        .map_err(|error| of_file(by_keys(&error)))
+}
+
+/// Whether the import of a format takes a key of recipes.
+fn takes(format: &Format, key: &str) -> bool {
+    let is_fitted = FileKind::of(Some(format)) == FileKind::Signal;
+    if let Some(gate) = key.strip_prefix("gates.") {
+        return is_fitted || GATES_OF_ALL.contains(&gate);
+    }
+    if key == "embed_plugins" {
+        return is_fitted;
+    }
+    let setting = KEYS.iter().find(|(known, _)| *known == key);
+    setting.is_some_and(|(_, setting)| format.check_import([*setting]).is_ok())
+}
+
+/// The keys of a recipe that are given for a file, but for metadata.
+fn given(texture: &PlannedTexture, recording: &PlannedRecording) -> Vec<String> {
+    let (settings, gates) = (&texture.settings, &texture.gates);
+    // A gate that its `fit` has, too.
+    let fit = htex_author::settings::FitSettings {
+        strict: None,
+        ..settings.fit.clone()
+    };
+    let mut given = [
+        keys(&settings.reading, ""),
+        keys(&fit, ""),
+        keys(&settings.signal, ""),
+        keys::<Gates>(gates, "gates."),
+    ]
+    .concat();
+    let others = [
+        ("at.speed_mm_s", recording.speed_mm_s.is_some()),
+        ("at.force_n", recording.force_n.is_some()),
+        ("tracker", recording.tracker.is_some()),
+        ("embed_plugins", settings.embed_plugins.is_some()),
+    ];
+    let others = others.into_iter().filter(|(_, is_given)| *is_given);
+    given.extend(others.map(|(key, _)| key.to_owned()));
+    given
+}
+
+/// The keys of settings that are there.
+fn keys<T: Serialize>(settings: &T, before: &str) -> Vec<String> {
+    let Ok(Value::Object(entries)) = serde_json::to_value(settings) else {
+        return Vec::new();
+    };
+    let there = entries.into_iter().filter(|(_, value)| !value.is_null());
+    there.map(|(key, _)| format!("{before}{key}")).collect()
+}
+
+/// An error of an import, with the keys of recipes.
+fn by_keys(error: &ExchangeError) -> String {
+    let key = |setting: &str| {
+        let known = KEYS.iter().find(|(_, own)| *own == setting);
+        known.map_or(setting, |(key, _)| *key).to_owned()
+    };
+    let list = |parts: Vec<String>| parts.join(", ");
+    match error {
+        ExchangeError::Missing { format, missing } => {
+            let words = missing.iter().map(|m: &Missing| m.words.to_owned());
+            let keys = missing.iter().map(|m| format!("`{}`", key(m.setting)));
+            format!(
+                "{format} does not say {}; give {}",
+                list(words.collect()),
+                list(keys.collect())
+            )
+        }
+        ExchangeError::OutOfRange { name, value, range } => {
+            format!("`{}` is {value}; it is {range}", key(name))
+        }
+        other => other.to_string(),
+    }
+}
+
+/// The sliding motion at which a representation is strongest, which stands for a texture whose first conditions may be silent.
+pub(crate) fn strongest(
+    representation: &Representation,
+    conditions: &[Condition],
+) -> Option<Motion> {
+    let sliding = representation.at.iter().filter_map(|at| {
+        let condition = conditions.get(at.condition)?;
+        let (speed_mm_s, force_n) = (condition.speed_mm_s?, condition.force_n?);
+        let slides = speed_mm_s > 0.0 && force_n > 0.0;
+        slides.then(|| (at.level_rms, Motion::new(speed_mm_s, force_n)))
+    });
+    let strongest = sliding.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    Some(strongest.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every setting that an import takes has a key, under which a recipe gives it.
+    #[test]
+    fn each_setting_of_imports_has_a_key() {
+        let formats = htex_exchange::FORMATS.iter();
+        for format in formats.filter(|format| format.reads.is_some()) {
+            for setting in format.reads.map(|r| r.settings()).unwrap_or_default() {
+                let key = KEYS.iter().find(|(_, own)| *own == setting);
+                let Some((key, _)) = key else {
+                    panic!("{}: {setting} has no key", format.name);
+                };
+                assert!(takes(format, key), "{}: {key}", format.name);
+            }
+        }
+    }
+
+    #[test]
+    fn files_are_told_by_their_extension() {
+        let kind = |file: &str| FileKind::of(format_of(Path::new(file)));
+        assert_eq!(kind("a/Models_Felt.xml"), FileKind::Asset);
+        assert_eq!(kind("a.b/hum.HAPTIC"), FileKind::Signal);
+        assert_eq!(
+            kind("https://example.org/hum.hjif?key=a.xml"),
+            FileKind::Signal
+        );
+        // Formats that go out alone, and names without an extension.
+        for file in ["hum.wav", "hum.json", "a.xml/hum", "hum"] {
+            assert_eq!(kind(file), FileKind::Recording, "{file}");
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! What a job makes: a fit to recordings or signals, or the texture that a file of another format states.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::path::PathBuf;
+
+use htex_author::recording::{ReadError, ReadProblem, Recording, read_recording};
+use htex_author::settings::{Metadata, ReadingSettings, SettingsError};
+use htex_author::{
+    AssetRequest, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
+};
+use htex_exchange::{Import, MOST_BYTES, Physical, Profile, signal_request};
+use htex_files::{AtFile, FileError, read_regular};
+use htex_format::Asset;
+use htex_host::Registry;
+use htex_play::Motion;
+
+use crate::BuildError;
+use crate::findings::by_code;
+use crate::imports::{FileKind, strongest};
+use crate::job::{Job, JobFile, JobRecording};
+use crate::made::{Made, Outcome, Record};
+use crate::sound::sound;
+use crate::thumbnail::{Thumbnail, of_magnitudes, thumbnail};
+
+/// The name of a texture until it is put together.
+const UNNAMED: &str = "texture";
+
+impl Job {
+    /// Makes the texture.
+    pub(crate) fn made(&self, registry: &Registry) -> Result<Made, Box<dyn Error>> {
+        let (mut asset, record, motion) = match self.kind {
+            FileKind::Asset => self.imported(registry)?,
+            FileKind::Recording | FileKind::Signal => self.fitted(registry)?,
+        };
+        let plays = Metadata {
+            contact: self.metadata.contact,
+            law: self.metadata.law,
+            ..Metadata::default()
+        };
+        plays.apply(&mut asset.manifest);
+        let travelling = self.plugins.len() - self.embedded.min(self.plugins.len());
+        let files: Vec<PathBuf> = self.plugins[travelling..]
+            .iter()
+            .map(|f| f.path.clone())
+            .collect();
+        embed_plugins(&mut asset, registry, &files, None)?;
+        let bytes = asset.to_bytes()?;
+        let sound = sound(&bytes, motion, registry)?;
+        Ok(Made {
+            record,
+            asset: bytes,
+            sound,
+        })
+    }
+
+    /// Takes the texture that a file of another format states.
+    fn imported(&self, registry: &Registry) -> Result<Unfinished, Box<dyn Error>> {
+        let [recording] = &self.recordings[..] else {
+            return Err("a texture that is stated has one file".into());
+        };
+        let bytes = recording.bytes()?;
+        let how = Import {
+            name: UNNAMED,
+            tool: &self.program,
+            ..Import::default()
+        };
+        let asset = htex_exchange::import(&recording.name, &bytes, &how, registry)?.asset;
+        let manifest = &asset.manifest;
+        let motion = manifest.representations.first();
+        let motion = motion.and_then(|r| strongest(r, &manifest.conditions));
+        let record = Record {
+            outcome: Outcome::Fitted,
+            segments: Vec::new(),
+            felt: BTreeMap::new(),
+            findings: Vec::new(),
+            thumbnail: played(&asset, motion, registry)?,
+        };
+        Ok((asset, record, motion))
+    }
+
+    fn fitted(&self, registry: &Registry) -> Result<Unfinished, Box<dyn Error>> {
+        let takes = self.recordings.iter().map(|recording| self.take(recording));
+        let request = self.request(registry)?;
+        let takes = takes.collect::<Result<Vec<Take>, _>>()?;
+        let mut fitted = fit_asset(&takes, &request)?;
+        for source in &mut fitted.asset.manifest.provenance.recordings {
+            let mut recordings = self.recordings.iter();
+            if let Some(recording) = recordings.find(|recording| recording.name == source.file) {
+                // A folder has no meaning on other machines; the hash tells recordings of one name apart.
+                source.file = recording.file.name();
+                source.blake3 = Some(recording.file.hashed.blake3.clone());
+            }
+        }
+        let record = Record {
+            outcome: Outcome::Fitted,
+            segments: fitted.spectra.iter().map(|s| s.segments).collect(),
+            felt: felt(&fitted),
+            findings: by_code(&fitted.findings),
+            thumbnail: fitted.spectra.first().map(thumbnail).unwrap_or_default(),
+        };
+        Ok((fitted.asset, record, None))
+    }
+
+    /// Returns the request of the fit.
+    fn request(&self, registry: &Registry) -> Result<AssetRequest, SettingsError> {
+        if self.kind == FileKind::Signal {
+            let reading = ReadingSettings::default();
+            let request = self
+                .fit
+                .request(registry, &reading, UNNAMED, &self.program)?;
+            return Ok(signal_request(request, self.signal.full_scale));
+        }
+        let reading = ReadingSettings {
+            tracker: Some(self.trackers().map(|file| file.path.clone()).collect()),
+            ..self.reading.clone()
+        };
+        self.fit.request(registry, &reading, UNNAMED, &self.program)
+    }
+
+    /// Reads a recording, or a signal.
+    fn take(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
+        if self.kind == FileKind::Signal {
+            return self.signal(recording);
+        }
+        let reading = ReadingSettings {
+            tracker: recording
+                .tracker
+                .as_ref()
+                .map(|file| vec![file.path.clone()]),
+            ..self.reading.clone()
+        };
+        let options = reading.read_options(1)?.pop().unwrap_or_default();
+        let given = Exploration {
+            speed_mm_s: recording.speed_mm_s,
+            force_n: recording.force_n,
+        };
+        let file = &recording.file.path;
+        match read_recording(file, &options) {
+            Ok(read) => Ok(Take {
+                recording: Recording {
+                    source: recording.name.clone(),
+                    ..read
+                },
+                given,
+            }),
+            Err(ReadError {
+                problem: ReadProblem::Io(error),
+                ..
+            }) => Err(Box::new(BuildError::from(FileError::reading(file, error)))),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Reads a signal of another format.
+    fn signal(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
+        let bytes = recording.bytes()?;
+        let physical = Physical {
+            full_scale: self.signal.full_scale,
+            quantity: self.reading.quantity.unwrap_or_default(),
+            speed_mm_s: recording.speed_mm_s,
+            force_n: recording.force_n,
+        };
+        let profile = self.signal.profile.as_deref().map(Profile::find);
+        let profile = profile.transpose()?;
+        let read = htex_exchange::recording_of(&recording.name, &bytes, &physical, profile)?;
+        Ok(Take {
+            recording: read,
+            given: Exploration {
+                speed_mm_s: recording.speed_mm_s,
+                force_n: recording.force_n,
+            },
+        })
+    }
+
+    fn trackers(&self) -> impl Iterator<Item = &JobFile> {
+        self.recordings
+            .iter()
+            .filter_map(|recording| recording.tracker.as_ref())
+    }
+}
+
+impl JobRecording {
+    /// Reads a file of another format.
+    fn bytes(&self) -> Result<Vec<u8>, BuildError> {
+        let path = &self.file.path;
+        Ok(read_regular(path, MOST_BYTES).reading(path)?)
+    }
+}
+
+/// An asset without plugins, what is known of it, and the motion of its sound.
+type Unfinished = (Asset, Record, Option<Motion>);
+
+/// The spectrum that an asset plays at a motion, else at its first condition.
+fn played(
+    asset: &Asset,
+    motion: Option<Motion>,
+    registry: &Registry,
+) -> Result<Thumbnail, htex_play::Error> {
+    let frequency_hz = asset.manifest.band.grid_hz();
+    let asset = htex_play::Asset::with_registry(asset.clone(), registry.clone());
+    let magnitude = asset.magnitude(None, motion, &frequency_hz)?;
+    Ok(of_magnitudes(&frequency_hz, &magnitude))
+}
+
+/// What is felt of the difference from the recordings, of each model at its worst recorded condition.
+fn felt(fitted: &FittedAsset) -> BTreeMap<String, FeltError> {
+    let models = fitted.asset.manifest.representations.iter();
+    let worst = models
+        .zip(&fitted.felt)
+        .filter_map(|(representation, felt)| {
+            let worst = felt.iter().copied().flatten().reduce(FeltError::worse)?;
+            Some((representation.model.clone(), worst))
+        });
+    worst.collect()
+}

@@ -1,0 +1,57 @@
+//! What a person says of the signals of a file, by name: the flags of the command and the keys of recipes.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+#[cfg(feature = "clap")]
+use crate::profile_names;
+
+/// Settings of signals, as `.haptic`, `.ahap` and `.hjif` hold them; quantity, speed and force are those of recordings.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default, deny_unknown_fields)]
+pub struct SignalSettings {
+    /// The quantity's unit at full scale, which files of haptic signals call 1.
+    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(
+        feature = "clap",
+        arg(
+            long,
+            value_name = "UNIT",
+            display_order = 1,
+            help = "The unit at full scale, which the file calls 1: newtons, or m/s² with --quantity acceleration"
+        )
+    )]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub full_scale: Option<f64>,
+
+    /// The actuator whose range the frequencies of haptic signals are positions in, by name; else the format's own.
+    #[cfg_attr(feature = "clap", arg(
+        long,
+        value_name = "NAME",
+        value_parser = profile_names(),
+        display_order = 1,
+        help = "The actuator whose range the file's frequencies are positions in [default: the format's own]"
+    ))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile: Option<String>,
+}
+
+impl SignalSettings {
+    /// Returns these settings, and where they are absent those of `under`.
+    ///
+    /// ```
+    /// use htex_exchange::SignalSettings;
+    /// let own = SignalSettings { full_scale: Some(0.2), ..SignalSettings::default() };
+    /// let under = SignalSettings { full_scale: Some(1.0), profile: Some("quest".to_owned()) };
+    /// let both = own.over(under);
+    /// assert_eq!((both.full_scale, both.profile.as_deref()), (Some(0.2), Some("quest")));
+    /// ```
+    #[must_use]
+    pub fn over(self, under: Self) -> Self {
+        Self {
+            full_scale: self.full_scale.or(under.full_scale),
+            profile: self.profile.or(under.profile),
+        }
+    }
+}

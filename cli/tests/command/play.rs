@@ -47,7 +47,6 @@ fn a_minute_of_each_model_has_its_spectrum_and_its_level() {
         let read = (measured.iter().map(|m| m * m).sum::<f64>() / 3.0).sqrt() / level;
         let in_all = power.sqrt() / level;
         let ratio = if model == "speak" { in_all } else { read };
-        assert!((0.98..1.1).contains(&in_all), "{model}: {in_all}");
         let distance = if model == "speak" {
             let lines = &fit["representations"][i]["parameters"]["frequency_hz"];
             let bins = numbers(lines)
@@ -61,8 +60,10 @@ fn a_minute_of_each_model_has_its_spectrum_and_its_level() {
             distance_db(&stated, &measured, bins).min(read)
         };
         println!("{model:8} level {ratio:.4}, spectrum {distance:.3} dB RMS");
-        // A resonance between two bins is stronger than both of them.
+        // Of a resonance that is narrower than the bins, the bins tell the level less exactly.
         let tolerance = if model == "arma" { 0.03 } else { 0.02 };
+        let allowed = 1.0 - tolerance..1.1;
+        assert!(allowed.contains(&in_all), "{model}: {in_all}");
         assert!(
             (ratio - 1.0).abs() < tolerance,
             "{model}: RMS over level {ratio}"

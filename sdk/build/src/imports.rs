@@ -120,7 +120,7 @@ fn check_recording(signal: &SignalSettings, recording: &PlannedRecording) -> Res
         None => Ok(()),
         Some(key) => Err(format!(
             "`{key}` is of haptic signals ({}), and {} is a recording; leave it out (the unit at full scale of a recording is `scale`)",
-            htex_exchange::imported(),
+            htex_exchange::imported_signals(),
             slashed(&recording.file)
         )),
     }

@@ -9,7 +9,7 @@ use htex_author::settings::{Metadata, ReadingSettings, SettingsError};
 use htex_author::{
     AssetRequest, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
 };
-use htex_exchange::{Import, MOST_BYTES, Physical, Profile, signal_request};
+use htex_exchange::{Import, MOST_BYTES, Physical, Profile, fit_signals};
 use htex_files::{AtFile, FileError, read_regular};
 use htex_format::Asset;
 use htex_host::Registry;
@@ -83,7 +83,10 @@ impl Job {
         let takes = self.recordings.iter().map(|recording| self.take(recording));
         let request = self.request(registry)?;
         let takes = takes.collect::<Result<Vec<Take>, _>>()?;
-        let mut fitted = fit_asset(&takes, &request)?;
+        let mut fitted = match self.kind {
+            FileKind::Signal => fit_signals(&takes, request, self.signal.full_scale)?,
+            FileKind::Asset | FileKind::Recording => fit_asset(&takes, &request)?,
+        };
         for source in &mut fitted.asset.manifest.provenance.recordings {
             let mut recordings = self.recordings.iter();
             if let Some(recording) = recordings.find(|recording| recording.name == source.file) {
@@ -106,10 +109,7 @@ impl Job {
     fn request(&self, registry: &Registry) -> Result<AssetRequest, SettingsError> {
         if self.kind == FileKind::Signal {
             let reading = ReadingSettings::default();
-            let request = self
-                .fit
-                .request(registry, &reading, UNNAMED, &self.program)?;
-            return Ok(signal_request(request, self.signal.full_scale));
+            return self.fit.request(registry, &reading, UNNAMED, &self.program);
         }
         let reading = ReadingSettings {
             tracker: Some(self.trackers().map(|file| file.path.clone()).collect()),

@@ -289,7 +289,7 @@ fn settings_of_other_files_are_refused_and_missing_ones_asked_for() {
         (model_file("gates.strict = true"), "takes no `gates.strict`"),
         (
             recording("full_scale = 1"),
-            "`full_scale` is of haptic signals (.xml, .haptic, .ahap and .hjif), and sine.csv is a recording",
+            "`full_scale` is of haptic signals (.haptic, .ahap and .hjif), and sine.csv is a recording",
         ),
         (
             "[[textures]]\nrecordings = ['felt.xml', 'sine.csv']\nname = 'one'".to_owned(),

@@ -128,8 +128,18 @@ impl Format {
 /// Returns what is imported, in words: `.haptic, .ahap and .hjif`.
 #[must_use]
 pub fn imported() -> String {
-    let read = FORMATS.iter().filter(|format| format.reads.is_some());
-    list(read.flat_map(|format| format.extensions.iter().map(|e| format!(".{e}"))))
+    extensions_of(|reads| reads.is_some())
+}
+
+/// Returns what is imported as a signal, in words.
+#[must_use]
+pub fn imported_signals() -> String {
+    extensions_of(|reads| matches!(reads, Some(Reads::Positions { .. } | Reads::Signal(_))))
+}
+
+fn extensions_of(is_it: fn(Option<&Reads>) -> bool) -> String {
+    let found = FORMATS.iter().filter(|f| is_it(f.reads.as_ref()));
+    list(found.flat_map(|format| format.extensions.iter().map(|e| format!(".{e}"))))
 }
 
 /// Returns the names of what is exported.

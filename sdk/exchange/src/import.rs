@@ -7,8 +7,8 @@
 use htex_author::recording::RecordedFile;
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings, SettingsError};
 use htex_author::{
-    AssetRequest, Averaging, Exploration, FeltError, Level, Recording, SegmentChoice, Take,
-    fit_asset,
+    AssetRequest, AuthorError, Averaging, Exploration, FeltError, FittedAsset, Level, Recording,
+    SegmentChoice, Take, fit_asset,
 };
 use htex_finding::{Hint, Notice};
 use htex_format::Quantity;
@@ -318,10 +318,16 @@ impl Physical {
     }
 }
 
-/// Returns the request of a fit to signals ([`recording_of`]): their spectra are read in evenly spaced windows, and provenance keeps the full
-/// scale.
-#[must_use]
-pub fn signal_request(mut request: AssetRequest, full_scale: Option<f64>) -> AssetRequest {
+/// Fits an asset to signals ([`recording_of`]): their spectra are read in evenly spaced windows, and provenance keeps the full scale. The
+/// conditions have no repeatability: a file that is rendered, and repeated, says nothing of how far another touch would differ.
+///
+/// # Errors
+/// Those of [`fit_asset`].
+pub fn fit_signals(
+    takes: &[Take],
+    mut request: AssetRequest,
+    full_scale: Option<f64>,
+) -> Result<FittedAsset, AuthorError> {
     request.spectrum = request
         .spectrum
         .with_segments(SegmentChoice::Windows)
@@ -330,7 +336,11 @@ pub fn signal_request(mut request: AssetRequest, full_scale: Option<f64>) -> Ass
         let options = &mut request.recorded_options;
         options.insert("full-scale".to_owned(), full_scale.to_string());
     }
-    request
+    let mut fitted = fit_asset(takes, &request)?;
+    for condition in &mut fitted.asset.manifest.conditions {
+        condition.repeatability_rms_db = None;
+    }
+    Ok(fitted)
 }
 
 /// Fits an asset to a recording.
@@ -341,16 +351,12 @@ fn fitted(
 ) -> Result<Imported, ImportError> {
     let reading = ReadingSettings::default();
     let request = how.fit.request(registry, &reading, how.name, how.tool)?;
-    let request = signal_request(request, how.physical.full_scale);
     let given = Exploration {
         speed_mm_s: how.physical.speed_mm_s,
         force_n: how.physical.force_n,
     };
-    let mut fitted = fit_asset(&[Take { recording, given }], &request)?;
-    // A file that is rendered, and repeated, says nothing of how far another touch would differ.
-    for condition in &mut fitted.asset.manifest.conditions {
-        condition.repeatability_rms_db = None;
-    }
+    let takes = [Take { recording, given }];
+    let fitted = fit_signals(&takes, request, how.physical.full_scale)?;
     Ok(Imported {
         asset: fitted.asset,
         held: None,
@@ -369,5 +375,5 @@ pub enum ImportError {
     #[error(transparent)]
     Settings(#[from] SettingsError),
     #[error(transparent)]
-    Author(#[from] htex_author::AuthorError),
+    Author(#[from] AuthorError),
 }

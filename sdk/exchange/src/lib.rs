@@ -49,12 +49,12 @@ pub use format::{
     Format, Held, Naming, ReadAsset, ReadPositions, ReadSignal, Reads, Sampling, Signal,
     WriteAsset, WriteSignal, Writes,
 };
-pub use formats::{FORMATS, exported, formats_table, imported};
+pub use formats::{FORMATS, exported, formats_table, imported, imported_signals};
 pub use haptic::Haptic;
 pub use heard::Path;
 pub use hjif::Hjif;
 pub use import::{
-    Import, ImportError, Imported, Physical, RATE_HZ, import, recording_of, signal_request,
+    Import, ImportError, Imported, Physical, RATE_HZ, import, fit_signals, recording_of,
 };
 pub use json::MOST_BYTES;
 pub use loss::Loss;

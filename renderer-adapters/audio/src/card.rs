@@ -99,8 +99,8 @@ impl Card {
         Ok(match &rates {
             _ if rates.has(preferred_hz) => preferred_hz,
             Rates::List(all) => {
-                let low = all.iter().copied().filter(|hz| *hz <= USUAL_RATE_HZ);
-                low.last().or(all.first().copied()).unwrap_or(preferred_hz)
+                let low = all.iter().copied().rfind(|hz| *hz <= USUAL_RATE_HZ);
+                low.or(all.first().copied()).unwrap_or(preferred_hz)
             }
             Rates::Range { min_hz, max_hz } => USUAL_RATE_HZ.clamp(*min_hz, *max_hz),
         })

@@ -3,7 +3,7 @@
 //! A gamepad has two motors with an unbalanced mass, a large and a small one, which are told a strength each. They get the level of blocks of
 //! `block_ms`, divided by the mean frequency ([`htex_dsp::reduced::two_motors`]).
 //!
-//! Each call says that it holds for [`rumble::HOLD_BLOCKS`] blocks: if this thread hangs in a program that asks SDL for events, SDL stops the motors then.
+//! Each call says that it holds for `HOLD_BLOCKS` blocks: if this thread hangs in a program that asks SDL for events, SDL stops the motors then.
 //! When the program is gone, the system does. SDL stays initialised, since an application may use it, too.
 #![deny(unsafe_code)]
 

@@ -54,7 +54,7 @@ pub use haptic::Haptic;
 pub use heard::Path;
 pub use hjif::Hjif;
 pub use import::{
-    Import, ImportError, Imported, Physical, RATE_HZ, import, fit_signals, recording_of,
+    Import, ImportError, Imported, Physical, RATE_HZ, fit_signals, import, recording_of,
 };
 pub use json::MOST_BYTES;
 pub use loss::Loss;

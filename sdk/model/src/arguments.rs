@@ -7,7 +7,7 @@ use crate::voices_1::MAX_VOICES;
 use crate::{Band, Error, Fields, Fit, FitInput, Numbers, Status, Values, text};
 
 /// Sets that can be mixed without allocating.
-const FEW_SETS: usize = 8;
+const FEW_SETS: usize = 4;
 
 /// Checks the handles of voices that are rendered together: at most [`MAX_VOICES`], and all different.
 pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {

@@ -231,10 +231,11 @@ fn whole_part(x: f64) -> f64 {
 }
 
 fn check_range(field: &Range<'_>, numbers: &[f64]) -> Result<(), Error> {
-    match numbers
-        .iter()
-        .position(|x| !(field.min..=field.max).contains(x))
-    {
+    let is_outside = |x: &f64| !(field.min..=field.max).contains(x);
+    // Sets are checked for each motion: all numbers first, several at a time.
+    let any = numbers.iter().fold(false, |any, x| any | is_outside(x));
+    let first = any.then(|| numbers.iter().position(is_outside));
+    match first.flatten() {
         None => Ok(()),
         Some(i) => Err(Error::parameters(text![
             "parameter `",

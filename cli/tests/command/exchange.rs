@@ -150,6 +150,13 @@ fn a_model_file_states_all_and_takes_no_flag_of_a_signal() {
         );
     }
     assert!(!place.path("other.htex").exists());
+
+    // The first node is silent, of which nothing is exported.
+    let (_, error) = run(&place, "export felt.htex --to wav -o felt.wav", 1);
+    assert!(error.contains("silent at this motion"), "{error}");
+    assert!(!place.path("felt.wav").exists());
+    let line = "export felt.htex --to wav --speed 240 --force 3 -o felt.wav";
+    run(&place, line, 0);
 }
 
 #[test]

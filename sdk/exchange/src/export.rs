@@ -232,6 +232,11 @@ fn of_signal(
         export,
     };
     let written = write(&job)?;
+    if written.heard.samples.iter().all(|x| *x == 0.0) {
+        let problem =
+            "the texture is silent at this motion; give a speed and a force at which it plays";
+        return Err(job.cannot(problem.to_owned()));
+    }
     Ok(Exported {
         played: Some(Played {
             lost: loss(&written.heard, &written.drive, profile)?,

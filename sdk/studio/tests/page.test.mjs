@@ -8,7 +8,7 @@ import path from "node:path";
 import test, { after, before } from "node:test";
 import { pathToFileURL } from "node:url";
 
-import { FILE, SCREENS, bytesOf, goTo, htex, launch, openStudio, ready, samplesOf, saved, serve, shaping } from "./studio.mjs";
+import { FILE, SCREENS, bytesOf, goTo, htex, launch, openStudio, ready, samplesOf, saved, serve, shaping, until } from "./studio.mjs";
 
 const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
@@ -186,7 +186,7 @@ test("the folder works without a network once it was opened", async () => {
   const own = await serve();
   const page = await openStudio(browser, own.address);
   await page.evaluate(() => navigator.serviceWorker.ready);
-  await page.waitForFunction(async () => (await caches.keys()).length > 0 && navigator.serviceWorker.controller !== null);
+  await until(page, async () => (await caches.keys()).length > 0 && navigator.serviceWorker.controller !== null);
   await own.close();
   await page.reload();
   await ready(page);
@@ -205,7 +205,7 @@ test("own textures and the work of last time are there again", async () => {
   await page.getByRole("button", { name: "Keep on my shelf" }).click();
   await page.getByText(/is on your shelf/).waitFor();
   const work = await bytesOf(page);
-  await page.waitForFunction(async (length) => {
+  await until(page, async (length) => {
     const asked = (request) => new Promise((resolve, reject) => Object.assign(request, { onsuccess: () => resolve(request.result), onerror: () => reject(request.error) }));
     const database = await asked(indexedDB.open("htex-studio"));
     const kept = await asked(database.transaction("session").objectStore("session").get("work"));

@@ -66,6 +66,11 @@ export async function ready(page) {
   await page.waitForFunction(() => document.documentElement.dataset.ready === "yes");
 }
 
+/** Waits until `predicate` promises something true in the page; `waitForFunction` takes the promise itself for true. */
+export async function until(page, predicate, argument) {
+  while (!(await page.evaluate(predicate, argument))) await page.waitForTimeout(20);
+}
+
 export async function goTo(page, name) {
   await page.getByRole("navigation").getByRole("button", { name }).click();
 }

@@ -1,32 +1,19 @@
 //! Assets as files of other formats, with what is lost.
 
-use std::borrow::Cow;
-
 use htex_play::Asset;
 use serde::Serialize;
 
 use crate::error::ExchangeError;
 use crate::format::{Format, WriteSignal, Writes};
-use crate::heard::{Heard, Path, Playing};
+use crate::heard::{Path, Playing};
+use crate::job::{AssetJob, Coding, Job, RATE_HZ};
 use crate::loss::{Loss, loss};
-use crate::profile::{Kind, PROFILES, Profile};
+use crate::profile::{PROFILES, Profile};
 
-/// Rate at which envelopes are taken and losses measured, hertz.
-pub(crate) const RATE_HZ: f64 = 8_000.0;
 /// Shortest and longest export, seconds: a texture's spectrum takes 0.2 s.
 const SECONDS: std::ops::RangeInclusive<f64> = 0.5..=crate::pattern::MOST_S;
 /// Highest rate of samples, hertz.
 const MOST_RATE_HZ: f64 = 192_000.0;
-
-/// How `.hjif` codes a texture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Coding {
-    /// At most seven tones.
-    #[default]
-    Vectorial,
-    /// Samples.
-    Wavelet,
-}
 
 /// What is exported, and for what.
 #[derive(Debug, Clone)]
@@ -93,7 +80,7 @@ impl<'a> Export<'a> {
         self
     }
 
-    pub(crate) fn rate_hz(&self) -> f64 {
+    fn rate_hz(&self) -> f64 {
         self.rate_hz.unwrap_or(RATE_HZ)
     }
 
@@ -144,46 +131,6 @@ pub struct Played {
     pub limited: f64,
 }
 
-/// What a writer works on.
-pub struct Job<'a> {
-    pub(crate) playing: Playing<'a>,
-    pub(crate) profile: &'a Profile,
-    pub(crate) export: &'a Export<'a>,
-}
-
-/// What a writer of the asset itself works on.
-pub struct AssetJob<'a> {
-    pub(crate) asset: &'a Asset,
-    pub(crate) export: &'a Export<'a>,
-}
-
-impl AssetJob<'_> {
-    /// The asset's file.
-    pub(crate) fn file(&self) -> Result<Cow<'_, [u8]>, ExchangeError> {
-        if let Some(file) = self.export.file {
-            return Ok(Cow::Borrowed(file));
-        }
-        let written = self.asset.data().to_bytes();
-        written
-            .map(Cow::Owned)
-            .map_err(|error| self.cannot(error.to_string()))
-    }
-
-    pub(crate) fn cannot(&self, problem: String) -> ExchangeError {
-        self.export.cannot(problem)
-    }
-}
-
-/// What a writer made.
-pub struct Written {
-    pub(crate) bytes: Vec<u8>,
-    pub(crate) heard: Heard,
-    /// What the file, read again, drives the actuator with, at the rate of what was heard.
-    pub(crate) drive: Vec<f64>,
-    pub(crate) limited: f64,
-    pub(crate) notes: Vec<String>,
-}
-
 /// Writes an asset as a file of another format; what is played of it is read again, and what is lost is measured.
 ///
 /// # Errors
@@ -198,7 +145,12 @@ pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeEr
             of_signal(asset, export, write, profile)
         }
         Some(Writes::Asset(write)) => Ok(Exported {
-            bytes: write(&AssetJob { asset, export })?,
+            bytes: write(&AssetJob {
+                format: format.name,
+                asset,
+                file: export.file,
+                extension: export.extension,
+            })?,
             format: format.name,
             played: None,
             loses: format.loses,
@@ -221,6 +173,7 @@ fn of_signal(
     profile: &Profile,
 ) -> Result<Exported, ExchangeError> {
     let job = Job {
+        format: export.format.name,
         playing: Playing {
             asset,
             model: export.model,
@@ -229,7 +182,9 @@ fn of_signal(
             seed: export.seed,
         },
         profile,
-        export,
+        rate_hz: export.rate_hz(),
+        coding: export.coding.unwrap_or_default(),
+        extension: export.extension,
     };
     let written = write(&job)?;
     if written.heard.samples.iter().all(|x| *x == 0.0) {
@@ -252,13 +207,6 @@ fn of_signal(
 }
 
 impl Export<'_> {
-    fn cannot(&self, problem: String) -> ExchangeError {
-        ExchangeError::Cannot {
-            format: self.format.name,
-            problem,
-        }
-    }
-
     /// Returns the length of what is played, seconds.
     fn checked_seconds(&self, asset: &Asset) -> Result<f64, ExchangeError> {
         let seconds = match &self.path {
@@ -282,55 +230,6 @@ fn check(
     match within.contains(&value) {
         true => Ok(()),
         false => Err(ExchangeError::OutOfRange { name, value, range }),
-    }
-}
-
-impl Job<'_> {
-    /// What is to say of profile and stroke.
-    fn notes(&self) -> Vec<String> {
-        let mut notes = Vec::new();
-        let mut values = self.profile.values().into_iter();
-        if values.any(|(_, value)| value.is_assumed()) {
-            let name = &self.profile.name;
-            notes.push(format!(
-                "Values of the profile {name} are assumed, not measured."
-            ));
-        }
-        if let Path::Stroke(stroke) = &self.export.path {
-            notes.extend(stroke.warnings.iter().cloned());
-        }
-        notes
-    }
-
-    /// Seconds between points of an envelope: the shortest that actuator and format take, or longer, so that their number is enough.
-    pub(crate) fn point_s(&self, most_points: usize) -> f64 {
-        let most = (self.profile.most_points.value as usize)
-            .min(most_points)
-            .max(4);
-        // Two more points than blocks.
-        let longest = self.playing.seconds / (most - 2) as f64;
-        longest.max(self.profile.shortest_point_ms.value / 1e3)
-    }
-
-    /// Refuses an actuator that plays no samples.
-    pub(crate) fn check_samples(&self) -> Result<(), ExchangeError> {
-        if self.profile.kind == Kind::Resonant {
-            return Ok(());
-        }
-        Err(ExchangeError::NoSamples {
-            profile: self.profile.name.clone(),
-            format: self.export.format.name,
-            instead: "haptic, ahap or android".to_owned(),
-        })
-    }
-
-    /// An error of what was just written, which its own reader refuses.
-    pub(crate) fn own(&self, fault: crate::Fault) -> ExchangeError {
-        self.cannot(fault.to_string())
-    }
-
-    pub(crate) fn cannot(&self, problem: String) -> ExchangeError {
-        self.export.cannot(problem)
     }
 }
 

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::error::{ExchangeError, Fault};
-use crate::export::{AssetJob, Job, Written};
+use crate::job::{AssetJob, Job, Written};
 use crate::profile::Profile;
 
 /// A format.

@@ -30,6 +30,7 @@ pub mod hatt;
 mod heard;
 pub mod hjif;
 mod import;
+mod job;
 mod json;
 mod loss;
 mod pattern;
@@ -44,7 +45,7 @@ pub use ahap::Ahap;
 pub use android::Android;
 pub use curve::{Point, simplified, value_at};
 pub use error::{ExchangeError, Fault, Missing};
-pub use export::{AssetJob, Coding, Export, Exported, Job, Played, Written, export, profile_names};
+pub use export::{Export, Exported, Played, export, profile_names};
 pub use format::{
     Format, Held, Naming, ReadAsset, ReadPositions, ReadSignal, Reads, Sampling, Signal,
     WriteAsset, WriteSignal, Writes,
@@ -56,6 +57,7 @@ pub use hjif::Hjif;
 pub use import::{
     Import, ImportError, Imported, Physical, RATE_HZ, fit_signals, import, recording_of,
 };
+pub use job::{AssetJob, Coding, Job, Written};
 pub use json::MOST_BYTES;
 pub use loss::Loss;
 pub use pattern::{MOST_S, Pattern, Transient, combined, rendered};

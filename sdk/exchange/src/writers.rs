@@ -5,9 +5,9 @@ use crate::android::{
 };
 use crate::curve::{Point, simplified, value_at};
 use crate::error::ExchangeError;
-use crate::export::{Coding, Job, RATE_HZ, Written};
 use crate::heard::{Heard, Path, threshold};
 use crate::hjif::{Hjif, Space, Tone, vectorial, waveform};
+use crate::job::{Coding, Job, RATE_HZ, Written};
 use crate::pattern::{Pattern, rendered};
 use crate::reduce::{drive, one_tone, played_by, tones};
 use htex_format::Quantity;
@@ -106,7 +106,7 @@ pub(crate) fn android(job: &Job<'_>) -> Result<Written, ExchangeError> {
     let read = Android::from_bytes(&json).map_err(|fault| job.own(fault))?;
     read.check_device(job.profile)
         .map_err(|fault| job.own(fault))?;
-    let bytes = match job.export.extension {
+    let bytes = match job.extension {
         Some("kt") => effect.to_kotlin(&job.playing.asset.manifest().name),
         _ => json,
     };
@@ -243,7 +243,7 @@ fn space(job: &Job<'_>) -> Space {
 pub(crate) fn hjif(job: &Job<'_>) -> Result<Written, ExchangeError> {
     job.check_samples()?;
     let space = space(job);
-    let (file, heard, limited) = match job.export.coding.unwrap_or_default() {
+    let (file, heard, limited) = match job.coding {
         Coding::Vectorial => vectorial_file(job, space)?,
         Coding::Wavelet => wavelet_file(job, space)?,
     };
@@ -307,7 +307,7 @@ fn wavelet_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
 
 pub(crate) fn wav(job: &Job<'_>) -> Result<Written, ExchangeError> {
     job.check_samples()?;
-    let rate_hz = libm::round(job.export.rate_hz());
+    let rate_hz = libm::round(job.rate_hz);
     let heard = job.playing.heard(rate_hz, job.point_s(MANY))?;
     let (samples, limited) = drive(&heard, job.profile);
     let bytes = crate::wav::to_bytes(&samples, rate_hz as u32).map_err(|fault| job.own(fault))?;

@@ -68,6 +68,14 @@ pub enum LibraryError {
         /// The name that was added before.
         other: String,
     },
+    /// Textures state no licence, and packing them was not allowed.
+    #[error("{}{} no licence, and a library is passed on; state it, or pack it as unlicensed", plain(.name), states(.others))]
+    Unlicensed {
+        /// The first of them.
+        name: String,
+        /// How many others there are.
+        others: usize,
+    },
     /// A texture to be added is not a valid asset.
     #[error("{}: {error}", plain(.name))]
     Asset {
@@ -87,4 +95,13 @@ pub enum LibraryError {
         /// The limit, and what to do.
         problem: String,
     },
+}
+
+/// Who states something besides a first texture, with the verb.
+fn states(others: &usize) -> String {
+    match others {
+        0 => " states".to_owned(),
+        1 => " and another texture state".to_owned(),
+        others => format!(" and {others} other textures state"),
+    }
 }

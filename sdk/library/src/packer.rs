@@ -31,6 +31,8 @@ pub(crate) struct Packer<S> {
     caseless: BTreeMap<String, String>,
     /// Different tags and models, which many textures have in common.
     words: BTreeSet<Arc<Words>>,
+    /// Textures without a licence are packed, too.
+    pub(crate) allows_unlicensed: bool,
 }
 
 /// Tags and models of a texture.
@@ -46,6 +48,7 @@ struct Added {
     conditions: Conditions,
     contact: Contact,
     law: IndexedLaw,
+    is_licensed: bool,
     blake3: [u8; 32],
     spooled: Spooled,
 }
@@ -82,6 +85,7 @@ impl<S: Store> Packer<S> {
             added: BTreeMap::new(),
             caseless: BTreeMap::new(),
             words: BTreeSet::new(),
+            allows_unlicensed: false,
         })
     }
 
@@ -115,6 +119,7 @@ impl<S: Store> Packer<S> {
             conditions: facts.conditions,
             contact: facts.contact,
             law: facts.law,
+            is_licensed: read.manifest.license.is_some(),
             blake3: *blake3::hash(asset).as_bytes(),
             spooled,
         };
@@ -133,8 +138,24 @@ impl<S: Store> Packer<S> {
         words
     }
 
+    /// Refuses textures without a licence, which nobody but who made them may pass on.
+    fn check_licences(&self) -> Result<(), LibraryError> {
+        let mut unlicensed = self
+            .added
+            .iter()
+            .filter(|(_, texture)| !texture.is_licensed);
+        match unlicensed.next() {
+            Some((name, _)) if !self.allows_unlicensed => Err(LibraryError::Unlicensed {
+                name: name.clone(),
+                others: unlicensed.count(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
     /// Writes the library.
     pub(crate) fn finish(self, target: &mut impl Write) -> Result<Packed, LibraryError> {
+        self.check_licences()?;
         let Self {
             path,
             name,

@@ -45,6 +45,11 @@ impl Writer {
         })
     }
 
+    /// Packs textures that state no licence, too, which [`Self::finish`] refuses else: nobody but who made them may pass them on.
+    pub fn allow_unlicensed(&mut self) {
+        self.packer.allows_unlicensed = true;
+    }
+
     /// Adds a texture: `asset` are the bytes of a `.htex` file, which is stored as it is.
     ///
     /// # Errors
@@ -57,7 +62,7 @@ impl Writer {
     /// Writes the library and renames it into place.
     ///
     /// # Errors
-    /// When a file cannot be written, or the library exceeds the default limits of readers.
+    /// When a texture states no licence, a file cannot be written, or the library exceeds the default limits of readers.
     pub fn finish(self) -> Result<Packed, LibraryError> {
         let Self {
             mut target,
@@ -92,6 +97,11 @@ impl MemoryWriter {
         Packer::new(Path::new(""), name, Cursor::default()).map(Self)
     }
 
+    /// As [`Writer::allow_unlicensed`].
+    pub fn allow_unlicensed(&mut self) {
+        self.0.allows_unlicensed = true;
+    }
+
     /// Adds a texture.
     ///
     /// # Errors
@@ -103,7 +113,7 @@ impl MemoryWriter {
     /// Returns the library.
     ///
     /// # Errors
-    /// When it exceeds the default limits of readers.
+    /// When a texture states no licence, or the library exceeds the default limits of readers.
     pub fn finish(self) -> Result<(Packed, Vec<u8>), LibraryError> {
         let mut bytes = Vec::new();
         let packed = self.0.finish(&mut bytes)?;

@@ -207,16 +207,21 @@ fn entry_data<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyAny>
     data(py, "LibraryEntry", &fields)
 }
 
-/// Packs textures into a library, by their names: paths, bytes, objects with the method `read`, or `Texture`s.
+/// Packs textures into a library, by their names: paths, bytes, objects with the method `read`, or `Texture`s. Each states a licence, since a
+/// library is passed on; with `unlicensed=True` those that state none are packed, too.
 #[pyfunction]
-#[pyo3(signature = (path, textures, *, name=""))]
+#[pyo3(signature = (path, textures, *, name="", unlicensed=false))]
 pub(crate) fn pack(
     py: Python<'_>,
     path: PathBuf,
     textures: &Bound<'_, PyAny>,
     name: &str,
+    unlicensed: bool,
 ) -> PyResult<u64> {
     let mut writer = Writer::create(&path, name).or_raise()?;
+    if unlicensed {
+        writer.allow_unlicensed();
+    }
     for pair in textures.call_method0("items")?.try_iter()? {
         let (name, texture): (String, Bound<'_, PyAny>) = pair?.extract()?;
         let bytes = texture_bytes(py, &texture)?;

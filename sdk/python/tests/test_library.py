@@ -72,9 +72,13 @@ def test_what_is_wrong_is_an_exception_and_leaves_nothing(place: pathlib.Path, t
     ]:
         with pytest.raises(error, match=words):
             htex.pack(path, textures)  # type: ignore[arg-type]
+    mine = {"b": htex.edit(htex.open(cloth), license=""), "a": cloth}
+    with pytest.raises(htex.LibraryError, match="^b states no licence"):
+        htex.pack(path, mine)
     with pytest.raises(FileNotFoundError):
         htex.pack(tmp_path / "no" / "where.htexlib", {})
     assert list(tmp_path.iterdir()) == []
+    assert htex.pack(tmp_path / "mine.htexlib", mine, unlicensed=True) > 0
     with pytest.raises(htex.LibraryError, match="LIBRARY_UNRECOGNISED"):
         htex.Library(cloth)
     with pytest.raises(FileNotFoundError):

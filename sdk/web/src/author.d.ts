@@ -330,8 +330,8 @@ export interface Author {
   fit(recordings: NamedBytes | NamedBytes[], settings?: FitSettings): Fitted;
   /** Bakes a block for the player on microcontrollers. */
   bake(texture: Texture | Bytes, options?: BakeOptions): Baked;
-  /** Packs textures, by their names, to a `.htexlib` file. */
-  library(textures: Record<string, Texture | Bytes>, options?: { name?: string }): Uint8Array;
+  /** Packs textures, by their names, to a `.htexlib` file. Each states a licence, unless `unlicensed` allows those that do not. */
+  library(textures: Record<string, Texture | Bytes>, options?: { name?: string; unlicensed?: boolean }): Uint8Array;
 }
 
 /** Loads the author module. */

@@ -189,10 +189,10 @@ export class Author {
     return { texture: this.texture(bytes), report: document };
   }
 
-  /** Packs textures, by their names in the library, to a `.htexlib` file. */
-  library(textures, { name = "" } = {}) {
+  /** Packs textures, by their names in the library, to a `.htexlib` file; each states a licence, unless `unlicensed` allows those that do not. */
+  library(textures, { name = "", unlicensed = false } = {}) {
     const all = Object.entries(textures);
-    const request = { name, textures: all.map(([own]) => own) };
+    const request = { name, unlicensed, textures: all.map(([own]) => own) };
     return this.core.call("library", request, all.map(([, texture]) => bytesOfTexture(texture))).bytes;
   }
 }

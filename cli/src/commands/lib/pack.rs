@@ -1,8 +1,8 @@
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_format::{Limits, manifest_json};
-use htex_library::{EXTENSION, Packed, Writer};
+use htex_library::{EXTENSION, LibraryError, Packed, Writer};
 use serde_json::{Value, json};
 
 use super::sources::sources;
@@ -10,7 +10,7 @@ use crate::bounded::read_asset;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::of_file::ResultOfFile;
+use crate::of_file::{OfFile, ResultOfFile};
 use crate::output::{print, print_json};
 use crate::outputs::check_outputs;
 use crate::progress::bar;
@@ -44,41 +44,6 @@ pub(crate) struct Pack {
     json: bool,
 }
 
-/// The textures that state no licence: the first, and how many.
-#[derive(Default)]
-struct Unlicensed {
-    first: Option<PathBuf>,
-    count: usize,
-}
-
-impl Unlicensed {
-    /// Looks into the bytes of a valid asset.
-    fn look(&mut self, path: &Path, bytes: &[u8]) {
-        let manifest = manifest_json(bytes, &Limits::default()).unwrap_or_default();
-        if manifest["license"].is_string() {
-            return;
-        }
-        self.first.get_or_insert_with(|| path.to_owned());
-        self.count += 1;
-    }
-
-    /// Refuses to pack them.
-    fn refuse(&self) -> Result<(), Failure> {
-        let Some(first) = &self.first else {
-            return Ok(());
-        };
-        let file = shown(first);
-        let which = match self.count {
-            1 => format!("{file} states no licence"),
-            2 => format!("{file} and another texture state no licence"),
-            count => format!("{file} and {} other textures state no licence", count - 1),
-        };
-        Err(Failure::Other(format!(
-            "{which}, and a library is passed on; state it (htex edit {file} --license SPDX), or pack with --unlicensed"
-        )))
-    }
-}
-
 impl Pack {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let is_library = self
@@ -102,18 +67,18 @@ impl Pack {
             .clone()
             .unwrap_or(stem.unwrap_or_default().into_owned());
         let mut writer = Writer::create(&self.output, &name).of(&self.output)?;
-        let mut unlicensed = Unlicensed::default();
+        if self.unlicensed {
+            writer.allow_unlicensed();
+        }
         let bar = bar(sources.len() as u64);
         for (name, path) in &sources {
             let bytes = read_asset(path)?;
             writer.add(name, &bytes).of(path)?;
-            if !self.unlicensed {
-                unlicensed.look(path, &bytes);
-            }
             bar.inc(1);
         }
-        unlicensed.refuse()?;
-        let packed = writer.finish().of(&self.output)?;
+        let packed = writer
+            .finish()
+            .map_err(|error| self.failure(error, &sources))?;
         bar.finish_and_clear();
         if self.json {
             print_json(&summary(&self.output, &name, &packed))?;
@@ -121,6 +86,21 @@ impl Pack {
             print(&text(&self.output, &packed))?;
         }
         Ok(Exit::SUCCESS)
+    }
+
+    /// The error of writing, with what to do here.
+    fn failure(&self, error: LibraryError, sources: &BTreeMap<String, PathBuf>) -> Failure {
+        match &error {
+            LibraryError::Unlicensed { name, .. } => {
+                let file = sources
+                    .get(name)
+                    .map_or_else(|| name.clone(), |path| shown(path));
+                Failure::Other(format!(
+                    "{error}: htex edit {file} --license SPDX, or --unlicensed"
+                ))
+            }
+            _ => error.of(&self.output),
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use super::glb;
 use super::material::{EXTENSION, Material, MediaType};
 use super::read::{data_uri, read};
 use crate::error::ExchangeError;
-use crate::export::AssetJob;
+use crate::job::AssetJob;
 use crate::json::{self, MOST_BYTES};
 
 /// Side of the rectangle, millimetres, over which each texture coordinate goes from 0 to 1.
@@ -44,7 +44,7 @@ pub(crate) fn written(job: &AssetJob<'_>) -> Result<Vec<u8>, ExchangeError> {
         tex_coord_size_mm: Some([SIDE_MM; 2]),
     };
     let mut document = document(&job.asset.manifest().name, &texture, &buffer);
-    let file = match job.export.extension {
+    let file = match job.extension {
         Some("gltf") => {
             document["buffers"][0]["uri"] = data_uri(&buffer.bytes).into();
             json::written(&document)

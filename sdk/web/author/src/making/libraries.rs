@@ -8,11 +8,15 @@ use crate::refusal::Refusal;
 pub(crate) fn pack(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let name = call.text("name")?.unwrap_or_default();
     let textures = call.texts("textures")?;
+    let is_unlicensed = call.flag("unlicensed")?;
     call.finish()?;
     if textures.len() != files.len() {
         return Err(Refusal::argument("a file is missing"));
     }
     let mut writer = htex_library::MemoryWriter::new(&name)?;
+    if is_unlicensed {
+        writer.allow_unlicensed();
+    }
     for (name, bytes) in textures.iter().zip(files) {
         writer.add(name, bytes)?;
     }

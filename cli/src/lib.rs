@@ -35,6 +35,7 @@ mod recording_plot;
 mod recordings;
 mod report;
 mod rules;
+mod scene_sound;
 mod scenes;
 mod schemas;
 mod shown;

@@ -62,6 +62,7 @@ impl ChoiceArgs {
             adapter: self.device.clone(),
             profile: self.settings.profile().map(str::to_owned),
             settings: self.settings.given()?,
+            rate_hz: None,
             quantity_gain: self.quantity_gain,
             output: output.map(|path| path.display().to_string()),
         })
@@ -180,6 +181,15 @@ pub(crate) struct Loader {
 }
 
 impl Loader {
+    /// With the devices of this program alone: what is played is not heard.
+    pub(crate) fn builtin(player: &PlayerArgs) -> Result<Self, Failure> {
+        Ok(Self {
+            models: player.registry()?,
+            devices: Devices::new(htex_device_builtin::devices()),
+            embedded: player.embedded(),
+        })
+    }
+
     pub(crate) fn around(&self) -> Surroundings<'_> {
         Surroundings {
             models: &self.models,

@@ -18,15 +18,16 @@ use crate::of_file::{OfFile, ResultOfFile};
 use crate::output::{note, print, print_json, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
+use crate::scene_sound::{Scene, is_scene};
 use crate::shown::shown;
 
-/// Write a texture at a condition, or along a stroke, as a file that phones, controllers and engines play.
+/// Write a texture at a condition or along a stroke, or what a scene plays, as a file that phones, controllers and engines play.
 ///
 /// The profile of an actuator decides what of the spectrum it can do. The file is read again, played through the profile, and
 /// compared with the asset's own samples: that difference is printed.
 #[derive(Args)]
 pub(crate) struct Export {
-    /// The asset
+    /// The asset, or a scene, which has its own motion and models
     #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
@@ -65,9 +66,9 @@ struct Settings {
     #[arg(long, value_name = "NAME", value_parser = profile_names())]
     profile: Option<String>,
 
-    /// Length of a condition, s
-    #[arg(long, default_value_t = 2.0, value_name = "S")]
-    seconds: f64,
+    /// Length of a condition, or of a scene in place of its own, s [default: 2, or the scene's]
+    #[arg(long, value_name = "S")]
+    seconds: Option<f64>,
 
     /// Sampling rate of WAV, Hz [default: 8000]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(100..=192_000))]
@@ -109,37 +110,51 @@ struct Written<'a> {
 
 impl Export {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let inputs = [&self.asset].into_iter().chain(&self.given.values.stroke);
-        check_outputs([self.output.as_path()], inputs.map(PathBuf::as_path))?;
         let unknown = || Failure::Usage(format!("--to {}: there is no such format", self.to));
         let format = Format::named(&self.to).ok_or_else(unknown)?;
         format.check_export(self.given.settings.iter().map(String::as_str))?;
-        let asset = self.player.open(&self.asset)?;
-        let file = self.file(format)?;
-        let export = self.export(format, &asset, file.as_deref())?;
-        let exported =
-            htex_exchange::export(&asset, &export).map_err(|error| self.failure(error))?;
+        let exported = match is_scene(&self.asset) {
+            true => self.of_scene(format)?,
+            false => self.of_asset(format)?,
+        };
         write_file(&self.output, &exported.bytes)?;
         self.tell(&exported)?;
         Ok(Exit::SUCCESS)
     }
 
-    fn export<'a>(
-        &'a self,
-        format: &'static Format,
-        asset: &htex::Asset,
-        file: Option<&'a [u8]>,
-    ) -> Result<htex_exchange::Export<'a>, Failure> {
+    fn of_asset(&self, format: &'static Format) -> Result<Exported, Failure> {
+        let inputs = [&self.asset].into_iter().chain(&self.given.values.stroke);
+        check_outputs([self.output.as_path()], inputs.map(PathBuf::as_path))?;
+        let asset = self.player.open(&self.asset)?;
+        let file = self.file(format)?;
+        let mut export = self.export(format)?;
+        export.path = self.path(&asset)?;
+        export.file = file.as_deref();
+        htex_exchange::export(&asset, &export).map_err(|error| self.failure(error))
+    }
+
+    fn of_scene(&self, format: &'static Format) -> Result<Exported, Failure> {
+        format.check_export_of_scene(self.given.settings.iter().map(String::as_str))?;
+        let scene = Scene::open(&self.asset, &self.player, self.given.values.seconds)?;
+        check_outputs(
+            [self.output.as_path()],
+            scene.inputs.iter().map(PathBuf::as_path),
+        )?;
+        let export = self.export(format)?;
+        scene
+            .with(|sound| htex_exchange::export_scene(sound, &export))
+            .map_err(|error| self.failure(error))
+    }
+
+    fn export(&self, format: &'static Format) -> Result<htex_exchange::Export<'_>, Failure> {
         let settings = &self.given.values;
         let mut export = htex_exchange::Export::new(format);
-        export.path = self.path(asset)?;
         export.model = settings.choice.model.as_deref();
         export.profile = settings.profile.as_deref().map(Profile::find).transpose()?;
-        export.seconds = settings.seconds;
+        export.seconds = settings.seconds.unwrap_or(export.seconds);
         export.rate_hz = settings.rate.map(f64::from);
         export.seed = settings.seed;
         export.extension = self.output.extension().and_then(|e| e.to_str());
-        export.file = file;
         export.coding = settings.coding.map(Into::into);
         Ok(export)
     }

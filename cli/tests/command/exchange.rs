@@ -340,6 +340,74 @@ fn an_export_follows_condition_stroke_and_profile() {
     assert!(error.contains("cannot be used with"), "{error}");
 }
 
+/// A scene is exported as what it plays, for as long as it lasts: one with the texture alone as the texture, others with what their own
+/// render plays.
+#[test]
+fn a_scene_goes_out_as_it_plays() {
+    let place = imported();
+    let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/scenes");
+    let scene = |name: &str| scenes.join(name).display().to_string();
+    let told = |line: String| place.json(&words(&format!("export {line} --json")));
+    let one = json!({
+        "htex_scene": "1.0",
+        "surfaces": [{ "asset": scene("coarse-fabric.htex"), "representation": "sslope" }],
+        "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
+        "duration_s": 5,
+    });
+    place.write("one.scene.json", one.to_string());
+    let at = "--to wav --model sslope --speed 80 --force 0.4 --seconds 5";
+    let alone = told(format!("{} {at} -o alone.wav", scene("coarse-fabric.htex")));
+    let constant = told("one.scene.json --to wav -o scene.wav".to_owned());
+    assert_eq!(constant["seconds"], 5.0);
+    for name in ["level_db", "third_octave_error_rms_db"] {
+        let [a, b] = [&alone, &constant].map(|told| told["lost"][name].as_f64().unwrap());
+        assert!((a - b).abs() < 0.5, "{name}: {a} dB and {b} dB");
+    }
+    for to in ["haptic", "ahap", "android", "hjif", "wav"] {
+        let several = told(format!(
+            "{} --to {to} -o out.bin",
+            scene("two-swatches.scene.json")
+        ));
+        assert!(several["lost"]["level_db"].is_f64(), "{to}: {several}");
+        assert!(
+            several["seconds"].as_f64().unwrap() > 1.0,
+            "{to}: {several}"
+        );
+    }
+    let short = told(format!(
+        "{} --to hjif --seconds 1 -o out.hjif",
+        scene("constant.scene.json")
+    ));
+    assert_eq!(short["seconds"], 1.0);
+    for (name, rest, part) in [
+        (
+            "constant.scene.json",
+            "--to wav --speed 40 --force 0.4",
+            "its export of a scene takes no --speed",
+        ),
+        (
+            "constant.scene.json",
+            "--to wav --seed 0",
+            "its export of a scene takes no --seed",
+        ),
+        (
+            "constant.scene.json",
+            "--to gltf",
+            "export the scene's assets",
+        ),
+        ("live.scene.json", "--to wav", "its motion is live"),
+        ("no.scene.json", "--to wav", "no.scene.json"),
+    ] {
+        let run = place.run(&words(&format!(
+            "export {} {rest} -o none.bin",
+            scene(name)
+        )));
+        assert_ne!(run.code(), 0, "{name} {rest}");
+        assert!(run.error().contains(part), "{name} {rest}: {}", run.error());
+    }
+    assert!(!place.path("none.bin").exists());
+}
+
 #[test]
 fn an_export_takes_no_flag_that_the_format_has_no_use_for() {
     let place = imported();

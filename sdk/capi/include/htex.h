@@ -112,6 +112,10 @@ enum htex_status
      The library has no texture of this name.
      */
     HTEX_STATUS_ABSENT = 15,
+    /*
+     The device or its driver is missing, in use, or failed; it is at rest.
+     */
+    HTEX_STATUS_DEVICE = 16,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -305,6 +309,46 @@ typedef struct htex_motion {
      */
     double y_mm;
 } htex_motion;
+
+/*
+ A device that is open. One thread at a time may use it. Zero is no device.
+ */
+typedef struct htex_device {
+    /*
+     Private.
+     */
+    uint64_t id;
+} htex_device;
+
+/*
+ What a device did since it was opened. Set `size` to sizeof(htex_device_counts) before the call.
+ */
+typedef struct htex_device_counts {
+    /*
+     sizeof(htex_device_counts).
+     */
+    uint32_t size;
+    /*
+     Samples that it took.
+     */
+    uint64_t frames_written;
+    /*
+     Samples that came out.
+     */
+    uint64_t frames_played;
+    /*
+     Times it ran dry.
+     */
+    uint64_t underruns;
+    /*
+     Time from writing a sample to its output, s.
+     */
+    double latency_s;
+    /*
+     Largest magnitude written, in the device's unit.
+     */
+    double peak;
+} htex_device_counts;
 
 /*
  An opened library. Several threads may use it at a time. Zero is no library.
@@ -598,6 +642,66 @@ htex_status htex_asset_level_rms(struct htex_asset asset,
                                  double *out);
 
 /*
+ [any thread; asks drivers] The devices that this library has as JSON, each with `id`, `name`, the names of what is connected now as `endpoints`, and `problem`, which
+ is null or says what to install. Written as by htex_asset_manifest_json.
+ */
+htex_status htex_device_list_json(char *out,
+                                  size_t capacity,
+                                  size_t *length);
+
+/*
+ [any thread; asks drivers] A device as JSON: its `descriptor` with its settings and what becomes of the samples (`mapping`), and its `capabilities`
+ with these settings: the quantity of its samples, rates, the largest magnitude; null, and a `problem`, where it cannot be used with them. `settings` as in htex_device_open.
+ */
+htex_status htex_device_info_json(const char *name,
+                                  const char *settings,
+                                  char *out,
+                                  size_t capacity,
+                                  size_t *length);
+
+/*
+ [any thread; asks drivers] Opens a device, at rest: `sdl`, `parametric`, `channels`, `file`, or its id. `settings` are lines NAME=VALUE; NULL: the defaults.
+ `rate_hz` is that of the samples; 0: the device's own. Samples are of the quantity that htex_device_info_json tells; a texture's in newtons become parts of full
+ scale by the gain of its voice. A display that is driven by a voltage is not opened here: it needs a process that takes the voltage away
+ if the program dies (`htex play`).
+ */
+htex_status htex_device_open(const char *name,
+                             const char *settings,
+                             double rate_hz,
+                             struct htex_device *out);
+
+/*
+ [one thread at a time] Rate of the samples, Hz.
+ */
+htex_status htex_device_rate_hz(struct htex_device device, double *out);
+
+/*
+ [one thread at a time; waits] Gives samples to a device, as many as it takes within `timeout_ms`, and writes their number to `written`. The first
+ samples start it; when later ones come too late it goes to rest, and the call fails. After an error it is at rest, and stays there.
+ */
+htex_status htex_device_write(struct htex_device device,
+                              const float *samples,
+                              size_t frames,
+                              uint32_t timeout_ms,
+                              size_t *written);
+
+/*
+ [one thread at a time] Writes what the device did so far.
+ */
+htex_status htex_device_status(struct htex_device device, struct htex_device_counts *out);
+
+/*
+ [one thread at a time; waits] Plays what was written to its end, goes to rest, and keeps the result: a file appears under its name. Nothing can be written
+ afterwards.
+ */
+htex_status htex_device_finish(struct htex_device device);
+
+/*
+ [one thread at a time; may wait] Frees a device. One that was not finished goes to rest at once, and leaves no file behind.
+ */
+htex_status htex_device_free(struct htex_device device);
+
+/*
  [any thread; reads a file] Opens a library file. Its index is read page by page, its textures one at a time.
  */
 htex_status htex_library_open(const char *path, struct htex_library *out);
@@ -749,7 +853,7 @@ htex_status htex_scene_render(struct htex_scene scene,
 htex_status htex_scene_stop(struct htex_scene scene);
 
 /*
- [no other call may run in any thread] Frees all assets, voices, libraries and scenes, and all memory that was allocated for them, ends
+ [no other call may run in any thread] Frees all assets, voices, libraries, scenes and devices (which go to rest), and all memory that was allocated for them, ends
  the threads of engines and forgets the function of htex_set_log, so that the library can be unloaded. Handles from before are
  bad afterwards, and new objects may be made. Constants of the models that were used stay: 0.2 MB for all six, and no more with later use. HTEX_STATUS_BUSY, and nothing is freed of
  that kind, if an object is in use.

@@ -23,6 +23,7 @@ using Condition = htex_condition;
 using Band = htex_band;
 using Reader = htex_reader;
 using Files = htex_files;
+using DeviceCounts = htex_device_counts;
 
 /* A motion at an unknown position and place. */
 inline Motion motion(double speed_mm_s, double force_n) noexcept
@@ -559,6 +560,57 @@ private:
         return Scene(scene);
     }
     detail::Owned<htex_scene, htex_scene_free> handle_;
+};
+
+/* A device that is open, by its name: what plays the samples. One that is freed before it is finished goes to rest. [one thread at a time] */
+class Device {
+public:
+    Device() noexcept = default;
+
+    /* The devices of the library as JSON; see htex_device_list_json. */
+    static Result<std::string> list_json()
+    {
+        return detail::text([](char *out, size_t capacity, size_t *length) {
+            return htex_device_list_json(out, capacity, length);
+        });
+    }
+    /* Settings, quantity, rates and what becomes of the samples as JSON; see htex_device_info_json. */
+    static Result<std::string> info_json(const std::string &name, const std::string &settings = {})
+    {
+        return detail::text([&](char *out, size_t capacity, size_t *length) {
+            return htex_device_info_json(name.c_str(), settings.c_str(), out, capacity, length);
+        });
+    }
+    /* Opens a device; `settings` are lines NAME=VALUE, and a rate of 0 is the device's own. */
+    static Result<Device> open(const std::string &name, const std::string &settings = {}, double rate_hz = 0.0)
+    {
+        htex_device device{};
+        if (Status status = status_of(htex_device_open(name.c_str(), settings.c_str(), rate_hz, &device)); !status)
+            return status;
+        return Device(device);
+    }
+    double rate_hz() const noexcept
+    {
+        double rate_hz = NAN;
+        htex_device_rate_hz(handle_.get(), &rate_hz);
+        return rate_hz;
+    }
+    /* Waits until the device takes samples, or the time is over. */
+    htex_status write(const float *samples, size_t frames, uint32_t timeout_ms, size_t &written) noexcept
+    {
+        return htex_device_write(handle_.get(), samples, frames, timeout_ms, &written);
+    }
+    htex_status status(DeviceCounts &counts) const noexcept
+    {
+        counts.size = sizeof counts;
+        return htex_device_status(handle_.get(), &counts);
+    }
+    /* Plays what was written to its end, and keeps the result. */
+    htex_status finish() noexcept { return htex_device_finish(handle_.get()); }
+
+private:
+    explicit Device(htex_device handle) noexcept : handle_(handle) {}
+    detail::Owned<htex_device, htex_device_free> handle_;
 };
 
 } /* namespace htex */

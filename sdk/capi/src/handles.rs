@@ -28,6 +28,8 @@ pub(crate) enum Kind {
     Library = 3,
     #[cfg(feature = "scene")]
     Scene = 4,
+    #[cfg(feature = "scene")]
+    Device = 6,
     #[cfg(all(target_family = "wasm", feature = "library"))]
     Index = 5,
 }

@@ -12,6 +12,7 @@
 mod asset;
 #[cfg(target_family = "wasm")]
 mod browser;
+mod device;
 mod handles;
 mod library;
 mod log;
@@ -36,6 +37,7 @@ pub mod calls {
 pub use asset::*;
 #[cfg(target_family = "wasm")]
 pub use browser::{htex_alloc, htex_free};
+pub use device::*;
 pub use library::*;
 pub use log::{htex_log_callback, htex_log_level, htex_set_log};
 pub use motion::htex_motion;

@@ -5,7 +5,7 @@ use crate::log::forget_log;
 use crate::status::{Failure, guarded, htex_status};
 use crate::voice::VOICES;
 
-/// [no other call may run in any thread] Frees all assets, voices, libraries and scenes, and all memory that was allocated for them, ends
+/// [no other call may run in any thread] Frees all assets, voices, libraries, scenes and devices (which go to rest), and all memory that was allocated for them, ends
 /// the threads of engines and forgets the function of htex_set_log, so that the library can be unloaded. Handles from before are
 /// bad afterwards, and new objects may be made. Constants of the models that were used stay: 0.2 MB for all six, and no more with later use. HTEX_STATUS_BUSY, and nothing is freed of
 /// that kind, if an object is in use.
@@ -15,7 +15,10 @@ pub unsafe extern "C" fn htex_shutdown() -> htex_status {
         // SAFETY: the caller makes no other call.
         unsafe {
             #[cfg(feature = "scene")]
-            crate::scene::clear()?;
+            {
+                crate::device::clear()?;
+                crate::scene::clear()?;
+            }
             VOICES.clear()?;
             ASSETS.clear()?;
             #[cfg(all(feature = "library", not(target_family = "wasm")))]

@@ -41,6 +41,8 @@ pub enum htex_status {
     HTEX_STATUS_INVALID_LIBRARY = 14,
     /// The library has no texture of this name.
     HTEX_STATUS_ABSENT = 15,
+    /// The device or its driver is missing, in use, or failed; it is at rest.
+    HTEX_STATUS_DEVICE = 16,
 }
 
 /// An error of a call: its status and its text.
@@ -200,6 +202,7 @@ pub extern "C" fn htex_status_text(status: i32) -> *const c_char {
         13 => c"an error of the library itself",
         14 => c"the library of textures is invalid",
         15 => c"the library has no texture of this name",
+        16 => c"the device or its driver is missing, in use, or failed",
         _ => c"unknown status",
     };
     text.as_ptr()

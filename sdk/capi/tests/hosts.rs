@@ -202,9 +202,11 @@ fn calls_of_each_language_tell_the_same() {
         ),
         ("again", vec![1.0]),
         ("silent", vec![1.0]),
+        ("device", vec![2_000.0, 2_000.0, 48_000.0]),
     ];
     voice.set_motion(Motion::new(0.0, 0.0)).unwrap();
 
+    let mut played = Vec::new();
     for (language, file) in [(Language::Cxx, "calls.cpp"), (Language::Csharp, "Calls.cs")] {
         let Some(project) = Project::new(language, "calls") else {
             continue;
@@ -226,10 +228,12 @@ fn calls_of_each_language_tell_the_same() {
         };
         let program = project.build_with(&source, more);
         let asset = asset();
+        let channels = folder.path().join(format!("{file}.wav"));
         let mut paths: Vec<&OsStr> = vec![asset.as_os_str(), library.as_os_str()];
         if language == Language::Csharp {
             paths.push(scene.as_os_str());
         }
+        paths.push(channels.as_os_str());
         let printed = passed(file, &project.run(&program, &paths));
         let lines = lines(&printed);
         for (name, values) in &expected {
@@ -242,7 +246,14 @@ fn calls_of_each_language_tell_the_same() {
         assert_eq!(lines["name"], opened.manifest().name);
         assert_eq!(lines["model"], opened.representation_id(None).unwrap());
         assert_eq!(lines["status"], "another thread uses the object");
+        played.push(fs::read(channels).unwrap());
     }
+    // Four channels of 2,000 samples, the same from each language.
+    assert!(
+        played
+            .iter()
+            .all(|file| *file == played[0] && file.len() > 2_000 * 4 * 4)
+    );
 }
 
 /// 2,000 toggles of `HtexSource` while an audio thread renders without a pause.

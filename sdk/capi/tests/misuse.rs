@@ -506,6 +506,19 @@ fn a_scene_plays_and_reports() {
             HTEX_STATUS_OK
         );
         assert!(length > 100);
+        let mut rate_hz = 0.0;
+        for (asked, expected) in [(48_000.0, 48_000.0), (0.0, 20_000.0)] {
+            let options = htex_scene_options {
+                size: size_of::<htex_scene_options>() as u32,
+                rate_hz: asked,
+            };
+            let mut other = htex_scene { id: 0 };
+            let status = htex_scene_open(path.as_ptr(), null(), &options, &mut other);
+            assert_eq!(status, HTEX_STATUS_OK, "{}", last_error());
+            htex_scene_rate_hz(other, &mut rate_hz);
+            assert_eq!(rate_hz, expected);
+            assert_eq!(htex_scene_free(other), HTEX_STATUS_OK);
+        }
         assert_eq!(htex_scene_set_finger(playing, &finger), HTEX_STATUS_OK);
         let lost = htex_finger {
             x_mm: f64::NAN,
@@ -523,5 +536,67 @@ fn a_scene_plays_and_reports() {
             htex_scene_render(playing, samples.as_mut_ptr(), 2_000, &mut rendered);
         }
         assert_eq!(htex_scene_free(playing), HTEX_STATUS_OK);
+    }
+}
+
+/// A device is refused with what to do, takes samples until it is finished, and is at rest when it is freed.
+#[cfg(feature = "scene")]
+#[test]
+fn a_device_is_opened_by_its_name() {
+    let (name, other) = (c"channels", c"daq");
+    let open = |name: &CStr, settings: &CStr, rate_hz: f64| {
+        let mut device = htex_device { id: 0 };
+        // SAFETY: live pointers.
+        let status =
+            unsafe { htex_device_open(name.as_ptr(), settings.as_ptr(), rate_hz, &mut device) };
+        (status, device)
+    };
+    is(open(other, c"", 0.0).0, HTEX_STATUS_INVALID_ARGUMENT);
+    is(
+        open(name, c"to=nowhere", 0.0).0,
+        HTEX_STATUS_INVALID_ARGUMENT,
+    );
+    is(open(name, c"to", 0.0).0, HTEX_STATUS_INVALID_ARGUMENT);
+    is(open(name, c"to=null", 1.0).0, HTEX_STATUS_INVALID_ARGUMENT);
+    is(
+        open(c"sdl", c"driver=/nowhere/libSDL2.so", 0.0).0,
+        HTEX_STATUS_INVALID_ARGUMENT,
+    );
+    assert!(last_error().contains("SDL"), "{}", last_error());
+    let (status, device) = open(name, c"to=null", 0.0);
+    assert_eq!(status, HTEX_STATUS_OK, "{}", last_error());
+    let (samples, mut written) = ([0.25f32; 256], 7);
+    let mut counts = htex_device_counts {
+        size: 0,
+        frames_written: 0,
+        frames_played: 0,
+        underruns: 0,
+        latency_s: 0.0,
+        peak: 0.0,
+    };
+    // SAFETY: live pointers.
+    unsafe {
+        let write = |count, written: *mut usize| {
+            htex_device_write(device, samples.as_ptr(), count, 1_000, written)
+        };
+        assert_eq!(write(256, &mut written), HTEX_STATUS_OK, "{}", last_error());
+        assert_eq!(written, 256);
+        is(
+            htex_device_status(device, &mut counts),
+            HTEX_STATUS_INVALID_ARGUMENT,
+        );
+        counts.size = size_of::<htex_device_counts>() as u32;
+        assert_eq!(htex_device_status(device, &mut counts), HTEX_STATUS_OK);
+        assert_eq!((counts.frames_written, counts.peak), (256, 0.25));
+        assert_eq!(
+            htex_device_finish(device),
+            HTEX_STATUS_OK,
+            "{}",
+            last_error()
+        );
+        is(write(1, &mut written), HTEX_STATUS_DEVICE);
+        assert_eq!(written, 0);
+        assert_eq!(htex_device_free(device), HTEX_STATUS_OK);
+        is(write(1, &mut written), HTEX_STATUS_BAD_HANDLE);
     }
 }

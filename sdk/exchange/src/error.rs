@@ -69,7 +69,7 @@ pub enum ExchangeError {
     #[error("{format}: its {way} takes no `{setting}`; leave it out{}", taken(.takes))]
     Unused {
         format: &'static str,
-        /// `import` or `export`.
+        /// `import`, `export` or `export of a scene`.
         way: &'static str,
         /// As a keyword: `full_scale`.
         setting: String,
@@ -106,6 +106,9 @@ pub enum ExchangeError {
     /// The asset cannot be played.
     #[error(transparent)]
     Play(#[from] htex_play::Error),
+    /// The scene cannot be played.
+    #[error("{problem}")]
+    Scene { problem: String },
     /// The signal cannot be read as a recording, or no model can be fitted to it.
     #[error(transparent)]
     Author(#[from] AuthorError),

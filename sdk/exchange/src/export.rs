@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::error::ExchangeError;
 use crate::format::{Format, WriteSignal, Writes};
-use crate::heard::{Path, Playing};
+use crate::heard::{Path, Playing, SceneSound, Source};
 use crate::job::{AssetJob, Coding, Job, RATE_HZ};
 use crate::loss::{Loss, loss};
 use crate::profile::{PROFILES, Profile};
@@ -141,8 +141,17 @@ pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeEr
     format.check_export(export.given())?;
     match format.writes {
         Some(Writes::Signal { write, profile, .. }) => {
-            let profile = export.profile.map_or_else(|| Profile::find(profile), Ok)?;
-            of_signal(asset, export, write, profile)
+            let source = Source::Asset {
+                asset,
+                model: export.model,
+                path: &export.path,
+                seed: export.seed,
+            };
+            let seconds = match &export.path {
+                Path::Condition(_) => export.seconds,
+                Path::Stroke(stroke) => stroke.seconds(),
+            };
+            of_signal(Playing { source, seconds }, export, write, profile)
         }
         Some(Writes::Asset(write)) => Ok(Exported {
             bytes: write(&AssetJob {
@@ -156,31 +165,57 @@ pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeEr
             loses: format.loses,
             notes: Vec::new(),
         }),
-        None => Err(ExchangeError::Cannot {
+        None => Err(not_written(format)),
+    }
+}
+
+/// Writes what a scene plays as a file of another format; model, motion and seed are the scene's.
+///
+/// # Errors
+/// Those of [`export`], and when the format holds assets.
+pub fn export_scene(
+    scene: &SceneSound<'_>,
+    export: &Export<'_>,
+) -> Result<Exported, ExchangeError> {
+    let format = export.format;
+    format.check_export_of_scene(export.given())?;
+    match format.writes {
+        Some(Writes::Signal { write, profile, .. }) => {
+            let playing = Playing {
+                source: Source::Scene(scene),
+                seconds: scene.seconds,
+            };
+            of_signal(playing, export, write, profile)
+        }
+        Some(Writes::Asset(_)) => Err(ExchangeError::Cannot {
             format: format.name,
-            problem: format!(
-                "it is not written; there are {}",
-                crate::exported().join(", ")
-            ),
+            problem: "it holds an asset, and a scene is none; export the scene's assets".to_owned(),
         }),
+        None => Err(not_written(format)),
+    }
+}
+
+fn not_written(format: &Format) -> ExchangeError {
+    ExchangeError::Cannot {
+        format: format.name,
+        problem: format!(
+            "it is not written; there are {}",
+            crate::exported().join(", ")
+        ),
     }
 }
 
 fn of_signal(
-    asset: &Asset,
+    playing: Playing<'_>,
     export: &Export<'_>,
     write: WriteSignal,
-    profile: &Profile,
+    profile: &'static str,
 ) -> Result<Exported, ExchangeError> {
+    export.check_numbers(&playing)?;
+    let profile = export.profile.map_or_else(|| Profile::find(profile), Ok)?;
     let job = Job {
         format: export.format.name,
-        playing: Playing {
-            asset,
-            model: export.model,
-            path: &export.path,
-            seconds: export.checked_seconds(asset)?,
-            seed: export.seed,
-        },
+        playing,
         profile,
         rate_hz: export.rate_hz(),
         coding: export.coding.unwrap_or_default(),
@@ -188,8 +223,12 @@ fn of_signal(
     };
     let written = write(&job)?;
     if written.heard.samples.iter().all(|x| *x == 0.0) {
-        let problem =
-            "the texture is silent at this motion; give a speed and a force at which it plays";
+        let problem = match job.playing.source {
+            Source::Asset { .. } => {
+                "the texture is silent at this motion; give a speed and a force at which it plays"
+            }
+            Source::Scene(_) => "the scene is silent",
+        };
         return Err(job.cannot(problem.to_owned()));
     }
     Ok(Exported {
@@ -207,17 +246,11 @@ fn of_signal(
 }
 
 impl Export<'_> {
-    /// Returns the length of what is played, seconds.
-    fn checked_seconds(&self, asset: &Asset) -> Result<f64, ExchangeError> {
-        let seconds = match &self.path {
-            Path::Condition(_) => self.seconds,
-            Path::Stroke(stroke) => stroke.seconds(),
-        };
-        check("seconds", seconds, SECONDS, "0.5 to 600 s")?;
-        let rates_hz = 2.0 * asset.band().high_hz..=MOST_RATE_HZ;
+    fn check_numbers(&self, playing: &Playing<'_>) -> Result<(), ExchangeError> {
+        check("seconds", playing.seconds, SECONDS, "0.5 to 600 s")?;
+        let rates_hz = 2.0 * playing.source.band().high_hz..=MOST_RATE_HZ;
         let range = "twice the texture's highest frequency to 192,000 Hz";
-        check("rate", self.rate_hz(), rates_hz, range)?;
-        Ok(seconds)
+        check("rate", self.rate_hz(), rates_hz, range)
     }
 }
 

@@ -114,6 +114,9 @@ const PLAYED: &[&str] = &[
     "model", "speed", "force", "seconds", "stroke", "profile", "seed",
 ];
 
+/// Those of them that a scene has itself.
+const OF_SCENES: &[&str] = &["model", "speed", "force", "stroke", "seed"];
+
 impl Reads {
     /// Returns the settings that it takes, as keywords, beside metadata.
     #[must_use]
@@ -181,6 +184,23 @@ impl Format {
     ) -> Result<(), ExchangeError> {
         let takes = self.writes.as_ref().map(Writes::settings);
         self.check("export", takes.unwrap_or_default(), given)
+    }
+
+    /// As [`Self::check_export`], of what a scene plays: model, motion and seed are the scene's.
+    ///
+    /// # Errors
+    /// With the first that it does not take.
+    pub fn check_export_of_scene<'a>(
+        &self,
+        given: impl IntoIterator<Item = &'a str>,
+    ) -> Result<(), ExchangeError> {
+        let mut takes = self
+            .writes
+            .as_ref()
+            .map(Writes::settings)
+            .unwrap_or_default();
+        takes.retain(|setting| !OF_SCENES.contains(setting));
+        self.check("export of a scene", takes, given)
     }
 
     fn check<'a>(

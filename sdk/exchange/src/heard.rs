@@ -1,9 +1,11 @@
-//! What an asset plays at a condition or along a stroke: its samples, and its envelope block by block.
+//! What an asset plays at a condition or along a stroke, or a scene: its samples, and its envelope block by block.
 
 use htex_author::threshold_magnitude;
+use htex_dsp::envelope::Analyser;
+use htex_dsp::grid::Band;
 use htex_dsp::vibrotactile::Listener;
-use htex_format::Quantity;
-use htex_play::{Asset, Motion, Voice, VoiceOptions};
+use htex_format::{Manifest, Quantity};
+use htex_play::{Asset, Motion, VoiceOptions};
 
 use crate::error::ExchangeError;
 use crate::stroke::Stroke;
@@ -21,13 +23,35 @@ pub enum Path {
     Stroke(Stroke),
 }
 
-/// How an asset is played.
+/// What a scene plays, in the unit of its textures.
+pub struct SceneSound<'a> {
+    /// Its name, which the file gets.
+    pub name: &'a str,
+    pub quantity: Quantity,
+    /// The band of its textures.
+    pub band: Band,
+    /// Its length.
+    pub seconds: f64,
+    /// Returns its samples at a rate in hertz, as many as its length has.
+    pub samples: &'a dyn Fn(f64) -> Result<Vec<f32>, String>,
+}
+
+/// What is played.
+#[derive(Clone, Copy)]
+pub(crate) enum Source<'a> {
+    Asset {
+        asset: &'a Asset,
+        model: Option<&'a str>,
+        path: &'a Path,
+        seed: u64,
+    },
+    Scene(&'a SceneSound<'a>),
+}
+
+/// What is played, and how long.
 pub(crate) struct Playing<'a> {
-    pub(crate) asset: &'a Asset,
-    pub(crate) model: Option<&'a str>,
-    pub(crate) path: &'a Path,
+    pub(crate) source: Source<'a>,
     pub(crate) seconds: f64,
-    pub(crate) seed: u64,
 }
 
 /// What was played.
@@ -57,69 +81,153 @@ impl Block {
     }
 }
 
+impl Source<'_> {
+    pub(crate) fn name(&self) -> &str {
+        match self {
+            Self::Asset { asset, .. } => &asset.manifest().name,
+            Self::Scene(scene) => scene.name,
+        }
+    }
+
+    pub(crate) fn band(&self) -> Band {
+        match self {
+            Self::Asset { asset, .. } => asset.band(),
+            Self::Scene(scene) => scene.band,
+        }
+    }
+
+    fn quantity(&self) -> Quantity {
+        match self {
+            Self::Asset { asset, .. } => asset.quantity(),
+            Self::Scene(scene) => scene.quantity,
+        }
+    }
+
+    /// The manifest of an asset that is played alone.
+    pub(crate) fn manifest(&self) -> Option<&Manifest> {
+        match self {
+            Self::Asset { asset, .. } => Some(asset.manifest()),
+            Self::Scene(_) => None,
+        }
+    }
+
+    /// The stroke, if it is one.
+    pub(crate) fn stroke(&self) -> Option<&Stroke> {
+        match self {
+            Self::Asset {
+                path: Path::Stroke(stroke),
+                ..
+            } => Some(stroke),
+            _ => None,
+        }
+    }
+
+    /// The speed, if it is always the same and known.
+    pub(crate) fn speed_mm_s(&self) -> Option<f64> {
+        match self {
+            Self::Asset {
+                path: Path::Condition(Some(motion)),
+                ..
+            } => Some(motion.speed_mm_s),
+            Self::Asset {
+                asset,
+                path: Path::Condition(None),
+                ..
+            } => asset.manifest().conditions.first()?.speed_mm_s,
+            _ => None,
+        }
+    }
+}
+
 impl Playing<'_> {
     /// Plays at a rate, with an envelope of blocks of about `block_s`.
     pub(crate) fn heard(&self, rate_hz: f64, block_s: f64) -> Result<Heard, ExchangeError> {
-        let mut options = VoiceOptions::default()
-            .with_rate_hz(rate_hz)
-            .with_seed(self.seed)
-            .with_motion(self.motion_at(0.0))
-            .with_envelope_bands(BANDS);
-        options.model = self.model;
-        let mut voice = self.asset.voice(&options)?;
-        voice.render(&mut vec![0.0; (BEFORE_S * rate_hz) as usize])?;
-        voice.envelope(&mut [])?;
+        let (quantity, band) = (self.source.quantity(), self.source.band());
+        let mut analyser = Analyser::new(BANDS, band, rate_hz);
+        let edges_hz = analyser.edges_hz().to_vec();
         let len = libm::round(self.seconds * rate_hz).max(1.0) as usize;
-        let own = (libm::round(block_s * rate_hz).max(1.0) as usize).min(len);
-        let mut heard = Heard {
-            quantity: self.asset.quantity(),
+        let frames = (libm::round(block_s * rate_hz).max(1.0) as usize).min(len);
+        let (before, samples) = self.samples(rate_hz, len, frames)?;
+        analyser.push(&before);
+        analyser.read(&mut []);
+        let blocks = samples.chunks(frames).map(|block| {
+            analyser.push(block);
+            Block::measured(&mut analyser)
+        });
+        Ok(Heard {
+            quantity,
             rate_hz,
-            samples: Vec::with_capacity(len),
-            edges_hz: voice.envelope_edges_hz().to_vec(),
-            blocks: Vec::new(),
-            block_s: own as f64 / rate_hz,
-        };
-        while heard.samples.len() < len {
-            let frames = own.min(len - heard.samples.len());
-            let block = self.block(&mut voice, &mut heard.samples, frames, rate_hz)?;
-            heard.blocks.push(block);
-        }
-        Ok(heard)
+            edges_hz,
+            blocks: blocks.collect(),
+            block_s: frames as f64 / rate_hz,
+            samples: samples.into_iter().map(f64::from).collect(),
+        })
     }
 
-    fn motion_at(&self, time_s: f64) -> Option<Motion> {
-        match self.path {
-            Path::Condition(motion) => *motion,
-            Path::Stroke(stroke) => Some(stroke.motion_at(time_s)),
-        }
-    }
-
-    fn block(
+    /// What is played before the first sample, and the samples, rendered in blocks.
+    fn samples(
         &self,
-        voice: &mut Voice,
-        samples: &mut Vec<f64>,
-        frames: usize,
         rate_hz: f64,
-    ) -> Result<Block, ExchangeError> {
-        if let Path::Stroke(_) = self.path
-            && let Some(motion) = self.motion_at(samples.len() as f64 / rate_hz)
-        {
-            voice.set_motion(motion)?;
+        len: usize,
+        frames: usize,
+    ) -> Result<(Vec<f32>, Vec<f32>), ExchangeError> {
+        match self.source {
+            Source::Scene(scene) => {
+                let mut samples =
+                    (scene.samples)(rate_hz).map_err(|problem| ExchangeError::Scene { problem })?;
+                samples.resize(len, 0.0);
+                Ok((Vec::new(), samples))
+            }
+            Source::Asset {
+                asset,
+                model,
+                path,
+                seed,
+            } => {
+                let mut options = VoiceOptions::default()
+                    .with_rate_hz(rate_hz)
+                    .with_seed(seed)
+                    .with_motion(path.motion_at(0.0));
+                options.model = model;
+                let mut voice = asset.voice(&options)?;
+                let mut before = vec![0.0; (BEFORE_S * rate_hz) as usize];
+                voice.render(&mut before)?;
+                let mut samples = vec![0.0; len];
+                for (i, block) in samples.chunks_mut(frames).enumerate() {
+                    if let Path::Stroke(stroke) = path {
+                        voice.set_motion(stroke.motion_at((i * frames) as f64 / rate_hz))?;
+                    }
+                    voice.render(block)?;
+                }
+                Ok((before, samples))
+            }
         }
-        let mut block = vec![0.0f32; frames];
-        voice.render(&mut block)?;
-        samples.extend(block.iter().map(|x| f64::from(*x)));
+    }
+}
+
+impl Path {
+    fn motion_at(&self, time_s: f64) -> Option<Motion> {
+        match self {
+            Self::Condition(motion) => *motion,
+            Self::Stroke(stroke) => Some(stroke.motion_at(time_s)),
+        }
+    }
+}
+
+impl Block {
+    /// What an analyser had since it was last asked.
+    fn measured(analyser: &mut Analyser) -> Self {
         let mut powers = vec![0.0; BANDS];
-        let envelope = voice.envelope(&mut powers)?;
+        let level_rms = analyser.read(&mut powers).level_rms;
         // The level is that of the samples; the bands are of windows that lag.
         let sum: f64 = powers.iter().sum();
         let scale = if sum > 0.0 {
-            envelope.level_rms * envelope.level_rms / sum
+            level_rms * level_rms / sum
         } else {
             0.0
         };
         powers.iter_mut().for_each(|power| *power *= scale);
-        Ok(Block { powers })
+        Self { powers }
     }
 }
 

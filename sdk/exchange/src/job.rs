@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use htex_play::Asset;
 
 use crate::error::{ExchangeError, Fault};
-use crate::heard::{Heard, Path, Playing};
+use crate::heard::{Heard, Playing};
 use crate::profile::{Kind, Profile};
 
 /// Rate at which envelopes are taken and losses measured, hertz.
@@ -82,7 +82,7 @@ impl Job<'_> {
                 "Values of the profile {name} are assumed, not measured."
             ));
         }
-        if let Path::Stroke(stroke) = self.playing.path {
+        if let Some(stroke) = self.playing.source.stroke() {
             notes.extend(stroke.warnings.iter().cloned());
         }
         notes

@@ -45,14 +45,14 @@ pub use ahap::Ahap;
 pub use android::Android;
 pub use curve::{Point, simplified, value_at};
 pub use error::{ExchangeError, Fault, Missing};
-pub use export::{Export, Exported, Played, export, profile_names};
+pub use export::{Export, Exported, Played, export, export_scene, profile_names};
 pub use format::{
     Format, Held, Naming, ReadAsset, ReadPositions, ReadSignal, Reads, Sampling, Signal,
     WriteAsset, WriteSignal, Writes,
 };
 pub use formats::{FORMATS, exported, formats_table, imported, imported_signals};
 pub use haptic::Haptic;
-pub use heard::Path;
+pub use heard::{Path, SceneSound};
 pub use hjif::Hjif;
 pub use import::{
     Import, ImportError, Imported, Physical, RATE_HZ, fit_signals, import, recording_of,

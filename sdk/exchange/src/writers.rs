@@ -5,12 +5,12 @@ use crate::android::{
 };
 use crate::curve::{Point, simplified, value_at};
 use crate::error::ExchangeError;
-use crate::heard::{Heard, Path, threshold};
+use crate::heard::{Heard, threshold};
 use crate::hjif::{Hjif, Space, Tone, vectorial, waveform};
 use crate::job::{Coding, Job, RATE_HZ, Written};
 use crate::pattern::{Pattern, rendered};
 use crate::reduce::{drive, one_tone, played_by, tones};
-use htex_format::Quantity;
+use htex_format::{Manifest, Quantity};
 
 /// Most points of an envelope where the format has no bound.
 const MANY: usize = 4_000;
@@ -22,13 +22,18 @@ const TOLERANCE: f64 = 1e-3;
 const LEAST_SL_DB: f64 = 10.0;
 
 pub(crate) fn haptic(job: &Job<'_>) -> Result<Written, ExchangeError> {
-    let manifest = job.playing.asset.manifest();
+    let source = &job.playing.source;
+    let manifest = source.manifest();
+    let text =
+        |of: fn(&Manifest) -> Option<&String>| manifest.and_then(of).cloned().unwrap_or_default();
     let metadata = crate::haptic::Metadata {
         editor: concat!("htex ", env!("CARGO_PKG_VERSION")).to_owned(),
-        source: manifest.name.clone(),
-        author: manifest.author.clone().unwrap_or_default(),
-        tags: manifest.tags.clone(),
-        description: manifest.description.clone().unwrap_or_default(),
+        source: source.name().to_owned(),
+        author: text(|manifest| manifest.author.as_ref()),
+        tags: manifest
+            .map(|manifest| manifest.tags.clone())
+            .unwrap_or_default(),
+        description: text(|manifest| manifest.description.as_ref()),
         ..Default::default()
     };
     one_envelope(job, |pattern| {
@@ -107,7 +112,7 @@ pub(crate) fn android(job: &Job<'_>) -> Result<Written, ExchangeError> {
     read.check_device(job.profile)
         .map_err(|fault| job.own(fault))?;
     let bytes = match job.extension {
-        Some("kt") => effect.to_kotlin(&job.playing.asset.manifest().name),
+        Some("kt") => effect.to_kotlin(job.playing.source.name()),
         _ => json,
     };
     let richest =
@@ -222,19 +227,9 @@ fn as_basic(job: &Job<'_>, heard: &Heard, free: &Pattern) -> BasicEnvelope {
     }
 }
 
-/// Over space at a condition, over time along a stroke.
+/// Over space at a condition, over time along a stroke and in a scene.
 fn space(job: &Job<'_>) -> Space {
-    let speed = match job.playing.path {
-        Path::Stroke(_) => None,
-        Path::Condition(Some(motion)) => Some(motion.speed_mm_s),
-        Path::Condition(None) => job
-            .playing
-            .asset
-            .manifest()
-            .conditions
-            .first()
-            .and_then(|c| c.speed_mm_s),
-    };
+    let speed = job.playing.source.speed_mm_s();
     Space {
         speed_mm_s: speed.filter(|speed| *speed > 0.0),
     }
@@ -281,7 +276,7 @@ fn vectorial_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
             .collect(),
     };
     let all: Vec<Tone> = several.tones.into_iter().map(tone).collect();
-    let name = &job.playing.asset.manifest().name;
+    let name = job.playing.source.name();
     Ok((
         vectorial(&all, job.profile, space, name),
         heard,
@@ -290,7 +285,7 @@ fn vectorial_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
 }
 
 fn wavelet_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
-    let least_hz = 2.0 * job.playing.asset.band().high_hz;
+    let least_hz = 2.0 * job.playing.source.band().high_hz;
     if space.rate_hz() < least_hz {
         let problem = format!(
             "at {} mm/s its smallest steps of way are {:.0} samples in a second, and the texture needs {least_hz:.0}; choose a higher speed, or vectorial coding",
@@ -301,7 +296,7 @@ fn wavelet_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
     }
     let heard = job.playing.heard(space.rate_hz(), job.point_s(MANY))?;
     let (samples, limited) = drive(&heard, job.profile);
-    let name = &job.playing.asset.manifest().name;
+    let name = job.playing.source.name();
     Ok((waveform(&samples, job.profile, space, name), heard, limited))
 }
 

@@ -17,6 +17,8 @@ use crate::causes;
 
 import_exception!(htex._errors, AssetError);
 import_exception!(htex._errors, BuildError);
+import_exception!(htex._errors, DeviceError);
+import_exception!(htex._errors, ExchangeError);
 import_exception!(htex._errors, LibraryError);
 import_exception!(htex._errors, ModelError);
 import_exception!(htex._errors, MotionError);

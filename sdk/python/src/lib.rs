@@ -8,7 +8,9 @@ mod by_hand;
 mod causes;
 mod command;
 mod compare;
+mod device;
 mod errors;
+mod exchange;
 mod library;
 mod models;
 mod path;
@@ -40,6 +42,10 @@ mod _htex {
     use crate::command::run;
     #[pymodule_export]
     use crate::compare::compare;
+    #[pymodule_export]
+    use crate::device::{Device, listed};
+    #[pymodule_export]
+    use crate::exchange::{export, formats, import_file};
     #[pymodule_export]
     use crate::library::{Library, pack};
     #[pymodule_export]

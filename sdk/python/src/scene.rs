@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use htex::host::{Registry, folders};
-use htex_device::{Capabilities, Devices, Search};
+use htex_device::{Capabilities, Devices};
 use htex_scene::file::Motion;
 use htex_scene::{Costs, DeviceOverride, Finger, LoadedScene, Plan, Renderer, Surroundings, plan};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
+use crate::device::devices;
 use crate::errors::{MotionError, OrRaise, SceneError, option};
 use crate::models::registry;
 use crate::path::{Series, count};
@@ -58,7 +59,7 @@ impl Scene {
         };
         py.detach(|| {
             let models = registry(&plugins, installed)?;
-            let devices = devices(installed)?;
+            let devices = devices(installed).or_raise()?;
             let around = Surroundings {
                 models: &models,
                 embedded,
@@ -219,16 +220,6 @@ impl Scene {
 
 fn failed(renderer: &mut Renderer) -> PyResult<()> {
     renderer.take_failure().map_or(Ok(()), Err).or_raise()
-}
-
-/// The devices that the command has, and the installed ones if requested.
-fn devices(installed: bool) -> PyResult<Devices> {
-    let search = Search {
-        env: installed,
-        user_dir: installed,
-        ..Search::default()
-    };
-    Devices::search(htex_device_builtin::devices(), &search).or_raise()
 }
 
 /// Costs that the command measured on this machine, else the built-in ones.

@@ -118,6 +118,16 @@ impl Texture {
         Self::new(stored(made)?, plugins, true, installed)
     }
 
+    /// Makes a texture of an asset's file.
+    pub(crate) fn of_bytes(bytes: &[u8], plugins: Vec<PathBuf>, installed: bool) -> PyResult<Self> {
+        Self::new(
+            AssetData::from_bytes(bytes).or_raise()?,
+            plugins,
+            true,
+            installed,
+        )
+    }
+
     /// Makes a texture of an asset that was made of this one, and of `others`: models that one of them does not run, it does not run either.
     pub(crate) fn made_of(&self, made: &htex::format::Asset, others: &[&Self]) -> PyResult<Self> {
         let embedded = self.embedded && others.iter().all(|other| other.embedded);

@@ -77,7 +77,7 @@ def test_the_examples_of_the_readme_run(place: pathlib.Path, tmp_path: pathlib.P
     shutil.copy(place / "rec.csv", tmp_path)
     text = (HERE.parent / "README.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    assert len(blocks) == 5
+    assert len(blocks) == 6
     for block in blocks:
         run = subprocess.run([sys.executable, "-c", block], cwd=tmp_path, capture_output=True, text=True, timeout=300)
         assert run.returncode == 0, run.stderr

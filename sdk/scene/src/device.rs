@@ -35,6 +35,8 @@ pub struct DeviceOverride {
     pub rehearsal: bool,
     /// The motion is given while the scene plays: unset settings get their live defaults.
     pub live: bool,
+    /// Replaces [`DeviceChoice::rate_hz`].
+    pub rate_hz: Option<f64>,
     /// Replaces [`DeviceChoice::quantity_gain`].
     pub quantity_gain: Option<f64>,
     /// Default of an unset setting that names a file; `None`: the scene's name with the extension of the
@@ -60,6 +62,7 @@ impl DeviceOverride {
         if self.profile.is_some() {
             choice.profile.clone_from(&self.profile);
         }
+        choice.rate_hz = self.rate_hz.or(choice.rate_hz);
         choice.quantity_gain = self.quantity_gain.or(choice.quantity_gain);
     }
 }

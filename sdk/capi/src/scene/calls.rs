@@ -167,7 +167,8 @@ unsafe fn open(
         };
         let device = DeviceOverride {
             adapter: Some(ADAPTER.to_owned()),
-            settings: settings(source.quantity(), asked.rate_hz),
+            settings: settings(source.quantity()),
+            rate_hz: (asked.rate_hz != 0.0).then_some(asked.rate_hz),
             rehearsal: true,
             ..DeviceOverride::default()
         };
@@ -189,14 +190,10 @@ unsafe fn open(
     })
 }
 
-/// Settings of the device: the rate, and the quantity of the samples.
-fn settings(quantity: Option<Quantity>, rate_hz: f64) -> BTreeMap<String, String> {
-    let quantity = quantity.map(|quantity| ("quantity", quantity.name().to_owned()));
-    let rate = (rate_hz != 0.0).then(|| ("rate_hz", rate_hz.to_string()));
-    let given = [quantity, rate].into_iter().flatten();
-    given
-        .map(|(name, value)| (name.to_owned(), value))
-        .collect()
+/// The setting of the device: the quantity of the samples.
+fn settings(quantity: Option<Quantity>) -> BTreeMap<String, String> {
+    let quantity = quantity.map(|quantity| ("quantity".to_owned(), quantity.name().to_owned()));
+    quantity.into_iter().collect()
 }
 
 fn start(scene: &LoadedScene, devices: &Devices) -> Result<(Renderer, Plan), Failure> {

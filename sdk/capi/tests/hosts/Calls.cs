@@ -67,6 +67,8 @@ static class Calls
             catch (ArgumentOutOfRangeException)
             {
             }
+            if (!Devices.Play(voice, paths[3]))
+                return 1;
             var folder = Path.GetDirectoryName(paths[0]);
             int notes = 0;
             LibHtex.SetLog((level, text) => notes++);
@@ -88,6 +90,35 @@ static class Calls
         }
         LibHtex.Shutdown();
         return 0;
+    }
+}
+
+/// Samples of a voice to the device of many channels.
+static class Devices
+{
+    internal static bool Play(Voice voice, string path)
+    {
+        var samples = new float[2000];
+        voice.SetMotion(new Motion(80.0, 0.4));
+        voice.Render(samples);
+        if (!Device.InfoJson("sdl").Contains("\"mapping\"") || !Device.ListJson.Contains("org.htex.sdl"))
+            return false;
+        using (var device = Device.Open("channels", "to=file\npath=" + path, 48000))
+        {
+            int written = device.Write(samples, 0, 1500) + device.Write(samples, 1500, 500);
+            var text = string.Format(CultureInfo.InvariantCulture, "device {0} {1} {2}", written, device.Counts.FramesWritten, device.RateHz);
+            Console.WriteLine(text);
+            device.Finish();
+        }
+        try
+        {
+            Device.Open("none");
+            return false;
+        }
+        catch (HtexException error)
+        {
+            return error.Status == Status.InvalidArgument;
+        }
     }
 }
 

@@ -12,9 +12,29 @@ static std::vector<uint8_t> bytes_of(const char *path)
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/* Writes samples of a voice to the device of many channels, and tells what it took. */
+static int plays(htex::Voice &voice, const char *path)
+{
+    auto info = htex::Device::info_json("sdl");
+    if (!info || info->find("\"mapping\"") == std::string::npos || htex::Device::open("none"))
+        return 3;
+    auto device = htex::Device::open("channels", std::string("to=file\npath=") + path, 48000.0);
+    if (!device)
+        return std::fprintf(stderr, "%s\n", device.status().text.c_str()), 4;
+    std::vector<float> samples(2000);
+    size_t written = 0;
+    htex::DeviceCounts counts{};
+    voice.set_motion(htex::motion(80.0, 0.4));
+    voice.render(samples.data(), samples.size());
+    if (device->write(samples.data(), samples.size(), 1000, written) || device->status(counts) || device->finish())
+        return std::fprintf(stderr, "%s\n", htex_last_error()), 5;
+    std::printf("device %zu %llu %.17g\n", written, static_cast<unsigned long long>(counts.frames_written), device->rate_hz());
+    return device->write(samples.data(), 1, 0, written) == HTEX_STATUS_OK;
+}
+
 int main(int argc, char **argv)
 {
-    if (argc != 3)
+    if (argc != 4)
         return 2;
     std::vector<uint8_t> bytes = bytes_of(argv[1]), packed = bytes_of(argv[2]);
     htex_reader reader{sizeof reader, bytes.size(), bytes.data(),
@@ -57,5 +77,7 @@ int main(int argc, char **argv)
     voice->render(samples.data(), samples.size());
     std::printf("silent %d\n", voice->is_silent());
     std::printf("status %s\n", htex::text_of(HTEX_STATUS_BUSY));
+    if (int failed = plays(*voice, argv[3]))
+        return failed;
     return htex::shutdown();
 }

@@ -1,6 +1,6 @@
 // Htex.cs: libhtex for C#, in one file. C# 7.3, .NET Standard 2.0, mono, Unity (Mono and IL2CPP).
 //
-// Assets, libraries, voices and scenes are SafeHandles: they are freed with Dispose, or when they are collected. A call holds its object:
+// Assets, libraries, voices, scenes and devices are SafeHandles: they are freed with Dispose, or when they are collected. A call holds its object:
 // disposed of by another thread, it is freed when the call has returned, and later calls throw ObjectDisposedException. Calls that can
 // fail throw HtexException; Voice.Render, RenderAdd, SetMotion, SetGain and Envelope, Scene.Render and Scene.SetFinger allocate nothing
 // unless they fail, and may be called in an audio thread.
@@ -33,6 +33,7 @@ namespace Htex
         Internal = 13,
         InvalidLibrary = 14,
         Absent = 15,
+        Device = 16,
     }
 
     /// <summary>Error of a call of libhtex.</summary>
@@ -711,6 +712,99 @@ namespace Htex
         }
     }
 
+    /// <summary>A device that is open: what plays the samples. One thread at a time may use it. One that is disposed before it is finished
+    /// goes to rest.</summary>
+    public sealed class Device : SafeHandle
+    {
+        private Device(ulong id) : base(IntPtr.Zero, true)
+        {
+            Native.Keep(this, id, SetHandle);
+        }
+
+        public override bool IsInvalid { get { return handle == IntPtr.Zero; } }
+
+        protected override bool ReleaseHandle()
+        {
+            return Native.htex_device_free(new Native.Handle { Id = (ulong)(long)handle }) == Status.Ok;
+        }
+
+        /// <summary>The devices of the library as JSON; see htex_device_list_json.</summary>
+        public static string ListJson
+        {
+            get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_device_list_json(o, c, out l)); }
+        }
+
+        /// <summary>Settings, quantity, rates and what becomes of the samples as JSON; see htex_device_info_json.</summary>
+        public static string InfoJson(string name, string settings = "")
+        {
+            byte[] n = Native.Utf8(name), s = Native.Utf8(settings);
+            return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_device_info_json(n, s, o, c, out l));
+        }
+
+        /// <summary>Opens a device, such as sdl; settings are lines NAME=VALUE, and a rate of 0 is the device's own.</summary>
+        public static Device Open(string name, string settings = "", double rateHz = 0)
+        {
+            Native.Handle device;
+            Native.Check(Native.htex_device_open(Native.Utf8(name), Native.Utf8(settings), rateHz, out device));
+            return new Device(device.Id);
+        }
+
+        /// <summary>Rate of the samples, Hz.</summary>
+        public double RateHz
+        {
+            get
+            {
+                double rate;
+                Native.Check(Native.htex_device_rate_hz(this, out rate));
+                return rate;
+            }
+        }
+
+        /// <summary>Gives samples to the device, as many as it takes within the time; returns their number.</summary>
+        public int Write(float[] samples, int offset, int count, int timeoutMs = 1000)
+        {
+            Native.CheckPart(samples, offset, count);
+            UIntPtr written = UIntPtr.Zero;
+            if (count > 0)
+                Native.Check(Native.htex_device_write(this, ref samples[offset], (UIntPtr)count, (uint)Math.Max(timeoutMs, 0), out written));
+            return (int)written;
+        }
+
+        /// <summary>What the device did so far.</summary>
+        public DeviceCounts Counts
+        {
+            get
+            {
+                var counts = new DeviceCounts { Size = (uint)Marshal.SizeOf(typeof(DeviceCounts)) };
+                Native.Check(Native.htex_device_status(this, ref counts));
+                return counts;
+            }
+        }
+
+        /// <summary>Plays what was written to its end, and keeps the result.</summary>
+        public void Finish()
+        {
+            Native.Check(Native.htex_device_finish(this));
+        }
+    }
+
+    /// <summary>What a device did since it was opened; see htex_device_counts.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct DeviceCounts
+    {
+        internal uint Size;
+        /// <summary>Samples that it took.</summary>
+        public ulong FramesWritten;
+        /// <summary>Samples that came out.</summary>
+        public ulong FramesPlayed;
+        /// <summary>Times it ran dry.</summary>
+        public ulong Underruns;
+        /// <summary>Time from writing a sample to its output, s.</summary>
+        public double LatencyS;
+        /// <summary>Largest magnitude written, in the device's unit.</summary>
+        public double Peak;
+    }
+
     /// <summary>What concerns the library as a whole.</summary>
     public static class LibHtex
     {
@@ -1150,6 +1244,14 @@ namespace Htex
         [DllImport(Library)] internal static extern Status htex_voice_model(Voice voice, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
         [DllImport(Library)] internal static extern Status htex_voice_render_path(Voice voice, Motion[] motions, UIntPtr motionsLength, [Out] float[] samples, UIntPtr frames);
         [DllImport(Library)] internal static extern Status htex_voice_coverage(Voice voice, ref Motion motion, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_device_list_json([Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_device_info_json(byte[] name, byte[] settings, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_device_open(byte[] name, byte[] settings, double rateHz, out Handle device);
+        [DllImport(Library)] internal static extern Status htex_device_rate_hz(Device device, out double rateHz);
+        [DllImport(Library)] internal static extern Status htex_device_write(Device device, ref float samples, UIntPtr frames, uint timeoutMs, out UIntPtr written);
+        [DllImport(Library)] internal static extern Status htex_device_status(Device device, ref DeviceCounts counts);
+        [DllImport(Library)] internal static extern Status htex_device_finish(Device device);
+        [DllImport(Library)] internal static extern Status htex_device_free(Handle device);
         [DllImport(Library)] internal static extern Status htex_scene_open(byte[] path, ref OpenOptionsC options, ref SceneOptions sceneOptions, out Handle scene);
         [DllImport(Library)] internal static extern Status htex_scene_from_bytes(byte[] bytes, UIntPtr length, ref FilesC files, ref OpenOptionsC options, ref SceneOptions sceneOptions, out Handle scene);
         [DllImport(Library)] internal static extern Status htex_scene_free(Handle scene);

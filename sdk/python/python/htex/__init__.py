@@ -17,9 +17,11 @@ from ._data import (
     Comparison,
     Condition,
     Coverage,
+    DeviceStatus,
     Envelope,
     Exponent,
     Fit,
+    Imported,
     LibraryEntry,
     Processed,
     Reach,
@@ -32,7 +34,9 @@ from ._data import (
 from ._errors import (
     AssetError,
     BuildError,
+    DeviceError,
     Error,
+    ExchangeError,
     LibraryError,
     ModelError,
     MotionError,
@@ -40,7 +44,8 @@ from ._errors import (
     RecordingError,
     SceneError,
 )
-from ._htex import Library, Scene, Texture, Voice, __version__, models, open, pack, unregister_model
+from ._exchange import export, formats, import_file
+from ._htex import Device, Library, Scene, Texture, Voice, __version__, devices, models, open, pack, unregister_model
 from ._models import Field, register_model
 from ._rig import response, simulate
 
@@ -54,11 +59,16 @@ __all__ = [
     "Comparison",
     "Condition",
     "Coverage",
+    "Device",
+    "DeviceError",
+    "DeviceStatus",
     "Envelope",
     "Exponent",
     "Error",
+    "ExchangeError",
     "Field",
     "Fit",
+    "Imported",
     "Library",
     "LibraryEntry",
     "LibraryError",
@@ -80,8 +90,12 @@ __all__ = [
     "agreement",
     "build",
     "compare",
+    "devices",
     "edit",
+    "export",
     "fit",
+    "formats",
+    "import_file",
     "make",
     "mix",
     "models",

@@ -118,6 +118,22 @@ class Envelope:
 
 
 @dataclass(frozen=True)
+class DeviceStatus:
+    """What a device did since it was opened."""
+
+    frames_written: int
+    """Samples that it took."""
+    frames_played: int
+    """Samples that came out."""
+    underruns: int
+    """Times it ran dry."""
+    latency_s: float
+    """Time from writing a sample to its output, seconds."""
+    peak: float
+    """Largest magnitude written, in the device's unit."""
+
+
+@dataclass(frozen=True)
 class Coverage:
     """The relation of a motion to the recorded conditions, and how a voice plays it."""
 
@@ -170,6 +186,18 @@ class Processed:
 
     def __repr__(self) -> str:
         return f"<htex.Processed: {self.segments} segments at {self.rate_hz:g} Hz, {self.spectrum!r}>"
+
+
+@dataclass(frozen=True, eq=False)
+class Imported:
+    """A texture that was read from a file of another format."""
+
+    texture: _htex.Texture
+    """The texture."""
+    warnings: list[str]
+    """What a person should know of the file, as sentences."""
+    notes: list[str]
+    """What a person may want to know, such as that a licence is missing."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -16,6 +16,14 @@ class BuildError(Error):
     """A recipe is wrong, or a library cannot be built."""
 
 
+class DeviceError(Error):
+    """A device or its driver is missing, in use, or failed; it is at rest."""
+
+
+class ExchangeError(Error):
+    """A file of another format is not what its format says."""
+
+
 class LibraryError(Error):
     """A file is not a valid library, or a texture cannot be in one."""
 
@@ -44,6 +52,8 @@ for _class in (
     Error,
     AssetError,
     BuildError,
+    DeviceError,
+    ExchangeError,
     LibraryError,
     ModelError,
     MotionError,

@@ -6,11 +6,12 @@ from typing import Any, Protocol, final
 import numpy as np
 import numpy.typing as npt
 
-from ._data import Condition, Coverage, Envelope, Exponent, LibraryEntry, Quantity, Spectrum
+from ._data import Condition, Coverage, DeviceStatus, Envelope, Exponent, LibraryEntry, Quantity, Spectrum
 
 __version__: str
 __all__ = [
     "Build",
+    "Device",
     "Library",
     "Scene",
     "Texture",
@@ -18,9 +19,13 @@ __all__ = [
     "__version__",
     "agreement",
     "compare",
+    "devices",
     "edit",
+    "export",
     "fit",
+    "formats",
     "hash_file",
+    "import_file",
     "make",
     "mix",
     "models",
@@ -211,6 +216,35 @@ class Scene:
     ) -> npt.NDArray[np.float32]: ...
 
 @final
+class Device:
+    """A device that is open: what plays samples, by name, such as ``sdl``. One that is not finished goes to rest when it is closed.
+
+    In a ``with`` block it is finished at the end, and closed after an exception. ``settings`` are those of the device (``devices()`` lists them); ``rate_hz`` is by default
+    the device's own. A display that is driven by a voltage is not opened here: use ``htex play``.
+    """
+
+    def __new__(
+        cls,
+        name: str,
+        *,
+        rate_hz: float | None = None,
+        profile: str | None = None,
+        settings: Mapping[str, Any] = ...,
+        installed: bool = False,
+    ) -> Device: ...
+    @property
+    def rate_hz(self) -> float: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def status(self) -> DeviceStatus: ...
+    def write(self, samples: npt.NDArray[np.float32], timeout_s: float = 1.0) -> int: ...
+    def finish(self) -> None: ...
+    def close(self) -> None: ...
+    def __enter__(self) -> Device: ...
+    def __exit__(self, kind: type[BaseException] | None, _value: object, _traceback: object) -> None: ...
+
+@final
 class Build:
     """A build of a library that is planned."""
 
@@ -243,6 +277,10 @@ def pack(
     name: str = "",
     unlicensed: bool = False,
 ) -> int: ...
+def devices(*, installed: bool = False) -> list[dict[str, Any]]: ...
+def formats() -> dict[str, Any]: ...
+def import_file(file: _Path, request: Mapping[str, Any]) -> tuple[Texture, list[str], list[str]]: ...
+def export(texture: Texture, request: Mapping[str, Any]) -> tuple[bytes, dict[str, Any]]: ...
 def models(*, plugins: Sequence[_Path] = ..., installed: bool = False) -> list[dict[str, Any]]: ...
 def register_model(descriptor: str, adapter: Any, plays: bool) -> None: ...
 def unregister_model(id: str) -> bool: ...

@@ -1,0 +1,206 @@
+//! The calls of devices.
+
+use std::ffi::c_char;
+use std::time::Duration;
+
+use htex::device::{Device, DeviceError, Devices, KnownDevice, Quantity, Settings, StreamFormat};
+use serde_json::json;
+
+use super::{htex_device, htex_device_counts};
+use crate::handles::{Kind, Table};
+use crate::pointers::{needed_text, place, slice, text, write_text};
+use crate::status::{Failure, guarded, htex_status};
+
+/// A device, and the rate of its samples.
+struct Open {
+    device: Box<dyn Device>,
+    rate_hz: f64,
+}
+
+static DEVICES: Table<Open> = Table::new(Kind::Device);
+
+impl From<DeviceError> for Failure {
+    fn from(error: DeviceError) -> Self {
+        let status = match error {
+            DeviceError::Setting { .. }
+            | DeviceError::Rate { .. }
+            | DeviceError::Unknown { .. } => htex_status::HTEX_STATUS_INVALID_ARGUMENT,
+            DeviceError::File { .. } => htex_status::HTEX_STATUS_IO,
+            _ => htex_status::HTEX_STATUS_DEVICE,
+        };
+        Self::of(status, error)
+    }
+}
+
+/// Frees all of them.
+///
+/// # Safety
+/// As [`Table::clear`].
+pub(crate) unsafe fn clear() -> Result<(), Failure> {
+    // SAFETY: as here.
+    unsafe { DEVICES.clear() }
+}
+
+fn devices() -> Devices {
+    Devices::new(htex_device_builtin::devices())
+}
+
+fn write_json(
+    document: &serde_json::Value,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> Result<(), Failure> {
+    // SAFETY: the pointers are those of the call's caller.
+    unsafe { write_text(&document.to_string(), out, capacity, length) }
+}
+
+pub(super) unsafe fn list_json(
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let devices = devices();
+        let all = devices.all().iter().map(|known| {
+            let descriptor = known.descriptor();
+            let (endpoints, problem) = match known.endpoints() {
+                Ok(endpoints) => (endpoints, None),
+                Err(problem) => (Vec::new(), Some(problem.to_string())),
+            };
+            json!({ "id": descriptor.id, "name": descriptor.short_name(),
+                "endpoints": endpoints, "problem": problem })
+        });
+        write_json(&all.collect(), out, capacity, length)
+    })
+}
+
+/// A device by its name, and its settings.
+///
+/// # Safety
+/// Texts of the caller's.
+unsafe fn named<'a>(
+    devices: &'a Devices,
+    name: *const c_char,
+    settings: *const c_char,
+) -> Result<(&'a KnownDevice, Settings), Failure> {
+    // SAFETY: as here.
+    let (name, lines) = unsafe { (needed_text(name)?, text(settings)?) };
+    let known = devices.find(name)?;
+    let settings = Settings::from_lines(known.descriptor(), lines.unwrap_or_default())?;
+    Ok((known, settings))
+}
+
+pub(super) unsafe fn info_json(
+    name: *const c_char,
+    settings: *const c_char,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let devices = devices();
+        // SAFETY: the texts are the caller's.
+        let (known, settings) = unsafe { named(&devices, name, settings) }?;
+        let (can, problem) = match known.adapter.capabilities(&settings) {
+            Ok(can) => (Some(can), None),
+            Err(problem) => (None, Some(problem.to_string())),
+        };
+        let document = json!({ "descriptor": known.descriptor(),
+            "capabilities": can, "problem": problem });
+        write_json(&document, out, capacity, length)
+    })
+}
+
+const DRIVEN: Failure = Failure::plain(
+    htex_status::HTEX_STATUS_UNSUPPORTED,
+    "the device drives a display by a voltage, which a process beside the program must take away if the program dies; use `htex play`",
+);
+
+pub(super) unsafe fn open(
+    name: *const c_char,
+    settings: *const c_char,
+    rate_hz: f64,
+    out: *mut htex_device,
+) -> htex_status {
+    guarded(|| {
+        let devices = devices();
+        // SAFETY: the pointers are the caller's.
+        let ((known, settings), out) = unsafe { (named(&devices, name, settings)?, place(out)?) };
+        let can = known.adapter.capabilities(&settings)?;
+        // A file is no display.
+        if can.quantity == Quantity::DisplayVoltage && can.paced {
+            return Err(DRIVEN);
+        }
+        let rate_hz = if rate_hz == 0.0 {
+            can.default_rate_hz
+        } else {
+            rate_hz
+        };
+        let format = StreamFormat {
+            rate_hz,
+            block_frames: can.block_frames,
+        };
+        let device = known.adapter.open(&settings, &format)?;
+        out.id = DEVICES.insert(Open { device, rate_hz })?;
+        Ok(())
+    })
+}
+
+pub(super) unsafe fn rate_hz(device: htex_device, out: *mut f64) -> htex_status {
+    guarded(|| {
+        let open = DEVICES.exclusive(device.id)?;
+        // SAFETY: the place is the caller's.
+        *unsafe { place(out) }? = open.rate_hz;
+        Ok(())
+    })
+}
+
+pub(super) unsafe fn write(
+    device: htex_device,
+    samples: *const f32,
+    frames: usize,
+    timeout_ms: u32,
+    written: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let mut open = DEVICES.exclusive(device.id)?;
+        // SAFETY: the pointers are the caller's.
+        let (samples, written) = unsafe { (slice(samples, frames)?, place(written)?) };
+        *written = 0;
+        let timeout = Duration::from_millis(timeout_ms.into());
+        *written = open.device.write(samples, timeout)?;
+        Ok(())
+    })
+}
+
+pub(super) unsafe fn status(device: htex_device, out: *mut htex_device_counts) -> htex_status {
+    guarded(|| {
+        let open = DEVICES.exclusive(device.id)?;
+        // SAFETY: the place is the caller's.
+        let out = unsafe { place(out) }?;
+        if (out.size as usize) < size_of::<htex_device_counts>() {
+            return Err(Failure::argument(
+                "the counts' size is not that of their struct; set it to sizeof(htex_device_counts)",
+            ));
+        }
+        let status = open.device.status();
+        *out = htex_device_counts {
+            size: out.size,
+            frames_written: status.frames_written,
+            frames_played: status.frames_played,
+            underruns: status.underruns,
+            latency_s: status.latency_s,
+            peak: status.peak,
+        };
+        Ok(())
+    })
+}
+
+pub(super) fn finish(device: htex_device) -> htex_status {
+    guarded(|| Ok(DEVICES.exclusive(device.id)?.device.finish()?))
+}
+
+pub(super) fn free(device: htex_device) -> htex_status {
+    guarded(|| DEVICES.remove(device.id).map(drop))
+}

@@ -1,0 +1,104 @@
+"""Files of other formats: imported as textures, and exported for what people own."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+from . import _errors, _htex
+from ._data import Imported, Quantity
+from ._keywords import Unpack, as_json, keywords, split
+from ._settings import FitSettings, Metadata
+
+formats = _htex.formats
+
+
+class Importing(FitSettings, Metadata, total=False):
+    """How a signal is fitted, and what is said of the texture."""
+
+
+@keywords(Importing)
+def import_file(
+    file: str | os.PathLike[str],
+    *,
+    full_scale: float | None = None,
+    speed_mm_s: float | None = None,
+    force_n: float | None = None,
+    quantity: Quantity = "lateral_force",
+    profile: str | None = None,
+    options: Mapping[str, Mapping[str, Any]] | None = None,
+    plugins: Sequence[str | os.PathLike[str]] = (),
+    installed: bool = False,
+    **settings: Unpack[Importing],
+) -> Imported:
+    """Read a file of another format as a texture, as ``htex import`` does; ``formats()`` lists what is read, kept and lost.
+
+    Files that state units, speeds and forces (Penn's HaTT), or that have a texture in them (glTF), take no further settings but metadata.
+    The others are signals within ±1, to which models are fitted: they need ``full_scale`` (what 1 is, in the unit of ``quantity``),
+    ``speed_mm_s`` and ``force_n``. ``profile`` names the actuator whose range their frequencies are positions in.
+    """
+    fitting, metadata = split("import_file", settings, FitSettings, Metadata)
+    if options:
+        fitting["options"] = {model: {name: str(value) for name, value in own.items()} for model, own in options.items()}
+    texture, warnings, notes = _htex.import_file(
+        file,
+        {
+            "full_scale": full_scale,
+            "quantity": quantity,
+            "speed_mm_s": speed_mm_s,
+            "force_n": force_n,
+            "profile": profile,
+            "settings": as_json(fitting),
+            "metadata": as_json(metadata),
+            "plugins": list(plugins),
+            "installed": installed,
+        },
+    )
+    return Imported(texture=texture, warnings=warnings, notes=notes)
+
+
+def export(
+    texture: _htex.Texture,
+    file: str | os.PathLike[str],
+    to: str,
+    *,
+    model: str | None = None,
+    speed_mm_s: float | None = None,
+    force_n: float | None = None,
+    seconds: float = 2.0,
+    stroke: str | os.PathLike[str] | None = None,
+    profile: str | None = None,
+    rate_hz: float | None = None,
+    coding: Literal["vectorial", "wavelet"] | None = None,
+    seed: int = 0,
+) -> dict[str, Any]:
+    """Write a texture at a condition, or along a stroke, as a file that phones, controllers and engines play, as ``htex export`` does.
+
+    ``to`` is a format's name. ``stroke`` is a CSV of time, speed and force (``t_s``, ``speed_mm_s``, ``force_n``), in place of a condition.
+    ``profile`` names the actuator, which decides what of the spectrum it can do; by default the format's own. ``rate_hz`` is for WAV,
+    ``coding`` for ``hjif``. The result has what is lost, as the command's JSON: the file is read again, played through the profile, and compared
+    with the texture's own samples.
+    """
+    path = Path(file)
+    if stroke is not None and (speed_mm_s is not None or force_n is not None):
+        raise _errors.OptionError("a stroke has its own speed and force; give the stroke, or speed_mm_s and force_n")
+    written, told = _htex.export(
+        texture,
+        {
+            "to": to,
+            "model": model,
+            "speed_mm_s": speed_mm_s,
+            "force_n": force_n,
+            "seconds": seconds,
+            "stroke": stroke,
+            "profile": profile,
+            "rate_hz": rate_hz,
+            "coding": coding,
+            "extension": path.suffix.removeprefix(".") or None,
+            "seed": seed,
+        },
+    )
+    _htex.write_file(path, written)
+    return told

@@ -1,0 +1,194 @@
+//! Files of other formats: imported as textures, and exported for what people own.
+
+use std::path::{Path, PathBuf};
+
+use htex::{Motion, Quantity};
+use htex_author::settings::{FitSettings, Metadata};
+use htex_exchange::{
+    Coding, ExchangeError, Export, FORMATS, Format, Import, ImportError, MOST_BYTES, PROFILES,
+    Physical, Profile, Stroke, Writes,
+};
+use htex_files::read_regular;
+use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
+use pyo3::types::PyBytes;
+use serde_json::json;
+
+use crate::author::TOOL;
+use crate::errors::{ExchangeError as Refused, IntoPyErr, OrRaise, of_file, option};
+use crate::models::registry;
+use crate::python::{from_json, parsed};
+use crate::reading::unknown;
+use crate::texture::Texture;
+
+/// What the file of an import does not say, and how it is fitted.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Importing {
+    full_scale: Option<f64>,
+    quantity: String,
+    speed_mm_s: Option<f64>,
+    force_n: Option<f64>,
+    profile: Option<String>,
+    /// As JSON.
+    settings: PyBackedStr,
+    /// As JSON.
+    metadata: PyBackedStr,
+    plugins: Vec<PathBuf>,
+    installed: bool,
+}
+
+/// How a texture is exported.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Exporting {
+    to: String,
+    model: Option<String>,
+    speed_mm_s: Option<f64>,
+    force_n: Option<f64>,
+    seconds: f64,
+    stroke: Option<PathBuf>,
+    profile: Option<String>,
+    rate_hz: Option<f64>,
+    coding: Option<String>,
+    extension: Option<String>,
+    seed: u64,
+}
+
+/// The formats and the profiles of actuators, as `htex formats --json` has them.
+#[pyfunction]
+pub(crate) fn formats(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    from_json(py, &json!({ "formats": FORMATS, "profiles": &*PROFILES }))
+}
+
+/// Imports a file; returns the texture, warnings and notes.
+#[pyfunction]
+pub(crate) fn import_file(
+    py: Python<'_>,
+    file: PathBuf,
+    request: Importing,
+) -> PyResult<(Texture, Vec<String>, Vec<String>)> {
+    py.detach(|| request.import(&file))
+}
+
+/// Exports a texture; returns the file's bytes and what is lost.
+#[pyfunction]
+pub(crate) fn export<'py>(
+    py: Python<'py>,
+    texture: PyRef<'py, Texture>,
+    request: Exporting,
+) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyAny>)> {
+    let texture = &*texture;
+    let exported = py.detach(|| request.export(texture))?;
+    let bytes = PyBytes::new(py, &exported.bytes);
+    Ok((bytes, from_json(py, &exported)?))
+}
+
+impl Importing {
+    fn import(self, file: &Path) -> PyResult<(Texture, Vec<String>, Vec<String>)> {
+        let text = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy();
+        let (name, stem) = (text(file.file_name()), text(file.file_stem()));
+        Format::of_file(&name).or_raise()?;
+        let metadata: Metadata = parsed(&self.metadata)?;
+        metadata
+            .check()
+            .map_err(|error| option(error.to_string()))?;
+        let fit: FitSettings = parsed(&self.settings)?;
+        let quantity = Quantity::from_name(&self.quantity).ok_or_else(|| {
+            let known: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
+            unknown("quantity", &self.quantity, &known.join(", "))
+        })?;
+        let profile = self.profile.as_deref();
+        let how = Import {
+            name: &stem,
+            physical: Physical {
+                full_scale: self.full_scale,
+                quantity,
+                speed_mm_s: self.speed_mm_s,
+                force_n: self.force_n,
+            },
+            profile: profile.map(Profile::find).transpose().or_raise()?,
+            fit,
+            metadata,
+            tool: TOOL,
+        };
+        let bytes = read_regular(file, MOST_BYTES).map_err(|error| of_file(file, &error))?;
+        let registry = registry(&self.plugins, self.installed)?;
+        let imported = htex_exchange::import(&name, &bytes, &how, &registry).or_raise()?;
+        let written = imported.to_bytes().or_raise()?;
+        let texture = Texture::of_bytes(&written, self.plugins, self.installed)?;
+        let texts = |all: &[htex_finding::Notice]| all.iter().map(ToString::to_string).collect();
+        Ok((texture, texts(&imported.warnings), texts(&imported.notes)))
+    }
+}
+
+impl Exporting {
+    fn export(&self, texture: &Texture) -> PyResult<htex_exchange::Exported> {
+        let format = Format::named(&self.to)
+            .ok_or_else(|| unknown("to", &self.to, &htex_exchange::exported().join(", ")))?;
+        let mut export = Export::new(format);
+        export.path = self.path(texture)?;
+        export.model = self.model.as_deref();
+        let profile = self.profile.as_deref();
+        export.profile = profile.map(Profile::find).transpose().or_raise()?;
+        export.seconds = self.seconds;
+        export.rate_hz = self.rate_hz;
+        export.seed = self.seed;
+        export.extension = self.extension.as_deref();
+        export.coding = self.coding.as_deref().map(coding).transpose()?;
+        let file = match format.writes {
+            Some(Writes::Asset(_)) => Some(texture.bytes()?),
+            _ => None,
+        };
+        export.file = file.as_deref();
+        htex_exchange::export(texture.asset(), &export).or_raise()
+    }
+
+    fn path(&self, texture: &Texture) -> PyResult<htex_exchange::Path> {
+        let motion = match (self.speed_mm_s, self.force_n) {
+            (None, None) => None,
+            (speed, force) => {
+                let first = texture.asset().manifest().conditions.first();
+                let speed = speed.or(first.and_then(|one| one.speed_mm_s));
+                let force = force.or(first.and_then(|one| one.force_n));
+                Some(Motion::new(speed.unwrap_or(0.0), force.unwrap_or(0.0)))
+            }
+        };
+        match (&self.stroke, motion) {
+            (None, motion) => Ok(htex_exchange::Path::Condition(motion)),
+            (Some(file), None) => Ok(htex_exchange::Path::Stroke(Stroke::open(file).or_raise()?)),
+            (Some(_), Some(_)) => Err(option(
+                "a stroke has its own speed and force; give the stroke, or speed_mm_s and force_n",
+            )),
+        }
+    }
+}
+
+fn coding(name: &str) -> PyResult<Coding> {
+    match name {
+        "vectorial" => Ok(Coding::Vectorial),
+        "wavelet" => Ok(Coding::Wavelet),
+        other => Err(unknown("coding", other, "vectorial, wavelet")),
+    }
+}
+
+impl IntoPyErr for ExchangeError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Play(error) => error.into_py_err(),
+            Self::Author(error) => error.into_py_err(),
+            Self::File { .. } => Refused::new_err(self.to_string()),
+            other => option(other.to_string()),
+        }
+    }
+}
+
+impl IntoPyErr for ImportError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Exchange(error) => error.into_py_err(),
+            Self::Author(error) => error.into_py_err(),
+            other => option(other.to_string()),
+        }
+    }
+}

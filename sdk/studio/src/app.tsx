@@ -73,12 +73,18 @@ function Safely({ children }: { children: preact.ComponentChildren }) {
 export function App() {
   const Shown = SCREENS.find(({ id }) => id === screen.value)?.show ?? Shelf;
   const place = useRef<HTMLElement>(null);
-  useEffect(() => place.current?.scrollTo(0, 0), [screen.value]);
+  const isFirst = useRef(true);
+  useEffect(() => {
+    place.current?.scrollTo(0, 0);
+    // The keyboard goes on in the screen that was opened.
+    if (!isFirst.current) place.current?.focus({ preventScroll: true });
+    isFirst.current = false;
+  }, [screen.value]);
   return (
     <div class="frame">
       <Top />
       <Tabs />
-      <main class="screen" id="screen" ref={place}>
+      <main class="screen" id="screen" tabIndex={-1} ref={place}>
         <Safely key={screen.value}>
           <Suspense fallback={<p class="empty">…</p>}>
             <Shown />

@@ -48,12 +48,15 @@ export async function write(label: Label) {
   const before = labelOf();
   if (JSON.stringify(before) === JSON.stringify(label) && now.manifest["license"] === label.license) return;
   const made = (await theAuthor()).edit(now, { name: label.name, license: label.license, author: label.author, description: label.description, tags });
-  edit({ texture: made, bytes: made.toBytes(), model: document.model, change: "name and licence" });
+  edit({ texture: made, bytes: made.toBytes(), model: document.model, change: "label" });
 }
 
 export function saveTexture() {
   const document = present.peek();
-  if (document) save(document.bytes, fileName(document.name, "htex"), "application/octet-stream");
+  if (!document) return;
+  const file = fileName(document.name, "htex");
+  save(document.bytes, file, "application/octet-stream");
+  say(`${file} is saved, ${document.bytes.length} bytes.`, "good");
 }
 
 export async function keepOnShelf() {

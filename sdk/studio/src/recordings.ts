@@ -88,6 +88,7 @@ export async function fitAll() {
   aborting = new AbortController();
   progress.value = { done: 0, of: 1, text: "begin" };
   const read = settings(first.name);
+  const start = performance.now();
   try {
     const result = await fit(all.map(({ name, bytes }) => ({ name, bytes })), {
       ...read,
@@ -96,6 +97,7 @@ export async function fitAll() {
       onProgress: (now) => (progress.value = now),
       signal: aborting.signal,
     });
+    performance.measure("fit", { start });
     fitted.peek()?.texture.free();
     fitted.value = result;
     lastFit = { all, read };

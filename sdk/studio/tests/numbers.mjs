@@ -2,11 +2,12 @@
 //
 //   HTEX_STUDIO=DIR node numbers.mjs
 
-import { readdir, readFile, stat } from "node:fs/promises";
+import { mkdtemp, readdir, readFile, stat } from "node:fs/promises";
+import { tmpdir } from "node:os";
 import path from "node:path";
 import { gzipSync } from "node:zlib";
 
-import { FILE, HTEX_STUDIO, goTo, launch, openStudio, serve, shaping } from "./studio.mjs";
+import { FILE, HTEX_STUDIO, goTo, htex, launch, openStudio, serve, shaping } from "./studio.mjs";
 
 const print = (what, value) => console.log(`${what.padEnd(74)} ${value}`);
 const ms = (x) => `${x.toFixed(1)} ms`;
@@ -68,6 +69,28 @@ async function sizes() {
   print("player module", kB(await packed((name) => /^htex-(?!author).*\.wasm$/.test(name))));
   print("author module", kB(await packed((name) => /^htex-author.*\.wasm$/.test(name))));
   print("studio.html", `${((await stat(path.join(HTEX_STUDIO, "studio.html"))).size / 1e6).toFixed(2)} MB`);
+}
+
+/** Times of fits of a recording of 11 MB: each page's first, and those after it. */
+async function fits(pages, each) {
+  const file = path.join(await mkdtemp(path.join(tmpdir(), "htex-studio-")), "recording.csv");
+  htex("simulate", "--surface", "fine-fabric", "--seconds", "10", "-o", file);
+  const [first, later] = [[], []];
+  for (let i = 0; i < pages; i++) {
+    const own = await openStudio(browser, FILE);
+    await goTo(own, "Record");
+    await own.locator("input[type=file]").setInputFiles(file);
+    await own.getByRole("img", { name: /Signal of/ }).waitFor();
+    for (let k = 1; k <= each; k++) {
+      await own.getByRole("button", { name: "Fit all models" }).click();
+      await own.waitForFunction((count) => performance.getEntriesByName("fit").length === count, k);
+    }
+    const times = await own.evaluate(() => performance.getEntriesByName("fit").map(({ duration }) => duration));
+    first.push(times[0]);
+    later.push(...times.slice(1));
+    await own.context().close();
+  }
+  return [first, later];
 }
 
 /** A worklet behind the node, which tells when samples that are not zero come, and of what level they are. */
@@ -202,6 +225,11 @@ if (wanted("start")) {
     await own.close();
     print(`interactive, folder at 5 Mbit/s and 20 ms, ${isCompressed ? "" : "not "}compressed by the server`, `${ms(median(net))}, ${ms(Math.max(...net))}`);
   }
+}
+if (wanted("fit")) {
+  const [first, later] = await fits(5, 6);
+  print("fit of a recording of 11 MB in the worker, first of a page: median and most", `${ms(median(first))}, ${ms(Math.max(...first))}`);
+  print("the same again", `${ms(median(later))}, ${ms(Math.max(...later))}`);
 }
 const page = await openStudio(browser, FILE);
 await page.mouse.click(700, 20);

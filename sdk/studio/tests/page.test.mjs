@@ -154,6 +154,26 @@ test("a link that is cut off is told, and the page goes on", async () => {
   }
 });
 
+test("a bar that is moved moves alone, by whole steps", async () => {
+  const page = await openStudio(browser, FILE);
+  await goTo(page, "Shelf");
+  await page.getByRole("button", { name: /^Oak/ }).click();
+  await shaping(page);
+  const moved = await page.evaluate(() => {
+    const { handles, moveHandle } = htexStudio;
+    const levels = () => handles.value.map(({ db }) => db);
+    return [[7, 6], [0, -9], [29, 30], [12, -40]].map(([handle, db]) => {
+      const before = levels();
+      moveHandle(handle, 0, before[handle] + db, `bar ${handle}`);
+      return { handle, db, changes: levels().map((now, i) => now - before[i]) };
+    });
+  });
+  for (const { handle, db, changes } of moved) {
+    changes.forEach((change, i) => assert.ok(Math.abs(change - (i === handle ? db : 0)) < 0.05, `bar ${i} by ${change} dB as bar ${handle} moves by ${db} dB`));
+  }
+  await closed(page);
+});
+
 test("500 random edits that are undone give the first bytes", async () => {
   const page = await openStudio(browser, FILE);
   await goTo(page, "Shelf");
@@ -302,9 +322,9 @@ test("a recording is compared by ear with its models, with matched levels, blind
   for (const row of rows) assert.match(row, /"the recording felt\.csv",".+",1$/);
   // The key changes sides; axe finds nothing in the new controls.
   await page.locator("body").press("c");
-  await page.getByRole("button", { name: /^A plays/ }).waitFor();
+  await page.getByRole("button", { name: /^B .*, plays$/ }).waitFor();
   await page.keyboard.press("c");
-  await page.getByRole("button", { name: /^B plays/ }).waitFor();
+  await page.getByRole("button", { name: /^A .*, plays$/ }).waitFor();
   await page.evaluate(AXE);
   const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
   assert.deepEqual(violations.map(({ id }) => id), []);

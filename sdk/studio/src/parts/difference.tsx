@@ -9,10 +9,10 @@ import { pilotForce, pilotSpeed } from "../motion.ts";
 import { fail } from "../state.ts";
 
 /** The sentence for what is felt. */
-export function words({ below_difference_threshold, below_if_sensitive, largest_error_db, total_error_db }: Pick<Felt, "below_difference_threshold" | "below_if_sensitive" | "largest_error_db" | "total_error_db">) {
+export function words({ below_difference_threshold, below_if_sensitive, largest_error_db, total_error_db }: Pick<Felt, "below_difference_threshold" | "below_if_sensitive" | "largest_error_db" | "total_error_db">, which = "it") {
   if (below_if_sensitive) return "Even a sensitive finger feels no difference.";
   if (below_difference_threshold) return "A finger feels no difference; a sensitive one may.";
-  const whole = Math.abs(total_error_db) < 0.05 ? "" : ` All together it is ${Math.abs(total_error_db).toFixed(1)} dB ${total_error_db > 0 ? "stronger" : "weaker"}.`;
+  const whole = Math.abs(total_error_db) < 0.05 ? "" : ` All together ${which} is ${Math.abs(total_error_db).toFixed(1)} dB ${total_error_db > 0 ? "stronger" : "weaker"}.`;
   return `A difference is felt: in the third octave where most is, ${largest_error_db.toFixed(1)} dB.${whole}`;
 }
 
@@ -63,10 +63,10 @@ export function Difference() {
       <h2>What is felt of the difference</h2>
       {found ? (
         <>
-          <p>{words(found)}</p>
+          <p>{words(found, "B")}</p>
           <Bars of={found} />
           <p class="soft small">
-            At {pilotSpeed.value.toFixed(0)} mm/s and {pilotForce.value.toFixed(2)} N; B against A, up is stronger, up to {MOST_DB} dB, by third octave in Hz. A listener by the papers that the manual names: what is below the detection threshold does not count.
+            At {pilotSpeed.value.toFixed(0)} mm/s and {pilotForce.value.toFixed(2)} N; B against A, up is stronger, up to {MOST_DB} dB, by third octave in Hz. What is below the published detection thresholds of a resting finger does not count.
           </p>
         </>
       ) : (

@@ -51,7 +51,7 @@ function Readings() {
       </button>
       <p class={inside ? "coverage" : "coverage outside"}>
         {!inside && <Icon name="warn" />}
-        {text ? `${text.charAt(0).toUpperCase()}${text.slice(1)}.` : "As it was recorded or made."}
+        {text}
       </p>
     </>
   );

@@ -1,6 +1,6 @@
 // "Feel it on": other outputs than the loudspeaker, each with what it cannot do.
 
-import { useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 
 import { feelOn, gamepadThere, outputs, startFeeling, type Feel } from "../feel.ts";
 import { canChooseOutput, sendTo } from "../engine.ts";
@@ -17,7 +17,7 @@ const WAYS: { id: Feel; name: string; limit: string; there: () => boolean }[] = 
   },
   {
     id: "phone",
-    name: "This phone",
+    name: "Vibration of this device",
     limit: "The motor is on or off, in pulses as long as the level is high. It has one frequency of its own.",
     there: () => "vibrate" in navigator,
   },
@@ -25,14 +25,26 @@ const WAYS: { id: Feel; name: string; limit: string; there: () => boolean }[] = 
 
 export function FeelOn() {
   const [isOpen, setOpen] = useState(false);
+  const menu = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    if (!isOpen) return;
+    const outside = (event: Event) => !(event.target instanceof Node && menu.current?.contains(event.target)) && setOpen(false);
+    const escape = (event: KeyboardEvent) => event.key === "Escape" && setOpen(false);
+    document.addEventListener("pointerdown", outside);
+    document.addEventListener("keydown", escape);
+    return () => {
+      document.removeEventListener("pointerdown", outside);
+      document.removeEventListener("keydown", escape);
+    };
+  }, [isOpen]);
   const choose = (id: string) => sendTo(id).then(() => say("The volume is at 0 for the new output. Raise it slowly.", "plain"), fail);
   return (
-    <div class="menu">
+    <div class="menu" ref={menu}>
       <button class="toggle" aria-expanded={isOpen} onClick={() => (setOpen(!isOpen), void outputs.refresh())}>
         <Icon name="feel" /> <span class="wide">Feel it on</span>
       </button>
       {isOpen && (
-        <div class="menu-sheet" role="group" aria-label="Feel it on" onKeyDown={(event) => event.key === "Escape" && setOpen(false)}>
+        <div class="menu-sheet" role="group" aria-label="Feel it on">
           {WAYS.map(({ id, name, limit, there }) => (
             <button key={id} class="menu-item" aria-pressed={feelOn.value === id} disabled={!there()} onClick={() => startFeeling(id)}>
               <b>{name}</b>
@@ -42,7 +54,7 @@ export function FeelOn() {
           {canChooseOutput() ? (
             <label class="menu-item">
               <b>Another output, such as a shaker on an amplifier</b>
-              <small>It gets the sound as it is, without calibration and without the guards of `htex play`. Gain begins at 0.</small>
+              <small>It gets the sound as it is, without calibration and without the guards of the command. Gain begins at 0.</small>
               <select onChange={(event) => choose(event.currentTarget.value)}>
                 <option value="">The system's output</option>
                 {outputs.list.value.map(({ id, name }) => (

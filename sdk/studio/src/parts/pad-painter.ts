@@ -10,7 +10,7 @@ import { RELIEF_HZ, TILE, colour, relief } from "./relief.ts";
 /** Milliseconds between two reliefs while a texture is edited. */
 const RELIEF_MS = 120;
 /** Milliseconds between two pieces of one. */
-const PIECE_MS = 8;
+const PIECE_MS = 4;
 /** Part of the finger's way by which the grain moves. */
 const CARRIED = 0.3;
 
@@ -56,7 +56,9 @@ export class PadPainter {
     const scale = Math.min(devicePixelRatio, 2);
     this.canvas.width = Math.max(Math.round(clientWidth * scale), 1);
     this.canvas.height = Math.max(Math.round(clientHeight * scale), 1);
-    this.wish();
+    // A canvas of another size is empty, and is shown before the next frame.
+    cancelAnimationFrame(this.frame);
+    this.paint();
   }
 
   private renew() {

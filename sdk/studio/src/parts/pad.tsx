@@ -113,6 +113,9 @@ export function Pad() {
         onBlur={releaseKeys}
         onContextMenu={(event) => event.preventDefault()}
       />
+      <p class="pad-hint keys" aria-hidden="true">
+        Arrows slide, Shift faster · 1–5 press · Space to and fro
+      </p>
       {sound.value === "off" && <p class="pad-hint">Press and slide</p>}
     </div>
   );

@@ -22,7 +22,7 @@ function numbers(seed: number) {
 }
 
 /** Waves that are added before others may have their turn. */
-const WAVES_AT_ONCE = 8;
+const WAVES_AT_ONCE = 4;
 
 function* heights(magnitude: ArrayLike<number>): Generator<void, Float32Array> {
   const height = new Float32Array(TILE * TILE);
@@ -50,32 +50,49 @@ function* heights(magnitude: ArrayLike<number>): Generator<void, Float32Array> {
   return height;
 }
 
-/** Draws the relief to a tile that repeats, in pieces of a millisecond or two. `dark` and `light` are the colours of slopes away from the light and towards it. */
+/** Slopes at which a colour is that of the darkest or lightest, and colours between them. */
+const [STEEPEST, SHADES] = [4, 1024];
+
+/** The colours of slopes from `-STEEPEST` to `STEEPEST`, as an image has them in memory. */
+function shades(dark: Colour, light: Colour): Uint32Array {
+  const bytes = new Uint8ClampedArray(4 * SHADES);
+  for (let i = 0; i < SHADES; i++) {
+    const part = 0.5 + 0.5 * Math.tanh(STEEPEST * ((2 * i) / (SHADES - 1) - 1));
+    for (let c = 0; c < 3; c++) bytes[4 * i + c] = (dark[c] as number) + part * ((light[c] as number) - (dark[c] as number));
+    bytes[4 * i + 3] = 255;
+  }
+  return new Uint32Array(bytes.buffer);
+}
+
+/** Draws the relief to a tile that repeats, in pieces of half a millisecond. `dark` and `light` are the colours of slopes away from the light and towards it. */
 export function* relief(magnitude: ArrayLike<number>, dark: Colour, light: Colour): Generator<void, HTMLCanvasElement> {
   const height = yield* heights(magnitude);
   yield;
   const slope = new Float32Array(height.length);
   let square = 0;
   for (let y = 0, at = 0; y < TILE; y++) {
+    const above = ((y + TILE - 1) % TILE) * TILE;
+    let left = height[at + TILE - 1] as number;
     for (let x = 0; x < TILE; x++, at++) {
-      const left = height[y * TILE + ((x + TILE - 1) % TILE)] as number;
-      const up = height[((y + TILE - 1) % TILE) * TILE + x] as number;
       const here = height[at] as number;
-      slope[at] = 1.2 * (here - left) + 0.8 * (here - up);
-      square += (slope[at] as number) ** 2;
+      const now = 1.2 * (here - left) + 0.8 * (here - (height[above + x] as number));
+      slope[at] = now;
+      square += now * now;
+      left = here;
     }
   }
   yield;
-  const contrast = 0.85 / (Math.sqrt(square / slope.length) || 1);
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = TILE;
   const pen = canvas.getContext("2d");
   if (!pen) return canvas;
   const image = pen.createImageData(TILE, TILE);
+  const pixels = new Uint32Array(image.data.buffer);
+  const shade = shades(dark, light);
+  const scale = (((0.85 / (Math.sqrt(square / slope.length) || 1)) / STEEPEST) * (SHADES - 1)) / 2;
   for (let at = 0; at < slope.length; at++) {
-    const part = 0.5 + 0.5 * Math.tanh(contrast * (slope[at] as number));
-    for (let c = 0; c < 3; c++) image.data[4 * at + c] = (dark[c] as number) + part * ((light[c] as number) - (dark[c] as number));
-    image.data[4 * at + 3] = 255;
+    const place = scale * (slope[at] as number) + SHADES / 2;
+    pixels[at] = shade[Math.min(Math.max(place, 0), SHADES - 1) | 0] as number;
   }
   pen.putImageData(image, 0, 0);
   return canvas;

@@ -1,7 +1,7 @@
 // What stands above: the texture's name, undo and redo, and the sound.
 
 import { audible, sound, toggleSound, volume } from "../engine.ts";
-import { depth, fail, present, redo, redoable, undo, undoable } from "../state.ts";
+import { depth, fail, origin, present, redo, redoable, screen, undo, undoable } from "../state.ts";
 import { FeelOn } from "./feel-on.tsx";
 import { Icon } from "./icons.tsx";
 
@@ -46,10 +46,14 @@ export function Top() {
       </span>
       <span class="piece" title={present.value ? `${depth.value} steps can be undone` : ""}>
         {present.value?.name ?? "…"}
+        {present.value && origin.value && present.value.bytes !== origin.value.bytes && <small> · edited</small>}
       </span>
       <History />
       <Sound />
       <FeelOn />
+      <button class="toggle" title="Name it, and save it as a file" aria-label="Save…" onClick={() => (screen.value = "give")}>
+        <Icon name="give" /> <span class="wide">Save…</span>
+      </button>
     </header>
   );
 }

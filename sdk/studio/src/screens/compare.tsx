@@ -42,7 +42,7 @@ function Play({ side, name }: { side: Side | "x"; name: string }) {
   return (
     <button class="side" aria-pressed={isHeard} onClick={() => (side === "x" ? playX() : play(side))}>
       <b>{side.toUpperCase()}</b>
-      <span>{isHeard ? "plays" : name}</span>
+      <span>{isHeard ? `${name}, plays` : name}</span>
     </button>
   );
 }
@@ -75,7 +75,7 @@ function Abx() {
   return (
     <div class="panel stack">
       <h2>Blind test</h2>
-      <p class="soft small">Ten times X is A or B, drawn anew. Say which. Slide, or let the autopilot slide.</p>
+      <p class="soft small">Ten times X is A or B, drawn anew. Say which. Slide, or press To and fro.</p>
       {isTesting.value ? (
         <>
           <Play side="x" name="the unknown one" />
@@ -99,7 +99,7 @@ function Abx() {
 function keys(event: KeyboardEvent) {
   const isText = event.target instanceof HTMLInputElement && event.target.type !== "range";
   if (isText || event.ctrlKey || event.metaKey || event.altKey || event.key.toLowerCase() !== "c") return;
-  play(heardSide.peek() === "a" ? "b" : "a");
+  play(heardSide.peek() === "b" ? "a" : "b");
 }
 
 export function Compare() {

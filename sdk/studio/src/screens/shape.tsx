@@ -113,7 +113,7 @@ export function Shape() {
       <header class="screen-head">
         <div>
           <h1 id="shape-title">Shape</h1>
-          <p>{HINTS[model.value ?? ""] ?? "The numbers of this model cannot be drawn on."} Let the autopilot slide meanwhile.</p>
+          <p>{HINTS[model.value ?? ""] ?? "The numbers of this model cannot be drawn on."} Press To and fro, and it slides meanwhile.</p>
         </div>
         <Models />
       </header>

@@ -68,7 +68,7 @@ export function Shelf() {
       <header class="screen-head">
         <div>
           <h1 id="shelf-title">Shelf</h1>
-          <p>Pass over a texture to feel its sound; press to put it on the pad. Drop your own files anywhere.</p>
+          <p>Pass over a texture to hear it, once something was pressed; press it to put it on the pad. Drop your own files anywhere.</p>
         </div>
         <Files />
       </header>

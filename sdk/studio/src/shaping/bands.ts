@@ -3,7 +3,7 @@
 import type { Author } from "htex";
 
 import { macroGain, macroRatio, type Bench, type Drawn, type Handle, type Macros, type Shaper } from "./shaper.ts";
-import { anchored, change, clamp, decibels, list, motionOf, pointDecibels, scalar, type Frame, type Parameters, type Spec } from "./spec.ts";
+import { clamp, fromDecibels, list, make, motionOf, pointDecibels, scalar, type Frame, type Parameters, type Spec } from "./spec.ts";
 
 export const BANDS = "org.htex.bands";
 /** Most steps below the highest knot. */
@@ -11,24 +11,65 @@ const MOST_STEPS = 255;
 /** What another model is redrawn with: as many knots as are fitted by default. */
 const REDRAWN = { knots: 30, step_db: 1, layout: 1 };
 const SEARCHED = Float64Array.from({ length: 600 }, (_, i) => 20 * 50 ** (i / 599));
+/** Decibels by which the other knots are lowered in a probe. */
+const PROBE_DB = 20;
+/** Distance of the bins over which a level is the RMS, Hz. */
+const BIN_HZ = 5;
 
-const knotCache = new Map<string, number[]>();
-
-/** Frequencies of the knots: where a knot's change is greatest. The model is asked, which alone knows its axis. */
-export function knots(author: Author, frame: Frame, parameters: Parameters): number[] {
-  const count = list(parameters, "below_highest").length;
-  const key = `${count} ${scalar(parameters, "layout")} ${frame.from.band.join(" ")}`;
-  const cached = knotCache.get(key);
-  if (cached) return cached;
-  const found = Array.from({ length: count }, (_, knot) => {
-    const below = Array.from({ length: count }, (_, i) => (i === knot ? 0 : 20));
-    const probe = { model: BANDS, points: [{ speed: null, force: null, level: 1, parameters: { ...parameters, below_highest: below, step_db: 1 } }] };
-    const [curve = []] = decibels(author, frame, probe, SEARCHED);
-    return SEARCHED[curve.indexOf(Math.max(...curve))] ?? 20;
-  });
-  knotCache.set(key, found);
-  return found;
+/** Where a model's knots are, and what each adds to the curve. */
+interface Axis {
+  /** Frequencies of the knots, Hz. */
+  readonly hz: readonly number[];
+  /** For each bin of the band the part of each knot's decibels in the curve's: the curve is piecewise linear. */
+  readonly parts: readonly (readonly (readonly [knot: number, part: number])[])[];
 }
+
+/** Frequencies as near to one as its neighbours in the search, a hundred times as dense. */
+const around = (hz: number) => Float64Array.from({ length: 201 }, (_, i) => Math.min(Math.max(hz * 50 ** ((i - 100) / 100 / 599), 20), 1000));
+
+/** The frequency at which a curve is highest. */
+const highest = (hz: ArrayLike<number>, curve: readonly number[]) => hz[curve.slice(0, hz.length).reduce((best, db, i) => (db > (curve[best] ?? -Infinity) ? i : best), 0)] ?? 20;
+
+const axes = new Map<string, Axis>();
+
+/** The axis of bands: a knot is where its own change is greatest. The model is asked, which alone knows it. */
+function axisOf(author: Author, frame: Frame, parameters: Parameters): Axis {
+  const count = list(parameters, "below_highest").length;
+  const [low = 20, high = 1000] = frame.from.band;
+  const key = `${count} ${scalar(parameters, "layout")} ${low} ${high}`;
+  const cached = axes.get(key);
+  if (cached) return cached;
+  const bins = Array.from({ length: Math.floor((high - low) / BIN_HZ) + 1 }, (_, i) => low + BIN_HZ * i);
+  const asked = Float64Array.from([...SEARCHED, ...bins]);
+  const hz: number[] = [];
+  const parts: [number, number][][] = bins.map(() => []);
+  for (let knot = 0; knot < count; knot++) {
+    const below = Array.from({ length: count }, (_, i) => (i === knot ? 0 : PROBE_DB));
+    const point = { speed: null, force: null, level: 1, parameters: { ...parameters, below_highest: below, step_db: 1 } };
+    const probe = make(author, frame, { model: BANDS, points: [point] });
+    const curve = pointDecibels(probe, BANDS, point, asked);
+    const near = around(highest(SEARCHED, curve));
+    hz.push(highest(near, pointDecibels(probe, BANDS, point, near)));
+    probe.free();
+    const inBins = curve.slice(SEARCHED.length);
+    const least = Math.min(...inBins);
+    inBins.forEach((db, bin) => db - least > 1e-9 && parts[bin]?.push([knot, (db - least) / PROBE_DB]));
+  }
+  const axis = { hz, parts };
+  axes.set(key, axis);
+  return axis;
+}
+
+export const knots = (author: Author, frame: Frame, parameters: Parameters) => axisOf(author, frame, parameters).hz;
+
+/** Decibels of the RMS over the bins of a curve with given decibels at its knots, up to a constant. */
+function levelDb({ parts }: Axis, knotDb: readonly number[]) {
+  const power = parts.reduce((sum, bin) => sum + 10 ** (bin.reduce((db, [knot, part]) => db + part * (knotDb[knot] ?? 0), 0) / 10), 0);
+  return 10 * Math.log10(power);
+}
+
+/** Decibels of the knots below the highest, as they are stored. */
+const stored = (parameters: Parameters) => list(parameters, "below_highest").map((steps) => -scalar(parameters, "step_db") * steps);
 
 /** Steps with the highest knot at 0, whole and in range. */
 function normalised(below: readonly number[]): number[] {
@@ -38,25 +79,24 @@ function normalised(below: readonly number[]): number[] {
 
 /** Raises each knot of each point by decibels, and leaves the rest of the curve where it was. */
 function raised(bench: Bench, spec: Spec, gain: (knot: number, hz: number) => number): Spec {
-  const first = spec.points[bench.shown]?.parameters ?? {};
-  const hz = knots(bench.author, bench, first);
-  const before = decibels(bench.author, bench, spec, hz);
-  const after = change(spec, (parameters) => {
-    const step = scalar(parameters, "step_db");
-    const below = list(parameters, "below_highest").map((steps, knot) => steps - Math.round(gain(knot, hz[knot] ?? 20) / step));
-    return { below_highest: normalised(below) };
-  });
+  const shown = spec.points[bench.shown]?.parameters ?? {};
+  const axis = axisOf(bench.author, bench, shown);
+  const gains = axis.hz.map((f, knot) => gain(knot, f));
   // The highest of the knots that moved least is what the curve is held by.
-  const steady = hz.map((f, knot) => Math.abs(gain(knot, f)));
-  const least = Math.min(...steady);
-  const shownDb = before[bench.shown] ?? [];
-  const candidates = hz.map((_, knot) => knot).filter((knot) => (steady[knot] ?? 0) <= least + 1e-9);
+  const least = Math.min(...gains.map(Math.abs));
+  const shownDb = stored(shown);
+  const candidates = gains.map((_, knot) => knot).filter((knot) => Math.abs(gains[knot] ?? 0) <= least + 1e-9);
   const anchor = candidates.reduce((best, knot) => ((shownDb[knot] ?? -999) > (shownDb[best] ?? -999) ? knot : best), candidates[0] ?? 0);
-  const moved = spec.points.map(({ parameters }, i) => {
-    const step = scalar(parameters, "step_db");
-    return (before[i]?.[anchor] ?? 0) + step * Math.round(gain(anchor, hz[anchor] ?? 20) / step);
+  const points = spec.points.map((point) => {
+    const step = scalar(point.parameters, "step_db");
+    const moved = gains.map((db) => Math.round(db / step));
+    const steps = list(point.parameters, "below_highest");
+    const parameters = { ...point.parameters, below_highest: normalised(steps.map((own, knot) => own - (moved[knot] ?? 0))) };
+    const [before, after] = [stored(point.parameters), stored(parameters)];
+    const held = (before[anchor] ?? 0) + step * (moved[anchor] ?? 0) - (after[anchor] ?? 0);
+    return { ...point, parameters, level: point.level * fromDecibels(held + levelDb(axis, after) - levelDb(axis, before)) };
   });
-  return anchored(bench.author, bench, after, hz[anchor] ?? 100, moved);
+  return { ...spec, points };
 }
 
 /** Another model's curve as Bands. */

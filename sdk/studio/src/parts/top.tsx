@@ -51,8 +51,8 @@ export function Top() {
       <History />
       <Sound />
       <FeelOn />
-      <button class="toggle" title="Name it, and save it as a file" aria-label="Save…" onClick={() => (screen.value = "give")}>
-        <Icon name="give" /> <span class="wide">Save…</span>
+      <button class="toggle roomy" title="Name it, and save it as a file" onClick={() => (screen.value = "give")}>
+        <Icon name="give" /> Save…
       </button>
     </header>
   );

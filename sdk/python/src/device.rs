@@ -1,6 +1,7 @@
 //! Devices: what plays samples, by name.
 
 use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use htex_device::{
@@ -18,7 +19,8 @@ use crate::python::{data, from_json};
 #[pyclass(module = "htex")]
 pub(crate) struct Device {
     name: String,
-    device: Option<Box<dyn Opened>>,
+    /// None when it is closed. The lock is for the interpreter alone: each call has the object to itself.
+    device: Mutex<Option<Box<dyn Opened>>>,
     can: Capabilities,
     rate_hz: f64,
 }
@@ -55,10 +57,10 @@ impl Device {
                 rate_hz,
                 block_frames: can.block_frames,
             };
-            let device = Some(known.adapter.open(&settings, &format).map_err(raised)?);
+            let device = known.adapter.open(&settings, &format).map_err(raised)?;
             Ok(Self {
                 name,
-                device,
+                device: Mutex::new(Some(device)),
                 can,
                 rate_hz,
             })
@@ -114,7 +116,7 @@ impl Device {
 
     /// Goes to rest.
     fn close(&mut self, py: Python<'_>) {
-        let device = self.device.take();
+        let device = self.slot().take();
         py.detach(|| drop(device));
     }
 
@@ -130,7 +132,7 @@ impl Device {
         _value: Option<Bound<'_, PyAny>>,
         _traceback: Option<Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        let finished = match (kind, self.device.is_some()) {
+        let finished = match (kind, self.slot().is_some()) {
             (None, true) => self.finish(py),
             _ => Ok(()),
         };
@@ -144,12 +146,15 @@ impl Device {
 }
 
 impl Device {
+    fn slot(&mut self) -> &mut Option<Box<dyn Opened>> {
+        self.device
+            .get_mut()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn open(&mut self) -> PyResult<&mut Box<dyn Opened>> {
-        let closed = || Failed::new_err(format!("{} is closed", self.name));
-        match self.device {
-            Some(ref mut device) => Ok(device),
-            None => Err(closed()),
-        }
+        let closed = Failed::new_err(format!("{} is closed", self.name));
+        self.slot().as_mut().ok_or(closed)
     }
 }
 

@@ -86,8 +86,8 @@ pub(crate) fn export<'py>(
 
 impl Importing {
     fn import(self, file: &Path) -> PyResult<(Texture, Vec<String>, Vec<String>)> {
-        let text = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy();
-        let (name, stem) = (text(file.file_name()), text(file.file_stem()));
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         Format::of_file(&name).or_raise()?;
         let metadata: Metadata = parsed(&self.metadata)?;
         metadata

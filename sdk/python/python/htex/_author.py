@@ -62,7 +62,7 @@ def fit(
     """
     files = sources(recordings)
     with _reading("fit", settings, FitSettings, Metadata) as (reading, (fitting, metadata)):
-        fitting["models"] = _models(fitting.get("models", "all"))
+        fitting["models"] = model_list(fitting.get("models", "all"))
         fitting["options"] = {model: {name: str(value) for name, value in own.items()} for model, own in (options or {}).items()}
         if lines := _grid(grid):
             fitting["grid"] = lines
@@ -111,7 +111,7 @@ def tradeoff(
     ``journal`` is a file from which an interrupted sweep continues. ``models``, ``plugins`` and ``installed`` are those of ``fit``.
     """
     request = {
-        "models": _models(models),
+        "models": model_list(models),
         "quick": quick,
         "error": error,
         "plugins": list(plugins),
@@ -193,7 +193,7 @@ def _reading(function: str, settings: Mapping[str, object], *others: type) -> It
         yield (as_json(reading), as_json(besides)), rest
 
 
-def _models(models: str | Iterable[str]) -> list[str]:
+def model_list(models: str | Iterable[str]) -> list[str]:
     """Return the names of models; none stands for all of them."""
     names = [models] if isinstance(models, str) else list(models)
     if not names:

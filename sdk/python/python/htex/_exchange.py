@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from . import _errors, _htex
+from ._author import model_list
 from ._data import Imported, Quantity
 from ._keywords import Unpack, as_json, keywords, split
 from ._settings import FitSettings, Metadata
@@ -40,6 +41,8 @@ def import_file(
     ``speed_mm_s`` and ``force_n``. ``profile`` names the actuator whose range their frequencies are positions in.
     """
     fitting, metadata = split("import_file", settings, FitSettings, Metadata)
+    if "models" in fitting:
+        fitting["models"] = model_list(fitting["models"])
     if options:
         fitting["options"] = {model: {name: str(value) for name, value in own.items()} for model, own in options.items()}
     texture, warnings, notes = _htex.import_file(

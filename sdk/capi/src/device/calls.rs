@@ -79,11 +79,11 @@ pub(super) unsafe fn list_json(
 ///
 /// # Safety
 /// Texts of the caller's.
-unsafe fn named<'a>(
-    devices: &'a Devices,
+unsafe fn named(
+    devices: &Devices,
     name: *const c_char,
     settings: *const c_char,
-) -> Result<(&'a KnownDevice, Settings), Failure> {
+) -> Result<(&KnownDevice, Settings), Failure> {
     // SAFETY: as here.
     let (name, lines) = unsafe { (needed_text(name)?, text(settings)?) };
     let known = devices.find(name)?;

@@ -11,6 +11,7 @@ people took one for the other; the interval is that of 95 % of 1,000 draws of so
 
 import argparse
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -96,7 +97,7 @@ def main():
     parser.add_argument("--htex", default="htex", help="the command [default: htex]")
     parser.add_argument("--quantity", default="lateral_force", help="what the samples are taken for [default: lateral_force]")
     chosen = parser.parse_args()
-    command = shutil.which(chosen.htex) or chosen.htex
+    command = os.path.abspath(shutil.which(chosen.htex) or chosen.htex)
     distances = {key: {} for key in MEASURES}
     with tempfile.TemporaryDirectory() as place:
         name = lambda material, sound: f"{MATERIALS[material]}{sound + 1}.wav"

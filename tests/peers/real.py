@@ -18,6 +18,7 @@ Markdown.
 import argparse
 import itertools
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -317,7 +318,7 @@ def main():
     chosen = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
         # The command runs in a folder of its own.
-        htex = Htex(shutil.which(chosen.htex) or chosen.htex, place)
+        htex = Htex(os.path.abspath(shutil.which(chosen.htex) or chosen.htex), place)
         for name, measure in (("speeds", speeds), ("hatt", hatt), ("free", free)):
             if (chosen.folder / name).is_dir():
                 measure(htex, chosen.folder / name)

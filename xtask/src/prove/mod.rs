@@ -35,24 +35,19 @@ const PROOFS: &[Proof] = &[
         name: "edges",
         takes: "",
         proves: "no reader fails for any extreme value, cell or byte of the seeds; tests take one of eleven",
-        prove: |options| whole_test(options, &["-p", "htex-tests", "--test", "edges"]),
+        prove: |options| whole_test(options, &["--test", "edges"]),
     },
     Proof {
         name: "models",
         takes: "",
         proves: "every model passes the checker, native and as a module, with four seeds more, and each fault of a model fails one check of all",
-        prove: |options| {
-            whole_test(
-                options,
-                &["-p", "htex-cli", "--test", "command", "checker::"],
-            )
-        },
+        prove: |options| whole_test(options, &["--test", "command", "checker::"]),
     },
     Proof {
         name: "grids",
         takes: "",
         proves: "errors between the conditions of a free motion, of all models on all surfaces; tests take Bands on one",
-        prove: |options| whole_test(options, &["-p", "htex-author", "--test", "grid"]),
+        prove: |options| whole_test(options, &["--test", "grid"]),
     },
     Proof {
         name: "levels",
@@ -60,28 +55,23 @@ const PROOFS: &[Proof] = &[
         proves: "stored, copied and baked textures keep their level and their spectrum, of all surfaces and at recorded motions, too; \
                  tests take two surfaces and one motion",
         prove: |options| {
-            whole_test(options, &["-p", "htex-tests", "--test", "levels"])?;
-            whole_test(options, &["-p", "htex-cli", "--test", "command", "fit::"])?;
-            whole_test(options, &["-p", "htex-bake", "--test", "voices"])
+            whole_test(options, &["--test", "levels"])?;
+            whole_test(options, &["--test", "command", "fit::"])?;
+            whole_test(options, &["--test", "voices"])
         },
     },
     Proof {
         name: "scenes",
         takes: "",
         proves: "the planned chain has the samples of the full one in 2,000 scenes; tests take 250",
-        prove: |options| whole_test(options, &["-p", "htex-scene", "--test", "equivalence"]),
+        prove: |options| whole_test(options, &["--test", "equivalence"]),
     },
     Proof {
         name: "recipes",
         takes: "",
         proves: "10,000 random recipes and tables in a folder with traps touch nothing outside the folder of results and request nothing, \
                  each within 512 MiB and 30 s; tests take 300",
-        prove: |options| {
-            whole_test(
-                options,
-                &["-p", "htex-cli", "--test", "command", "random_recipes::"],
-            )
-        },
+        prove: |options| whole_test(options, &["--test", "command", "random_recipes::"]),
     },
     Proof {
         name: "fingers",
@@ -89,14 +79,8 @@ const PROOFS: &[Proof] = &[
         proves: "1,000 random scenes and studies put at most 1 V of direct voltage and the limit on a display, and zero within half a second; \
                  1,000 hostile programs at a page lose no answer and delay no press; tests take 20 and 60",
         prove: |options| {
-            whole_test(
-                options,
-                &["-p", "htex-cli", "--test", "live", "finger::random"],
-            )?;
-            whole_test(
-                options,
-                &["-p", "htex-cli", "--test", "live", "hostile_programs"],
-            )
+            whole_test(options, &["--test", "live", "finger::random"])?;
+            whole_test(options, &["--test", "live", "hostile_programs"])
         },
     },
     Proof {
@@ -170,9 +154,14 @@ fn fuzz(options: &[&str]) -> Result<()> {
     fuzz::fuzz(&fuzz::Options::parse(options)?)
 }
 
-/// A test with all of what it takes a sample of.
+/// A test with all of what it takes a sample of, of the same build as `cargo test`.
 fn whole_test(options: &[&str], test: &[&str]) -> Result<()> {
-    let test = [&["test", "--locked"], test, &["--", "--nocapture"]].concat();
+    let test = [
+        &["test", "--locked", "--workspace"],
+        test,
+        &["--", "--nocapture"],
+    ]
+    .concat();
     none(options).and_then(|()| cargo(&test, &[(WHOLE, "1"), ("HTEX_REQUIRE_WASM", "1")]))
 }
 

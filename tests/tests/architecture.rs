@@ -186,6 +186,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "htex-exchange",
         &[
+            "plugin",
             "htex-author",
             "htex-dsp",
             "htex-finding",
@@ -228,6 +229,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "htex-hard-cases",
         &[
+            "plugin",
             "htex",
             "htex-author",
             "htex-device",

@@ -106,7 +106,7 @@ pub fn wasm_if_there() -> Option<PathBuf> {
 }
 
 /// Models that a program fits only where they are named, as `htex_host` has them; a test holds the two to each other.
-const NAMED: [&str; 1] = ["arma"];
+const NAMED: [&str; 2] = ["arma", "map"];
 
 /// The short names of the models that are fitted where none is named, in the order of the alphabet.
 ///

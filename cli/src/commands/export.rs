@@ -2,8 +2,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use htex_exchange::{
-    Coding, ExchangeError, Exported, Format, MOST_BYTES, Path, Played, Profile, Stroke, Writes,
-    exported, profile_names,
+    Coding, ExchangeError, Exported, Format, Loss, MOST_BYTES, Path, Played, Profile, Stroke,
+    Writes, exported, profile_names,
 };
 use htex_files::{AtFile, read_regular};
 use htex_format::Measure;
@@ -197,8 +197,10 @@ impl Export {
             });
         }
         let played = exported.played.as_ref().map(played).unwrap_or_default();
+        let lost = exported.lost.as_ref().map(lost).unwrap_or_default();
+        let limited = exported.played.as_ref().map(limited).unwrap_or_default();
         print(&format!(
-            "{}: {} bytes{played}\nthe format loses {}\n",
+            "{}: {} bytes{played}{lost}{limited}\nthe format loses {}\n",
             shown(&self.output),
             exported.bytes.len(),
             exported.loses,
@@ -208,9 +210,19 @@ impl Export {
     }
 }
 
-/// What is lost as the file is played, in words.
 fn played(played: &Played) -> String {
-    let lost = &played.lost;
+    format!(", {} s for {}", played.seconds, played.profile)
+}
+
+fn limited(played: &Played) -> String {
+    format!(
+        "; the actuator is too weak in {:.0} % of the time",
+        100.0 * played.limited
+    )
+}
+
+/// What is lost, in words.
+fn lost(lost: &Loss) -> String {
     let felt = &lost.difference.felt.error;
     let threshold = match felt.below_difference_threshold {
         true => "below",
@@ -218,16 +230,13 @@ fn played(played: &Played) -> String {
     };
     let nine_bands = lost.difference.quality.get(Measure::NineBand);
     format!(
-        ", {} s for {}\nlost: felt {:.1} dB RMS, {:.1} dB at most, {:+.1} dB together ({threshold} the difference threshold), \
-         nine bands {:.1} dB, level {:+.1} dB; the actuator is too weak in {:.0} % of the time",
-        played.seconds,
-        played.profile,
+        "\nlost: felt {:.1} dB RMS, {:.1} dB at most, {:+.1} dB together ({threshold} the difference threshold), \
+         nine bands {:.1} dB, level {:+.1} dB",
         felt.error_rms_db,
         felt.largest_error_db,
         felt.total_error_db,
         nine_bands.unwrap_or_default(),
         lost.level_db,
-        100.0 * played.limited,
     )
 }
 

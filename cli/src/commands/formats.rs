@@ -48,6 +48,7 @@ fn text() -> String {
 fn ways(format: &Format) -> String {
     let import = format.reads.as_ref().map(|reads| match reads {
         Reads::Asset(_) => "import",
+        Reads::Map => "import with --full-scale, --speed, --force and --pitch",
         _ => "import with --full-scale, --speed and --force",
     });
     let ways = [import, format.writes.map(|_| "export")];

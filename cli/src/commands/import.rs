@@ -108,6 +108,7 @@ impl Import {
                 quantity: settings.quantity,
                 speed_mm_s: settings.speed,
                 force_n: settings.force,
+                pitch_mm: settings.signal.pitch_mm,
             },
             profile: profile.map(Profile::find).transpose()?,
             fit,

@@ -202,7 +202,7 @@ fn files_that_are_none_are_refused_with_their_place() {
     let (_, error) = run(&place, "import set.xml -o out.htex", 1);
     assert!(error.contains("set.xml: line "), "{error}");
     let (_, error) = run(&place, "import hum.mp3 -o out.htex", 2);
-    assert!(error.contains("hum.mp3: no format that is read has this extension; there are .xml, .haptic, .ahap, .hjif, .glb and .gltf"), "{error}");
+    assert!(error.contains("hum.mp3: no format that is read has this extension; there are .xml, .haptic, .ahap, .hjif, .png, .glb and .gltf"), "{error}");
     let (_, error) = run(
         &place,
         &format!("import loud.haptic {GIVEN} -o loud.haptic"),
@@ -408,6 +408,59 @@ fn a_scene_goes_out_as_it_plays() {
     assert!(!place.path("none.bin").exists());
 }
 
+/// A row of a texture, which comes in as a map, is played, and goes out as the same row.
+#[test]
+fn a_map_goes_out_and_comes_in() {
+    let place = imported();
+    let (text, error) = run(
+        &place,
+        "export hum.htex --to png --speed 80 --force 0.4 -o row.png",
+        0,
+    );
+    assert!(
+        text.contains("lost: felt ") && text.contains("level +0.0 dB"),
+        "{text}"
+    );
+    let (_, white) = error.split_once("White is ").unwrap();
+    let (white, _) = white.split_once(' ').unwrap();
+    let given = format!("--full-scale {white} --speed 80 --force 0.4");
+    run(&place, &format!("import row.png {given} -o map.htex"), 0);
+    run(&place, "export map.htex --to png -o again.png", 0);
+    let read = |name: &str| std::fs::read(place.path(name)).unwrap();
+    assert_eq!(read("row.png"), read("again.png"));
+    let level = |name: &str| {
+        let told = place.json(&words(&format!(
+            "spectrum {name} --speed 80 --force 0.4 --json"
+        )));
+        let magnitude = told["magnitude"].as_array().unwrap();
+        let power: f64 = magnitude.iter().map(|m| m.as_f64().unwrap().powi(2)).sum();
+        power.sqrt()
+    };
+    let level_db = 20.0 * (level("map.htex") / level("hum.htex")).log10();
+    assert!(level_db.abs() < 0.1, "{level_db} dB");
+    run(
+        &place,
+        "synth map.htex --speed 160 --force 0.4 --seconds 1 -o map.wav",
+        0,
+    );
+    let (_, error) = run(&place, "export map.htex --to png --speed 80 -o none.png", 1);
+    assert!(
+        error.contains("the same at every motion; leave out speed and force"),
+        "{error}"
+    );
+    let (_, error) = run(&place, "import row.png -o none.htex", 2);
+    assert!(
+        error.contains("give --full-scale, --speed, --force"),
+        "{error}"
+    );
+    let (_, error) = run(
+        &place,
+        &format!("import row.png {given} --pitch 0 -o none.htex"),
+        2,
+    );
+    assert!(error.contains("--pitch 0: more than 0 mm"), "{error}");
+}
+
 #[test]
 fn an_export_takes_no_flag_that_the_format_has_no_use_for() {
     let place = imported();
@@ -417,6 +470,8 @@ fn an_export_takes_no_flag_that_the_format_has_no_use_for() {
         ("haptic", "--rate 8000"),
         ("hjif", "--rate 8000"),
         ("android", "--rate 8000"),
+        ("png", "--seconds 3"),
+        ("png", "--profile quest"),
     ] {
         let (_, error) = run(
             &place,
@@ -431,7 +486,7 @@ fn an_export_takes_no_flag_that_the_format_has_no_use_for() {
     }
     for (rest, expected) in [
         ("--to hatt", "invalid value 'hatt'"),
-        ("--to png", "invalid value 'png'"),
+        ("--to bmp", "invalid value 'bmp'"),
         ("--to wav --profile phone", "invalid value 'phone'"),
         ("--to wav --profile erm", "choose haptic, ahap or android"),
         ("--to wav --seconds 0.1", "--seconds 0.1: 0.5 to 600 s"),
@@ -474,10 +529,12 @@ fn formats_lists_what_is_kept_and_lost() {
         .collect();
     assert_eq!(
         names,
-        ["hatt", "haptic", "ahap", "android", "hjif", "wav", "gltf"]
+        [
+            "hatt", "haptic", "ahap", "android", "hjif", "wav", "png", "gltf"
+        ]
     );
-    assert_eq!(formats[6]["export"], "asset");
-    assert_eq!(formats[6]["export_settings"], json!([]));
+    assert_eq!(formats[7]["export"], "asset");
+    assert_eq!(formats[7]["export_settings"], json!([]));
     assert_eq!(formats[0]["import"], "asset");
     assert_eq!(formats[0]["import_settings"], json!([]));
     assert_eq!(formats[0]["export"], Value::Null);

@@ -306,7 +306,7 @@ pub(crate) fn read_and_measure(
 ) -> Result<(Vec<f64>, Quality), AuthorError> {
     let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
     let by_samples = agreement(reference, &rendered).measures;
-    let read = match model.descriptor().is_sum_of_sines() {
+    let read = match model.has_lines() {
         true => rendered,
         false => read_spectrum(model, parameters, level_rms, reference)?,
     };

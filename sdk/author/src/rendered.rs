@@ -14,7 +14,7 @@ const SECONDS: f64 = 20.0;
 const SEED: u64 = 1;
 
 /// Returns the magnitudes, on the reference's grid, that a recording of the voice reads: those of the model as a Hann window reads them
-/// ([`LoadedModel::read_magnitude`]), without chance. Sinusoids state what is read for the
+/// ([`LoadedModel::read_magnitude`]), without chance. Lines state what is read for the
 /// window's main lobe alone, so that their samples are read ([`rendered_spectrum`]).
 ///
 /// # Errors
@@ -25,7 +25,7 @@ pub fn read_spectrum(
     level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Vec<f64>, AuthorError> {
-    if model.descriptor().is_sum_of_sines() {
+    if model.has_lines() {
         return rendered_spectrum(model, parameters, level_rms, reference);
     }
     let shape = model.read_magnitude(parameters, reference.band)?;

@@ -54,7 +54,7 @@ fn baked() -> &'static [(&'static str, Vec<u8>)] {
                 .unwrap()
                 .bytes
         };
-        let models = Registry::builtin_names().into_iter();
+        let models = Registry::placeless_names().into_iter();
         models.map(|model| (model, block(model))).collect()
     })
 }

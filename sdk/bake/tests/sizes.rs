@@ -29,7 +29,7 @@ fn documented(model: &str) -> Baked {
 
 #[test]
 fn a_grid_takes_what_is_documented() {
-    for model in Registry::builtin_names() {
+    for model in Registry::placeless_names() {
         let baked = documented(model);
         let Baked {
             at_conditions_db,

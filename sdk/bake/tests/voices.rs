@@ -85,7 +85,7 @@ fn a_player_has_the_spectrum_of_the_host() {
         }
     };
     std::thread::scope(|scope| {
-        for model in Registry::builtin_names() {
+        for model in Registry::placeless_names() {
             scope.spawn(move || model_by_model(model));
         }
     });

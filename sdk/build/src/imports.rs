@@ -30,8 +30,9 @@ pub enum FileKind {
 }
 
 /// Keys of recipes, and the settings of imports that they are. A key that is not here is a setting of no import.
-const KEYS: [(&str, &str); 10] = [
+const KEYS: [(&str, &str); 11] = [
     ("full_scale", "full_scale"),
+    ("pitch_mm", "pitch"),
     ("quantity", "quantity"),
     ("at.speed_mm_s", "speed"),
     ("at.force_n", "force"),
@@ -54,7 +55,7 @@ impl FileKind {
     fn of(format: Option<&Format>) -> Self {
         match format.and_then(|format| format.reads) {
             None => Self::Recording,
-            Some(Reads::Asset(_)) => Self::Asset,
+            Some(Reads::Asset(_) | Reads::Map) => Self::Asset,
             Some(Reads::Positions { .. } | Reads::Signal(_)) => Self::Signal,
         }
     }
@@ -141,7 +142,7 @@ fn check_import(
             format.title
         )));
     }
-    if texture.kind == FileKind::Asset {
+    if let Some(Reads::Asset(_)) = format.reads {
         return Ok(());
     }
     let signal = &texture.settings.signal;
@@ -153,6 +154,7 @@ fn check_import(
         quantity: texture.settings.reading.quantity.unwrap_or_default(),
         speed_mm_s: recording.speed_mm_s,
         force_n: recording.force_n,
+        pitch_mm: signal.pitch_mm,
     };
     physical
         .check(format)

@@ -63,6 +63,7 @@ impl Job {
         let how = Import {
             name: UNNAMED,
             tool: &self.program,
+            physical: self.physical(recording),
             ..Import::default()
         };
         let asset = htex_exchange::import(&recording.name, &bytes, &how, registry)?.asset;
@@ -152,15 +153,21 @@ impl Job {
         }
     }
 
-    /// Reads a signal of another format.
-    fn signal(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
-        let bytes = recording.bytes()?;
-        let physical = Physical {
+    /// What a file of another format does not say.
+    fn physical(&self, recording: &JobRecording) -> Physical {
+        Physical {
             full_scale: self.signal.full_scale,
             quantity: self.reading.quantity.unwrap_or_default(),
             speed_mm_s: recording.speed_mm_s,
             force_n: recording.force_n,
-        };
+            pitch_mm: self.signal.pitch_mm,
+        }
+    }
+
+    /// Reads a signal of another format.
+    fn signal(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
+        let bytes = recording.bytes()?;
+        let physical = self.physical(recording);
         let profile = self.signal.profile.as_deref().map(Profile::find);
         let profile = profile.transpose()?;
         let read = htex_exchange::recording_of(&recording.name, &bytes, &physical, profile)?;

@@ -8,6 +8,7 @@ use crate::format::{Format, WriteSignal, Writes};
 use crate::heard::{Path, Playing, SceneSound, Source};
 use crate::job::{AssetJob, Coding, Job, RATE_HZ};
 use crate::loss::{Loss, loss};
+use crate::map;
 use crate::profile::{PROFILES, Profile};
 
 /// Shortest and longest export, seconds: a texture's spectrum takes 0.2 s.
@@ -111,9 +112,12 @@ pub struct Exported {
     #[serde(skip)]
     pub bytes: Vec<u8>,
     pub format: &'static str,
-    /// How the file was played again; `None` where it holds the asset itself.
+    /// How the file was played again; `None` where no actuator plays it.
     #[serde(flatten)]
     pub played: Option<Played>,
+    /// What is lost of the texture; `None` where the file holds it whole.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lost: Option<Loss>,
     /// What the format loses of every texture.
     pub loses: &'static str,
     /// What else is to say, each a sentence.
@@ -126,7 +130,6 @@ pub struct Exported {
 pub struct Played {
     pub profile: String,
     pub seconds: f64,
-    pub lost: Loss,
     /// Part of the time in which the actuator is too weak.
     pub limited: f64,
 }
@@ -162,9 +165,25 @@ pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeEr
             })?,
             format: format.name,
             played: None,
+            lost: None,
             loses: format.loses,
             notes: Vec::new(),
         }),
+        Some(Writes::Map) => {
+            let motion = match export.path {
+                Path::Condition(motion) => motion,
+                Path::Stroke(_) => None,
+            };
+            let printed = map::written(asset, export.model, motion)?;
+            Ok(Exported {
+                bytes: printed.bytes,
+                format: format.name,
+                played: None,
+                lost: printed.lost,
+                loses: format.loses,
+                notes: printed.notes,
+            })
+        }
         None => Err(not_written(format)),
     }
 }
@@ -187,7 +206,7 @@ pub fn export_scene(
             };
             of_signal(playing, export, write, profile)
         }
-        Some(Writes::Asset(_)) => Err(ExchangeError::Cannot {
+        Some(Writes::Asset(_) | Writes::Map) => Err(ExchangeError::Cannot {
             format: format.name,
             problem: "it holds an asset, and a scene is none; export the scene's assets".to_owned(),
         }),
@@ -232,8 +251,8 @@ fn of_signal(
         return Err(job.cannot(problem.to_owned()));
     }
     Ok(Exported {
+        lost: Some(loss(&written.heard, &written.drive, profile)?),
         played: Some(Played {
-            lost: loss(&written.heard, &written.drive, profile)?,
             profile: profile.name.clone(),
             seconds: job.playing.seconds,
             limited: written.limited,

@@ -38,6 +38,8 @@ pub enum Reads {
     Signal(ReadSignal),
     /// As an asset: the file states units, speeds and forces.
     Asset(ReadAsset),
+    /// As an asset: the file is an image of grey values over a surface.
+    Map,
 }
 
 pub type ReadPositions = fn(&[u8], Sampling, &Profile) -> Result<Signal, Fault>;
@@ -57,6 +59,8 @@ pub enum Writes {
     },
     /// The asset itself, of which nothing is lost.
     Asset(WriteAsset),
+    /// An image of grey values over a surface.
+    Map,
 }
 
 pub type WriteSignal = fn(&Job<'_>) -> Result<Written, ExchangeError>;
@@ -109,6 +113,10 @@ const FITTED: &[&str] = &[
     "level",
     "keep_reference",
 ];
+/// Settings of imports of an image.
+const IMAGED: &[&str] = &["full_scale", "quantity", "speed", "force", "pitch"];
+/// Settings of exports as an image.
+const PRINTED: &[&str] = &["model", "speed", "force"];
 /// Settings of exports of what an asset plays.
 const PLAYED: &[&str] = &[
     "model", "speed", "force", "seconds", "stroke", "profile", "seed",
@@ -125,13 +133,14 @@ impl Reads {
             Self::Positions { .. } => [FITTED, &["profile"]].concat(),
             Self::Signal(_) => FITTED.to_vec(),
             Self::Asset(_) => Vec::new(),
+            Self::Map => IMAGED.to_vec(),
         }
     }
 
     const fn kind(&self) -> &'static str {
         match self {
             Self::Positions { .. } | Self::Signal(_) => "signal",
-            Self::Asset(_) => "asset",
+            Self::Asset(_) | Self::Map => "asset",
         }
     }
 }
@@ -143,6 +152,7 @@ impl Writes {
         match self {
             Self::Signal { settings, .. } => [PLAYED, *settings].concat(),
             Self::Asset(_) => Vec::new(),
+            Self::Map => PRINTED.to_vec(),
         }
     }
 
@@ -150,6 +160,7 @@ impl Writes {
         match self {
             Self::Signal { .. } => "signal",
             Self::Asset(_) => "asset",
+            Self::Map => "image",
         }
     }
 }
@@ -234,7 +245,7 @@ struct Described<'a> {
     name: &'a str,
     title: &'a str,
     extensions: &'a [&'a str],
-    /// `signal` or `asset`.
+    /// `signal` or `asset`; of exports also `image`.
     import: Option<&'a str>,
     import_settings: Vec<&'a str>,
     export: Option<&'a str>,

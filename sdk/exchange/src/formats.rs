@@ -87,6 +87,15 @@ pub const FORMATS: &[Format] = &[
         loses: "speed and force, the unit; what is outside the actuator's range",
     },
     Format {
+        name: "png",
+        title: "friction map, 8-bit PNG",
+        extensions: &["png"],
+        reads: Some(Reads::Map),
+        writes: Some(Writes::Map),
+        keeps: "the friction at each place, 255 x 255 pixels at most, and their distance",
+        loses: "speed and force, the unit; of a texture that is no map all but its spectrum at one speed",
+    },
+    Format {
         name: "gltf",
         title: "glTF 2.0 with the extension HTEX_texture",
         extensions: &["glb", "gltf"],
@@ -157,13 +166,14 @@ pub fn formats_table() -> String {
     );
     for f in FORMATS {
         let comes_in = match &f.reads {
-            Some(Reads::Asset(_)) => "as an asset",
+            Some(Reads::Asset(_) | Reads::Map) => "as an asset",
             Some(_) => "to be fitted",
             None => "",
         };
         let goes_out = match &f.writes {
             Some(Writes::Asset(_)) => "the asset",
             Some(Writes::Signal { .. }) => "what is played",
+            Some(Writes::Map) => "its pixels, or one row",
             None => "",
         };
         text += &format!(

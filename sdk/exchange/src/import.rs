@@ -16,6 +16,7 @@ use htex_host::Registry;
 
 use crate::error::{ExchangeError, Fault, Missing};
 use crate::format::{Format, Held, Naming, Reads, Sampling, Signal};
+use crate::map;
 use crate::profile::Profile;
 
 /// Rate of signals, hertz.
@@ -33,6 +34,8 @@ pub struct Physical {
     pub speed_mm_s: Option<f64>,
     /// Its normal force, newtons.
     pub force_n: Option<f64>,
+    /// Distance of an image's pixels, mm, where it is not the one that the file states.
+    pub pitch_mm: Option<f64>,
 }
 
 const FULL_SCALE: Missing = Missing {
@@ -46,6 +49,10 @@ const SPEED: Missing = Missing {
 const FORCE: Missing = Missing {
     setting: "force",
     words: "at which force",
+};
+const PITCH: Missing = Missing {
+    setting: "pitch",
+    words: "how far apart its pixels are",
 };
 /// What is said of an asset without a licence.
 const UNLICENSED: &str =
@@ -112,6 +119,7 @@ pub fn import(
     format.check_import(how.given())?;
     let mut imported = match format.reads {
         Some(Reads::Asset(read)) => held(file, read(bytes, &how.naming()))?,
+        Some(Reads::Map) => mapped(format, file, bytes, how)?,
         _ => {
             let recording = recording_of(file, bytes, &how.physical, how.profile)?;
             fitted(recording, how, registry)?
@@ -142,6 +150,7 @@ impl Import<'_> {
             ("quantity", physical.quantity != Quantity::default()),
             ("speed", physical.speed_mm_s.is_some()),
             ("force", physical.force_n.is_some()),
+            ("pitch", physical.pitch_mm.is_some()),
             ("profile", self.profile.is_some()),
             ("model", fit.models.as_ref().is_some_and(|m| !is_all(m))),
             ("option", !fit.options.is_empty()),
@@ -193,6 +202,33 @@ fn held(file: &str, read: Result<Held, Fault>) -> Result<Imported, ExchangeError
     })
 }
 
+/// An image of grey values over a surface.
+fn mapped(
+    format: &'static Format,
+    file: &str,
+    bytes: &[u8],
+    how: &Import<'_>,
+) -> Result<Imported, ExchangeError> {
+    let physical = &how.physical;
+    let condition = physical.checked(format)?;
+    let image = map::read(bytes).map_err(in_file(file))?;
+    let Some(pitch_mm) = physical.pitch_mm.or(image.pitch_mm) else {
+        return Err(ExchangeError::Missing {
+            format: format.title,
+            missing: vec![PITCH],
+        });
+    };
+    let surface = map::Surface {
+        pitch_mm,
+        full_scale: condition.full_scale,
+        quantity: physical.quantity,
+        speed_mm_s: condition.speed_mm_s,
+        force_n: condition.force_n,
+        naming: how.naming(),
+    };
+    held(file, map::held(&image, &surface))
+}
+
 /// A model file of the Penn Haptic Texture Toolkit.
 pub(crate) fn hatt(bytes: &[u8], naming: &Naming<'_>) -> Result<Held, Fault> {
     let of = |fault: crate::hatt::Fault| {
@@ -224,7 +260,11 @@ pub fn recording_of(
     profile: Option<&Profile>,
 ) -> Result<Recording, ExchangeError> {
     let format = Format::of_file(file)?;
-    let (full_scale, speed_mm_s) = physical.checked(format)?;
+    let Checked {
+        full_scale,
+        speed_mm_s,
+        ..
+    } = physical.checked(format)?;
     let sampling = Sampling {
         rate_hz: RATE_HZ,
         speed_mm_s,
@@ -262,7 +302,7 @@ fn signal(
             read(bytes, sampling, profile)
         }
         Some(Reads::Signal(read)) => read(bytes, sampling),
-        Some(Reads::Asset(_)) | None => {
+        Some(Reads::Asset(_) | Reads::Map) | None => {
             return Err(ExchangeError::Cannot {
                 format: format.name,
                 problem: "its files are no signals".to_owned(),
@@ -280,8 +320,7 @@ impl Physical {
         self.checked(format).map(drop)
     }
 
-    /// Returns full scale and speed.
-    fn checked(&self, format: &Format) -> Result<(f64, f64), ExchangeError> {
+    fn checked(&self, format: &Format) -> Result<Checked, ExchangeError> {
         let all = [
             (FULL_SCALE, self.full_scale),
             (SPEED, self.speed_mm_s),
@@ -314,8 +353,23 @@ impl Physical {
             MOST_FORCE_N,
             "more than 0 N, at most 1000 N",
         )?;
-        Ok((full_scale, speed))
+        if let Some(pitch_mm) = self.pitch_mm {
+            let most = *map::PITCH_MM.end();
+            above("pitch", pitch_mm, most, "more than 0 mm, at most 64 mm")?;
+        }
+        Ok(Checked {
+            full_scale,
+            speed_mm_s: speed,
+            force_n: force,
+        })
     }
+}
+
+/// What a file does not say, in its range.
+struct Checked {
+    full_scale: f64,
+    speed_mm_s: f64,
+    force_n: f64,
 }
 
 /// Fits an asset to signals ([`recording_of`]): their spectra are read in evenly spaced windows, and provenance keeps the full scale. The

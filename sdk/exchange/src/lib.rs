@@ -33,6 +33,7 @@ mod import;
 mod job;
 mod json;
 mod loss;
+pub mod map;
 mod pattern;
 mod profile;
 mod reduce;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(feature = "clap")]
 use crate::profile_names;
 
-/// Settings of signals, as `.haptic`, `.ahap` and `.hjif` hold them; quantity, speed and force are those of recordings.
+/// Settings of signals, as `.haptic`, `.ahap` and `.hjif` hold them, and of images; quantity, speed and force are those of recordings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
@@ -24,6 +24,21 @@ pub struct SignalSettings {
     )]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub full_scale: Option<f64>,
+
+    /// Distance of two pixels of an image, mm.
+    #[schemars(range(max = 64), extend("exclusiveMinimum" = 0))]
+    #[cfg_attr(
+        feature = "clap",
+        arg(
+            id = "pitch",
+            long = "pitch",
+            value_name = "MM",
+            display_order = 1,
+            help = "Distance of an image's pixels, mm [default: the one that the file states]"
+        )
+    )]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pitch_mm: Option<f64>,
 
     /// The actuator whose range the frequencies of haptic signals are positions in, by name; else the format's own.
     #[cfg_attr(feature = "clap", arg(
@@ -43,7 +58,7 @@ impl SignalSettings {
     /// ```
     /// use htex_exchange::SignalSettings;
     /// let own = SignalSettings { full_scale: Some(0.2), ..SignalSettings::default() };
-    /// let under = SignalSettings { full_scale: Some(1.0), profile: Some("quest".to_owned()) };
+    /// let under = SignalSettings { full_scale: Some(1.0), profile: Some("quest".to_owned()), ..SignalSettings::default() };
     /// let both = own.over(under);
     /// assert_eq!((both.full_scale, both.profile.as_deref()), (Some(0.2), Some("quest")));
     /// ```
@@ -51,6 +66,7 @@ impl SignalSettings {
     pub fn over(self, under: Self) -> Self {
         Self {
             full_scale: self.full_scale.or(under.full_scale),
+            pitch_mm: self.pitch_mm.or(under.pitch_mm),
             profile: self.profile.or(under.profile),
         }
     }

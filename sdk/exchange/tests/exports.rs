@@ -71,9 +71,10 @@ fn each_file_keeps_the_rules_of_its_format() {
                 check(format.name, &exported, profile);
                 let played = exported.played.unwrap();
                 assert_eq!(played.profile, profile.name);
-                let felt = &played.lost.difference.felt.error;
+                let lost = exported.lost.unwrap();
+                let felt = &lost.difference.felt.error;
                 assert!(felt.error_rms_db.is_finite() && felt.error_rms_db >= 0.0);
-                assert!(played.lost.level_db.is_finite());
+                assert!(lost.level_db.is_finite());
                 assert!((0.0..=1.0).contains(&played.limited));
                 count += 1;
             }
@@ -88,11 +89,8 @@ fn samples_lose_less_than_a_tone_does() {
     let asset = texture(Surface::CoarseFabric);
     let wide = Profile::find("console").unwrap();
     let felt = |how: Export<'_>| {
-        let played = export(&asset, &how.with_profile(wide))
-            .unwrap()
-            .played
-            .unwrap();
-        played.lost.difference.felt.error.error_rms_db
+        let exported = export(&asset, &how.with_profile(wide)).unwrap();
+        exported.lost.unwrap().difference.felt.error.error_rms_db
     };
     let wav = felt(of("wav"));
     let wavelet = felt(of("hjif").with_coding(Coding::Wavelet));

@@ -3,9 +3,7 @@
 
 mod textures;
 
-use htex_exchange::{
-    Coding, Export, Format, Played, Profile, export, formats_table, profiles_table,
-};
+use htex_exchange::{Coding, Export, Format, Loss, Profile, export, formats_table, profiles_table};
 use htex_simulate::Surface;
 use textures::texture;
 
@@ -53,7 +51,7 @@ fn generated_losses_are_fresh() {
                 let mut how = Export::new(Format::named(format).unwrap());
                 how = how.with_profile(Profile::find(name).unwrap());
                 how.coding = coding;
-                text += &cell(&export(&asset, &how).unwrap().played.unwrap());
+                text += &cell(&export(&asset, &how).unwrap().lost.unwrap());
             }
             text.push('\n');
         }
@@ -61,7 +59,7 @@ fn generated_losses_are_fresh() {
     xtask::generated::section(PAGE, "losses", &text);
 }
 
-fn cell(played: &Played) -> String {
-    let felt = &played.lost.difference.felt.error;
-    format!(" {:.1}, {:+.1} |", felt.error_rms_db, played.lost.level_db)
+fn cell(lost: &Loss) -> String {
+    let felt = &lost.difference.felt.error;
+    format!(" {:.1}, {:+.1} |", felt.error_rms_db, lost.level_db)
 }

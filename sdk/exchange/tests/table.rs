@@ -28,11 +28,11 @@ fn names_and_extensions_lead_to_one_format() {
     }
     assert_eq!(
         extensions,
-        BTreeSet::from(["ahap", "glb", "gltf", "haptic", "hjif", "xml"])
+        BTreeSet::from(["ahap", "glb", "gltf", "haptic", "hjif", "png", "xml"])
     );
     let error = Format::of_file("texture.wav").unwrap_err().to_string();
     assert!(
-        error.contains(".xml, .haptic, .ahap, .hjif, .glb and .gltf"),
+        error.contains(".xml, .haptic, .ahap, .hjif, .png, .glb and .gltf"),
         "{error}"
     );
     assert!(Format::of_file("haptic").is_err());

@@ -3,6 +3,7 @@
 use std::sync::{Arc, LazyLock};
 
 use htex_model::abi::ModelTable;
+use htex_model::motion_1::MotionTable;
 
 use crate::table::TableModel;
 use crate::{LoadedModel, Origin};
@@ -49,10 +50,20 @@ macro_rules! model {
         let model = model.with_knobs(&$model::KNOBS).with_usual($model::USUAL);
         model
     }};
+    ($model:ident, knobs, usual, motion) => {{
+        #[cfg(feature = "fit")]
+        static MOTION: &MotionTable = &$model::MOTION;
+        #[cfg(not(feature = "fit"))]
+        static MOTION: &MotionTable = &MotionTable {
+            fit: without_fits_at,
+            ..$model::MOTION
+        };
+        model!($model, knobs, usual).with_motion(MOTION)
+    }};
 }
 
 /// The models. One that is added here is in every program that links this crate. Without `usual` its parameters have the ranges of its
-/// descriptor alone; without `knobs` a sweep spans the ranges of its options. One that is `only_named` is fitted where it is named, and
+/// descriptor alone; without `knobs` a sweep spans the ranges of its options; with `motion` it has the extension `htex.motion/1`. One that is `only_named` is fitted where it is named, and
 /// is none of those that a program takes by itself.
 fn tables() -> Vec<TableModel> {
     vec![
@@ -63,6 +74,7 @@ fn tables() -> Vec<TableModel> {
         model!(htex_sslope, knobs, usual),
         model!(htex_bands, knobs, usual),
         model!(htex_arma, knobs, usual).only_named(),
+        model!(htex_map, knobs, usual, motion).only_named(),
     ]
 }
 
@@ -105,6 +117,28 @@ unsafe extern "C" fn without_fits(
     _signal_rate_hz: f64,
     _options: *const f64,
     _options_len: usize,
+    _parameters: *mut f64,
+    _capacity: usize,
+    _level_rms: *mut f64,
+) -> i64 {
+    htex_model::Status::CannotFit as i64
+}
+
+/// As [`without_fits`], of the extension `htex.motion/1`.
+#[cfg(not(feature = "fit"))]
+unsafe extern "C" fn without_fits_at(
+    _band_low_hz: f64,
+    _band_high_hz: f64,
+    _frequency_hz: *const f64,
+    _magnitude: *const f64,
+    _bins: usize,
+    _signal: *const f64,
+    _signal_len: usize,
+    _signal_rate_hz: f64,
+    _options: *const f64,
+    _options_len: usize,
+    _speed_mm_s: f64,
+    _force_n: f64,
     _parameters: *mut f64,
     _capacity: usize,
     _level_rms: *mut f64,

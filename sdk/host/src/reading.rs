@@ -12,6 +12,12 @@ const IN_BIN: i32 = 8;
 const BESIDE_EDGE_BINS: f64 = 0.5;
 
 impl LoadedModel {
+    /// Returns whether magnitudes are what a window reads of lines, and no density: those of sinusoids, and of models that follow the motion, whose
+    /// surface a finger crosses again.
+    pub fn has_lines(&self) -> bool {
+        self.descriptor().is_sum_of_sines() || self.follows_motion()
+    }
+
     /// Returns the magnitude on the band's grid, of unit RMS, that a recording of the voice reads through a Hann window of 0.2 s: bins next to
     /// steep flanks read the flank, and those at the band's edges read what is played half a bin beyond and nothing further.
     ///
@@ -23,7 +29,7 @@ impl LoadedModel {
     /// As [`Self::magnitude`].
     pub fn read_magnitude(&self, parameters: &[f64], band: Band) -> Result<Vec<f64>, HostError> {
         let grid = band.grid_hz();
-        if self.descriptor().is_sum_of_sines() || grid.is_empty() {
+        if self.has_lines() || grid.is_empty() {
             return self.magnitude(parameters, band, &grid);
         }
         // Positions in the window's main lobe, in bins, and their weights.

@@ -56,6 +56,13 @@ impl Registry {
         models.map(LoadedModel::short_name).collect()
     }
 
+    /// Returns the short names of those among them whose sound is the same at each place: all but models that follow the motion.
+    pub fn placeless_names() -> Vec<&'static str> {
+        let models = builtin::models().iter();
+        let placeless = models.filter(|model| !model.follows_motion());
+        placeless.map(LoadedModel::short_name).collect()
+    }
+
     /// Returns the models that a search finds.
     ///
     /// # Errors

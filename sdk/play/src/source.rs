@@ -5,7 +5,7 @@ use htex_host::{Band, LoadedModel, ModelVoice, Motion as ModelMotion};
 use crate::known::{Known, Located, Motions};
 use crate::mesh::Weights;
 use crate::spectrum::scaled_magnitude;
-use crate::travel::Finger;
+use crate::travel::{Course, Finger};
 use crate::{Error, Motion};
 
 /// Most conditions that are interpolated.
@@ -34,8 +34,9 @@ pub struct SampleSource {
     band: Band,
     motion: Motion,
     level_rms: f64,
-    /// Whether the model follows the motion itself.
+    /// Whether the model follows the motion itself, and the finger's way over the surface for it.
     follows: bool,
+    course: Course,
     /// Samples rendered so far.
     frames: u64,
 }
@@ -63,6 +64,7 @@ impl SampleSource {
             motion,
             level_rms: located.level_rms,
             follows: model.follows_motion(),
+            course: Course::default(),
             model,
             frames: 0,
         })
@@ -138,7 +140,9 @@ impl SampleSource {
         }
         let ahead_s = self.rendered_s() - at_s;
         let position_mm = finger.position_mm + ahead_s * finger.speed_mm_s;
-        let [x_mm, y_mm] = finger.place_mm.unwrap_or([position_mm, 0.0]);
+        let way_mm = ahead_s * finger.speed_mm_s.abs();
+        let place_mm = finger.place_mm.map(|place| self.course.on(place, way_mm));
+        let [x_mm, y_mm] = place_mm.unwrap_or([position_mm, 0.0]);
         let motion = ModelMotion {
             speed_mm_s: finger.speed_mm_s,
             force_n: finger.force_n,

@@ -16,7 +16,7 @@ pub(crate) fn scaled_magnitude(
 ) -> Result<Vec<f64>, Error> {
     let recorded_hz: Vec<f64> = frequency_hz.iter().map(|f| f / ratio).collect();
     let shape = model.magnitude(parameters, band, &recorded_hz)?;
-    let spread = match model.descriptor().is_sum_of_sines() {
+    let spread = match model.has_lines() {
         true => 1.0,
         false => ratio.sqrt(),
     };

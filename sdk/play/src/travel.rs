@@ -1,6 +1,6 @@
 //! The position of a finger on its path: given, or integrated from its speed.
 //!
-//! The position is that of the next sample that the *voice* renders ([`crate::SampleSource::set_finger`]): a resampler reads
+//! Position and place are those of the next sample that the *voice* renders ([`crate::SampleSource::set_finger`]): a resampler reads
 //! ahead by parts of a block that differ from call to call, and the jitter would be audible. For a model that does not
 //! follow the motion itself, a motion costs one test of a `bool`.
 
@@ -17,6 +17,29 @@ pub struct Finger {
     pub position_mm: f64,
     /// Place on the surface, x and y, mm. Where it is unknown, models receive the position as x, and 0 as y.
     pub place_mm: Option<[f64; 2]>,
+}
+
+/// The direction in which a finger moves over a surface.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Course {
+    place_mm: Option<[f64; 2]>,
+    /// Of length 1, or 0 where it is unknown.
+    direction: [f64; 2],
+}
+
+impl Course {
+    /// Returns where the finger is some way on from a place, mm, in the direction in which the places moved.
+    pub(crate) fn on(&mut self, place_mm: [f64; 2], way_mm: f64) -> [f64; 2] {
+        if let Some(before) = self.place_mm {
+            let moved: [f64; 2] = std::array::from_fn(|axis| place_mm[axis] - before[axis]);
+            let length = moved[0].hypot(moved[1]);
+            if length > 0.0 {
+                self.direction = moved.map(|part| part / length);
+            }
+        }
+        self.place_mm = Some(place_mm);
+        std::array::from_fn(|axis| place_mm[axis] + way_mm * self.direction[axis])
+    }
 }
 
 /// The position and direction of a finger, for models that follow the motion themselves.

@@ -26,6 +26,7 @@ use crate::texture::Texture;
 #[pyo3(from_item_all)]
 pub(crate) struct Importing {
     full_scale: Option<f64>,
+    pitch_mm: Option<f64>,
     quantity: String,
     speed_mm_s: Option<f64>,
     force_n: Option<f64>,
@@ -106,6 +107,7 @@ impl Importing {
                 quantity,
                 speed_mm_s: self.speed_mm_s,
                 force_n: self.force_n,
+                pitch_mm: self.pitch_mm,
             },
             profile: profile.map(Profile::find).transpose().or_raise()?,
             fit,

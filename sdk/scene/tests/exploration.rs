@@ -193,7 +193,7 @@ fn samples_do_not_depend_on_blocks_or_on_the_recorded_motion() {
         (120.0, 0.4),
         RECORDED,
     ];
-    for model in Registry::builtin_names() {
+    for model in Registry::placeless_names() {
         let follow = |size: usize| {
             let mut voice = voice(model, None, Effects::default());
             let mut all = Vec::new();

@@ -111,6 +111,55 @@ pub fn gltf(input: &[u8]) -> bool {
     true
 }
 
+/// An image of a friction map: what is read has 255 by 255 pixels at most, comes back pixel by pixel, and is played within bounds.
+pub fn png(input: &[u8]) -> bool {
+    let image = match htex_exchange::map::read(input) {
+        Ok(image) => image,
+        Err(fault) => return refused(&fault),
+    };
+    let (width, rows) = (image.width, image.grey.len() / image.width);
+    assert!((1..=255).contains(&width) && (1..=255).contains(&rows));
+    assert_eq!(image.grey.len(), width * rows);
+    let how = Import {
+        name: "fuzzed",
+        physical: Physical {
+            full_scale: Some(FULL_SCALE),
+            speed_mm_s: Some(80.0),
+            force_n: Some(0.4),
+            pitch_mm: Some(image.pitch_mm.unwrap_or(0.1)),
+            ..Physical::default()
+        },
+        ..Import::default()
+    };
+    let imported = match import("fuzzed.png", input, &how, &htex::Registry::builtin()) {
+        Ok(imported) => imported,
+        Err(error) => return refused(&error),
+    };
+    let bytes = imported.to_bytes().expect("an asset is written");
+    let asset = htex::Asset::from_bytes(&bytes).expect("what was written opens");
+    let format = Format::named("png").expect("it is in the table");
+    let again = export(&asset, &Export::new(format)).expect("a map is exported");
+    let again = htex_exchange::map::read(&again.bytes).expect("what was written is read");
+    assert_eq!((again.width, again.grey), (image.width, image.grey));
+    let mut voice = asset
+        .voice(&htex::VoiceOptions::default())
+        .expect("a map is played");
+    let mut samples = [0.0; 500];
+    for step in 0..4 {
+        let motion =
+            htex::Motion::new(80.0, 0.4).with_place_mm(f64::from(step), 0.7 * f64::from(step));
+        voice.set_motion(motion).expect("a motion in range");
+        voice.render(&mut samples).expect("a map is rendered");
+        // The cubic and the filters of the band's edges overshoot.
+        assert!(
+            samples
+                .iter()
+                .all(|x| f64::from(x.abs()) <= 4.0 * FULL_SCALE)
+        );
+    }
+    true
+}
+
 fn same_end(before: &Pattern, after: &Pattern) {
     if before.to_s > before.from_s {
         assert!(

@@ -42,7 +42,7 @@ pub use capi::c_calls;
 pub use compile::compile_limits;
 pub use container::{container, with_checksums};
 pub use descriptor::descriptor;
-pub use exchange::{ahap, gltf, haptic, hatt, hjif};
+pub use exchange::{ahap, gltf, haptic, hatt, hjif, png};
 pub use lab::{arrow, column_map, flac, hdf5, mat, parquet, tdms};
 pub use library::library;
 pub use manifest::manifest;
@@ -107,6 +107,7 @@ pub const TARGETS: &[Target] = &[
     target("ahap", ahap),
     target("hjif", hjif),
     target("gltf", gltf),
+    target("png", png),
 ];
 
 const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {

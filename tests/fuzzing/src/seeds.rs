@@ -53,6 +53,7 @@ pub fn seeds() -> Vec<Seed> {
     seeds.extend(models_of_others());
     seeds.extend(signals_of_others());
     seeds.extend(meshes(&registry));
+    seeds.extend(images(&registry));
     seeds
 }
 
@@ -157,6 +158,18 @@ fn meshes(registry: &Registry) -> Vec<Seed> {
         ("gltf", extension.to_owned(), made.bytes)
     };
     ["glb", "gltf"].map(mesh).to_vec()
+}
+
+/// An image of the row of a texture.
+fn images(registry: &Registry) -> Vec<Seed> {
+    let model = registry.find("sslope").expect("a built-in model");
+    let bytes = asset(model).to_bytes().expect("a sound asset");
+    let opened = htex::Asset::from_bytes(&bytes).expect("what was written opens");
+    let format = htex_exchange::Format::named("png").expect("it is in the table");
+    let mut how = htex_exchange::Export::new(format);
+    how.path = htex_exchange::Path::Condition(Some(htex::Motion::new(80.0, 0.4)));
+    let made = htex_exchange::export(&opened, &how).expect("a texture is exported");
+    vec![("png", "row".to_owned(), made.bytes)]
 }
 
 /// Part files of takes, as they are and as what the target builds them from: a second of a finger, with a tracker's rows.

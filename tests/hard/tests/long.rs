@@ -23,20 +23,20 @@ fn an_hour_is_steady() {
         assert_eq!(run.power.len(), 6);
         assert_eq!(run.broken, 0, "{}", model.short_name());
         assert!(drift < 0.1, "{}: {drift} dB", model.short_name());
-        // Above 0 by the power that the bins of the band miss at its edges.
+        // Above 0 by the power that the bins of the band miss at its edges; a map's lines next to them are weaker by the filters.
         assert!(
-            (-0.05..0.15).contains(&off),
+            (-0.1..0.15).contains(&off),
             "{}: {off} dB",
             model.short_name()
         );
     }
 }
 
-/// Six minutes of four seeds, no two blocks of 64 samples alike. sPeak repeats: it is a sum of
-/// sinusoids on a grid of 5 Hz.
+/// Six minutes of four seeds, no two blocks of 64 samples alike. Lines repeat: those of sPeak lie on a grid of 5 Hz, and a map is
+/// crossed again.
 #[test]
 fn seeds_never_repeat_a_block() {
-    for model in models().iter().filter(|m| m.short_name() != "speak") {
+    for model in models().iter().filter(|m| !m.has_lines()) {
         let mut blocks = Blocks::new();
         let mut samples = 0;
         for seed in [0, 1, 2, u64::MAX] {

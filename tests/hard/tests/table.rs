@@ -50,6 +50,7 @@ sections! {
     prediction: "Linear prediction",
     autoregression: "AR",
     arma: "ARMA",
+    map: "Friction maps",
     mixing: "Interpolation",
     beta: "Beta density",
     slope: "Slopes",

@@ -66,6 +66,10 @@ def mix_ar(sets, weights):
     return [filter_of(frequencies), sets[0][1]]
 
 
+def mix_maps(sets, weights):
+    return next(values for values, weight in zip(sets, weights) if weight >= max(weights) - 1e-9)
+
+
 def mix_arma(sets, weights):
     require_equal(sets, 2, "model rates")
     return [mix_lines([values[0] for values in sets], weights), mix_lines([values[1] for values in sets], weights), sets[0][2]]
@@ -134,6 +138,7 @@ def filter_of(frequencies: list[float]) -> list[float]:
 MIXES = {
     "org.htex.ar": mix_ar,
     "org.htex.arma": mix_arma,
+    "org.htex.map": mix_maps,
     "org.htex.mfcc": mix_mfcc,
     "org.htex.speak": mix_speak,
     "org.htex.sbeta": mix_scalars,

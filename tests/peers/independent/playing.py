@@ -16,7 +16,7 @@ from .law import clamp, exponents, power, scaled
 from .mesh import Mesh
 from .mixing import mix
 from .models import Models
-from .shapes import SUMS_OF_SINUSOIDS, Band, Refusal, Values, magnitude
+from .shapes import FOLLOW_THE_MOTION, SUMS_OF_SINUSOIDS, Band, Refusal, Values, magnitude
 
 LEFT_OUT = 1e-12
 
@@ -79,7 +79,7 @@ class Voice:
         values = mix(self.model["id"], [self.sets[i] for i in kept], [weights[i] for i in kept])
         level = sum(weights[i] * self.levels[i] for i in kept)
         ratio_v, ratio_f = self.ratios(speed, force, foot)
-        a, b, c = self.exponents
+        a, b, c = (0.0, 0.0, 0.0) if self.model["id"] in FOLLOW_THE_MOTION else self.exponents
         ratio_v = clamp(ratio_v)
         factor = clamp(power(ratio_v, a))
         level = scaled(level, max(self.levels), power(ratio_v, b) * power(ratio_f, c))

@@ -91,6 +91,28 @@ def lines_power(lines: list, turn: np.ndarray) -> np.ndarray:
     return (factors[0] + 4 * factors[1] * np.sin(turn) ** 2) / 4
 
 
+def friction_map(values: Values, band: Band) -> Callable:
+    width, pitch, speed, _, rms, grey = values
+    width = int(width)
+    if not grey or len(grey) % width or len(grey) // width > 255:
+        raise Refusal("the grey values are no rows of the width")
+    rows = np.asarray(grey, dtype=float).reshape(-1, width)
+    k = np.arange(1, width // 2 + 1)
+    cycles, lines = k / width, k * speed / (width * pitch)
+    gain = (3 * np.sinc(cycles) ** 2 - np.sinc(2 * cycles) - 3 * np.sinc(2 * cycles) ** 2 + np.sinc(4 * cycles)) / (np.pi * cycles) ** 2
+    waves = np.mean(np.abs(np.fft.fft(rows)[:, k]) ** 2, axis=0) / width**2
+    power = np.where(2 * k == width, 1, 2) * gain**2 * waves * ((lines >= band.low) & (lines <= band.high))
+
+    def shape(f):
+        d = (np.asarray(f)[:, None] - lines) / BIN
+        return np.sqrt(np.where(np.abs(d) < 2, window_lobe(d), 0.0) ** 2 @ (2 * power))
+
+    own = math.sqrt(np.sum(shape(band.grid) ** 2) / 3)
+    if own <= 1e-9 or abs(rms - own) > 1e-6 * own:
+        raise Refusal("rms is not that of the grey values")
+    return normed(shape, band)
+
+
 def window_lobe(d: np.ndarray) -> np.ndarray:
     """sinc(d) / (1 - d^2), 1/2 at d = +-1."""
     near = np.abs(np.abs(d) - 1) < 1e-9
@@ -233,5 +255,7 @@ SHAPES = {
     "org.htex.sbeta": sbeta,
     "org.htex.sslope": sslope,
     "org.htex.bands": bands,
+    "org.htex.map": friction_map,
 }
-SUMS_OF_SINUSOIDS = {"org.htex.speak"}
+SUMS_OF_SINUSOIDS = {"org.htex.speak", "org.htex.map"}
+FOLLOW_THE_MOTION = {"org.htex.map"}

@@ -117,7 +117,7 @@ fn written(
             &["process", &csv, "--json"],
             Some(&format!("{surface}.json")),
         )?;
-        let fit = ["fit", &csv, "--model", "all,arma", "-o", &asset];
+        let fit = ["fit", &csv, "--model", "all,arma,map", "-o", &asset];
         htex(&[&fit[..], &["--keep-reference"]].concat(), None)?;
         for model in &models()? {
             let out = format!("{surface}-{model}.wav");

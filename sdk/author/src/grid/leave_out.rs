@@ -107,7 +107,7 @@ impl<'a> Played<'a> {
         }
         let recorded_hz: Vec<f64> = reference.frequency_hz.iter().map(|f| f / ratio).collect();
         let shape = self.model.magnitude(&mixed, reference.band, &recorded_hz)?;
-        let spread = match self.model.descriptor().is_sum_of_sines() {
+        let spread = match self.model.has_lines() {
             true => 1.0,
             false => ratio.sqrt(),
         };

@@ -110,10 +110,10 @@ fn read_magnitude(
     let motion = condition.speed_mm_s.zip(condition.force_n);
     let motion = motion.map(|(speed, force)| Motion::new(speed, force));
     let loaded = asset.loaded_model(model)?;
-    if loaded.descriptor().is_sum_of_sines() {
+    if loaded.has_lines() {
         return Err(Failure::plain(
             htex_status::HTEX_STATUS_UNSUPPORTED,
-            "what is read of a sum of sinusoids, only its samples tell: render its voice and measure them",
+            "what is read of lines, only its samples tell: render its voice and measure them",
         ));
     }
     let (parameters, level_rms) = asset.parameters(model, motion)?;

@@ -28,6 +28,7 @@ def import_file(
     speed_mm_s: float | None = None,
     force_n: float | None = None,
     quantity: Quantity = "lateral_force",
+    pitch_mm: float | None = None,
     profile: str | None = None,
     options: Mapping[str, Mapping[str, Any]] | None = None,
     plugins: Sequence[str | os.PathLike[str]] = (),
@@ -38,7 +39,8 @@ def import_file(
 
     Files that state units, speeds and forces (Penn's HaTT), or that have a texture in them (glTF), take no further settings but metadata.
     The others are signals within ±1, to which models are fitted: they need ``full_scale`` (what 1 is, in the unit of ``quantity``),
-    ``speed_mm_s`` and ``force_n``. ``profile`` names the actuator whose range their frequencies are positions in.
+    ``speed_mm_s`` and ``force_n``. An image of a friction map (``.png``) needs the same three, where 1 is white, and ``pitch_mm``, the distance
+    of its pixels, unless it states one; it is not fitted. ``profile`` names the actuator whose range their frequencies are positions in.
     """
     fitting, metadata = split("import_file", settings, FitSettings, Metadata)
     if "models" in fitting:
@@ -49,6 +51,7 @@ def import_file(
         file,
         {
             "full_scale": full_scale,
+            "pitch_mm": pitch_mm,
             "quantity": quantity,
             "speed_mm_s": speed_mm_s,
             "force_n": force_n,

@@ -6,6 +6,7 @@ mod beta;
 mod cepstrum;
 #[cfg(feature = "pipeline")]
 mod files;
+mod map;
 mod mixing;
 #[cfg(feature = "pipeline")]
 mod motion;
@@ -23,6 +24,7 @@ pub(crate) fn sections() -> Vec<Section> {
         prediction::SECTION,
         autoregression::SECTION,
         arma::SECTION,
+        map::SECTION,
         mixing::SECTION,
         beta::SECTION,
         slope::SECTION,

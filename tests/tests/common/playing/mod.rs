@@ -5,6 +5,7 @@ mod parameters;
 
 use htex::Asset;
 use htex_author::stored_fields;
+use htex_dsp::grid::Band;
 use htex_host::{LoadedModel, Registry};
 use serde_json::{Value, json};
 use xtask::generated::File;
@@ -23,6 +24,13 @@ struct Plan {
     law: Option<[f64; 3]>,
     /// Triangles that it stores, by its conditions.
     triangles: &'static [[usize; 3]],
+}
+
+impl Plan {
+    fn band(&self) -> Band {
+        let [low_hz, high_hz] = self.band_hz;
+        Band { low_hz, high_hz }
+    }
 }
 
 const TACTILE_HZ: [f64; 2] = [20.0, 1000.0];
@@ -200,7 +208,7 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
     for model in registry.models() {
         let fields = stored_fields(model.descriptor());
         let sets: Vec<Vec<f64>> = (0..conditions.len())
-            .map(|i| parameters(model.short_name(), number, i))
+            .map(|i| parameters(model.short_name(), plan.band(), number, i))
             .map(|flat| htex_format::round_parameters(&fields, &flat).unwrap())
             .collect();
         let at: Vec<Value> = (0..sets.len())
@@ -253,7 +261,16 @@ fn numbers(plan: &Plan, asset: &Asset) -> String {
         for motion in plan.conditions.iter().chain(plan.motions) {
             let motion = htex::Motion::new(motion[0], motion[1]);
             let (parameters, _) = asset.parameters(model, Some(motion)).unwrap();
-            let motions = asset.motions(model).unwrap();
+            let follows = asset.loaded_model(model).unwrap().follows_motion();
+            let factor = match follows {
+                true => 1.0,
+                false => {
+                    let motions = asset.motions(model).unwrap();
+                    motions
+                        .scaling(motion, htex::exploration::CEILING)
+                        .frequency
+                }
+            };
             let level_rms = asset.level_rms(model, Some(motion)).unwrap();
             let magnitude = asset.magnitude(model, Some(motion), &frequency_hz);
             cases.push(json!({
@@ -261,7 +278,7 @@ fn numbers(plan: &Plan, asset: &Asset) -> String {
                 "speed_mm_s": motion.speed_mm_s,
                 "force_n": motion.force_n,
                 "parameters": parameters,
-                "frequency_factor": motions.scaling(motion, htex::exploration::CEILING).frequency,
+                "frequency_factor": factor,
                 "level_rms": level_rms,
                 "magnitude": rounded(&magnitude.unwrap()),
             }));

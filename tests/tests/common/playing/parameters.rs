@@ -1,11 +1,12 @@
 //! Parameters of each model, drawn in ranges that cover its cases.
 
+use htex_dsp::grid::Band;
 use htex_dsp::line_spectrum::line_spectral_frequencies_of_reflection;
 use htex_dsp::linear_prediction::reflection_to_coefficients;
 use htex_dsp::uniform::Uniform;
 
 /// The flat array of a model for a condition of an asset.
-pub fn parameters(model: &str, asset: usize, condition: usize) -> Vec<f64> {
+pub fn parameters(model: &str, band: Band, asset: usize, condition: usize) -> Vec<f64> {
     let seed = model
         .bytes()
         .fold(7, |sum, byte| 31 * sum + u64::from(byte));
@@ -22,6 +23,7 @@ pub fn parameters(model: &str, asset: usize, condition: usize) -> Vec<f64> {
             draw.within(0.3, 4.0),
         ],
         "bands" => bands(&mut draw, asset),
+        "map" => map(&mut draw, band, asset, condition),
         other => panic!("no parameters for {other}"),
     }
 }
@@ -110,4 +112,18 @@ fn bands(draw: &mut Draw, asset: usize) -> Vec<f64> {
     let below: Vec<f64> = draw.list(count, 0.0, 30.0);
     let below: Vec<f64> = below.iter().map(|db| (db / step_db).round()).collect();
     [list(&below), vec![step_db, layout]].concat()
+}
+
+/// Odd and even widths, one row and several, waves that are a fundamental of 12 to 30 Hz apart.
+fn map(draw: &mut Draw, band: Band, asset: usize, condition: usize) -> Vec<f64> {
+    let width = [40, 17, 64, 31, 8][asset % 5] + condition;
+    let rows = [1, 3, 2, 4, 5][asset % 5];
+    let stored = |x: f64| f64::from(x as f32);
+    let speed_mm_s = stored(draw.within(40.0, 120.0));
+    let pitch_mm = stored(speed_mm_s / (width as f64 * draw.within(12.0, 30.0)));
+    let grey: Vec<f64> = draw.list(width * rows, 0.0, 255.0);
+    let grey: Vec<f64> = grey.iter().map(|grey| grey.round()).collect();
+    let rms = htex_map::rms(width, pitch_mm, speed_mm_s, &grey, band).unwrap();
+    let scalars = vec![width as f64, pitch_mm, speed_mm_s, 0.5, stored(rms)];
+    [scalars, list(&grey)].concat()
 }

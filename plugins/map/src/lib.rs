@@ -1,0 +1,178 @@
+//! Friction map: grey values over a surface, 0 for the least friction and 255 for the most, as displays by electroadhesion take them
+//! (TanvasTouch: 8-bit PNG).
+//!
+//! Pixels lie `pitch_mm` apart, in rows from above, and the map repeats beyond its edges. Between pixels the friction is a cubic (Catmull and
+//! Rom), so that a finger crosses them without a step. The voice follows the finger's place (`htex.motion/1`); what it renders is the
+//! friction there without its mean, between the edges of the band. A voice that is told no motion reads row after row at the speed of
+//! the parameters, which is also the way along which spectra and levels are stated.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+#![no_std]
+
+#[macro_use]
+extern crate alloc;
+
+mod fit;
+mod knobs;
+mod lines;
+mod map;
+mod path;
+mod usual;
+mod voice;
+
+use htex_dsp::grid::Band;
+use htex_dsp::shaped_noise::economical_rate_hz;
+use htex_model::{
+    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Store, Values,
+};
+
+pub use knobs::KNOBS;
+use lines::Lines;
+use map::Map;
+pub use usual::USUAL;
+pub use voice::MapVoice;
+
+const WIDTH: usize = 0;
+const PITCH: usize = 1;
+const SPEED: usize = 2;
+const FORCE: usize = 3;
+const RMS: usize = 4;
+const GREY: usize = 5;
+
+/// Most pixels of a row, and rows.
+pub const MOST_SIDE: usize = 255;
+/// The distances that pixels may have, mm.
+pub const PITCH_MM: (f64, f64) = (0.0009765625, 64.0);
+pub(crate) const SPEED_MM_S: (f64, f64) = (1.0, 2000.0);
+pub(crate) const FORCE_N: (f64, f64) = (0.0, 1000.0);
+/// Weights that differ by less are equal.
+const EQUAL: f64 = 1e-9;
+const MOST_GREY: f64 = 255.0;
+
+/// The model.
+pub struct FrictionMap;
+
+htex_model::export_model!(FrictionMap, symbols: "plugin", extensions: [motion]);
+
+/// Returns the parameter `rms` of a map: RMS of the grey values along the rows at a speed, between the edges of a band.
+///
+/// # Errors
+/// When the grey values are no rows of a width, or nothing lies in the band.
+pub fn rms(
+    width: usize,
+    pitch_mm: f64,
+    speed_mm_s: f64,
+    grey: &[f64],
+    band: Band,
+) -> Result<f64, Error> {
+    let map = Map {
+        width,
+        pitch_mm,
+        speed_mm_s,
+        force_n: 0.0,
+        rms: 0.0,
+        grey,
+    };
+    map.checked()
+        .and_then(|map| Lines::of(&map, band))
+        .map(|lines| lines.rms)
+}
+
+const GREYS: Store = Store::U8 {
+    scale: 1.0,
+    offset: 0.0,
+    log: false,
+};
+
+impl Model for FrictionMap {
+    type Voice = MapVoice;
+
+    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+        "org.htex.map",
+        "Friction map",
+        env!("CARGO_PKG_VERSION"),
+        "Grey values over a surface: what is felt follows the place of the finger.",
+    )
+    .fields(&[
+        StaticField::scalar("width", "1", (1.0, MOST_SIDE as f64), "Pixels of a row.")
+            .stored(GREYS),
+        StaticField::scalar("pitch_mm", "mm", PITCH_MM, "Distance of two pixels."),
+        StaticField::scalar(
+            "speed_mm_s",
+            "mm/s",
+            SPEED_MM_S,
+            "Speed at which spectrum and level are stated.",
+        ),
+        StaticField::scalar(
+            "force_n",
+            "N",
+            FORCE_N,
+            "Normal force at which the level is stated; 0 where it is not known.",
+        ),
+        StaticField::scalar(
+            "rms",
+            "1",
+            (0.0, MOST_GREY),
+            "RMS of the grey values along the rows at that speed, between the edges of the band.",
+        ),
+        StaticField::list(
+            "grey",
+            "1",
+            (0.0, MOST_GREY),
+            (MOST_SIDE * MOST_SIDE) as u32,
+            "Grey values, row by row from above; 255 is the most friction.",
+        )
+        .stored(GREYS),
+    ]);
+
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+        fit::fit(input)
+    }
+
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error> {
+        let map = Map::new(parameters)?;
+        let lines = Lines::stated(&map, band)?;
+        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
+            *m = if band.contains(f) {
+                lines.seen_at(f)
+            } else {
+                0.0
+            };
+        }
+        Ok(())
+    }
+
+    /// Takes the set of the largest weight, the first of equals: maps are not mixed.
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
+        let largest = weights.iter().copied().fold(0.0, f64::max);
+        let mut pairs = sets.iter().zip(weights);
+        match pairs.find(|(_, weight)| **weight >= largest - EQUAL) {
+            Some((set, _)) => {
+                out.extend(set.flat());
+                Ok(())
+            }
+            None => Err(Error::argument("no sets to mix")),
+        }
+    }
+
+    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
+        economical_rate_hz(wanted_hz, band)
+    }
+
+    fn voice(
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self::Voice, Error> {
+        MapVoice::new(parameters, band, rate_hz, seed)
+    }
+}

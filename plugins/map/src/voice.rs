@@ -1,0 +1,394 @@
+//! The friction under the finger, without its mean, between the edges of the band.
+
+use alloc::vec::Vec;
+
+use htex_dsp::band_limit::band_limit;
+use htex_dsp::grid::Band;
+use htex_dsp::pipeline::Pipeline;
+use htex_dsp::uniform::Uniform;
+use htex_model::{Error, Motion, MotionVoice, Values, Voice};
+
+use crate::MOST_SIDE;
+use crate::lines::Lines;
+use crate::map::{Map, cubic};
+use crate::path::{Path, Way};
+
+/// Largest gain of a force.
+const MOST_GAIN: f64 = 16.0;
+/// Part of a row's width in which an untold voice goes over to the next row.
+const TURN: f64 = 0.1;
+/// Samples that are filtered at a time: a motion holds from the next two on.
+const BLOCK: usize = 2;
+/// Places on the surface for each sample: what a fast finger crosses, and the images of pixels, lie above the band, and are filtered
+/// before they could be heard as lower frequencies.
+const OVERSAMPLING: usize = 4;
+
+/// A surface and a finger on it.
+pub struct MapVoice {
+    /// Places in a second.
+    place_hz: f64,
+    grey: Vec<u8>,
+    width: usize,
+    pitch_mm: f64,
+    speed_mm_s: f64,
+    force_n: f64,
+    mean: f64,
+    /// Factor of a grey value.
+    scale: f64,
+    edges: Pipeline,
+    path: Path,
+    /// The motion that was told last, and the samples that were ready then.
+    told: Option<Motion>,
+    ahead: usize,
+    moved: bool,
+    /// Way along the rows of a voice that was told nothing, pixels.
+    way: f64,
+    gain: Ramp,
+    contact: Ramp,
+    is_jumping: bool,
+    ready: [f32; BLOCK],
+    taken: usize,
+}
+
+/// A value with a linear ramp to a new target.
+struct Ramp {
+    value: f64,
+    target: f64,
+    step: f64,
+}
+
+impl Ramp {
+    const fn at(value: f64) -> Self {
+        Self {
+            value,
+            target: value,
+            step: 0.0,
+        }
+    }
+
+    fn set(&mut self, target: f64, samples: f64) {
+        if target == self.target {
+            return;
+        }
+        self.target = target;
+        self.step = (target - self.value) / samples;
+    }
+
+    fn next(&mut self) -> f64 {
+        let value = self.value;
+        let left = self.target - value;
+        self.value = if left.abs() <= self.step.abs() {
+            self.target
+        } else {
+            value + self.step
+        };
+        value
+    }
+}
+
+impl MapVoice {
+    pub(crate) fn new(
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self, Error> {
+        let place_hz = OVERSAMPLING as f64 * rate_hz;
+        let mut voice = Self {
+            place_hz,
+            grey: Vec::with_capacity(MOST_SIDE * MOST_SIDE),
+            width: 1,
+            pitch_mm: 1.0,
+            speed_mm_s: 0.0,
+            force_n: 0.0,
+            mean: 0.0,
+            scale: 0.0,
+            edges: band_limit(band, place_hz),
+            path: Path::new(place_hz),
+            told: None,
+            ahead: 0,
+            moved: false,
+            way: 0.0,
+            gain: Ramp::at(1.0),
+            contact: Ramp::at(1.0),
+            is_jumping: false,
+            ready: [0.0; BLOCK],
+            taken: BLOCK,
+        };
+        let map = Map::new(parameters)?;
+        Lines::stated(&map, band)?;
+        voice.take(&map)?;
+        voice.way = Uniform::new(seed).next_unit() * map.grey.len() as f64;
+        // The filter's transient has decayed by the first sample.
+        for _ in 0..(0.2 * rate_hz) as usize / BLOCK {
+            voice.fill();
+        }
+        Ok(voice)
+    }
+
+    fn take(&mut self, map: &Map<'_>) -> Result<(), Error> {
+        if !(map.rms > 0.0) {
+            return Err(Error::parameters(
+                "`rms` is 0, and a map is felt by its differences",
+            ));
+        }
+        self.grey.clear();
+        // As many as there is room for.
+        self.grey
+            .extend(map.grey.iter().map(|grey| libm::round(*grey) as u8));
+        self.width = map.width;
+        self.pitch_mm = map.pitch_mm;
+        self.speed_mm_s = map.speed_mm_s;
+        self.force_n = map.force_n;
+        self.mean = map.grey.iter().sum::<f64>() / map.grey.len() as f64;
+        self.scale = 1.0 / map.rms;
+        Ok(())
+    }
+
+    /// Grey value at a place in pixels.
+    fn grey_at(&self, x: f64, y: f64) -> f64 {
+        let rows = self.grey.len() / self.width;
+        let (x, columns) = around(x, self.width);
+        let (y, lines) = around(y, rows);
+        let (along, across) = (cubic(x), cubic(y));
+        let mut sum = 0.0;
+        for (row, weight) in lines.iter().zip(across) {
+            let row = &self.grey[row * self.width..][..self.width];
+            let mut own = 0.0;
+            for (column, part) in columns.iter().zip(along) {
+                own += part * f64::from(row[*column]);
+            }
+            sum += weight * own;
+        }
+        sum
+    }
+
+    /// The place of the next sample, pixels.
+    fn place(&mut self) -> [f64; 2] {
+        if self.told.is_some() {
+            return self.path.next().map(|mm| mm / self.pitch_mm);
+        }
+        let width = self.width as f64;
+        let row = libm::floor(self.way / width);
+        let part = self.way / width - row;
+        let turn = ((part - 1.0 + TURN) / TURN).max(0.0);
+        let place = [self.way, row + turn * turn * (3.0 - 2.0 * turn)];
+        self.way += self.speed_mm_s / (self.place_hz * self.pitch_mm);
+        place
+    }
+
+    /// Filters the next block.
+    fn fill(&mut self) {
+        let mut pairs = [[0.0; 2]; OVERSAMPLING * BLOCK / 2];
+        for sample in pairs.as_flattened_mut() {
+            if self.is_jumping && self.contact.value == 0.0 {
+                self.path.leap();
+                self.is_jumping = false;
+                self.contact.set(1.0, self.path.blend());
+            }
+            let [x, y] = self.place();
+            let friction = self.scale * (self.grey_at(x, y) - self.mean);
+            *sample = friction * self.gain.next() * self.contact.next();
+        }
+        self.edges.process(&mut pairs);
+        let kept = pairs.as_flattened().iter().step_by(OVERSAMPLING);
+        for (ready, sample) in self.ready.iter_mut().zip(kept) {
+            // Subnormal numbers are slow on some processors.
+            let sample = *sample as f32;
+            *ready = if sample.abs() < f32::MIN_POSITIVE {
+                0.0
+            } else {
+                sample
+            };
+        }
+        self.taken = 0;
+    }
+
+    fn take_motion(&mut self) {
+        self.moved = false;
+        let Some(motion) = self.told else {
+            return;
+        };
+        let ahead = (OVERSAMPLING * self.ahead) as f64;
+        let blend = self.path.blend();
+        let gain = match self.force_n > 0.0 {
+            true => (motion.force_n / self.force_n).min(MOST_GAIN),
+            false => 1.0,
+        };
+        match self.path.tell(motion, ahead) {
+            Way::Start => self.gain = Ramp::at(gain),
+            Way::Smooth => self.gain.set(gain, blend),
+            Way::Jump => {
+                self.gain.set(gain, blend);
+                if !self.is_jumping {
+                    self.is_jumping = true;
+                    self.contact.set(0.0, blend);
+                }
+            }
+        }
+    }
+}
+
+/// The part of the way from a pixel to the next one, and the four pixels around, of `count` that repeat.
+fn around(at: f64, count: usize) -> (f64, [usize; 4]) {
+    let whole = libm::floor(at);
+    let count = count as f64;
+    let first = whole - 1.0 - count * libm::floor((whole - 1.0) / count);
+    let pixel = |i: usize| {
+        let next = first + i as f64;
+        (next - count * libm::floor(next / count)) as usize
+    };
+    (at - whole, core::array::from_fn(pixel))
+}
+
+impl Voice for MapVoice {
+    fn render(&mut self, out: &mut [f32]) {
+        for sample in out {
+            if self.taken == BLOCK {
+                if self.moved {
+                    self.take_motion();
+                }
+                self.fill();
+            }
+            *sample = self.ready[self.taken];
+            self.taken += 1;
+        }
+    }
+
+    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        self.take(&Map::new(parameters)?)
+    }
+}
+
+impl MotionVoice for MapVoice {
+    fn set_motion(&mut self, motion: Motion) {
+        self.told = Some(motion);
+        self.ahead = BLOCK - self.taken;
+        self.moved = true;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::disallowed_methods)] // A failed unwrap is a failed test.
+    extern crate std;
+
+    use alloc::vec::Vec;
+
+    use htex_dsp::grid::Band;
+    use htex_model::{Model, Motion, MotionVoice, Values, Voice};
+
+    use crate::{FrictionMap, MapVoice};
+
+    const RATE_HZ: f64 = 4_000.0;
+
+    /// Parameters of a map of a function of x and y in pixels.
+    fn parameters(width: usize, rows: usize, grey: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+        let pixels = (0..rows).flat_map(|y| (0..width).map(move |x| (x as f64, y as f64)));
+        let grey: Vec<f64> = pixels.map(|(x, y)| grey(x, y).round()).collect();
+        let rms = crate::rms(width, 0.1, 80.0, &grey, Band::TACTILE).unwrap();
+        let mut all = vec![width as f64, 0.1, 80.0, 0.5, rms, grey.len() as f64];
+        all.extend(grey);
+        all
+    }
+
+    fn voice(parameters: &[f64]) -> MapVoice {
+        let values = Values::read(&FrictionMap::DESCRIPTOR, parameters).unwrap();
+        MapVoice::new(&values, Band::TACTILE, RATE_HZ, 1).unwrap()
+    }
+
+    fn waves(per_width: f64) -> impl Fn(f64, f64) -> f64 {
+        move |x, _| 127.5 + 100.0 * (core::f64::consts::TAU * per_width * x / 100.0).sin()
+    }
+
+    fn motion(speed_mm_s: f64, x_mm: f64, y_mm: f64) -> Motion {
+        Motion {
+            speed_mm_s,
+            force_n: 0.5,
+            position_mm: 0.0,
+            x_mm,
+            y_mm,
+        }
+    }
+
+    /// Samples of a straight stroke, told every 5 ms.
+    fn stroke(voice: &mut MapVoice, [dx, dy]: [f64; 2], seconds: f64) -> Vec<f32> {
+        let (speed, block) = ((dx * dx + dy * dy).sqrt(), 20);
+        let mut samples = Vec::new();
+        while (samples.len() as f64) < seconds * RATE_HZ {
+            let t = samples.len() as f64 / RATE_HZ;
+            voice.set_motion(motion(speed, 3.0 + dx * t, 2.0 + dy * t));
+            let mut out = [0.0; 20];
+            voice.render(&mut out);
+            samples.extend_from_slice(&out[..block]);
+        }
+        samples
+    }
+
+    fn amplitude_at(samples: &[f32], hz: f64) -> f64 {
+        let (mut re, mut im) = (0.0, 0.0);
+        for (n, sample) in samples.iter().enumerate() {
+            let a = core::f64::consts::TAU * hz * n as f64 / RATE_HZ;
+            re += f64::from(*sample) * a.cos();
+            im += f64::from(*sample) * a.sin();
+        }
+        2.0 * (re * re + im * im).sqrt() / samples.len() as f64
+    }
+
+    #[test]
+    fn a_line_is_as_fast_as_the_finger_crosses_it() {
+        // Ten waves in 10 mm: one in a millimetre.
+        let all = parameters(100, 3, waves(10.0));
+        for (speed, hz) in [
+            ([80.0, 0.0], 80.0),
+            ([160.0, 0.0], 160.0),
+            ([48.0, 36.0], 48.0),
+            ([-80.0, 0.0], 80.0),
+        ] {
+            let mut voice = voice(&all);
+            let samples = stroke(&mut voice, speed, 1.5);
+            let there = amplitude_at(&samples[2_000..], hz);
+            assert!((there - 2.0f64.sqrt()).abs() < 0.05, "{speed:?}: {there}");
+        }
+        // Along the lines nothing is felt.
+        let mut voice = voice(&all);
+        let samples = stroke(&mut voice, [0.0, 80.0], 1.5);
+        let rest = samples[2_000..]
+            .iter()
+            .fold(0.0f32, |most, x| most.max(x.abs()));
+        assert!(rest < 1e-3, "{rest}");
+    }
+
+    #[test]
+    fn untold_it_plays_the_level_that_is_stated() {
+        let all = parameters(97, 31, |x, y| {
+            127.5 + 60.0 * (1.7 * x + 2.3 * y).sin() + 50.0 * (0.9 * x * (1.0 + 0.1 * y)).cos()
+        });
+        let mut voice = voice(&all);
+        let mut samples = vec![0.0; 120_000];
+        voice.render(&mut samples);
+        let square: f64 = samples.iter().map(|x| f64::from(*x) * f64::from(*x)).sum();
+        let level_db = 10.0 * (square / samples.len() as f64).log10();
+        assert!(level_db.abs() < 0.5, "{level_db} dB");
+    }
+
+    #[test]
+    fn blocks_do_not_matter_and_a_jump_is_no_step() {
+        let all = parameters(100, 3, waves(20.0));
+        let (mut one, mut other) = (voice(&all), voice(&all));
+        let (mut a, mut b) = (vec![0.0; 1_000], vec![0.0; 1_000]);
+        one.render(&mut a);
+        b.chunks_mut(37).for_each(|part| other.render(part));
+        assert_eq!(a, b);
+        let mut samples = stroke(&mut one, [80.0, 0.0], 0.5);
+        one.set_motion(motion(80.0, 77.7, 1.0));
+        let mut after = [0.0; 400];
+        one.render(&mut after);
+        samples.extend_from_slice(&after);
+        let most = |part: &[f32]| {
+            part.windows(2)
+                .fold(0.0f32, |most, pair| most.max((pair[1] - pair[0]).abs()))
+        };
+        assert!(most(&samples[1_900..]) < 1.5 * most(&samples[1_000..1_900]));
+    }
+}

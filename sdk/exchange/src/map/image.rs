@@ -1,0 +1,165 @@
+//! Images: PNG of one grey value a pixel, with the distance of the pixels.
+
+use std::io::Cursor;
+
+use htex_map::MOST_SIDE;
+use png::{BitDepth, ColorType, Decoder, Encoder, Limits, PixelDimensions, Transformations, Unit};
+
+use crate::error::Fault;
+
+/// Most bytes of a file: far more than 255 by 255 pixels take.
+const MOST_BYTES: usize = 1 << 20;
+/// Most bytes that the decoder may hold.
+const MOST_DECODED: usize = 4 << 20;
+/// The distances of pixels that a map may have, mm, as the model states them.
+pub(crate) const PITCH_MM: std::ops::RangeInclusive<f64> =
+    htex_map::PITCH_MM.0..=htex_map::PITCH_MM.1;
+
+/// Grey values over a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Image {
+    /// Pixels of a row, 1 to 255.
+    pub width: usize,
+    /// Row by row from above, 1 to 255 rows; 255 is white.
+    pub grey: Vec<u8>,
+    /// Distance of two pixels, if the file states it.
+    pub pitch_mm: Option<f64>,
+}
+
+/// Reads a PNG of grey values. Colours that are grey are read, too.
+///
+/// # Errors
+/// When the file is no PNG, has more than 8 bits a channel, more than 255 pixels in a row or a column, colours, transparent pixels or
+/// several frames, with the place.
+pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
+    if bytes.len() > MOST_BYTES {
+        let size = bytes.len();
+        return Err(Fault::whole(format!(
+            "it has {size} bytes, and at most {MOST_BYTES} are read"
+        )));
+    }
+    let failed =
+        |error: png::DecodingError| Fault::whole(format!("it is no PNG that can be read: {error}"));
+    let limits = Limits {
+        bytes: MOST_DECODED,
+    };
+    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
+    decoder.set_transformations(Transformations::EXPAND);
+    let header = decoder.read_header_info().map_err(failed)?;
+    let (width, height, depth) = (
+        header.width as usize,
+        header.height as usize,
+        header.bit_depth,
+    );
+    if width > MOST_SIDE || height > MOST_SIDE {
+        return Err(Fault::new(
+            "IHDR",
+            format!(
+                "it has {width} x {height} pixels, and a map has at most {MOST_SIDE} x {MOST_SIDE}; make it smaller"
+            ),
+        ));
+    }
+    if depth == BitDepth::Sixteen {
+        return Err(Fault::new(
+            "IHDR",
+            "it has 16 bits a channel; save it with 8",
+        ));
+    }
+    let mut reader = decoder.read_info().map_err(failed)?;
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap_or(0)];
+    let frame = reader.next_frame(&mut pixels).map_err(failed)?;
+    let info = reader.info();
+    if info.animation_control.is_some() {
+        return Err(Fault::new(
+            "acTL",
+            "it has several frames; save one of them",
+        ));
+    }
+    pixels.truncate(frame.buffer_size());
+    Ok(Image {
+        width,
+        grey: grey(&pixels, frame.color_type, width)?,
+        pitch_mm: info.pixel_dims.map(pitch_mm).transpose()?.flatten(),
+    })
+}
+
+/// The grey values of expanded pixels.
+fn grey(pixels: &[u8], color: ColorType, width: usize) -> Result<Vec<u8>, Fault> {
+    let place = |index: usize| format!("row {}, column {}", index / width + 1, index % width + 1);
+    let one = |(index, pixel): (usize, &[u8])| {
+        let (colours, alpha) = match pixel {
+            [grey] => ([*grey; 3], 255),
+            [grey, alpha] => ([*grey; 3], *alpha),
+            [red, green, blue] => ([*red, *green, *blue], 255),
+            [red, green, blue, alpha, ..] => ([*red, *green, *blue], *alpha),
+            [] => ([0; 3], 255),
+        };
+        let [red, green, blue] = colours;
+        if red != green || green != blue {
+            return Err(Fault::new(
+                place(index),
+                "the pixel has a colour; save the image in grey",
+            ));
+        }
+        match alpha {
+            255 => Ok(red),
+            _ => Err(Fault::new(
+                place(index),
+                "the pixel is transparent; save the image without an alpha channel",
+            )),
+        }
+    };
+    pixels
+        .chunks_exact(color.samples())
+        .enumerate()
+        .map(one)
+        .collect()
+}
+
+/// The distance of pixels; none where the file gives a shape of pixels alone.
+fn pitch_mm(stated: PixelDimensions) -> Result<Option<f64>, Fault> {
+    if stated.unit == Unit::Unspecified {
+        return Ok(None);
+    }
+    if stated.xppu != stated.yppu {
+        return Err(Fault::new(
+            "pHYs",
+            "its pixels are no squares; scale the image",
+        ));
+    }
+    let pitch_mm = 1e3 / f64::from(stated.xppu);
+    match PITCH_MM.contains(&pitch_mm) {
+        true => Ok(Some(pitch_mm)),
+        false => Err(Fault::new(
+            "pHYs",
+            format!(
+                "{} pixels in a metre are out of the range of a map: {} to {} mm for a pixel",
+                stated.xppu,
+                PITCH_MM.start(),
+                PITCH_MM.end()
+            ),
+        )),
+    }
+}
+
+/// Writes an image as 8-bit grey PNG, with whole pixels in a metre.
+pub(super) fn to_bytes(image: &Image) -> Result<Vec<u8>, Fault> {
+    let failed = |error: png::EncodingError| Fault::whole(error.to_string());
+    let rows = image.grey.len() / image.width.max(1);
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, image.width as u32, rows as u32);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_pixel_dims(image.pitch_mm.map(|pitch_mm| {
+        let in_metre = libm::round(1e3 / pitch_mm) as u32;
+        PixelDimensions {
+            xppu: in_metre,
+            yppu: in_metre,
+            unit: Unit::Meter,
+        }
+    }));
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(&image.grey).map_err(failed)?;
+    writer.finish().map_err(failed)?;
+    Ok(bytes)
+}

@@ -1,0 +1,171 @@
+//! A texture as an image.
+
+use htex_author::{AuthorError, Difference, TextureSpectrum};
+use htex_dsp::grid::level_rms;
+use htex_host::{FitCondition, FitRequest, Registry};
+use htex_play::{Asset, Motion};
+
+use super::MODEL;
+use super::image::{Image, read, to_bytes};
+use crate::error::{ExchangeError, Fault};
+use crate::loss::Loss;
+
+/// Where the fields stand in the parameters of the model.
+const WIDTH: usize = 0;
+const PITCH: usize = 1;
+const SPEED: usize = 2;
+const FORCE: usize = 3;
+const RMS: usize = 4;
+const GREY: usize = 6;
+
+/// An image, and what it loses.
+pub(crate) struct Printed {
+    pub(crate) bytes: Vec<u8>,
+    /// `None` of a texture that is a map already.
+    pub(crate) lost: Option<Loss>,
+    pub(crate) notes: Vec<String>,
+}
+
+/// Writes a texture as an image: its own pixels, or those of a row that is fitted to what it plays at a motion, else at its first condition.
+///
+/// # Errors
+/// When the texture is silent, the speed is unknown, or 255 pixels hold nothing of it.
+pub(crate) fn written(
+    asset: &Asset,
+    model: Option<&str>,
+    motion: Option<Motion>,
+) -> Result<Printed, ExchangeError> {
+    match own(asset, model)? {
+        None => fitted(asset, model, motion),
+        Some(_) if motion.is_some() => Err(cannot(
+            "the texture is a map, whose pixels are the same at every motion; leave out speed and force",
+        )),
+        Some((parameters, level_rms)) => {
+            let (bytes, white) = image(&parameters, level_rms)?;
+            Ok(Printed {
+                bytes,
+                lost: None,
+                notes: vec![said(&parameters, white, asset)],
+            })
+        }
+    }
+}
+
+/// The parameters and the level of a texture that is a map: of the model that is named, else of the one that an app plays.
+fn own(asset: &Asset, model: Option<&str>) -> Result<Option<(Vec<f64>, f64)>, ExchangeError> {
+    match asset.loaded_model(model)?.id() {
+        MODEL => Ok(Some(asset.parameters(model, None)?)),
+        _ => Ok(None),
+    }
+}
+
+fn fitted(
+    asset: &Asset,
+    model: Option<&str>,
+    motion: Option<Motion>,
+) -> Result<Printed, ExchangeError> {
+    let band = asset.band();
+    let frequency_hz = band.grid_hz();
+    let first = asset.manifest().conditions.first();
+    let condition = FitCondition {
+        speed_mm_s: motion
+            .map(|motion| motion.speed_mm_s)
+            .or(first.and_then(|one| one.speed_mm_s)),
+        force_n: motion
+            .map(|motion| motion.force_n)
+            .or(first.and_then(|one| one.force_n)),
+    };
+    if condition.speed_mm_s.is_none() {
+        return Err(cannot(
+            "the texture states no speed, and pixels lie over a way; give `speed` and `force`",
+        ));
+    }
+    let magnitude = asset.magnitude(model, motion, &frequency_hz)?;
+    let failed = |error: htex_host::HostError| cannot(&error.to_string());
+    let registry = Registry::builtin();
+    let map = registry.find(MODEL).map_err(failed)?;
+    let request = FitRequest {
+        band,
+        frequency_hz: &frequency_hz,
+        magnitude: &magnitude,
+        signal: &[],
+        signal_rate_hz: 0.0,
+        options: &[],
+    };
+    let fit = map.fit_at(&request, condition).map_err(failed)?;
+    let shape = map
+        .magnitude(&fit.parameters, band, &frequency_hz)
+        .map_err(failed)?;
+    let reference = TextureSpectrum {
+        quantity: asset.quantity(),
+        band,
+        frequency_hz,
+        magnitude,
+        segments: 0,
+        repeatability_rms_db: None,
+        signal: Vec::new(),
+        signal_rate_hz: 0.0,
+    };
+    let (bytes, white) = image(&fit.parameters, fit.level_rms)?;
+    Ok(Printed {
+        bytes,
+        lost: Some(loss(&reference, shape, fit.level_rms)?),
+        notes: vec![
+            said(&fit.parameters, white, asset),
+            "It is one row, which repeats: it is felt along the row alone, and as the texture at that speed alone.".to_owned(),
+        ],
+    })
+}
+
+/// What is lost from a spectrum to that of a shape at a level.
+fn loss(reference: &TextureSpectrum, shape: Vec<f64>, level: f64) -> Result<Loss, ExchangeError> {
+    let other = TextureSpectrum {
+        magnitude: shape.into_iter().map(|m| level * m).collect(),
+        ..reference.clone()
+    };
+    let level_db =
+        20.0 * libm::log10(level_rms(&other.magnitude) / level_rms(&reference.magnitude));
+    let difference = Difference::between(reference, &other);
+    Ok(Loss {
+        difference: difference.ok_or(AuthorError::QuantitiesDiffer)?,
+        level_db,
+    })
+}
+
+/// The image of parameters, which is read again, and how much white is at a level.
+fn image(parameters: &[f64], level_rms: f64) -> Result<(Vec<u8>, f64), ExchangeError> {
+    let at = |index: usize| parameters.get(index).copied().unwrap_or_default();
+    let grey = parameters.get(GREY..).unwrap_or_default();
+    let image = Image {
+        width: at(WIDTH) as usize,
+        grey: grey.iter().map(|grey| libm::round(*grey) as u8).collect(),
+        pitch_mm: Some(at(PITCH)),
+    };
+    let own = |fault: Fault| cannot(&fault.to_string());
+    let bytes = to_bytes(&image).map_err(own)?;
+    match read(&bytes).map_err(own)?.grey == image.grey {
+        true => Ok((bytes, level_rms * f64::from(u8::MAX) / at(RMS))),
+        false => Err(cannot("what was written is read as another image")),
+    }
+}
+
+/// What the image does not say.
+fn said(parameters: &[f64], white: f64, asset: &Asset) -> String {
+    let at = |index: usize| parameters.get(index).copied().unwrap_or_default();
+    let unit = asset.quantity().unit();
+    let (pitch_mm, speed_mm_s) = (at(PITCH), at(SPEED));
+    let force = match at(FORCE) {
+        0.0 => String::new(),
+        force_n => format!(" and {force_n} N"),
+    };
+    format!(
+        "White is {white:.6} {unit} above black at {speed_mm_s} mm/s{force}, and pixels lie {pitch_mm:.6} mm apart."
+    )
+}
+
+fn cannot(problem: &str) -> ExchangeError {
+    ExchangeError::Cannot {
+        format: "png",
+        problem: problem.to_owned(),
+    }
+}

@@ -78,6 +78,14 @@ impl Lines {
         ]))
     }
 
+    /// RMS of the lines behind a filter that passes parts of their power, over that before it.
+    pub(crate) fn rms_behind(&self, passed: impl Fn(f64) -> f64) -> f64 {
+        let behind =
+            |(i, power): (usize, &f64)| power * passed((i + 1) as f64 * self.fundamental_hz);
+        let all: f64 = self.power.iter().sum();
+        libm::sqrt(self.power.iter().enumerate().map(behind).sum::<f64>() / all)
+    }
+
     /// Magnitude of unit RMS as the Hann window measures it; powers are added.
     pub(crate) fn seen_at(&self, frequency_hz: f64) -> f64 {
         // Those in the window's main lobe.

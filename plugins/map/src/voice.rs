@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use htex_dsp::band_limit::band_limit;
+use htex_dsp::band_limit::{band_limit, band_limit_power};
 use htex_dsp::grid::Band;
 use htex_dsp::pipeline::Pipeline;
 use htex_dsp::uniform::Uniform;
@@ -33,6 +33,8 @@ pub struct MapVoice {
     speed_mm_s: f64,
     force_n: f64,
     mean: f64,
+    /// Part of the RMS that the filters of the band's edges pass at the start.
+    passed: f64,
     /// Factor of a grey value.
     scale: f64,
     edges: Pipeline,
@@ -102,6 +104,7 @@ impl MapVoice {
             speed_mm_s: 0.0,
             force_n: 0.0,
             mean: 0.0,
+            passed: 1.0,
             scale: 0.0,
             edges: band_limit(band, place_hz),
             path: Path::new(place_hz),
@@ -116,7 +119,8 @@ impl MapVoice {
             taken: BLOCK,
         };
         let map = Map::new(parameters)?;
-        Lines::stated(&map, band)?;
+        let passed = band_limit_power(band, place_hz);
+        voice.passed = Lines::stated(&map, band)?.rms_behind(passed);
         voice.take(&map)?;
         voice.way = Uniform::new(seed).next_unit() * map.grey.len() as f64;
         // The filter's transient has decayed by the first sample.
@@ -141,7 +145,7 @@ impl MapVoice {
         self.speed_mm_s = map.speed_mm_s;
         self.force_n = map.force_n;
         self.mean = map.grey.iter().sum::<f64>() / map.grey.len() as f64;
-        self.scale = 1.0 / map.rms;
+        self.scale = 1.0 / (map.rms * self.passed);
         Ok(())
     }
 

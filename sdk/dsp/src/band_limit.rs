@@ -25,11 +25,20 @@ const EDGE_POINTS: usize = 4;
 /// Distance from an edge, relative to its frequency, beyond which the attenuation is at least 30 dB.
 const BESIDE: f64 = 0.5;
 
-/// Returns Chebyshev filters for `band` at the sampling rate `rate_hz`: within 0.1 dB inside the band and 3
+/// Returns Chebyshev filters for `band` at the sampling rate `rate_hz`: within 0.2 dB up to an eighth of the frequency of each edge, and 3
 /// dB down half a grid bin outside each edge. An edge at or above the Nyquist frequency gets no filter. The
 /// output is delayed by some samples ([`Pipeline`]).
 pub fn band_limit(band: Band, rate_hz: f64) -> Pipeline {
     Pipeline::new(&sections(band, rate_hz))
+}
+
+/// Returns the part of the power at a frequency, hertz, that [`band_limit`] passes.
+pub fn band_limit_power(band: Band, rate_hz: f64) -> impl Fn(f64) -> f64 {
+    let sections = sections(band, rate_hz);
+    move |hz| {
+        let magnitudes = sections.iter().map(|s| s.magnitude(hz, rate_hz));
+        magnitudes.map(|m| m * m).product()
+    }
 }
 
 fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
@@ -84,11 +93,7 @@ impl PassedPower {
     }
 
     fn read_by(band: Band, rate_hz: f64, read: impl Fn(f64) -> f64) -> Self {
-        let sections = sections(band, rate_hz);
-        let power = |hz: f64| -> f64 {
-            let magnitudes = sections.iter().map(|s| s.magnitude(hz, rate_hz));
-            magnitudes.map(|m| m * m).product()
-        };
+        let power = band_limit_power(band, rate_hz);
         let edges = [band.first_bin(), band.last_bin()];
         let [below, above] = edges.map(|bin| EDGE_BINS.max((BESIDE * bin as f64) as usize));
         let nyquist_bin = libm::ceil(0.5 * rate_hz / GRID_HZ) as usize;

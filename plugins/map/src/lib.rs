@@ -12,7 +12,6 @@
 extern crate alloc;
 
 mod fit;
-mod knobs;
 mod lines;
 mod map;
 mod path;
@@ -25,7 +24,6 @@ use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Store, Values,
 };
 
-pub use knobs::KNOBS;
 use lines::Lines;
 use map::Map;
 pub use usual::USUAL;

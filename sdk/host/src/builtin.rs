@@ -50,7 +50,7 @@ macro_rules! model {
         let model = model.with_knobs(&$model::KNOBS).with_usual($model::USUAL);
         model
     }};
-    ($model:ident, knobs, usual, motion) => {{
+    ($model:ident, usual, motion) => {{
         #[cfg(feature = "fit")]
         static MOTION: &MotionTable = &$model::MOTION;
         #[cfg(not(feature = "fit"))]
@@ -58,7 +58,10 @@ macro_rules! model {
             fit: without_fits_at,
             ..$model::MOTION
         };
-        model!($model, knobs, usual).with_motion(MOTION)
+        let model = model!($model).with_motion(MOTION);
+        #[cfg(feature = "fit")]
+        let model = model.with_usual($model::USUAL);
+        model
     }};
 }
 
@@ -74,7 +77,7 @@ fn tables() -> Vec<TableModel> {
         model!(htex_sslope, knobs, usual),
         model!(htex_bands, knobs, usual),
         model!(htex_arma, knobs, usual).only_named(),
-        model!(htex_map, knobs, usual, motion).only_named(),
+        model!(htex_map, usual, motion).only_named(),
     ]
 }
 

@@ -36,7 +36,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     let most = heights
         .iter()
         .fold(0.0, |most: f64, height| most.max(height.abs()));
-    if !(most > 0.0) {
+    if most <= 0.0 {
         return Err(Error::cannot_fit(
             "the spectrum has nothing that 255 pixels can hold",
         ));

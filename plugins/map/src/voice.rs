@@ -131,7 +131,7 @@ impl MapVoice {
     }
 
     fn take(&mut self, map: &Map<'_>) -> Result<(), Error> {
-        if !(map.rms > 0.0) {
+        if map.rms <= 0.0 {
             return Err(Error::parameters(
                 "`rms` is 0, and a map is felt by its differences",
             ));

@@ -28,5 +28,5 @@ impl<T> Lock<T> {
 /// Expands to nothing: without an operating system there is no host that calls a model by its C functions.
 #[macro_export]
 macro_rules! export_model {
-    ($model:ty, symbols: $feature:literal) => {};
+    ($model:ty, symbols: $feature:literal $(, extensions: [motion])?) => {};
 }

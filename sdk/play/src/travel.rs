@@ -32,7 +32,7 @@ impl Course {
     pub(crate) fn on(&mut self, place_mm: [f64; 2], way_mm: f64) -> [f64; 2] {
         if let Some(before) = self.place_mm {
             let moved: [f64; 2] = std::array::from_fn(|axis| place_mm[axis] - before[axis]);
-            let length = moved[0].hypot(moved[1]);
+            let length = (moved[0] * moved[0] + moved[1] * moved[1]).sqrt();
             if length > 0.0 {
                 self.direction = moved.map(|part| part / length);
             }

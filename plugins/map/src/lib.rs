@@ -15,6 +15,7 @@ mod fit;
 mod lines;
 mod map;
 mod path;
+mod surface;
 mod usual;
 mod voice;
 

@@ -1,17 +1,15 @@
 //! The friction under the finger, without its mean, between the edges of the band.
 
-use alloc::vec::Vec;
-
 use htex_dsp::band_limit::{band_limit, band_limit_power};
 use htex_dsp::grid::Band;
 use htex_dsp::pipeline::Pipeline;
 use htex_dsp::uniform::Uniform;
 use htex_model::{Error, Motion, MotionVoice, Values, Voice};
 
-use crate::MOST_SIDE;
 use crate::lines::Lines;
-use crate::map::{Map, cubic};
+use crate::map::Map;
 use crate::path::{Path, Way};
+use crate::surface::Surface;
 
 /// Largest gain of a force.
 const MOST_GAIN: f64 = 16.0;
@@ -27,16 +25,12 @@ const OVERSAMPLING: usize = 4;
 pub struct MapVoice {
     /// Places in a second.
     place_hz: f64,
-    grey: Vec<u8>,
-    width: usize,
-    pitch_mm: f64,
-    speed_mm_s: f64,
-    force_n: f64,
-    mean: f64,
+    surface: Surface,
+    /// The surface that follows once the finger is silent, if one does.
+    next: Surface,
+    is_changing: bool,
     /// Part of the RMS that the filters of the band's edges pass at the start.
     passed: f64,
-    /// Factor of a grey value.
-    scale: f64,
     edges: Pipeline,
     path: Path,
     /// The motion that was told last, and the samples that were ready then.
@@ -98,14 +92,10 @@ impl MapVoice {
         let place_hz = OVERSAMPLING as f64 * rate_hz;
         let mut voice = Self {
             place_hz,
-            grey: Vec::with_capacity(MOST_SIDE * MOST_SIDE),
-            width: 1,
-            pitch_mm: 1.0,
-            speed_mm_s: 0.0,
-            force_n: 0.0,
-            mean: 0.0,
+            surface: Surface::empty(),
+            next: Surface::empty(),
+            is_changing: false,
             passed: 1.0,
-            scale: 0.0,
             edges: band_limit(band, place_hz),
             path: Path::new(place_hz),
             told: None,
@@ -121,7 +111,7 @@ impl MapVoice {
         let map = Map::new(parameters)?;
         let passed = band_limit_power(band, place_hz);
         voice.passed = Lines::stated(&map, band)?.rms_behind(passed);
-        voice.take(&map)?;
+        voice.surface.take(&map, voice.passed)?;
         voice.way = Uniform::new(seed).next_unit() * map.grey.len() as f64;
         // The filter's transient has decayed by the first sample.
         for _ in 0..(0.2 * rate_hz) as usize / BLOCK {
@@ -130,54 +120,17 @@ impl MapVoice {
         Ok(voice)
     }
 
-    fn take(&mut self, map: &Map<'_>) -> Result<(), Error> {
-        if map.rms <= 0.0 {
-            return Err(Error::parameters(
-                "`rms` is 0, and a map is felt by its differences",
-            ));
-        }
-        self.grey.clear();
-        // As many as there is room for.
-        self.grey
-            .extend(map.grey.iter().map(|grey| libm::round(*grey) as u8));
-        self.width = map.width;
-        self.pitch_mm = map.pitch_mm;
-        self.speed_mm_s = map.speed_mm_s;
-        self.force_n = map.force_n;
-        self.mean = map.grey.iter().sum::<f64>() / map.grey.len() as f64;
-        self.scale = 1.0 / (map.rms * self.passed);
-        Ok(())
-    }
-
-    /// Grey value at a place in pixels.
-    fn grey_at(&self, x: f64, y: f64) -> f64 {
-        let rows = self.grey.len() / self.width;
-        let (x, columns) = around(x, self.width);
-        let (y, lines) = around(y, rows);
-        let (along, across) = (cubic(x), cubic(y));
-        let mut sum = 0.0;
-        for (row, weight) in lines.iter().zip(across) {
-            let row = &self.grey[row * self.width..][..self.width];
-            let mut own = 0.0;
-            for (column, part) in columns.iter().zip(along) {
-                own += part * f64::from(row[*column]);
-            }
-            sum += weight * own;
-        }
-        sum
-    }
-
     /// The place of the next sample, pixels.
     fn place(&mut self) -> [f64; 2] {
         if self.told.is_some() {
-            return self.path.next().map(|mm| mm / self.pitch_mm);
+            return self.path.next().map(|mm| mm / self.surface.pitch_mm);
         }
-        let width = self.width as f64;
+        let width = self.surface.width as f64;
         let row = libm::floor(self.way / width);
         let part = self.way / width - row;
         let turn = ((part - 1.0 + TURN) / TURN).max(0.0);
         let place = [self.way, row + turn * turn * (3.0 - 2.0 * turn)];
-        self.way += self.speed_mm_s / (self.place_hz * self.pitch_mm);
+        self.way += self.surface.speed_mm_s / (self.place_hz * self.surface.pitch_mm);
         place
     }
 
@@ -185,13 +138,11 @@ impl MapVoice {
     fn fill(&mut self) {
         let mut pairs = [[0.0; 2]; OVERSAMPLING * BLOCK / 2];
         for sample in pairs.as_flattened_mut() {
-            if self.is_jumping && self.contact.value == 0.0 {
-                self.path.leap();
-                self.is_jumping = false;
-                self.contact.set(1.0, self.path.blend());
+            if self.contact.value == 0.0 {
+                self.change();
             }
             let [x, y] = self.place();
-            let friction = self.scale * (self.grey_at(x, y) - self.mean);
+            let friction = self.surface.friction_at(x, y);
             *sample = friction * self.gain.next() * self.contact.next();
         }
         self.edges.process(&mut pairs);
@@ -208,6 +159,27 @@ impl MapVoice {
         self.taken = 0;
     }
 
+    /// Does what waits for silence, and ends it.
+    fn change(&mut self) {
+        if self.is_changing {
+            core::mem::swap(&mut self.surface, &mut self.next);
+            self.gain = Ramp::at(self.told.map_or(1.0, |motion| self.gain_of(motion)));
+        }
+        if self.is_jumping {
+            self.path.leap();
+        }
+        (self.is_changing, self.is_jumping) = (false, false);
+        self.contact.set(1.0, self.path.blend());
+    }
+
+    /// Gain of a motion's force.
+    fn gain_of(&self, motion: Motion) -> f64 {
+        match self.surface.force_n > 0.0 {
+            true => (motion.force_n / self.surface.force_n).min(MOST_GAIN),
+            false => 1.0,
+        }
+    }
+
     fn take_motion(&mut self) {
         self.moved = false;
         let Some(motion) = self.told else {
@@ -215,34 +187,17 @@ impl MapVoice {
         };
         let ahead = (OVERSAMPLING * self.ahead) as f64;
         let blend = self.path.blend();
-        let gain = match self.force_n > 0.0 {
-            true => (motion.force_n / self.force_n).min(MOST_GAIN),
-            false => 1.0,
-        };
+        let gain = self.gain_of(motion);
         match self.path.tell(motion, ahead) {
             Way::Start => self.gain = Ramp::at(gain),
             Way::Smooth => self.gain.set(gain, blend),
             Way::Jump => {
                 self.gain.set(gain, blend);
-                if !self.is_jumping {
-                    self.is_jumping = true;
-                    self.contact.set(0.0, blend);
-                }
+                self.is_jumping = true;
+                self.contact.set(0.0, blend);
             }
         }
     }
-}
-
-/// The part of the way from a pixel to the next one, and the four pixels around, of `count` that repeat.
-fn around(at: f64, count: usize) -> (f64, [usize; 4]) {
-    let whole = libm::floor(at);
-    let count = count as f64;
-    let first = whole - 1.0 - count * libm::floor((whole - 1.0) / count);
-    let pixel = |i: usize| {
-        let next = first + i as f64;
-        (next - count * libm::floor(next / count)) as usize
-    };
-    (at - whole, core::array::from_fn(pixel))
 }
 
 impl Voice for MapVoice {
@@ -259,8 +214,14 @@ impl Voice for MapVoice {
         }
     }
 
+    /// Another map begins after a fade; the level is corrected for the filters as the first one's was.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        self.take(&Map::new(parameters)?)
+        self.next.take(&Map::new(parameters)?, self.passed)?;
+        self.is_changing = self.next != self.surface;
+        let is_silent = self.is_changing || self.is_jumping;
+        let contact = if is_silent { 0.0 } else { 1.0 };
+        self.contact.set(contact, self.path.blend());
+        Ok(())
     }
 }
 
@@ -394,5 +355,24 @@ mod tests {
                 .fold(0.0f32, |most, pair| most.max((pair[1] - pair[0]).abs()))
         };
         assert!(most(&samples[1_900..]) < 1.5 * most(&samples[1_000..1_900]));
+    }
+
+    #[test]
+    fn another_map_is_no_step() {
+        let [one, other] = [20.0, 21.0].map(|waves_of| parameters(100, 3, waves(waves_of)));
+        let mut voice = voice(&one);
+        let mut samples = stroke(&mut voice, [80.0, 0.0], 0.5);
+        voice
+            .retune(&Values::read(&FrictionMap::DESCRIPTOR, &other).unwrap())
+            .unwrap();
+        let mut after = [0.0; 2_000];
+        voice.render(&mut after);
+        samples.extend_from_slice(&after);
+        let most = |part: &[f32]| {
+            part.windows(2)
+                .fold(0.0f32, |most, pair| most.max((pair[1] - pair[0]).abs()))
+        };
+        assert!(most(&samples[1_900..]) < 1.2 * most(&samples[1_000..1_900]));
+        assert!(amplitude_at(&after[1_000..], 168.0) > 1.0);
     }
 }

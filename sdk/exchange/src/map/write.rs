@@ -151,7 +151,9 @@ fn image(parameters: &[f64], level_rms: f64) -> Result<(Vec<u8>, f64), ExchangeE
 
 /// What the image does not say.
 fn said(parameters: &[f64], white: f64, asset: &Asset) -> String {
-    let at = |index: usize| parameters.get(index).copied().unwrap_or_default();
+    // 32 bits, as assets store them: no digits that mean nothing.
+    let at = |index: usize| parameters.get(index).copied().unwrap_or_default() as f32;
+    let white = white as f32;
     let unit = asset.quantity().unit();
     let (pitch_mm, speed_mm_s) = (at(PITCH), at(SPEED));
     let force = match at(FORCE) {
@@ -159,7 +161,7 @@ fn said(parameters: &[f64], white: f64, asset: &Asset) -> String {
         force_n => format!(" and {force_n} N"),
     };
     format!(
-        "White is {white:.6} {unit} above black at {speed_mm_s} mm/s{force}, and pixels lie {pitch_mm:.6} mm apart."
+        "White is {white} {unit} above black at {speed_mm_s} mm/s{force}, and pixels lie {pitch_mm} mm apart."
     )
 }
 

@@ -3,7 +3,9 @@
 
 use std::path::Path;
 
-use htex_exchange::{ExchangeError, Format, Missing, Physical, Profile, Reads, SignalSettings};
+use htex_exchange::{
+    ExchangeError, Format, ImportError, Missing, Physical, Profile, Reads, SignalSettings,
+};
 use htex_format::{Condition, Representation};
 use htex_play::Motion;
 use serde::{Deserialize, Serialize};
@@ -207,6 +209,14 @@ fn keys<T: Serialize>(settings: &T, before: &str) -> Vec<String> {
     };
     let there = entries.into_iter().filter(|(_, value)| !value.is_null());
     there.map(|(key, _)| format!("{before}{key}")).collect()
+}
+
+/// An import that is refused, with the keys of recipes.
+pub(crate) fn refused(error: ImportError) -> Box<dyn std::error::Error> {
+    match error {
+        ImportError::Exchange(error @ ExchangeError::Missing { .. }) => by_keys(&error).into(),
+        error => error.into(),
+    }
 }
 
 /// An error of an import, with the keys of recipes.

@@ -17,7 +17,7 @@ use htex_play::Motion;
 
 use crate::BuildError;
 use crate::findings::by_code;
-use crate::imports::{FileKind, strongest};
+use crate::imports::{FileKind, refused, strongest};
 use crate::job::{Job, JobFile, JobRecording};
 use crate::made::{Made, Outcome, Record};
 use crate::sound::sound;
@@ -66,7 +66,8 @@ impl Job {
             physical: self.physical(recording),
             ..Import::default()
         };
-        let asset = htex_exchange::import(&recording.name, &bytes, &how, registry)?.asset;
+        let imported = htex_exchange::import(&recording.name, &bytes, &how, registry);
+        let asset = imported.map_err(refused)?.asset;
         let manifest = &asset.manifest;
         let motion = manifest.representations.first();
         let motion = motion.and_then(|r| strongest(r, &manifest.conditions));

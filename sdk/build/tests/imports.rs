@@ -366,3 +366,35 @@ fn a_job_of_an_import_is_data() {
         assert_eq!(read.kind, kind);
     }
 }
+
+/// A friction map is a texture as it is, once full scale, speed and force are given, and the distance of pixels where the file states none.
+#[test]
+fn a_map_becomes_a_texture() {
+    const MAP: &str = "[[textures]]\nrecordings = 'row.png'\nlicense = 'CC0-1.0'\nfull_scale = 0.3\nat = { speed_mm_s = 80, force_n = 0.4 }\n";
+    let place = Place::new();
+    let seed = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/png/row");
+    let mut image = fs::read(seed).unwrap();
+    fs::write(place.0.path().join("row.png"), &image).unwrap();
+    place.build(MAP).unwrap();
+    let pitch = |asset: &Asset| asset.parameters[0][0][1];
+    let stated = pitch(&place.asset("row"));
+    place.build(&format!("{MAP}pitch_mm = 0.5\n")).unwrap();
+    assert_eq!(pitch(&place.asset("row")), 0.5);
+    assert_ne!(stated, 0.5);
+
+    // Without the chunk: its length, name, 9 bytes and checksum.
+    let name = image.windows(4).position(|part| part == b"pHYs").unwrap();
+    image.drain(name - 4..name + 17);
+    fs::write(place.0.path().join("row.png"), &image).unwrap();
+    let error = place.refused(MAP);
+    assert!(error.starts_with("row: "), "{error}");
+    assert!(
+        error.ends_with("how far apart its pixels are; give `pitch_mm`"),
+        "{error}"
+    );
+    let error = place.refused(&MAP.replace("full_scale = 0.3\n", ""));
+    assert!(
+        error.contains("how strong 1 is; give `full_scale`"),
+        "{error}"
+    );
+}

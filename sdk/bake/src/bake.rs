@@ -36,6 +36,8 @@ const CREST: f64 = 5.0;
 #[non_exhaustive]
 pub struct Baked {
     pub bytes: Vec<u8>,
+    /// Numbers of 32 bits that the player in C keeps for the block, behind the members of a `htex_player`.
+    pub numbers: usize,
     /// The conditions of the block: the wanted ones, and those between them that the accuracy needs.
     pub grid: Grid,
     /// The id of the baked model.
@@ -67,9 +69,55 @@ pub struct Baked {
     pub recorded_speeds_mm_s: Option<(f64, f64)>,
 }
 
+/// How accurate a block has to be, and what it may take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct BakeLimits {
+    /// Error of nine bands between conditions, dB, until which conditions are inserted.
+    pub within_db: f64,
+    /// Most coefficients of a noise filter, which bound what a sample costs.
+    pub longest: usize,
+}
+
+impl BakeLimits {
+    /// Fewest coefficients of a filter.
+    pub const FEWEST: usize = 2 * HALVES[0] + 1;
+    /// Most coefficients of a filter.
+    pub const MOST: usize = 2 * MOST_HALF + 1;
+
+    /// Limits the error between conditions.
+    pub fn within_db(within_db: f64) -> Self {
+        Self {
+            within_db,
+            longest: Self::MOST,
+        }
+    }
+
+    /// Limits the coefficients of a filter; at least [`Self::FEWEST`] are taken.
+    #[must_use]
+    pub fn with_longest(self, longest: usize) -> Self {
+        Self { longest, ..self }
+    }
+
+    /// Returns the number of lengths that may be tried.
+    fn lengths(self) -> usize {
+        let longest = self.longest.max(Self::FEWEST);
+        HALVES
+            .iter()
+            .take_while(|half| 2 * **half < longest)
+            .count()
+    }
+}
+
+impl From<f64> for BakeLimits {
+    fn from(within_db: f64) -> Self {
+        Self::within_db(within_db)
+    }
+}
+
 /// Bakes a representation, named by its id or short name, else the best one, at the conditions of a grid. The block plays at
-/// `rate_hz`. Conditions are inserted midway between neighbours until the error there is at most `within_db`, or the block has
-/// 64 conditions.
+/// `rate_hz`. Conditions are inserted midway between neighbours until the error there is at most that of `limits`, which may be given as a
+/// number of decibels, or the block has 64 conditions.
 ///
 /// # Errors
 /// When the asset cannot be played, or a condition or the rate is out of range.
@@ -78,10 +126,12 @@ pub fn bake(
     model: Option<&str>,
     grid: &Grid,
     rate_hz: f64,
-    within_db: f64,
+    limits: impl Into<BakeLimits>,
 ) -> Result<Baked, BakeError> {
+    let limits = limits.into();
+    let within_db = limits.within_db;
     let texture = Texture::new(asset, model)?;
-    let mut designs = Designs::default();
+    let mut designs = Designs::new(limits.lengths());
     let mut grid = grid.clone();
     loop {
         let designed = Designed::new(&texture, &grid, rate_hz, &mut designs)?;
@@ -98,9 +148,10 @@ pub fn bake(
 }
 
 /// What is kept while conditions are inserted.
-#[derive(Default)]
 struct Designs {
     designer: Option<Rc<Designer>>,
+    /// Number of the lengths that may be tried.
+    lengths: usize,
     /// Index of the length of the filters.
     length: usize,
     /// Whether no length is within the tolerance, and the best one is taken.
@@ -108,6 +159,15 @@ struct Designs {
 }
 
 impl Designs {
+    fn new(lengths: usize) -> Self {
+        Self {
+            designer: None,
+            lengths,
+            length: 0,
+            is_best: false,
+        }
+    }
+
     /// Returns the designer of a rate.
     fn designer(&mut self, design: Design, texture: &Texture<'_>) -> Rc<Designer> {
         match &self.designer {
@@ -116,7 +176,7 @@ impl Designs {
                 let designer = Rc::new(Designer::new(design, texture.band()));
                 *self = Self {
                     designer: Some(Rc::clone(&designer)),
-                    ..Self::default()
+                    ..Self::new(self.lengths)
                 };
                 designer
             }
@@ -148,7 +208,7 @@ impl Designs {
         let mut best: Option<(usize, Shape)> = None;
         let lengths = match self.is_best {
             true => self.length..self.length + 1,
-            false => self.length..HALVES.len(),
+            false => self.length..self.lengths,
         };
         for length in lengths {
             let least_db = best
@@ -257,7 +317,7 @@ impl Designed {
             spectra,
         };
         let bytes = encode(&grid, &self.interpolator, &content);
-        Block::open(&bytes)?;
+        let numbers = Block::open(&bytes)?.numbers();
         let (taps, filters, tones) = match &content.spectra {
             Encoded::Noise(stored) => (2 * stored.filters[0].len() - 1, stored.filters.len(), 0),
             Encoded::Tones { count, .. } => (0, 0, *count),
@@ -269,6 +329,7 @@ impl Designed {
         };
         Ok(Baked {
             bytes,
+            numbers,
             grid,
             model: texture.id().to_owned(),
             quantity: content.quantity,

@@ -31,7 +31,7 @@ mod source;
 mod texture;
 mod tones;
 
-pub use bake::{Baked, bake};
+pub use bake::{BakeLimits, Baked, bake};
 pub use error::BakeError;
 pub use grid::Grid;
-pub use source::{c_header, rust_source};
+pub use source::{c_header, c_name, is_c_name, is_rust_name, rust_name, rust_source};

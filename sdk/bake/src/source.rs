@@ -2,34 +2,147 @@
 
 use std::fmt::Write;
 
+use crate::Baked;
+
 /// Bytes in a line.
 const IN_LINE: usize = 16;
 
-/// Returns a C header that defines a block as an array of bytes named after `stem`.
+/// Words that are no name of an array in C or C++.
+const RESERVED: &[&str] = &[
+    "alignas",
+    "alignof",
+    "and",
+    "asm",
+    "auto",
+    "bool",
+    "break",
+    "case",
+    "catch",
+    "char",
+    "class",
+    "const",
+    "constexpr",
+    "continue",
+    "decltype",
+    "default",
+    "delete",
+    "do",
+    "double",
+    "else",
+    "enum",
+    "explicit",
+    "export",
+    "extern",
+    "false",
+    "float",
+    "for",
+    "friend",
+    "goto",
+    "if",
+    "inline",
+    "int",
+    "long",
+    "mutable",
+    "namespace",
+    "new",
+    "noexcept",
+    "not",
+    "nullptr",
+    "operator",
+    "or",
+    "private",
+    "protected",
+    "public",
+    "register",
+    "restrict",
+    "return",
+    "short",
+    "signed",
+    "sizeof",
+    "static",
+    "struct",
+    "switch",
+    "template",
+    "this",
+    "throw",
+    "true",
+    "try",
+    "typedef",
+    "typeid",
+    "typename",
+    "typeof",
+    "union",
+    "unsigned",
+    "using",
+    "virtual",
+    "void",
+    "volatile",
+    "while",
+    "xor",
+];
+
+/// Returns the name of an array in C for the stem of a file: other characters become underscores.
 ///
 /// ```
-/// let text = htex_bake::c_header("my-texture", &[1, 2]);
-/// assert!(text.contains("static const uint8_t my_texture[2] = {"));
+/// assert_eq!(htex_bake::c_name("my-texture"), "my_texture");
+/// assert_eq!(htex_bake::c_name("cloth"), "texture_cloth");
 /// ```
-pub fn c_header(stem: &str, bytes: &[u8]) -> String {
-    let name = identifier(stem);
-    let guard = name.to_ascii_uppercase();
+pub fn c_name(stem: &str) -> String {
+    identifier(stem)
+}
+
+/// Returns the name of a constant in Rust for the stem of a file.
+///
+/// ```
+/// assert_eq!(htex_bake::rust_name("my-texture"), "MY_TEXTURE");
+/// ```
+pub fn rust_name(stem: &str) -> String {
+    identifier(stem).to_ascii_uppercase()
+}
+
+/// Returns whether a name is one that an array may have in C and C++: a letter, then letters, digits and underscores, and no
+/// keyword.
+///
+/// ```
+/// assert!(htex_bake::is_c_name("felt2"));
+/// assert!(!htex_bake::is_c_name("2felt") && !htex_bake::is_c_name("float") && !htex_bake::is_c_name("_x"));
+/// ```
+pub fn is_c_name(name: &str) -> bool {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(is_word)
+        && !name.contains("__")
+        && !RESERVED.contains(&name)
+}
+
+/// Returns whether a name is one of a constant in Rust: a capital letter, then capital letters, digits and underscores.
+///
+/// ```
+/// assert!(htex_bake::is_rust_name("FELT_2"));
+/// assert!(!htex_bake::is_rust_name("felt"));
+/// ```
+pub fn is_rust_name(name: &str) -> bool {
+    let is_capital = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_';
+    name.starts_with(|c: char| c.is_ascii_uppercase()) && name.chars().all(is_capital)
+}
+
+/// Returns a C header that defines a block as an array of bytes of this name, and the numbers that its player needs as a
+/// macro, `NAME_NUMBERS` in capitals.
+pub fn c_header(name: &str, baked: &Baked) -> String {
+    let (bytes, numbers) = (&baked.bytes, baked.numbers);
+    let macros = name.to_ascii_uppercase();
     let lines = lines(bytes);
     format!(
-        "/* A baked texture for htex_player.h (spec/baked-1.md). */\n#ifndef {guard}_BAKED_H\n#define {guard}_BAKED_H\n\n\
-         #include <stdint.h>\n\nstatic const uint8_t {name}[{}] = {{\n{lines}}};\n\n#endif\n",
+        "/* A baked texture for htex_player.h (spec/baked-1.md). */\n#ifndef {macros}_BAKED_H\n#define {macros}_BAKED_H\n\n\
+         #include <stdint.h>\n\n/* For HTEX_PLAYER_MEMORY. */\n#define {macros}_NUMBERS {numbers}\n\n\
+         static const uint8_t {name}[{}] = {{\n{lines}}};\n\n#endif\n",
         bytes.len()
     )
 }
 
-/// Returns Rust source that defines a block as an array of bytes named after `stem`.
-///
-/// ```
-/// let text = htex_bake::rust_source("my-texture", &[1, 2]);
-/// assert!(text.contains("pub static MY_TEXTURE: [u8; 2] = ["));
-/// ```
-pub fn rust_source(stem: &str, bytes: &[u8]) -> String {
-    let name = identifier(stem).to_ascii_uppercase();
+/// Returns Rust source that defines a block as an array of bytes of this name.
+pub fn rust_source(name: &str, baked: &Baked) -> String {
+    let bytes = &baked.bytes;
     let lines = lines(bytes);
     format!(
         "/// A baked texture for the crate `htex-player` (spec/baked-1.md).\n#[rustfmt::skip]\n\

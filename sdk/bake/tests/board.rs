@@ -1,25 +1,29 @@
-//! The player on an emulated Cortex-M4F, in Rust and in C, and in C on the host, returns the bits of the player on the host.
+//! Blocks of all models have the same samples on an emulated Cortex-M4F, in Rust and in C, and on the host.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
+#[path = "../../player/tests/common/compilers.rs"]
+mod compilers;
 #[path = "../../player/tests/common/script.rs"]
 mod script;
+#[path = "../../player/tests/common/stream.rs"]
+mod stream;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
 use common::{asset, built, has, player, run};
+use compilers::{CORTEX_M0, CORTEX_M4F, compare_on_host, host_program};
 use htex_bake::{Grid, bake};
 use htex_play::Registry;
 use htex_player::{Block, Player};
-use xtask::needs::{ARM_GCC, BARE_TARGET, Need, QEMU_ARM};
+use stream::{Case, Step};
+use xtask::needs::{ARM_GCC, BARE_TARGET, CC, Need, QEMU_ARM};
 
-/// The stack of the C program; with an overflow, data is lost and the test fails.
-const STACK: &str = "-Wl,--defsym=stack_size=1024";
 const TARGET: &str = "thumbv7em-none-eabihf";
 /// Most flash memory of the C program with the player, bytes.
-const MOST_FLASH: u64 = 96 * 1024;
+const MOST_FLASH: u64 = 20 * 1024;
 /// Most instructions per sample at 8 kHz: a tenth of a processor of 168 MHz.
 const MOST_INSTRUCTIONS: u64 = 2100;
 
@@ -128,6 +132,21 @@ fn a_cortex_m4f_returns_the_bits_of_the_host() {
     }
 }
 
+/// The linker keeps what a program may reach, and found no panic to keep.
+#[test]
+fn no_panic_is_reachable_on_the_board() {
+    if !all_met(&[
+        (&BARE_TARGET, has_target()),
+        (&ARM_GCC, has("arm-none-eabi-gcc")),
+    ]) {
+        return;
+    }
+    let program = cargo(&player().join("examples/cortex-m4"), Some(TARGET)).join("cortex-m4");
+    let symbols = run(Command::new("arm-none-eabi-nm").arg(&program));
+    assert!(symbols.contains("htex_player"), "{symbols}");
+    assert!(!symbols.contains("panic"), "{symbols}");
+}
+
 #[test]
 fn a_damaged_block_is_an_error_on_the_board() {
     if !all_met(&[
@@ -145,81 +164,68 @@ fn a_damaged_block_is_an_error_on_the_board() {
     assert!(output.contains("error: the checksum"), "{output}");
 }
 
-#[test]
-fn a_c_program_returns_the_bits_of_the_rust_player() {
-    let library = cargo(&player().join("c"), None).join("libhtex_player.a");
-    let program = built().join("play");
-    let mut cc = Command::new("cc");
-    cc.args(["-std=c11", "-O2", "-Wall", "-Wextra", "-Werror", "-o"])
-        .arg(&program);
-    cc.arg("-I")
-        .arg(player().join("include"))
-        .arg(player().join("c/play.c"));
-    cc.arg(library).args(["-lm", "-lpthread", "-ldl"]);
-    run(&mut cc);
-    for (model, block, hash) in blocks("c") {
-        let output = run(Command::new(&program).arg(block));
-        assert_eq!(output, format!("hash {hash:08x}\n"), "{model}");
-    }
+/// Motions within and beyond the conditions, of a finger at rest and of none, by blocks of all models.
+fn cases() -> Vec<Case> {
+    let motions = [
+        (80.0, 0.4),
+        (55.5, 0.25),
+        (0.0, 0.0),
+        (101.25, 0.5),
+        (1e6, 100.0),
+        (-60.0, 0.3),
+    ];
+    let steps = motions.into_iter().flat_map(|(speed, force)| {
+        let lengths = [64, 1, 33, 200].map(Step::Render).into_iter();
+        let motion = [Step::SetMotion(speed, force)].into_iter();
+        motion.chain(lengths).chain([Step::RenderI16(40, 0.5)])
+    });
+    let steps: Vec<Step> = steps.collect();
+    let blocks = baked().iter();
+    let case = |(_, block): &(_, Vec<u8>)| Case {
+        block: block.clone(),
+        seed: script::SEED,
+        steps: steps.clone(),
+    };
+    blocks.map(case).collect()
 }
 
 #[test]
-fn a_c_program_plays_on_a_cortex_m4f() {
+fn all_models_play_in_c_on_a_cortex_m4f() {
     let needs = [
-        (&BARE_TARGET, has_target()),
         (&QEMU_ARM, has("qemu-system-arm")),
         (&ARM_GCC, has("arm-none-eabi-gcc")),
     ];
     if !all_met(&needs) {
         return;
     }
-    let library = cargo(&player().join("c"), Some(TARGET)).join("libhtex_player.a");
-    let program = built().join("play-on-board");
-    let mut gcc = Command::new("arm-none-eabi-gcc");
-    gcc.args([
-        "-std=c11",
-        "-O2",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        "-ffreestanding",
-        "-DBOARD",
-    ]);
-    gcc.args([
-        "-mcpu=cortex-m4",
-        "-mthumb",
-        "-mfloat-abi=hard",
-        "-mfpu=fpv4-sp-d16",
-    ]);
-    gcc.args(["-nostartfiles", "-Wl,--gc-sections", STACK, "-o"])
-        .arg(&program);
-    gcc.arg("-I").arg(player().join("include"));
-    gcc.arg("-T")
-        .arg(player().join("examples/cortex-m4/board.ld"));
-    gcc.args(["board.c", "play.c"].map(|file| player().join("c").join(file)))
-        .arg(library);
-    run(&mut gcc);
-    for (model, block, hash) in blocks("c-on-board") {
-        let output = on_board(&program, &block);
-        assert_eq!(output, format!("hash {hash:08x}\n"), "{model}");
+    // A block at a time fits into the memory of the program.
+    for (i, case) in cases().into_iter().enumerate() {
+        CORTEX_M4F.compare(&format!("models-{i}"), "", &[case]);
     }
-    let size = run(Command::new("arm-none-eabi-size").arg(&program));
-    let flash: u64 = size
-        .lines()
-        .nth(1)
-        .unwrap()
-        .split_whitespace()
-        .next()
-        .unwrap()
-        .parse()
-        .unwrap();
-    assert!(flash <= MOST_FLASH, "{size}");
-    // No panic is reachable: the linker found none to keep.
-    let symbols = run(Command::new("arm-none-eabi-nm").arg(&program));
-    let panics: Vec<&str> = symbols
-        .lines()
-        .filter(|line| line.contains("panic"))
-        .collect();
-    assert!(panics.is_empty(), "{panics:?}");
-    println!("{size}");
+}
+
+#[test]
+fn all_models_play_in_c_on_this_machine() {
+    if CC.met(has("gcc")) {
+        compare_on_host(&host_program("gcc -O2", "models-gcc"), &cases());
+    }
+}
+
+#[test]
+fn the_c_program_fits_into_small_memory() {
+    if !ARM_GCC.met(has("arm-none-eabi-gcc")) {
+        return;
+    }
+    for board in [&CORTEX_M4F, &CORTEX_M0] {
+        let sources = ["cases.c", "cases_on_board.c", "board.c"];
+        let program = board.program(&sources, "", "size");
+        let size = run(Command::new("arm-none-eabi-size").arg(&program));
+        let flash = size
+            .lines()
+            .nth(1)
+            .and_then(|row| row.split_whitespace().next());
+        let flash: u64 = flash.unwrap().parse().unwrap();
+        println!("{}: {size}", board.options);
+        assert!(flash <= MOST_FLASH, "{size}");
+    }
 }

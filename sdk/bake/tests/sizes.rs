@@ -4,7 +4,7 @@
 mod common;
 
 use common::asset;
-use htex_bake::{Baked, Grid, bake};
+use htex_bake::{BakeLimits, Baked, Grid, bake};
 use htex_play::{Motion, Registry};
 use htex_player::{Block, Player};
 
@@ -48,6 +48,22 @@ fn a_grid_takes_what_is_documented() {
         assert!(bytes <= most_bytes, "{model}: {bytes} bytes");
         assert!(at_conditions_db <= limits_db[0], "{model}");
         assert!(between_db <= limits_db[1], "{model}");
+    }
+}
+
+#[test]
+fn a_limit_of_the_filter_is_kept_and_its_error_told() {
+    let grid = Grid::new(vec![40.0, 160.0], vec![0.4]).unwrap();
+    let with = |limits: BakeLimits| bake(&asset(), Some("sbeta"), &grid, 8_000.0, limits).unwrap();
+    let free = with(BakeLimits::within_db(WITHIN_DB));
+    assert!(free.taps > 257, "{}", free.taps);
+    for (longest, most) in [(300, 257), (65, 65), (3, 65)] {
+        let limited = with(BakeLimits::within_db(WITHIN_DB).with_longest(longest));
+        assert!(limited.taps <= most, "{longest}: {}", limited.taps);
+        assert!(
+            limited.at_conditions_db > free.at_conditions_db,
+            "{longest}"
+        );
     }
 }
 

@@ -334,6 +334,16 @@ impl<'a> Block<'a> {
         self.full_scale
     }
 
+    /// Returns the numbers of 32 bits that the player in C (`c/htex_player.h`) keeps for the block: `htex_player_size` is these and
+    /// the members of a `htex_player`.
+    pub fn numbers(&self) -> usize {
+        let interpolator = (self.up + 2) * self.row;
+        match self.kind {
+            BlockKind::Noise { half, .. } => interpolator + 2 * half + 2 * (2 * half + 1),
+            BlockKind::Tones { count, .. } => interpolator + 5 * count,
+        }
+    }
+
     /// Returns the speeds of the grid of conditions, mm/s, ascending.
     pub fn speeds_mm_s(&self) -> impl ExactSizeIterator<Item = f32> + 'a {
         self.speeds.iter()

@@ -49,8 +49,8 @@ impl Noise {
         2 * self.half + 1
     }
 
-    /// Starts a glide of `samples` to the filter of a motion; 0 sets it at once.
-    pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) {
+    /// Starts a glide of `samples` to the filter of a motion; 0 sets it at once. Returns the level that is reached.
+    pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) -> f32 {
         if samples == 0 {
             self.silence();
         }
@@ -86,9 +86,9 @@ impl Noise {
         }
         let side = (sums[0] + sums[1]) + (sums[2] + sums[3]);
         let energy = centre * centre + 2.0 * side;
-        let gain = match energy > LEAST_ENERGY {
-            true => target.level / libm::sqrtf(energy),
-            false => 0.0,
+        let (level, gain) = match energy > LEAST_ENERGY {
+            true => (target.level, target.level / libm::sqrtf(energy)),
+            false => (0.0, 0.0),
         };
         let part = 1.0 / samples.max(1) as f32;
         self.centre_step = (centre * gain - self.centre) * part;
@@ -98,6 +98,7 @@ impl Noise {
         if samples == 0 {
             self.glide();
         }
+        level
     }
 
     /// Starts a glide of `samples` to silence; 0 sets it at once.
@@ -160,15 +161,17 @@ impl Noise {
         else {
             return 0.0;
         };
-        // The side's length is a multiple of four, and so are those beside it.
-        let before = before.as_rchunks::<4>().1.iter().rev();
-        let after = after.as_chunks::<4>().0;
-        let side = self.side.as_chunks::<4>().0;
+        // The side's length is a multiple of four, and so are those beside it. Slices that get shorter compile to fewer
+        // instructions than iterators, of which one is reversed.
+        let mut before = before.as_rchunks::<4>().1;
+        let mut after = after.as_chunks::<4>().0;
+        let mut side = self.side.as_chunks::<4>().0;
         let mut sums = [0.0f32; 4];
-        for ((c, a), b) in side.iter().zip(after).zip(before) {
+        while let ([earlier @ .., b], [a, later @ ..], [c, outer @ ..]) = (before, after, side) {
             for i in 0..4 {
                 sums[i] += c[i] * (a[i] + b[3 - i]);
             }
+            (before, after, side) = (earlier, later, outer);
         }
         self.centre * middle + ((sums[0] + sums[1]) + (sums[2] + sums[3]))
     }

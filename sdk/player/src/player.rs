@@ -6,9 +6,9 @@ use crate::noise::Noise;
 use crate::tones::Tones;
 use crate::upsampler::Upsampler;
 
-/// Numbers that change while a block is played. It is valid with all bytes zero.
+/// Numbers that change while a block is played.
 #[derive(Debug, Clone)]
-pub(crate) struct Memory {
+struct Memory {
     noise: Noise,
     tones: Tones,
     upsampler: Upsampler,
@@ -18,6 +18,8 @@ pub(crate) struct Memory {
     gliding: u32,
     /// Speed and force of the last motion that sounded.
     last: (f32, f32),
+    /// RMS at the motion that was set, in the asset's unit.
+    level: f32,
     /// Samples until a held motion ends.
     held: u32,
     /// Whether the last reading was none of a finger.
@@ -34,6 +36,7 @@ impl Memory {
         phase: 0,
         gliding: 0,
         last: (0.0, 0.0),
+        level: 0.0,
         held: 0,
         is_held: false,
         is_silent: false,
@@ -55,8 +58,8 @@ impl Memory {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Player<'a> {
-    pub(crate) block: Block<'a>,
-    pub(crate) memory: Memory,
+    block: Block<'a>,
+    memory: Memory,
 }
 
 impl<'a> Player<'a> {
@@ -71,7 +74,7 @@ impl<'a> Player<'a> {
     }
 
     /// Starts to play; all numbers of the memory are zero before.
-    pub(crate) fn start(&mut self, seed: u32) {
+    fn start(&mut self, seed: u32) {
         match self.block.kind() {
             BlockKind::Noise { half, .. } => self.memory.noise.start(half, seed),
             BlockKind::Tones {
@@ -84,6 +87,12 @@ impl<'a> Player<'a> {
 
     pub fn block(&self) -> &Block<'a> {
         &self.block
+    }
+
+    /// Returns the RMS of the samples at the motion that was set, once they have glided to it, in the asset's unit; 0 if the
+    /// player is silent or becomes so.
+    pub fn level(&self) -> f32 {
+        self.memory.level
     }
 
     /// Sets the motion: speed in mm/s, of either sign, and normal force in newtons. Spectrum and level glide to it; before
@@ -127,10 +136,10 @@ impl<'a> Player<'a> {
         let samples = self.start_glide(false);
         self.memory.last = motion;
         let Memory { noise, tones, .. } = &mut self.memory;
-        match self.block.kind() {
+        self.memory.level = match self.block.kind() {
             BlockKind::Noise { .. } => noise.retune(&self.block, target, samples),
             BlockKind::Tones { .. } => tones.retune(&self.block, target, samples),
-        }
+        };
     }
 
     /// Glides to silence, unless the player is silent.
@@ -139,6 +148,7 @@ impl<'a> Player<'a> {
             return;
         }
         let samples = self.start_glide(true);
+        self.memory.level = 0.0;
         let Memory { noise, tones, .. } = &mut self.memory;
         match self.block.kind() {
             BlockKind::Noise { .. } => noise.fade(samples),

@@ -1,7 +1,5 @@
 //! Physical quantities of samples.
 
-use core::ffi::CStr;
-
 /// A physical quantity of samples, with the unit in which they are rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -46,17 +44,12 @@ impl Quantity {
     }
 
     /// Returns the symbol of the unit, as in a manifest: `N`, `m/s2`, `m/s` or `m`.
-    pub fn unit(self) -> &'static str {
-        self.unit_for_c().to_str().unwrap_or("")
-    }
-
-    /// Returns the symbol of the unit, ended by a zero.
-    pub(crate) const fn unit_for_c(self) -> &'static CStr {
+    pub const fn unit(self) -> &'static str {
         match self {
-            Self::LateralForce | Self::NormalForce => c"N",
-            Self::Acceleration => c"m/s2",
-            Self::Velocity => c"m/s",
-            Self::Displacement => c"m",
+            Self::LateralForce | Self::NormalForce => "N",
+            Self::Acceleration => "m/s2",
+            Self::Velocity => "m/s",
+            Self::Displacement => "m",
         }
     }
 }

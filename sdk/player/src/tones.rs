@@ -56,8 +56,8 @@ impl Tones {
         self.tones.get_mut(..self.count).unwrap_or(&mut [])
     }
 
-    /// Starts a glide of `samples` to the sinusoids of a motion; 0 sets them at once.
-    pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) {
+    /// Starts a glide of `samples` to the sinusoids of a motion; 0 sets them at once. Returns the level that is reached.
+    pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) -> f32 {
         let part = 1.0 / samples.max(1) as f32;
         let (mut power, mut highest) = (0.0, 0.0f32);
         for (i, tone) in self.sounding().iter_mut().enumerate() {
@@ -77,9 +77,9 @@ impl Tones {
                 (tone.frequency, tone.amplitude) = (0.0, 0.0);
             }
         }
-        let gain = match power > LEAST_POWER {
-            true => target.level / libm::sqrtf(power),
-            false => 0.0,
+        let (level, gain) = match power > LEAST_POWER {
+            true => (target.level, target.level / libm::sqrtf(power)),
+            false => (0.0, 0.0),
         };
         let factor = block.limited(target.frequency, highest);
         for tone in self.sounding() {
@@ -89,6 +89,7 @@ impl Tones {
         if samples == 0 {
             self.glide();
         }
+        level
     }
 
     /// Starts a glide of `samples` to silence at the present frequencies; 0 sets it at once.

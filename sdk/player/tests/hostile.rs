@@ -3,24 +3,15 @@
 
 #[path = "common/blocks.rs"]
 mod blocks;
+#[path = "common/mutated.rs"]
+mod mutated;
+#[path = "common/stream.rs"]
+mod stream;
 
 use blocks::{Plan, noise, tones, with_checksum};
 use htex_player::{Block, OpenError, Player};
+use mutated::MOTIONS;
 use proptest::prelude::*;
-
-const MOTIONS: [(f32, f32); 11] = [
-    (60.0, 0.4),
-    (f32::MAX, f32::MAX),
-    (0.0, -1.0),
-    (-f32::MAX, f32::MIN_POSITIVE),
-    (40.0, 1e-30),
-    (f32::NAN, 0.4),
-    (f32::INFINITY, f32::NEG_INFINITY),
-    (79.999, 0.4),
-    (1000.0, 20.0),
-    (0.5, 1e-45),
-    (999.0, 1e-6),
-];
 
 /// Opens bytes, and plays them if they are a block.
 fn play(bytes: &[u8]) -> Result<(), OpenError> {
@@ -47,19 +38,9 @@ fn sound_blocks_play() {
 }
 
 #[test]
-fn every_truncation_and_every_changed_byte_is_found() {
-    for plan in [noise(), tones()] {
-        let bytes = plan.bytes();
-        for length in 0..bytes.len() {
-            assert!(play(&bytes[..length]).is_err(), "{length} bytes");
-        }
-        for at in 0..bytes.len() {
-            for bit in 0..8 {
-                let mut changed = bytes.clone();
-                changed[at] ^= 1 << bit;
-                assert!(play(&changed).is_err(), "bit {bit} of byte {at}");
-            }
-        }
+fn every_truncation_and_every_changed_bit_is_found() {
+    for bytes in mutated::damaged() {
+        assert!(play(&bytes).is_err(), "{bytes:?}");
     }
 }
 
@@ -129,59 +110,22 @@ fn each_error_has_its_reason() {
 
 #[test]
 fn extreme_numbers_stay_finite() {
-    let mut loud = noise();
-    loud.levels = vec![1e9; 2];
-    loud.ceiling = 1e10;
-    loud.law = [4.0, 4.0, 4.0];
-    loud.forces = vec![1e-6];
-    loud.rows = vec![64.0; 8];
-    loud.numbers = vec![1.0 / 16_777_216.0; 2];
-    loud.integers = vec![i16::MIN; 22];
-    assert_eq!(play(&loud.bytes()), Ok(()));
-    loud.law = [-4.0; 3];
-    loud.numbers = vec![1e-45, 1e-38];
-    assert_eq!(play(&loud.bytes()), Ok(()));
-    let mut tones = tones();
-    (tones.law, tones.forces) = ([4.0; 3], vec![1e-6]);
-    tones.numbers = vec![0.5, 64.0, 0.5, 64.0, 1e-45, -64.0, 0.0, 1e-4];
-    assert_eq!(play(&tones.bytes()), Ok(()));
+    for bytes in mutated::extreme() {
+        assert_eq!(play(&bytes), Ok(()));
+    }
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// Changed bytes with a matching checksum reach the checks behind it, and the player.
     #[test]
-    fn mutated_blocks_play_or_are_refused(
-        is_tones in any::<bool>(),
-        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
-        cut in 0usize..4,
-    ) {
-        let mut bytes = if is_tones { tones().bytes() } else { noise().bytes() };
-        bytes.truncate(bytes.len() - 4 - 4 * (cut / 3));
-        for (index, byte) in changes {
-            let at = index.index(bytes.len());
-            bytes[at] = byte;
-        }
-        let _ = play(&with_checksum(bytes));
+    fn mutated_blocks_play_or_are_refused(bytes in mutated::changed()) {
+        let _ = play(&bytes);
     }
 
     #[test]
-    fn random_numbers_play_or_are_refused(
-        is_tones in any::<bool>(),
-        words in prop::collection::vec(any::<u32>(), 20),
-        mild in any::<bool>(),
-    ) {
-        let mut plan = if is_tones { tones() } else { noise() };
-        let all = plan.levels.iter_mut().chain(&mut plan.numbers);
-        for (x, word) in all.zip(&words) {
-            let random = f32::from_bits(*word);
-            *x = if mild { (*word as f32 / u32::MAX as f32) * 5e-8 } else { random };
-        }
-        for (x, word) in plan.integers.iter_mut().zip(words) {
-            *x = word as i16;
-        }
-        let result = play(&plan.bytes());
+    fn random_numbers_play_or_are_refused((bytes, mild) in mutated::random()) {
+        let result = play(&bytes);
         prop_assert!(!mild || result.is_ok());
     }
 

@@ -16,18 +16,25 @@ pub fn asset() -> Asset {
 
 pub fn data() -> AssetData {
     static DATA: OnceLock<AssetData> = OnceLock::new();
-    let data = DATA.get_or_init(|| {
-        let takes = [(60.0, 0.3), (120.0, 0.3), (60.0, 0.6), (120.0, 0.6)].map(take);
-        let models = Registry::builtin();
-        let models = models.models().iter().map(ModelRequest::new);
-        let request = AssetRequest::new("simulated").with_models(models);
-        fit_asset(&takes, &request).unwrap().asset
-    });
-    data.clone()
+    DATA.get_or_init(|| data_of(Surface::CoarseFabric)).clone()
 }
 
-fn take((speed_mm_s, force_n): (f64, f64)) -> Take {
-    let options = SimulationOptions::new(Surface::CoarseFabric)
+/// An asset of every built-in model of a surface, recorded at two speeds and two forces.
+pub fn asset_of(surface: Surface) -> Asset {
+    Asset::new(data_of(surface))
+}
+
+fn data_of(surface: Surface) -> AssetData {
+    let motions = [(60.0, 0.3), (120.0, 0.3), (60.0, 0.6), (120.0, 0.6)];
+    let takes = motions.map(|motion| take(surface, motion));
+    let models = Registry::builtin();
+    let models = models.models().iter().map(ModelRequest::new);
+    let request = AssetRequest::new("simulated").with_models(models);
+    fit_asset(&takes, &request).unwrap().asset
+}
+
+fn take(surface: Surface, (speed_mm_s, force_n): (f64, f64)) -> Take {
+    let options = SimulationOptions::new(surface)
         .with_speed_mm_s(speed_mm_s)
         .with_force_n(force_n)
         .with_duration_s(4.0);

@@ -1,4 +1,5 @@
 //! Blocks of `spec/baked-conformance`, what is done with them, and what a player renders or refuses.
+#![allow(dead_code)] // Each suite uses a part of it.
 
 use htex_player::{Block, OpenError, Player};
 use serde_json::{Value, json};
@@ -8,13 +9,13 @@ use crate::blocks::{Plan, noise, tones, with_checksum};
 
 /// The folder of the files.
 pub const FOLDER: &str = "spec/baked-conformance";
-const SEED: u32 = 7;
+pub const SEED: u32 = 7;
 /// Samples that the files list.
 const LISTED: usize = 16;
 
 /// What is done with a player.
 #[derive(Clone, Copy)]
-enum Step {
+pub enum Step {
     SetMotion(f32, f32),
     Render(usize),
 }
@@ -37,6 +38,14 @@ pub fn files() -> Vec<(String, Vec<u8>)> {
         [("bin", bytes), ("json", text)].map(|(end, of)| (format!("{FOLDER}/{name}.{end}"), of))
     };
     valid.chain(refused).flat_map(both).collect()
+}
+
+/// The blocks, those that are refused too, and what is done with each.
+pub fn blocks_and_steps() -> Vec<(Vec<u8>, Vec<Step>)> {
+    let played = sound().into_iter();
+    let played = played.map(|(_, plan)| (plan.bytes(), steps(plan.rate_hz)));
+    let refused = hostile().into_iter().map(|(_, bytes)| (bytes, Vec::new()));
+    played.chain(refused).collect()
 }
 
 /// The rule by which bytes are refused, as the specification names it.

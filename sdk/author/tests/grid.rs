@@ -301,7 +301,7 @@ fn recordings_without_a_free_motion_are_refused_with_what_to_do() {
     assert!(Grid::parse(["speed=1", "speed=2"]).is_err());
 }
 
-/// The numbers of the manual: `cargo xtask prove grids` takes all models and surfaces, a test Bands on vinyl.
+/// The numbers of `docs/free-motion.md`: `cargo xtask prove grids` takes all models and surfaces, a test Bands on vinyl.
 #[test]
 fn errors_inside_the_mesh_stay_small() {
     let (models, surfaces) = if xtask::prove::whole() {

@@ -60,13 +60,13 @@ pub enum ExchangeError {
     #[error("{file}: {fault}")]
     File { file: String, fault: Fault },
     /// The format does not say what an asset needs, and nobody else did.
-    #[error("{format} does not say {}; give {}", words(.missing), settings(.missing))]
+    #[error("{}", not_said(.format, .missing, &keyword))]
     Missing {
         format: &'static str,
         missing: Vec<Missing>,
     },
     /// A setting that was given means nothing for this format.
-    #[error("{format}: its {way} takes no `{setting}`; leave it out{}", taken(.takes))]
+    #[error("{}", unused(.format, .way, .setting, .takes, &keyword))]
     Unused {
         format: &'static str,
         /// `import`, `export` or `export of a scene`.
@@ -127,22 +127,58 @@ pub struct Missing {
     pub words: &'static str,
 }
 
-fn words(missing: &[Missing]) -> String {
-    list(missing.iter().map(|m| m.words.to_owned()))
+impl ExchangeError {
+    /// Returns the message with its settings as a program names them; it is given a keyword, `full_scale`.
+    ///
+    /// ```
+    /// use htex_exchange::{Format, Physical};
+    /// let error = Physical::default().check(Format::of_file("tap.ahap")?).unwrap_err();
+    /// let told = error.told(&|setting| format!("--{}", setting.replace('_', "-")));
+    /// assert!(told.ends_with("give --full-scale, --speed and --force"));
+    /// # Ok::<(), htex_exchange::ExchangeError>(())
+    /// ```
+    #[must_use]
+    pub fn told(&self, named: &dyn Fn(&str) -> String) -> String {
+        match self {
+            Self::Missing { format, missing } => not_said(format, missing, named),
+            Self::Unused {
+                format,
+                way,
+                setting,
+                takes,
+            } => unused(format, way, setting, takes, named),
+            Self::OutOfRange { name, value, range } => format!("{} {value}: {range}", named(name)),
+            other => other.to_string(),
+        }
+    }
 }
 
-fn settings(missing: &[Missing]) -> String {
-    list(missing.iter().map(|m| format!("`{}`", m.setting)))
+fn keyword(setting: &str) -> String {
+    format!("`{setting}`")
 }
 
-fn taken(settings: &[&'static str]) -> String {
-    match settings.is_empty() {
+fn not_said(format: &str, missing: &[Missing], named: &dyn Fn(&str) -> String) -> String {
+    let words = list(missing.iter().map(|m| m.words.to_owned()));
+    let settings = list(missing.iter().map(|m| named(m.setting)));
+    format!("{format} does not say {words}; give {settings}")
+}
+
+fn unused(
+    format: &str,
+    way: &str,
+    setting: &str,
+    takes: &[&'static str],
+    named: &dyn Fn(&str) -> String,
+) -> String {
+    let taken = match takes.is_empty() {
         true => String::new(),
         false => format!(
             " (it takes {})",
-            list(settings.iter().map(|s| format!("`{s}`")))
+            list(takes.iter().map(|setting| named(setting)))
         ),
-    }
+    };
+    let setting = named(setting);
+    format!("{format}: its {way} takes no {setting}; leave it out{taken}")
 }
 
 /// `a, b and c`.
@@ -151,5 +187,13 @@ pub(crate) fn list(parts: impl Iterator<Item = String>) -> String {
     match &parts[..] {
         [before @ .., last] if !before.is_empty() => format!("{} and {last}", before.join(", ")),
         parts => parts.concat(),
+    }
+}
+
+/// The error of a file with a fault.
+pub(crate) fn in_file(file: &str) -> impl Fn(Fault) -> ExchangeError + '_ {
+    move |fault| ExchangeError::File {
+        file: file.to_owned(),
+        fault,
     }
 }

@@ -9,7 +9,7 @@ use crate::heard::{Path, Playing, SceneSound, Source};
 use crate::job::{AssetJob, Coding, Job, RATE_HZ};
 use crate::loss::{Loss, loss};
 use crate::map;
-use crate::profile::{PROFILES, Profile};
+use crate::profile::Profile;
 
 /// Shortest and longest export, seconds: a texture's spectrum takes 0.2 s.
 const SECONDS: std::ops::RangeInclusive<f64> = 0.5..=crate::pattern::MOST_S;
@@ -283,10 +283,4 @@ fn check(
         true => Ok(()),
         false => Err(ExchangeError::OutOfRange { name, value, range }),
     }
-}
-
-/// Returns the names of the profiles.
-#[must_use]
-pub fn profile_names() -> Vec<&'static str> {
-    PROFILES.iter().map(|profile| &profile.name[..]).collect()
 }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::error::{ExchangeError, Fault};
+#[cfg(feature = "export")]
 use crate::job::{AssetJob, Job, Written};
 use crate::profile::Profile;
 
@@ -19,6 +20,7 @@ pub struct Format {
     /// How a file comes in, if it is imported.
     pub reads: Option<Reads>,
     /// How an asset goes out, if it is exported.
+    #[cfg(feature = "export")]
     pub writes: Option<Writes>,
     /// What of a texture it keeps.
     pub keeps: &'static str,
@@ -47,6 +49,7 @@ pub type ReadSignal = fn(&[u8], Sampling) -> Result<Signal, Fault>;
 pub type ReadAsset = fn(&[u8], &Naming<'_>) -> Result<Held, Fault>;
 
 /// How an asset goes out.
+#[cfg(feature = "export")]
 #[derive(Debug, Clone, Copy)]
 pub enum Writes {
     /// What it plays at a motion, as far as an actuator can.
@@ -63,7 +66,9 @@ pub enum Writes {
     Map,
 }
 
+#[cfg(feature = "export")]
 pub type WriteSignal = fn(&Job<'_>) -> Result<Written, ExchangeError>;
+#[cfg(feature = "export")]
 pub type WriteAsset = fn(&AssetJob<'_>) -> Result<Vec<u8>, ExchangeError>;
 
 /// How a signal is sampled.
@@ -116,13 +121,16 @@ const FITTED: &[&str] = &[
 /// Settings of imports of an image.
 const IMAGED: &[&str] = &["full_scale", "quantity", "speed", "force", "pitch"];
 /// Settings of exports as an image.
+#[cfg(feature = "export")]
 const PRINTED: &[&str] = &["model", "speed", "force"];
 /// Settings of exports of what an asset plays.
+#[cfg(feature = "export")]
 const PLAYED: &[&str] = &[
     "model", "speed", "force", "seconds", "stroke", "profile", "seed",
 ];
 
 /// Those of them that a scene has itself.
+#[cfg(feature = "export")]
 const OF_SCENES: &[&str] = &["model", "speed", "force", "stroke", "seed"];
 
 impl Reads {
@@ -145,6 +153,7 @@ impl Reads {
     }
 }
 
+#[cfg(feature = "export")]
 impl Writes {
     /// Returns the settings that it takes, as keywords.
     #[must_use]
@@ -189,6 +198,7 @@ impl Format {
     ///
     /// # Errors
     /// With the first that it does not take.
+    #[cfg(feature = "export")]
     pub fn check_export<'a>(
         &self,
         given: impl IntoIterator<Item = &'a str>,
@@ -201,6 +211,7 @@ impl Format {
     ///
     /// # Errors
     /// With the first that it does not take.
+    #[cfg(feature = "export")]
     pub fn check_export_of_scene<'a>(
         &self,
         given: impl IntoIterator<Item = &'a str>,
@@ -256,18 +267,24 @@ struct Described<'a> {
 
 impl Serialize for Format {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[cfg(feature = "export")]
+        let (export, export_settings) = (
+            self.writes.as_ref().map(Writes::kind),
+            self.writes
+                .as_ref()
+                .map(Writes::settings)
+                .unwrap_or_default(),
+        );
+        #[cfg(not(feature = "export"))]
+        let (export, export_settings) = (None, Vec::new());
         let described = Described {
             name: self.name,
             title: self.title,
             extensions: self.extensions,
             import: self.reads.as_ref().map(Reads::kind),
             import_settings: self.reads.as_ref().map(Reads::settings).unwrap_or_default(),
-            export: self.writes.as_ref().map(Writes::kind),
-            export_settings: self
-                .writes
-                .as_ref()
-                .map(Writes::settings)
-                .unwrap_or_default(),
+            export,
+            export_settings,
             keeps: self.keeps,
             loses: self.loses,
         };

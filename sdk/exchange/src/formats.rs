@@ -1,8 +1,10 @@
 //! The formats, in one table: commands, help, messages and documents are made of it.
 
 use crate::error::{ExchangeError, list};
-use crate::format::{Format, Reads, Writes};
-use crate::{ahap, gltf, haptic, hjif, import, writers};
+use crate::format::{Format, Reads};
+use crate::{ahap, gltf, haptic, hjif, import};
+#[cfg(feature = "export")]
+use crate::{format::Writes, writers};
 
 /// Every format.
 pub const FORMATS: &[Format] = &[
@@ -11,6 +13,7 @@ pub const FORMATS: &[Format] = &[
         title: "Penn Haptic Texture Toolkit, XML",
         extensions: &["xml"],
         reads: Some(Reads::Asset(import::hatt)),
+        #[cfg(feature = "export")]
         writes: None,
         keeps: "the filter of each node, speed and force, the unit, triangles, friction",
         loses: "nothing that is played; between nodes levels are mixed, not variances",
@@ -23,6 +26,7 @@ pub const FORMATS: &[Format] = &[
             read: haptic::signal,
             profile: "quest",
         }),
+        #[cfg(feature = "export")]
         writes: Some(Writes::Signal {
             write: writers::haptic,
             profile: "quest",
@@ -39,6 +43,7 @@ pub const FORMATS: &[Format] = &[
             read: ahap::signal,
             profile: "iphone",
         }),
+        #[cfg(feature = "export")]
         writes: Some(Writes::Signal {
             write: writers::ahap,
             profile: "iphone",
@@ -52,6 +57,7 @@ pub const FORMATS: &[Format] = &[
         title: "Android VibrationEffect, as JSON or Kotlin",
         extensions: &["json", "kt"],
         reads: None,
+        #[cfg(feature = "export")]
         writes: Some(Writes::Signal {
             write: writers::android,
             profile: "android",
@@ -65,6 +71,7 @@ pub const FORMATS: &[Format] = &[
         title: "MPEG .hjif, ISO/IEC 23090-31",
         extensions: &["hjif"],
         reads: Some(Reads::Signal(hjif::signal)),
+        #[cfg(feature = "export")]
         writes: Some(Writes::Signal {
             write: writers::hjif,
             profile: "quest",
@@ -78,6 +85,7 @@ pub const FORMATS: &[Format] = &[
         title: "WAV that drives an actuator",
         extensions: &["wav"],
         reads: None,
+        #[cfg(feature = "export")]
         writes: Some(Writes::Signal {
             write: writers::wav,
             profile: "console",
@@ -91,6 +99,7 @@ pub const FORMATS: &[Format] = &[
         title: "friction map, 8-bit PNG",
         extensions: &["png"],
         reads: Some(Reads::Map),
+        #[cfg(feature = "export")]
         writes: Some(Writes::Map),
         keeps: "the friction at each place, 255 x 255 pixels at most, and their distance",
         loses: "speed and force, the unit; of a texture that is no map all but its spectrum at one speed",
@@ -100,6 +109,7 @@ pub const FORMATS: &[Format] = &[
         title: "glTF 2.0 with the extension HTEX_texture",
         extensions: &["glb", "gltf"],
         reads: Some(Reads::Asset(gltf::held)),
+        #[cfg(feature = "export")]
         writes: Some(Writes::Asset(gltf::written)),
         keeps: "the asset's file, bit for bit, on the material of a mesh",
         loses: "nothing of a texture; of a file that comes in, the meshes",
@@ -153,6 +163,7 @@ fn extensions_of(is_it: fn(Option<&Reads>) -> bool) -> String {
 
 /// Returns the names of what is exported.
 #[must_use]
+#[cfg(feature = "export")]
 pub fn exported() -> Vec<&'static str> {
     let written = FORMATS.iter().filter(|format| format.writes.is_some());
     written.map(|format| format.name).collect()
@@ -160,6 +171,7 @@ pub fn exported() -> Vec<&'static str> {
 
 /// Returns the table of the formats in Markdown, for documents.
 #[must_use]
+#[cfg(feature = "export")]
 pub fn formats_table() -> String {
     let mut text = String::from(
         "| name | format | files | in | out | keeps | loses |\n|---|---|---|---|---|---|---|\n",

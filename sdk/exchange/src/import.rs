@@ -11,54 +11,21 @@ use htex_author::{
     SegmentChoice, Take, fit_asset,
 };
 use htex_finding::{Hint, Notice};
-use htex_format::Quantity;
 use htex_host::Registry;
 
-use crate::error::{ExchangeError, Fault, Missing};
-use crate::format::{Format, Held, Naming, Reads, Sampling, Signal};
+use crate::error::{ExchangeError, Fault, in_file};
+use crate::format::{Format, Held, Naming, Reads, Sampling};
 use crate::map;
+use crate::physical::{Checked, PITCH, Physical};
 use crate::profile::Profile;
+use crate::signal::{RATE_HZ, signal};
 
-/// Rate of signals, hertz.
-pub const RATE_HZ: f64 = 8_000.0;
 /// A signal is repeated until it is this long, seconds.
 const LEAST_S: f64 = 4.0;
 
-/// What a signal does not say.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Physical {
-    /// The quantity's unit at ±1: newtons of a lateral force.
-    pub full_scale: Option<f64>,
-    pub quantity: Quantity,
-    /// Speed of the finger, mm/s.
-    pub speed_mm_s: Option<f64>,
-    /// Its normal force, newtons.
-    pub force_n: Option<f64>,
-    /// Distance of an image's pixels, mm, where it is not the one that the file states.
-    pub pitch_mm: Option<f64>,
-}
-
-const FULL_SCALE: Missing = Missing {
-    setting: "full_scale",
-    words: "how strong 1 is",
-};
-const SPEED: Missing = Missing {
-    setting: "speed",
-    words: "at which speed it is felt",
-};
-const FORCE: Missing = Missing {
-    setting: "force",
-    words: "at which force",
-};
-const PITCH: Missing = Missing {
-    setting: "pitch",
-    words: "how far apart its pixels are",
-};
 /// What is said of an asset without a licence.
 const UNLICENSED: &str =
     "It states no licence, without which nobody may pass it on; state that of the file.";
-/// Largest normal force, newtons.
-const MOST_FORCE_N: f64 = 1e3;
 
 /// How a file is imported.
 #[derive(Debug, Clone, Default)]
@@ -147,7 +114,10 @@ impl Import<'_> {
         let is_all = |models: &Vec<String>| models[..] == ["all"];
         let all = [
             ("full_scale", physical.full_scale.is_some()),
-            ("quantity", physical.quantity != Quantity::default()),
+            (
+                "quantity",
+                physical.quantity != htex_format::Quantity::default(),
+            ),
             ("speed", physical.speed_mm_s.is_some()),
             ("force", physical.force_n.is_some()),
             ("pitch", physical.pitch_mm.is_some()),
@@ -181,13 +151,6 @@ impl Imported {
             Some(bytes) => Ok(bytes.clone()),
             None => self.asset.to_bytes(),
         }
-    }
-}
-
-fn in_file(file: &str) -> impl Fn(Fault) -> ExchangeError + '_ {
-    move |fault| ExchangeError::File {
-        file: file.to_owned(),
-        fault,
     }
 }
 
@@ -287,89 +250,6 @@ pub fn recording_of(
     recording.file = RecordedFile::of_bytes(bytes);
     recording.warnings = warnings.into_iter().map(Into::into).collect();
     Ok(recording)
-}
-
-/// The signal of a file, or what is wrong with the file.
-fn signal(
-    format: &'static Format,
-    bytes: &[u8],
-    sampling: Sampling,
-    given: Option<&Profile>,
-) -> Result<Result<Signal, Fault>, ExchangeError> {
-    Ok(match format.reads {
-        Some(Reads::Positions { read, profile }) => {
-            let profile = given.map_or_else(|| Profile::find(profile), Ok)?;
-            read(bytes, sampling, profile)
-        }
-        Some(Reads::Signal(read)) => read(bytes, sampling),
-        Some(Reads::Asset(_) | Reads::Map) | None => {
-            return Err(ExchangeError::Cannot {
-                format: format.name,
-                problem: "its files are no signals".to_owned(),
-            });
-        }
-    })
-}
-
-impl Physical {
-    /// Checks that all of it is given, and in its range.
-    ///
-    /// # Errors
-    /// With what is missing, or the first number that is out of its range.
-    pub fn check(&self, format: &Format) -> Result<(), ExchangeError> {
-        self.checked(format).map(drop)
-    }
-
-    fn checked(&self, format: &Format) -> Result<Checked, ExchangeError> {
-        let all = [
-            (FULL_SCALE, self.full_scale),
-            (SPEED, self.speed_mm_s),
-            (FORCE, self.force_n),
-        ];
-        let (Some(full_scale), Some(speed), Some(force)) =
-            (self.full_scale, self.speed_mm_s, self.force_n)
-        else {
-            let missing = all.iter().filter(|(_, given)| given.is_none());
-            return Err(ExchangeError::Missing {
-                format: format.title,
-                missing: missing.map(|(missing, _)| *missing).collect(),
-            });
-        };
-        let above = |name, value: f64, most: f64, range| match value > 0.0 && value <= most {
-            true => Ok(()),
-            false => Err(ExchangeError::OutOfRange { name, value, range }),
-        };
-        let most_mm_s = Exploration::MOST_SPEED_MM_S;
-        above("full_scale", full_scale, 1e6, "more than 0, at most 1e6")?;
-        above(
-            "speed",
-            speed,
-            most_mm_s,
-            "more than 0 mm/s, at most 10,000 mm/s",
-        )?;
-        above(
-            "force",
-            force,
-            MOST_FORCE_N,
-            "more than 0 N, at most 1000 N",
-        )?;
-        if let Some(pitch_mm) = self.pitch_mm {
-            let most = *map::PITCH_MM.end();
-            above("pitch", pitch_mm, most, "more than 0 mm, at most 64 mm")?;
-        }
-        Ok(Checked {
-            full_scale,
-            speed_mm_s: speed,
-            force_n: force,
-        })
-    }
-}
-
-/// What a file does not say, in its range.
-struct Checked {
-    full_scale: f64,
-    speed_mm_s: f64,
-    force_n: f64,
 }
 
 /// Fits an asset to signals ([`recording_of`]): their spectra are read in evenly spaced windows, and provenance keeps the full scale. The

@@ -14,54 +14,76 @@
 //! }
 //! # Ok::<(), htex_exchange::ExchangeError>(())
 //! ```
+//!
+//! Without the feature `export` (on by default) formats are read alone: their `writes` is not there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 pub mod ahap;
+#[cfg(feature = "export")]
 pub mod android;
 mod curve;
 mod error;
+#[cfg(feature = "export")]
 mod export;
 mod format;
 mod formats;
 pub mod gltf;
 pub mod haptic;
 pub mod hatt;
+#[cfg(feature = "export")]
 mod heard;
 pub mod hjif;
 mod import;
+#[cfg(feature = "export")]
 mod job;
 mod json;
+#[cfg(feature = "export")]
 mod loss;
 pub mod map;
 mod pattern;
+mod physical;
 mod profile;
+#[cfg(feature = "export")]
 mod reduce;
 mod settings;
+mod signal;
+#[cfg(feature = "export")]
 mod stroke;
+#[cfg(feature = "export")]
 mod wav;
+#[cfg(feature = "export")]
 mod writers;
 
 pub use ahap::Ahap;
+#[cfg(feature = "export")]
 pub use android::Android;
 pub use curve::{Point, simplified, value_at};
 pub use error::{ExchangeError, Fault, Missing};
-pub use export::{Export, Exported, Played, export, export_scene, profile_names};
+#[cfg(feature = "export")]
+pub use export::{Export, Exported, Played, export, export_scene};
 pub use format::{
     Format, Held, Naming, ReadAsset, ReadPositions, ReadSignal, Reads, Sampling, Signal,
-    WriteAsset, WriteSignal, Writes,
 };
-pub use formats::{FORMATS, exported, formats_table, imported, imported_signals};
+#[cfg(feature = "export")]
+pub use format::{WriteAsset, WriteSignal, Writes};
+pub use formats::{FORMATS, imported, imported_signals};
+#[cfg(feature = "export")]
+pub use formats::{exported, formats_table};
 pub use haptic::Haptic;
+#[cfg(feature = "export")]
 pub use heard::{Path, SceneSound};
 pub use hjif::Hjif;
-pub use import::{
-    Import, ImportError, Imported, Physical, RATE_HZ, fit_signals, import, recording_of,
-};
+pub use import::{Import, ImportError, Imported, fit_signals, import, recording_of};
+#[cfg(feature = "export")]
 pub use job::{AssetJob, Coding, Job, Written};
 pub use json::MOST_BYTES;
+#[cfg(feature = "export")]
 pub use loss::Loss;
 pub use pattern::{MOST_S, Pattern, Transient, combined, rendered};
-pub use profile::{Kind, PROFILES, Profile, Sourced, profiles_table};
+pub use physical::{Physical, missing};
+pub use profile::{Kind, PROFILES, Profile, Sourced, profile_names, profiles_table};
 pub use settings::SignalSettings;
+pub use signal::RATE_HZ;
+#[cfg(feature = "export")]
 pub use stroke::Stroke;

@@ -136,6 +136,12 @@ impl Profile {
     }
 }
 
+/// Returns the names of the profiles.
+#[must_use]
+pub fn profile_names() -> Vec<&'static str> {
+    PROFILES.iter().map(|profile| &profile.name[..]).collect()
+}
+
 /// Returns the table of the profiles in Markdown, for documents: a value that somebody published has the number of its source in the list
 /// below the table.
 #[must_use]

@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use htex_exchange::{Physical, recording_of};
+use htex_exchange::{Physical, missing, recording_of};
 use serde_json::{Value, json};
 
 fn haptic() -> Value {
@@ -113,6 +113,32 @@ fn whole_files_are_read() {
     );
     assert!(null.contains("null"), "{null}");
     assert_eq!(said("a.haptic", null.as_bytes()), "it is read");
+}
+
+#[test]
+fn what_a_file_does_not_say_is_told_of_whole_files_alone() {
+    let told = |name: &str, bytes: &[u8]| match missing(name, bytes) {
+        Ok(all) => all
+            .iter()
+            .map(|one| one.setting)
+            .collect::<Vec<_>>()
+            .join(", "),
+        Err(error) => error.to_string(),
+    };
+    let hatt = include_bytes!("felt.xml");
+    assert_eq!(told("felt.xml", hatt), "");
+    assert!(told("felt.xml", &hatt[..500]).starts_with("felt.xml: line "));
+    for (name, file) in [
+        ("a.haptic", haptic()),
+        ("a.ahap", ahap()),
+        ("a.hjif", hjif()),
+    ] {
+        let text = file.to_string();
+        assert_eq!(told(name, text.as_bytes()), "full_scale, speed, force");
+        let torn = told(name, &text.as_bytes()[..text.len() / 2]);
+        assert!(torn.contains("line 1 column"), "{name}: {torn}");
+    }
+    assert!(told("a.mp4", b"").contains("no format that is read"));
 }
 
 #[test]

@@ -4,7 +4,9 @@
 use std::f64::consts::TAU;
 
 use htex_exchange::map::{Image, read};
-use htex_exchange::{Export, Exported, Format, Import, Imported, Path, Physical, export, import};
+use htex_exchange::{
+    Export, Exported, Format, Import, Imported, Path, Physical, export, import, missing,
+};
 use htex_play::{Asset, Motion, Registry, VoiceOptions};
 use png::{BitDepth, ColorType, Encoder, PixelDimensions, Unit};
 use proptest::collection::vec;
@@ -283,4 +285,18 @@ fn a_texture_without_places_goes_out_as_a_row() {
     let map = opened(&back);
     let error = export(&map, &to).unwrap_err().to_string();
     assert!(error.contains("leave out speed and force"), "{error}");
+}
+
+#[test]
+fn the_distance_of_pixels_is_missing_where_the_file_does_not_state_it() {
+    let settings = |in_metre| {
+        let bytes = png(2, &[0, 255, 255, 0], ColorType::Grayscale, in_metre);
+        let all = missing("map.png", &bytes).unwrap();
+        all.iter().map(|one| one.setting).collect::<Vec<_>>()
+    };
+    let always = ["full_scale", "speed", "force"];
+    assert_eq!(settings(Some([10_000; 2])), always);
+    assert_eq!(settings(None), [&always[..], &["pitch"]].concat());
+    let refused = missing("map.png", b"PNG").unwrap_err().to_string();
+    assert!(refused.contains("it is no PNG"), "{refused}");
 }

@@ -10,7 +10,7 @@ use xtask::generated::{file, section};
 fn generated_tables_are_fresh() {
     section("spec/htex-1.md", "measures of quality", &quality());
     section("spec/htex-1.md", "measures of left_out", &left_out());
-    section("docs/manual.md", "columns of measures", &columns());
+    section("docs/demonstration.md", "columns of measures", &columns());
     file("sdk/python/python/htex/_measures.py", python().as_bytes());
 }
 

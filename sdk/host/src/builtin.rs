@@ -32,9 +32,10 @@ macro_rules! voices {
     };
 }
 
-/// The table of a model's crate, with the fit only in programs that fit: otherwise nothing links it, nor what it computes with.
+/// The table of a model's crate, and any of `knobs`, `usual` and `motion`; with the fit only in programs that fit: otherwise nothing links it, nor
+/// what it computes with.
 macro_rules! model {
-    ($model:ident) => {{
+    ($model:ident $(, $part:ident)*) => {{
         #[cfg(feature = "fit")]
         static TABLE: &ModelTable = &$model::TABLE;
         #[cfg(not(feature = "fit"))]
@@ -42,15 +43,25 @@ macro_rules! model {
             fit: without_fits,
             ..$model::TABLE
         };
-        TableModel::new(TABLE, voices!($model))
-    }};
-    ($model:ident, knobs, usual) => {{
-        let model = model!($model);
-        #[cfg(feature = "fit")]
-        let model = model.with_knobs(&$model::KNOBS).with_usual($model::USUAL);
+        let model = TableModel::new(TABLE, voices!($model));
+        $(let model = part!(model, $model, $part);)*
         model
     }};
-    ($model:ident, usual, motion) => {{
+}
+
+/// A model with a part of its crate.
+macro_rules! part {
+    ($table:ident, $model:ident, knobs) => {{
+        #[cfg(feature = "fit")]
+        let $table = $table.with_knobs(&$model::KNOBS);
+        $table
+    }};
+    ($table:ident, $model:ident, usual) => {{
+        #[cfg(feature = "fit")]
+        let $table = $table.with_usual($model::USUAL);
+        $table
+    }};
+    ($table:ident, $model:ident, motion) => {{
         #[cfg(feature = "fit")]
         static MOTION: &MotionTable = &$model::MOTION;
         #[cfg(not(feature = "fit"))]
@@ -58,16 +69,13 @@ macro_rules! model {
             fit: without_fits_at,
             ..$model::MOTION
         };
-        let model = model!($model).with_motion(MOTION);
-        #[cfg(feature = "fit")]
-        let model = model.with_usual($model::USUAL);
-        model
+        $table.with_motion(MOTION)
     }};
 }
 
-/// The models. One that is added here is in every program that links this crate. Without `usual` its parameters have the ranges of its
-/// descriptor alone; without `knobs` a sweep spans the ranges of its options; with `motion` it has the extension `htex.motion/1`. One that is `only_named` is fitted where it is named, and
-/// is none of those that a program takes by itself.
+/// The models. One that is added here is in every program that links this crate. `usual` are the ranges of its parameters' sliders, which a test
+/// asks for; without `knobs` a sweep spans the ranges of its options; with `motion` it has the extension `htex.motion/1`. One that is
+/// `only_named` is fitted where it is named, and is none of those that a program takes by itself.
 fn tables() -> Vec<TableModel> {
     vec![
         model!(htex_ar, knobs, usual),

@@ -12,7 +12,7 @@ fn documents_name_every_format() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     for document in [
         "README.md",
-        "docs/manual.md",
+        "docs/recording-formats.md",
         "sdk/python/README.md",
         "sdk/python/python/htex/_author.py",
     ] {

@@ -7,6 +7,7 @@
 //! frequencies, as in the reference software of ISO/IEC 23090-31.
 
 mod control;
+#[cfg(feature = "export")]
 mod write;
 
 use std::ops::RangeInclusive;

@@ -102,6 +102,7 @@ impl<'a> Chunk<'a> {
 }
 
 /// Writes a file of less than 4 GiB.
+#[cfg(feature = "export")]
 pub(super) fn file(json: Vec<u8>, binary: Vec<u8>) -> Vec<u8> {
     let chunks = [(JSON, padded(json, b' ')), (BINARY, padded(binary, 0))];
     let lengths = chunks
@@ -120,6 +121,7 @@ pub(super) fn file(json: Vec<u8>, binary: Vec<u8>) -> Vec<u8> {
     file
 }
 
+#[cfg(feature = "export")]
 fn padded(mut bytes: Vec<u8>, by: u8) -> Vec<u8> {
     bytes.resize(bytes.len().next_multiple_of(ALIGNMENT), by);
     bytes

@@ -5,10 +5,12 @@
 mod glb;
 mod material;
 mod read;
+#[cfg(feature = "export")]
 mod write;
 
 pub use material::{EXTENSION, Material, MediaType, material_schema};
 pub use read::{Texture, read};
 
 pub(crate) use read::held;
+#[cfg(feature = "export")]
 pub(crate) use write::written;

@@ -274,6 +274,7 @@ fn decoded(uri: &str, pointer: &str) -> Result<Vec<u8>, Fault> {
 }
 
 /// Writes a buffer as a data URI.
+#[cfg(feature = "export")]
 pub(super) fn data_uri(bytes: &[u8]) -> String {
     format!("data:{};base64,{}", BUFFER_TYPES[1], STANDARD.encode(bytes))
 }

@@ -9,6 +9,7 @@ mod check;
 mod number;
 mod render;
 mod wavelet;
+#[cfg(feature = "export")]
 mod write;
 
 use serde::{Deserialize, Serialize};
@@ -20,8 +21,11 @@ use crate::json;
 use number::{whole, whole_or_none};
 
 pub use wavelet::{analysed, synthesised};
+#[cfg(feature = "export")]
 pub(crate) use write::Tone;
+#[cfg(feature = "export")]
 pub(crate) use write::vectorial;
+#[cfg(feature = "export")]
 pub use write::{Space, waveform};
 
 /// A file.

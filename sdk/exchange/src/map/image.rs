@@ -3,7 +3,9 @@
 use std::io::Cursor;
 
 use htex_map::MOST_SIDE;
-use png::{BitDepth, ColorType, Decoder, Encoder, Limits, PixelDimensions, Transformations, Unit};
+#[cfg(feature = "export")]
+use png::Encoder;
+use png::{BitDepth, ColorType, Decoder, Limits, PixelDimensions, Transformations, Unit};
 
 use crate::error::Fault;
 
@@ -143,6 +145,7 @@ fn pitch_mm(stated: PixelDimensions) -> Result<Option<f64>, Fault> {
 }
 
 /// Writes an image as 8-bit grey PNG, with whole pixels in a metre.
+#[cfg(feature = "export")]
 pub(super) fn to_bytes(image: &Image) -> Result<Vec<u8>, Fault> {
     let failed = |error: png::EncodingError| Fault::whole(error.to_string());
     let rows = image.grey.len() / image.width.max(1);

@@ -7,11 +7,13 @@
 
 mod asset;
 mod image;
+#[cfg(feature = "export")]
 mod write;
 
 pub(crate) use asset::{Surface, held};
 pub(crate) use image::PITCH_MM;
 pub use image::{Image, read};
+#[cfg(feature = "export")]
 pub(crate) use write::written;
 
 /// The model of the pixels.

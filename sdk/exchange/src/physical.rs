@@ -1,0 +1,152 @@
+//! What files do not say: how strong 1 is, where and how a finger moves.
+
+use htex_author::Exploration;
+use htex_format::Quantity;
+
+use crate::error::{ExchangeError, Missing, in_file};
+use crate::format::{Format, Naming, Reads, Sampling};
+use crate::map;
+use crate::signal::{RATE_HZ, signal};
+
+/// What a signal does not say.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Physical {
+    /// The quantity's unit at ±1: newtons of a lateral force.
+    pub full_scale: Option<f64>,
+    pub quantity: Quantity,
+    /// Speed of the finger, mm/s.
+    pub speed_mm_s: Option<f64>,
+    /// Its normal force, newtons.
+    pub force_n: Option<f64>,
+    /// Distance of an image's pixels, mm, where it is not the one that the file states.
+    pub pitch_mm: Option<f64>,
+}
+
+const FULL_SCALE: Missing = Missing {
+    setting: "full_scale",
+    words: "how strong 1 is",
+};
+const SPEED: Missing = Missing {
+    setting: "speed",
+    words: "at which speed it is felt",
+};
+const FORCE: Missing = Missing {
+    setting: "force",
+    words: "at which force",
+};
+pub(crate) const PITCH: Missing = Missing {
+    setting: "pitch",
+    words: "how far apart its pixels are",
+};
+/// Largest normal force, newtons.
+const MOST_FORCE_N: f64 = 1e3;
+
+/// Reads a file for what it does not say, and an import has to be given: nothing of one that states an asset. `file` is its name.
+///
+/// # Errors
+/// When no format has its extension, or the file is not what it says, with the place.
+///
+/// ```
+/// let file = br#"{"Version": 1, "Pattern": [{"Event": {"Time": 0, "EventType": "HapticTransient"}}]}"#;
+/// let missing = htex_exchange::missing("tap.ahap", file)?;
+/// let settings: Vec<&str> = missing.iter().map(|missing| missing.setting).collect();
+/// assert_eq!(settings, ["full_scale", "speed", "force"]);
+/// # Ok::<(), htex_exchange::ExchangeError>(())
+/// ```
+pub fn missing(file: &str, bytes: &[u8]) -> Result<Vec<Missing>, ExchangeError> {
+    let format = Format::of_file(file)?;
+    let mut missing = format.reads.map_or(Vec::new(), |reads| reads.missing());
+    match format.reads {
+        Some(Reads::Asset(read)) => {
+            read(bytes, &Naming { name: "", tool: "" }).map_err(in_file(file))?;
+        }
+        Some(Reads::Map) => {
+            let image = map::read(bytes).map_err(in_file(file))?;
+            if image.pitch_mm.is_some() {
+                missing.retain(|missing| *missing != PITCH);
+            }
+        }
+        _ => {
+            // A file over space is the shorter, the faster it is felt.
+            let sampling = Sampling {
+                rate_hz: RATE_HZ,
+                speed_mm_s: Exploration::MOST_SPEED_MM_S,
+            };
+            signal(format, bytes, sampling, None)?.map_err(in_file(file))?;
+        }
+    }
+    Ok(missing)
+}
+
+impl Reads {
+    /// Returns what its files never say, and an image that does not state the distance of its pixels.
+    #[must_use]
+    pub fn missing(&self) -> Vec<Missing> {
+        match self {
+            Self::Asset(_) => Vec::new(),
+            Self::Positions { .. } | Self::Signal(_) => vec![FULL_SCALE, SPEED, FORCE],
+            Self::Map => vec![FULL_SCALE, SPEED, FORCE, PITCH],
+        }
+    }
+}
+
+impl Physical {
+    /// Checks that all of it is given, and in its range.
+    ///
+    /// # Errors
+    /// With what is missing, or the first number that is out of its range.
+    pub fn check(&self, format: &Format) -> Result<(), ExchangeError> {
+        self.checked(format).map(drop)
+    }
+
+    pub(crate) fn checked(&self, format: &Format) -> Result<Checked, ExchangeError> {
+        let all = [
+            (FULL_SCALE, self.full_scale),
+            (SPEED, self.speed_mm_s),
+            (FORCE, self.force_n),
+        ];
+        let (Some(full_scale), Some(speed), Some(force)) =
+            (self.full_scale, self.speed_mm_s, self.force_n)
+        else {
+            let missing = all.iter().filter(|(_, given)| given.is_none());
+            return Err(ExchangeError::Missing {
+                format: format.title,
+                missing: missing.map(|(missing, _)| *missing).collect(),
+            });
+        };
+        let above = |name, value: f64, most: f64, range| match value > 0.0 && value <= most {
+            true => Ok(()),
+            false => Err(ExchangeError::OutOfRange { name, value, range }),
+        };
+        let most_mm_s = Exploration::MOST_SPEED_MM_S;
+        above("full_scale", full_scale, 1e6, "more than 0, at most 1e6")?;
+        above(
+            "speed",
+            speed,
+            most_mm_s,
+            "more than 0 mm/s, at most 10,000 mm/s",
+        )?;
+        above(
+            "force",
+            force,
+            MOST_FORCE_N,
+            "more than 0 N, at most 1000 N",
+        )?;
+        if let Some(pitch_mm) = self.pitch_mm {
+            let most = *map::PITCH_MM.end();
+            above("pitch", pitch_mm, most, "more than 0 mm, at most 64 mm")?;
+        }
+        Ok(Checked {
+            full_scale,
+            speed_mm_s: speed,
+            force_n: force,
+        })
+    }
+}
+
+/// What a file does not say, in its range.
+pub(crate) struct Checked {
+    pub(crate) full_scale: f64,
+    pub(crate) speed_mm_s: f64,
+    pub(crate) force_n: f64,
+}

@@ -536,7 +536,7 @@ extern "C" {
 uint32_t htex_api_version(void);
 
 /*
- [any thread] Version of the library, such as "0.1.0". Static.
+ [any thread] Version of the library, such as "0.2.0". Static.
  */
 const char *htex_version(void);
 

@@ -57,7 +57,7 @@ pub extern "C" fn htex_api_version() -> u32 {
     HTEX_API_VERSION
 }
 
-/// [any thread] Version of the library, such as "0.1.0". Static.
+/// [any thread] Version of the library, such as "0.2.0". Static.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_version() -> *const std::ffi::c_char {
     const TEXT: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");

@@ -263,8 +263,15 @@ fn toggles_of_a_source_leave_nothing() {
         return;
     };
     let source = fs::read_to_string(hosts("Toggles.cs")).unwrap();
-    let behaviour = Path::new(env!("CARGO_MANIFEST_DIR")).join("unity/Runtime/HtexSource.cs");
-    let program = project.build_with(&source, &[&behaviour.display().to_string()]);
+    let files = [
+        "../../unity/Runtime/HtexSource.cs",
+        "../../unity/Runtime/HtexTexture.cs",
+        "unity/UnityEngine.cs",
+    ];
+    let files = files.map(|file| hosts(file).display().to_string());
+    let [source_file, texture, engine] = &files;
+    let more = ["-d:UNITY_5_3_OR_NEWER", source_file, texture, engine];
+    let program = project.build_with(&source, &more);
     let asset = asset();
     let (folder, name) = (asset.parent().unwrap(), asset.file_name().unwrap());
     let run = project.run(&program, &[folder.as_os_str(), name]);

@@ -110,9 +110,10 @@ impl Project {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{language:?}"));
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir_all(&folder).unwrap();
-        fs::copy(library(), folder.join("libhtex.so")).unwrap();
-        // The name that the library states for itself.
-        fs::copy(library(), folder.join("libhtex.so.0")).unwrap();
+        // The second is the name that the library states for itself. Copies would take 2 GB in all.
+        for name in ["libhtex.so", "libhtex.so.1"] {
+            fs::hard_link(library(), folder.join(name)).unwrap();
+        }
         Some(Self { language, folder })
     }
 

@@ -1,9 +1,19 @@
-// The few types of Unity that HtexNativeArray.cs uses.
+// Stubs: the types of Unity for memory outside its heap that the package uses, for elements of four bytes.
 using System;
 using System.Runtime.InteropServices;
 
 namespace Unity.Collections
 {
+    public enum Allocator
+    {
+        Persistent,
+    }
+
+    [AttributeUsage(AttributeTargets.Field)]
+    public sealed class WriteOnlyAttribute : Attribute
+    {
+    }
+
     public struct NativeArray<T> : IDisposable where T : struct
     {
         internal IntPtr Address;
@@ -13,6 +23,16 @@ namespace Unity.Collections
         {
             Length = length;
             Address = Marshal.AllocHGlobal(4 * length);
+        }
+
+        public NativeArray(int length, Allocator allocator) : this(length)
+        {
+        }
+
+        public T this[int index]
+        {
+            get { return (T)Marshal.PtrToStructure(IntPtr.Add(Address, 4 * index), typeof(T)); }
+            set { Marshal.StructureToPtr(value, IntPtr.Add(Address, 4 * index), false); }
         }
 
         public void Dispose()

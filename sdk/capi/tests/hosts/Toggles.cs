@@ -1,51 +1,9 @@
-// HtexSource is enabled and disabled again and again while audio threads render: nothing fails, and nothing is left. The few types of
-// Unity that it uses stand here.
+// HtexSource is enabled and disabled again and again while audio threads render: nothing fails, and nothing is left.
 using System;
 using System.Reflection;
 using System.Runtime.InteropServices;
 using System.Threading;
 using Htex;
-
-namespace UnityEngine
-{
-    public class MonoBehaviour
-    {
-        public bool enabled = true;
-    }
-
-    public sealed class AudioSource
-    {
-    }
-
-    [AttributeUsage(AttributeTargets.Class)]
-    public sealed class RequireComponent : Attribute
-    {
-        public RequireComponent(Type type)
-        {
-        }
-    }
-
-    public static class Application
-    {
-        public static string streamingAssetsPath;
-    }
-
-    public static class AudioSettings
-    {
-        public static int outputSampleRate = 48000;
-    }
-
-    public static class Debug
-    {
-        public static int Errors;
-
-        public static void LogError(string text)
-        {
-            Errors++;
-            Console.Error.WriteLine(text);
-        }
-    }
-}
 
 static class Toggles
 {

@@ -12,6 +12,20 @@ using System.IO;
 using System.Runtime.InteropServices;
 using System.Text;
 
+#if !UNITY_5_3_OR_NEWER
+namespace AOT
+{
+    /// <summary>Marks functions that native code calls, which compilers ahead of time find by this name. Unity has it.</summary>
+    [AttributeUsage(AttributeTargets.Method)]
+    internal sealed class MonoPInvokeCallbackAttribute : Attribute
+    {
+        internal MonoPInvokeCallbackAttribute(Type type)
+        {
+        }
+    }
+}
+#endif
+
 namespace Htex
 {
     /// <summary>Status of a call; see htex_status.</summary>
@@ -96,7 +110,7 @@ namespace Htex
     }
 
     /// <summary>A condition of a recording; NaN if it is not known.</summary>
-    [StructLayout(LayoutKind.Sequential)]
+    [Serializable, StructLayout(LayoutKind.Sequential)]
     public struct Condition
     {
         public double SpeedMmS, ForceN;
@@ -471,6 +485,9 @@ namespace Htex
             return Native.htex_voice_free(new Native.Handle { Id = (ulong)(long)handle }) == Status.Ok;
         }
 
+        /// <summary>The handle of the library; valid until the voice is disposed of, and an error of the calls after that.</summary>
+        internal ulong Id { get { return (ulong)(long)handle; } }
+
         /// <summary>Sets the motion of the finger; spectrum and level glide to it.</summary>
         public void SetMotion(Motion motion)
         {
@@ -811,6 +828,18 @@ namespace Htex
         private static readonly Native.Log Passing = Pass;
         private static volatile Action<LogLevel, string> receiver;
 
+        static LibHtex()
+        {
+            // The editor of Unity unloads this code when scripts change, and the library stays: it must not call what is gone.
+            AppDomain.CurrentDomain.DomainUnload += (sender, unloaded) => Forget();
+        }
+
+        private static void Forget()
+        {
+            if (receiver != null)
+                SetLog(null);
+        }
+
         /// <summary>Version of the library.</summary>
         public static string Version { get { return Native.FromUtf8(Native.htex_version()); } }
 
@@ -833,14 +862,19 @@ namespace Htex
             Native.Check(Native.htex_shutdown());
         }
 
-#if UNITY_5_3_OR_NEWER
         [AOT.MonoPInvokeCallback(typeof(Native.Log))]
-#endif
         private static void Pass(LogLevel level, IntPtr message, IntPtr context)
         {
             var log = receiver;
-            if (log != null)
-                log(level, Native.FromUtf8(message));
+            try
+            {
+                if (log != null)
+                    log(level, Native.FromUtf8(message));
+            }
+            catch (Exception)
+            {
+                // An exception cannot pass through the library; the message is lost.
+            }
         }
     }
 
@@ -895,14 +929,12 @@ namespace Htex
                 Size = (uint)Marshal.SizeOf(typeof(Native.ReaderC)),
                 Length = (ulong)length,
                 Context = GCHandle.ToIntPtr(GCHandle.Alloc(this)),
-                Read = Marshal.GetFunctionPointerForDelegate(Reading),
-                Close = Marshal.GetFunctionPointerForDelegate(Closing),
+                Read = Native.Function(Reading),
+                Close = Native.Function(Closing),
             };
         }
 
-#if UNITY_5_3_OR_NEWER
         [AOT.MonoPInvokeCallback(typeof(Native.ReadFile))]
-#endif
         private static int Read(IntPtr context, ulong offset, IntPtr buffer, UIntPtr length)
         {
             try
@@ -919,9 +951,7 @@ namespace Htex
             }
         }
 
-#if UNITY_5_3_OR_NEWER
         [AOT.MonoPInvokeCallback(typeof(Native.CloseFile))]
-#endif
         private static void Close(IntPtr context)
         {
             var held = GCHandle.FromIntPtr(context);
@@ -960,7 +990,7 @@ namespace Htex
                 {
                     Size = (uint)Marshal.SizeOf(typeof(Native.FilesC)),
                     Context = GCHandle.ToIntPtr(self),
-                    Open = Marshal.GetFunctionPointerForDelegate(Opening),
+                    Open = Native.Function(Opening),
                 };
             }
         }
@@ -970,9 +1000,7 @@ namespace Htex
             self.Free();
         }
 
-#if UNITY_5_3_OR_NEWER
         [AOT.MonoPInvokeCallback(typeof(Native.OpenFile))]
-#endif
         private static int Open(IntPtr context, IntPtr name, ref Native.ReaderC file)
         {
             byte[] bytes;
@@ -996,9 +1024,9 @@ namespace Htex
     internal static class Native
     {
 #if UNITY_IOS && !UNITY_EDITOR
-        private const string Library = "__Internal";
+        internal const string Library = "__Internal";
 #else
-        private const string Library = "htex";
+        internal const string Library = "htex";
 #endif
 
         /// <summary>What an empty array refers to; never written.</summary>
@@ -1020,6 +1048,13 @@ namespace Htex
             var motions = new[] { motion.Value };
             motions[0].Size = MotionSize;
             return motions;
+        }
+
+        /// <summary>The address of a static function. Its delegate must live as long as native code has the address. The overload for a
+        /// delegate of any type needs no generic code, which a compiler ahead of time could miss.</summary>
+        internal static IntPtr Function(Delegate function)
+        {
+            return Marshal.GetFunctionPointerForDelegate(function);
         }
 
         internal static void CheckPart(float[] samples, int offset, int count)

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 using System;
 using System.IO;
+using System.Threading;
 using UnityEngine;
 
 namespace Htex
@@ -11,7 +12,9 @@ namespace Htex
     [RequireComponent(typeof(AudioSource))]
     public sealed class HtexSource : MonoBehaviour
     {
-        /// <summary>The asset, a path from the folder StreamingAssets.</summary>
+        /// <summary>The texture; if it is null, the file of Asset is played.</summary>
+        public HtexTexture Texture;
+        /// <summary>A path from the folder StreamingAssets, for files that are no assets of the project. Android has no paths in it.</summary>
         public string Asset = "texture.htex";
         /// <summary>The model of the representation; empty: the one of least error.</summary>
         public string Model = "";
@@ -20,9 +23,9 @@ namespace Htex
         /// <summary>Factor from the asset's unit to full scale.</summary>
         public float Gain = 10.0f;
         /// <summary>Scanning speed, mm/s. Set it from any script.</summary>
-        public volatile float SpeedMmS;
+        public float SpeedMmS;
         /// <summary>Normal force, N. Set it from any script.</summary>
-        public volatile float ForceN = 0.4f;
+        public float ForceN = 0.4f;
 
         private Asset asset;
         private volatile Voice voice;
@@ -34,21 +37,43 @@ namespace Htex
             failure = null;
             try
             {
-                asset = Htex.Asset.Open(Path.Combine(Application.streamingAssetsPath, Asset));
-                voice = asset.Voice(new VoiceOptions
-                {
-                    Model = Model == "" ? null : Model,
-                    RateHz = AudioSettings.outputSampleRate,
-                    Seed = (ulong)Seed,
-                    Motion = new Motion(0.0, 0.0),
-                });
+                Open();
             }
             catch (HtexException error)
             {
-                OnDisable();
-                Debug.LogError("htex: " + error.Message);
-                enabled = false;
+                Fail(error.Message);
             }
+            catch (DllNotFoundException error)
+            {
+                Fail("the library is not there; see Plugins in the documentation of the package: " + error.Message);
+            }
+            catch (PlatformNotSupportedException error)
+            {
+                Fail(error.Message);
+            }
+        }
+
+        private void Open()
+        {
+#if UNITY_WEBGL && !UNITY_EDITOR
+            throw new PlatformNotSupportedException("Unity Web has no audio thread for scripts; pages play textures with the npm package htex");
+#else
+            asset = Texture != null ? Texture.Open() : Htex.Asset.Open(Path.Combine(Application.streamingAssetsPath, Asset));
+            voice = asset.Voice(new VoiceOptions
+            {
+                Model = string.IsNullOrEmpty(Model) ? null : Model,
+                RateHz = AudioSettings.outputSampleRate,
+                Seed = (ulong)Seed,
+                Motion = new Motion(0.0, 0.0),
+            });
+#endif
+        }
+
+        private void Fail(string text)
+        {
+            OnDisable();
+            Debug.LogError("htex: " + text);
+            enabled = false;
         }
 
         /// <summary>The audio thread may render at this moment: its call holds the voice, which is freed after it.</summary>
@@ -72,7 +97,8 @@ namespace Htex
             Debug.LogError("htex: " + text);
         }
 
-        /// <summary>Called by Unity in the audio thread. Invalid speeds and forces count as 0.</summary>
+        /// <summary>Called by Unity in the audio thread. It allocates only when the length of the blocks changes, and when it fails. Invalid
+        /// speeds and forces count as 0.</summary>
         private void OnAudioFilterRead(float[] data, int channels)
         {
             Voice playing = voice;
@@ -83,7 +109,7 @@ namespace Htex
                 samples = new float[frames];
             try
             {
-                playing.SetMotion(new Motion(Valid(SpeedMmS), Valid(ForceN)));
+                playing.SetMotion(new Motion(Valid(Volatile.Read(ref SpeedMmS)), Valid(Volatile.Read(ref ForceN))));
                 playing.Render(samples);
             }
             catch (ObjectDisposedException)

@@ -1,0 +1,57 @@
+// The window as a surface: the mouse, or a finger on a touch screen, moves over it and sets speed and force of a texture.
+//
+// SPDX-License-Identifier: MIT OR Apache-2.0
+using UnityEngine;
+
+namespace Htex.Samples
+{
+    /// <summary>Feeds an HtexSource that the scene leaves disabled until its texture is loaded.</summary>
+    [RequireComponent(typeof(HtexSource))]
+    public sealed class TouchPad : MonoBehaviour
+    {
+        /// <summary>Name of the texture in a folder Resources.</summary>
+        public string Texture = "Vinyl";
+        /// <summary>Normal force, N, without and with a pressed button.</summary>
+        public float ForceN = 0.4f, PressedForceN = 0.8f;
+
+        private HtexSource source;
+        private Vector2 last;
+        private bool isPressed;
+        private string label = "";
+
+        private void Awake()
+        {
+            source = GetComponent<HtexSource>();
+            source.Texture = Resources.Load<HtexTexture>(Texture);
+            if (source.Texture == null)
+            {
+                Debug.LogError("htex: no texture " + Texture + " in a folder Resources");
+                return;
+            }
+            label = source.Texture.Title + ": move the mouse; press to push harder";
+            source.enabled = true;
+        }
+
+        /// <summary>Events of the GUI come with each setting of Active Input Handling.</summary>
+        private void OnGUI()
+        {
+            var now = Event.current;
+            if (now.type == EventType.MouseDown)
+                isPressed = true;
+            else if (now.type == EventType.MouseUp)
+                isPressed = false;
+            else if (now.type == EventType.Repaint)
+                Follow(now.mousePosition);
+            GUI.Label(new Rect(16.0f, 16.0f, 600.0f, 24.0f), label);
+        }
+
+        private void Follow(Vector2 place)
+        {
+            // Screens that do not know their density count as 96 dots per inch.
+            float mmPerPixel = 25.4f / (Screen.dpi > 0.0f ? Screen.dpi : 96.0f);
+            source.SpeedMmS = Vector2.Distance(place, last) * mmPerPixel / Mathf.Max(Time.unscaledDeltaTime, 0.001f);
+            source.ForceN = isPressed ? PressedForceN : ForceN;
+            last = place;
+        }
+    }
+}

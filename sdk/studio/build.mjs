@@ -88,7 +88,8 @@ async function buildSingle() {
   const icon = Buffer.from(await read("icon.svg")).toString("base64");
   html = html.replace(scriptTag, "").replace(styleTag, () => `<style>${css}</style>`);
   html = html.replace(iconTag, `<link rel="icon" href="data:image/svg+xml;base64,${icon}" />`);
-  const blocks = await Promise.all(["htex.wasm", "htex-author.wasm"].map(block));
+  // The module of imports holds the author module.
+  const blocks = await Promise.all(["htex.wasm", "htex-import.wasm"].map(block));
   html = html.replace("</body>", () => `${blocks.join("")}<script type="module">${code}</script>\n  </body>`);
   const single = policy({
     "script-src": `${digest(code)} data: 'wasm-unsafe-eval'`,

@@ -24,8 +24,8 @@ export const digest = (text) => `'sha256-${createHash("sha256").update(text).dig
 export const ownModules = {
   name: "own-modules",
   transform(code, id) {
-    if (!/\.htex\/(library|author)\.js$/.test(id)) return null;
-    return code.replace(/new URL\("\.\/htex(-author)?\.wasm", import\.meta\.url\)/, "undefined");
+    if (!/\.htex\/(library|author|import)\.js$/.test(id)) return null;
+    return code.replace(/new URL\("\.\/htex(-author|-import)?\.wasm", import\.meta\.url\)/, "undefined");
   },
 };
 

@@ -21,9 +21,9 @@ function parts(mode: string): Plugin {
         return `export const authorWorker = ${await text(".htex/author-worker.js")}; export const guardedWorker = ${await text(".htex/worker.js")};`;
       }
       if (id === `\0${MODULES}`) {
-        if (mode === "single") return "export const library = undefined; export const author = undefined;";
+        if (mode === "single") return "export const library = undefined; export const author = undefined; export const importer = undefined;";
         const from = (name: string, module: string) => `export { default as ${name} } from ${JSON.stringify(`${file(`./.htex/${module}`)}?url`)};`;
-        return from("library", "htex.wasm") + from("author", "htex-author.wasm");
+        return from("library", "htex.wasm") + from("author", "htex-author.wasm") + from("importer", "htex-import.wasm");
       }
       if (id !== `\0${PLAYER}`) return null;
       const page = await playerPage();
@@ -35,7 +35,12 @@ function parts(mode: string): Plugin {
 }
 
 export default defineConfig(({ mode }) => ({
-  resolve: { alias: { htex: file("./.htex/index.js") } },
+  resolve: {
+    alias: [
+      { find: /^htex$/, replacement: file("./.htex/index.js") },
+      { find: /^htex\/import$/, replacement: file("./.htex/import.js") },
+    ],
+  },
   assetsInclude: ["**/*.htexlib"],
   build: { target: "es2022", chunkSizeWarningLimit: 12_000 },
   plugins: [ownModules, ...(mode === "part" ? [] : [parts(mode)])],

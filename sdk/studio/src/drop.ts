@@ -1,5 +1,6 @@
-// Files that are dropped or chosen: textures, libraries, recordings, folders.
+// Files that are dropped or chosen: textures, libraries, recordings, files of other haptic formats, folders.
 
+import { EXTENSIONS, isImported, takeImports } from "./imports.ts";
 import { add, addLibrary } from "./shelf.ts";
 import { begin, fail, say, screen } from "./state.ts";
 import { recordings } from "./recordings.ts";
@@ -8,13 +9,26 @@ async function bytesOf(file: File) {
   return new Uint8Array(await file.arrayBuffer());
 }
 
-const isRecording = (name: string) => /\.(csv|tsv|txt|wav|flac|npy)$/i.test(name);
+async function named(file: File) {
+  return { name: file.name, bytes: await bytesOf(file) };
+}
 
-/** Takes files: textures go to the shelf, and the first one to the pad; recordings to their screen. */
+const RECORDINGS = ["csv", "tsv", "txt", "wav", "flac", "npy"];
+
+const isRecording = (name: string) => RECORDINGS.some((extension) => name.toLowerCase().endsWith(`.${extension}`));
+
+const dotted = (extensions: readonly string[]) => extensions.map((extension) => `.${extension}`).join(",");
+
+/** What is chosen as a recording, and all that is opened, for inputs of files. */
+export const READ = dotted([...RECORDINGS, ...EXTENSIONS]);
+export const OPENED = dotted(["htex", "htexlib", ...RECORDINGS, ...EXTENSIONS]);
+
+/** Takes files: textures go to the shelf, and the first one to the pad; recordings to their screen; files of other formats become textures. */
 export async function take(files: readonly File[]) {
   const textures = files.filter(({ name }) => /\.htex$/i.test(name));
   const libraries = files.filter(({ name }) => /\.htexlib$/i.test(name));
   const taken = files.filter(({ name }) => isRecording(name));
+  const others = files.filter(({ name }) => isImported(name));
   let first = true;
   for (const file of textures) {
     const item = await add(await bytesOf(file));
@@ -27,11 +41,13 @@ export async function take(files: readonly File[]) {
     say(`${count} textures of ${file.name} are on the shelf.`, "good");
   }
   if (taken.length > 0) {
-    recordings.value = await Promise.all(taken.map(async (file) => ({ name: file.name, bytes: await bytesOf(file) })));
+    recordings.value = await Promise.all(taken.map(named));
     screen.value = "record";
-  } else if (textures.length + libraries.length === 0 && files.length > 0) {
-    say(`${files[0]?.name} is no texture (.htex), library (.htexlib) or recording (CSV, WAV, FLAC, NPY).`, "bad");
+  } else if (textures.length + libraries.length + others.length === 0 && files.length > 0) {
+    const known = EXTENSIONS.map((extension) => `.${extension}`).join(", ");
+    say(`${files[0]?.name} is no texture (.htex), library (.htexlib), recording (CSV, WAV, FLAC, NPY) or file of another haptic format (${known}).`, "bad");
   }
+  await takeImports(await Promise.all(others.map(named)));
 }
 
 /** All files of what was dropped, those in folders, too. */

@@ -3,7 +3,7 @@
 import { effect, signal } from "@preact/signals";
 import { HtexNode, prepare, type Loop, type Texture } from "htex";
 
-import { finger } from "./motion.ts";
+import { finger, padSize } from "./motion.ts";
 import { fail, origin, present, texture } from "./state.ts";
 
 /** What sounds: the present texture, or one that is tried. */
@@ -162,13 +162,14 @@ export function run() {
     }
   });
   effect(() => {
-    const { speed, force, position } = finger.value;
+    const { speed, force, position, x, y } = finger.value;
     attend(force > 0);
     if (!node) return;
     node.speed.value = speed;
     node.force.value = force;
-    // The models of this page's own follow speed and force alone.
+    // Of the models of this page's own, the friction map follows the place, the others speed and force alone.
     if (playing?.hasModules) node.position = position;
+    if (playing?.hasModules || playing?.models.includes("org.htex.map")) node.place = { x: x * padSize.width, y: y * padSize.height };
   });
   effect(() => {
     if (!isReady.value || !context || !output) return;

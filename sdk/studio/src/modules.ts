@@ -1,12 +1,14 @@
 // Where the WASM modules are, and the scripts of workers: beside the page, or in it.
 
 import { setAuthorLibrary, setLibrary } from "htex";
-import { author, library } from "virtual:modules";
+import { setImportLibrary } from "htex/import";
+import { author, importer, library } from "virtual:modules";
 import { authorWorker, guardedWorker } from "virtual:workers";
 
 /** Names of the modules, and of the blocks of the page of one file that have them, compressed and as base64. */
 const LIBRARY = "htex.wasm";
 const AUTHOR = "htex-author.wasm";
+const IMPORTER = "htex-import.wasm";
 
 const absolute = (address: string) => new URL(address, location.href).href;
 
@@ -30,10 +32,19 @@ export async function setPlayer() {
   setLibrary(await source(LIBRARY, library), guardedWorker ? { worker: guardedWorker } : {});
 }
 
-/** Sets the author's module. */
-export async function setAuthor() {
+const thread = () => {
   const script = authorWorker;
-  setAuthorLibrary(await source(AUTHOR, author), script ? { worker: () => new Worker(script, { type: "module" }) } : {});
+  return script ? { worker: () => new Worker(script, { type: "module" }) } : {};
+};
+
+/** Sets the author's module. The page of one file has that of imports alone, which holds it, too. */
+export async function setAuthor() {
+  setAuthorLibrary(await source(block(IMPORTER) === null ? AUTHOR : IMPORTER, author), thread());
+}
+
+/** Sets the module of imports. */
+export async function setImporter() {
+  setImportLibrary(await source(IMPORTER, importer), thread());
 }
 
 async function base64(stream: ReadableStream) {

@@ -8,6 +8,7 @@ declare module "virtual:modules" {
   /** Addresses of the WASM modules; undefined in the page of one file, which has them in itself. */
   export const library: string | undefined;
   export const author: string | undefined;
+  export const importer: string | undefined;
 }
 
 declare module "virtual:player" {

@@ -174,6 +174,27 @@ test("a bar that is moved moves alone, by whole steps", async () => {
   await closed(page);
 });
 
+test("a drag of a slider is one step, and a number is taken as it is typed", async () => {
+  const page = await openStudio(browser, FILE);
+  await shaping(page);
+  const slider = page.locator("main input[type=range]").first();
+  const { x, y, width, height } = await slider.boundingBox();
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  for (let i = 1; i < 8; i++) await page.mouse.move(x + width / 2 + 5 * i, y + height / 2);
+  await page.mouse.up();
+  await page.waitForFunction(() => htexStudio.depth.value > 0);
+  assert.equal(await page.evaluate(() => htexStudio.depth.value), 1);
+  await page.getByText("Numbers", { exact: true }).click();
+  const number = page.locator(".number-list input").first();
+  await number.fill("");
+  await number.pressSequentially("12.5");
+  await page.keyboard.press("Tab");
+  // Bands keeps whole steps.
+  assert.equal(await number.inputValue(), "13");
+  await closed(page);
+});
+
 test("500 random edits that are undone give the first bytes", async () => {
   const page = await openStudio(browser, FILE);
   await goTo(page, "Shelf");

@@ -16,6 +16,9 @@ await mkdir(out, { recursive: true });
 const folder = await mkdtemp(path.join(tmpdir(), "htex-pictures-"));
 const csv = path.join(folder, "linen.csv");
 htex("simulate", "--surface", "fine-fabric", "--seconds", "8", "-o", csv);
+const [hum, ahap] = ["hum.htex", "buzz.ahap"].map((name) => path.join(folder, name));
+htex("make", "--model", "sbeta", "--set", "alpha=2", "beta=5", "--level", "0.02", "--at", "speed=80,force=0.5", "-o", hum);
+htex("export", hum, "--to", "ahap", "-o", ahap);
 
 async function shot(page, name) {
   await page.waitForTimeout(500);
@@ -55,6 +58,10 @@ async function screens(page, suffix) {
   await goTo(page, "Give");
   await shot(page, `give-${suffix}`);
   await goTo(page, "Record");
+  await page.locator("input[type=file]").setInputFiles(ahap);
+  await page.getByRole("form").waitFor();
+  await shot(page, `import-${suffix}`);
+  await page.getByRole("button", { name: "Leave it out" }).click();
   await page.getByRole("button", { name: "To the pad" }).first().click();
   await page.getByText("recording", { exact: true }).waitFor();
   await goTo(page, "Compare");

@@ -261,7 +261,7 @@ export interface FeltSide {
   at?: { speed?: number; force?: number };
 }
 
-/** What a fingertip feels of a difference: levels above the detection threshold in third octaves; see `docs/manual.md`. */
+/** What a fingertip feels of a difference: levels above the detection threshold in third octaves; see `docs/felt.md`. */
 export interface Felt {
   centre_hz: number[];
   /** Levels above the threshold of the reference and of the other one; negative below it. */

@@ -2,24 +2,20 @@
 // player, too, and is loaded when it is first needed.
 
 import { AuthorCore } from "./author-core.js";
-import { HtexError, toBytes } from "./core.js";
-import { host } from "./host.js";
+import { inThread, setThread, throwIfAborted } from "./author-thread.js";
+import { argument, bytesOf, copiesIn, loaded, named } from "./files.js";
 import { compiledFrom, library, opened } from "./library.js";
 
 let source = () => new URL("./htex-author.wasm", import.meta.url);
-let startWorker = null;
 let module;
 let author;
-/** A worker that waits for the next fit. */
-let idle = null;
 
 /** Sets where the module is: its address, its bytes or a WebAssembly.Module; and how its worker is started, where a bundler has it
  * elsewhere. Before the first use. */
 export function setAuthorLibrary(library, { worker = null } = {}) {
   if (library !== undefined) source = () => library;
-  [startWorker, module, author] = [worker, undefined, undefined];
-  idle?.terminate();
-  idle = null;
+  [module, author] = [undefined, undefined];
+  setThread(worker);
 }
 
 function compiled() {
@@ -39,34 +35,6 @@ export function loadAuthor() {
       throw error;
     });
   return author;
-}
-
-/** The bytes and the name of a file: `{ name, bytes }`, a File, or a Blob with a name. */
-async function loaded(file) {
-  if (typeof Blob !== "undefined" && file instanceof Blob) {
-    if (typeof file.name !== "string") throw argument("a Blob has no name, which tells what kind of file it is; give { name, bytes }");
-    return { name: file.name, bytes: new Uint8Array(await file.arrayBuffer()), isCopy: true };
-  }
-  return named(file);
-}
-
-function named(file) {
-  if (typeof file?.name !== "string" || file.bytes === undefined) {
-    throw argument('a recording is { name: "felt.csv", bytes }, a File or a Blob with a name');
-  }
-  return { name: file.name, bytes: bytesOf(file.bytes) };
-}
-
-function bytesOf(data) {
-  try {
-    return toBytes(data);
-  } catch (error) {
-    throw argument(error.message);
-  }
-}
-
-function argument(text) {
-  return new HtexError(text, "invalid-argument");
 }
 
 /** All files of recordings and settings, as they are named. */
@@ -216,60 +184,15 @@ function loopsOf(loops, bytes) {
   return loops.map(({ samples, ...told }) => ({ ...told, samples: numbers.slice(end, (end += samples)) }));
 }
 
-/** Starts the worker of a page. */
-function startInPage() {
-  // Bundlers look for this form.
-  return new Worker(new URL("./author-worker.js", import.meta.url), { type: "module" });
-}
-
-function takeWorker() {
-  const taken = idle;
-  idle = null;
-  return taken ?? (startWorker ?? host.startAuthorThread ?? startInPage)();
-}
-
-/** Keeps a worker for the next fit; it does not keep a program of Node.js running. */
-function giveBack(worker) {
-  worker.onmessage = null;
-  worker.onerror = null;
-  if (idle) return worker.terminate();
-  idle = worker;
-  worker.unref?.();
-}
-
 /** Fits models to recordings in a worker. `onProgress` is called with `{ done, of, text }`; `signal` aborts the fit. */
 export async function fit(recordings, { onProgress, signal, ...settings } = {}) {
-  const aborted = () => Object.assign(new HtexError("the fit was aborted", "aborted"), { cause: signal.reason });
-  if (signal?.aborted) throw aborted();
+  throwIfAborted(signal, "fit");
   const given = filesOf(recordings, settings);
   const ready = await Promise.all([given.recordings, given.response, given.trackers].map((files) => Promise.all(files.map(loaded))));
   const [loadedRecordings, response, trackers] = ready;
-  const copies = ready.flat().flatMap(({ isCopy, bytes }) => (isCopy ? [bytes.buffer] : []));
   const call = callOf({ recordings: loadedRecordings, response, trackers }, settings);
-  // The worker starts meanwhile.
-  const worker = await takeWorker();
-  const [compiledModule, player] = await Promise.all([compiled(), library()]).catch((error) => {
-    giveBack(worker);
-    throw error;
-  });
-  const { document, bytes } = await new Promise((resolve, reject) => {
-    const end = (settle, value, kept) => {
-      signal?.removeEventListener("abort", abort);
-      if (kept) giveBack(worker);
-      else worker.terminate();
-      settle(value);
-    };
-    const abort = () => end(reject, aborted(), false);
-    worker.ref?.();
-    worker.onmessage = ({ data: { progress, error, ...result } }) => {
-      if (progress) onProgress?.(progress);
-      else if (error) end(reject, new HtexError(error.message, error.code ?? "internal"), error.code !== "internal");
-      else end(resolve, result, true);
-    };
-    worker.onerror = ({ message }) => end(reject, new HtexError(`the worker failed: ${message}`, "internal"), false);
-    if (signal?.aborted) return abort();
-    signal?.addEventListener("abort", abort, { once: true });
-    worker.postMessage({ module: compiledModule, name: "fit", ...call }, copies);
-  });
+  const loading = Promise.all([compiled(), library()]);
+  const { document, bytes } = await inThread("fit", loading, call, { copies: copiesIn(ready.flat()), onProgress, signal });
+  const [, player] = await loading;
   return { texture: opened(player, bytes), report: document };
 }

@@ -319,6 +319,8 @@ export class HtexNode extends NodeBase {
   readonly gain: AudioParamLike;
   /** Position along the path, mm, for models that follow it. */
   set position(position: number);
+  /** Place on the surface, mm, for models that are maps, such as friction maps; null where it is not known. */
+  set place(place: { x: number; y: number } | null);
   /** Fades to another texture within 20 ms; resolves when that has begun. Of several calls at a time the last one counts. */
   load(texture: Texture, options?: LoadOptions): Promise<void>;
   /** Fades to a recording, which plays as it is while a finger slides, at any speed and force. */
@@ -393,8 +395,8 @@ export interface PadOptions {
 export interface PadPlayer {
   /** What is played: the samples, or two strengths every 50 ms. */
   readonly way: "pcm" | "dual-rumble";
-  /** Sets the motion: mm/s, N, mm along the path. Samples follow 0.25 s later, strengths 50 ms later. */
-  setMotion(speed: number, force: number, position?: number): void;
+  /** Sets the motion: mm/s, N, mm along the path, place in mm. Samples follow 0.25 s later, strengths 50 ms later. */
+  setMotion(speed: number, force: number, position?: number, x?: number, y?: number): void;
   /** Stops the motors, and frees the voice. */
   stop(): Promise<void>;
   /** Resolves when it was stopped; rejects with an HtexError when the gamepad fails. */
@@ -418,7 +420,7 @@ export interface PointerOptions {
  * `touch-action: none` meanwhile. Returns a function that ends this. */
 export function followPointer(
   element: ElementLike,
-  moved: (motion: { speed: number; force: number; position: number }) => void,
+  moved: (motion: { speed: number; force: number; position: number; x: number; y: number }) => void,
   options?: PointerOptions,
 ): () => void;
 

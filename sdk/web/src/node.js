@@ -147,6 +147,11 @@ export class HtexNode extends Base {
     this.port.postMessage({ position });
   }
 
+  /** Place on the surface, mm, for models that are maps: `{ x, y }`; null where it is not known. */
+  set place(place) {
+    this.port.postMessage({ place: place ? [place.x, place.y] : [NaN, NaN] });
+  }
+
   /** Edges of the bands of the envelopes, Hz. */
   get envelopeEdges() {
     const [low, high] = this.texture.band;

@@ -46,8 +46,8 @@ class PadPlayer {
     this.ended.catch(() => {});
   }
 
-  setMotion(speed, force, position) {
-    if (!this.isStopped) this.voice.setMotion(speed, force, position);
+  setMotion(...motion) {
+    if (!this.isStopped) this.voice.setMotion(...motion);
   }
 
   stop() {

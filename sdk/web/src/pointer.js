@@ -31,14 +31,18 @@ class Force {
   }
 }
 
-/** Calls `moved({ speed, force, position })`, in mm/s, N and mm along the path, while a pointer is on the element; the
- * force is 0 when it leaves. One pointer counts at a time, and of a mouse the primary button. Returns a function that ends this. */
+/** Calls `moved({ speed, force, position, x, y })`, in mm/s, N, mm along the path and mm from the upper left corner, while a pointer is on
+ * the element; the force is 0 when it leaves. One pointer counts at a time, and of a mouse the primary button. Returns a function that ends this. */
 export function followPointer(element, moved, options = {}) {
   check(element, "followPointer");
   const { mmPerPixel = MM_PER_PIXEL, force: map = (pressure) => 0.8 * pressure, defaultForce = FORCE_N } = checked(options, OPTIONS, "followPointer");
   const force = new Force(map, defaultForce);
   let last = null;
-  let motion = { speed: 0, force: 0, position: 0 };
+  let motion = { speed: 0, force: 0, position: 0, x: 0, y: 0 };
+  const place = ({ clientX, clientY }) => {
+    const { left, top } = element.getBoundingClientRect();
+    return { x: mmPerPixel * (clientX - left), y: mmPerPixel * (clientY - top) };
+  };
   const tell = (change) => {
     motion = { ...motion, ...change };
     moved(motion);
@@ -47,7 +51,7 @@ export function followPointer(element, moved, options = {}) {
     if (last || event.button !== 0) return;
     element.setPointerCapture?.(event.pointerId);
     last = event;
-    tell({ speed: 0, force: force.of(event) });
+    tell({ speed: 0, force: force.of(event), ...place(event) });
   };
   const one = (event) => {
     const seconds = (event.timeStamp - last.timeStamp) / 1e3;
@@ -59,6 +63,7 @@ export function followPointer(element, moved, options = {}) {
       speed: motion.speed + weight * (way / seconds - motion.speed),
       force: force.of(event),
       position: motion.position + way,
+      ...place(event),
     });
   };
   const isOther = (event) => !last || event.pointerId !== last.pointerId;
@@ -91,10 +96,11 @@ export function followPointer(element, moved, options = {}) {
 export function follow(element, node, options) {
   check(element, "follow");
   if (!node?.speed?.setValueAtTime || !node.context) throw new HtexError("follow takes an element and an HtexNode", "invalid-argument");
-  const moved = ({ speed, force, position }) => {
+  const moved = ({ speed, force, position, x, y }) => {
     node.speed.value = speed;
     node.force.value = force;
     node.position = position;
+    node.place = { x, y };
   };
   const unfollow = followPointer(element, moved, options);
   const resume = () => void (node.context.state !== "running" && node.context.state !== "closed" && node.context.resume().catch(() => {}));

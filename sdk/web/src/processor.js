@@ -27,6 +27,7 @@ class HtexProcessor extends AudioWorkletProcessor {
   constructor({ processorOptions: { gain, load } }) {
     super();
     this.position = NaN;
+    this.place = [NaN, NaN];
     /** The value of the parameter `gain`. */
     this.gain = gain;
     this.tracks = [];
@@ -42,6 +43,7 @@ class HtexProcessor extends AudioWorkletProcessor {
 
   receive(data) {
     if (data.position !== undefined) this.position = data.position;
+    if (data.place) this.place = data.place;
     if (data.load) this.load(data.load);
     if (data.alone) for (const { source } of this.tracks) source.isAlone = true;
     if (data.stop) {
@@ -101,7 +103,7 @@ class HtexProcessor extends AudioWorkletProcessor {
   process(_, [[out]], { speed, force, gain }) {
     this.gain = gain[0];
     if (this.block.length !== out.length) this.block = new Float32Array(out.length);
-    const motion = [speed[0], force[0], this.position];
+    const motion = [speed[0], force[0], this.position, ...this.place];
     this.tracks.forEach((track, i) => {
       this.render(track, motion);
       if (i === 0) out.set(this.block);

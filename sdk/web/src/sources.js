@@ -10,8 +10,8 @@ export class Here {
     this.last = 0;
   }
 
-  setMotion(speed, force, position) {
-    this.voice.setMotion(speed, force, position);
+  setMotion(...motion) {
+    this.voice.setMotion(...motion);
   }
 
   /** Renders a block; no sample lacks. After an error, which is thrown, the last sample has faded away in it. */
@@ -120,8 +120,8 @@ export class There {
     };
   }
 
-  setMotion(speed, force, position) {
-    this.motion = [speed, force, position];
+  setMotion(...motion) {
+    this.motion = motion;
   }
 
   /** Renders a block; returns the number of samples that lacked. */

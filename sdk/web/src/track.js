@@ -15,7 +15,7 @@ export class Track {
     /** Way of the fade, 0 to 1, and its step for each frame. */
     this.way = 0;
     this.step = 1 / frames;
-    this.motion = [NaN, NaN, NaN];
+    this.motion = [];
   }
 
   fadeOut(frames) {

@@ -76,3 +76,16 @@ test("a page makes a texture, and its errors say what to do", async () => {
   assert.deepEqual([found.error.name, found.error.code], ["HtexError", "invalid-recording"]);
   assert.match(found.error.message, /MATLAB.*(Python|CSV)/);
 });
+
+test("a page imports a file of another format to the bytes of the command, in a worker", async () => {
+  const found = await made.evaluate(async () => {
+    const { importFile } = await import("/htex/import.js");
+    const file = new File([await (await fetch("/fixtures/row.png")).blob()], "row.png");
+    const given = { full_scale: 0.2, speed_mm_s: 80, force_n: 0.4 };
+    const { texture } = await importFile(file, { ...given, pitch_mm: 0.5 });
+    const error = await importFile(file).catch(({ code, message }) => ({ code, message }));
+    return { bytes: Array.from(texture.bytes), error };
+  });
+  assert.ok(Buffer.from(found.bytes).equals(await bytes("imported/row.htex")));
+  assert.deepEqual([found.error.code, /give full_scale/.test(found.error.message)], ["invalid-argument", true]);
+});

@@ -1,6 +1,6 @@
 // A browser with the policies that users have, and a web server for its pages.
 
-import { cp, mkdtemp, readFile, writeFile } from "node:fs/promises";
+import { cp, mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import path from "node:path";
@@ -54,7 +54,7 @@ window.hold = async (context, ms) => {
   await held;
 };`;
 
-/** Starts both; `close` ends them. */
+/** Starts both; `close` ends them, and removes the copies that they have served. */
 export async function start() {
   const folder = await mkdtemp(path.join(tmpdir(), "htex-browser-"));
   await cp(HTEX_PACKAGE, path.join(folder, "htex"), { recursive: true });
@@ -79,6 +79,7 @@ export async function start() {
       await browser.close();
       server.closeAllConnections();
       server.close();
+      await rm(folder, { recursive: true, force: true });
     },
   });
 }

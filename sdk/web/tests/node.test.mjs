@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { execFile, execFileSync } from "node:child_process";
-import { cp, mkdir, mkdtemp, readFile, writeFile } from "node:fs/promises";
+import { cp, mkdir, mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import path from "node:path";
@@ -219,8 +219,9 @@ test("a worker does not keep a program running", () => {
   assert.equal(execFileSync(process.execPath, arguments_, { encoding: "utf8", timeout: 20000 }).trim(), "done");
 });
 
-test("the examples of the README for Node.js run", async () => {
+test("the examples of the README for Node.js run", async (t) => {
   const folder = await mkdtemp(path.join(tmpdir(), "htex-web-"));
+  t.after(() => rm(folder, { recursive: true, force: true }));
   await mkdir(path.join(folder, "node_modules"));
   await cp(HTEX_PACKAGE, path.join(folder, "node_modules/htex"), { recursive: true });
   await cp(path.join(HTEX_FIXTURES, "vinyl.htex"), path.join(folder, "cloth.htex"));

@@ -35,7 +35,9 @@ test("the mouse moves the finger", async () => {
   assert.ok(Math.abs(all.at(-1).position - 105.8) < 0.5, `${all.at(-1).position}`);
   assert.ok(fastest(all) > 50 && fastest(all) < 2000, `${fastest(all)}`);
   assert.ok(all.some(({ speed, force }) => speed === 0 && force > 0), "rests");
-  assert.deepEqual({ ...all.at(-1), position: 0 }, { speed: 0, force: 0, position: 0 });
+  assert.deepEqual({ ...all.at(-1), position: 0, x: 0, y: 0 }, { speed: 0, force: 0, position: 0, x: 0, y: 0 });
+  const across = Math.max(...all.map(({ x }) => x)) - Math.min(...all.map(({ x }) => x));
+  assert.ok(Math.abs(across - 105.8) < 0.5 && all.every(({ y }) => Math.abs(y - all[0].y) < 0.01), `${across}`);
   // A mouse tells no force.
   assert.deepEqual([...new Set(all.map(({ force }) => force))].sort(), [0, 0.4]);
   await made.close();

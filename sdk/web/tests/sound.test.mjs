@@ -121,6 +121,34 @@ test("stop fades within 10 ms", async () => {
   assert.ok(stopping <= 1.5 * own);
 });
 
+test("a friction map follows the place", async () => {
+  // At 80 mm/s a place of 8 mm further on is that of 0.1 s later.
+  const from = (x) =>
+    offline(
+      new Function(
+        "node",
+        "at",
+        "htex",
+        `return (async () => {
+          const map = await htex.open("/fixtures/imported/row.htex");
+          at(0.1, () => {
+            void node.load(map);
+            node.place = { x: ${x}, y: 0 };
+            node.speed.value = 80;
+            node.force.value = 0.4;
+          });
+        })()`,
+      ),
+      { seconds: 1 },
+    );
+  const [near, far] = [await from(2), await from(10)];
+  const [later, here] = [near.subarray(0.4 * RATE, 0.9 * RATE), far.subarray(0.3 * RATE, 0.8 * RATE)];
+  const alike = here.reduce((sum, x, i) => sum + x * later[i], 0) / here.length / rms(here) / rms(later);
+  const unlike = here.reduce((sum, x, i) => sum + x * near[0.3 * RATE + i], 0) / here.length / rms(here) ** 2;
+  console.log(`map: correlation ${alike.toFixed(4)} with the samples of 8 mm further on, ${unlike.toFixed(4)} with those of the same time`);
+  assert.ok(rms(here) > 0 && alike > 0.98 && unlike < 0.5);
+});
+
 test("load fades to another texture and its gain", async () => {
   // Ten swaps, between models and between gains: a quarter of a second each.
   const heard = await offline(

@@ -18,6 +18,8 @@ import {
   setAuthorLibrary,
   setLibrary,
 } from "htex";
+import { importFile, loadImporter, setImportLibrary } from "htex/import";
+import type { Asked, Imported, ImportFormat } from "htex/import";
 import { scene, setSceneLibrary } from "htex/scene";
 import type { Scene } from "htex/scene";
 import type { PadPlayer } from "htex";
@@ -102,6 +104,20 @@ export async function make(file: File, signal: AbortSignal): Promise<Uint8Array>
   if (loop) await new HtexNode(new AudioContext(), texture).load(loop, { gain: 1 });
   console.log(loop?.samples.length, loop?.level_rms, author.bake(texture, { name: "made", grid: { speed: [40, 80], force: [0.5] } }).c);
   return author.library({ mixed, made }, { name: "Two" });
+}
+
+export async function importFiles(file: File): Promise<number> {
+  setImportLibrary("htex-import.wasm", { worker: () => new Worker("author-worker.js") });
+  const importer = await loadImporter();
+  const { formats, profiles } = importer.formats();
+  const first: ImportFormat | undefined = formats[0];
+  const asked: Asked[] = importer.asks({ name: "taps.ahap", bytes: await file.arrayBuffer() });
+  const { texture, report }: Imported = await importFile(file, { full_scale: 0.2, quantity: "lateral_force", speed_mm_s: 80, force_n: 0.4, models: "bands", license: "CC0-1.0", onProgress: ({ text }) => console.log(text), signal: new AbortController().signal });
+  const here: Imported = importer.importFile({ name: "row.png", bytes: new ArrayBuffer(8) }, { pitch_mm: 0.1 });
+  // @ts-expect-error: speeds have their unit in the name.
+  await importFile(file, { speed: 80 });
+  console.log(first?.keeps, profiles[0]?.low_hz, asked[0]?.words, report.warnings[0]?.text, report.models[0]?.felt?.error_rms_db, report.format, here.report.ranked);
+  return texture.toBytes().length;
 }
 
 export async function playScene(text: ArrayBuffer, texture: Uint8Array): Promise<number> {

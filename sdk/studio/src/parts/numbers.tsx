@@ -38,7 +38,8 @@ function List({ field, values }: { field: ModelField; values: readonly number[] 
         {field.name.replaceAll("_", " ")} {field.unit === "1" ? "" : `(${field.unit})`}
       </legend>
       {values.map((value, i) => (
-        <input key={i} type="number" step="any" value={Number(value.toPrecision(5))} aria-label={`${field.name} ${i + 1}`} onChange={(event) => (set(i, event.currentTarget.value), endGesture())} />
+        // Taken once it is whole; `onChange` would be called at every key, as React does.
+        <input key={i} type="number" step="any" value={Number(value.toPrecision(5))} aria-label={`${field.name} ${i + 1}`} onChangeCapture={(event) => (set(i, event.currentTarget.value), endGesture())} />
       ))}
     </fieldset>
   );

@@ -33,7 +33,8 @@ export function Slider({ label, unit = "", min, max, value, isLog = false, digit
         disabled={disabled}
         aria-valuetext={text}
         onInput={(event) => onValue(toValue(event.currentTarget.valueAsNumber))}
-        onChange={() => onSettled?.()}
+        // `onChange` would be called at every step of a drag, as React does.
+        onChangeCapture={() => onSettled?.()}
       />
       <output>{text}</output>
     </label>

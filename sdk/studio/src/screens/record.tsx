@@ -1,15 +1,19 @@
 // Record: from recordings to a texture.
 
 import { useEffect, useRef } from "preact/hooks";
-import type { Columns, FeltError, Finding, Notice } from "htex";
+import type { Columns, Finding, Notice } from "htex";
 
 import { author } from "../author.ts";
 import { Icon } from "../parts/icons.tsx";
-import { words } from "../parts/difference.tsx";
+import { Notices } from "../parts/notices.tsx";
+import { NumberField } from "../parts/number-field.tsx";
+import { RankedModels } from "../parts/ranked.tsx";
 import { Waveform } from "../parts/waveform.tsx";
-import { take } from "../drop.ts";
+import { READ, take } from "../drop.ts";
+import { done, waiting } from "../imports.ts";
 import { abort, canFit, fitAll, fitted, force, isReading, keepReading, license, maps, progress, rate, reads, recordings, speed, toPad, type Read } from "../recordings.ts";
 import { fail } from "../state.ts";
+import { Imports } from "./import.tsx";
 import { nameOf } from "./shape.tsx";
 
 const ROLES = ["", "lateral", "lateral_y", "normal", "time", "x", "y", "speed"];
@@ -72,14 +76,6 @@ function Found({ finding }: { finding: Finding }) {
   );
 }
 
-function Notices({ notices, kind }: { notices: Notice[]; kind: string }) {
-  return notices.map(({ text }) => (
-    <li key={text} class="finding">
-      <b>{kind}:</b> {text}
-    </li>
-  ));
-}
-
 /** Notices that no finding tells. */
 function beside(notices: Notice[], findings: Finding[]) {
   return notices.filter(({ text }) => !findings.some(({ code }) => text.includes(code)));
@@ -123,23 +119,14 @@ function OneRead({ read: { recording, columns, processed, problem } }: { read: R
   );
 }
 
-function NumberField({ label, value, onValue }: { label: string; value: number | null; onValue: (value: number | null) => void }) {
-  return (
-    <label class="field">
-      {label}
-      <input type="number" step="any" min="0" placeholder="as recorded" value={value ?? ""} onChange={(event) => onValue(event.currentTarget.value === "" ? null : event.currentTarget.valueAsNumber)} />
-    </label>
-  );
-}
-
 function FitPanel() {
   const now = progress.value;
   return (
     <div class="panel stack">
       <div class="columns">
-        <NumberField label="Speed, mm/s" value={speed.value} onValue={(value) => (speed.value = value)} />
-        <NumberField label="Force, N" value={force.value} onValue={(value) => (force.value = value)} />
-        <NumberField label="Rate, Hz" value={rate.value} onValue={(value) => (rate.value = value)} />
+        <NumberField label="Speed, mm/s" value={speed.value} placeholder="as recorded" onValue={(value) => (speed.value = value)} />
+        <NumberField label="Force, N" value={force.value} placeholder="as recorded" onValue={(value) => (force.value = value)} />
+        <NumberField label="Rate, Hz" value={rate.value} placeholder="as recorded" onValue={(value) => (rate.value = value)} />
         <label class="field">
           Licence
           <input type="text" value={license.value} onInput={(event) => (license.value = event.currentTarget.value)} />
@@ -161,12 +148,6 @@ function FitPanel() {
   );
 }
 
-function felt(error: FeltError | null) {
-  if (!error) return "not measured";
-  const own = error.within_repeatability ? " It is as near as the recording is to itself." : "";
-  return words(error) + own;
-}
-
 function Ranked() {
   const result = fitted.value;
   if (!result) return null;
@@ -174,22 +155,7 @@ function Ranked() {
   return (
     <div class="panel stack">
       <h2>Models, by what is felt</h2>
-      <ol class="ranked">
-        {report.ranked.map((id, i) => {
-          const one = report.models.find(({ model }) => model === id);
-          return (
-            <li key={id}>
-              <div>
-                <b>{nameOf(id)}</b> <span class="soft small">{one?.bytes} bytes</span>
-                <p class="small">{felt(one?.felt ?? null)}</p>
-              </div>
-              <button class={i === 0 ? "button strong" : "button"} onClick={() => toPad(id).catch(fail)}>
-                To the pad
-              </button>
-            </li>
-          );
-        })}
-      </ol>
+      <RankedModels ranked={report.ranked} models={report.models} isRecorded onPad={toPad} />
       <ul class="findings">
         <Notices notices={report.warnings} kind="Warning" />
         <Notices notices={report.notes} kind="Note" />
@@ -211,15 +177,16 @@ export function Record() {
       <header class="screen-head">
         <div>
           <h1 id="record-title">From a recording</h1>
-          <p>Choose CSV, WAV, FLAC or NPY files of one surface, or drop them. Nothing leaves this page.</p>
+          <p>Choose CSV, WAV, FLAC or NPY files of one surface, or a file of another haptic format, or drop them. Nothing leaves this page.</p>
         </div>
-        <input ref={input} type="file" hidden multiple accept=".csv,.tsv,.txt,.wav,.flac,.npy" onChange={() => take([...(input.current?.files ?? [])]).catch(fail)} />
+        <input ref={input} type="file" hidden multiple accept={READ} onChange={() => take([...(input.current?.files ?? [])]).catch(fail)} />
         <button class="button strong" onClick={() => input.current?.click()}>
-          <Icon name="folder" /> Choose recordings
+          <Icon name="folder" /> Choose files
         </button>
       </header>
+      <Imports />
       {recordings.value.length === 0 ? (
-        <p class="empty">No recording is open. A good one is ten seconds of a finger that slides to and fro, with the lateral force and, if they are known, the normal force and the position.</p>
+        <p class="empty" hidden={waiting.value.length + done.value.length > 0}>No recording is open. A good one is ten seconds of a finger that slides to and fro, with the lateral force and, if they are known, the normal force and the position.</p>
       ) : (
         <div class="stack">
           {isReading.value && <p role="status">Reading…</p>}

@@ -3,7 +3,7 @@
 import { useEffect, useRef } from "preact/hooks";
 
 import { endAudition, onLook } from "../audition.ts";
-import { take } from "../drop.ts";
+import { OPENED, take } from "../drop.ts";
 import { Icon } from "../parts/icons.tsx";
 import { Sparkline } from "../parts/sparkline.tsx";
 import { chosenTag, forget, found, items, search, tags, type Item } from "../shelf.ts";
@@ -53,7 +53,7 @@ function Files() {
   const chosen = () => take([...(input.current?.files ?? [])]).catch(fail);
   return (
     <>
-      <input ref={input} type="file" multiple hidden accept=".htex,.htexlib,.csv,.wav,.flac,.npy" onChange={chosen} />
+      <input ref={input} type="file" multiple hidden accept={OPENED} onChange={chosen} />
       <button class="button" onClick={() => input.current?.click()}>
         <Icon name="folder" /> Open files
       </button>

@@ -28,6 +28,8 @@ pub struct htex_author_result {
 const FUNCTIONS: &[&[(&str, Function)]] = &[
     #[cfg(feature = "make")]
     crate::making::FUNCTIONS,
+    #[cfg(feature = "import")]
+    crate::making::IMPORTS,
     #[cfg(feature = "scene")]
     crate::scene::FUNCTIONS,
 ];

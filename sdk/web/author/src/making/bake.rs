@@ -1,7 +1,7 @@
 //! Blocks for players on microcontrollers.
 
 use htex::{Asset, AssetData};
-use htex_bake::{BakeError, Baked, Grid, bake as baked, c_header, rust_source};
+use htex_bake::{BakeError, Baked, Grid, bake as baked, c_header, c_name, rust_name, rust_source};
 use htex_format::Quantity;
 use serde::Serialize;
 use serde_json::Value;
@@ -63,8 +63,8 @@ fn block<'a>(baked: &'a Baked, name: &str, rate_hz: f64) -> Block<'a> {
         error_at_conditions_db: baked.at_conditions_db,
         error_between_db: baked.between_db,
         error_beyond_db: baked.beyond_db,
-        c: c_header(name, &baked.bytes),
-        rust: rust_source(name, &baked.bytes),
+        c: c_header(&c_name(name), baked),
+        rust: rust_source(&rust_name(name), baked),
     }
 }
 

@@ -2,14 +2,15 @@
 
 use htex::host::Registry;
 use htex_author::settings::{FitSettings, Metadata};
-use htex_author::{AssetRequest, FeltError, FittedAsset, GridReport, fit_asset_watched};
-use htex_format::{Condition, LeftOut, Quality};
+use htex_author::{AssetRequest, FittedAsset, GridReport, fit_asset_watched};
+use htex_format::Condition;
 use serde::Serialize;
 
 use super::TOOL;
 use super::describe::{self, DescribedFinding, DescribedNotice, DescribedSpectrum};
 use super::progress;
 use super::recordings::{Given, Reading, given};
+use super::represented::{Model, ranked, represented};
 use crate::answer::{Answer, Files};
 use crate::document::Document;
 use crate::refusal::Refusal;
@@ -81,24 +82,6 @@ struct Report<'a> {
 }
 
 #[derive(Serialize)]
-struct Model<'a> {
-    model: &'a str,
-    bytes: usize,
-    fit_ms: Option<f64>,
-    felt: Option<FeltError>,
-    at: Vec<At<'a>>,
-}
-
-#[derive(Serialize)]
-struct At<'a> {
-    condition: usize,
-    level_rms: f64,
-    quality: Option<&'a Quality>,
-    left_out: Option<LeftOut>,
-    felt: Option<FeltError>,
-}
-
-#[derive(Serialize)]
 struct Skipped<'a> {
     model: &'a str,
     reason: &'a str,
@@ -115,9 +98,10 @@ impl<'a> Report<'a> {
         let manifest = &fitted.asset.manifest;
         let skipped = fitted.skipped.iter();
         let findings = fitted.findings.iter();
-        let models: Vec<Model<'_>> = (0..manifest.representations.len())
-            .filter_map(|i| Model::of(fitted, i))
-            .collect();
+        let mut models = represented(&fitted.asset, &fitted.felt);
+        for (model, fit_ms) in models.iter_mut().zip(&fitted.fit_ms) {
+            model.fit_ms = Some(*fit_ms);
+        }
         Self {
             ranked: ranked(&models),
             models,
@@ -137,38 +121,4 @@ impl<'a> Report<'a> {
             grid: fitted.grid.as_ref(),
         }
     }
-}
-
-impl<'a> Model<'a> {
-    fn of(fitted: &'a FittedAsset, i: usize) -> Option<Self> {
-        let representation = fitted.asset.manifest.representations.get(i)?;
-        let felt = fitted.felt.get(i).map_or(&[][..], Vec::as_slice);
-        let at = representation.at.iter().enumerate();
-        Some(Self {
-            model: &representation.model,
-            bytes: fitted.asset.payload_bytes(i),
-            fit_ms: fitted.fit_ms.get(i).copied(),
-            felt: felt.iter().flatten().copied().reduce(FeltError::worse),
-            at: at
-                .map(|(k, at)| At {
-                    condition: at.condition,
-                    level_rms: at.level_rms,
-                    quality: at.quality.as_ref(),
-                    left_out: at.left_out,
-                    felt: felt.get(k).copied().flatten(),
-                })
-                .collect(),
-        })
-    }
-}
-
-/// The models, that of which least is felt first.
-fn ranked<'a>(models: &[Model<'a>]) -> Vec<&'a str> {
-    let mut ranked: Vec<(f64, &str)> = Vec::new();
-    for Model { model, felt, .. } in models {
-        let error_db = felt.map_or(f64::INFINITY, |felt| felt.error_rms_db);
-        let behind = ranked.partition_point(|(other, _)| *other <= error_db);
-        ranked.insert(behind, (error_db, model));
-    }
-    ranked.into_iter().map(|(_, model)| model).collect()
 }

@@ -4,6 +4,8 @@ mod bake;
 mod describe;
 mod felt;
 mod fit;
+#[cfg(feature = "import")]
+mod import;
 mod libraries;
 mod made;
 mod models;
@@ -12,6 +14,7 @@ mod progress;
 mod recorded;
 mod recordings;
 mod refusal;
+mod represented;
 mod validate;
 
 use crate::answer::Function;
@@ -31,6 +34,14 @@ pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
     ("recorded", recorded::recorded),
     ("threshold", felt::threshold),
     ("validate", validate::validate),
+];
+
+/// What makes textures of files of other formats.
+#[cfg(feature = "import")]
+pub(crate) const IMPORTS: &[(&str, Function)] = &[
+    ("asks", import::asks),
+    ("formats", import::formats),
+    ("import", import::import),
 ];
 
 /// Program and version, for an asset's provenance: those of the command.

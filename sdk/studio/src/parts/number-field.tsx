@@ -1,0 +1,29 @@
+// A number that a person gives, or leaves to the file.
+
+import { useEffect, useRef } from "preact/hooks";
+
+interface Props {
+  label: string;
+  value: number | null | undefined;
+  placeholder?: string;
+  isRequired?: boolean;
+  onValue: (value: number | null) => void;
+}
+
+/** The number that stands in an input; null for none, and for one that is not yet whole, such as "0.". */
+const numberIn = (input: HTMLInputElement) => (input.value === "" || Number.isNaN(input.valueAsNumber) ? null : input.valueAsNumber);
+
+export function NumberField({ label, value = null, placeholder, isRequired = false, onValue }: Props) {
+  const place = useRef<HTMLInputElement>(null);
+  // What is being typed stays as it is typed.
+  useEffect(() => {
+    const input = place.current;
+    if (input && numberIn(input) !== value) input.value = value === null ? "" : String(value);
+  }, [value]);
+  return (
+    <label class="field">
+      {label}
+      <input ref={place} type="number" step="any" min="0" required={isRequired} placeholder={placeholder} onInput={(event) => onValue(numberIn(event.currentTarget))} />
+    </label>
+  );
+}

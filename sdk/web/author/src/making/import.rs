@@ -1,0 +1,238 @@
+//! Files of other haptic formats as textures.
+
+use std::path::Path;
+
+use htex::host::Registry;
+use htex_author::settings::{FitSettings, Metadata};
+use htex_exchange::{
+    ExchangeError, FORMATS, Format, Import, ImportError, Imported, MOST_BYTES, Missing, PROFILES,
+    Physical, Profile, Reads, missing,
+};
+use htex_format::Condition;
+use serde::Serialize;
+
+use super::TOOL;
+use super::describe::{self, DescribedNotice};
+use super::made::quantity;
+use super::progress;
+use super::represented::{Model, ranked, represented};
+use crate::answer::{Answer, Files};
+use crate::document::Document;
+use crate::refusal::Refusal;
+
+/// Settings of formats, and their names here, which are those of recordings and fits.
+const NAMES: [(&str, &str); 5] = [
+    ("speed", "speed_mm_s"),
+    ("force", "force_n"),
+    ("pitch", "pitch_mm"),
+    ("model", "models"),
+    ("option", "options"),
+];
+/// A setting of fits that refuses recordings by their findings, of which a signal has none.
+const STRICT: &str = "strict";
+
+fn named(setting: &str) -> &str {
+    let other = NAMES.iter().find(|(own, _)| *own == setting);
+    other.map_or(setting, |(_, name)| name)
+}
+
+#[derive(Serialize)]
+struct Formats<'a> {
+    formats: Vec<Described<'a>>,
+    profiles: Vec<Range<'a>>,
+}
+
+/// A format whose files come in.
+#[derive(Serialize)]
+struct Described<'a> {
+    name: &'a str,
+    title: &'a str,
+    extensions: &'a [&'a str],
+    /// Whether models are fitted to its files.
+    fitted: bool,
+    settings: Vec<&'a str>,
+    asks: Vec<Asked>,
+    /// The profile that is taken where none is given.
+    profile: Option<&'a str>,
+    keeps: &'a str,
+    loses: &'a str,
+}
+
+#[derive(Serialize)]
+struct Asked {
+    setting: &'static str,
+    words: &'static str,
+}
+
+/// The range of frequencies of an actuator.
+#[derive(Serialize)]
+struct Range<'a> {
+    name: &'a str,
+    title: &'a str,
+    low_hz: f64,
+    high_hz: f64,
+}
+
+/// Tells of the formats whose files come in, and of the actuators.
+pub(crate) fn formats(call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
+    call.finish()?;
+    let range = |profile: &'static Profile| Range {
+        name: &profile.name,
+        title: &profile.title,
+        low_hz: profile.low_hz.value,
+        high_hz: profile.high_hz.value,
+    };
+    let told = Formats {
+        formats: FORMATS.iter().filter_map(described).collect(),
+        profiles: PROFILES.iter().map(range).collect(),
+    };
+    Answer::new(&told, Vec::new())
+}
+
+fn described(format: &'static Format) -> Option<Described<'static>> {
+    let reads = format.reads.as_ref()?;
+    let (fitted, profile) = match reads {
+        Reads::Positions { profile, .. } => (true, Some(*profile)),
+        Reads::Signal(_) => (true, None),
+        Reads::Asset(_) | Reads::Map => (false, None),
+    };
+    Some(Described {
+        name: format.name,
+        title: format.title,
+        extensions: format.extensions,
+        fitted,
+        settings: reads.settings().into_iter().map(named).collect(),
+        asks: asked(reads.missing()),
+        profile,
+        keeps: format.keeps,
+        loses: format.loses,
+    })
+}
+
+fn asked(missing: Vec<Missing>) -> Vec<Asked> {
+    let one = |missing: Missing| Asked {
+        setting: named(missing.setting),
+        words: missing.words,
+    };
+    missing.into_iter().map(one).collect()
+}
+
+/// Tells what a file does not say, and an import has to be given.
+pub(crate) fn asks(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
+    let file = call.text("file")?.unwrap_or_default();
+    call.finish()?;
+    let bytes = only(&file, files)?;
+    Answer::new(&asked(missing(&file, bytes)?), Vec::new())
+}
+
+/// Imports a file; the bytes are the asset.
+pub(crate) fn import(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
+    let file = call.text("file")?.unwrap_or_default();
+    let mut settings = call.object("settings")?;
+    call.finish()?;
+    let bytes = only(&file, files)?;
+    let format = Format::of_file(&file)?;
+    let stem = Path::new(&file).file_stem().unwrap_or_default();
+    let stem = stem.to_string_lossy();
+    let how = how(&stem, &mut settings)?;
+    settings.finish()?;
+    let registry = Registry::builtin();
+    progress::start(1);
+    progress::begin("import", &file);
+    let imported = htex_exchange::import(&file, bytes, &how, &registry);
+    progress::end();
+    let imported = imported?;
+    Answer::new(&Report::of(format, &imported), imported.to_bytes()?)
+}
+
+fn how<'a>(name: &'a str, settings: &mut Document) -> Result<Import<'a>, Refusal> {
+    let names: Vec<&str> = FitSettings::NAMES.to_vec();
+    let names: Vec<&str> = names.into_iter().filter(|name| *name != STRICT).collect();
+    let profile = settings.text("profile")?;
+    let how = Import {
+        name,
+        physical: Physical {
+            full_scale: settings.number("full_scale")?,
+            quantity: quantity(settings.text("quantity")?)?,
+            speed_mm_s: settings.number("speed_mm_s")?,
+            force_n: settings.number("force_n")?,
+            pitch_mm: settings.number("pitch_mm")?,
+        },
+        profile: profile.as_deref().map(Profile::find).transpose()?,
+        fit: settings.table(&names)?,
+        metadata: settings.table(Metadata::NAMES)?,
+        tool: TOOL,
+    };
+    how.metadata.check()?;
+    Ok(how)
+}
+
+/// The bytes of the only file.
+fn only<'a>(name: &str, files: Files<'a>) -> Result<&'a [u8], Refusal> {
+    let [bytes] = files else {
+        return Err(Refusal::argument("give one file"));
+    };
+    if bytes.len() as u64 > MOST_BYTES {
+        let name = htex_finding::plain(name);
+        let sentence = format!(
+            "{name}: it has {} bytes, and at most {MOST_BYTES} are read",
+            bytes.len()
+        );
+        return Err(Refusal::file(sentence));
+    }
+    Ok(bytes)
+}
+
+/// What the file of an imported texture does not hold.
+#[derive(Serialize)]
+struct Report<'a> {
+    format: &'a str,
+    models: Vec<Model<'a>>,
+    ranked: Vec<&'a str>,
+    conditions: &'a [Condition],
+    warnings: Vec<DescribedNotice<'a>>,
+    notes: Vec<DescribedNotice<'a>>,
+}
+
+impl<'a> Report<'a> {
+    fn of(format: &'a Format, imported: &'a Imported) -> Self {
+        let models = represented(&imported.asset, &imported.felt);
+        Self {
+            format: format.name,
+            ranked: ranked(&models),
+            models,
+            conditions: &imported.asset.manifest.conditions,
+            warnings: describe::notices(&imported.warnings),
+            notes: describe::notices(&imported.notes),
+        }
+    }
+}
+
+impl Refusal {
+    /// A file of another format that is not what its format says.
+    fn file(error: impl ToString) -> Self {
+        let status = htex_c::htex_status::HTEX_STATUS_INVALID_ARGUMENT;
+        Self::new(status, "invalid-file", error)
+    }
+}
+
+impl From<ExchangeError> for Refusal {
+    fn from(error: ExchangeError) -> Self {
+        match error {
+            ExchangeError::Author(error) => error.into(),
+            ExchangeError::File { .. } => Self::file(error),
+            other => Self::argument(other.told(&|setting| named(setting).to_owned())),
+        }
+    }
+}
+
+impl From<ImportError> for Refusal {
+    fn from(error: ImportError) -> Self {
+        match error {
+            ImportError::Exchange(error) => error.into(),
+            ImportError::Settings(error) => error.into(),
+            ImportError::Author(error) => error.into(),
+            other => Self::argument(other),
+        }
+    }
+}

@@ -1,0 +1,75 @@
+// Calls of modules in a worker: fits and imports.
+
+import { HtexError } from "./core.js";
+import { host } from "./host.js";
+
+let startWorker = null;
+/** A worker that waits for the next call. */
+let idle = null;
+
+/** Sets how the worker is started, where a bundler has it elsewhere. */
+export function setThread(worker) {
+  startWorker = worker;
+  idle?.terminate();
+  idle = null;
+}
+
+/** Starts the worker of a page. */
+function startInPage() {
+  // Bundlers look for this form.
+  return new Worker(new URL("./author-worker.js", import.meta.url), { type: "module" });
+}
+
+function takeWorker() {
+  const taken = idle;
+  idle = null;
+  return taken ?? (startWorker ?? host.startAuthorThread ?? startInPage)();
+}
+
+/** Keeps a worker for the next call; it does not keep a program of Node.js running. */
+function giveBack(worker) {
+  worker.onmessage = null;
+  worker.onerror = null;
+  if (idle) return worker.terminate();
+  idle = worker;
+  worker.unref?.();
+}
+
+function aborted(signal, what) {
+  return Object.assign(new HtexError(`the ${what} was aborted`, "aborted"), { cause: signal.reason });
+}
+
+export function throwIfAborted(signal, what) {
+  if (signal?.aborted) throw aborted(signal, what);
+}
+
+/** Calls the function of a name of the module that `loading` promises first. Returns its document and its bytes; the worker takes the
+ * buffers `copies`. */
+export async function inThread(name, loading, call, { copies, onProgress, signal }) {
+  loading.catch(() => {});
+  // The worker starts meanwhile.
+  const worker = await takeWorker();
+  const [module] = await loading.catch((error) => {
+    giveBack(worker);
+    throw error;
+  });
+  return new Promise((resolve, reject) => {
+    const end = (settle, value, kept) => {
+      signal?.removeEventListener("abort", abort);
+      if (kept) giveBack(worker);
+      else worker.terminate();
+      settle(value);
+    };
+    const abort = () => end(reject, aborted(signal, name), false);
+    worker.ref?.();
+    worker.onmessage = ({ data: { progress, error, ...result } }) => {
+      if (progress) onProgress?.(progress);
+      else if (error) end(reject, new HtexError(error.message, error.code ?? "internal"), error.code !== "internal");
+      else end(resolve, result, true);
+    };
+    worker.onerror = ({ message }) => end(reject, new HtexError(`the worker failed: ${message}`, "internal"), false);
+    if (signal?.aborted) return abort();
+    signal?.addEventListener("abort", abort, { once: true });
+    worker.postMessage({ module, name, ...call }, copies);
+  });
+}

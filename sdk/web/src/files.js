@@ -1,0 +1,38 @@
+// Files that callers give: their names, which tell what they are, and their bytes.
+
+import { HtexError, toBytes } from "./core.js";
+
+/** The error of a wrong argument. */
+export function argument(text) {
+  return new HtexError(text, "invalid-argument");
+}
+
+/** The bytes and the name of a file: `{ name, bytes }`, a File, or a Blob with a name. */
+export async function loaded(file) {
+  if (typeof Blob !== "undefined" && file instanceof Blob) {
+    if (typeof file.name !== "string") throw argument("a Blob has no name, which tells what kind of file it is; give { name, bytes }");
+    return { name: file.name, bytes: new Uint8Array(await file.arrayBuffer()), isCopy: true };
+  }
+  return named(file);
+}
+
+/** The bytes and the name of `{ name, bytes }`. */
+export function named(file) {
+  if (typeof file?.name !== "string" || file.bytes === undefined) {
+    throw argument('a file is { name: "felt.csv", bytes }; calls that are awaited take a File or a Blob with a name, too');
+  }
+  return { name: file.name, bytes: bytesOf(file.bytes) };
+}
+
+export function bytesOf(data) {
+  try {
+    return toBytes(data);
+  } catch (error) {
+    throw argument(error.message);
+  }
+}
+
+/** The buffers of loaded files that nobody else has, and that a worker may take. */
+export function copiesIn(files) {
+  return files.flatMap(({ isCopy, bytes }) => (isCopy ? [bytes.buffer] : []));
+}

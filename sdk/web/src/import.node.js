@@ -1,0 +1,5 @@
+// Imports in Node.js.
+
+import "./index.node.js";
+
+export * from "./import.js";

@@ -180,9 +180,21 @@ impl IntoPyErr for ExchangeError {
             Self::Play(error) => error.into_py_err(),
             Self::Author(error) => error.into_py_err(),
             Self::File { .. } => Refused::new_err(self.to_string()),
-            other => option(other.to_string()),
+            other => option(other.told(&keyword)),
         }
     }
+}
+
+/// The keyword of a setting.
+fn keyword(setting: &str) -> String {
+    let name = match setting {
+        "speed" => "speed_mm_s",
+        "force" => "force_n",
+        "pitch" => "pitch_mm",
+        "rate" => "rate_hz",
+        other => other,
+    };
+    format!("`{name}`")
 }
 
 impl IntoPyErr for ImportError {

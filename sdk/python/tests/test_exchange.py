@@ -82,11 +82,11 @@ def test_imports_are_those_of_the_command(texture: htex.Texture, tmp_path: pathl
     told = htex.export(on.texture, tmp_path / "back.png", "png")
     assert rows_of((tmp_path / "back.png").read_bytes()) == pixels
     assert "lost" not in told and "0.3 N" in told["notes"][0]
-    with pytest.raises(htex.OptionError, match="how far apart its pixels are; give `pitch`"):
+    with pytest.raises(htex.OptionError, match="how far apart its pixels are; give `pitch_mm`"):
         htex.import_file(tmp_path / "map.png", **settings)
 
     for file, settings, error, words in [
-        ("buzz.haptic", {}, htex.OptionError, "`full_scale`, `speed` and `force`"),
+        ("buzz.haptic", {}, htex.OptionError, "`full_scale`, `speed_mm_s` and `force_n`"),
         ("mesh.glb", {"full_scale": 1.0}, htex.OptionError, "takes no `full_scale`"),
         ("buzz.ogg", {}, htex.OptionError, "no format that is read"),
         ("none.haptic", {}, FileNotFoundError, "none.haptic"),

@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import typing
+from typing import Any
 
 import pytest
 from conftest import command
@@ -19,7 +20,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 
 def test_the_command_ends_with_its_status(place: pathlib.Path) -> None:
-    assert command("--version", cwd=place).stdout == f"htex {htex.__version__}\n"
+    assert command("-V", cwd=place).stdout == f"htex {htex.__version__}\n"
     assert "Usage: htex synth" in command("synth", "--help", cwd=place).stdout
     assert "unexpected argument" in command("synth", "--loud", cwd=place, code=2).stderr
     assert "missing.htex" in command("info", "missing.htex", cwd=place, code=1).stderr
@@ -82,3 +83,39 @@ def test_the_examples_of_the_readme_run(place: pathlib.Path, tmp_path: pathlib.P
         run = subprocess.run([sys.executable, "-c", block], cwd=tmp_path, capture_output=True, text=True, timeout=300)
         assert run.returncode == 0, run.stderr
     assert (tmp_path / "cloth.wav").stat().st_size == 44 + 2 * 480_000
+
+
+def _blocks(page: str, language: str) -> list[str]:
+    text = (HERE.parents[2] / "docs" / page).read_text(encoding="utf-8")
+    return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+
+
+def test_the_lines_of_pages_run(place: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import htex.dask
+
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(place / "cloth.htex", tmp_path)
+    (plays,) = _blocks("languages.md", "python")
+    played: dict[str, Any] = {}
+    exec(plays, played)
+    assert played["samples"].shape == (48_000,) and played["samples"].any()
+    # The scheduler of the page does not exist: its tests are those of `htex.dask`.
+    (builds,) = _blocks("libraries.md", "python")
+    call = builds.replace('Client("tcp://scheduler:8786")', "None").replace("htex.dask.build(", "bind(")
+    bound: dict[str, Any] = {"bind": inspect.signature(htex.dask.build).bind}
+    exec(call, bound)
+    assert bound["report"].arguments["output"] == "dist"
+
+
+def test_the_analysis_of_the_page_runs(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    golden = HERE.parents[2] / "tests/golden/study"
+    monkeypatch.chdir(tmp_path)
+    (analyses,) = _blocks("studies.md", "python")
+    given: dict[str, Any] = {"htex": htex, "ratings": golden / "ratings.csv", "spectra": golden / "spectra.csv"}
+    exec(analyses, given)
+    assert (tmp_path / "results").is_dir()
+    (console,) = _blocks("studies.md", "console")
+    line, *lines = console.splitlines()
+    printed = command(*line.removeprefix("$ htex ").split(), cwd=tmp_path).stdout.splitlines()
+    shown = [line for line in lines if line != "..."]
+    assert printed[: len(shown)] == shown

@@ -1,4 +1,4 @@
-"""What is felt of a difference, from the definition in docs/manual.md and the module `htex_dsp::vibrotactile` alone.
+"""What is felt of a difference, from the definition in docs/felt.md and the module `htex_dsp::vibrotactile` alone.
 
     python3 tests/peers/felt.py > tests/golden/felt.json
 

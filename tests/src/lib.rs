@@ -9,10 +9,13 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-/// The page's example compiles.
+/// The examples of pages compile.
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/driving-a-display.md")]
-pub struct DrivingADisplay;
+#[doc = include_str!("../../docs/languages.md")]
+#[doc = include_str!("../../docs/libraries.md")]
+#[doc = include_str!("../../docs/microcontroller.md")]
+pub struct Pages;
 
 /// The workspace's folder.
 pub fn workspace() -> PathBuf {

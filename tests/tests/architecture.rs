@@ -274,6 +274,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-capi",
             "htex-device-builtin",
             "htex-dsp",
+            "htex-exchange",
             "htex-finding",
             "htex-format",
             "htex-library",

@@ -77,7 +77,7 @@ const SECONDS: f64 = 0.2;
 
 /// Scenes that are tried: a sample, unless all are asked for.
 fn count() -> u32 {
-    if xtask::prove::whole() { 2_000 } else { 250 }
+    if xtask::prove::whole() { 2_000 } else { 100 }
 }
 
 impl Case {

@@ -43,6 +43,7 @@ mod signals;
 mod sources;
 mod transfer;
 mod validation;
+mod version;
 mod wasm_limits;
 mod wav;
 
@@ -60,7 +61,7 @@ use htex_device_builtin::SOUND;
 /// Turns a recording of a finger sliding over a surface into a `.htex` file of a few hundred bytes,
 /// with models of its spectrum and the measured error of each.
 #[derive(Parser)]
-#[command(name = "htex", version, max_term_width = 100, after_help = first_steps())]
+#[command(name = "htex", version, long_version = version::LONG, max_term_width = 100, after_help = first_steps())]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -109,6 +110,22 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, program: Vec<OsString>
     let code = parse_and_run(arguments);
     located::clear();
     code
+}
+
+/// Whether the command takes these arguments, the first of them its name; nothing is run. By this, tests hold pages to the command.
+///
+/// ```
+/// assert!(htex_cli::check_usage(["htex", "info", "a.htex"].map(Into::into)).is_ok());
+/// assert!(htex_cli::check_usage(["htex", "info", "--no-such-flag"].map(Into::into)).is_err());
+/// ```
+///
+/// # Errors
+/// What the command would print.
+pub fn check_usage(arguments: impl IntoIterator<Item = OsString>) -> Result<(), String> {
+    match Cli::try_parse_from(arguments) {
+        Err(error) if error.use_stderr() => Err(error.to_string()),
+        _ => Ok(()),
+    }
 }
 
 fn parse_and_run(arguments: Vec<OsString>) -> u8 {

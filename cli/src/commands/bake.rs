@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex::Motion;
-use htex_bake::{BakeError, Baked, Grid};
+use htex_bake::{BakeError, BakeLimits, Baked, Grid};
 use serde_json::json;
 
 use crate::exit::Exit;
@@ -13,6 +13,10 @@ use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 use crate::shown::shown;
 use htex_files::AtFile;
+
+/// Range of the coefficients of a filter.
+const FEWEST: i64 = BakeLimits::FEWEST as i64;
+const MOST: i64 = BakeLimits::MOST as i64;
 
 /// Write a texture as a block of bytes for the player on microcontrollers (docs/microcontroller.md).
 ///
@@ -44,12 +48,20 @@ pub(crate) struct Bake {
     #[arg(long, default_value_t = 0.3, value_name = "DB")]
     within: f64,
 
+    /// Most coefficients of a filter, 65 to 641, which bound what a sample costs [default: 641]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(FEWEST..=MOST))]
+    longest: Option<u16>,
+
     #[command(flatten)]
     player: PlayerArgs,
 
     /// The file to write: a C array if it ends in .h, a Rust array if it ends in .rs, else (.bin) the bytes
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+
+    /// Name of the array in a .h or .rs file [default: the file's name]
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
 
     /// Print JSON instead of text
     #[arg(long)]
@@ -59,7 +71,7 @@ pub(crate) struct Bake {
 impl Bake {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         check_outputs([self.output.as_path()], [self.asset.as_path()])?;
-        let (stem, format) = named(&self.output)?;
+        let (name, format) = named(&self.output, self.name.as_deref())?;
         let given = self.given()?;
         if !(self.within > 0.0 && self.within.is_finite()) {
             let sentence = format!("--within {}: a number of decibels above 0", self.within);
@@ -70,12 +82,14 @@ impl Bake {
             Some(grid) => grid,
             None => Grid::of_first_condition(&asset).of(&self.asset)?,
         };
-        let baked = htex_bake::bake(&asset, self.model.as_deref(), &grid, self.rate, self.within)
+        let longest = self.longest.map_or(BakeLimits::MOST, usize::from);
+        let limits = BakeLimits::within_db(self.within).with_longest(longest);
+        let baked = htex_bake::bake(&asset, self.model.as_deref(), &grid, self.rate, limits)
             .of(&self.asset)?;
         let written = match format {
             Format::Bytes => baked.bytes.clone(),
-            Format::C => htex_bake::c_header(&stem, &baked.bytes).into_bytes(),
-            Format::Rust => htex_bake::rust_source(&stem, &baked.bytes).into_bytes(),
+            Format::C => htex_bake::c_header(&name, &baked).into_bytes(),
+            Format::Rust => htex_bake::rust_source(&name, &baked).into_bytes(),
         };
         htex_format::write_file(&self.output, &written).writing(&self.output)?;
         let error_db = baked.at_conditions_db.max(baked.between_db);
@@ -152,14 +166,28 @@ enum Format {
     Rust,
 }
 
-/// The name of the array, and the format.
-fn named(output: &Path) -> Result<(String, Format), Failure> {
+/// The name of the array, and the format. A name that is given is checked; else it is that of the file.
+fn named(output: &Path, given: Option<&str>) -> Result<(String, Format), Failure> {
     let text = |part: Option<&std::ffi::OsStr>| part.and_then(|p| p.to_str()).map(str::to_owned);
     let stem = text(output.file_stem()).unwrap_or_default();
-    let format = match text(output.extension()).as_deref() {
-        Some("bin") => Format::Bytes,
-        Some("h") => Format::C,
-        Some("rs") => Format::Rust,
+    let (format, is_name, rule): (_, fn(&str) -> bool, _) = match text(output.extension())
+        .as_deref()
+    {
+        Some("bin") => (
+            Format::Bytes,
+            |_| false,
+            "bytes in a .bin file have no name",
+        ),
+        Some("h") => (
+            Format::C,
+            htex_bake::is_c_name,
+            "a name in C begins with a letter, has letters, digits and single underscores, and is no keyword",
+        ),
+        Some("rs") => (
+            Format::Rust,
+            htex_bake::is_rust_name,
+            "a constant in Rust has capital letters, digits and underscores, and begins with a letter",
+        ),
         _ => {
             return Err(Failure::Usage(format!(
                 "{}: the name ends in .bin, .h or .rs",
@@ -167,7 +195,13 @@ fn named(output: &Path) -> Result<(String, Format), Failure> {
             )));
         }
     };
-    Ok((stem, format))
+    let name = match (given, &format) {
+        (Some(given), _) if is_name(given) => given.to_owned(),
+        (Some(given), _) => return Err(Failure::Usage(format!("--name {given}: {rule}"))),
+        (None, Format::Rust) => htex_bake::rust_name(&stem),
+        (None, _) => htex_bake::c_name(&stem),
+    };
+    Ok((name, format))
 }
 
 /// Reads `speed=…,force=…`.

@@ -247,40 +247,13 @@ impl From<ExchangeError> for Failure {
         };
         let flag = |setting: &str| format!("--{}", setting.replace('_', "-"));
         match error {
-            Missing { format, missing } => {
-                let flags: Vec<String> = missing.iter().map(|m| flag(m.setting)).collect();
-                let words: Vec<&str> = missing.iter().map(|m| m.words).collect();
-                Self::Usage(format!(
-                    "{format} does not say {}; give {}",
-                    words.join(", "),
-                    flags.join(", ")
-                ))
-            }
-            Unused {
-                format,
-                way,
-                setting,
-                takes,
-            } => {
-                let takes = match takes.is_empty() {
-                    true => String::new(),
-                    false => {
-                        let flags: Vec<String> = takes.into_iter().map(flag).collect();
-                        format!(" (it takes {})", flags.join(", "))
-                    }
-                };
-                let unused = flag(&setting);
-                Self::Usage(format!(
-                    "{format}: its {way} takes no {unused}; leave it out{takes}"
-                ))
-            }
-            OutOfRange { name, value, range } => {
-                Self::Usage(format!("{} {value}: {range}", flag(name)))
-            }
             ExchangeError::Author(error) => error.into(),
-            error @ (UnknownFormat { .. } | UnknownProfile { .. } | NoSamples { .. }) => {
-                Self::Usage(error.to_string())
-            }
+            error @ (Missing { .. }
+            | Unused { .. }
+            | OutOfRange { .. }
+            | UnknownFormat { .. }
+            | UnknownProfile { .. }
+            | NoSamples { .. }) => Self::Usage(error.told(&flag)),
             error => Self::Other(error.to_string()),
         }
     }

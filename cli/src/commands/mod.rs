@@ -6,6 +6,7 @@ mod build;
 mod compare;
 #[cfg(feature = "wasm")]
 mod compile_module;
+mod completions;
 mod demo;
 mod device;
 mod edit;
@@ -19,6 +20,7 @@ mod import;
 mod info;
 mod lib;
 mod make;
+mod manual;
 mod mix;
 mod plan;
 mod play;
@@ -83,6 +85,8 @@ pub(crate) enum Command {
     #[cfg(feature = "wasm")]
     CompileModule(compile_module::CompileModule),
     Lib(lib::Lib),
+    Completions(completions::Completions),
+    Man(manual::Manual),
     Schema(schema::Schema),
     Plugin(plugin::Plugin),
     Device(device::Device),
@@ -128,6 +132,8 @@ impl Command {
             #[cfg(feature = "wasm")]
             Self::CompileModule(args) => args.run(),
             Self::Lib(args) => args.run(),
+            Self::Completions(args) => args.run(),
+            Self::Man(args) => args.run(),
             Self::Schema(args) => args.run(),
             Self::Plugin(args) => args.run(),
             Self::Device(args) => args.run(),

@@ -53,6 +53,27 @@ fn a_condition_is_written_as_bytes_and_as_source() {
     assert_eq!(listed(&source, ['[', ']']), block);
     assert_eq!(bake("again.bin"), block);
 
+    for (output, name, line) in [
+        (
+            "a.h",
+            "felt2",
+            format!("static const uint8_t felt2[{length}] = {{"),
+        ),
+        (
+            "a.rs",
+            "FELT_2",
+            format!("pub static FELT_2: [u8; {length}] = ["),
+        ),
+    ] {
+        let at = ["--at", "speed=80,force=0.4", "--name", name, "-o", output];
+        let run = place.run(&[&["bake", "t.htex", "--model", "sbeta"][..], &at].concat());
+        assert_eq!(run.code(), 0, "{}", run.error());
+        let text = String::from_utf8(bytes(&place, output)).unwrap();
+        assert!(text.contains(&line), "{text}");
+    }
+    let numbers = Block::open(&block).unwrap().numbers();
+    assert!(header.contains(&format!("#define MY_TEXTURE_NUMBERS {numbers}\n")));
+
     let block = Block::open(&block).unwrap();
     assert!(matches!(block.kind(), BlockKind::Noise { .. }));
     let mut samples = vec![0.0; 80_000];
@@ -184,7 +205,12 @@ fn wrong_conditions_rates_and_names_are_explained() {
         ),
         (&["--rate", "1500", "-o", "t.bin"], "the rate is from 2050"),
         (&["--within", "0", "-o", "t.bin"], "above 0"),
+        (&["--longest", "64", "-o", "t.bin"], "65..=641"),
         (&["-o", "t.wav"], ".bin, .h or .rs"),
+        (&["--name", "felt", "-o", "t.bin"], "have no name"),
+        (&["--name", "2felt", "-o", "t.h"], "begins with a letter"),
+        (&["--name", "float", "-o", "t.h"], "is no keyword"),
+        (&["--name", "felt", "-o", "t.rs"], "capital letters"),
         (&["-o", "t.htex"], "it is read here"),
         (
             &[

@@ -14,26 +14,7 @@ fn haptic() -> String {
 }
 
 /// A model file of the Penn Haptic Texture Toolkit with four nodes, of which two are silent.
-fn hatt() -> String {
-    let node = |number: usize, speed: f64, force: f64, variance: f64| {
-        format!(
-            "<model><modNum>{number}</modNum><ARcoeff><value>1</value><value>-0.9</value><value>0.5</value></ARcoeff>\
-             <MAcoeff><value>1</value><value>0.3</value></MAcoeff><var>{variance}</var><gain>2.5</gain>\
-             <speedMod>{speed}</speedMod><forceMod>{force}</forceMod></model>"
-        )
-    };
-    let nodes = [
-        node(1, 0.0, 0.0, 0.0),
-        node(2, 240.0, 0.0, 0.0),
-        node(3, 0.0, 3.0, 0.01),
-        node(4, 240.0, 3.0, 0.02),
-    ];
-    format!(
-        "<?xml version=\"1.0\"?>\n<modelSet texture=\"7\">\n<material>Felt</material>\n<AccelUnits>m/s^2</AccelUnits>\n\
-         <SpeedUnits>mm/s</SpeedUnits>\n<ForceUnits>N</ForceUnits>\n<SampleRate>1000</SampleRate>\n<numMod>4</numMod>\n{}\n</modelSet>\n",
-        nodes.concat()
-    )
-}
+const HATT: &str = include_str!("../../../sdk/exchange/tests/felt.xml");
 
 const GIVEN: &str = "--full-scale 0.2 --speed 80 --force 0.4";
 
@@ -103,7 +84,9 @@ fn a_signal_is_imported_with_what_it_does_not_say() {
     // What the file does not say is asked for, by flags.
     let (_, error) = run(&place, "import hum.haptic --speed 80 -o other.htex", 2);
     assert!(
-        error.contains("does not say how strong 1 is, at which force; give --full-scale, --force"),
+        error.contains(
+            "does not say how strong 1 is and at which force; give --full-scale and --force"
+        ),
         "{error}"
     );
     let (_, error) = run(
@@ -121,7 +104,7 @@ fn a_signal_is_imported_with_what_it_does_not_say() {
 #[test]
 fn a_model_file_states_all_and_takes_no_flag_of_a_signal() {
     let place = Place::new();
-    place.write("felt.xml", hatt());
+    place.write("felt.xml", HATT);
     let made = place.json(&words(
         "import felt.xml --license CC-BY-4.0 -o felt.htex --json",
     ));
@@ -450,7 +433,7 @@ fn a_map_goes_out_and_comes_in() {
     );
     let (_, error) = run(&place, "import row.png -o none.htex", 2);
     assert!(
-        error.contains("give --full-scale, --speed, --force"),
+        error.contains("give --full-scale, --speed and --force"),
         "{error}"
     );
     let (_, error) = run(

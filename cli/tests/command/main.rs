@@ -14,6 +14,7 @@ mod by_hand;
 mod catalogue;
 #[cfg(unix)]
 mod checker;
+mod compat;
 mod embed;
 mod exchange;
 mod fit;
@@ -30,6 +31,7 @@ mod modules;
 #[cfg(unix)]
 mod new_plugin;
 mod outputs;
+mod pages;
 mod play;
 #[cfg(unix)]
 mod plugins;
@@ -46,6 +48,7 @@ mod recordings;
 mod response;
 mod rigs;
 mod scene;
+mod shell;
 #[cfg(feature = "cloud")]
 mod storage;
 #[cfg(all(unix, feature = "build"))]

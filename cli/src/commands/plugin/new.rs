@@ -8,8 +8,8 @@ use crate::failure::Failure;
 use crate::output::{print, write_file};
 use htex_files::AtFile;
 
-/// The folder `sdk` of the sources this program was built from.
-const SDK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../sdk");
+/// The folder `sdk` of the sources this program was built from; a released one knows none.
+const SDK: Option<&str> = option_env!("HTEX_SDK");
 
 /// Write the project of a new model, which builds with one command and passes `check`.
 #[derive(Args)]
@@ -25,7 +25,7 @@ pub(crate) struct New {
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
 
-    /// Folder of the htex sources' `sdk`, for Rust [default: of those this program was built from]
+    /// Folder of the htex sources' `sdk`, for Rust [default: of those this program was built from, if it was not released]
     #[arg(long, value_name = "DIR")]
     sdk: Option<PathBuf>,
 }
@@ -105,7 +105,11 @@ impl New {
 
     /// The folder `sdk`, from which a project in Rust takes its dependencies.
     fn sdk(&self) -> Result<PathBuf, Failure> {
-        let sdk = self.sdk.as_deref().unwrap_or(Path::new(SDK));
+        let sdk = self.sdk.as_deref().or(SDK.map(Path::new));
+        let sdk = sdk.ok_or_else(|| {
+            let rule = "--sdk names the folder `sdk` of the sources of htex, whose crates a model in Rust takes by path";
+            Failure::Usage(rule.to_owned())
+        })?;
         sdk.canonicalize().map_err(|error| {
             let sdk = sdk.display();
             Failure::Usage(format!(

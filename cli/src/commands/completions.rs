@@ -1,0 +1,27 @@
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+
+use crate::Cli;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::output::write_bytes;
+
+/// Print what a shell completes the command's words by.
+///
+/// bash: source it, or keep it as htex in ~/.local/share/bash-completion/completions. zsh: as _htex in a folder of fpath. fish: as
+/// htex.fish in ~/.config/fish/completions. PowerShell: at the end of $PROFILE.
+#[derive(Args)]
+pub(crate) struct Completions {
+    /// The shell
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+impl Completions {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
+        let mut script = Vec::new();
+        clap_complete::generate(self.shell, &mut Cli::command(), "htex", &mut script);
+        write_bytes(&script)?;
+        Ok(Exit::SUCCESS)
+    }
+}

@@ -2,13 +2,14 @@
 
 mod c;
 mod costs;
+mod exchanged;
 mod fixtures;
 mod processors;
 mod python;
 mod studio;
 mod web;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result, bail, ensure};
@@ -206,12 +207,4 @@ fn which(name: &str) -> std::path::PathBuf {
 fn copy(from: &Path, to: &Path) -> Result<()> {
     fs_err::copy(from, to)?;
     Ok(())
-}
-
-pub(crate) fn files(folder: &Path) -> Result<Vec<PathBuf>> {
-    let entries = fs_err::read_dir(folder)?;
-    let paths = entries
-        .map(|entry| Ok(entry?.path()))
-        .collect::<Result<Vec<_>>>()?;
-    Ok(paths.into_iter().filter(|path| path.is_file()).collect())
 }

@@ -17,7 +17,9 @@ const TESTS: &[&str] = &[
     "abi",
     "command",
     "conformance",
+    "costs",
     "device_abi",
+    "firmware",
     "header",
     "losses",
     "measures",
@@ -29,6 +31,7 @@ const TESTS: &[&str] = &[
     "source_abi",
     "study_rules",
     "table",
+    "unity",
 ];
 
 /// Writes all generated files. The whole workspace is built, with the features that `cargo test` builds it with.
@@ -73,19 +76,25 @@ pub fn file_with(path: impl AsRef<str>, bytes: &[u8], is_fresh: impl FnOnce(&[u8
 ///
 /// # Panics
 /// As [`file()`], and when the document has no such part.
-#[allow(clippy::panic)] // It fails a test.
 pub fn section(path: &str, name: &str, text: &str) {
+    section_with(path, name, text, |kept| kept == text);
+}
+
+/// As [`section`]; `is_fresh` compares the text that the document has.
+///
+/// # Panics
+/// As [`section`].
+#[allow(clippy::panic)] // It fails a test.
+pub fn section_with(path: &str, name: &str, text: &str, is_fresh: impl FnOnce(&str) -> bool) {
     let document = fs::read_to_string(crate::places::workspace().join(path)).unwrap_or_default();
     let begin = format!("<!-- {name}, generated -->\n");
     let parts = document.split_once(&begin);
-    let parts = parts.and_then(|(before, rest)| Some((before, rest.split_once("<!-- end -->")?.1)));
-    let Some((before, after)) = parts else {
+    let parts = parts.and_then(|(before, rest)| Some((before, rest.split_once("<!-- end -->")?)));
+    let Some((before, (kept, after))) = parts else {
         panic!("{path}: there is no part {begin}");
     };
-    file(
-        path,
-        format!("{before}{begin}{text}<!-- end -->{after}").as_bytes(),
-    );
+    let bytes = format!("{before}{begin}{text}<!-- end -->{after}");
+    file_with(path, bytes.as_bytes(), |_| is_fresh(kept));
 }
 
 /// Compares the files of a folder that has nothing else, or writes them and removes all others.
@@ -122,7 +131,8 @@ pub fn only<'a>(path: &str, expected: impl IntoIterator<Item = &'a str>) {
     }
 }
 
-fn is_written() -> bool {
+/// Whether generated files are written.
+pub fn is_written() -> bool {
     std::env::var_os(VARIABLE).is_some_and(|value| value == "1")
 }
 

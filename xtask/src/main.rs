@@ -4,6 +4,7 @@ use std::process::{Command, ExitCode};
 
 use anyhow::Result;
 use xtask::dist::{Dist, dist};
+use xtask::platform::Build;
 use xtask::programs::run;
 use xtask::{fuzz, plugins};
 
@@ -18,7 +19,13 @@ cargo xtask bench     measures htex beside plain loops in C and NumPy, SciPy, li
 cargo xtask fuzz      fuzzes the TARGETS named, or all of fuzz/fuzz_targets, each for --seconds N (60)
                       or --executions N, --jobs N (2) at a time; with --address under the address
                       sanitizer, which needs a nightly toolchain; see fuzz/README.md
-cargo xtask dist --prefix DIR [--small]  builds and installs libhtex for C, C++ and C#
+cargo xtask dist --prefix DIR [--whole]  builds and installs libhtex for C, C++ and C#: the small library and, with --whole, in
+                      lib/whole the one with scenes, libraries and the engine of WASM modules
+cargo xtask release --out DIR [--only NAME,…] [--trial]  builds archives, wheels and the npm package, of all platforms or those named:
+                      linux-x86_64, linux-aarch64, windows-x86_64, macos, npm, sdist; --trial: by this machine's tools, for this
+                      machine, without lists of licences and parts
+cargo xtask book --out DIR  makes a book of HTML of the pages of docs and spec, by mdBook, and follows its links
+cargo xtask firmware --out DIR  lays out the player in C for Arduino, ESP-IDF and Zephyr
 cargo xtask bindings  tests the bindings to other languages and on other processors, all or those named: c, web, studio,
                       python, processors; says what is missing
 cargo xtask web --out DIR  builds the npm package `htex` for browsers and Node.js
@@ -38,9 +45,14 @@ fn main() -> Result<ExitCode> {
             Err(error) => return Ok(usage(&format!("{error}\n"))),
         },
         ["dist", "--prefix", prefix] => install(prefix, false)?,
-        ["dist", "--prefix", prefix, "--small"] | ["dist", "--small", "--prefix", prefix] => {
+        ["dist", "--prefix", prefix, "--whole"] | ["dist", "--whole", "--prefix", prefix] => {
             install(prefix, true)?;
         }
+        ["release", ref words @ ..] => {
+            xtask::release::release(&xtask::release::Release::parse(words)?)?
+        }
+        ["book", "--out", out] => xtask::book::book(out.as_ref())?,
+        ["firmware", "--out", out] => xtask::firmware::firmware(out.as_ref())?,
         ["bindings", ref names @ ..] => xtask::bindings::test(names)?,
         ["prove", ref arguments @ ..] => xtask::prove::prove(arguments)?,
         ["web", "--out", out] => xtask::web::web(out.as_ref())?,
@@ -84,9 +96,10 @@ fn build_plugins(options: &[&str]) -> Result<ExitCode> {
 }
 
 /// Installs libhtex.
-fn install(prefix: &str, small: bool) -> Result<()> {
+fn install(prefix: &str, whole: bool) -> Result<()> {
     dist(&Dist {
         prefix: prefix.into(),
-        small,
+        whole,
+        build: Build::here()?,
     })
 }

@@ -56,6 +56,13 @@ pub const CXX: Need = Need {
     for_wasm: false,
 };
 
+/// Builds projects in C.
+pub const CMAKE: Need = Need {
+    what: "CMake",
+    how: "apt-get install cmake",
+    for_wasm: false,
+};
+
 /// A compiler of C# and its runtime.
 pub const MONO: Need = Need {
     what: "mono",
@@ -109,6 +116,27 @@ pub const QEMU_ARM: Need = Need {
 pub const ARM_GCC: Need = Need {
     what: "a C compiler for ARM boards",
     how: "apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi",
+    for_wasm: false,
+};
+
+/// Builds C for Xtensa.
+pub const XTENSA_GCC: Need = Need {
+    what: "a C compiler for Xtensa",
+    how: "apt-get install gcc-xtensa-lx106",
+    for_wasm: false,
+};
+
+/// Builds C for boards with a RISC-V of 32 bits.
+pub const RISCV_GCC: Need = Need {
+    what: "a C compiler for RISC-V",
+    how: "apt-get install gcc-riscv64-unknown-elf",
+    for_wasm: false,
+};
+
+/// Emulates a board with a RISC-V of 32 bits.
+pub const QEMU_RISCV: Need = Need {
+    what: "QEMU for RISC-V boards",
+    how: "apt-get install qemu-system-misc",
     for_wasm: false,
 };
 

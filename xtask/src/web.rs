@@ -12,17 +12,22 @@ use crate::programs::run;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
-const COPIED: [&str; 29] = [
+const COPIED: [&str; 34] = [
     "author-core.js",
     "author-serve.js",
+    "author-thread.js",
     "author-worker.node.js",
     "author.d.ts",
     "author.js",
     "core.js",
+    "files.js",
     "guarded.js",
     "guests.js",
     "host.js",
     "htexlib.js",
+    "import.d.ts",
+    "import.js",
+    "import.node.js",
     "index.d.ts",
     "index.js",
     "index.node.js",
@@ -78,6 +83,13 @@ const AUTHOR_WORKER: [&str; 5] = [
     "author-worker.js",
 ];
 
+/// Features of `sdk/web/author`, and the modules that are built with them.
+const MODULES: [(&str, &str); 3] = [
+    ("make", "htex-author.wasm"),
+    ("import", "htex-import.wasm"),
+    ("scene", "htex-scene.wasm"),
+];
+
 /// Builds the package into a folder.
 ///
 /// # Errors
@@ -86,8 +98,8 @@ pub fn web(out: &Path) -> Result<()> {
     let source = workspace().join("sdk/web");
     let player = module("htex-capi", "small", &["--features", "library"])?.join("htex_c.wasm");
     fs::create_dir_all(out)?;
-    // Each is built to the file of the other.
-    for (feature, name) in [("make", "htex-author.wasm"), ("scene", "htex-scene.wasm")] {
+    // Each is built to the file of the others.
+    for (feature, name) in MODULES {
         let built = module("htex-web-author", "author", &["--features", feature])?;
         fs::copy(built.join("htex_author_c.wasm"), out.join(name))?;
     }

@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct { uint32_t most_points, least_ms, most_ms; float low_hz, high_hz; } Limits;
-typedef struct { float amplitude, frequency_hz; uint32_t duration_ms; } Point;
+/* The declarations that docs/devices.md gives to applications. */
+#include "pwle.h"
 
 /* The documentation guarantees 16 points, a shortest point of at most 20 ms and a longest one of at least 1 s. */
-static Limits limits = {16, 20, 1000, 60, 300};
+static htex_pwle_limits_t limits = {16, 20, 1000, 60, 300};
 static int absent, fails;
 static char text[1 << 20];
 static size_t length;
@@ -22,12 +22,12 @@ static int32_t broken(const char *rule) {
     return -2;
 }
 
-int32_t htex_pwle_limits(Limits *out) {
+int32_t htex_pwle_limits(htex_pwle_limits_t *out) {
     *out = limits;
     return absent ? -1 : 0;
 }
 
-static int32_t rule(const Point *points, uint32_t count) {
+static int32_t rule(const htex_pwle_point_t *points, uint32_t count) {
     if (points == NULL || count == 0) return broken("no-points"); /* build(): at least one control point */
     if (count > limits.most_points) return broken("most-points"); /* getMaxSize() */
     for (uint32_t i = 0; i < count; i++) {
@@ -39,7 +39,7 @@ static int32_t rule(const Point *points, uint32_t count) {
     return 0;
 }
 
-int32_t htex_pwle_play(const Point *points, uint32_t count) {
+int32_t htex_pwle_play(const htex_pwle_point_t *points, uint32_t count) {
     pthread_mutex_lock(&lock);
     int32_t code = fails ? -5 : rule(points, count);
     if (code == 0) {

@@ -1,92 +1,261 @@
-//! libhtex as it is installed: pkg-config, CMake, the static library, SDL2, and the size of the small build.
+//! libhtex as it is installed: pkg-config, CMake, the static libraries, SDL2, the plugin for FMOD, and the sizes.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, ensure};
 
 use crate::dist::{Dist, dist};
-use crate::places::workspace;
+use crate::places::{cargo, workspace};
+use crate::platform::Build;
 use crate::programs::{program, run};
 
-/// Most bytes of the small build's shared library; the goal is 1.5 MB (docs/languages.md says what takes the rest).
+/// Most bytes of the small shared library; the goal is 1.5 MB (docs/languages.md says what takes the rest).
 const SMALL: u64 = 2_500_000;
 
-const CMAKE: &str = "cmake_minimum_required(VERSION 3.16)\nproject(app C)\nfind_package(htex 0.1 REQUIRED)\n\
-                     add_executable(app main.c)\ntarget_link_libraries(app PRIVATE htex::htex m)\n\
-                     add_executable(app_static main.c)\ntarget_link_libraries(app_static PRIVATE htex::static m)\n";
+/// Most bytes of the static libraries, small and whole.
+const STATIC: u64 = 25_000_000;
+const WHOLE_STATIC: u64 = 45_000_000;
+
+const CMAKE: &str = "cmake_minimum_required(VERSION 3.16)\nproject(app C)\nfind_package(htex @LINE@ REQUIRED)\n\
+                     find_package(htex 0.0 QUIET)\nif(htex_FOUND)\n    message(FATAL_ERROR \"of another line of versions\")\nendif()\n\
+                     foreach(library htex static whole whole_static)\n    add_executable(app_${library} main.c)\n    \
+                     target_link_libraries(app_${library} PRIVATE htex::${library} m)\nendforeach()\n";
+
+/// How the player of an asset is built, as users type it: its name, and the end of the line of the compiler.
+const LINES: [(&str, &str); 5] = [
+    ("small", "main.c $(pkg-config --cflags --libs htex) -lm"),
+    (
+        "whole",
+        "main.c $(pkg-config --cflags --libs htex-whole) -lm",
+    ),
+    (
+        "static",
+        "main.c -static $(pkg-config --static --cflags --libs htex)",
+    ),
+    (
+        "whole-static",
+        "main.c -static $(pkg-config --static --cflags --libs htex-whole)",
+    ),
+    (
+        "two",
+        "two.c libother.a -static $(pkg-config --static --cflags --libs htex)",
+    ),
+];
+
+/// The player, which calls another static library of Rust, too.
+const TWO: &str = "\
+#define main play
+#include \"main.c\"
+#undef main
+double other_sum(const double *numbers, size_t count);
+int main(int argc, char **argv)
+{
+    const double numbers[] = {1.0, 2.0};
+    return other_sum(numbers, 2) == 3.0 ? play(argc, argv) : 3;
+}
+";
+
+/// A library of Rust that is none of htex, with a panic that is caught.
+const OTHER: &str = "\
+#[unsafe(no_mangle)]
+pub extern \"C\" fn other_sum(numbers: *const f64, count: usize) -> f64 {
+    // SAFETY: the caller has that many numbers.
+    let numbers = unsafe { std::slice::from_raw_parts(numbers, count) };
+    let sum = std::panic::catch_unwind(|| numbers.to_vec().iter().sum());
+    sum.unwrap_or(f64::NAN)
+}
+";
+
+struct Installed {
+    folder: PathBuf,
+    prefix: PathBuf,
+    asset: PathBuf,
+}
 
 pub(super) fn test(folder: &Path) -> Result<()> {
     let folder = fs_err::canonicalize(folder)?;
     let capi = fs_err::canonicalize(workspace().join("sdk/capi"))?;
-    let asset = capi.join("../../examples/scenes/vinyl.htex");
-    let install = |name: &str, small| {
-        let prefix = folder.join(name);
-        dist(&Dist {
-            prefix: prefix.clone(),
-            small,
-        })
-        .map(|()| prefix)
+    let installed = Installed {
+        asset: capi.join("../../examples/scenes/vinyl.htex"),
+        prefix: folder.join("prefix"),
+        folder: folder.clone(),
     };
-    let (whole, small) = (install("whole", false)?, install("small", true)?);
-    fs_err::write(folder.join("CMakeLists.txt"), CMAKE)?;
+    dist(&Dist {
+        prefix: installed.prefix.clone(),
+        whole: true,
+        build: Build::here()?,
+    })?;
     fs_err::copy(capi.join("examples/play.c"), folder.join("main.c"))?;
-    let played = |name: &str, program_name: &Path, prefix: &Path| {
-        let out = folder.join(format!("{name}.f32"));
-        let mut play = program(program_name, &folder);
-        play.arg(&asset)
-            .arg(&out)
-            .env("LD_LIBRARY_PATH", prefix.join("lib"));
-        run(&mut play)?;
-        anyhow::Ok(fs_err::read(&out)?)
-    };
+    fs_err::write(folder.join("two.c"), TWO)?;
+    other(&folder)?;
     let mut samples = Vec::new();
-    for (name, prefix) in [("whole", &whole), ("small", &small)] {
-        let built = folder.join(format!("play-{name}"));
-        // As a user types it.
-        let line = format!(
-            "cc -std=c11 -Wall -Werror main.c $(pkg-config --cflags --libs htex) -lm -o {}",
-            built.display()
-        );
-        run(program("sh", &folder)
-            .args(["-c", &line])
-            .env("PKG_CONFIG_PATH", prefix.join("lib/pkgconfig")))?;
-        samples.push(played(name, &built, prefix)?);
+    for (name, line) in LINES {
+        let words = format!("cc -std=c11 -Wall -Werror {line} -o play-{name}");
+        run(&mut installed.shell(&words))?;
+        samples.push(installed.played(&format!("play-{name}"))?);
     }
+    let version = crate::places::version()?;
+    let line = version.rsplit_once('.').map_or("", |(line, _)| line);
+    fs_err::write(folder.join("CMakeLists.txt"), CMAKE.replace("@LINE@", line))?;
     let mut configure = program("cmake", &folder);
     configure.args(["-S", ".", "-B", "built"]);
-    run(configure.arg(format!("-DCMAKE_PREFIX_PATH={}", whole.display())))?;
+    run(configure.arg(format!(
+        "-DCMAKE_PREFIX_PATH={}",
+        installed.prefix.display()
+    )))?;
     run(program("cmake", &folder).args(["--build", "built"]))?;
-    for name in ["app", "app_static"] {
-        samples.push(played(name, &folder.join("built").join(name), &whole)?);
+    for name in ["htex", "static", "whole", "whole_static"] {
+        samples.push(installed.played(&format!("built/app_{name}"))?);
     }
-    if samples.windows(2).any(|pair| pair[0] != pair[1]) || samples[0].len() != 4 * 64 * 625 {
-        bail!("the builds render different samples");
-    }
-    // The library as it is installed allocates nothing in real-time calls.
-    let line = "cc -std=c11 -O1 -Wall -Werror -DCOUNTED -pthread $0 $(pkg-config --cflags --libs htex) -lm -o real_time";
-    run(program("sh", &folder)
-        .args(["-c", line])
-        .arg(capi.join("tests/hosts/real_time.c"))
-        .env("PKG_CONFIG_PATH", whole.join("lib/pkgconfig")))?;
-    run(program("./real_time", &folder)
-        .arg(&asset)
-        .arg("20000")
-        .env("LD_LIBRARY_PATH", whole.join("lib")))?;
-    let line =
-        "cc -std=c11 -Wall -Werror $0 $(pkg-config --cflags --libs htex sdl2) -lm -o play_sdl";
+    let is_whole = samples[0].len() == 4 * 64 * 625;
+    ensure!(
+        is_whole && samples.windows(2).all(|pair| pair[0] == pair[1]),
+        "the builds render different samples"
+    );
+    examples(&installed, &capi)?;
+    fmod(&installed, &capi)?;
+    names(&installed)?;
+    stacks(&installed.prefix.join("lib"))?;
+    sizes(&installed.prefix.join("lib"))
+}
+
+/// Builds the other library.
+fn other(folder: &Path) -> Result<()> {
+    fs_err::write(folder.join("other.rs"), OTHER)?;
+    let rustc = Path::new(&cargo()).with_file_name("rustc");
+    let rustc = if rustc.exists() {
+        rustc
+    } else {
+        "rustc".into()
+    };
+    run(program(rustc, folder).args(["--crate-type", "staticlib", "-O", "other.rs"]))
+}
+
+/// The library as it is installed allocates nothing in real-time calls; SDL 2 plays it.
+fn examples(installed: &Installed, capi: &Path) -> Result<()> {
+    let real_time = capi.join("tests/hosts/real_time.c");
+    let flags = "$(pkg-config --cflags --libs htex-whole) -lm";
+    run(&mut installed.shell(&format!(
+        "cc -std=c11 -O1 -Wall -Werror -DCOUNTED -pthread {} {flags} -o real_time",
+        real_time.display()
+    )))?;
+    run(installed
+        .program("real_time")
+        .arg(&installed.asset)
+        .arg("20000"))?;
     let sdl = capi.join("examples/play_sdl.c");
-    let mut compile = program("sh", &folder);
-    compile.args(["-c", line]).arg(sdl);
-    run(compile.env("PKG_CONFIG_PATH", whole.join("lib/pkgconfig")))?;
-    run(program("./play_sdl", &folder)
-        .arg(&asset)
-        .arg("1")
-        .env("SDL_AUDIODRIVER", "dummy")
-        .env("LD_LIBRARY_PATH", whole.join("lib")))?;
-    let library = small.join("lib/libhtex.so");
-    let bytes = fs_err::metadata(&library)?.len();
-    eprintln!("bindings: libhtex without the engine and scenes: {bytes} bytes");
-    let library = library.display();
-    ensure!(bytes <= SMALL, "{library}: {bytes} bytes; at most {SMALL}");
+    run(&mut installed.shell(&format!(
+        "cc -std=c11 -Wall -Werror {} $(pkg-config --cflags --libs htex-whole sdl2) -lm -o play_sdl",
+        sdl.display()
+    )))?;
+    let mut play = installed.program("play_sdl");
+    play.arg(&installed.asset).arg("1");
+    run(play.env("SDL_AUDIODRIVER", "dummy"))
+}
+
+/// The plugin for FMOD, with the static library in it and no names but its own, is played by the host of its tests, which stands for FMOD.
+fn fmod(installed: &Installed, capi: &Path) -> Result<()> {
+    let tests = capi.join("tests");
+    let (prefix, headers) = (installed.prefix.display(), tests.join("fmod"));
+    run(program("cmake", &installed.folder)
+        .args(["-S", "prefix/share/htex/fmod", "-B", "fmod"])
+        .arg(format!("-DFMOD_ROOT={}", headers.display()))
+        .arg(format!("-DCMAKE_PREFIX_PATH={prefix}")))?;
+    run(program("cmake", &installed.folder).args(["--build", "fmod"]))?;
+    run(&mut installed.shell(&format!(
+        "cc -std=c11 -O1 -Wall -Werror -DCOUNTED -I{} -I{} {} -o host",
+        headers.display(),
+        tests.join("hosts").display(),
+        headers.join("host.c").display()
+    )))?;
+    let mut host = installed.program("host");
+    host.arg("fmod/libhtex_fmod.so").arg(&installed.asset);
+    run(host.args(["512", "fmod.f32", "20", "7", "80,0.4", "0,0.4"]))?;
+    let names = "test \"$(nm -D --defined-only fmod/libhtex_fmod.so | cut -d' ' -f3)\" = FMODGetDSPDescription";
+    run(&mut installed.shell(names))
+}
+
+/// The libraries have no names but those of the header, and those of the shared ones have a version.
+fn names(installed: &Installed) -> Result<()> {
+    for folder in ["lib", "lib/whole"] {
+        let lib = installed.prefix.join(folder);
+        for (file, flags) in [("libhtex.a", "-g"), ("libhtex.so", "-D")] {
+            let line = format!("nm --defined-only {flags} {}", lib.join(file).display());
+            let mut nm = installed.shell(&line);
+            let output = nm.output()?;
+            let text = String::from_utf8_lossy(&output.stdout).into_owned();
+            let names: Vec<&str> = text
+                .lines()
+                .filter_map(|line| line.split(' ').nth(2))
+                .collect();
+            let is_ours = |name: &&str| match file {
+                "libhtex.a" => name.starts_with("htex_"),
+                _ => name.ends_with("@@HTEX_1.0") || *name == "HTEX_1.0",
+            };
+            let strange: Vec<_> = names.iter().filter(|name| !is_ours(name)).collect();
+            ensure!(
+                names.len() > 50,
+                "{folder}/{file} has {} names",
+                names.len()
+            );
+            ensure!(
+                strange.is_empty(),
+                "{folder}/{file} has the names {strange:?}"
+            );
+        }
+    }
     Ok(())
+}
+
+/// A program that links the static libraries has no executable stack.
+fn stacks(lib: &Path) -> Result<()> {
+    for file in ["libhtex.a", "whole/libhtex.a"] {
+        let mut sections = program("readelf", lib);
+        let output = sections.args(["-SW", file]).output()?;
+        let says_so = String::from_utf8_lossy(&output.stdout).contains(".note.GNU-stack");
+        ensure!(says_so, "{file} does not say that its stack holds no code");
+    }
+    Ok(())
+}
+
+/// Prints how large the libraries are.
+fn sizes(lib: &Path) -> Result<()> {
+    let most = [
+        ("libhtex.so", SMALL),
+        ("libhtex.a", STATIC),
+        ("whole/libhtex.so", u64::MAX),
+        ("whole/libhtex.a", WHOLE_STATIC),
+    ];
+    for (file, most) in most {
+        let bytes = fs_err::metadata(lib.join(file))?.len();
+        eprintln!("bindings: lib/{file}: {bytes} bytes");
+        ensure!(bytes <= most, "{file}: {bytes} bytes; at most {most}");
+    }
+    Ok(())
+}
+
+impl Installed {
+    /// A line of the shell, which finds the library by pkg-config.
+    fn shell(&self, line: &str) -> std::process::Command {
+        let mut shell = program("sh", &self.folder);
+        shell.args(["-c", line]);
+        shell.env("PKG_CONFIG_PATH", self.prefix.join("lib/pkgconfig"));
+        shell
+    }
+
+    /// A program that was built, which finds the whole library where its name has `whole`.
+    fn program(&self, name: &str) -> std::process::Command {
+        let is_small = ["play-small", "built/app_htex"].contains(&name);
+        let lib = if is_small { "lib" } else { "lib/whole" };
+        let mut program = program(self.folder.join(name), &self.folder);
+        program.env("LD_LIBRARY_PATH", self.prefix.join(lib));
+        program
+    }
+
+    /// The samples that a built player writes.
+    fn played(&self, name: &str) -> Result<Vec<u8>> {
+        let out = self.folder.join("played.f32");
+        run(self.program(name).arg(&self.asset).arg(&out))?;
+        Ok(fs_err::read(out)?)
+    }
 }

@@ -9,6 +9,7 @@ use anyhow::{Context, Result};
 use super::copy;
 use crate::dist::{Dist, dist};
 use crate::places::{cargo, target, workspace};
+use crate::platform::Build;
 use crate::programs::{program, run};
 
 const ROUNDS: usize = 15;
@@ -66,7 +67,7 @@ fn time_ns(
     let mut measured = program(&command[0], folder);
     measured.args(&command[1..]).arg(asset).arg(model);
     measured.arg(samples.to_string());
-    measured.env("LD_LIBRARY_PATH", folder.join("prefix/lib"));
+    measured.env("LD_LIBRARY_PATH", folder.join("prefix/lib/whole"));
     measured.env("HTEX_PACKAGE", folder.join("htex"));
     let output = measured.output()?;
     let printed = String::from_utf8_lossy(&output.stdout);
@@ -93,7 +94,8 @@ fn programs(folder: &Path, workspace: &Path) -> Result<(Vec<OsString>, Vec<Cost>
     let prefix = folder.join("prefix");
     dist(&Dist {
         prefix: prefix.clone(),
-        small: false,
+        whole: true,
+        build: Build::here()?,
     })?;
     crate::web::web(&folder.join("htex"))?;
     let costs = workspace.join("sdk/capi/tests/costs");
@@ -104,7 +106,7 @@ fn programs(folder: &Path, workspace: &Path) -> Result<(Vec<OsString>, Vec<Cost>
     compile
         .arg(costs.join("block.c"))
         .arg("-L")
-        .arg(prefix.join("lib"));
+        .arg(prefix.join("lib/whole"));
     run(compile.args(["-lhtex", "-o", "block"]))?;
     let mut compile = program("mcs", folder);
     compile

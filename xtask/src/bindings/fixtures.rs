@@ -1,12 +1,13 @@
 //! Assets and samples that the `htex` command writes, which the bindings are compared with.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use anyhow::{Result, bail};
 
-use super::{copy, files};
-use crate::places::{cargo, target, workspace};
+use super::{copy, exchanged};
+use crate::places::{files, workspace};
+use crate::platform::Build;
 use crate::programs::{program, run};
 use crate::{c_module, plugins};
 
@@ -19,12 +20,10 @@ const FORCE: &str = "0.5";
 
 /// The `htex` command as it is installed, which libhtex and the Python package are built beside.
 pub(crate) fn command() -> Result<PathBuf> {
-    let mut build = Command::new(cargo());
-    run(build
-        .args(["build", "--release", "--locked", "--package", "htex-cli"])
-        .current_dir(workspace()))?;
+    let build = Build::here()?;
+    run(&mut build.cargo_of_both())?;
     let name = format!("htex{}", std::env::consts::EXE_SUFFIX);
-    Ok(target().join("release").join(name))
+    Ok(build.built().join(name))
 }
 
 /// Scenes of examples/scenes that are rendered and planned.
@@ -35,7 +34,7 @@ const COPIES: usize = 999;
 
 /// Writes an asset of six models (`vinyl.htex`), a mesh that carries it (`vinyl.glb`), an asset that brings its model along (`bursts.htex`), their samples at 48 kHz, the
 /// spectrum of Bands, what the command tells of the asset, a library (`many.htexlib`) and its list, scenes with their samples and
-/// plans, the models as modules, and a module that does not return.
+/// plans, the models as modules, a module that does not return, and files of other haptic formats with what is imported of them.
 pub(super) fn write(folder: &Path) -> Result<()> {
     fs_err::create_dir_all(folder)?;
     let command = command()?;
@@ -92,6 +91,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
     }
     synth("bursts.htex", "bursts")?;
     authored(folder, &htex)?;
+    exchanged::write(folder, &htex)?;
     read_otherwise(folder, &htex)?;
     let printed = |arguments: &[&str], out: &str| {
         let file = fs_err::File::create(folder.join(out))?;

@@ -6,9 +6,9 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, ensure};
 
-use super::{all_of, files, fixtures};
+use super::{all_of, fixtures};
 use crate::jobs::at_a_time;
-use crate::places::{cargo, target, workspace};
+use crate::places::{cargo, files, target, workspace};
 use crate::plugins::models;
 use crate::programs::{program, run};
 

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-use super::files;
+use crate::places::files;
 use crate::places::{target, workspace};
+use crate::platform::Build;
 use crate::programs::{program, run};
 
 pub(super) fn test(folder: &Path) -> Result<()> {
@@ -34,6 +35,7 @@ pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf> {
     let built = std::path::absolute(target())?;
     run(pip(&["wheel", "--no-deps", "--wheel-dir", "wheel"])
         .arg(package()?)
+        .env("MATURIN_PEP517_ARGS", Build::here()?.profile().join(" "))
         .env("CARGO_TARGET_DIR", built))?;
     let wheels = files(&folder.join("wheel"))?;
     let wheel = wheels.first().context("pip wheel wrote no wheel")?;

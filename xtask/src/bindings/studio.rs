@@ -4,8 +4,8 @@ use std::path::Path;
 
 use anyhow::Result;
 
-use super::{CHROMIUM, copy, files, fixtures, which};
-use crate::places::workspace;
+use super::{CHROMIUM, copy, exchanged, fixtures, which};
+use crate::places::{files, workspace};
 use crate::programs::{program, run};
 
 pub(super) fn test(folder: &Path) -> Result<()> {
@@ -17,11 +17,17 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     for file in files(&workspace().join("sdk/studio/tests"))? {
         copy(&file, &tests.join(file.file_name().unwrap_or_default()))?;
     }
+    exchanged::copy_model_file(&tests)?;
     crate::studio::install(&tests)?;
     let chromium = CHROMIUM.find().unwrap_or("chromium");
     run(program("node", &tests)
         .args(["--test", "--test-concurrency=1"])
-        .args(["page.test.mjs", "served.test.mjs", "firefox.test.mjs"])
+        .args([
+            "page.test.mjs",
+            "import.test.mjs",
+            "served.test.mjs",
+            "firefox.test.mjs",
+        ])
         .env("HTEX_STUDIO", &page)
         .env("HTEX_COMMAND", fixtures::command()?)
         .env("HTEX_CHROMIUM", which(chromium)))

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use anyhow::Result;
 
-use super::{CHROMIUM, copy, files, fixtures, which};
-use crate::places::workspace;
+use super::{CHROMIUM, copy, fixtures, which};
+use crate::places::{files, workspace};
 use crate::programs::{program, run};
 
 pub(super) fn test(folder: &Path) -> Result<()> {
@@ -42,6 +42,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
             "pointer.test.mjs",
             "sound.test.mjs",
             "author.test.mjs",
+            "import.test.mjs",
             "scene.test.mjs",
             "scene-browser.test.mjs",
             "author-browser.test.mjs",

@@ -1,6 +1,9 @@
 //! `cargo xtask prove`: proofs that take too long for each run of continuous integration, which runs samples of them.
 
 mod outputs;
+mod released;
+mod targets;
+mod ways;
 
 use std::process::Command;
 
@@ -30,6 +33,12 @@ const PROOFS: &[Proof] = &[
         takes: "[options of cargo xtask fuzz]",
         proves: "no target of fuzz/fuzz_targets finds anything, each in ten minutes",
         prove: fuzz,
+    },
+    Proof {
+        name: "targets",
+        takes: "",
+        proves: "libhtex compiles for Android, iOS and macOS, small and with scenes and libraries of textures; `rustup target add` brings the targets",
+        prove: targets::prove,
     },
     Proof {
         name: "edges",
@@ -94,6 +103,30 @@ const PROOFS: &[Proof] = &[
         takes: "",
         proves: "the command writes the same bytes on four emulated processors; tests take one surface of three",
         prove: |options| none(options).and_then(|()| bindings::prove("processors")),
+    },
+    Proof {
+        name: "bare",
+        takes: "--release DIR",
+        proves: "the released archive and wheel for Linux work in an empty root of Debian without compilers, and programs in C find its libraries",
+        prove: released::bare,
+    },
+    Proof {
+        name: "bare-root",
+        takes: "",
+        proves: "nothing: makes the empty root of Debian that `bare` uses",
+        prove: released::bare_root,
+    },
+    Proof {
+        name: "wine",
+        takes: "--release DIR",
+        proves: "the released command and library for Windows work under Wine, with the samples of this machine",
+        prove: released::wine,
+    },
+    Proof {
+        name: "ways",
+        takes: "--release DIR [--only NAME] [--write]",
+        proves: "every command of the pages in docs/ways runs on a released archive and wheel, and prints what the page says, each page within ten minutes",
+        prove: ways::prove,
     },
     Proof {
         name: "costs",

@@ -134,7 +134,7 @@ impl Texts {
             .iter()
             .filter_map(|input| input.strip_prefix("spec/"))
         {
-            for file in crate::bindings::files(&folder.join(place))? {
+            for file in crate::places::files(&folder.join(place))? {
                 let name = file
                     .file_name()
                     .unwrap_or_default()

@@ -28,7 +28,9 @@ fn built(source: &str) -> Option<PathBuf> {
             .join("tests")
             .join(source);
         let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
-        let out = folder.keep().join("libmock.so");
+        let folder = folder.keep();
+        std::fs::write(folder.join("pwle.h"), declared()).unwrap();
+        let out = folder.join("libmock.so");
         let flags = [
             "-std=gnu11",
             "-O1",
@@ -41,6 +43,8 @@ fn built(source: &str) -> Option<PathBuf> {
         let mut cc = Command::new("cc");
         let run = cc
             .args(flags)
+            .arg("-I")
+            .arg(&folder)
             .arg(file)
             .arg("-o")
             .arg(&out)
@@ -54,6 +58,14 @@ fn built(source: &str) -> Option<PathBuf> {
         built.insert(source.to_owned(), out);
     }
     built.get(source).cloned()
+}
+
+/// What `docs/devices.md` has an application declare.
+fn declared() -> String {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/devices.md");
+    let blocks = xtask::markdown::blocks(&std::fs::read_to_string(page).unwrap());
+    let block = blocks.into_iter().find(|block| block.language == "c");
+    block.unwrap().text
 }
 
 pub struct Mock {

@@ -1,0 +1,107 @@
+//! Installs libhtex: libraries, headers, C#, pkg-config and CMake files.
+//!
+//! The library in `lib` is small: without scenes, without libraries of textures and without the engine of WASM modules. `lib/whole` has
+//! the one with all of it, under the same names: the functions are the same, and those that the small one lacks say so.
+
+mod links;
+mod packages;
+pub(crate) mod unity;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use fs_err as fs;
+
+use crate::places::{version, workspace};
+use crate::platform::{Build, System};
+use crate::programs::run;
+
+/// What is installed, and where.
+pub struct Dist {
+    /// The folder that gets `lib`, `include` and `share`.
+    pub prefix: PathBuf,
+    /// With the whole library beside the small one.
+    pub whole: bool,
+    pub build: Build,
+}
+
+/// Files of the header's folder.
+const HEADERS: [&str; 2] = ["htex.h", "htex.hpp"];
+
+/// Builds and installs.
+///
+/// # Errors
+/// A message with the file or the program.
+pub fn dist(options: &Dist) -> Result<()> {
+    let Dist { prefix, build, .. } = options;
+    let lib = prefix.join("lib");
+    links::put(build, &build_small(build)?, &lib, false)?;
+    if options.whole {
+        links::put(build, &build_whole(build)?, &lib.join("whole"), true)?;
+    }
+    let source = workspace().join("sdk/capi");
+    for header in HEADERS {
+        let to = prefix.join("include").join(header);
+        copy(&source.join("include").join(header), &to)?;
+    }
+    let of_unity = match options.whole {
+        true => lib.join("whole"),
+        false => lib.clone(),
+    };
+    let unity = prefix.join("share/htex/unity");
+    unity::package(&[(build.platform(), of_unity)], &unity)?;
+    copy_folder(&source.join("fmod"), &prefix.join("share/htex/fmod"))?;
+    packages::write(&lib, &version()?, build.platform().system, options.whole)
+}
+
+/// Builds the small library; returns the folder of its files.
+fn build_small(build: &Build) -> Result<PathBuf> {
+    let mut command = build.cargo("build");
+    command.args(["--locked", "--package", "htex-capi"]);
+    run(command.args(["--profile", "small", "--no-default-features"]))?;
+    Ok(build.output("small"))
+}
+
+/// Builds the whole library; returns the folder of its files.
+///
+/// With the command, whose features it then has: what both need is built once. Readers of recordings are built, too, and as nothing
+/// here calls them, not linked.
+fn build_whole(build: &Build) -> Result<PathBuf> {
+    run(build.cargo_of_both().args(of_command(build)))?;
+    Ok(build.built())
+}
+
+/// Features of the command on a platform. What checks certificates by the system needs frameworks of Apple, which only an SDK of theirs
+/// has.
+pub(crate) fn of_command(build: &Build) -> &'static [&'static str] {
+    const ALL_BUT_CLOUD: [&str; 3] = [
+        "--no-default-features",
+        "--features",
+        "htex-cli/wasm,htex-cli/schemas,htex-cli/build,htex-cli/lab-files,htex-cli/lab,htex-capi/wasm,htex-capi/library,htex-capi/scene",
+    ];
+    match (build.is_release(), build.platform().system) {
+        (true, System::MacOs) => &ALL_BUT_CLOUD,
+        _ => &[],
+    }
+}
+
+/// Copies a file to a folder that is made.
+pub(crate) fn copy(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to.parent().context("a file has a folder")?)?;
+    fs::copy(from, to)?;
+    Ok(())
+}
+
+/// Copies what a folder has, with its folders.
+fn copy_folder(from: &Path, to: &Path) -> Result<()> {
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let to = to.join(entry.file_name());
+        if entry.file_type()?.is_dir() {
+            copy_folder(&entry.path(), &to)?;
+        } else {
+            copy(&entry.path(), &to)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,62 @@
+//! The Unity package with the libraries that are there.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use fs_err as fs;
+
+use super::{copy, copy_folder};
+use crate::places::workspace;
+use crate::platform::{Platform, System};
+
+/// The folder with what Unity imports as libraries, and the one, which Unity ignores, with the settings of imports of those that are not there.
+const PLUGINS: &str = "Plugins";
+const SET_ASIDE: &str = "Plugins~";
+
+/// Writes the package into a folder, with the libraries of platforms from their `lib` folders.
+pub(crate) fn package(libraries: &[(Platform, PathBuf)], to: &Path) -> Result<()> {
+    copy_folder(&workspace().join("sdk/capi/unity"), to)?;
+    let plugins = to.join(PLUGINS);
+    for (platform, lib) in libraries {
+        if let Some((folder, name)) = plugin(*platform) {
+            copy(&lib.join(name), &plugins.join(folder).join(name))?;
+        }
+    }
+    set_aside(&plugins, to)
+}
+
+/// Folder and name of the library of a platform. Unity has no editor and no player for Linux on ARM.
+fn plugin(platform: Platform) -> Option<(&'static str, &'static str)> {
+    match platform.name {
+        "x86_64-linux" => Some(("Linux/x86_64", "libhtex.so")),
+        "aarch64-linux" => None,
+        _ if platform.system == System::Windows => Some(("Windows/x86_64", "htex.dll")),
+        _ => Some(("macOS", "libhtex.dylib")),
+    }
+}
+
+/// Moves each `NAME.meta` whose NAME is not there, of which Unity would say that it is missing, and removes empty folders.
+fn set_aside(folder: &Path, package: &Path) -> Result<()> {
+    for folder in entries(folder)?.iter().filter(|entry| entry.is_dir()) {
+        set_aside(folder, package)?;
+        if entries(folder)?.is_empty() {
+            fs::remove_dir(folder)?;
+        }
+    }
+    for entry in entries(folder)? {
+        let is_meta = entry.extension().is_some_and(|ending| ending == "meta");
+        if is_meta && !entry.with_extension("").exists() {
+            let below = entry.strip_prefix(package.join(PLUGINS))?;
+            let to = package.join(SET_ASIDE).join(below);
+            fs::create_dir_all(to.parent().context("a file has a folder")?)?;
+            fs::rename(&entry, to)?;
+        }
+    }
+    Ok(())
+}
+
+fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = fs::read_dir(folder)?;
+    let paths = entries.map(|entry| Ok(entry?.path()));
+    Ok(paths.collect::<std::io::Result<_>>()?)
+}

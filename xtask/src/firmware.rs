@@ -1,0 +1,86 @@
+//! Lays out the player in C for the builds of microcontrollers.
+
+use std::path::Path;
+
+use anyhow::Result;
+use fs_err as fs;
+
+use crate::places::{version, workspace};
+
+/// What stands for the version of the workspace.
+const VERSION: &str = "@version@";
+
+/// The folder and the name of a file in the workspace.
+type Own = (&'static str, &'static str);
+/// A folder, and its files: where each is in the workspace, and its name in the layout.
+type Layout = (&'static str, &'static [(Own, &'static str)]);
+
+const SOURCE: Own = ("sdk/player/c", "htex_player.c");
+const HEADER: Own = ("sdk/player/c", "htex_player.h");
+
+const LAYOUTS: [Layout; 3] = [
+    (
+        "arduino/HtexPlayer",
+        &[
+            (
+                ("sdk/player/c/arduino", "library.properties"),
+                "library.properties",
+            ),
+            (SOURCE, "src/htex_player.c"),
+            (HEADER, "src/htex_player.h"),
+            (
+                ("sdk/player/c/arduino/examples/Texture", "Texture.ino"),
+                "examples/Texture/Texture.ino",
+            ),
+            (
+                ("sdk/player/c/examples", "cloth.h"),
+                "examples/Texture/cloth.h",
+            ),
+        ],
+    ),
+    (
+        "esp-idf/htex_player",
+        &[
+            (("sdk/player/c/esp-idf", "CMakeLists.txt"), "CMakeLists.txt"),
+            (
+                ("sdk/player/c/esp-idf", "idf_component.yml"),
+                "idf_component.yml",
+            ),
+            (SOURCE, "htex_player.c"),
+            (HEADER, "include/htex_player.h"),
+        ],
+    ),
+    (
+        "zephyr/htex_player",
+        &[
+            (("sdk/player/c/zephyr", "module.yml"), "zephyr/module.yml"),
+            (
+                ("sdk/player/c/zephyr", "CMakeLists.txt"),
+                "zephyr/CMakeLists.txt",
+            ),
+            (("sdk/player/c/zephyr", "Kconfig"), "zephyr/Kconfig"),
+            (SOURCE, "src/htex_player.c"),
+            (HEADER, "include/htex_player.h"),
+        ],
+    ),
+];
+
+const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
+
+/// Writes a library for Arduino, a component for ESP-IDF and a module for Zephyr to a folder.
+///
+/// # Errors
+/// When a file cannot be read or written.
+pub fn firmware(out: &Path) -> Result<()> {
+    let version = version()?;
+    for (layout, files) in LAYOUTS {
+        let licences = LICENCES.map(|name| (("", name), name));
+        for ((folder, name), to) in files.iter().copied().chain(licences) {
+            let text = fs::read_to_string(workspace().join(folder).join(name))?;
+            let to = out.join(layout).join(to);
+            fs::create_dir_all(to.parent().unwrap_or(out))?;
+            fs::write(to, text.replace(VERSION, &version))?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,35 @@
+//! libhtex for systems whose linkers are not to be had here: the code is checked, not linked.
+
+use std::process::Command;
+
+use anyhow::Result;
+
+use crate::places::{cargo, workspace};
+use crate::programs::run;
+
+const TARGETS: [&str; 4] = [
+    "aarch64-linux-android",
+    "armv7-linux-androideabi",
+    "aarch64-apple-ios",
+    "aarch64-apple-darwin",
+];
+
+/// Of the small library, and of one with scenes and libraries of textures.
+const FEATURES: [&str; 2] = ["", "library,scene"];
+
+/// Checks each for each.
+pub(super) fn prove(options: &[&str]) -> Result<()> {
+    super::none(options)?;
+    for target in TARGETS {
+        for features in FEATURES {
+            eprintln!("targets: {target}, features: [{features}]");
+            let mut check = Command::new(cargo());
+            check.args(["check", "--locked", "--quiet", "--target", target]);
+            check.args(["--package", "htex-capi", "--no-default-features"]);
+            run(check
+                .args(["--features", features])
+                .current_dir(workspace()))?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,164 @@
+//! Archives, wheels and the npm package.
+
+use std::path::Path;
+use std::process::Stdio;
+
+use anyhow::{Result, ensure};
+use fs_err as fs;
+
+use crate::commit::Commit;
+use crate::places::{cargo, release_trees, target};
+use crate::platform::{Build, Platform, System, tools};
+use crate::programs::{program, run};
+
+/// What a release needs besides Rust, Node.js and the linkers of the platforms.
+const TOOLS: [(&str, &str); 5] = [
+    ("cargo-zigbuild", PYTHON_TOOLS),
+    ("python-zig", PYTHON_TOOLS),
+    ("maturin", PYTHON_TOOLS),
+    (
+        "cargo-about",
+        "cargo install cargo-about --version 0.9.3 --features cli --locked --root target/release-tools",
+    ),
+    (
+        "cargo-cyclonedx",
+        "cargo install cargo-cyclonedx --version 0.5.9 --locked --root target/release-tools",
+    ),
+];
+
+const PYTHON_TOOLS: &str = "python3 -m venv target/release-tools && target/release-tools/bin/pip install -r xtask/src/release/requirements.txt";
+
+/// # Errors
+/// What is missing, with how to install it. A trial needs maturin alone.
+pub(super) fn check_tools(is_trial: bool) -> Result<()> {
+    for (name, how) in TOOLS
+        .iter()
+        .filter(|(name, _)| !is_trial || *name == "maturin")
+    {
+        let there = tools().join(name).is_file();
+        ensure!(there, "{name} is missing: {how}");
+    }
+    Ok(())
+}
+
+/// Writes the archive of a folder.
+pub(super) fn archive(
+    platform: &Platform,
+    folder: &Path,
+    out: &Path,
+    commit: &Commit,
+) -> Result<()> {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    if platform.system == System::Windows {
+        return zip(folder, out, commit);
+    }
+    // One thread: the bytes of several depend on how many there are.
+    tar(
+        folder,
+        &out.join(format!("{name}.tar.xz")),
+        "xz -9 -T1",
+        commit,
+    )
+}
+
+/// Writes a folder as a compressed tar file: names in their order, and the time of the commit.
+fn tar(folder: &Path, to: &Path, compressor: &str, commit: &Commit) -> Result<()> {
+    let mut tar = program("tar", folder.parent().unwrap_or(folder));
+    tar.args([
+        "--sort=name",
+        "--owner=0",
+        "--group=0",
+        "--numeric-owner",
+        "--format=gnu",
+    ]);
+    tar.args([
+        "--mode=u+rwX,go+rX,go-w",
+        &format!("--mtime=@{}", commit.seconds),
+        "-I",
+        compressor,
+        "-cf",
+    ]);
+    run(tar.arg(to).arg(folder.file_name().unwrap_or_default()))
+}
+
+/// Writes a folder as a zip file of its name.
+pub(super) fn zip(folder: &Path, out: &Path, commit: &Commit) -> Result<()> {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    run(program("python3", folder.parent().unwrap_or(folder))
+        .args(["-c", ZIP])
+        .arg(out.join(format!("{name}.zip")))
+        .arg(&*name)
+        .arg(&commit.seconds))
+}
+
+/// Writes a folder as a zip file: names in their order, and the time of the commit.
+const ZIP: &str = "\
+import pathlib, sys, time, zipfile
+to, name, seconds = sys.argv[1:]
+at = time.gmtime(int(seconds))[:6]
+with zipfile.ZipFile(to, 'w', zipfile.ZIP_DEFLATED, compresslevel=9) as out:
+    for path in sorted(pathlib.Path(name).rglob('*')):
+        if path.is_file():
+            entry = zipfile.ZipInfo(path.as_posix(), at)
+            entry.external_attr = 0o644 << 16
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            out.writestr(entry, path.read_bytes())
+";
+
+/// Writes the wheel of a platform.
+pub(super) fn wheel(build: &Build, out: &Path) -> Result<()> {
+    let platform = build.platform();
+    let mut maturin = build.maturin("build");
+    maturin.arg("--locked").args(build.profile());
+    if build.is_release() {
+        maturin.args(["--target", platform.triple]);
+    }
+    if build.is_by_zig() {
+        maturin.arg("--zig");
+    }
+    if build.is_release() && platform.system == System::Linux {
+        maturin.args(["--compatibility", "manylinux_2_31"]);
+    }
+    maturin.env("CARGO_TARGET_DIR", std::path::absolute(target())?);
+    run(maturin.arg("--out").arg(out))
+}
+
+/// Writes the sources of the Python package, which pip builds where there is no wheel.
+///
+/// Maturin leaves packages of the workspace out, but not their lines in `Cargo.lock`, which a build by `--locked` refuses: cargo takes
+/// them out here.
+pub(super) fn sdist(version: &str, out: &Path, commit: &Commit) -> Result<()> {
+    let trees = release_trees();
+    let (folder, packed) = (trees.join(format!("htex-{version}")), trees.join("sdist"));
+    for old in [&folder, &packed] {
+        if old.exists() {
+            fs::remove_dir_all(old)?;
+        }
+    }
+    fs::create_dir_all(&packed)?;
+    let packed = fs::canonicalize(packed)?;
+    let build = Build::release(Platform::here()?, commit);
+    run(build.maturin("sdist").arg("--out").arg(&packed))?;
+    let name = format!("htex-{version}.tar.gz");
+    run(program("tar", &trees).arg("-xzf").arg(packed.join(&name)))?;
+    let metadata = |more: &str| -> Result<()> {
+        let mut cargo = program(cargo(), &folder.join("sdk/python"));
+        cargo.args(["metadata", "--format-version", "1", more]);
+        run(cargo.stdout(Stdio::null()))
+    };
+    metadata("--offline")?;
+    metadata("--locked")?;
+    tar(&folder, &out.join(name), "gzip -n -9", commit)
+}
+
+/// Writes the npm package.
+pub(super) fn npm(out: &Path) -> Result<()> {
+    let folder = release_trees().join("npm");
+    if folder.exists() {
+        fs::remove_dir_all(&folder)?;
+    }
+    crate::web::web(&folder)?;
+    run(program("npm", &folder)
+        .args(["pack", "--silent", "--pack-destination"])
+        .arg(out))
+}

@@ -1,0 +1,151 @@
+//! The folder of an archive: the command, libhtex, models as plugins, texts.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Result, ensure};
+use fs_err as fs;
+
+use super::parts::notices;
+use crate::dist::{Dist, copy, dist, of_command};
+use crate::places::{cargo, release_trees, workspace};
+use crate::platform::{Build, Platform, System};
+use crate::plugins::models;
+use crate::programs::run;
+
+/// Files of the workspace that are in every archive, and where.
+const TEXTS: [(&str, &str); 4] = [
+    ("LICENSE-MIT", "share/doc/htex/LICENSE-MIT"),
+    ("LICENSE-APACHE", "share/doc/htex/LICENSE-APACHE"),
+    ("CHANGELOG.md", "share/doc/htex/CHANGELOG.md"),
+    ("xtask/src/release/README.md", "README.md"),
+];
+
+/// Where each shell looks for completions below a prefix.
+const COMPLETIONS: [(&str, &str); 4] = [
+    ("bash", "share/bash-completion/completions/htex"),
+    ("zsh", "share/zsh/site-functions/_htex"),
+    ("fish", "share/fish/vendor_completions.d/htex.fish"),
+    ("powershell", "share/powershell/htex.ps1"),
+];
+
+/// The folder of a platform, whose name is that of the archive.
+pub(super) fn folder(platform: &Platform, version: &str) -> PathBuf {
+    release_trees().join(format!("htex-{version}-{}", platform.name))
+}
+
+/// Builds all of it for a platform; returns the folder, whose name is that of the archive.
+pub(super) fn lay_out(build: &Build, version: &str) -> Result<PathBuf> {
+    let platform = &build.platform();
+    let folder = folder(platform, version);
+    if folder.exists() {
+        fs::remove_dir_all(&folder)?;
+    }
+    command(build, &folder)?;
+    dist(&Dist {
+        prefix: folder.clone(),
+        whole: true,
+        build: build.clone(),
+    })?;
+    plugins(build, &folder)?;
+    for (from, to) in TEXTS {
+        copy(&workspace().join(from), &folder.join(to))?;
+    }
+    help(platform, &folder)?;
+    if build.is_release() {
+        let to = folder.join("share/doc/htex/THIRD-PARTY-NOTICES.txt");
+        notices(platform, &to)?;
+        check_paths(&folder)?;
+    }
+    Ok(folder)
+}
+
+/// The command, with which the whole library is built.
+fn command(build: &Build, folder: &Path) -> Result<()> {
+    run(build.cargo_of_both().args(of_command(build)))?;
+    let name = executable(build.platform().system);
+    copy(&build.built().join(name), &folder.join("bin").join(name))
+}
+
+fn executable(system: System) -> &'static str {
+    match system {
+        System::Windows => "htex.exe",
+        _ => "htex",
+    }
+}
+
+/// The models as native libraries and as modules.
+fn plugins(build: &Build, folder: &Path) -> Result<()> {
+    let (prefix, suffix) = match build.platform().system {
+        System::Linux => ("lib", "so"),
+        System::MacOs => ("lib", "dylib"),
+        System::Windows => ("", "dll"),
+    };
+    let to = folder.join("lib/htex/plugins");
+    let modules = crate::plugins::wasm()?;
+    for model in models()? {
+        // Like the command, so that what models share is built once; the modules have one model each.
+        let mut cargo = build.cargo("rustc");
+        cargo.args([
+            "--quiet",
+            "--locked",
+            "--lib",
+            "--package",
+            &format!("htex-{model}"),
+        ]);
+        cargo.args(build.profile());
+        run(cargo.args(["--features", "plugin", "--crate-type", "cdylib"]))?;
+        let native = format!("{prefix}htex_{model}.{suffix}");
+        copy(&build.built().join(&native), &to.join(&native))?;
+        let module = format!("htex_{model}.wasm");
+        copy(&modules.join(&module), &to.join(&module))?;
+    }
+    Ok(())
+}
+
+/// Manual pages and completions, which the command writes; where it does not run here, the one for this machine, whose arguments are the same.
+fn help(platform: &Platform, folder: &Path) -> Result<()> {
+    let own = folder.join("bin").join(executable(platform.system));
+    let htex = |words: &[&str]| {
+        let mut command = match Platform::here()? == *platform {
+            true => Command::new(&own),
+            false => Command::new(cargo()),
+        };
+        if Platform::here()? != *platform {
+            command.args(["run", "--quiet", "--locked", "--package", "htex-cli", "--"]);
+        }
+        command.args(words).current_dir(workspace());
+        anyhow::Ok(command)
+    };
+    let pages = std::path::absolute(folder.join("share/man/man1"))?;
+    run(&mut htex(&["man", &pages.to_string_lossy()])?)?;
+    for (shell, to) in COMPLETIONS {
+        let output = htex(&["completions", shell])?.output()?;
+        ensure!(
+            output.status.success(),
+            "htex completions {shell}: {}",
+            output.status
+        );
+        let to = folder.join(to);
+        fs::create_dir_all(to.parent().unwrap_or(folder))?;
+        fs::write(to, output.stdout)?;
+    }
+    Ok(())
+}
+
+/// No file tells where it was built.
+fn check_paths(folder: &Path) -> Result<()> {
+    let workspace = fs::canonicalize(workspace())?;
+    let home = std::env::var_os("HOME").map(PathBuf::from);
+    let registry = home.map(|home| home.join(".cargo"));
+    for place in std::iter::once(workspace).chain(registry) {
+        let output = Command::new("grep")
+            .args(["-rlF", "--"])
+            .arg(&place)
+            .arg(folder)
+            .output()?;
+        let files = String::from_utf8_lossy(&output.stdout).into_owned();
+        ensure!(files.is_empty(), "{} is named in\n{files}", place.display());
+    }
+    Ok(())
+}

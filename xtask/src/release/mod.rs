@@ -100,7 +100,7 @@ pub fn release(release: &Release) -> Result<()> {
             false => Build::release(*platform, &commit),
         };
         let folder = tree::lay_out(&build, &version)?;
-        packages::archive(platform, &folder, &out, &commit)?;
+        packages::archive(&build, &folder, &out, &commit)?;
         packages::wheel(&build, &out)?;
         if !release.is_trial {
             parts::bill(platform, &version, &out, &commit)?;

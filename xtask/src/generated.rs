@@ -42,7 +42,9 @@ pub fn generate() -> Result<()> {
     let mut cargo = Command::new(crate::places::cargo());
     cargo.args(["test", "--quiet", "--workspace"]);
     cargo.args(TESTS.iter().flat_map(|test| ["--test", test]));
-    cargo.args(["--", "generated_"]).env(VARIABLE, "1");
+    // One test after the other: several write parts of one document.
+    cargo.args(["--", "generated_", "--test-threads=1"]);
+    cargo.env(VARIABLE, "1");
     crate::programs::run(cargo.current_dir(crate::places::workspace()))
 }
 

@@ -29,6 +29,13 @@ foreach(library htex static whole whole_static)
 endforeach()
 ";
 
+/// Lines of the command that write the same files under Wine and here.
+const SAME: [&str; 3] = [
+    "simulate --surface vinyl --seconds 4 -o rec.csv",
+    "fit rec.csv -o vinyl.htex --name Vinyl --license CC0-1.0",
+    "synth vinyl.htex --seconds 1 -o vinyl.wav",
+];
+
 /// What is done in the root: first what must not be there.
 const SCRIPT: &str = "\
 set -eu
@@ -218,46 +225,20 @@ pub(super) fn wine(options: &[&str]) -> Result<()> {
         .arg("-o")
         .arg(bin.join("play.exe")))?;
     fs::copy(prefix.join("lib/htex.dll"), bin.join("htex.dll"))?;
-    let wine = |name: &str, words: &[&str]| {
+    let wine = |name: &str, line: &str| {
         let mut wine = program("wine", &work);
-        wine.arg(bin.join(name)).args(words);
+        wine.arg(bin.join(name)).args(line.split_whitespace());
         run(wine
             .env("WINEDEBUG", "-all")
             .env("WINEPREFIX", work.join("prefix")))
         .context("the package wine64")
     };
-    wine("htex.exe", &["--version"])?;
-    wine(
-        "htex.exe",
-        &[
-            "simulate",
-            "--surface",
-            "vinyl",
-            "--seconds",
-            "4",
-            "-o",
-            "rec.csv",
-        ],
-    )?;
-    wine(
-        "htex.exe",
-        &[
-            "fit",
-            "rec.csv",
-            "-o",
-            "vinyl.htex",
-            "--name",
-            "Vinyl",
-            "--license",
-            "CC0-1.0",
-        ],
-    )?;
-    wine("htex.exe", &["validate", "vinyl.htex"])?;
-    wine(
-        "htex.exe",
-        &["synth", "vinyl.htex", "--seconds", "1", "-o", "vinyl.wav"],
-    )?;
-    wine("play.exe", &["vinyl.htex", "play.f32"])?;
+    wine("htex.exe", "--version")?;
+    for line in SAME {
+        wine("htex.exe", line)?;
+    }
+    wine("htex.exe", "validate vinyl.htex")?;
+    wine("play.exe", "vinyl.htex play.f32")?;
     same_here(&work)
 }
 
@@ -265,7 +246,7 @@ pub(super) fn wine(options: &[&str]) -> Result<()> {
 fn same_here(work: &Path) -> Result<()> {
     let here = work.join("here");
     fs::create_dir_all(&here)?;
-    let htex = |words: &[&str]| {
+    for line in SAME {
         let mut htex = Command::new(crate::places::cargo());
         let manifest = fs::canonicalize(workspace().join("Cargo.toml"))?;
         htex.args([
@@ -276,28 +257,9 @@ fn same_here(work: &Path) -> Result<()> {
             "htex-cli",
             "--manifest-path",
         ]);
-        run(htex.arg(manifest).arg("--").args(words).current_dir(&here))
-    };
-    htex(&[
-        "simulate",
-        "--surface",
-        "vinyl",
-        "--seconds",
-        "4",
-        "-o",
-        "rec.csv",
-    ])?;
-    htex(&[
-        "fit",
-        "rec.csv",
-        "-o",
-        "vinyl.htex",
-        "--name",
-        "Vinyl",
-        "--license",
-        "CC0-1.0",
-    ])?;
-    htex(&["synth", "vinyl.htex", "--seconds", "1", "-o", "vinyl.wav"])?;
+        htex.arg(manifest).arg("--").args(line.split_whitespace());
+        run(htex.current_dir(&here))?;
+    }
     for name in ["rec.csv", "vinyl.htex", "vinyl.wav"] {
         let is_same = fs::read(here.join(name))? == fs::read(work.join(name))?;
         ensure!(is_same, "{name} of Windows is not that of this machine");

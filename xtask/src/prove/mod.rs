@@ -106,8 +106,9 @@ const PROOFS: &[Proof] = &[
     },
     Proof {
         name: "bare",
-        takes: "--release DIR",
-        proves: "the released archive and wheel for Linux work in an empty root of Debian without compilers, and programs in C find its libraries",
+        takes: "--release DIR [--processor aarch64]",
+        proves: "the released archive and wheel for Linux work in an empty root of Debian without compilers, and programs in C find its libraries; \
+                 another processor is emulated",
         prove: released::bare,
     },
     Proof {
@@ -119,7 +120,7 @@ const PROOFS: &[Proof] = &[
     Proof {
         name: "wine",
         takes: "--release DIR",
-        proves: "the released command and library for Windows work under Wine, with the samples of this machine",
+        proves: "the released command and library for Windows work under Wine, with the samples of this machine, and programs in C find its libraries",
         prove: released::wine,
     },
     Proof {

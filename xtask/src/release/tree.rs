@@ -112,7 +112,8 @@ fn help(platform: &Platform, folder: &Path) -> Result<()> {
             false => Command::new(cargo()),
         };
         if Platform::here()? != *platform {
-            command.args(["run", "--quiet", "--locked", "--package", "htex-cli", "--"]);
+            command.args(["run", "--quiet", "--locked", "--profile", "quick"]);
+            command.args(["--package", "htex-cli", "--"]);
         }
         command.args(words).current_dir(workspace());
         anyhow::Ok(command)

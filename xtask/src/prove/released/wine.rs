@@ -1,0 +1,134 @@
+//! Under Wine.
+
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::{Context, Result, bail, ensure};
+use fs_err as fs;
+
+use super::{Compiler, anew, archive};
+use crate::places::{cargo, target, workspace};
+use crate::programs::{program, run};
+
+const COMPILER: Compiler = Compiler {
+    gcc: "x86_64-w64-mingw32-gcc",
+    package: "gcc-mingw-w64-x86-64",
+    system: "Windows",
+    processor: "AMD64",
+    libraries: "htex whole",
+};
+
+/// A library that Wine 8 lacks, of which the standard library of Rust takes random bytes.
+const PRIMITIVES: &str = "\
+#include <windows.h>
+#include <ntsecapi.h>
+__declspec(dllexport) BOOL WINAPI ProcessPrng(PBYTE bytes, SIZE_T count)
+{
+    return RtlGenRandom(bytes, (ULONG)count);
+}
+";
+
+/// Lines of the command that write the same files under Wine and here.
+const SAME: [&str; 3] = [
+    "simulate --surface vinyl --seconds 4 -o rec.csv",
+    "fit rec.csv -o vinyl.htex --name Vinyl --license CC0-1.0",
+    "synth vinyl.htex --seconds 1 -o built-in.wav",
+];
+
+/// The players in C, and the folder of the library that each finds beside it.
+const PLAYERS: [(&str, &str); 3] = [
+    ("play_pkg_config", "lib"),
+    ("play_htex", "lib"),
+    ("play_whole", "lib/whole"),
+];
+
+/// Uses what is released for Windows under Wine.
+pub(in crate::prove) fn wine(options: &[&str]) -> Result<()> {
+    let released = match *options {
+        ["--release", folder] => fs::canonicalize(folder)?,
+        _ => bail!("--release DIR, to which `cargo xtask release --out DIR` wrote"),
+    };
+    let (archive, stem) = archive(&released, "-x86_64-windows.zip")?;
+    let work = std::path::absolute(target().join("wine"))?;
+    anew(&work)?;
+    run(program("python3", &work)
+        .args(["-m", "zipfile", "-e"])
+        .arg(archive)
+        .arg("."))?;
+    let prefix = work.join(format!("{stem}-x86_64-windows"));
+    // In the working folder, which Windows looks through for libraries, too.
+    fs::write(work.join("primitives.c"), PRIMITIVES)?;
+    run(program(COMPILER.gcc, &work).args([
+        "-shared",
+        "-O",
+        "primitives.c",
+        "-ladvapi32",
+        "-o",
+        "bcryptprimitives.dll",
+    ]))
+    .context("the package gcc-mingw-w64-x86-64")?;
+    COMPILER.players(&prefix, &work)?;
+    let htex = prefix.join("bin/htex.exe");
+    wine_runs(&work, &htex, "--version")?;
+    wine_runs(&work, &htex, "demo out")?;
+    for line in SAME {
+        wine_runs(&work, &htex, line)?;
+    }
+    wine_runs(&work, &htex, "validate vinyl.htex")?;
+    for (name, library) in PLAYERS {
+        let folder = work.join(name);
+        fs::create_dir_all(&folder)?;
+        fs::copy(
+            prefix.join(library).join("htex.dll"),
+            folder.join("htex.dll"),
+        )?;
+        let player = folder.join(format!("{name}.exe"));
+        fs::rename(work.join(format!("{name}.exe")), &player)?;
+        wine_runs(&work, &player, &format!("vinyl.htex {name}.f32"))?;
+        let is_same = read(&work, &format!("{name}.f32"))? == read(&work, "play_pkg_config.f32")?;
+        ensure!(is_same, "{name} plays other samples than play_pkg_config");
+    }
+    same_here(&work)?;
+    run(program("sha256sum", &work).args([
+        "rec.csv",
+        "vinyl.htex",
+        "built-in.wav",
+        "play_pkg_config.f32",
+    ]))
+}
+
+fn read(folder: &Path, name: &str) -> Result<Vec<u8>> {
+    Ok(fs::read(folder.join(name))?)
+}
+
+/// Runs a program for Windows.
+fn wine_runs(work: &Path, exe: &Path, line: &str) -> Result<()> {
+    let mut wine = program("wine", work);
+    wine.arg(exe).args(line.split_whitespace());
+    run(wine
+        .env("WINEDEBUG", "-all")
+        .env("WINEPREFIX", work.join("prefix")))
+    .context("the package wine64")
+}
+
+/// The command of this machine writes the same recording, asset and samples.
+fn same_here(work: &Path) -> Result<()> {
+    let here = work.join("here");
+    fs::create_dir_all(&here)?;
+    for line in SAME {
+        let mut htex = Command::new(cargo());
+        let manifest = fs::canonicalize(workspace().join("Cargo.toml"))?;
+        htex.args(["run", "--quiet", "--locked", "--profile", "quick"]);
+        htex.args(["--package", "htex-cli", "--manifest-path"]);
+        htex.arg(manifest).arg("--").args(line.split_whitespace());
+        run(htex.current_dir(&here))?;
+    }
+    for name in ["rec.csv", "vinyl.htex", "built-in.wav"] {
+        let is_same = read(&here, name)? == read(work, name)?;
+        ensure!(is_same, "{name} of Windows is not that of this machine");
+    }
+    eprintln!(
+        "released: the recording, the asset and the samples of Windows are those of this machine"
+    );
+    Ok(())
+}

@@ -174,7 +174,8 @@ impl Build {
         );
     }
 
-    /// Flags of the compiler: no path of this machine is in what is released.
+    /// Flags of the compiler: no path of this machine is in what is released; and where zig finds the names of Apple's functions that the
+    /// time zone is asked by, in files of our own.
     fn flags(&self) -> String {
         let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
         let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
@@ -183,7 +184,13 @@ impl Build {
         let all = places.chain(std::iter::once((workspace, "/htex")));
         let flag =
             |(from, to): (PathBuf, &str)| format!("--remap-path-prefix={}={to}", from.display());
-        all.map(flag).collect::<Vec<_>>().join(" ")
+        let mut flags: Vec<_> = all.map(flag).collect();
+        if self.platform.system == System::MacOs {
+            let frameworks = workspace().join("xtask/src/release/frameworks");
+            let frameworks = std::path::absolute(&frameworks).unwrap_or(frameworks);
+            flags.push(format!("-Lframework={}", frameworks.display()));
+        }
+        flags.join(" ")
     }
 
     /// Cargo as it builds the command and libhtex, whole: both at once, so that each has the features of the other. By the profile of the

@@ -179,9 +179,9 @@ impl Build {
     fn flags(&self) -> String {
         let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
         let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
-        let workspace = std::fs::canonicalize(workspace()).unwrap_or_else(|_| workspace());
+        let sources = std::fs::canonicalize(workspace()).unwrap_or_else(|_| workspace());
         let places = home.into_iter().map(|home| (home, "/cargo"));
-        let all = places.chain(std::iter::once((workspace, "/htex")));
+        let all = places.chain(std::iter::once((sources, "/htex")));
         let flag =
             |(from, to): (PathBuf, &str)| format!("--remap-path-prefix={}={to}", from.display());
         let mut flags: Vec<_> = all.map(flag).collect();

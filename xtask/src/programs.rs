@@ -2,7 +2,7 @@
 
 use std::ffi::OsStr;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, ExitStatus, Stdio};
 
 use anyhow::{Context, Result, bail};
 
@@ -18,14 +18,32 @@ pub(crate) fn program(name: impl AsRef<OsStr>, folder: &Path) -> Command {
 /// # Errors
 /// When it cannot be run or fails; its own output has been printed.
 pub fn run(command: &mut Command) -> Result<()> {
-    let name = command.get_program().to_string_lossy().into_owned();
     forget_package(command);
-    let status = command.status().with_context(|| name.clone())?;
+    let status = command.status();
+    check(command, status.with_context(|| name(command))?)
+}
+
+/// Runs a program to its end; returns what it wrote to standard output.
+///
+/// # Errors
+/// As [`run`].
+pub(crate) fn output(command: &mut Command) -> Result<Vec<u8>> {
+    forget_package(command);
+    let output = command.stderr(Stdio::inherit()).output();
+    let output = output.with_context(|| name(command))?;
+    check(command, output.status).map(|()| output.stdout)
+}
+
+fn name(command: &Command) -> String {
+    command.get_program().to_string_lossy().into_owned()
+}
+
+fn check(command: &Command, status: ExitStatus) -> Result<()> {
     if status.success() {
         return Ok(());
     }
     let arguments: Vec<_> = command.get_args().map(OsStr::to_string_lossy).collect();
-    bail!("{name} {}: {status}", arguments.join(" "))
+    bail!("{} {}: {status}", name(command), arguments.join(" "))
 }
 
 /// Removes what cargo tells of the package that it runs. Build scripts that watch it (`ring`'s does) would run again, and all that is built

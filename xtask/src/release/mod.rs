@@ -17,7 +17,7 @@ use fs_err as fs;
 use crate::commit::Commit;
 use crate::places::workspace;
 use crate::platform::{Build, PLATFORMS, Platform};
-use crate::programs::{program, run};
+use crate::programs::{output, program, run};
 
 /// What is written, and where.
 pub struct Release {
@@ -130,8 +130,7 @@ fn checksums(out: &Path) -> Result<()> {
         }
     }
     names.sort();
-    let output = program("sha256sum", out).arg("--").args(&names).output()?;
-    ensure!(output.status.success(), "sha256sum: {}", output.status);
-    fs::write(out.join("SHA256SUMS"), output.stdout)?;
+    let sums = output(program("sha256sum", out).arg("--").args(&names))?;
+    fs::write(out.join("SHA256SUMS"), sums)?;
     run(program("sha256sum", out).args(["--check", "--quiet", "SHA256SUMS"]))
 }

@@ -11,7 +11,7 @@ use crate::dist::{Dist, copy, dist, of_command};
 use crate::places::{cargo, release_trees, workspace};
 use crate::platform::{Build, Platform, System};
 use crate::plugins::models;
-use crate::programs::run;
+use crate::programs::{output, run};
 
 /// Files of the workspace that are in every archive, and where.
 const TEXTS: [(&str, &str); 4] = [
@@ -121,15 +121,10 @@ fn help(platform: &Platform, folder: &Path) -> Result<()> {
     let pages = std::path::absolute(folder.join("share/man/man1"))?;
     run(&mut htex(&["man", &pages.to_string_lossy()])?)?;
     for (shell, to) in COMPLETIONS {
-        let output = htex(&["completions", shell])?.output()?;
-        ensure!(
-            output.status.success(),
-            "htex completions {shell}: {}",
-            output.status
-        );
+        let text = output(&mut htex(&["completions", shell])?)?;
         let to = folder.join(to);
         fs::create_dir_all(to.parent().unwrap_or(folder))?;
-        fs::write(to, output.stdout)?;
+        fs::write(to, text)?;
     }
     Ok(())
 }

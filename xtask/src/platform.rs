@@ -174,8 +174,8 @@ impl Build {
         );
     }
 
-    /// Flags of the compiler: no path of this machine is in what is released; and where zig finds the names of Apple's functions that the
-    /// time zone is asked by, in files of our own.
+    /// Flags of the compiler: no path of this machine and no name of a function is in what is released; and where zig finds the names of
+    /// Apple's functions that the time zone is asked by, in files of our own.
     fn flags(&self) -> String {
         let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
         let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
@@ -185,10 +185,15 @@ impl Build {
         let flag =
             |(from, to): (PathBuf, &str)| format!("--remap-path-prefix={}={to}", from.display());
         let mut flags: Vec<_> = all.map(flag).collect();
-        if self.platform.system == System::MacOs {
-            let frameworks = workspace().join("xtask/src/release/frameworks");
-            let frameworks = std::path::absolute(&frameworks).unwrap_or(frameworks);
-            flags.push(format!("-Lframework={}", frameworks.display()));
+        match self.platform.system {
+            System::Linux => {}
+            System::MacOs => {
+                let frameworks = workspace().join("xtask/src/release/frameworks");
+                let frameworks = std::path::absolute(&frameworks).unwrap_or(frameworks);
+                flags.push(format!("-Lframework={}", frameworks.display()));
+            }
+            // Zig leaves the names of functions out, mingw-w64 when told so.
+            System::Windows => flags.push("-Cstrip=symbols".to_owned()),
         }
         flags.join(" ")
     }

@@ -175,7 +175,7 @@ impl Build {
     }
 
     /// Flags of the compiler: no path of this machine and no name of a function is in what is released; and where zig finds the names of
-    /// Apple's functions that the time zone is asked by, in files of our own.
+    /// Apple's functions that it has none of, in files of our own.
     fn flags(&self) -> String {
         let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
         let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
@@ -188,9 +188,11 @@ impl Build {
         match self.platform.system {
             System::Linux => {}
             System::MacOs => {
-                let frameworks = workspace().join("xtask/src/release/frameworks");
-                let frameworks = std::path::absolute(&frameworks).unwrap_or(frameworks);
-                flags.push(format!("-Lframework={}", frameworks.display()));
+                let apple = workspace().join("xtask/src/release/apple");
+                let apple = std::path::absolute(&apple).unwrap_or(apple);
+                for kind in ["framework", "native"] {
+                    flags.push(format!("-L{kind}={}", apple.display()));
+                }
             }
             // Zig leaves the names of functions out, mingw-w64 when told so.
             System::Windows => flags.push("-Cstrip=symbols".to_owned()),

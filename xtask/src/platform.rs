@@ -11,6 +11,11 @@ use crate::places::{cargo, target, workspace};
 /// Oldest C library of Linux that what is released runs with.
 const GLIBC: &str = "2.31";
 
+/// Oldest macOS that what is released runs with: the first for Apple's processors.
+const MACOS: &str = "11.0";
+
+const STRIP: &str = "-Cstrip=symbols";
+
 /// Cargo's profile of tests, whose folder is `debug`.
 const TESTS: &str = "dev";
 
@@ -165,6 +170,7 @@ impl Build {
     fn for_release(&self, command: &mut Command, commit: &Commit) {
         commit.told_to(command);
         command.env("PATH", tools_first());
+        command.env("MACOSX_DEPLOYMENT_TARGET", MACOS);
         command.env("RUSTFLAGS", self.flags());
         // cargo-zigbuild, and maturin, which has it inside, name their compilers of C after the program that runs. With one name, and one
         // version (requirements.txt), the wheel shall take what the archive has compiled.
@@ -186,6 +192,7 @@ impl Build {
             |(from, to): (PathBuf, &str)| format!("--remap-path-prefix={}={to}", from.display());
         let mut flags: Vec<_> = all.map(flag).collect();
         match self.platform.system {
+            // Zig leaves the names of functions out.
             System::Linux => {}
             System::MacOs => {
                 let apple = workspace().join("xtask/src/release/apple");
@@ -193,9 +200,9 @@ impl Build {
                 for kind in ["framework", "native"] {
                     flags.push(format!("-L{kind}={}", apple.display()));
                 }
+                flags.push(STRIP.to_owned());
             }
-            // Zig leaves the names of functions out, mingw-w64 when told so.
-            System::Windows => flags.push("-Cstrip=symbols".to_owned()),
+            System::Windows => flags.push(STRIP.to_owned()),
         }
         flags.join(" ")
     }

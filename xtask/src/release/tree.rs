@@ -94,8 +94,14 @@ fn plugins(build: &Build, folder: &Path) -> Result<()> {
             &format!("htex-{model}"),
         ]);
         cargo.args(build.profile());
-        run(cargo.args(["--features", "plugin", "--crate-type", "cdylib"]))?;
+        cargo.args(["--features", "plugin", "--crate-type", "cdylib"]);
         let native = format!("{prefix}htex_{model}.{suffix}");
+        if build.platform().system == System::MacOs {
+            // Else its name is the path where it was built.
+            let name = format!("-Clink-arg=-Wl,-install_name,@rpath/{native}");
+            cargo.args(["--", &name]);
+        }
+        run(&mut cargo)?;
         copy(&build.built().join(&native), &to.join(&native))?;
         let module = format!("htex_{model}.wasm");
         copy(&modules.join(&module), &to.join(&module))?;

@@ -183,14 +183,7 @@ impl Build {
     /// Flags of the compiler: no path of this machine and no name of a function is in what is released; and where zig finds the names of
     /// Apple's functions that it has none of, in files of our own.
     fn flags(&self) -> String {
-        let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
-        let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
-        let sources = std::fs::canonicalize(workspace()).unwrap_or_else(|_| workspace());
-        let places = home.into_iter().map(|home| (home, "/cargo"));
-        let all = places.chain(std::iter::once((sources, "/htex")));
-        let flag =
-            |(from, to): (PathBuf, &str)| format!("--remap-path-prefix={}={to}", from.display());
-        let mut flags: Vec<_> = all.map(flag).collect();
+        let mut flags = vec![without_places()];
         match self.platform.system {
             // Zig leaves the names of functions out.
             System::Linux => {}
@@ -270,6 +263,17 @@ impl Build {
         };
         Command::new(format!("{prefix}{name}"))
     }
+}
+
+/// Flags of the compiler by which no path of this machine is in what it writes.
+pub(crate) fn without_places() -> String {
+    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
+    let sources = std::fs::canonicalize(workspace()).unwrap_or_else(|_| workspace());
+    let places = home.into_iter().map(|home| (home, "/cargo"));
+    let all = places.chain(std::iter::once((sources, "/htex")));
+    let flag = |(from, to): (PathBuf, &str)| format!("--remap-path-prefix={}={to}", from.display());
+    all.map(flag).collect::<Vec<_>>().join(" ")
 }
 
 /// Where the tools of releases are installed: zig, and what cargo calls it by.

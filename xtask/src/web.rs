@@ -7,9 +7,10 @@ use anyhow::{Context, Result};
 use fs_err as fs;
 
 use crate::places::{cargo, target, workspace};
+use crate::platform::without_places;
 use crate::programs::run;
 
-const TARGET: &str = "wasm32-unknown-unknown";
+pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
 const COPIED: [&str; 34] = [
@@ -84,7 +85,7 @@ const AUTHOR_WORKER: [&str; 5] = [
 ];
 
 /// Features of `sdk/web/author`, and the modules that are built with them.
-const MODULES: [(&str, &str); 3] = [
+pub(crate) const MODULES: [(&str, &str); 3] = [
     ("make", "htex-author.wasm"),
     ("import", "htex-import.wasm"),
     ("scene", "htex-scene.wasm"),
@@ -109,6 +110,9 @@ pub fn web(out: &Path) -> Result<()> {
     }
     for name in ["package.json", "README.md"] {
         copy(source.join(name), name)?;
+    }
+    for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
+        copy(workspace().join(name), name)?;
     }
     copy(player, "htex.wasm")?;
     join(&source.join("src"), &PROCESSOR, &out.join("processor.js"))?;
@@ -139,7 +143,7 @@ fn module(package: &str, profile: &str, features: &[&str]) -> Result<PathBuf> {
         .args(["--target", TARGET])
         .env(
             "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
-            "-Ctarget-feature=+simd128",
+            format!("-Ctarget-feature=+simd128 {}", without_places()),
         )
         .current_dir(workspace());
     run(&mut build).context("`rustup target add` brings the target")?;

@@ -93,22 +93,28 @@ pub fn release(release: &Release) -> Result<()> {
         "{} is missing: its README says how the files of a version are kept",
         kept.display()
     );
+    let is_compiled = release.npm || !release.platforms.is_empty();
+    let notices = match is_compiled && !release.is_trial {
+        true => Some(parts::notices(&release.platforms)?),
+        false => None,
+    };
+    let notices = notices.as_deref();
     for platform in &release.platforms {
         eprintln!("release: {}", platform.name);
         let build = match release.is_trial {
             true => Build::here()?,
             false => Build::release(*platform, &commit),
         };
-        let folder = tree::lay_out(&build, &version)?;
+        let folder = tree::lay_out(&build, &version, notices)?;
         packages::archive(&build, &folder, &out, &commit)?;
-        packages::wheel(&build, &out)?;
+        packages::wheel(&build, &out, notices)?;
         if !release.is_trial {
             parts::bill(platform, &version, &out, &commit)?;
         }
     }
-    unity::package(&release.platforms, &version, &out, &commit)?;
+    unity::package(&release.platforms, &version, &out, &commit, notices)?;
     if release.npm {
-        packages::npm(&out)?;
+        packages::npm(&out, notices)?;
     }
     if release.sdist {
         packages::sdist(&version, &out, &commit)?;

@@ -6,8 +6,10 @@ use std::process::Stdio;
 use anyhow::{Result, ensure};
 use fs_err as fs;
 
+use super::parts::put_notices;
+use super::tree;
 use crate::commit::Commit;
-use crate::places::{cargo, release_trees, target};
+use crate::places::{cargo, release_trees, target, workspace};
 use crate::platform::{Build, Platform, System, tools};
 use crate::programs::{program, run};
 
@@ -105,7 +107,7 @@ with zipfile.ZipFile(to, 'w', zipfile.ZIP_DEFLATED, compresslevel=9) as out:
 ";
 
 /// Writes the wheel of a platform.
-pub(super) fn wheel(build: &Build, out: &Path) -> Result<()> {
+pub(super) fn wheel(build: &Build, out: &Path, notices: Option<&Path>) -> Result<()> {
     let platform = build.platform();
     let mut maturin = build.maturin("build");
     maturin.arg("--locked").args(build.profile());
@@ -119,7 +121,16 @@ pub(super) fn wheel(build: &Build, out: &Path) -> Result<()> {
         maturin.args(["--compatibility", "manylinux_2_31"]);
     }
     maturin.env("CARGO_TARGET_DIR", std::path::absolute(target())?);
-    run(maturin.arg("--out").arg(out))
+    maturin.arg("--out").arg(out);
+    let Some(notices) = notices else {
+        return run(&mut maturin);
+    };
+    // Beside the modules of Python, whose folder is packed as it is.
+    let package = workspace().join("sdk/python/python/htex");
+    put_notices(notices, &package)?;
+    let built = run(&mut maturin);
+    fs::remove_file(package.join(notices.file_name().unwrap_or_default()))?;
+    built
 }
 
 /// Writes the sources of the Python package, which pip builds where there is no wheel.
@@ -151,12 +162,16 @@ pub(super) fn sdist(version: &str, out: &Path, commit: &Commit) -> Result<()> {
 }
 
 /// Writes the npm package.
-pub(super) fn npm(out: &Path) -> Result<()> {
+pub(super) fn npm(out: &Path, notices: Option<&Path>) -> Result<()> {
     let folder = release_trees().join("npm");
     if folder.exists() {
         fs::remove_dir_all(&folder)?;
     }
     crate::web::web(&folder)?;
+    if let Some(notices) = notices {
+        put_notices(notices, &folder)?;
+    }
+    tree::check_paths(&folder)?;
     run(program("npm", &folder)
         .args(["pack", "--silent", "--pack-destination"])
         .arg(out))

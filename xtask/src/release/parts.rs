@@ -11,23 +11,34 @@ use crate::places::{cargo, release_trees, workspace};
 use crate::platform::{Platform, tools_first};
 use crate::programs::{program, run};
 
-/// Writes the licences of all packages that the command and the whole library are made of, with their texts.
-pub(super) fn notices(platform: &Platform, to: &Path) -> Result<()> {
+/// The name of the file with others' licences.
+const NOTICES: &str = "THIRD-PARTY-NOTICES.txt";
+
+/// Writes the licences of all packages that anything of the release is made of, with their texts; returns the file. It is one for all:
+/// finding the texts takes minutes.
+pub(super) fn notices(platforms: &[Platform]) -> Result<PathBuf> {
     let release = workspace().join("xtask/src/release");
+    let to = std::path::absolute(release_trees().join(NOTICES))?;
+    fs::create_dir_all(release_trees())?;
     let mut about = Command::new(cargo());
-    about.args(["about", "generate", "--locked", "--offline", "--fail"]);
-    about.args([
-        "--manifest-path",
-        "cli/Cargo.toml",
-        "--target",
-        platform.triple,
-    ]);
+    about.args(["about", "generate", "--workspace", "--locked", "--offline"]);
+    about.arg("--fail");
+    let systems = platforms.iter().map(|one| one.triple);
+    for target in systems.chain(std::iter::once(crate::web::TARGET)) {
+        about.args(["--target", target]);
+    }
     about.arg("--config").arg(release.join("about.toml"));
-    about.arg("--output-file").arg(std::path::absolute(to)?);
+    about.arg("--output-file").arg(&to);
     about
         .arg(release.join("about.hbs"))
         .current_dir(workspace());
-    run(about.env("PATH", tools_first()))
+    run(about.env("PATH", tools_first()))?;
+    Ok(to)
+}
+
+/// Copies them into a folder.
+pub(super) fn put_notices(notices: &Path, folder: &Path) -> Result<()> {
+    crate::dist::copy(notices, &folder.join(NOTICES))
 }
 
 /// Writes the bill of materials of the command in the format of CycloneDX. The program for it writes beside the manifests, so it has a copy of

@@ -6,7 +6,7 @@ use std::process::Command;
 use anyhow::{Result, ensure};
 use fs_err as fs;
 
-use super::parts::notices;
+use super::parts::put_notices;
 use crate::dist::{Dist, copy, dist, of_command};
 use crate::places::{cargo, release_trees, workspace};
 use crate::platform::{Build, Platform, System};
@@ -35,7 +35,7 @@ pub(super) fn folder(platform: &Platform, version: &str) -> PathBuf {
 }
 
 /// Builds all of it for a platform; returns the folder, whose name is that of the archive.
-pub(super) fn lay_out(build: &Build, version: &str) -> Result<PathBuf> {
+pub(super) fn lay_out(build: &Build, version: &str, notices: Option<&Path>) -> Result<PathBuf> {
     let platform = &build.platform();
     let folder = folder(platform, version);
     if folder.exists() {
@@ -52,9 +52,8 @@ pub(super) fn lay_out(build: &Build, version: &str) -> Result<PathBuf> {
         copy(&workspace().join(from), &folder.join(to))?;
     }
     help(platform, &folder)?;
-    if build.is_release() {
-        let to = folder.join("share/doc/htex/THIRD-PARTY-NOTICES.txt");
-        notices(platform, &to)?;
+    if let Some(notices) = notices {
+        put_notices(notices, &folder.join("share/doc/htex"))?;
         check_paths(&folder)?;
     }
     Ok(folder)
@@ -136,7 +135,7 @@ fn help(platform: &Platform, folder: &Path) -> Result<()> {
 }
 
 /// No file tells where it was built.
-fn check_paths(folder: &Path) -> Result<()> {
+pub(super) fn check_paths(folder: &Path) -> Result<()> {
     let workspace = fs::canonicalize(workspace())?;
     let home = std::env::var_os("HOME").map(PathBuf::from);
     let registry = home.map(|home| home.join(".cargo"));

@@ -11,12 +11,13 @@ use crate::dist::unity;
 use crate::places::release_trees;
 use crate::platform::Platform;
 
-/// Writes it as a zip file.
+/// Writes it as a zip file, with the licences of what the libraries are made of.
 pub(super) fn package(
     platforms: &[Platform],
     version: &str,
     out: &Path,
     commit: &Commit,
+    notices: Option<&Path>,
 ) -> Result<()> {
     if platforms.is_empty() {
         return Ok(());
@@ -28,5 +29,12 @@ pub(super) fn package(
     let lib = |platform: &Platform| tree::folder(platform, version).join("lib/whole");
     let libraries: Vec<_> = platforms.iter().map(|one| (*one, lib(one))).collect();
     unity::package(&libraries, &folder)?;
+    if let Some(all) = notices {
+        let notices = folder.join("Third Party Notices.md");
+        // A block of code: what is in it is no Markdown.
+        let all = fs::read_to_string(all)?;
+        let text = fs::read_to_string(&notices)?;
+        fs::write(notices, format!("{text}\n~~~~~~text\n{all}~~~~~~\n"))?;
+    }
     packages::zip(&folder, out, commit)
 }

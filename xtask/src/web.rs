@@ -10,7 +10,7 @@ use crate::places::{cargo, target, workspace};
 use crate::platform::without_places;
 use crate::programs::run;
 
-pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
+const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
 const COPIED: [&str; 34] = [
@@ -85,7 +85,7 @@ const AUTHOR_WORKER: [&str; 5] = [
 ];
 
 /// Features of `sdk/web/author`, and the modules that are built with them.
-pub(crate) const MODULES: [(&str, &str); 3] = [
+const MODULES: [(&str, &str); 3] = [
     ("make", "htex-author.wasm"),
     ("import", "htex-import.wasm"),
     ("scene", "htex-scene.wasm"),

@@ -109,7 +109,7 @@ pub fn release(release: &Release) -> Result<()> {
         packages::archive(&build, &folder, &out, &commit)?;
         packages::wheel(&build, &out, notices)?;
         if !release.is_trial {
-            parts::bill(platform, &version, &out, &commit)?;
+            parts::bills(platform, &version, &out, &commit)?;
         }
     }
     unity::package(&release.platforms, &version, &out, &commit, notices)?;

@@ -23,9 +23,15 @@ pub(super) fn notices(platforms: &[Platform]) -> Result<PathBuf> {
     let mut about = Command::new(cargo());
     about.args(["about", "generate", "--workspace", "--locked", "--offline"]);
     about.arg("--fail");
-    let systems = platforms.iter().map(|one| one.triple);
-    for target in systems.chain(std::iter::once(crate::web::TARGET)) {
-        about.args(["--target", target]);
+    // The modules of the npm package are made of packages that a machine's own programs have, too.
+    let here = [Platform::here()?];
+    let platforms = if platforms.is_empty() {
+        &here
+    } else {
+        platforms
+    };
+    for platform in platforms {
+        about.args(["--target", platform.triple]);
     }
     about.arg("--config").arg(release.join("about.toml"));
     about.arg("--output-file").arg(&to);
@@ -41,34 +47,29 @@ pub(super) fn put_notices(notices: &Path, folder: &Path) -> Result<()> {
     crate::dist::copy(notices, &folder.join(NOTICES))
 }
 
-/// Writes the bill of materials of the command in the format of CycloneDX. The program for it writes beside the manifests, so it has a copy of
-/// the sources.
-pub(super) fn bill(platform: &Platform, version: &str, out: &Path, commit: &Commit) -> Result<()> {
+/// Packages that a bill of materials is made of, and what it is of in the name of the file.
+const BILLED: [(&str, &str); 2] = [("cli", ""), ("sdk/python", "-python")];
+
+/// Writes the bills of materials of the command and of the wheel in the format of CycloneDX. The program for it writes beside the
+/// manifests, so it has a copy of the sources.
+pub(super) fn bills(platform: &Platform, version: &str, out: &Path, commit: &Commit) -> Result<()> {
     let sources = sources()?;
-    let name = format!("htex-{version}-{}.cdx", platform.name);
-    let mut cyclonedx = Command::new(cargo());
-    cyclonedx.args([
-        "cyclonedx",
-        "--quiet",
-        "--format",
-        "json",
-        "--spec-version",
-        "1.5",
-    ]);
-    cyclonedx.args([
-        "--manifest-path",
-        "cli/Cargo.toml",
-        "--target",
-        platform.triple,
-    ]);
-    cyclonedx
-        .args(["--override-filename", &name])
-        .current_dir(&sources);
-    run(commit.told_to(cyclonedx.env("PATH", tools_first())))?;
-    let name = format!("{name}.json");
-    let text = fs::read_to_string(sources.join("cli").join(&name))?;
-    let text = text.replace(&*sources.to_string_lossy(), "/htex");
-    Ok(fs::write(out.join(&name), text)?)
+    for (package, of) in BILLED {
+        let name = format!("htex-{version}{of}-{}.cdx", platform.name);
+        let mut cyclonedx = Command::new(cargo());
+        cyclonedx.args(["cyclonedx", "--quiet", "--format", "json"]);
+        cyclonedx.args(["--spec-version", "1.5", "--target", platform.triple]);
+        cyclonedx.args(["--manifest-path", &format!("{package}/Cargo.toml")]);
+        cyclonedx
+            .args(["--override-filename", &name])
+            .current_dir(&sources);
+        run(commit.told_to(cyclonedx.env("PATH", tools_first())))?;
+        let name = format!("{name}.json");
+        let text = fs::read_to_string(sources.join(package).join(&name))?;
+        let text = text.replace(&*sources.to_string_lossy(), "/htex");
+        fs::write(out.join(&name), text)?;
+    }
+    Ok(())
 }
 
 /// A copy of what is committed.

@@ -22,7 +22,7 @@ const CMAKE: &str = "cmake_minimum_required(VERSION 3.16)\nproject(app C)\nfind_
                      target_link_libraries(app_${library} PRIVATE htex::${library} m)\nendforeach()\n";
 
 /// How the player of an asset is built, as users type it: its name, and the end of the line of the compiler.
-const LINES: [(&str, &str); 5] = [
+const LINES: [(&str, &str); 7] = [
     ("small", "main.c $(pkg-config --cflags --libs htex) -lm"),
     (
         "whole",
@@ -40,6 +40,15 @@ const LINES: [(&str, &str); 5] = [
         "two",
         "two.c libother.a -static $(pkg-config --static --cflags --libs htex)",
     ),
+    // Of what both libraries have, a linker takes that of the first.
+    (
+        "two-after",
+        "two.c -I prefix/include prefix/lib/libhtex.a libother.a -lpthread -ldl -lm",
+    ),
+    (
+        "two-whole-after",
+        "two.c -I prefix/include prefix/lib/whole/libhtex.a libother.a -lpthread -ldl -lm",
+    ),
 ];
 
 /// The player, which calls another static library of Rust, too.
@@ -51,18 +60,20 @@ double other_sum(const double *numbers, size_t count);
 int main(int argc, char **argv)
 {
     const double numbers[] = {1.0, 2.0};
-    return other_sum(numbers, 2) == 3.0 ? play(argc, argv) : 3;
+    if (other_sum(numbers, 2) != 3.0 || other_sum(numbers, 0) != -1.0)
+        return 3;
+    return play(argc, argv);
 }
 ";
 
-/// A library of Rust that is none of htex, with a panic that is caught.
+/// A library of Rust that is none of htex. It catches its panic for no numbers.
 const OTHER: &str = "\
 #[unsafe(no_mangle)]
 pub extern \"C\" fn other_sum(numbers: *const f64, count: usize) -> f64 {
     // SAFETY: the caller has that many numbers.
     let numbers = unsafe { std::slice::from_raw_parts(numbers, count) };
-    let sum = std::panic::catch_unwind(|| numbers.to_vec().iter().sum());
-    sum.unwrap_or(f64::NAN)
+    let sum = std::panic::catch_unwind(|| numbers[0] + numbers[1..].iter().sum::<f64>());
+    sum.unwrap_or(-1.0)
 }
 ";
 

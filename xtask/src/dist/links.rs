@@ -35,7 +35,8 @@ pub(super) fn put(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> R
 fn put_static(build: &Build, built: &Path, lib: &Path, is_merged: bool) -> Result<()> {
     let object = built.join("htex.o");
     let mut link = build.utility("ld");
-    link.args(["-r", "--gc-sections"]);
+    // Without groups: a linker keeps one of each name, and what refers to another library's would have a name that is local here.
+    link.args(["-r", "--gc-sections", "--force-group-allocation"]);
     for name in functions()?.iter().filter(|name| !name.ends_with("_wide")) {
         link.args(["-u", name]);
     }

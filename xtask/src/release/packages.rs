@@ -1,6 +1,6 @@
 //! Archives, wheels and the npm package.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
 use anyhow::{Result, ensure};
@@ -121,16 +121,36 @@ pub(super) fn wheel(build: &Build, out: &Path, notices: Option<&Path>) -> Result
         maturin.args(["--compatibility", "manylinux_2_31"]);
     }
     maturin.env("CARGO_TARGET_DIR", std::path::absolute(target())?);
-    maturin.arg("--out").arg(out);
     let Some(notices) = notices else {
-        return run(&mut maturin);
+        return run(maturin.arg("--out").arg(out));
     };
     // Beside the modules of Python, whose folder is packed as it is.
     let package = workspace().join("sdk/python/python/htex");
     put_notices(notices, &package)?;
-    let built = run(&mut maturin);
+    let folder = anew("wheel")?;
+    let built = run(maturin.arg("--out").arg(&folder));
     fs::remove_file(package.join(notices.file_name().unwrap_or_default()))?;
-    built
+    built?;
+    for wheel in crate::places::files(&folder)? {
+        let unpacked = anew("wheel-unpacked")?;
+        run(program("python3", &unpacked)
+            .args(["-m", "zipfile", "-e"])
+            .arg(&wheel)
+            .arg("."))?;
+        tree::check_paths(&unpacked)?;
+        fs::copy(&wheel, out.join(wheel.file_name().unwrap_or_default()))?;
+    }
+    Ok(())
+}
+
+/// An empty folder of a name for what is on its way.
+fn anew(name: &str) -> Result<PathBuf> {
+    let folder = release_trees().join(name);
+    if folder.exists() {
+        fs::remove_dir_all(&folder)?;
+    }
+    fs::create_dir_all(&folder)?;
+    Ok(fs::canonicalize(folder)?)
 }
 
 /// Writes the sources of the Python package, which pip builds where there is no wheel.
@@ -139,14 +159,7 @@ pub(super) fn wheel(build: &Build, out: &Path, notices: Option<&Path>) -> Result
 /// them out here.
 pub(super) fn sdist(version: &str, out: &Path, commit: &Commit) -> Result<()> {
     let trees = release_trees();
-    let (folder, packed) = (trees.join(format!("htex-{version}")), trees.join("sdist"));
-    for old in [&folder, &packed] {
-        if old.exists() {
-            fs::remove_dir_all(old)?;
-        }
-    }
-    fs::create_dir_all(&packed)?;
-    let packed = fs::canonicalize(packed)?;
+    let (folder, packed) = (anew(&format!("htex-{version}"))?, anew("sdist")?);
     let build = Build::release(Platform::here()?, commit);
     run(build.maturin("sdist").arg("--out").arg(&packed))?;
     let name = format!("htex-{version}.tar.gz");
@@ -163,10 +176,7 @@ pub(super) fn sdist(version: &str, out: &Path, commit: &Commit) -> Result<()> {
 
 /// Writes the npm package.
 pub(super) fn npm(out: &Path, notices: Option<&Path>) -> Result<()> {
-    let folder = release_trees().join("npm");
-    if folder.exists() {
-        fs::remove_dir_all(&folder)?;
-    }
+    let folder = anew("npm")?;
     crate::web::web(&folder)?;
     if let Some(notices) = notices {
         put_notices(notices, &folder)?;

@@ -91,6 +91,12 @@ impl Platform {
         }
     }
 
+    /// Whether a wheel is released. What one for macOS needs of Apple's frameworks, for certificates, is not to be had here: pip builds
+    /// it there of the sources.
+    pub(crate) fn has_wheel(&self) -> bool {
+        self.system != System::MacOs
+    }
+
     /// The one that this program runs on.
     ///
     /// # Errors

@@ -107,7 +107,9 @@ pub fn release(release: &Release) -> Result<()> {
         };
         let folder = tree::lay_out(&build, &version, notices)?;
         packages::archive(&build, &folder, &out, &commit)?;
-        packages::wheel(&build, &out, notices)?;
+        if platform.has_wheel() {
+            packages::wheel(&build, &out, notices)?;
+        }
         if !release.is_trial {
             parts::bills(platform, &version, &out, &commit)?;
         }

@@ -47,14 +47,15 @@ pub(super) fn put_notices(notices: &Path, folder: &Path) -> Result<()> {
     crate::dist::copy(notices, &folder.join(NOTICES))
 }
 
-/// Packages that a bill of materials is made of, and what it is of in the name of the file.
-const BILLED: [(&str, &str); 2] = [("cli", ""), ("sdk/python", "-python")];
-
 /// Writes the bills of materials of the command and of the wheel in the format of CycloneDX. The program for it writes beside the
 /// manifests, so it has a copy of the sources.
 pub(super) fn bills(platform: &Platform, version: &str, out: &Path, commit: &Commit) -> Result<()> {
     let sources = sources()?;
-    for (package, of) in BILLED {
+    let mut billed = vec![("cli", "")];
+    if platform.has_wheel() {
+        billed.push(("sdk/python", "-python"));
+    }
+    for (package, of) in billed {
         let name = format!("htex-{version}{of}-{}.cdx", platform.name);
         let mut cyclonedx = Command::new(cargo());
         cyclonedx.args(["cyclonedx", "--quiet", "--format", "json"]);

@@ -94,7 +94,7 @@ print(texture.models, float(samples.std()))
 assert samples.std() > 0
 ";
 
-/// Versions of the C library that wheels name.
+/// Versions of the C library that wheels for another processor may name.
 const MANYLINUX: [&str; 4] = ["2_31", "2_28", "2_27", "2_17"];
 
 /// Uses what is released on an empty root of Debian.
@@ -143,14 +143,14 @@ fn wheels(released: &Path, processor: &Processor, work: &Path) -> Result<()> {
     let mut pip = program("python3", work);
     pip.args(["-m", "pip", "download", "--quiet", "--only-binary=:all:"]);
     pip.args(["--python-version", "3.11"]);
-    for version in MANYLINUX {
-        pip.args([
-            "--platform",
-            &format!("manylinux_{version}_{}", processor.name),
-        ]);
+    if processor.name != std::env::consts::ARCH {
+        for version in MANYLINUX {
+            pip.args([
+                "--platform",
+                &format!("manylinux_{version}_{}", processor.name),
+            ]);
+        }
     }
-    // A trial has the wheel of this machine, which names no C library.
-    pip.args(["--platform", &format!("linux_{}", processor.name)]);
     run(pip.args(["--dest", "wheels"]).arg(wheel))
 }
 

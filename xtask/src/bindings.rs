@@ -17,7 +17,7 @@ use anyhow::{Context, Result, bail, ensure};
 pub(crate) use fixtures::command;
 
 use crate::jobs::at_a_time;
-use crate::places::target;
+use crate::places::{emptied, target};
 
 /// A binding: its name, the programs that its tests need, and the tests.
 struct Binding {
@@ -165,7 +165,7 @@ impl Binding {
         ensure!(missing.is_empty(), "{name}: {}", missing.join("; "));
         eprintln!("bindings: {name}");
         let folder = target().join("bindings").join(name);
-        let tested = prepare(&folder).and_then(|()| (self.test)(&folder));
+        let tested = emptied(&folder).and_then(|()| (self.test)(&folder));
         tested.context(name)
     }
 }
@@ -185,14 +185,6 @@ impl Program {
             None => Some(format!("{names} is missing ({})", self.how)),
         }
     }
-}
-
-/// An empty folder.
-fn prepare(folder: &Path) -> Result<()> {
-    if folder.exists() {
-        fs_err::remove_dir_all(folder)?;
-    }
-    Ok(fs_err::create_dir_all(folder)?)
 }
 
 /// The path of a program.

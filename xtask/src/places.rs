@@ -32,6 +32,14 @@ pub(crate) fn version() -> Result<String> {
     Ok(version.trim_matches('"').to_owned())
 }
 
+/// Makes a folder, without what it had.
+pub(crate) fn emptied(folder: &Path) -> Result<()> {
+    if folder.exists() {
+        fs_err::remove_dir_all(folder)?;
+    }
+    Ok(fs_err::create_dir_all(folder)?)
+}
+
 /// The files of a folder.
 pub(crate) fn files(folder: &Path) -> Result<Vec<PathBuf>> {
     let entries = fs_err::read_dir(folder)?;

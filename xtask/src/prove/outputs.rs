@@ -61,9 +61,7 @@ fn built() -> Result<PathBuf> {
 
 /// An empty folder with the inputs and a folder for what is printed.
 fn prepare(folder: &Path) -> Result<()> {
-    if folder.exists() {
-        fs::remove_dir_all(folder)?;
-    }
+    crate::places::emptied(folder)?;
     fs::create_dir_all(folder.join("printed"))?;
     let inputs = INPUTS.map(|input| workspace().join(input));
     run(Command::new("cp").arg("-R").args(inputs).arg(folder))

@@ -89,9 +89,7 @@ pub(super) fn prove(words: &[&str]) -> Result<()> {
 /// A folder with the files of the release, for one page.
 fn prepare(name: &str, release: &Path, with_sources: bool) -> Result<PathBuf> {
     let place = std::path::absolute(target().join("ways").join(name))?;
-    if place.exists() {
-        fs::remove_dir_all(&place)?;
-    }
+    crate::places::emptied(&place)?;
     let folder = place.join("here");
     fs::create_dir_all(&folder)?;
     fs::write(place.join("exported"), "")?;

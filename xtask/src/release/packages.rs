@@ -9,7 +9,7 @@ use fs_err as fs;
 use super::parts::put_notices;
 use super::tree;
 use crate::commit::Commit;
-use crate::places::{cargo, release_trees, target, workspace};
+use crate::places::{cargo, emptied, release_trees, target, workspace};
 use crate::platform::{Build, Platform, System, tools};
 use crate::programs::{program, run};
 
@@ -146,10 +146,7 @@ pub(super) fn wheel(build: &Build, out: &Path, notices: Option<&Path>) -> Result
 /// An empty folder of a name for what is on its way.
 fn anew(name: &str) -> Result<PathBuf> {
     let folder = release_trees().join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder)?;
-    }
-    fs::create_dir_all(&folder)?;
+    emptied(&folder)?;
     Ok(fs::canonicalize(folder)?)
 }
 

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use fs_err as fs;
 
 use crate::commit::Commit;
-use crate::places::{cargo, release_trees, workspace};
+use crate::places::{cargo, emptied, release_trees, workspace};
 use crate::platform::{Platform, tools_first};
 use crate::programs::{program, run};
 
@@ -76,10 +76,7 @@ pub(super) fn bills(platform: &Platform, version: &str, out: &Path, commit: &Com
 /// A copy of what is committed.
 fn sources() -> Result<PathBuf> {
     let folder = release_trees().join("sources");
-    if folder.exists() {
-        fs::remove_dir_all(&folder)?;
-    }
-    fs::create_dir_all(&folder)?;
+    emptied(&folder)?;
     let archive = folder.join("sources.tar");
     let workspace = workspace();
     run(program("git", &workspace)

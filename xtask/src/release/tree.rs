@@ -38,9 +38,7 @@ pub(super) fn folder(platform: &Platform, version: &str) -> PathBuf {
 pub(super) fn lay_out(build: &Build, version: &str, notices: Option<&Path>) -> Result<PathBuf> {
     let platform = &build.platform();
     let folder = folder(platform, version);
-    if folder.exists() {
-        fs::remove_dir_all(&folder)?;
-    }
+    crate::places::emptied(&folder)?;
     command(build, &folder)?;
     dist(&Dist {
         prefix: folder.clone(),

@@ -23,9 +23,7 @@ pub(super) fn package(
         return Ok(());
     }
     let folder = release_trees().join(format!("htex-unity-{version}"));
-    if folder.exists() {
-        fs::remove_dir_all(&folder)?;
-    }
+    crate::places::emptied(&folder)?;
     let lib = |platform: &Platform| tree::folder(platform, version).join("lib/whole");
     let libraries: Vec<_> = platforms.iter().map(|one| (*one, lib(one))).collect();
     unity::package(&libraries, &folder)?;

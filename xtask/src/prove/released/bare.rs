@@ -6,8 +6,8 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 use fs_err as fs;
 
-use super::{Compiler, anew, archive};
-use crate::places::target;
+use super::{Compiler, archive};
+use crate::places::{emptied, target};
 use crate::programs::{program, run};
 
 /// A processor that a root is made for.
@@ -114,7 +114,7 @@ pub(in crate::prove) fn bare(options: &[&str]) -> Result<()> {
     let (archive, stem) = archive(&released, &ending)?;
     let root = root(processor)?;
     let work = root.join("htex");
-    anew(&work)?;
+    emptied(&work)?;
     run(program("tar", &work).arg("-xf").arg(archive))?;
     let unpacked = format!("{stem}-{name}-linux");
     processor.compiler.players(&work.join(&unpacked), &work)?;

@@ -28,14 +28,6 @@ fn archive(folder: &Path, ending: &str) -> Result<(PathBuf, String)> {
     )
 }
 
-/// An empty folder.
-fn anew(folder: &Path) -> Result<()> {
-    if folder.exists() {
-        fs::remove_dir_all(folder)?;
-    }
-    Ok(fs::create_dir_all(folder)?)
-}
-
 /// A compiler of C, and what CMake calls its system.
 struct Compiler {
     gcc: &'static str,

@@ -6,8 +6,8 @@ use std::process::Command;
 use anyhow::{Context, Result, bail, ensure};
 use fs_err as fs;
 
-use super::{Compiler, anew, archive};
-use crate::places::{cargo, target, workspace};
+use super::{Compiler, archive};
+use crate::places::{cargo, emptied, target, workspace};
 use crate::programs::{program, run};
 
 const COMPILER: Compiler = Compiler {
@@ -50,7 +50,7 @@ pub(in crate::prove) fn wine(options: &[&str]) -> Result<()> {
     };
     let (archive, stem) = archive(&released, "-x86_64-windows.zip")?;
     let work = std::path::absolute(target().join("wine"))?;
-    anew(&work)?;
+    emptied(&work)?;
     run(program("python3", &work)
         .args(["-m", "zipfile", "-e"])
         .arg(archive)

@@ -137,14 +137,16 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
             return u8::try_from(error.exit_code()).unwrap_or(Exit::USAGE.code());
         }
     };
-    match run_command(command) {
+    let code = match run_command(command) {
         Ok(exit) => exit.code(),
         Err(failure) => {
             let lines = failure.to_lines();
             crate::output::tell!("htex: {}", lines.join("\n"));
             failure.exit_code().code()
         }
-    }
+    };
+    playing::stay_until_zero();
+    code
 }
 
 /// Runs a command between the downloads of its inputs and the uploads of its outputs.

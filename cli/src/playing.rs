@@ -5,16 +5,19 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use htex_device::{Device, DeviceError, SettingKind, StreamFormat};
-use htex_device_guardian::{Guarded, is_wanted, not_started};
+use htex_device_guardian::{Guarded, is_unconfirmed, is_wanted, not_started};
 use htex_scene::file::Motion;
 use htex_scene::{Plan, Renderer};
 
 use crate::failure::Failure;
 use crate::invocation;
 use crate::scenes::Ready;
+use crate::signals;
 
 /// Longest wait for space in a device; one that takes nothing for this long is reported as stuck.
 const PATIENCE: Duration = Duration::from_secs(5);
+/// Time between two looks at whether an output is at zero.
+const LOOK: Duration = Duration::from_millis(20);
 /// Longest block with a live motion, seconds.
 const LIVE_BLOCK_S: f64 = 0.005;
 /// Longest block on a display, seconds: it is played before the way to zero begins.
@@ -36,6 +39,16 @@ fn guardian() -> Result<Command, DeviceError> {
     let mut command = invocation::program().map_err(not_started)?.command();
     command.arg("guard");
     Ok(command)
+}
+
+/// Waits while the output of a display is not confirmed to be at zero. The guardian's crate goes on trying and prints every second
+/// that the amplifier is to be switched off. A signal ends the program.
+pub(crate) fn stay_until_zero() {
+    if is_unconfirmed() && signals::handle().is_ok() {
+        while is_unconfirmed() {
+            std::thread::sleep(LOOK);
+        }
+    }
 }
 
 /// An open device and the renderer that feeds it.

@@ -57,7 +57,11 @@ impl Bench {
 
     /// Plays without end in real time, and waits until there is output.
     pub fn start(&self) -> Child {
-        let mut command = self.command(&["play"]);
+        self.started(&mut self.command(&["play"]))
+    }
+
+    /// As [`Self::start`], by a command.
+    pub fn started(&self, command: &mut Command) -> Child {
         let child = command.env("NIDAQMX_SIM_CLOCK", "wall").spawn().unwrap();
         let start = Instant::now();
         while self.card_v().iter().all(|v| *v == 0.0) {

@@ -27,6 +27,8 @@ pub struct Card {
     pub record: Option<PathBuf>,
     /// Whether the clock advances by calls that read the state, not in real time.
     pub by_calls: bool,
+    /// Whether the clock stands still.
+    pub stands: bool,
     /// Voltages at the inputs: a row for each frame.
     pub input: Option<Vec<Vec<f64>>>,
     /// The finger that feels the output and moves the inputs; in place of `input`.
@@ -201,7 +203,7 @@ impl Card {
     /// calls.
     fn advance(&mut self, id: usize, step_s: f64) -> Answer<()> {
         self.plugged()?;
-        let (by_calls, left) = (self.by_calls, self.left());
+        let (by_calls, stands, left) = (self.by_calls, self.stands, self.left());
         let task = self.task(id)?;
         task.fault.map_or(Ok(()), Err)?;
         let Some(since) = task.running else {
@@ -209,6 +211,7 @@ impl Card {
         };
         let due = match task.rate_hz {
             None => task.buffer.len(),
+            Some(_) if stands => 0,
             Some(rate_hz) if by_calls => (step_s * rate_hz) as usize,
             Some(rate_hz) => {
                 ((since.elapsed().as_secs_f64() * rate_hz) as u64 - task.taken) as usize

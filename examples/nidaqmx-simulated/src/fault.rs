@@ -1,8 +1,9 @@
 //! Faults at the n-th call of a function.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::{codes, status, with};
 
@@ -31,6 +32,8 @@ struct Plan {
 #[derive(Default)]
 struct State {
     plan: Option<Plan>,
+    /// The plan acts, and counts, only while there is such a file.
+    while_there: Option<PathBuf>,
     calls: BTreeMap<&'static str, u64>,
 }
 
@@ -44,11 +47,22 @@ fn state<T>(run: impl FnOnce(&mut State) -> T) -> T {
 /// Reads `FUNCTION:CALL:KIND`, such as `DAQmxStartTask:2:error=-200077`; `CALL+` also means the calls after it.
 pub fn plan(text: &str) {
     match parse(text) {
-        Some(plan) => state(|s| *s = State { plan: Some(plan), ..State::default() }),
+        Some(plan) => state(|s| {
+            *s = State { plan: Some(plan), while_there: s.while_there.take(), ..State::default() };
+        }),
         None => eprintln!(
             "nidaqmx-simulated: `{text}` is no fault: FUNCTION:CALL[+]:error=CODE|short=CODE|hang=MS|unplug"
         ),
     }
+}
+
+/// Faults act, and their calls are counted, only while there is such a file: processes that share a plan begin and end it together.
+pub fn only_while(file: &str) {
+    state(|s| s.while_there = Some(file.into()));
+}
+
+fn acts() -> bool {
+    state(|s| s.while_there.as_ref().is_none_or(|file| file.exists()))
 }
 
 fn parse(text: &str) -> Option<Plan> {
@@ -77,7 +91,10 @@ pub fn injected(function: &'static str) -> Option<i32> {
             Some(code)
         }
         FaultKind::Hang(ms) => {
-            std::thread::sleep(Duration::from_millis(ms));
+            let since = Instant::now();
+            while since.elapsed() < Duration::from_millis(ms) && acts() {
+                std::thread::sleep(Duration::from_millis(ms.min(5)));
+            }
             None
         }
         FaultKind::Unplug => {
@@ -103,6 +120,9 @@ pub fn short_write() -> Option<i32> {
 }
 
 fn due(function: &'static str) -> Option<FaultKind> {
+    if !acts() {
+        return None;
+    }
     state(|s| {
         let count = s.calls.entry(function).or_insert(0);
         *count += 1;

@@ -31,7 +31,7 @@ fn with<T>(run: impl FnOnce(&mut Card) -> T) -> T {
 
 fn from_environment() -> Card {
     let mut card = Card::default();
-    for name in ["record", "clock", "input", "loopback", "unplug_after", "fault"] {
+    for name in ["record", "clock", "input", "loopback", "unplug_after", "fault", "fault_while"] {
         if let Ok(value) = std::env::var(format!("NIDAQMX_SIM_{}", name.to_uppercase())) {
             set(&mut card, name, &value);
         }
@@ -42,12 +42,13 @@ fn from_environment() -> Card {
 fn set(card: &mut Card, name: &str, value: &str) {
     match name {
         "record" => card.record = Some(value.into()),
-        "clock" => card.by_calls = value == "calls",
+        "clock" => (card.by_calls, card.stands) = (value == "calls", value == "still"),
         "input" => card.input = Some(rows(value)),
         "loopback" => card.loopback = Some(Loopback::new(value.as_ref())),
         "late_s" => card.late_s = value.parse().unwrap_or(0.0),
         "unplug_after" => card.unplug_after = value.parse().ok(),
         "fault" => fault::plan(value),
+        "fault_while" => fault::only_while(value),
         _ => eprintln!("nidaqmx-simulated: unknown setting `{name}`"),
     }
 }
@@ -106,7 +107,7 @@ fn rows(path: &str) -> Vec<Vec<f64>> {
     text.lines().map(row).collect()
 }
 
-/// Changes a setting of the simulation: `record`, `input`, `loopback`, `late_s`, `clock`, `unplug_after`, `fault`. Not part of NI-DAQmx.
+/// Changes a setting of the simulation: `record`, `input`, `loopback`, `late_s`, `clock`, `unplug_after`, `fault`, `fault_while`. Not part of NI-DAQmx.
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn nidaqmx_simulated_set(name: *const c_char, value: *const c_char) {
     let (name, value) = unsafe { (text(name), text(value)) };

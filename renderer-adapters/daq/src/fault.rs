@@ -15,7 +15,7 @@ const DRY: [i32; 5] = [-200290, -200291, -200016, -200018, -200621];
 const OVERRUN: [i32; 2] = [-200279, -200361];
 
 /// The warning about a voltage that may remain at the display.
-const NOT_ZERO: &str = "the output could not be set to zero: switch the amplifier off";
+pub(crate) const NOT_ZERO: &str = "the output could not be set to zero: switch the amplifier off";
 
 /// An error code of the driver and its message.
 #[derive(Debug, Clone, PartialEq)]

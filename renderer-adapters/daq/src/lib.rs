@@ -7,7 +7,7 @@
 //! - a sample beyond `limit_v` is never output, and the driver's own channel limits are set to the same;
 //! - the output goes to zero before a stream, after it, on every error, and when the device is
 //!   dropped; a thread of the device detects an empty buffer even if no more samples are
-//!   written;
+//!   written, and sets the output to zero if a call of the driver does not return for 0.3 s;
 //! - a mean over 100 ms beyond `dc_limit_v` is never output, whatever produced it;
 //! - a stream that does not begin or end at zero gets a ramp of `ramp_ms` *before its
 //!   first and after its last* sample: the mirror image of what is there, under a falling weight, so that a carrier stays one.
@@ -28,6 +28,7 @@ mod rig;
 mod session;
 mod stream;
 mod watchdog;
+mod zero;
 
 use htex_device::{
     Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Settings, StreamFormat,

@@ -4,8 +4,8 @@
 //! detects an underflow: a writer that hangs would leave the last voltage at the output. Every exit ends with an
 //! unclocked write of zero, which is repeated if it fails, and finally after a reset of the card.
 
-use std::thread::sleep;
-use std::time::Duration;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use htex_device::{DeviceError, DirectVoltage, Excess, Status, StreamFormat};
 
@@ -13,17 +13,17 @@ use crate::claim::Claim;
 use crate::driver::{Driver, Task};
 use crate::fault::Fault;
 use crate::rig::{MOST_TO_ZERO_MS, Rig};
+use crate::zero::{Emergency, Zero};
 
-/// Attempts to output zero before the card is reset.
-const ATTEMPTS: usize = 5;
-/// Pause between two attempts, for transient faults.
-const PAUSE: Duration = Duration::from_millis(10);
+/// Time without output after which the clock is regarded as stopped: the last voltage would stay.
+const STILL: Duration = Duration::from_millis(400);
 
 pub(crate) struct Session {
     rig: Rig,
     /// `None` after the end.
     claim: Option<Claim>,
     driver: &'static Driver,
+    emergency: Arc<Emergency>,
     rate_hz: f64,
     /// Most frames of the stream that wait in the driver's buffer and on the card.
     ahead: usize,
@@ -42,6 +42,8 @@ pub(crate) struct Session {
     given: u64,
     /// Frames output so far, the lead included.
     generated: u64,
+    /// When that number last grew.
+    moved_at: Instant,
     /// The stream's last sample, volts of the card.
     last_v: f64,
     /// What was given to the driver, volts of the card.
@@ -68,6 +70,11 @@ impl Session {
             ahead,
             rate_hz: format.rate_hz,
             direct: DirectVoltage::new(rig.dc_limit_v / rig.gain, format.rate_hz),
+            emergency: Arc::new(Emergency::new(Zero {
+                driver,
+                device: rig.device.clone(),
+                limit_v: rig.limit_v / rig.gain,
+            })),
             rig,
             driver,
             task: None,
@@ -77,12 +84,18 @@ impl Session {
             lead: 0,
             given: 0,
             generated: 0,
+            moved_at: Instant::now(),
             last_v: 0.0,
             status: Status::default(),
         };
-        let zero = session.put_zero();
+        let zero = session.emergency.zero.put();
         zero.map_err(|fault| fault.missing(&session.rig.device))?;
         Ok(session)
+    }
+
+    /// The way to zero that needs no session.
+    pub(crate) fn emergency(&self) -> Arc<Emergency> {
+        Arc::clone(&self.emergency)
     }
 
     /// Takes the samples that fit now.
@@ -112,9 +125,8 @@ impl Session {
     /// buffer as soon as samples have moved to the card's own memory, which may hold a second of them.
     fn space(&mut self) -> Result<usize, DeviceError> {
         let generated = self.task.as_ref().map(Task::generated).transpose();
-        self.generated = generated
-            .map_err(|fault| self.fail(&fault))?
-            .unwrap_or(self.generated);
+        let generated = generated.map_err(|fault| self.fail(&fault))?;
+        self.came_out(generated.unwrap_or(self.generated));
         let waiting = self.given.saturating_sub(self.generated);
         Ok(self.ahead.saturating_sub(waiting as usize))
     }
@@ -142,19 +154,33 @@ impl Session {
             }
         });
         let given = given.map_err(|fault| self.fail(&fault))?;
+        self.still_holds()?;
         self.given += given as u64;
         self.direct.take(&volts[..given]);
         Ok(given)
     }
 
-    /// Reads the driver's state; an error sets the output to zero.
+    fn came_out(&mut self, generated: u64) {
+        if generated > self.generated {
+            self.moved_at = Instant::now();
+        }
+        self.generated = generated;
+    }
+
+    /// Reads the driver's state; an error, or a clock that stands still, sets the output to zero.
     pub(crate) fn watch(&mut self) {
         let Some(task) = &self.task else { return };
         match task
             .is_done()
             .and_then(|done| Ok((done, task.generated()?)))
         {
-            Ok((false, generated)) => self.generated = generated,
+            Ok((false, generated)) => {
+                self.came_out(generated);
+                if self.moved_at.elapsed() > STILL {
+                    let words = "the sample clock stands still".to_owned();
+                    self.error = Some(self.fail(&Fault { code: 0, words }));
+                }
+            }
             Ok((true, _)) => {
                 let words = "the task ended by itself".to_owned();
                 self.error = Some(self.fail(&Fault { code: 0, words }));
@@ -208,10 +234,22 @@ impl Session {
     }
 
     pub(crate) fn usable(&mut self) -> Result<(), DeviceError> {
+        self.still_holds()?;
         match self.error.take() {
             Some(error) => Err(error),
             None if self.closed => Err(DeviceError::Closed(self.rig.device.clone())),
             None => Ok(()),
+        }
+    }
+
+    /// Ends the session if a call took so long that zero was set without it.
+    fn still_holds(&mut self) -> Result<(), DeviceError> {
+        match self.emergency.error() {
+            Some(error) if !self.closed => Err(self
+                .end()
+                .err()
+                .map_or(error, |fault| fault.failed_and_not_zero(&self.rig.device))),
+            _ => Ok(()),
         }
     }
 
@@ -227,6 +265,8 @@ impl Session {
         self.check_direct(&lead)?;
         let started = self.started(&lead);
         self.task = Some(started.map_err(|fault| self.fail(&fault))?);
+        self.still_holds()?;
+        self.moved_at = Instant::now();
         self.lead = lead.len() as u64;
         self.given = self.lead;
         self.direct.take(&lead);
@@ -240,8 +280,12 @@ impl Session {
         let capacity = u32::try_from(self.capacity).unwrap_or(u32::MAX);
         task.set_clock(self.rate_hz, capacity)?;
         task.write(lead, false)?;
-        task.start()?;
-        Ok(task)
+        self.emergency.runs(Some(task.stopper()));
+        let started = task.start();
+        if started.is_err() {
+            self.emergency.runs(None);
+        }
+        started.map(|()| task)
     }
 
     /// A ramp from `from_v` to zero without its ends, of samples under a falling weight; empty if `from_v` is zero within the card's
@@ -287,6 +331,9 @@ impl Session {
 
     /// Sets the output to zero and returns the warning if that failed.
     fn fail(&mut self, fault: &Fault) -> DeviceError {
+        if let Err(error) = self.still_holds() {
+            return error;
+        }
         let zero = self.end();
         if fault.is_dry() {
             self.status.underruns += 1;
@@ -320,41 +367,12 @@ impl Session {
     fn end(&mut self) -> Result<(), Fault> {
         self.closed = true;
         if let Some(task) = self.task.take() {
+            self.emergency.runs(None);
             self.generated = task.generated().unwrap_or(self.generated);
         }
-        let zero = self.put_zero();
+        let zero = self.emergency.zero.put();
         self.not_zero = zero.is_err();
         self.claim = None;
         zero
-    }
-
-    /// Outputs zero by a separate task without a clock; retries on failure, at last after a reset of the card.
-    fn put_zero(&self) -> Result<(), Fault> {
-        let mut zero = self.zero_once();
-        for _ in 1..ATTEMPTS {
-            if zero.is_ok() {
-                return zero;
-            }
-            sleep(PAUSE);
-            zero = self.zero_once();
-        }
-        // A reset ends all tasks of the card and sets its outputs to their power-on state, which need not be
-        // zero: so zero is written again.
-        zero.or_else(|fault| {
-            self.driver.reset(&self.rig.device).map_err(|_| fault)?;
-            self.zero_once()
-        })
-    }
-
-    fn zero_once(&self) -> Result<(), Fault> {
-        let limit_v = self.rig.limit_v / self.rig.gain;
-        let task = Task::new(self.driver, &self.rig.device, limit_v)?;
-        match task.write(&[0.0], true)? {
-            1 => task.stop(),
-            written => Err(Fault {
-                code: 0,
-                words: format!("{written} of 1 samples were written"),
-            }),
-        }
     }
 }

@@ -4,7 +4,7 @@
 //! have moved to the card's memory. The ramp before a stream is not counted. A live motion has 20 ms in the buffer
 //! (`live_default` of `buffer_ms`).
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, MutexGuard};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -14,18 +14,15 @@ use crate::driver::Driver;
 use crate::rig::Rig;
 use crate::session::Session;
 use crate::watchdog::Watchdog;
+use crate::zero::Shared;
 
 /// Time between two checks for space.
 const LOOK: Duration = Duration::from_millis(2);
-/// Time without output after which the clock is regarded as stopped.
-const STILL: Duration = Duration::from_secs(2);
-
 /// Zeros given at a time after the end of a stream.
 const ZEROS: usize = 16_384;
 
 pub(crate) struct Stream {
-    session: Arc<Mutex<Session>>,
-    device: String,
+    shared: Arc<Shared>,
     _watchdog: Watchdog,
 }
 
@@ -36,31 +33,29 @@ impl Stream {
         format: &StreamFormat,
     ) -> Result<Self, DeviceError> {
         let (device, buffer_s) = (rig.device.clone(), rig.buffer_s);
-        let session = Arc::new(Mutex::new(Session::open(rig, driver, format)?));
+        let shared = Arc::new(Shared::new(Session::open(rig, driver, format)?));
         let period = Duration::from_secs_f64((buffer_s / 4.0).min(0.1));
-        let watchdog = Watchdog::start(&session, period).map_err(|error| DeviceError::Failed {
-            device: device.clone(),
+        let watchdog = Watchdog::start(&shared, period).map_err(|error| DeviceError::Failed {
+            device,
             what: format!("cannot start its watchdog thread: {error}"),
         })?;
         Ok(Self {
-            session,
-            device,
+            shared,
             _watchdog: watchdog,
         })
     }
 
-    fn session(&self) -> MutexGuard<'_, Session> {
-        self.session.lock().unwrap_or_else(PoisonError::into_inner)
+    fn session(&self) -> Result<MutexGuard<'_, Session>, DeviceError> {
+        self.shared.lock()
     }
 
     /// Gives the tail, and then zeros until the tail has been output, so that the buffer is never empty while the
     /// clock runs.
     fn drain(&self) -> Result<(), DeviceError> {
-        let mut tail = self.session().tail();
-        let (mut last, mut since) = (0, Instant::now());
-        let end = self.session().progress().0 + tail.len() as u64;
+        let mut tail = self.session()?.tail();
+        let end = self.session()?.progress().0 + tail.len() as u64;
         loop {
-            let mut session = self.session();
+            let mut session = self.session()?;
             session.watch();
             session.usable()?;
             let (_, generated) = session.progress();
@@ -71,19 +66,7 @@ impl Stream {
             drop(session);
             tail.drain(..given);
             tail.resize(tail.len().max(ZEROS), 0.0);
-            if generated > last {
-                (last, since) = (generated, Instant::now());
-            } else if since.elapsed() > STILL {
-                return Err(self.stands_still());
-            }
             sleep(LOOK);
-        }
-    }
-
-    fn stands_still(&self) -> DeviceError {
-        DeviceError::Failed {
-            device: self.device.clone(),
-            what: "its sample clock stands still".to_owned(),
         }
     }
 }
@@ -93,7 +76,7 @@ impl Device for Stream {
         let since = Instant::now();
         let mut taken = 0;
         loop {
-            taken += self.session().write(&samples[taken..])?;
+            taken += self.session()?.write(&samples[taken..])?;
             let left = timeout.saturating_sub(since.elapsed());
             if taken == samples.len() || left.is_zero() {
                 return Ok(taken);
@@ -103,22 +86,25 @@ impl Device for Stream {
     }
 
     fn status(&self) -> Status {
-        let mut session = self.session();
+        let Ok(mut session) = self.session() else {
+            return Status::default();
+        };
         session.watch();
         session.status()
     }
 
     fn finish(&mut self) -> Result<(), DeviceError> {
-        self.session().usable()?;
-        let running = self.session().is_running();
+        self.session()?.usable()?;
+        let running = self.session()?.is_running();
         let drained = if running { self.drain() } else { Ok(()) };
-        drained.and(self.session().close())
+        let closed = self.session().and_then(|mut session| session.close());
+        drained.and(closed)
     }
 }
 
 impl Drop for Stream {
     fn drop(&mut self) {
-        if let Err(error) = self.session().close() {
+        if let Err(error) = self.session().and_then(|mut session| session.close()) {
             crate::watchdog::say(&error);
         }
     }

@@ -1,14 +1,17 @@
 //! A thread that polls the driver, so that the output goes to zero even if the writer hangs.
 
 use std::io::Write;
+use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::{Builder, JoinHandle};
-use std::time::Duration;
+use std::thread::{Builder, JoinHandle, sleep};
+use std::time::{Duration, Instant};
 
 use htex_device::DeviceError;
 
-use crate::session::Session;
+use crate::zero::{HANG, Shared};
+
+/// Time between two looks at whether the thread has ended.
+const LOOK: Duration = Duration::from_millis(1);
 
 /// Prints on standard error, which may be closed.
 pub(crate) fn say(error: &DeviceError) {
@@ -22,14 +25,23 @@ pub(crate) struct Watchdog {
 }
 
 impl Watchdog {
-    /// Watches a session every `period`.
-    pub(crate) fn start(session: &Arc<Mutex<Session>>, period: Duration) -> std::io::Result<Self> {
+    /// Watches a session every `period`. If another thread has it for too long, zero is set without it.
+    pub(crate) fn start(shared: &Arc<Shared>, period: Duration) -> std::io::Result<Self> {
         let (end, ended) = channel();
-        let session = Arc::clone(session);
+        let shared = Arc::clone(shared);
         let watch = move || {
             let mut told = false;
             while ended.recv_timeout(period) == Err(RecvTimeoutError::Timeout) {
-                let mut session = session.lock().unwrap_or_else(PoisonError::into_inner);
+                let mut session = match shared.lock() {
+                    Ok(session) => session,
+                    Err(error) => {
+                        // The thread whose call hangs says nothing.
+                        if !std::mem::replace(&mut told, true) {
+                            say(&error);
+                        }
+                        continue;
+                    }
+                };
                 let was_running = session.is_running();
                 session.watch();
                 // A writer that hangs makes no more calls: the warning about a remaining voltage is printed here.
@@ -53,7 +65,15 @@ impl Watchdog {
 impl Drop for Watchdog {
     fn drop(&mut self) {
         drop(self.end.take());
-        if let Some(thread) = self.thread.take() {
+        // A call of the driver in it may hang.
+        let Some(thread) = self.thread.take() else {
+            return;
+        };
+        let since = Instant::now();
+        while !thread.is_finished() && since.elapsed() < HANG {
+            sleep(LOOK);
+        }
+        if thread.is_finished() {
             let _ = thread.join();
         }
     }

@@ -250,6 +250,25 @@ fn a_hung_writer_ends_at_zero() {
     assert!(device.finish().is_err());
 }
 
+/// A clock that stands still would leave the last voltage: the device's own thread writes zero, whether or not samples are written.
+#[test]
+fn a_clock_that_stands_still_ends_at_zero() {
+    let card = Card::new();
+    card.set("clock", "wall");
+    let mut device = card.open(&[]).unwrap();
+    device.write(&[100.0; 6_000], LONG).unwrap();
+    assert_ne!(card.recorded().last(), Some(&0.0));
+    card.set("clock", "still");
+    let begun = std::time::Instant::now();
+    while card.recorded().last() != Some(&0.0) {
+        assert!(begun.elapsed() < LONG, "the voltage stays");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    println!("zero after {:.2} s", begun.elapsed().as_secs_f64());
+    let error = device.write(&[100.0], LONG).unwrap_err().to_string();
+    assert!(error.contains("stands still"), "{error}");
+}
+
 #[test]
 fn a_device_dropped_in_the_middle_goes_to_zero() {
     let card = Card::new();

@@ -120,3 +120,36 @@ fn a_driver_that_hangs_in_a_call_comes_to_zero_late() {
         assert!(ends_at_zero(&card), "{function}");
     }
 }
+
+/// A call of a running stream that does not return: the output is at zero long before it does, without the session that the call
+/// holds; when it returns, the stream ends and puts out nothing more.
+#[test]
+fn a_call_that_does_not_return_is_overtaken_by_zero() {
+    let begins = std::time::Instant::now;
+    for function in [
+        "DAQmxIsTaskDone",
+        "DAQmxGetWriteSpaceAvail",
+        "DAQmxGetWriteTotalSampPerChanGenerated",
+        "DAQmxWriteAnalogF64",
+    ] {
+        let card = Card::new();
+        card.set("clock", "wall");
+        card.set("fault", &format!("{function}:6:hang=4000"));
+        std::thread::scope(|scope| {
+            let begun = begins();
+            let play = scope.spawn(|| play(&card));
+            let is_felt = || card.recorded().iter().any(|volts| *volts != 0.0);
+            while !(is_felt() && ends_at_zero(&card)) {
+                assert!(!play.is_finished(), "{function}: it returned first");
+                std::thread::sleep(Duration::from_millis(10));
+            }
+            println!(
+                "{function}: zero after {:.2} s",
+                begun.elapsed().as_secs_f64()
+            );
+            let error = play.join().unwrap().unwrap_err().to_string();
+            assert!(error.contains("has not returned"), "{function}: {error}");
+            assert!(ends_at_zero(&card), "{function}");
+        });
+    }
+}

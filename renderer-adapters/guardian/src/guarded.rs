@@ -1,17 +1,27 @@
 //! The app's side: a device whose samples go to another process.
 
-use std::fmt::Display;
-use std::io::{BufReader, BufWriter};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::fmt::Display as Show;
+use std::process::Command;
+use std::sync::mpsc::{Sender, channel};
 use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use htex_device::{
-    Capabilities, Device, DeviceError, KnownDevice, Origin, Quantity, Settings, Status,
-    StreamFormat,
+    Capabilities, Device, DeviceError, KnownDevice, Quantity, Settings, Status, StreamFormat,
 };
 
-use crate::message::{ABORT, Answer, FINISH, LONGEST, Opening, STATUS, WRITE, put, take};
+use crate::attempt::Display;
+use crate::decision::{REQUEST, Waits};
+use crate::message::{ABORT, Answer, FINISH, MOST_SAMPLES, OPEN, STATUS, WRITE};
+use crate::worker::{Message, Reply, Worker};
+
+/// Settings of displays that state how long the output takes to zero, milliseconds.
+const BUFFER_SETTING: &str = "buffer_ms";
+const RAMP_SETTING: &str = "ramp_ms";
+/// Buffer and ramp of a display whose settings state neither, together.
+const USUAL_TO_ZERO: Duration = Duration::from_millis(400);
+/// Longest buffer or ramp that is waited for.
+const MOST_MS: f64 = 10_000.0;
 
 /// Whether a device's output may hurt when it keeps its last value.
 pub fn is_wanted(able: &Capabilities) -> bool {
@@ -26,25 +36,23 @@ pub fn htex() -> Command {
 }
 
 /// Returns the error that no helper program can be started.
-pub fn not_started(error: impl Display) -> DeviceError {
+pub fn not_started(error: impl Show) -> DeviceError {
     DeviceError::Told(format!(
         "no process to hold the output can be started: {error}"
     ))
 }
 
 /// A device that another process holds.
+///
+/// Each call waits for that process at most buffer + ramp + 0.6 s (10 s more to open it; a write also its own timeout), and dropping the
+/// device at most as long. Then the process is killed, and a second one sets the output to zero. If that is not confirmed 0.5 s later, the
+/// call returns an error that says so, and a thread prints every second that the amplifier is to be switched off, until zero is confirmed
+/// ([`crate::is_unconfirmed`]).
 pub struct Guarded {
-    pipes: Mutex<Option<Pipes>>,
-    child: Child,
-    known: KnownDevice,
-    settings: Settings,
-    format: StreamFormat,
+    worker: Mutex<Sender<Message>>,
+    name: String,
+    waits: Waits,
     ended: bool,
-}
-
-struct Pipes {
-    to: BufWriter<ChildStdin>,
-    from: BufReader<ChildStdout>,
 }
 
 impl Guarded {
@@ -52,53 +60,46 @@ impl Guarded {
     /// `--device-file` and the library's file.
     ///
     /// # Errors
-    /// When the program cannot be started, or the error of opening the device there.
+    /// When the program cannot be started or does not answer, or the error of opening the device there.
     pub fn open(
         known: &KnownDevice,
         settings: &Settings,
         format: &StreamFormat,
         helper: Command,
     ) -> Result<Self, DeviceError> {
-        let mut child = start(helper, known).map_err(not_started)?;
-        let pipes = child.stdin.take().zip(child.stdout.take());
-        let pipes = pipes.map(|(to, from)| Pipes {
-            to: BufWriter::new(to),
-            from: BufReader::new(from),
-        });
-        let opening = Opening {
-            device: known.descriptor().id.clone(),
-            settings: settings.to_lines(known.descriptor()),
-            rate_hz: format.rate_hz,
-            block_frames: format.block_frames,
-        };
+        let display = Display::new(helper, known, settings, format);
+        let opening = display.opening();
         let mut guarded = Self {
-            pipes: Mutex::new(pipes),
-            child,
-            known: known.clone(),
-            settings: settings.clone(),
-            format: *format,
+            worker: Mutex::new(Worker::start(display).map_err(not_started)?),
+            name: known.descriptor().name.clone(),
+            waits: waits(settings),
             ended: false,
         };
-        let opening = serde_json::to_vec(&opening).unwrap_or_default();
         // A device that was not opened has no output to set to zero, and may belong to another process.
-        if let Err(error) = guarded.ask(b'o', &opening) {
+        if let Err(error) = guarded.ask(OPEN, opening, guarded.waits.opening()) {
             guarded.ended = true;
             return Err(error);
         }
         Ok(guarded)
     }
 
-    /// Sends a request and waits for the reply.
-    fn ask(&self, tag: u8, body: &[u8]) -> Result<Answer, DeviceError> {
-        let mut held = self.pipes.lock().unwrap_or_else(PoisonError::into_inner);
-        let Some(pipes) = held.as_mut() else {
-            return Err(DeviceError::Closed(self.known.descriptor().name.clone()));
+    /// Sends a request and waits for the answer, at most `patience` and then until the output is at zero or 0.5 s have passed.
+    fn ask(&self, tag: u8, body: Vec<u8>, patience: Duration) -> Result<Answer, DeviceError> {
+        let (reply, replied) = channel();
+        let ask = Message::Ask {
+            tag,
+            body,
+            patience,
+            reply,
         };
-        let answer = put(&mut pipes.to, tag, body).and_then(|()| take(&mut pipes.from));
-        let answer = answer.and_then(|(_, body)| Ok(serde_json::from_slice(&body)?));
-        match answer {
-            Ok(Answer::Failed(text)) => Err(DeviceError::Told(text)),
-            Ok(Answer::Dry {
+        let worker = self.worker.lock().unwrap_or_else(PoisonError::into_inner);
+        let replied = match worker.send(ask) {
+            Ok(()) => replied.recv().unwrap_or(Reply::Closed),
+            Err(_) => Reply::Closed,
+        };
+        match replied {
+            Reply::Answer(Answer::Failed(text)) => Err(DeviceError::Told(text)),
+            Reply::Answer(Answer::Dry {
                 device,
                 frames,
                 advice,
@@ -107,76 +108,78 @@ impl Guarded {
                 frames,
                 advice,
             }),
-            Ok(answer) => Ok(answer),
-            Err(_) => {
-                *held = None;
-                Err(self.zero_from_here())
-            }
+            Reply::Answer(answer) => Ok(answer),
+            Reply::Failed(error) => Err(error),
+            Reply::Closed => Err(DeviceError::Closed(self.name.clone())),
         }
     }
 
-    /// The guardian has ended: opening the device sets its output to zero.
-    fn zero_from_here(&self) -> DeviceError {
-        let gone = "the process that held the output has ended";
-        match self.known.adapter.open(&self.settings, &self.format) {
-            Ok(_) => DeviceError::Told(format!("{gone}; the output was set to zero")),
-            Err(error) => DeviceError::Told(format!(
-                "{gone}, and the output could not be set to zero: switch the amplifier off ({error})"
-            )),
-        }
-    }
-
-    fn end(&mut self, tag: u8) -> Result<(), DeviceError> {
+    fn end(&mut self, tag: u8, patience: Duration) -> Result<(), DeviceError> {
         if std::mem::replace(&mut self.ended, true) {
-            return Err(DeviceError::Closed(self.known.descriptor().name.clone()));
+            return Err(DeviceError::Closed(self.name.clone()));
         }
-        self.ask(tag, &[]).map(|_| ())
+        self.ask(tag, vec![], patience).map(|_| ())
     }
-}
 
-/// Starts the helper program for a device, out of reach of the terminal's keys.
-fn start(mut command: Command, known: &KnownDevice) -> std::io::Result<Child> {
-    if let Origin::Library(path) = &known.origin {
-        command.arg("--device-file").arg(path);
-    }
-    #[cfg(unix)]
-    std::os::unix::process::CommandExt::process_group(&mut command, 0);
-    #[cfg(windows)]
-    std::os::windows::process::CommandExt::creation_flags(&mut command, 0x0000_0200);
-    command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()
-}
-
-impl Device for Guarded {
-    fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
-        let samples = &samples[..samples.len().min(LONGEST as usize / 8)];
-        let timeout_ms = u32::try_from(timeout.as_millis()).unwrap_or(u32::MAX);
+    /// Writes the samples that fit within a wait of at most [`REQUEST`].
+    fn write_some(&self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
+        let samples = &samples[..samples.len().min(MOST_SAMPLES)];
+        let timeout_ms = u32::try_from(timeout.min(REQUEST).as_millis()).unwrap_or(u32::MAX);
         let mut body = timeout_ms.to_le_bytes().to_vec();
         body.extend(samples.iter().flat_map(|sample| sample.to_le_bytes()));
-        match self.ask(WRITE, &body)? {
+        match self.ask(WRITE, body, self.waits.answer())? {
             Answer::Done(taken) => Ok((taken as usize).min(samples.len())),
             _ => Ok(0),
         }
     }
+}
+
+/// Buffer and ramp of a display, if its settings state them.
+fn waits(settings: &Settings) -> Waits {
+    let stated = [BUFFER_SETTING, RAMP_SETTING].map(|name| settings.number(name));
+    let stated = stated.into_iter().filter(|ms| ms.is_finite());
+    let to_zero = stated.map(|ms| Duration::from_secs_f64(ms.clamp(0.0, MOST_MS) / 1e3));
+    Waits {
+        to_zero: to_zero.reduce(|a, b| a + b).unwrap_or(USUAL_TO_ZERO),
+    }
+}
+
+impl Device for Guarded {
+    fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
+        let (begun, mut taken) = (Instant::now(), 0);
+        loop {
+            let left = timeout.saturating_sub(begun.elapsed());
+            taken += self.write_some(&samples[taken..], left)?;
+            if taken == samples.len() || left.is_zero() {
+                return Ok(taken);
+            }
+        }
+    }
 
     fn status(&self) -> Status {
-        match self.ask(STATUS, &[]) {
+        match self.ask(STATUS, vec![], self.waits.answer()) {
             Ok(Answer::Status(numbers)) => numbers.into(),
             _ => Status::default(),
         }
     }
 
     fn finish(&mut self) -> Result<(), DeviceError> {
-        self.end(FINISH)
+        self.end(FINISH, self.waits.answer())
     }
 }
 
 impl Drop for Guarded {
     fn drop(&mut self) {
+        let begun = Instant::now();
         if !self.ended {
-            let _ = self.end(ABORT);
+            let _ = self.end(ABORT, self.waits.abort());
         }
-        // Closing the pipe ends the guardian.
-        *self.pipes.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
-        let _ = self.child.wait();
+        let (reply, replied) = channel();
+        let patience = self.waits.answer().saturating_sub(begun.elapsed());
+        let worker = self.worker.get_mut();
+        let worker = worker.unwrap_or_else(PoisonError::into_inner);
+        if worker.send(Message::Close { patience, reply }).is_ok() {
+            let _ = replied.recv();
+        }
     }
 }

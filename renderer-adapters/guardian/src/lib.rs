@@ -2,8 +2,10 @@
 //!
 //! A signal that kills, stops or hangs the app reaches only the app: the guardian is in a process group of its own, receives no
 //! signals of the terminal's keys, and ends when its pipe does. It then plays what it has (at most the device's buffer), sets the output to
-//! zero, and exits; a device whose buffer runs dry sets its output to zero itself. If the guardian ends first, the app sets the
-//! output to zero.
+//! zero, and exits; a device whose buffer runs dry sets its output to zero itself.
+//!
+//! If the guardian ends first, is stopped or hangs, the app kills it and starts a second helper process, which sets the output to zero.
+//! When and how is decided in [`decision`].
 //!
 //! An app opens a device as [`Guarded`] where [`is_wanted`] says so. The helper program is [`htex`], or one of the app's own, which
 //! calls [`hold`]: it is needed for devices that `htex` does not have.
@@ -23,9 +25,13 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod attempt;
+pub mod decision;
 mod guarded;
 mod hold;
 mod message;
+mod worker;
 
 pub use guarded::{Guarded, htex, is_wanted, not_started};
 pub use hold::hold;
+pub use worker::{NOT_ZERO, is_unconfirmed};

@@ -8,6 +8,9 @@ use serde::{Deserialize, Serialize};
 /// Longest message, bytes: a second at a million samples a second.
 pub(crate) const LONGEST: u32 = 4 << 20;
 
+/// Most samples in a request.
+pub(crate) const MOST_SAMPLES: usize = 1 << 16;
+
 /// The first message of the app.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Opening {
@@ -50,6 +53,7 @@ impl Answer {
 }
 
 /// Requests of the app, a byte each; samples follow a time in milliseconds.
+pub(crate) const OPEN: u8 = b'o';
 pub(crate) const WRITE: u8 = b'w';
 pub(crate) const STATUS: u8 = b's';
 pub(crate) const FINISH: u8 = b'f';

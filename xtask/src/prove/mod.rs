@@ -93,6 +93,13 @@ const PROOFS: &[Proof] = &[
         },
     },
     Proof {
+        name: "zero",
+        takes: "",
+        proves: "whatever two of player, guardian, helpers, driver and card fail at any moments, with Ctrl-C at any other, a display is at zero \
+                 0.5 s after the detection, or the sentence to switch the amplifier off is printed every second; tests take one failure",
+        prove: |options| none(options).and_then(|()| cargo(&ZERO, &[(WHOLE, "1")])),
+    },
+    Proof {
         name: "days",
         takes: "[--hours N]",
         proves: "voices of a day keep their power and phase, and do not repeat; tests take an hour",
@@ -135,6 +142,18 @@ const PROOFS: &[Proof] = &[
         proves: "prints what a sample costs in each language, against Rust",
         prove: |options| none(options).and_then(|()| bindings::prove("costs")),
     },
+];
+
+/// Without the rest of the workspace, so that it takes minutes.
+const ZERO: [&str; 8] = [
+    "test",
+    "--locked",
+    "-p",
+    "htex-device-guardian",
+    "--test",
+    "zero",
+    "--",
+    "--nocapture",
 ];
 
 const DAYS: [&str; 8] = [

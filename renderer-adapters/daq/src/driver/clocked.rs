@@ -50,8 +50,33 @@ impl Clocked {
         self.check(unsafe { (self.table().stop_task)(self.handle) })
     }
 
+    /// What stops this task from another thread, while one of its calls hangs.
+    pub(crate) fn stopper(&self) -> Stopper {
+        Stopper {
+            driver: self.driver,
+            handle: self.handle,
+        }
+    }
+
     pub(super) fn check(&self, code: i32) -> Result<(), Fault> {
         self.table().check(code)
+    }
+}
+
+/// Stops a task that was not cleared.
+pub(crate) struct Stopper {
+    driver: &'static Driver,
+    handle: Handle,
+}
+
+// SAFETY: NI-DAQmx may be called from any thread, also to stop a task in which another thread has a call.
+unsafe impl Send for Stopper {}
+
+impl Stopper {
+    /// The task then outputs nothing more; its last voltage stays.
+    pub(crate) fn stop(&self) {
+        // SAFETY: a handle of this driver, which checks the handles that it is given; whoever clears the task drops this before.
+        unsafe { (self.driver.table.stop_task)(self.handle) };
     }
 }
 

@@ -14,6 +14,7 @@ use htex_device::DeviceError;
 use crate::fault::Fault;
 use table::Table;
 
+pub(crate) use clocked::Stopper;
 pub(crate) use input_task::{InputTask, Terminals};
 pub(crate) use task::Task;
 

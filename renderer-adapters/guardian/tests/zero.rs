@@ -1,0 +1,285 @@
+//! `cargo xtask prove zero`: every single and double failure of the player, its guardian, the helpers and the card, at every step.
+//!
+//! What must hold is in [`broken`]. Tests take every single failure, and double ones with `HTEX_WHOLE`.
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+
+#[path = "zero/faults.rs"]
+mod faults;
+#[path = "zero/world.rs"]
+mod world;
+
+use std::collections::{BTreeMap, HashMap};
+use std::hash::{BuildHasherDefault, Hasher};
+use std::time::Duration;
+
+use faults::Fault;
+use htex_device_guardian::decision::{CONFIRM, EVERY};
+use world::{App, Driver, Mutant, Output, Process, STEP, Thread, WAITS, World};
+
+/// Steps that are explored: over the time at which an attempt that hangs is given up.
+const STEPS: u32 = 180;
+/// Steps in which the first failure comes: the whole of a play that has none.
+const FIRST: u32 = 30;
+/// Steps in which the second comes: also while attempts are repeated.
+const SECOND: u32 = 150;
+
+/// What the rules need to know of the failures of a world; worlds that agree in it are one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+struct Failures {
+    count: usize,
+    /// The player was stopped for a while: its own times do not hold.
+    player_stopped: bool,
+    /// A helper, the driver or the kernel may keep every attempt from writing zero in time.
+    zero_prevented: bool,
+}
+
+impl Failures {
+    fn with(self, fault: Fault) -> Self {
+        Self {
+            count: self.count + 1,
+            player_stopped: self.player_stopped || fault.is_of_player(),
+            zero_prevented: self.zero_prevented || fault.prevents_zero(),
+        }
+    }
+}
+
+/// What led to a world: failures and Ctrl-C, with their steps.
+type Trace = [Option<(u32, Cause)>; 3];
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cause {
+    /// Ctrl-C, which is no failure and may come beside two.
+    CtrlC,
+    Failure(Fault),
+}
+
+#[derive(Debug, Default)]
+struct Explored {
+    worlds: u64,
+    /// Worlds in which neither the player nor the guardian can act, and a voltage stands.
+    nobody: u64,
+    /// Cases that end at zero, and those in which the sentence is repeated to the end.
+    at_zero: u64,
+    said: u64,
+    detected: u64,
+    broken: BTreeMap<&'static str, Trace>,
+}
+
+fn and(mut trace: Trace, step: u32, cause: Cause) -> Trace {
+    if let Some(free) = trace.iter_mut().find(|cause| cause.is_none()) {
+        *free = Some((step, cause));
+    }
+    trace
+}
+
+/// A hash of small numbers, several times as fast as the one of the standard library.
+#[derive(Default)]
+struct Quick(u64);
+
+impl Hasher for Quick {
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.write_u64(u64::from(*byte));
+        }
+    }
+
+    fn write_u32(&mut self, number: u32) {
+        self.write_u64(u64::from(number));
+    }
+
+    fn write_u64(&mut self, number: u64) {
+        self.0 = (self.0.rotate_left(5) ^ number).wrapping_mul(0x517c_c1b7_2722_0a95);
+    }
+
+    fn write_usize(&mut self, number: usize) {
+        self.write_u64(number as u64);
+    }
+
+    fn finish(&self) -> u64 {
+        self.0.rotate_left(26)
+    }
+}
+
+type Layer = HashMap<(World, Failures), Trace, BuildHasherDefault<Quick>>;
+
+fn steps(time: Duration) -> u32 {
+    time.as_millis().div_ceil(STEP.as_millis()) as u32
+}
+
+/// What does not hold in a world, if anything.
+fn broken(world: &World, failures: Failures) -> Option<&'static str> {
+    let is_at_zero = world.output == Output::Zero;
+    let runs = world.runs();
+    // Both the player's and the world's step may come first.
+    let slack = 1;
+    if let Some(known) = world.known_for.filter(|_| runs) {
+        if known > steps(CONFIRM) + slack && !is_at_zero && world.said_at.is_none() {
+            return Some("0.5 s after the detection neither zero nor a sentence");
+        }
+        let quiet = world.said_at.map_or(0, |at| world.step - at);
+        let is_due = known > steps(CONFIRM) + slack && !failures.player_stopped;
+        if is_due && !is_at_zero && !failures.zero_prevented {
+            return Some("nothing prevents zero, and it is not there 0.5 s after the detection");
+        }
+        if is_due && !is_at_zero && quiet > steps(EVERY) + slack {
+            return Some("a second without a sentence");
+        }
+        if world.player.is_over() && !is_at_zero && world.known_for > Some(1) {
+            return Some("zero is taken for confirmed, and is not there");
+        }
+    }
+    let undetected = world.known_for.is_none() && world.said_at.is_none();
+    if undetected && world.stood > steps(WAITS.answer()) + 2 && runs {
+        return Some("a voltage stands for longer than D, and nothing is detected");
+    }
+    if undetected && world.stood > 10 && !runs && !nobody(world) {
+        return Some("a guardian that could write zero does not");
+    }
+    let waited = |since: Option<u32>| since.map_or(0, |at| world.step - at);
+    if runs && !failures.player_stopped {
+        let longest = steps(WAITS.answer() + CONFIRM) + slack;
+        if waited(world.asked_at) > longest {
+            return Some("a call waits for longer than D and 0.5 s");
+        }
+        if world.app != App::Gone && waited(world.dropped_at) > steps(WAITS.answer()) + slack {
+            return Some("dropping the device takes longer than D");
+        }
+    }
+    if failures.count == 0 && (world.player.why().is_some() || world.said_at.is_some()) {
+        return Some("an alarm without a failure");
+    }
+    None
+}
+
+/// Whether neither the player nor the guardian is left to act.
+fn nobody(world: &World) -> bool {
+    let hangs = |thread: Thread| matches!(thread, Thread::Hung(..));
+    let guardian_acts = world.guardian == Process::Running
+        && world.driver != Driver::Hangs
+        && !(hangs(world.main) && hangs(world.watchdog));
+    !world.runs() && !guardian_acts
+}
+
+/// The world, and the same with each failure, or Ctrl-C, that may come now.
+fn causes(
+    world: World,
+    failures: Failures,
+    trace: Trace,
+    most: usize,
+    step: u32,
+) -> Vec<(World, Failures, Trace)> {
+    let mut worlds = Vec::new();
+    let last = if failures.count == 0 { FIRST } else { SECOND };
+    let may_fail = failures.count < most && step < last;
+    for fault in Fault::ALL.into_iter().filter(|_| may_fail) {
+        if let Some(failed) = fault.in_world(&world) {
+            let trace = and(trace, step, Cause::Failure(fault));
+            worlds.push((failed, failures.with(fault), trace));
+        }
+    }
+    if !world.interrupted && step % 3 == 1 && matches!(world.app, App::Playing(_)) {
+        let mut interrupted = world.clone();
+        interrupted.interrupted = true;
+        worlds.push((interrupted, failures, and(trace, step, Cause::CtrlC)));
+    }
+    worlds.push((world, failures, trace));
+    worlds
+}
+
+impl Explored {
+    /// Lets all act, the player first and last, and keeps what comes of it.
+    fn go_on(&mut self, world: &World, failures: Failures, trace: Trace, next: &mut Layer) {
+        let [first, last] = [true, false].map(|player_first| {
+            let mut world = world.clone();
+            world.advance(player_first);
+            world
+        });
+        let differ = (first != last).then_some(last);
+        for world in [Some(first), differ].into_iter().flatten() {
+            if let Some(what) = broken(&world, failures) {
+                self.broken.entry(what).or_insert(trace);
+                continue;
+            }
+            if world.is_over() {
+                self.at_zero += 1;
+                continue;
+            }
+            if nobody(&world) && world.stood > 0 {
+                assert!(failures.count > 1, "{trace:?}");
+                self.nobody += 1;
+            }
+            self.detected += u64::from(world.known_for == Some(0));
+            next.entry((world, failures)).or_insert(trace);
+        }
+    }
+}
+
+/// Explores all worlds with at most so many failures.
+fn explore(most: usize, mutant: Mutant) -> Explored {
+    let mut explored = Explored::default();
+    let mut layer = Layer::default();
+    layer.insert((World::new(mutant), Failures::default()), [None; 3]);
+    for step in 0..STEPS {
+        let mut next = Layer::default();
+        for ((world, failures), trace) in layer {
+            explored.worlds += 1;
+            for (world, failures, trace) in causes(world, failures, trace, most, step) {
+                explored.go_on(&world, failures, trace, &mut next);
+            }
+        }
+        layer = next;
+    }
+    let said = |world: &World| world.said_at.is_some() && world.output != Output::Zero;
+    explored.said = layer.keys().filter(|(world, _)| said(world)).count() as u64;
+    explored
+}
+
+fn most() -> usize {
+    match std::env::var_os("HTEX_WHOLE") {
+        Some(_) => 2,
+        None => 1,
+    }
+}
+
+#[test]
+fn the_output_is_at_zero_or_the_sentence_is_printed_whatever_fails() {
+    let begun = std::time::Instant::now();
+    let explored = explore(most(), Mutant::default());
+    println!(
+        "{} worlds with at most {} failures in {:.0} s: {} detections, {} ends at zero, {} with the sentence to the last, \
+         {} in which player and guardian have both failed",
+        explored.worlds,
+        most(),
+        begun.elapsed().as_secs_f64(),
+        explored.detected,
+        explored.at_zero,
+        explored.said,
+        explored.nobody,
+    );
+    assert!(explored.broken.is_empty(), "{:#?}", explored.broken);
+    assert!(explored.detected > 100 && explored.at_zero > 100);
+}
+
+/// The model sees what it is for: a player that leaves out one of its actions breaks a rule.
+#[test]
+fn a_player_that_leaves_something_out_is_found() {
+    let left_out = |edit: fn(&mut Mutant)| {
+        let mut mutant = Mutant::default();
+        edit(&mut mutant);
+        let explored = explore(1, mutant);
+        explored.broken.keys().copied().collect::<Vec<_>>()
+    };
+    let mutants: [(&str, fn(&mut Mutant)); 6] = [
+        ("no kill", |m| m.no_kill = true),
+        ("no attempt", |m| m.no_attempt = true),
+        ("no sentence", |m| m.no_sentence = true),
+        ("one sentence", |m| m.one_sentence = true),
+        ("no deadline", |m| m.no_deadline = true),
+        ("no watchdog", |m| m.no_watchdog = true),
+    ];
+    for (what, edit) in mutants {
+        let found = left_out(edit);
+        println!("{what}: {found:?}");
+        assert!(!found.is_empty(), "{what}");
+    }
+}

@@ -408,18 +408,15 @@ fn an_output_that_nothing_brings_to_zero_is_told_every_second() {
             .collect();
         println!("seconds between the sentences: {gaps:?}");
         assert!(gaps.iter().all(|gap| (0.5..3.0).contains(gap)), "{gaps:?}");
-        match ends_by_signal {
-            true => signal(&child, "-INT"),
-            false => std::fs::remove_file(&hangs).unwrap(),
-        }
-        let rest: Vec<String> = lines.map(Result::unwrap).collect();
-        let code = child.wait().unwrap().code();
         if ends_by_signal {
-            assert_eq!(code, Some(130), "{rest:?}");
-            // The helper process is left, and goes on when the driver does.
-            std::fs::remove_file(&hangs).unwrap();
-        } else {
-            assert_eq!(code, Some(1), "{rest:?}");
+            signal(&child, "-INT");
+            assert_eq!(child.wait().unwrap().code(), Some(130));
+        }
+        // A helper process that is left goes on when the driver does.
+        std::fs::remove_file(&hangs).unwrap();
+        let rest: Vec<String> = lines.map(Result::unwrap).collect();
+        if !ends_by_signal {
+            assert_eq!(child.wait().unwrap().code(), Some(1), "{rest:?}");
             assert_eq!(rest.last().unwrap(), "htex: the output was set to zero");
         }
         bench.comes_to_zero();

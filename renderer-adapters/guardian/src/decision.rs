@@ -120,7 +120,8 @@ pub enum Why {
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Player {
     state: State,
-    attempts: u32,
+    /// Number of the last attempt.
+    attempt: u32,
     /// The attempt that a thread of the player still makes, which nothing can end.
     own: Option<u32>,
     last: By,
@@ -164,7 +165,7 @@ impl Default for Player {
     fn default() -> Self {
         Self {
             state: State::Idle,
-            attempts: 0,
+            attempt: 0,
             own: None,
             last: By::Player,
             why: None,
@@ -216,6 +217,27 @@ impl Player {
     /// Why the guardian was given up, if it was.
     pub fn why(&self) -> Option<Why> {
         self.why
+    }
+
+    /// The same player by a clock that is set back. The model checker keeps its clock at one time, so that worlds that differ only in
+    /// their time are one.
+    pub fn set_back(&mut self, by: Duration) {
+        let set_back = |time: &mut Duration| *time = time.saturating_sub(by);
+        match &mut self.state {
+            State::Idle | State::Closed => {}
+            State::Waiting { since, until } => {
+                set_back(since);
+                set_back(until);
+            }
+            State::Leaving { until } => set_back(until),
+            State::Rescuing(Rescue { step, say_at, .. }) => {
+                set_back(say_at);
+                let (Step::Killing { until }
+                | Step::Trying { until, .. }
+                | Step::Pausing { until }) = step;
+                set_back(until);
+            }
+        }
     }
 
     fn asked(&mut self, patience: Duration, now: Duration) -> Vec<Action> {
@@ -326,7 +348,7 @@ impl Player {
     }
 
     fn rescue_due(&mut self, now: Duration) -> Vec<Action> {
-        let by = self.next_by();
+        let (by, number) = (self.next_by(), self.next_number());
         let State::Rescuing(rescue) = &mut self.state else {
             return vec![];
         };
@@ -335,14 +357,14 @@ impl Player {
             if let Step::Trying { attempt, .. } = rescue.step {
                 actions.push(Action::GiveUp(attempt));
             }
-            self.attempts += 1;
+            self.attempt = number;
             self.last = by;
             if by == By::Player {
-                self.own = Some(self.attempts);
+                self.own = Some(number);
             }
-            actions.push(Action::Start(self.attempts, by));
+            actions.push(Action::Start(number, by));
             rescue.step = Step::Trying {
-                attempt: self.attempts,
+                attempt: number,
                 by,
                 until: now + ATTEMPT,
             };
@@ -355,6 +377,12 @@ impl Player {
             rescue.say_at = now + EVERY;
         }
         actions
+    }
+
+    /// A number that no attempt has which may still be heard of; they are few, so that the model is finite.
+    fn next_number(&self) -> u32 {
+        let is_free = |number: &u32| *number != self.attempt && Some(*number) != self.own;
+        (1..=3).find(is_free).unwrap_or(1)
     }
 
     fn next_by(&self) -> By {

@@ -203,6 +203,7 @@ impl Worker {
                 let to = self.to_self.clone();
                 let tell = move |result| drop(to.send(Message::Attempted(attempt, result)));
                 let running = Attempt::start(&self.display, by, tell);
+                self.attempts.retain(|(number, _)| *number != attempt);
                 self.attempts.push((attempt, running));
             }
             Action::GiveUp(attempt) => {

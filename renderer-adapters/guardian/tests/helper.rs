@@ -12,12 +12,21 @@ use htex_device::{
     Adapter, Capabilities, Descriptor, Device, DeviceError, Devices, Endpoint, FromScene, Quantity,
     Rates, Setting, SettingKind, Settings, Status, StreamFormat,
 };
-use htex_device_guardian::{Guarded, hold, is_wanted};
+use htex_device_guardian::{Guarded, hold, is_unconfirmed, is_wanted};
 
 const FORMAT: StreamFormat = StreamFormat {
     rate_hz: 1_000.0,
     block_frames: 4,
 };
+
+/// A sample whose write does not return, and one after which closing the device does not.
+const HANGS: f32 = 8.0;
+const DROP_HANGS: f32 = 9.0;
+const LONG: Duration = Duration::from_secs(3600);
+/// Longest wait for an answer of a display that states neither buffer nor ramp, seconds.
+const D_S: f64 = 1.0;
+/// What a busy machine may take longer, seconds.
+const BUSY_S: f64 = 10.0;
 
 /// A display whose output is a file of lines.
 struct Bench(Descriptor);
@@ -25,6 +34,15 @@ struct Bench(Descriptor);
 struct Open {
     log: String,
     frames: usize,
+    drop_hangs: bool,
+}
+
+impl Drop for Open {
+    fn drop(&mut self) {
+        if self.drop_hangs {
+            std::thread::sleep(LONG);
+        }
+    }
 }
 
 impl Bench {
@@ -77,12 +95,20 @@ impl Adapter for Bench {
         }
         let log = s.text("log").to_owned();
         say(&log, "opened at zero");
-        Ok(Box::new(Open { log, frames: 0 }))
+        Ok(Box::new(Open {
+            log,
+            frames: 0,
+            drop_hangs: false,
+        }))
     }
 }
 
 impl Device for Open {
     fn write(&mut self, samples: &[f32], _: Duration) -> Result<usize, DeviceError> {
+        if samples == [HANGS] {
+            std::thread::sleep(LONG);
+        }
+        self.drop_hangs = samples == [DROP_HANGS];
         say(&self.log, &format!("{samples:?}"));
         self.frames += samples.len();
         Ok(samples.len())
@@ -163,6 +189,50 @@ fn errors_of_the_helper_are_those_of_the_app(log: &Path) {
     assert_eq!(lines(log), ["opened at zero"]);
 }
 
+/// A helper that does not answer is killed, and a second one opens the device, which sets its output to zero.
+fn a_helper_that_hangs_is_replaced_by_zero(log: &Path) {
+    let mut device = guarded(&log.display().to_string(), &FORMAT, "helper").unwrap();
+    let begun = Instant::now();
+    let error = device.write(&[HANGS], Duration::from_secs(60)).unwrap_err();
+    let waited = begun.elapsed().as_secs_f64();
+    let error = error.to_string();
+    assert!(error.contains("did not answer within 1.00 s"), "{error}");
+    assert!((D_S..D_S + BUSY_S).contains(&waited), "{waited} s");
+    second_helper_ends(log);
+    assert_eq!(lines(log)[..2], ["opened at zero", "opened at zero"]);
+    let closed = device.write(&[1.0], Duration::ZERO).unwrap_err();
+    assert!(matches!(closed, DeviceError::Closed(_)), "{closed}");
+}
+
+fn second_helper_ends(log: &Path) {
+    let begun = Instant::now();
+    while is_unconfirmed()
+        || lines(log)
+            .last()
+            .is_none_or(|line| line != "played to zero")
+    {
+        assert!(begun.elapsed().as_secs_f64() < BUSY_S, "{:?}", lines(log));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Dropping a device waits at most D, whatever its helper does.
+fn a_device_is_dropped_in_time(log: &Path) {
+    let mut device = guarded(&log.display().to_string(), &FORMAT, "helper").unwrap();
+    device.write(&[DROP_HANGS], Duration::ZERO).unwrap();
+    let begun = Instant::now();
+    drop(device);
+    let waited = begun.elapsed().as_secs_f64();
+    println!("dropped after {waited:.2} s");
+    assert!(waited < D_S + BUSY_S, "{waited} s");
+    second_helper_ends(log);
+    let zeros = lines(log)
+        .iter()
+        .filter(|line| *line == "opened at zero")
+        .count();
+    assert_eq!(zeros, 2, "the second helper opens it");
+}
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.first().map(String::as_str) {
@@ -183,6 +253,8 @@ fn main() {
                 an_app_plays_through_its_helper,
                 an_app_that_aborts_leaves_zero,
                 errors_of_the_helper_are_those_of_the_app,
+                a_helper_that_hangs_is_replaced_by_zero,
+                a_device_is_dropped_in_time,
             ] {
                 let folder = tempfile::tempdir().unwrap();
                 test(&folder.path().join("log"));

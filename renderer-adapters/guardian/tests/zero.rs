@@ -8,20 +8,13 @@ mod faults;
 #[path = "zero/world.rs"]
 mod world;
 
-use std::collections::{BTreeMap, HashMap};
-use std::hash::{BuildHasherDefault, Hasher};
+use std::collections::{BTreeMap, HashSet};
+use std::hash::{BuildHasherDefault, Hash, Hasher};
 use std::time::Duration;
 
 use faults::Fault;
 use htex_device_guardian::decision::{CONFIRM, EVERY};
 use world::{App, Driver, Mutant, Output, Process, STEP, Thread, WAITS, World};
-
-/// Steps that are explored: over the time at which an attempt that hangs is given up.
-const STEPS: u32 = 180;
-/// Steps in which the first failure comes: the whole of a play that has none.
-const FIRST: u32 = 30;
-/// Steps in which the second comes: also while attempts are repeated.
-const SECOND: u32 = 150;
 
 /// What the rules need to know of the failures of a world; worlds that agree in it are one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -48,17 +41,17 @@ type Trace = [Option<(u32, Cause)>; 3];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Cause {
-    /// Ctrl-C, which is no failure and may come beside two.
-    CtrlC,
+    /// The scene's end or Ctrl-C, which is no failure and may come beside two.
+    End,
     Failure(Fault),
 }
 
 #[derive(Debug, Default)]
 struct Explored {
-    worlds: u64,
+    seen: Seen,
     /// Worlds in which neither the player nor the guardian can act, and a voltage stands.
     nobody: u64,
-    /// Cases that end at zero, and those in which the sentence is repeated to the end.
+    /// Worlds in which all have ended, at zero, and those that are not at zero and have the sentence.
     at_zero: u64,
     said: u64,
     detected: u64,
@@ -100,7 +93,18 @@ impl Hasher for Quick {
     }
 }
 
-type Layer = HashMap<(World, Failures), Trace, BuildHasherDefault<Quick>>;
+/// A world by which it is known again: two hashes of 64 bits.
+fn print_of(key: &(World, Failures)) -> u128 {
+    let [one, two] = [0, 0x9e37_79b9_7f4a_7c15].map(|seed| {
+        let mut hasher = Quick(seed);
+        key.hash(&mut hasher);
+        hasher.finish()
+    });
+    u128::from(one) << 64 | u128::from(two)
+}
+
+type Seen = HashSet<u128, BuildHasherDefault<Quick>>;
+type Layer = Vec<(World, Failures, Trace)>;
 
 fn steps(time: Duration) -> u32 {
     time.as_millis().div_ceil(STEP.as_millis()) as u32
@@ -113,10 +117,10 @@ fn broken(world: &World, failures: Failures) -> Option<&'static str> {
     // Both the player's and the world's step may come first.
     let slack = 1;
     if let Some(known) = world.known_for.filter(|_| runs) {
-        if known > steps(CONFIRM) + slack && !is_at_zero && world.said_at.is_none() {
+        if known > steps(CONFIRM) + slack && !is_at_zero && world.said.is_none() {
             return Some("0.5 s after the detection neither zero nor a sentence");
         }
-        let quiet = world.said_at.map_or(0, |at| world.step - at);
+        let quiet = world.said.unwrap_or(0);
         let is_due = known > steps(CONFIRM) + slack && !failures.player_stopped;
         if is_due && !is_at_zero && !failures.zero_prevented {
             return Some("nothing prevents zero, and it is not there 0.5 s after the detection");
@@ -128,24 +132,24 @@ fn broken(world: &World, failures: Failures) -> Option<&'static str> {
             return Some("zero is taken for confirmed, and is not there");
         }
     }
-    let undetected = world.known_for.is_none() && world.said_at.is_none();
+    let undetected = world.known_for.is_none() && world.said.is_none();
     if undetected && world.stood > steps(WAITS.answer()) + 2 && runs {
         return Some("a voltage stands for longer than D, and nothing is detected");
     }
     if undetected && world.stood > 10 && !runs && !nobody(world) {
         return Some("a guardian that could write zero does not");
     }
-    let waited = |since: Option<u32>| since.map_or(0, |at| world.step - at);
+    let waited = |steps: Option<u32>| steps.unwrap_or(0);
     if runs && !failures.player_stopped {
         let longest = steps(WAITS.answer() + CONFIRM) + slack;
-        if waited(world.asked_at) > longest {
+        if waited(world.asked) > longest {
             return Some("a call waits for longer than D and 0.5 s");
         }
-        if world.app != App::Gone && waited(world.dropped_at) > steps(WAITS.answer()) + slack {
+        if world.app != App::Gone && waited(world.dropped) > steps(WAITS.answer()) + slack {
             return Some("dropping the device takes longer than D");
         }
     }
-    if failures.count == 0 && (world.player.why().is_some() || world.said_at.is_some()) {
+    if failures.count == 0 && (world.player.why().is_some() || world.said.is_some()) {
         return Some("an alarm without a failure");
     }
     None
@@ -160,27 +164,24 @@ fn nobody(world: &World) -> bool {
     !world.runs() && !guardian_acts
 }
 
-/// The world, and the same with each failure, or Ctrl-C, that may come now.
+/// The world, and the same with each failure, or the end of the scene, that may come now.
 fn causes(
-    world: World,
-    failures: Failures,
-    trace: Trace,
+    (world, failures, trace): (World, Failures, Trace),
     most: usize,
     step: u32,
 ) -> Vec<(World, Failures, Trace)> {
     let mut worlds = Vec::new();
-    let last = if failures.count == 0 { FIRST } else { SECOND };
-    let may_fail = failures.count < most && step < last;
-    for fault in Fault::ALL.into_iter().filter(|_| may_fail) {
+    let may_fail = |_: &Fault| failures.count < most;
+    for fault in Fault::ALL.into_iter().filter(may_fail) {
         if let Some(failed) = fault.in_world(&world) {
             let trace = and(trace, step, Cause::Failure(fault));
             worlds.push((failed, failures.with(fault), trace));
         }
     }
-    if !world.interrupted && step % 3 == 1 && matches!(world.app, App::Playing(_)) {
-        let mut interrupted = world.clone();
-        interrupted.interrupted = true;
-        worlds.push((interrupted, failures, and(trace, step, Cause::CtrlC)));
+    if !world.ends && world.app == App::Playing {
+        let mut ended = world.clone();
+        ended.ends = true;
+        worlds.push((ended, failures, and(trace, step, Cause::End)));
     }
     worlds.push((world, failures, trace));
     worlds
@@ -188,7 +189,8 @@ fn causes(
 
 impl Explored {
     /// Lets all act, the player first and last, and keeps what comes of it.
-    fn go_on(&mut self, world: &World, failures: Failures, trace: Trace, next: &mut Layer) {
+    fn go_on(&mut self, (world, failures, trace): &(World, Failures, Trace), next: &mut Layer) {
+        let (failures, trace) = (*failures, *trace);
         let [first, last] = [true, false].map(|player_first| {
             let mut world = world.clone();
             world.advance(player_first);
@@ -209,7 +211,11 @@ impl Explored {
                 self.nobody += 1;
             }
             self.detected += u64::from(world.known_for == Some(0));
-            next.entry((world, failures)).or_insert(trace);
+            self.said += u64::from(world.said.is_some() && world.output != Output::Zero);
+            let key = (world, failures);
+            if self.seen.insert(print_of(&key)) {
+                next.push((key.0, failures, trace));
+            }
         }
     }
 }
@@ -217,20 +223,18 @@ impl Explored {
 /// Explores all worlds with at most so many failures.
 fn explore(most: usize, mutant: Mutant) -> Explored {
     let mut explored = Explored::default();
-    let mut layer = Layer::default();
-    layer.insert((World::new(mutant), Failures::default()), [None; 3]);
-    for step in 0..STEPS {
+    let mut layer = vec![(World::new(mutant), Failures::default(), [None; 3])];
+    let mut step = 0;
+    while !layer.is_empty() {
         let mut next = Layer::default();
-        for ((world, failures), trace) in layer {
-            explored.worlds += 1;
-            for (world, failures, trace) in causes(world, failures, trace, most, step) {
-                explored.go_on(&world, failures, trace, &mut next);
+        for world in layer {
+            for world in causes(world, most, step) {
+                explored.go_on(&world, &mut next);
             }
         }
         layer = next;
+        step += 1;
     }
-    let said = |world: &World| world.said_at.is_some() && world.output != Output::Zero;
-    explored.said = layer.keys().filter(|(world, _)| said(world)).count() as u64;
     explored
 }
 
@@ -246,9 +250,9 @@ fn the_output_is_at_zero_or_the_sentence_is_printed_whatever_fails() {
     let begun = std::time::Instant::now();
     let explored = explore(most(), Mutant::default());
     println!(
-        "{} worlds with at most {} failures in {:.0} s: {} detections, {} ends at zero, {} with the sentence to the last, \
+        "{} worlds with at most {} failures in {:.0} s: {} detections, {} ends at zero, {} with the sentence, \
          {} in which player and guardian have both failed",
-        explored.worlds,
+        explored.seen.len(),
         most(),
         begun.elapsed().as_secs_f64(),
         explored.detected,

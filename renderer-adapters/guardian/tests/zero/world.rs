@@ -25,8 +25,8 @@ const WATCH: u32 = 1;
 const HANG: u32 = 6;
 /// Steps from the start of a helper until it has opened the device.
 const HELPER: u32 = 2;
-/// Blocks that the app plays before its end.
-const BLOCKS: u32 = 6;
+/// The time at which each step begins: the player's clock is set back after it.
+const NOW: Duration = Duration::from_secs(60);
 
 /// Steps over which the rules look back.
 const LONG: u32 = 40;
@@ -98,7 +98,7 @@ pub struct Helper {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum App {
-    Playing(u32),
+    Playing,
     Finishing,
     Dropping,
     Gone,
@@ -127,15 +127,15 @@ pub struct Mutant {
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct World {
-    pub step: u32,
     pub mutant: Mutant,
     pub player: Player,
     pub process: Process,
     pub app: App,
-    pub interrupted: bool,
-    /// When the caller's request was sent, and when the drop began.
-    pub asked_at: Option<u32>,
-    pub dropped_at: Option<u32>,
+    /// The scene has ended, or Ctrl-C has come.
+    pub ends: bool,
+    /// Steps since the caller's request was sent, and since the drop began.
+    pub asked: Option<u32>,
+    pub dropped: Option<u32>,
     pub inbox: VecDeque<Heard>,
     pub guardian: Process,
     pub main: Thread,
@@ -158,8 +158,8 @@ pub struct World {
     pub output: Output,
     pub helpers: Helpers,
     pub helper: Vec<Helper>,
-    /// When a sentence was printed last, by whom ever.
-    pub said_at: Option<u32>,
+    /// Steps since a sentence was printed last, by whom ever.
+    pub said: Option<u32>,
     /// Since when the player has known, counted in its own running steps.
     pub known_for: Option<u32>,
     /// Steps that a voltage has stood.
@@ -169,14 +169,13 @@ pub struct World {
 impl World {
     pub fn new(mutant: Mutant) -> Self {
         Self {
-            step: 0,
             mutant,
             player: Player::default(),
             process: Process::Running,
-            app: App::Playing(0),
-            interrupted: false,
-            asked_at: None,
-            dropped_at: None,
+            app: App::Playing,
+            ends: false,
+            asked: None,
+            dropped: None,
             inbox: VecDeque::new(),
             guardian: Process::Running,
             main: Thread::Idle,
@@ -194,7 +193,7 @@ impl World {
             output: Output::Zero,
             helpers: Helpers::Work,
             helper: Vec::new(),
-            said_at: None,
+            said: None,
             known_for: None,
             stood: 0,
         }
@@ -214,7 +213,10 @@ impl World {
 
     /// One step of all; the player before the others, or after them.
     pub fn advance(&mut self, player_first: bool) {
-        self.step += 1;
+        for age in [&mut self.asked, &mut self.dropped, &mut self.said] {
+            *age = age.map(|steps| (steps + 1).min(LONG));
+        }
+        self.player.set_back(STEP);
         if player_first {
             self.player_step();
         }
@@ -228,8 +230,6 @@ impl World {
             Output::Standing => (self.stood + 1).min(LONG),
             _ => 0,
         };
-        let oldest = self.step.saturating_sub(LONG);
-        self.said_at = self.said_at.map(|at| at.max(oldest));
         if self.runs() && self.player.why().is_some() {
             self.known_for = Some(self.known_for.map_or(0, |steps| (steps + 1).min(LONG)));
         }
@@ -260,7 +260,7 @@ impl World {
         }
         let held = self.thread_steps();
         if let Some(by_main) = held {
-            self.waited += 1;
+            self.waited = (self.waited + 1).min(LONG);
             // The watchdog waits for main, or main for the watchdog, if it has something to do.
             let waits = match by_main {
                 true => !matches!(self.watchdog, Thread::Hung(..)),
@@ -400,7 +400,7 @@ impl World {
             true => self.output = Output::Zero,
             // A call that does not return prints nothing.
             false if self.driver == Driver::Hangs => {}
-            false => self.said_at = Some(self.step),
+            false => self.said = Some(0),
         }
         writes
     }
@@ -498,7 +498,7 @@ impl World {
             match heard {
                 Heard::Answer => self.tell(Event::Answered),
                 Heard::Failed(not_zero) => {
-                    let waits = self.asked_at.is_some() && self.player.why().is_none();
+                    let waits = self.asked.is_some() && self.player.why().is_none();
                     self.tell(Event::Answered);
                     if waits {
                         self.call_failed(not_zero);
@@ -506,7 +506,7 @@ impl World {
                 }
                 Heard::PipeEnded => {
                     // Read only while there is a request; the end of the process is seen where it is waited for.
-                    if self.asked_at.is_some() {
+                    if self.asked.is_some() {
                         self.tell(Event::PipeEnded);
                     }
                 }
@@ -517,34 +517,27 @@ impl World {
         if self.player.waits_for_end() && self.guardian == Process::Dead {
             self.tell(Event::GuardianGone);
         }
-        let due = self.player.wakes_at().is_some_and(|at| at <= self.now());
+        let due = self.player.wakes_at().is_some_and(|at| at <= NOW);
         if due && !(self.mutant.no_deadline && self.player.why().is_none()) {
             self.tell(Event::Tick);
         }
         self.call();
     }
 
-    fn now(&self) -> Duration {
-        STEP * self.step
-    }
-
     /// The app's next call, if it is not in one.
     fn call(&mut self) {
-        if self.asked_at.is_some() {
+        if self.asked.is_some() {
             return;
         }
         match self.app {
-            App::Playing(blocks) => {
-                let ends = self.interrupted || blocks == BLOCKS;
-                let request = if ends {
-                    Request::Finish
-                } else {
-                    Request::Write
+            App::Playing => {
+                let request = match self.ends {
+                    true => Request::Finish,
+                    false => Request::Write,
                 };
-                self.app = match ends {
-                    true => App::Finishing,
-                    false => App::Playing(blocks + 1),
-                };
+                if self.ends {
+                    self.app = App::Finishing;
+                }
                 self.ask(request, WAITS.answer());
             }
             App::Finishing => self.close(),
@@ -553,7 +546,7 @@ impl World {
     }
 
     fn ask(&mut self, request: Request, patience: Duration) {
-        self.asked_at = Some(self.step);
+        self.asked = Some(0);
         if self.guardian == Process::Dead {
             self.tell(Event::Asked(patience));
             return self.tell(Event::PipeEnded);
@@ -566,34 +559,32 @@ impl World {
 
     /// The app drops the device.
     fn drop_device(&mut self) {
-        self.dropped_at = Some(self.step);
+        self.dropped = Some(0);
         self.app = App::Dropping;
         self.ask(Request::Abort, WAITS.abort());
     }
 
     fn close(&mut self) {
-        self.dropped_at = self.dropped_at.or(Some(self.step));
+        let spent = STEP * *self.dropped.get_or_insert(0);
         self.app = App::Dropping;
-        let begun = STEP * self.dropped_at.unwrap_or(self.step);
-        let spent = self.now().saturating_sub(begun);
         self.tell(Event::Closing(WAITS.answer().saturating_sub(spent)));
     }
 
     /// A call of the app has returned with an error; with the sentence, the program prints it.
     fn call_failed(&mut self, not_zero: bool) {
-        self.asked_at = None;
+        self.asked = None;
         if not_zero {
-            self.said_at = Some(self.step);
+            self.said = Some(0);
         }
         match self.app {
-            App::Playing(_) => self.drop_device(),
+            App::Playing => self.drop_device(),
             App::Finishing | App::Dropping => self.close(),
             App::Gone => {}
         }
     }
 
     fn tell(&mut self, event: Event) {
-        let actions = self.player.on(event, self.now());
+        let actions = self.player.on(event, NOW);
         for action in actions {
             self.act(action);
         }
@@ -603,19 +594,19 @@ impl World {
         match action {
             Action::GiveAnswer => match self.app {
                 App::Dropping => {
-                    self.asked_at = None;
+                    self.asked = None;
                     self.close();
                 }
-                _ => self.asked_at = None,
+                _ => self.asked = None,
             },
             Action::RefuseClosed => match self.app {
                 App::Dropping => {
-                    self.asked_at = None;
+                    self.asked = None;
                     self.close();
                 }
                 _ => self.call_failed(false),
             },
-            Action::GiveZero | Action::GiveNotZero if self.asked_at.is_some() => {
+            Action::GiveZero | Action::GiveNotZero if self.asked.is_some() => {
                 self.call_failed(false);
             }
             Action::GiveZero | Action::GiveNotZero | Action::SayZero => {}
@@ -637,8 +628,8 @@ impl World {
                 self.helper.retain(is_kept);
             }
             Action::Say if self.mutant.no_sentence => {}
-            Action::Say if self.mutant.one_sentence && self.said_at.is_some() => {}
-            Action::Say => self.said_at = Some(self.step),
+            Action::Say if self.mutant.one_sentence && self.said.is_some() => {}
+            Action::Say => self.said = Some(0),
         }
     }
 

@@ -13,7 +13,7 @@ use htex_device::{Device, DeviceError, Status, StreamFormat};
 use crate::driver::Driver;
 use crate::rig::Rig;
 use crate::session::Session;
-use crate::watchdog::Watchdog;
+use crate::watchdog::{Watchdog, Watches};
 use crate::zero::Shared;
 
 /// Time between two checks for space.
@@ -23,7 +23,7 @@ const ZEROS: usize = 16_384;
 
 pub(crate) struct Stream {
     shared: Arc<Shared>,
-    _watchdog: Watchdog,
+    _watchdogs: [Watchdog; 2],
 }
 
 impl Stream {
@@ -35,18 +35,22 @@ impl Stream {
         let (device, buffer_s) = (rig.device.clone(), rig.buffer_s);
         let shared = Arc::new(Shared::new(Session::open(rig, driver, format)?));
         let period = Duration::from_secs_f64((buffer_s / 4.0).min(0.1));
-        let watchdog = Watchdog::start(&shared, period).map_err(|error| DeviceError::Failed {
-            device,
-            what: format!("cannot start its watchdog thread: {error}"),
-        })?;
+        let start = |watches| {
+            let started = Watchdog::start(&shared, period, watches);
+            started.map_err(|error| DeviceError::Failed {
+                device: device.clone(),
+                what: format!("cannot start its watchdog thread: {error}"),
+            })
+        };
+        let watchdogs = [start(Watches::Output)?, start(Watches::Calls)?];
         Ok(Self {
             shared,
-            _watchdog: watchdog,
+            _watchdogs: watchdogs,
         })
     }
 
     fn session(&self) -> Result<MutexGuard<'_, Session>, DeviceError> {
-        self.shared.lock()
+        Ok(self.shared.lock()?)
     }
 
     /// Gives the tail, and then zeros until the tail has been output, so that the buffer is never empty while the

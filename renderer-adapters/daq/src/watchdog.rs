@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use htex_device::DeviceError;
 
-use crate::zero::{HANG, Shared};
+use crate::zero::{HANG, Hung, Shared};
 
 /// Time between two looks at whether the thread has ended.
 const LOOK: Duration = Duration::from_millis(1);
@@ -16,6 +16,15 @@ const LOOK: Duration = Duration::from_millis(1);
 /// Prints on standard error, which may be closed.
 pub(crate) fn say(error: &DeviceError) {
     let _ = writeln!(std::io::stderr(), "htex: {error}");
+}
+
+/// What a watchdog does with the session.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Watches {
+    /// Asks the driver whether the output still runs.
+    Output,
+    /// Sees that the session is free from time to time, without a call of the driver that may hang as well.
+    Calls,
 }
 
 /// Ends when dropped.
@@ -26,28 +35,20 @@ pub(crate) struct Watchdog {
 
 impl Watchdog {
     /// Watches a session every `period`. If another thread has it for too long, zero is set without it.
-    pub(crate) fn start(shared: &Arc<Shared>, period: Duration) -> std::io::Result<Self> {
+    pub(crate) fn start(
+        shared: &Arc<Shared>,
+        period: Duration,
+        watches: Watches,
+    ) -> std::io::Result<Self> {
         let (end, ended) = channel();
         let shared = Arc::clone(shared);
         let watch = move || {
             let mut told = false;
             while ended.recv_timeout(period) == Err(RecvTimeoutError::Timeout) {
-                let mut session = match shared.lock() {
-                    Ok(session) => session,
-                    Err(error) => {
-                        // The thread whose call hangs says nothing.
-                        if !std::mem::replace(&mut told, true) {
-                            say(&error);
-                        }
-                        continue;
-                    }
-                };
-                let was_running = session.is_running();
-                session.watch();
-                // A writer that hangs makes no more calls: the warning about a remaining voltage is printed here.
-                let danger = session.untold_danger();
-                if let Some(error) = danger.filter(|_| was_running && !told) {
-                    say(error);
+                let error = look(&shared, watches);
+                // A thread whose call hangs, or a writer that makes no more calls, prints nothing.
+                if let Some(error) = error.filter(|_| !told) {
+                    say(&error);
                     told = true;
                 }
             }
@@ -60,6 +61,21 @@ impl Watchdog {
             thread: Some(thread),
         })
     }
+}
+
+/// Looks once; returns an error that nobody else may tell.
+fn look(shared: &Shared, watches: Watches) -> Option<DeviceError> {
+    let mut session = match shared.lock() {
+        Ok(session) => session,
+        Err(Hung { error, is_first }) => return is_first.then_some(error),
+    };
+    if watches == Watches::Calls {
+        return None;
+    }
+    let was_running = session.is_running();
+    session.watch();
+    let danger = session.untold_danger().cloned();
+    danger.filter(|_| was_running)
 }
 
 impl Drop for Watchdog {

@@ -63,6 +63,20 @@ impl Zero {
     }
 }
 
+/// Another thread has had the session for [`HANG`].
+pub(crate) struct Hung {
+    /// Says so, and whether the output was set to zero.
+    pub(crate) error: DeviceError,
+    /// Whether this thread was the first to find it, and set the output to zero.
+    pub(crate) is_first: bool,
+}
+
+impl From<Hung> for DeviceError {
+    fn from(hung: Hung) -> Self {
+        hung.error
+    }
+}
+
 /// Zero without the session.
 pub(crate) struct Emergency {
     pub(crate) zero: Zero,
@@ -98,9 +112,11 @@ impl Emergency {
     }
 
     /// Sets the output to zero, once; returns the error that says why, and whether it is.
-    fn begin(&self) -> DeviceError {
+    fn begin(&self) -> Hung {
         if self.has_begun.swap(true, Ordering::SeqCst) {
-            return self.error().unwrap_or_else(|| self.hangs(NOT_ZERO));
+            let error = self.error().unwrap_or_else(|| self.hangs(NOT_ZERO));
+            let is_first = false;
+            return Hung { error, is_first };
         }
         let zero = self.zero.once().or_else(|_| {
             let running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
@@ -115,7 +131,8 @@ impl Emergency {
             Err(_) => self.hangs(NOT_ZERO),
         };
         *self.error.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.clone());
-        error
+        let is_first = true;
+        Hung { error, is_first }
     }
 
     fn hangs(&self, output: &str) -> DeviceError {
@@ -150,7 +167,7 @@ impl Shared {
     ///
     /// # Errors
     /// When another thread has had it for [`HANG`]: the output was then set to zero, or the error says that it could not be.
-    pub(crate) fn lock(&self) -> Result<MutexGuard<'_, Session>, DeviceError> {
+    pub(crate) fn lock(&self) -> Result<MutexGuard<'_, Session>, Hung> {
         let mut turn = self.turn.load(Ordering::SeqCst);
         let mut since = Instant::now();
         loop {

@@ -6,8 +6,8 @@ use std::io::Write;
 use std::process::Child;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::thread::Builder;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::{Builder, sleep};
 use std::time::{Duration, Instant};
 
 use htex_device::DeviceError;
@@ -18,10 +18,8 @@ use crate::message::{Answer, put, take};
 
 /// The sentence about a voltage that may remain at the display.
 pub const NOT_ZERO: &str = "the output could not be set to zero: switch the amplifier off";
-/// Time between two looks at whether a process has ended.
-const LOOK: Duration = Duration::from_millis(2);
-/// A wait without an end.
-const LONG: Duration = Duration::from_secs(3600);
+/// Time between two looks at the clock, and at whether the guardian has ended.
+const LOOK: Duration = Duration::from_millis(5);
 
 /// Outputs that are not confirmed to be at zero.
 static UNCONFIRMED: AtomicUsize = AtomicUsize::new(0);
@@ -47,6 +45,8 @@ pub(crate) enum Message {
     /// What came through the guardian's pipe.
     Heard(std::io::Result<Answer>),
     Attempted(u32, Result<(), String>),
+    /// Some time has passed.
+    Look,
 }
 
 /// What a caller gets.
@@ -113,35 +113,29 @@ impl Worker {
             is_unconfirmed: false,
         };
         thread("htex-guardian", move || worker.run())?;
+        let looks = to_self.clone();
+        // Sleeps, and not a wait with a time limit, whose end is computed by a clock that may jump.
+        let look = move || {
+            while looks.send(Message::Look).is_ok() {
+                sleep(LOOK);
+            }
+        };
+        thread("htex-guardian-clock", look)?;
         Ok(to_self)
     }
 
     fn run(mut self) {
         let mut was_closed = false;
         while !(was_closed && self.player.is_over()) {
-            let event = match self.messages.recv_timeout(self.pause()) {
-                Ok(message) => {
-                    was_closed |= matches!(message, Message::Close { .. });
-                    self.event(message)
-                }
-                Err(RecvTimeoutError::Timeout) if self.has_ended() => Event::GuardianGone,
-                Err(RecvTimeoutError::Timeout) => Event::Tick,
-                Err(RecvTimeoutError::Disconnected) => return,
+            let Ok(message) = self.messages.recv() else {
+                return;
             };
+            was_closed |= matches!(message, Message::Close { .. });
+            let event = self.event(message);
             let now = self.begun.elapsed();
             for action in self.player.on(event, now) {
                 self.act(action);
             }
-        }
-    }
-
-    /// Time until the next look at the clock.
-    fn pause(&self) -> Duration {
-        let wakes_at = self.player.wakes_at();
-        let left = wakes_at.map_or(LONG, |at| at.saturating_sub(self.begun.elapsed()));
-        match self.player.waits_for_end() {
-            true => left.min(LOOK),
-            false => left,
         }
     }
 
@@ -176,6 +170,8 @@ impl Worker {
                 Event::Answered
             }
             Message::Heard(Err(_)) => Event::PipeEnded,
+            Message::Look if self.has_ended() => Event::GuardianGone,
+            Message::Look => Event::Tick,
             Message::Attempted(_, Ok(())) => Event::Zero,
             Message::Attempted(attempt, Err(failure)) => {
                 self.failure = Some(failure);

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use faults::Fault;
 use htex_device_guardian::decision::{CONFIRM, EVERY};
-use world::{App, Driver, Mutant, Output, Process, STEP, Thread, WAITS, World};
+use world::{App, Driver, Mutant, Output, Process, STEP, WAITS, World};
 
 /// What the rules need to know of the failures of a world; worlds that agree in it are one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -133,7 +133,7 @@ fn broken(world: &World, failures: Failures) -> Option<&'static str> {
         }
     }
     let undetected = world.known_for.is_none() && world.said.is_none();
-    if undetected && world.stood > steps(WAITS.answer()) + 2 && runs {
+    if undetected && world.stood_before_player > steps(WAITS.answer()) + 2 {
         return Some("a voltage stands for longer than D, and nothing is detected");
     }
     if undetected && world.stood > 10 && !runs && !nobody(world) {
@@ -157,10 +157,7 @@ fn broken(world: &World, failures: Failures) -> Option<&'static str> {
 
 /// Whether neither the player nor the guardian is left to act.
 fn nobody(world: &World) -> bool {
-    let hangs = |thread: Thread| matches!(thread, Thread::Hung(..));
-    let guardian_acts = world.guardian == Process::Running
-        && world.driver != Driver::Hangs
-        && !(hangs(world.main) && hangs(world.watchdog));
+    let guardian_acts = world.guardian == Process::Running && world.driver != Driver::Hangs;
     !world.runs() && !guardian_acts
 }
 
@@ -267,13 +264,14 @@ fn the_output_is_at_zero_or_the_sentence_is_printed_whatever_fails() {
 /// The model sees what it is for: a player that leaves out one of its actions breaks a rule.
 #[test]
 fn a_player_that_leaves_something_out_is_found() {
-    let left_out = |edit: fn(&mut Mutant)| {
+    type Edit = fn(&mut Mutant);
+    let left_out = |edit: Edit| {
         let mut mutant = Mutant::default();
         edit(&mut mutant);
         let explored = explore(1, mutant);
         explored.broken.keys().copied().collect::<Vec<_>>()
     };
-    let mutants: [(&str, fn(&mut Mutant)); 6] = [
+    let mutants: [(&str, Edit); 6] = [
         ("no kill", |m| m.no_kill = true),
         ("no attempt", |m| m.no_attempt = true),
         ("no sentence", |m| m.no_sentence = true),

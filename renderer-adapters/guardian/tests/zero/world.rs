@@ -162,8 +162,9 @@ pub struct World {
     pub said: Option<u32>,
     /// Since when the player has known, counted in its own running steps.
     pub known_for: Option<u32>,
-    /// Steps that a voltage has stood.
+    /// Steps that a voltage has stood, and those of them in which the player ran without a pause.
     pub stood: u32,
+    pub stood_before_player: u32,
 }
 
 impl World {
@@ -196,6 +197,7 @@ impl World {
             said: None,
             known_for: None,
             stood: 0,
+            stood_before_player: 0,
         }
     }
 
@@ -230,6 +232,10 @@ impl World {
             Output::Standing => (self.stood + 1).min(LONG),
             _ => 0,
         };
+        self.stood_before_player = match self.runs() && self.stood > 0 {
+            true => (self.stood_before_player + 1).min(LONG),
+            false => 0,
+        };
         if self.runs() && self.player.why().is_some() {
             self.known_for = Some(self.known_for.map_or(0, |steps| (steps + 1).min(LONG)));
         }
@@ -260,17 +266,14 @@ impl World {
         }
         let held = self.thread_steps();
         if let Some(by_main) = held {
-            self.waited = (self.waited + 1).min(LONG);
-            // The watchdog waits for main, or main for the watchdog, if it has something to do.
-            let waits = match by_main {
-                true => !matches!(self.watchdog, Thread::Hung(..)),
-                false => matches!(self.main, Thread::Serving(..)),
-            };
-            if !waits {
-                self.waited = 0;
+            if !by_main && self.main == Thread::Idle {
+                // Takes the next request, and then waits for the session.
+                self.main_step();
             }
-            let wait = HANG + if by_main { WATCH } else { 0 };
-            if waits && self.waited > wait && !self.emergency && !self.mutant.no_watchdog {
+            // The watchdog that makes no call of the driver waits for the session.
+            self.waited = (self.waited + 1).min(LONG);
+            let is_due = self.waited > HANG + WATCH && !self.mutant.no_watchdog;
+            if is_due && !self.emergency {
                 self.emergency = true;
                 self.guardian_zero();
                 if let (false, Thread::Serving(request, _)) = (by_main, self.main) {

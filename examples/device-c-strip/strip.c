@@ -34,9 +34,14 @@ static int64_t fail(int64_t status, const char *before, const char *text) {
     return status;
 }
 
+/* Whether `len` values of `size` bytes can stand at `pointer`. */
+static int usable(const void *pointer, size_t len, size_t size) {
+    return !len || (pointer && (uintptr_t)pointer % size == 0);
+}
+
 static int64_t give(const char *text, uint8_t *out, size_t capacity) {
     size_t len = strlen(text);
-    if (capacity && !out) return fail(HTEX_DEVICE_INVALID_ARGUMENT, "", "`out` is null");
+    if (!usable(out, capacity, 1)) return fail(HTEX_DEVICE_INVALID_ARGUMENT, "", "`out` is not usable");
     if (capacity) memcpy(out, text, len < capacity ? len : capacity);
     return (int64_t)len;
 }
@@ -84,10 +89,20 @@ static int64_t set(struct settings *all, const char *name, const char *value) {
     return fail(HTEX_DEVICE_INVALID_SETTING, name, ": not known, or not usable");
 }
 
+/* The bit of a setting, by which a second line is found; 0 of an unknown one, which is refused anyway. */
+static unsigned bit_of(const char *name) {
+    static const char *const names[] = {"path", "full_scale_n", "column_ms"};
+    unsigned bit = 1;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++, bit <<= 1)
+        if (!strcmp(name, names[i])) return bit;
+    return 0;
+}
+
 static int64_t read_settings(struct settings *all, const uint8_t *text, size_t len) {
     memset(all, 0, sizeof *all);
     all->full_scale_n = 1, all->column_ms = 10;
-    if (len && !text) return fail(HTEX_DEVICE_INVALID_ARGUMENT, "", "`settings` is null");
+    if (!usable(text, len, 1)) return fail(HTEX_DEVICE_INVALID_ARGUMENT, "", "`settings` is not usable");
+    unsigned given = 0;
     for (size_t at = 0; at < len;) {
         char line[PATH_BYTES];
         size_t n = 0;
@@ -98,6 +113,9 @@ static int64_t read_settings(struct settings *all, const uint8_t *text, size_t l
         char *value = strchr(line, '=');
         if (!value) return fail(HTEX_DEVICE_INVALID_SETTING, line, ": a line is NAME=VALUE");
         *value++ = 0;
+        unsigned bit = bit_of(line);
+        if (given & bit) return fail(HTEX_DEVICE_INVALID_SETTING, line, ": it is given twice");
+        given |= bit;
         int64_t status = set(all, line, value);
         if (status) return status;
         at += n + 1;
@@ -209,7 +227,8 @@ int64_t htex_device_write(int64_t device, const float *samples, size_t frames,
     struct device *d = find(device);
     if (!d) return HTEX_DEVICE_BAD_HANDLE;
     if (!d->file) return fail(HTEX_DEVICE_CLOSED, "", "the chart is closed");
-    if (frames && !samples) return fail(HTEX_DEVICE_INVALID_ARGUMENT, "", "`samples` is null");
+    if (!usable(samples, frames, sizeof *samples))
+        return fail(HTEX_DEVICE_INVALID_ARGUMENT, "", "`samples` is not usable");
     for (size_t i = 0; i < frames; i++)
         if (!(fabsf(samples[i]) <= (float)d->settings.full_scale_n)) {
             abandon(d);
@@ -232,7 +251,8 @@ int64_t htex_device_write(int64_t device, const float *samples, size_t frames,
 int64_t htex_device_status(int64_t device, double *out, size_t capacity) {
     struct device *d = find(device);
     if (!d) return HTEX_DEVICE_BAD_HANDLE;
-    if (capacity && !out) return fail(HTEX_DEVICE_INVALID_ARGUMENT, "", "`out` is null");
+    if (!usable(out, capacity, sizeof *out))
+        return fail(HTEX_DEVICE_INVALID_ARGUMENT, "", "`out` is not usable");
     double all[HTEX_DEVICE_STATUS_NUMBERS] = {
         [HTEX_DEVICE_STATUS_FRAMES_WRITTEN] = (double)d->frames,
         [HTEX_DEVICE_STATUS_FRAMES_PLAYED] = (double)d->frames,

@@ -42,9 +42,14 @@ static int64_t fail(int64_t status, const char *before, const char *text) {
     return status;
 }
 
+/* Whether `len` values of `size` bytes can stand at `pointer`. */
+static int usable(const void *pointer, size_t len, size_t size) {
+    return !len || (pointer && (uintptr_t)pointer % size == 0);
+}
+
 static int64_t give(const char *text, uint8_t *out, size_t capacity) {
     size_t len = strlen(text);
-    if (capacity && !out) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "`out` is null");
+    if (!usable(out, capacity, 1)) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "`out` is not usable");
     if (capacity) memcpy(out, text, len < capacity ? len : capacity);
     return (int64_t)len;
 }
@@ -99,9 +104,19 @@ static int64_t set(struct settings *all, const char *name, const char *value) {
     return fail(HTEX_SOURCE_INVALID_SETTING, name, ": not known, or not usable");
 }
 
+/* The bit of a setting, by which a second line is found; 0 of an unknown one, which is refused anyway. */
+static unsigned bit_of(const char *name) {
+    static const char *const names[] = {"spacing_mm", "speed_mm_s", "force_n", "rate_hz", "seconds", "pace"};
+    unsigned bit = 1;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++, bit <<= 1)
+        if (!strcmp(name, names[i])) return bit;
+    return 0;
+}
+
 static int64_t read_settings(struct settings *all, const uint8_t *text, size_t len) {
     *all = (struct settings){1, 80, 0.4, 5000, 0, 0};
-    if (len && !text) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "`settings` is null");
+    if (!usable(text, len, 1)) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "`settings` is not usable");
+    unsigned given = 0;
     for (size_t at = 0; at < len;) {
         char line[128];
         size_t n = 0;
@@ -112,6 +127,9 @@ static int64_t read_settings(struct settings *all, const uint8_t *text, size_t l
         char *value = strchr(line, '=');
         if (!value) return fail(HTEX_SOURCE_INVALID_SETTING, line, ": a line is NAME=VALUE");
         *value++ = 0;
+        unsigned bit = bit_of(line);
+        if (given & bit) return fail(HTEX_SOURCE_INVALID_SETTING, line, ": it is given twice");
+        given |= bit;
         int64_t status = set(all, line, value);
         if (status) return status;
         at += n + 1;
@@ -213,7 +231,8 @@ int64_t htex_source_read(int64_t source, double *samples, size_t len, uint32_t t
     struct source *s = find(source);
     if (!s) return HTEX_SOURCE_BAD_HANDLE;
     if (len % CHANNELS) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "a frame has three samples");
-    if (len && !samples) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "`samples` is null");
+    if (!usable(samples, len, sizeof *samples))
+        return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "`samples` is not usable");
     if (s->state != SAMPLING) return fail(HTEX_SOURCE_CLOSED, "", "the finger does not move");
     uint64_t frames = len / CHANNELS;
     if (s->settings.seconds > 0) {

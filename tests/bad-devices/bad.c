@@ -29,7 +29,8 @@ static void *volatile kept;
     defined FAULT_VOLTAGE || defined FAULT_CAPABILITIES || defined FAULT_ENDPOINTS
 static int64_t give(const char *text, uint8_t *out, size_t capacity) {
     size_t len = strlen(text);
-    memcpy(out, text, capacity < len ? capacity : len);
+    if (capacity && !out) return -1; /* invalid argument */
+    if (capacity) memcpy(out, text, capacity < len ? capacity : len);
     return (int64_t)len;
 }
 #endif
@@ -60,6 +61,11 @@ int64_t htex_device_descriptor(uint8_t *out, size_t capacity) {
 }
 
 int64_t htex_device_last_error(uint8_t *out, size_t capacity) {
+#ifdef FAULT_SETTING_UNNAMED
+    static const char text[] = "one of the settings is not usable";
+    for (size_t i = 0; out && i < sizeof text - 1 && i < capacity; i++) out[i] = (uint8_t)text[i];
+    if (out || !capacity) return sizeof text - 1;
+#endif
     return GOOD(htex_device_last_error)(out, capacity);
 }
 
@@ -71,13 +77,26 @@ int64_t htex_device_endpoints(uint8_t *out, size_t capacity) {
 #endif
 }
 
+/* Whether the last refusal was of a second line of the same setting. */
+static int was_twice(void) {
+    char text[64] = "";
+    GOOD(htex_device_last_error)((uint8_t *)text, sizeof text - 1);
+    return strstr(text, "twice") != NULL;
+}
+
+static const char usual[] = "path=usual.svg\n";
+
 int64_t htex_device_capabilities(const uint8_t *settings, size_t settings_len, uint8_t *out,
                                  size_t capacity) {
     int64_t answer = GOOD(htex_device_capabilities)(settings, settings_len, out, capacity);
     if (answer < 0) {
+#ifdef FAULT_ACCEPTS_TWICE
+        if (answer == HTEX_DEVICE_INVALID_SETTING && was_twice())
+            return GOOD(htex_device_capabilities)((const uint8_t *)usual, sizeof usual - 1, out, capacity);
+#endif
 #ifdef FAULT_ACCEPTS_SETTING
-        static const char usual[] = "path=usual.svg\n";
-        return GOOD(htex_device_capabilities)((const uint8_t *)usual, sizeof usual - 1, out, capacity);
+        if (answer == HTEX_DEVICE_INVALID_SETTING)
+            return GOOD(htex_device_capabilities)((const uint8_t *)usual, sizeof usual - 1, out, capacity);
 #endif
         return answer;
     }
@@ -88,6 +107,11 @@ int64_t htex_device_capabilities(const uint8_t *settings, size_t settings_len, u
     return give(CAN("display_voltage", "10000"), out, capacity);
 #elif defined FAULT_CAPABILITIES
     return give(CAN("lateral_force", "9000"), out, capacity);
+#elif defined FAULT_TEXT_BEYOND
+    uint8_t whole[1024];
+    GOOD(htex_device_capabilities)(settings, settings_len, whole, sizeof whole);
+    if (capacity) memcpy(out, whole, (size_t)answer);
+    return answer;
 #else
     return answer;
 #endif
@@ -106,8 +130,14 @@ int64_t htex_device_open(const uint8_t *settings, size_t settings_len, double ra
     if (opened) return HTEX_DEVICE_FAILED;
 #elif defined FAULT_OPENINGS_LEAK
     kept = memset(malloc(65536), 1, 65536);
+#elif defined FAULT_ACCEPTS_BLOCK
+    if (block_frames < 1) block_frames = 1;
 #endif
     int64_t handle = GOOD(htex_device_open)(settings, settings_len, rate_hz, block_frames);
+#ifdef FAULT_OPEN_ACCEPTS_SETTING
+    if (handle == HTEX_DEVICE_INVALID_SETTING)
+        handle = GOOD(htex_device_open)((const uint8_t *)usual, sizeof usual - 1, rate_hz, block_frames);
+#endif
     if (handle > 0) opened++;
     return handle;
 }
@@ -135,6 +165,10 @@ int64_t htex_device_write(int64_t device, const float *samples, size_t frames,
     if (device == finished) return (int64_t)frames;
 #elif defined FAULT_CLOSED_GOES_ON
     if (device == refused) return (int64_t)frames;
+#elif defined FAULT_ACCEPTS_NULL
+    if (frames && !samples) return (int64_t)frames;
+#elif defined FAULT_ACCEPTS_MISALIGNED
+    if ((uintptr_t)samples % sizeof *samples) return (int64_t)frames;
 #endif
 #if defined FAULT_OVER_LIMIT || defined FAULT_NAN
     float clipped[3];
@@ -157,8 +191,15 @@ int64_t htex_device_write(int64_t device, const float *samples, size_t frames,
 
 int64_t htex_device_status(int64_t device, double *out, size_t capacity) {
     int64_t answer = GOOD(htex_device_status)(device, out, capacity);
+#ifdef FAULT_STATUS_BEYOND
+    double whole[HTEX_DEVICE_STATUS_NUMBERS];
+    if (answer > 0 && capacity) {
+        GOOD(htex_device_status)(device, whole, HTEX_DEVICE_STATUS_NUMBERS);
+        memcpy(out, whole, sizeof whole);
+    }
+#endif
 #ifdef FAULT_STATUS
-    if (answer > 0) out[HTEX_DEVICE_STATUS_FRAMES_WRITTEN] *= 2;
+    if (answer > 0 && capacity) out[HTEX_DEVICE_STATUS_FRAMES_WRITTEN] *= 2;
 #elif defined FAULT_STATUS_SHORT
     if (answer > 0) return 2;
 #elif defined FAULT_CLOSED_HANDLE

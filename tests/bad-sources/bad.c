@@ -28,7 +28,8 @@ static void *volatile kept;
 
 static int64_t give(const char *text, uint8_t *out, size_t capacity) {
     size_t len = strlen(text);
-    memcpy(out, text, capacity < len ? capacity : len);
+    if (capacity && !out) return -1; /* invalid argument */
+    if (capacity) memcpy(out, text, capacity < len ? capacity : len);
     return (int64_t)len;
 }
 
@@ -55,6 +56,11 @@ int64_t htex_source_descriptor(uint8_t *out, size_t capacity) {
 }
 
 int64_t htex_source_last_error(uint8_t *out, size_t capacity) {
+#ifdef FAULT_SETTING_UNNAMED
+    static const char text[] = "one of the settings is not usable";
+    for (size_t i = 0; out && i < sizeof text - 1 && i < capacity; i++) out[i] = (uint8_t)text[i];
+    if (out || !capacity) return sizeof text - 1;
+#endif
     return GOOD(htex_source_last_error)(out, capacity);
 }
 
@@ -75,6 +81,11 @@ int64_t htex_source_open(const uint8_t *settings, size_t settings_len) {
     if (opened) return HTEX_SOURCE_FAILED;
 #endif
     int64_t handle = GOOD(htex_source_open)(settings, settings_len);
+#ifdef FAULT_ACCEPTS_TWICE
+    char why[64] = "";
+    GOOD(htex_source_last_error)((uint8_t *)why, sizeof why - 1);
+    if (handle == HTEX_SOURCE_INVALID_SETTING && strstr(why, "twice")) handle = GOOD(htex_source_open)(NULL, 0);
+#endif
 #ifdef FAULT_ACCEPTS_SETTING
     if (handle == HTEX_SOURCE_INVALID_SETTING) handle = GOOD(htex_source_open)(NULL, 0);
 #endif
@@ -91,6 +102,11 @@ int64_t htex_source_stream(int64_t source, uint8_t *out, size_t capacity) {
     return give(STREAM("5000", ""), out, capacity);
 #elif defined FAULT_CHANGES
     if (source % 2) return give(STREAM("5000", CHANNEL), out, capacity);
+#elif defined FAULT_STREAM_BEYOND
+    uint8_t whole[1024];
+    int64_t len = GOOD(htex_source_stream)(source, whole, sizeof whole);
+    if (len > 0 && out && capacity) memcpy(out, whole, (size_t)len);
+    if (len > 0 && (out || !capacity)) return len;
 #endif
     return GOOD(htex_source_stream)(source, out, capacity);
 }
@@ -114,6 +130,8 @@ int64_t htex_source_read(int64_t source, double *samples, size_t len, uint32_t t
     if (timeout_ms < 1000 && len) sleep(1);
 #elif defined FAULT_READS_EARLY
     if (source != running) return 0;
+#elif defined FAULT_ACCEPTS_NULL
+    if (len && !samples) return 0;
 #endif
     int64_t answer = GOOD(htex_source_read)(source, samples, len, timeout_ms);
 #ifdef FAULT_NAN

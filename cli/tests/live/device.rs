@@ -22,9 +22,13 @@ const FAULTS: &[(&str, &str, &str)] = &[
     ("VOLTAGE", "capabilities", "failed"),
     ("CAPABILITIES", "capabilities", "failed"),
     ("ACCEPTS_SETTING", "bad-settings", "failed"),
+    ("ACCEPTS_TWICE", "bad-settings", "failed"),
+    ("OPEN_ACCEPTS_SETTING", "bad-settings", "failed"),
+    ("SETTING_UNNAMED", "bad-settings", "failed"),
     ("OPEN_HIGH", "open", "failed"),
     ("WRITE_NOTHING", "open", "failed"),
     ("ACCEPTS_RATE", "bad-rate", "failed"),
+    ("ACCEPTS_BLOCK", "bad-block", "failed"),
     ("WRITE_CRASHES", "write", "crashed"),
     ("WRITE_LOOPS", "write", "timed-out"),
     ("WRITE_TOO_MANY", "write", "failed"),
@@ -36,6 +40,10 @@ const FAULTS: &[(&str, &str, &str)] = &[
     ("WRITE_AFTER_FINISH", "finish", "failed"),
     ("LEFT_BEHIND", "abort", "failed"),
     ("CLOSED_HANDLE", "handles", "failed"),
+    ("ACCEPTS_NULL", "arrays", "failed"),
+    ("ACCEPTS_MISALIGNED", "arrays", "failed"),
+    ("TEXT_BEYOND", "arrays", "failed"),
+    ("STATUS_BEYOND", "arrays", "failed"),
     ("TWO", "two", "failed"),
     ("LEAK", "memory", "failed"),
     ("OPENINGS_LEAK", "memory", "failed"),
@@ -96,10 +104,10 @@ fn sound_devices_pass() {
     let strip = strip(&place);
     let report = checked(&place, &[strip.to_str().unwrap()]);
     assert_eq!(count(&report, "passed"), CHECKS.len(), "{report:#}");
-    // Checks of a library: marker, exports, extensions, settings as lines, handles.
+    // Checks of a library: marker, exports, extensions, settings as lines, blocks, handles, arrays.
     let file = checked(&place, &["file", "--set", "encoding=i16"]);
     assert_eq!(complaints(&file), []);
-    assert_eq!(count(&file, "passed"), CHECKS.len() - 5, "{file:#}");
+    assert_eq!(count(&file, "passed"), CHECKS.len() - 7, "{file:#}");
     let drive = [
         "quantity=display_voltage",
         "limit_v=100",

@@ -20,6 +20,8 @@ const FAULTS: &[(&str, &str, &str)] = &[
     ("NO_CHANNELS", "open", "failed"),
     ("CHANGES", "open", "failed"),
     ("ACCEPTS_SETTING", "bad-settings", "failed"),
+    ("ACCEPTS_TWICE", "bad-settings", "failed"),
+    ("SETTING_UNNAMED", "bad-settings", "failed"),
     ("READS_EARLY", "start", "failed"),
     ("READ_TOO_MANY", "read", "failed"),
     ("READ_CRASHES", "read", "crashed"),
@@ -28,6 +30,8 @@ const FAULTS: &[(&str, &str, &str)] = &[
     ("LATE", "timeout", "failed"),
     ("AFTER_STOP", "stop", "failed"),
     ("CLOSED_HANDLE", "handles", "failed"),
+    ("ACCEPTS_NULL", "arrays", "failed"),
+    ("STREAM_BEYOND", "arrays", "failed"),
     ("TWO", "two", "failed"),
     ("LEAK", "memory", "failed"),
     ("OPENINGS_LEAK", "memory", "failed"),
@@ -60,8 +64,8 @@ fn sound_sources_pass() {
         let path = format!("path={}", place.recording("vinyl"));
         let file = checked(&place, &["file", "--set", &path, "--set", "pace=fast"]);
         assert_eq!(complaints(&file), []);
-        // Checks of a library: marker, exports, extensions, settings as lines, handles.
-        assert_eq!(count(&file, "skipped"), 5, "{file:#}");
+        // Checks of a library: marker, exports, extensions, settings as lines, handles, arrays.
+        assert_eq!(count(&file, "skipped"), 6, "{file:#}");
     }
 }
 

@@ -25,11 +25,13 @@ htex_check_runner::checks! { Case;
     "capabilities" needs ["descriptor"] describe::capabilities:
         "Capabilities are finite and agree, for each profile; a voltage has a limit.";
     "bad-settings" needs ["capabilities"] describe::bad_settings:
-        "Unknown settings and values out of range are refused.";
+        "Unknown settings, values out of range, lines that are not settings and second lines of a setting are refused by name.";
     "open" needs ["capabilities"] open::opens:
         "It opens at each rate of a list, at both ends of a range, and at the default rate.";
     "bad-rate" needs ["open"] open::bad_rate:
         "Rates that it does not have are refused.";
+    "bad-block" needs ["open"] open::bad_block:
+        "Blocks of 0 frames and of more than 1,048,576 are refused.";
     "write" needs ["open"] write::blocks:
         "Blocks of any size, including empty ones, are taken in the end.";
     "status" needs ["write"] write::status:
@@ -44,6 +46,8 @@ htex_check_runner::checks! { Case;
         "Closed without its end, it leaves nothing behind.";
     "handles" needs ["write"] end::handles:
         "A handle that was closed is refused, also when another device was opened.";
+    "arrays" needs ["write"] describe::arrays:
+        "Null and misaligned arrays are refused, and nothing is written beyond an array.";
     "two" needs ["status"] open::two:
         "Two are open at the same time, or the second is refused as busy.";
     "memory" needs ["write"] write::memory:

@@ -32,6 +32,7 @@ mod handles;
 mod library;
 mod loaded;
 mod native;
+mod probe;
 mod registry;
 #[cfg(feature = "schemars")]
 mod schemas;

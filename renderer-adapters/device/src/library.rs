@@ -197,7 +197,7 @@ impl<T: Table> Library<T> {
     }
 
     /// The text of this thread's last error.
-    fn last_error(&self) -> String {
+    pub(crate) fn last_error(&self) -> String {
         let mut bytes = vec![0; USUAL_TEXT];
         // SAFETY: a live buffer of this length.
         let len = unsafe { (self.table.common().last_error)(bytes.as_mut_ptr(), bytes.len()) };

@@ -1,10 +1,19 @@
 //! The marker, the exports, the descriptor, endpoints and capabilities; those that sources have too are of any kind.
 
 use htex_check_runner::{Finding, Found, made_up_extensions};
-use htex_device::{Descriptor, DeviceError, Setting, SettingKind, Settings};
+use htex_device::abi::Code;
+use htex_device::{Descriptor, DeviceError, Setting, SettingKind, Settings, StreamFormat};
 
 use crate::case::{self, CheckedKind};
 use crate::device::Case;
+
+const INVALID_SETTING: i64 = Code::InvalidSetting as i64;
+/// Frames of a block of a device that is opened for its settings.
+const BLOCK: u32 = 256;
+
+/// The finding where arrays are used as the ABI says.
+pub(crate) const KEPT: &str =
+    "null and misaligned arrays are refused, and nothing is written beyond an array";
 
 /// A library that was loaded has the marker and the exports.
 pub(crate) fn loaded<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
@@ -78,43 +87,108 @@ pub(crate) fn capabilities(case: &Case) -> Found {
     Ok(Finding::passed(format!("{limit}, {}", can.rates)))
 }
 
-/// Unknown and invalid settings are refused.
+/// Settings that are not usable are refused, in `capabilities` and in `open`.
 pub(crate) fn bad_settings(case: &Case) -> Found {
     let native = case.native()?;
-    let descriptor = case.adapter.descriptor();
-    refused(descriptor, &case.settings()?, |lines| {
-        native.capabilities_of(lines).map(drop)
+    let (descriptor, settings) = (case.adapter.descriptor(), case.settings()?);
+    let rate_hz = case.capabilities()?.default_rate_hz;
+    let asked = refused(descriptor, &settings, |lines| {
+        match native.capabilities_of(lines) {
+            Ok(_) => None,
+            // A text without a name is all in `what`.
+            Err(DeviceError::Setting { name, what }) if name.is_empty() => {
+                Some((INVALID_SETTING, what))
+            }
+            Err(DeviceError::Setting { name, what }) => {
+                Some((INVALID_SETTING, format!("{name}: {what}")))
+            }
+            Err(error) => Some((0, error.to_string())),
+        }
+    });
+    let asked = asked.map_err(|finding| of_call("capabilities", finding))?;
+    refused(descriptor, &settings, |lines| {
+        native.refusal_of_open(lines, rate_hz, BLOCK)
     })
+    .map_err(|finding| of_call("open", finding))?;
+    Ok(asked)
 }
 
-/// Unknown settings and values that are not allowed are refused by `take`, each among valid ones.
+fn of_call(call: &str, finding: Finding) -> Finding {
+    Finding::failed(format!("`{call}`: {}", finding.message))
+}
+
+/// Lines of settings that are not usable, and how the text of their refusal must begin.
+struct WrongLines {
+    what: String,
+    lines: String,
+    /// A setting's name or a line; empty for one that is empty.
+    begins: String,
+}
+
+/// Lines that are not usable are refused by `refusal`, which returns the status and the text, or `None` if it takes them. The text
+/// must begin with the setting's name.
 pub(crate) fn refused(
     descriptor: &Descriptor,
     settings: &Settings,
-    take: impl Fn(&str) -> Result<(), DeviceError>,
+    refusal: impl Fn(&str) -> Option<(i64, String)>,
 ) -> Found {
-    let good = settings.to_lines(descriptor);
-    let mut wrong = vec![
-        "no_such_setting_=1\n".to_owned(),
-        "no line of settings\n".to_owned(),
-    ];
-    wrong.extend(descriptor.settings.iter().flat_map(wrong_lines));
-    for line in &wrong {
-        let name = line.split('=').next().unwrap_or_default();
-        let others = good.lines().filter(|l| !l.starts_with(&format!("{name}=")));
-        let lines: String = others.flat_map(|l| [l, "\n"]).collect();
-        let line = line.trim_end();
-        match take(&format!("{lines}{line}\n")) {
-            Err(DeviceError::Setting { .. }) => {}
-            Err(error) => return Err(Finding::failed(format!("`{line}`: {error}"))),
-            Ok(()) => return Err(Finding::failed(format!("it takes the setting `{line}`"))),
+    let wrong = wrong(descriptor, &settings.to_lines(descriptor));
+    for WrongLines {
+        what,
+        lines,
+        begins,
+    } in &wrong
+    {
+        let Some((status, text)) = refusal(lines) else {
+            return Err(Finding::failed(format!("it takes {what}")));
+        };
+        let is_named = text
+            .strip_prefix(begins.as_str())
+            .is_some_and(|rest| rest.starts_with(": ") || begins.is_empty());
+        if status != INVALID_SETTING {
+            return Err(Finding::failed(format!(
+                "{what} is refused, but not as an invalid setting: {text}"
+            )));
+        }
+        if !is_named || text.is_empty() {
+            return Err(Finding::failed(format!(
+                "{what} is refused with the text `{text}`; it must begin with `{begins}: `"
+            )));
         }
     }
     let count = wrong.len();
     Ok(
-        Finding::passed(format!("{count} wrong settings are refused"))
+        Finding::passed(format!("{count} wrong settings are refused by name"))
             .with("settings", count as f64),
     )
+}
+
+/// Settings with one error each, among valid ones.
+fn wrong(descriptor: &Descriptor, good: &str) -> Vec<WrongLines> {
+    let mut single = vec![
+        "no_such_setting_=1\n".to_owned(),
+        "no line of settings\n".to_owned(),
+        "\n".to_owned(),
+    ];
+    single.extend(descriptor.settings.iter().flat_map(wrong_lines));
+    let in_place = single.into_iter().map(|line| {
+        let begins = line.trim_end().split('=').next().unwrap_or_default();
+        let others = good
+            .lines()
+            .filter(|l| !l.starts_with(&format!("{begins}=")));
+        let others: String = others.flat_map(|l| [l, "\n"]).collect();
+        WrongLines {
+            what: format!("the line `{}`", line.trim_end()),
+            lines: format!("{others}{line}"),
+            begins: begins.to_owned(),
+        }
+    });
+    let twice = good.lines().map(|line| WrongLines {
+        what: format!("a second line `{line}`"),
+        lines: format!("{good}{line}\n"),
+        begins: line.split('=').next().unwrap_or_default().to_owned(),
+    });
+    in_place.chain(twice).collect()
 }
 
 /// Lines of a setting with values that it does not have.
@@ -131,4 +205,16 @@ fn wrong_lines(setting: &Setting) -> Vec<String> {
     };
     let line = |value: &String| format!("{}={value}\n", setting.name);
     values.iter().map(line).collect()
+}
+
+/// Arrays that are not usable are refused, and no call writes beyond the ones that it gets.
+pub(crate) fn arrays(case: &Case) -> Found {
+    let native = case.native()?;
+    let format = StreamFormat {
+        rate_hz: case.capabilities()?.default_rate_hz,
+        block_frames: BLOCK,
+    };
+    let checked = native.check_arrays(&case.settings()?, &format);
+    checked.map_err(Finding::failed)?;
+    Ok(Finding::passed(KEPT))
 }

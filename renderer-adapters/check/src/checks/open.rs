@@ -2,8 +2,11 @@
 
 use htex_check_runner::{Finding, Found};
 use htex_device::DeviceError;
+use htex_device::abi::{Code, MAX_BLOCK_FRAMES};
 
 use crate::device::{Case, rates, write_all};
+
+const INVALID_ARGUMENT: i64 = Code::InvalidArgument as i64;
 
 /// The device opens at each of its rates, and takes silence.
 pub(crate) fn opens(case: &Case) -> Found {
@@ -45,6 +48,33 @@ pub(crate) fn bad_rate(case: &Case) -> Found {
     }
     let count = wrong.len();
     Ok(Finding::passed(format!("{count} wrong rates are refused")).with("rates", count as f64))
+}
+
+/// Block sizes that the ABI does not have are refused.
+pub(crate) fn bad_block(case: &Case) -> Found {
+    let native = case.native()?;
+    let rate_hz = case.capabilities()?.default_rate_hz;
+    let wrong = [0, MAX_BLOCK_FRAMES + 1, u32::MAX];
+    for block in wrong {
+        let lines = case.settings()?.to_lines(case.adapter.descriptor());
+        match native.refusal_of_open(&lines, rate_hz, block) {
+            None => {
+                let message = format!("it opens for blocks of {block} frames");
+                return Err(Finding::failed(message));
+            }
+            Some((INVALID_ARGUMENT, _)) => {}
+            Some((status, text)) => {
+                let message = format!(
+                    "blocks of {block} frames are refused with {status}, not {INVALID_ARGUMENT}: {text}"
+                );
+                return Err(Finding::failed(message));
+            }
+        }
+    }
+    let count = wrong.len();
+    Ok(Finding::passed(format!(
+        "{count} wrong block sizes are refused"
+    )))
 }
 
 /// Two devices open at the same time, or the second is refused as busy.

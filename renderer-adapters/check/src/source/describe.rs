@@ -4,7 +4,7 @@ use htex_check_runner::{Finding, Found};
 use htex_device::{SourceDescriptor, SourceStream};
 
 use crate::case::skip_missing;
-use crate::checks::describe::{described, refused};
+use crate::checks::describe::{KEPT, described, refused};
 use crate::source::case::Case;
 
 /// Loading checks a library's descriptor; this checks that of a built-in source.
@@ -42,12 +42,19 @@ pub(crate) fn opens(case: &Case) -> Found {
     Ok(Finding::passed(format!("{count} channels at {rate_hz} Hz")).with("rate_hz", rate_hz))
 }
 
-/// Unknown and invalid settings are refused.
+/// Settings that are not usable are refused.
 pub(crate) fn bad_settings(case: &Case) -> Found {
     let native = case.native()?;
     let settings = case.settings()?;
     native.open_native(&settings).map_err(skip_missing)?;
     refused(case.adapter.descriptor(), &settings, |lines| {
-        native.open_lines(lines).map(drop)
+        native.refusal_of_lines(lines)
     })
+}
+
+/// Arrays that are not usable are refused, and no call writes beyond the ones that it gets.
+pub(crate) fn arrays(case: &Case) -> Found {
+    let checked = case.native()?.check_source_arrays(&case.settings()?);
+    checked.map_err(Finding::failed)?;
+    Ok(Finding::passed(KEPT))
 }

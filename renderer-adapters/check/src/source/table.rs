@@ -26,7 +26,7 @@ htex_check_runner::checks! { Case;
     "open" needs ["descriptor"] describe::opens:
         "It opens; rate and channels are valid, and the same each time.";
     "bad-settings" needs ["open"] describe::bad_settings:
-        "Unknown settings and values out of range are refused.";
+        "Unknown settings, values out of range, lines that are not settings and second lines of a setting are refused by name.";
     "start" needs ["open"] read::starts:
         "Nothing can be read before the start; a second start changes nothing.";
     "read" needs ["start"] read::blocks:
@@ -37,6 +37,8 @@ htex_check_runner::checks! { Case;
         "Nothing can be read or started after the stop; a second stop changes nothing.";
     "handles" needs ["start"] read::handles:
         "A handle that was closed is refused, also when another source was opened.";
+    "arrays" needs ["start"] describe::arrays:
+        "Null and misaligned arrays are refused, and nothing is written beyond an array.";
     "two" needs ["read"] read::two:
         "Two are open at the same time, or the second is refused as busy.";
     "memory" needs ["read"] read::memory:

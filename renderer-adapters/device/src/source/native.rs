@@ -162,6 +162,19 @@ impl NativeSource {
         self.opened.adapter.name()
     }
 
+    pub(crate) fn handle(&self) -> i64 {
+        self.opened.handle
+    }
+
+    /// Samples of a frame.
+    pub(crate) fn width(&self) -> usize {
+        self.stream.channels.len()
+    }
+
+    pub(crate) fn begin(&self) -> Result<(), DeviceError> {
+        self.opened.done("start", self.opened.table().start)
+    }
+
     /// The result of a read of at most `frames`.
     fn delivered(
         &mut self,
@@ -209,7 +222,7 @@ impl Source for NativeSource {
     }
 
     fn start(&mut self) -> Result<(), DeviceError> {
-        self.opened.done("start", self.opened.table().start)
+        self.begin()
     }
 
     fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<Delivered, DeviceError> {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use htex_check_runner::{Check, Finding, Runner, UnknownCheck, run_all};
+use htex_check_runner::{Check, Finding, Owner, Runner, UnknownCheck, run_all};
 use htex_device::{AbiFault, Adapter, AdapterKind, DeviceError, Native, Setting, Settings};
 
 use crate::report::{AdapterName, Report};
@@ -74,14 +74,19 @@ pub fn run_one<A: CheckedKind + ?Sized>(
 }
 
 /// The check that a loading error belongs to.
-fn owner(error: &DeviceError) -> &'static str {
-    match error {
-        DeviceError::Abi { fault, .. } => match fault {
-            AbiFault::Marker { .. } => "marker",
-            AbiFault::Descriptor(_) => "descriptor",
-            _ => "exports",
-        },
-        _ => "exports",
+fn owner(error: &DeviceError) -> Owner {
+    let DeviceError::Abi { fault, .. } = error else {
+        return Owner::not_reached("exports");
+    };
+    match fault {
+        AbiFault::Marker { .. } => Owner::reached("marker"),
+        AbiFault::Descriptor(_) => Owner::reached("descriptor"),
+        AbiFault::Symbol { symbol, .. } if symbol.ends_with("_abi_version") => {
+            Owner::reached("marker")
+        }
+        AbiFault::Symbol { .. } => Owner::reached("exports"),
+        // What cannot be loaded has no marker.
+        _ => Owner::not_reached("exports"),
     }
 }
 

@@ -2,7 +2,7 @@
 //! them in a separate process ([`run_all`]), so that a crash or an endless loop becomes a finding, and the report.
 //!
 //! ```
-//! use htex_check_runner::{Finding, Found, run_one};
+//! use htex_check_runner::{Finding, Found, Owner, run_one};
 //!
 //! fn positive(number: &i32) -> Found {
 //!     if *number > 0 {
@@ -19,7 +19,7 @@
 //! }
 //!
 //! let load = || "-1".parse::<i32>();
-//! let finding = run_one(CHECKS, "positive", load, |_| "positive")?;
+//! let finding = run_one(CHECKS, "positive", load, |_| Owner::reached("positive"))?;
 //! assert_eq!(finding.message, "-1 is not positive");
 //! # Ok::<(), htex_check_runner::UnknownCheck>(())
 //! ```
@@ -36,5 +36,5 @@ pub use common::{Growth, made_up_extensions, memory, resident_bytes};
 pub use finding::{Finding, Found, Outcome};
 pub use process::run_process;
 pub use report::{CheckReport, Report};
-pub use runner::{Runner, run_all, run_one};
+pub use runner::{Owner, Runner, run_all, run_one};
 pub use table::{Check, UnknownCheck, select};

@@ -1,5 +1,6 @@
 //! One check in a separate process.
 
+use std::collections::VecDeque;
 use std::io::Read;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread::JoinHandle;
@@ -8,7 +9,7 @@ use std::time::{Duration, Instant};
 use crate::{Finding, Outcome};
 
 /// Most bytes of a child's output that are kept.
-const MOST_OUTPUT: u64 = 1 << 20;
+const MOST_OUTPUT: usize = 1 << 20;
 
 /// Runs a program that writes one [`Finding`] as a line of JSON. A program that crashes or exceeds `timeout` gives a finding
 /// that says so.
@@ -25,23 +26,41 @@ pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
     match wait(&mut child, timeout) {
         None => {
             let seconds = timeout.as_secs_f64();
-            let message = format!("it did not end within {seconds} s");
+            let said = after(last_finding(&text(out)));
+            let message = format!("it did not end within {seconds} s{said}");
             Finding::new(Outcome::TimedOut, message).with("timeout_s", seconds)
         }
-        Some(status) => last_finding(&text(out)).unwrap_or_else(|| crashed(status, &text(err))),
+        Some(status) => match last_finding(&text(out)) {
+            // What a check says in advance of a step that may crash.
+            Some(finding) if finding.outcome == Outcome::Crashed => {
+                let said = after(Some(finding));
+                let crashed = crashed(status, &text(err));
+                Finding::new(Outcome::Crashed, format!("{}{said}", crashed.message))
+            }
+            Some(finding) => finding,
+            None => crashed(status, &text(err)),
+        },
     }
 }
 
-/// Reads a pipe to its end, so that the child never blocks on it; keeps the first [`MOST_OUTPUT`] bytes.
+/// What a check said before it ended without a finding.
+fn after(said: Option<Finding>) -> String {
+    said.map_or_else(String::new, |finding| format!("; {}", finding.message))
+}
+
+/// Reads a pipe to its end, so that the child never blocks on it; keeps the last [`MOST_OUTPUT`] bytes.
 fn drain(pipe: Option<impl Read + Send + 'static>) -> JoinHandle<Vec<u8>> {
     std::thread::spawn(move || {
-        let mut kept = Vec::new();
+        let mut kept = VecDeque::new();
+        let mut part = vec![0; 65_536];
         if let Some(mut pipe) = pipe {
-            // A pipe that cannot be read is treated as empty; the finding then has the exit status only.
-            let _ = pipe.by_ref().take(MOST_OUTPUT).read_to_end(&mut kept);
-            let _ = std::io::copy(&mut pipe, &mut std::io::sink());
+            // A pipe that cannot be read has ended; the finding then has the exit status only.
+            while let Ok(len @ 1..) = pipe.read(&mut part) {
+                kept.extend(&part[..len]);
+                kept.drain(..kept.len().saturating_sub(MOST_OUTPUT));
+            }
         }
-        kept
+        kept.into()
     })
 }
 

@@ -13,6 +13,28 @@ use crate::{CheckReport, Finding};
 /// The steps of loading, in order; each has a check of this name.
 const LOADING: [&str; 3] = ["marker", "exports", "descriptor"];
 
+/// The check that an error of loading belongs to.
+#[derive(Debug, Clone, Copy)]
+pub struct Owner {
+    check: &'static str,
+    /// Whether the steps before it hold.
+    reached: bool,
+}
+
+impl Owner {
+    /// The error belongs to this check, and the steps of loading before it hold.
+    pub fn reached(check: &'static str) -> Self {
+        let reached = true;
+        Self { check, reached }
+    }
+
+    /// The error belongs to this check, and nothing is known of the steps before it.
+    pub fn not_reached(check: &'static str) -> Self {
+        let reached = false;
+        Self { check, reached }
+    }
+}
+
 /// A program that runs one check in its process and writes the [`Finding`] as a line of JSON.
 #[derive(Debug, Clone)]
 pub struct Runner {
@@ -63,17 +85,20 @@ pub fn run_one<Case, Error: Display>(
     checks: &[Check<Case>],
     name: &str,
     load: impl FnOnce() -> Result<Case, Error>,
-    owner: impl FnOnce(&Error) -> &'static str,
+    owner: impl FnOnce(&Error) -> Owner,
 ) -> Result<Finding, UnknownCheck> {
     let check = find(checks, name)?;
     let error = match load() {
         Ok(case) => return Ok((check.run)(&case).unwrap_or_else(|finding| finding)),
         Err(error) => error,
     };
-    let broken = owner(&error);
+    let Owner {
+        check: broken,
+        reached,
+    } = owner(&error);
     Ok(if broken == check.name {
         Finding::failed(error.to_string())
-    } else if comes_before(check.name, broken) {
+    } else if reached && comes_before(check.name, broken) {
         Finding::passed(format!("loading reached `{broken}`"))
     } else {
         Finding::skipped(format!("it does not load: {error}"))

@@ -130,6 +130,7 @@ impl Runner {
             model: model.clone(),
             seed: 1,
             against: None,
+            fuzz: None,
         };
         let parameters = case.parameters()?;
         Ok(Self {

@@ -21,7 +21,7 @@ const MODULE_TOTAL: Duration = Duration::from_secs(600);
 fn limits() -> WasmLimits {
     let limits = WasmLimits::default();
     let all = limits.all.with_time(MODULE_TOTAL);
-    limits.with_all(all)
+    limits.with_all(all).with_guards(true)
 }
 
 /// A loaded model and the checker's settings.
@@ -30,6 +30,19 @@ pub struct Case {
     pub(crate) model: LoadedModel,
     pub(crate) seed: u64,
     pub(crate) against: Option<PathBuf>,
+    /// The time of the check `fuzz`, which has a fixed number of sequences by default.
+    pub(crate) fuzz: Option<Duration>,
+}
+
+/// Settings of the checks.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Settings<'a> {
+    /// Seed of the voices, and of what is drawn.
+    pub seed: u64,
+    /// The same model as a file of the other kind.
+    pub against: Option<&'a Path>,
+    /// The time of the check `fuzz`, which otherwise plays a fixed number of sequences.
+    pub fuzz: Option<Duration>,
 }
 
 /// Parameters fitted to a reference spectrum.
@@ -42,12 +55,13 @@ pub(crate) struct Fitted {
 pub(crate) type Pair = (Vec<f64>, Vec<f64>);
 
 impl Case {
-    pub(crate) fn load(file: &Path, seed: u64, against: Option<&Path>) -> Result<Self, HostError> {
+    pub(crate) fn load(file: &Path, settings: Settings<'_>) -> Result<Self, HostError> {
         Ok(Self {
             file: file.to_owned(),
             model: LoadedModel::from_file_within(file, &limits())?,
-            seed,
-            against: against.map(Path::to_owned),
+            seed: settings.seed,
+            against: settings.against.map(Path::to_owned),
+            fuzz: settings.fuzz,
         })
     }
 
@@ -58,7 +72,7 @@ impl Case {
 
     /// Fits a spectrum on another grid.
     pub(crate) fn fit_in(&self, band: Band, grid: &[f64], m: &[f64]) -> Result<Fit, HostError> {
-        self.fit_any((band, grid), m, FitCondition::default())
+        self.fit_any((band, grid), (m, &[]), FitCondition::default())
     }
 
     /// Fits a reference spectrum of a recording at a motion.
@@ -69,20 +83,32 @@ impl Case {
     ) -> Result<Fit, HostError> {
         let grid = Band::TACTILE.grid_hz();
         let spectrum: Vec<f64> = grid.iter().map(|&hz| (reference.curve)(hz)).collect();
-        self.fit_any((Band::TACTILE, &grid), &spectrum, condition)
+        self.fit_any((Band::TACTILE, &grid), (&spectrum, &[]), condition)
+    }
+
+    /// Fits a reference spectrum with a signal at [`RATE_HZ`] behind it.
+    pub(crate) fn fit_signal(
+        &self,
+        reference: &Reference,
+        signal: &[f64],
+        condition: FitCondition,
+    ) -> Result<Fit, HostError> {
+        let grid = Band::TACTILE.grid_hz();
+        let spectrum: Vec<f64> = grid.iter().map(|&hz| (reference.curve)(hz)).collect();
+        self.fit_any((Band::TACTILE, &grid), (&spectrum, signal), condition)
     }
 
     fn fit_any(
         &self,
         (band, frequency_hz): (Band, &[f64]),
-        magnitude: &[f64],
+        (magnitude, signal): (&[f64], &[f64]),
         condition: FitCondition,
     ) -> Result<Fit, HostError> {
         let request = FitRequest {
             band,
             frequency_hz,
             magnitude,
-            signal: &[],
+            signal,
             signal_rate_hz: RATE_HZ,
             options: &self.model.descriptor().default_options(),
         };
@@ -179,7 +205,7 @@ pub(crate) fn is_cannot_fit(error: &HostError) -> bool {
     )
 }
 
-/// Returns whether the model returned a status other than `Panicked`.
+/// Returns whether the model refused a call: a status other than those of a model that failed, or of a module that trapped.
 pub(crate) fn is_refusal(error: &HostError) -> bool {
-    matches!(error, HostError::Call { status, .. } if *status != Status::Panicked)
+    matches!(error, HostError::Call { status, .. } if !matches!(status, Status::Panicked | Status::Failed))
 }

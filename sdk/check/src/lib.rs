@@ -12,26 +12,34 @@
 //!
 //! A model is checked from outside, by the calls that a host makes. The faults in `tests/bad-plugins` test that the
 //! checker blames exactly the guarantee that is broken.
-#![deny(unsafe_code)] // Allowed in `allocator` only.
+#![deny(unsafe_code)] // Allowed in `allocator` and `pages` only.
 
 #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
 mod allocator;
 mod bench;
 mod case;
 mod checks;
+mod fence;
 mod page;
+#[cfg(all(target_os = "linux", target_pointer_width = "64"))]
+mod pages;
+mod random;
 mod report;
 mod runner;
+mod sets;
 mod signal;
 mod spectra;
 mod start;
 mod table;
 pub mod templates;
+#[cfg(not(all(target_os = "linux", target_pointer_width = "64")))]
+mod vector;
 
 pub use bench::{BLOCKS, BenchError, BlockCost, Cost, Subject, Timing, bench};
+pub use case::Settings;
 pub use htex_check_runner::{Finding, Outcome, Runner, UnknownCheck};
 pub use page::model_checks_page;
 pub use report::{ModelFile, Report};
-pub use runner::{Options, check, run_one};
+pub use runner::{CheckError, Options, check, run_one};
 pub use start::Start;
 pub use table::CHECKS;

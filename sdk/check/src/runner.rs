@@ -1,10 +1,11 @@
 //! Running the checks of a model.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use htex_check_runner::{Finding, Runner, UnknownCheck, run_all, select};
 
-use crate::case::Case;
+use crate::case::{Case, Settings};
 use crate::checks::abi::owner;
 use crate::report::{ModelFile, Report};
 use crate::table::CHECKS;
@@ -20,22 +21,55 @@ pub struct Options {
     pub only: Option<Vec<String>>,
     /// The same model as a file of the other kind.
     pub against: Option<PathBuf>,
+    /// The time of the check `fuzz`, which otherwise plays a fixed number of sequences.
+    pub fuzz: Option<Duration>,
+}
+
+/// The checks cannot be run.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckError {
+    #[error(transparent)]
+    Unknown(#[from] UnknownCheck),
+    /// The model cannot be read.
+    #[error("{}: {error}", path.display())]
+    File {
+        path: PathBuf,
+        error: std::io::Error,
+    },
+}
+
+/// Fails unless the file can be read: a check would blame the model for it.
+fn readable(file: &Path) -> Result<(), CheckError> {
+    let is_file = std::fs::File::open(file).and_then(|opened| opened.metadata());
+    let error = match is_file {
+        Ok(metadata) if metadata.is_file() => return Ok(()),
+        Ok(_) => std::io::Error::other("it is not a file"),
+        Err(error) => error,
+    };
+    let path = file.to_owned();
+    Err(CheckError::File { path, error })
 }
 
 /// Runs the checks, each in a separate process.
 ///
 /// # Errors
-/// When `only` names an unknown check.
-pub fn check(file: &Path, options: &Options) -> Result<Report, UnknownCheck> {
+/// When the file cannot be read, or `only` names an unknown check.
+pub fn check(file: &Path, options: &Options) -> Result<Report, CheckError> {
+    readable(file)?;
     let chosen = match &options.only {
         Some(names) => select(CHECKS, names)?,
         None => CHECKS.iter().collect(),
     };
-    let checks = run_all(chosen, &options.runner, |command, name| {
+    let mut runner = options.runner.clone();
+    runner.timeout += options.fuzz.unwrap_or_default();
+    let checks = run_all(chosen, &runner, |command, name| {
         command.arg(file).arg(name);
         command.args(["--seed", &options.seed.to_string()]);
         if let Some(against) = &options.against {
             command.arg("--against").arg(against);
+        }
+        if let Some(time) = options.fuzz {
+            command.args(["--fuzz", &time.as_secs_f64().to_string()]);
         }
     });
     let subject = ModelFile {
@@ -48,13 +82,9 @@ pub fn check(file: &Path, options: &Options) -> Result<Report, UnknownCheck> {
 /// Runs one check in this process: a crash ends the process.
 ///
 /// # Errors
-/// When there is no check of this name.
-pub fn run_one(
-    file: &Path,
-    name: &str,
-    seed: u64,
-    against: Option<&Path>,
-) -> Result<Finding, UnknownCheck> {
-    let load = || Case::load(file, seed, against);
-    htex_check_runner::run_one(CHECKS, name, load, owner)
+/// When the file cannot be read, or there is no check of this name.
+pub fn run_one(file: &Path, name: &str, settings: Settings<'_>) -> Result<Finding, CheckError> {
+    readable(file)?;
+    let load = || Case::load(file, settings);
+    Ok(htex_check_runner::run_one(CHECKS, name, load, owner)?)
 }

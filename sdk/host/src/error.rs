@@ -57,6 +57,13 @@ pub enum HostError {
     /// A file cannot be loaded as a model.
     #[error("cannot load {path}: {what}")]
     Load { path: String, what: String },
+    /// A library or module does not have a function of the model ABI.
+    #[error("cannot load {path}: it has no `{name}`; it is not an htex model")]
+    NoFunction {
+        /// The file, or the entry of an asset.
+        path: String,
+        name: String,
+    },
     /// A file that somebody else names, such as a recipe, is no WASM module.
     #[error(
         "{path}: it is no WASM module; only a person names a native library, which runs with all their rights: if you trust it, give it \

@@ -55,6 +55,9 @@ pub struct WasmLimits {
     pub cache: WasmCache,
     /// The engine that runs modules. Default [`WasmEngine::Signals`].
     pub engine: WasmEngine,
+    /// For checkers of models: whether a call that writes beyond its arrays, within the module's own memory, fails. Default no: it
+    /// harms the module only.
+    pub guards: bool,
 }
 
 /// The engine that runs modules, by what it takes from the process. While a module is loaded, each engine has one thread that stops
@@ -170,6 +173,7 @@ impl Default for WasmLimits {
             all: WasmTotal::new(Duration::from_secs(30), 1 << 30, 2048),
             cache: WasmCache::User,
             engine: WasmEngine::Signals,
+            guards: false,
         }
     }
 }
@@ -268,6 +272,13 @@ impl WasmLimits {
     #[must_use]
     pub fn with_cache(mut self, cache: WasmCache) -> Self {
         self.cache = cache;
+        self
+    }
+
+    /// Sets whether a call that writes beyond its arrays fails.
+    #[must_use]
+    pub fn with_guards(mut self, guards: bool) -> Self {
+        self.guards = guards;
         self
     }
 

@@ -292,10 +292,9 @@ impl LoadedModel {
         let call = "magnitude";
         let mut magnitude = vec![f64::NAN; frequency_hz.len()];
         let (raw, band) = (&self.raw, band);
-        self.check(
-            call,
-            raw.magnitude(parameters, band, frequency_hz, &mut magnitude),
-        )?;
+        let answer = raw.magnitude(parameters, band, frequency_hz, &mut magnitude);
+        self.check(call, answer)?;
+        self.check_zero(call, answer)?;
         match magnitude.iter().position(|m| !m.is_finite() || *m < 0.0) {
             None => Ok(magnitude),
             Some(i) => {
@@ -365,6 +364,7 @@ impl LoadedModel {
     ) -> Result<ModelVoice, HostError> {
         match self.raw.voice_new(parameters, band, rate_hz, seed) {
             Ok(voice) => Ok(ModelVoice::new(self.clone(), voice)),
+            Err(0) => Err(self.broken("voice_new", "it returns the handle 0".to_owned())),
             Err(status) => {
                 Err(self.call_error("voice_new", status, |out| self.raw.last_error(out)))
             }
@@ -390,11 +390,23 @@ impl LoadedModel {
     }
 
     /// Converts a returned number to a length, or a negative one to an error.
-    fn check(&self, call: &'static str, returned: i64) -> Result<usize, HostError> {
+    pub(crate) fn check(&self, call: &'static str, returned: i64) -> Result<usize, HostError> {
         if returned >= 0 {
             return Ok(returned as usize);
         }
         Err(self.call_error(call, returned, |out| self.raw.last_error(out)))
+    }
+
+    /// Checks the answer of a call that returns nothing: 0 is success.
+    pub(crate) fn check_zero(&self, call: &'static str, answer: i64) -> Result<(), HostError> {
+        match answer {
+            0 => Ok(()),
+            other => Err(self.broken(call, format!("it returns {other}; 0 means success"))),
+        }
+    }
+
+    pub(crate) fn raw(&self) -> &dyn RawModel {
+        self.raw.as_ref()
     }
 
     /// Returns the error of a negative status, with the model's last-error text.

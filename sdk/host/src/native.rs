@@ -28,10 +28,9 @@ pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
     let library = unsafe { Library::from_file(path) }.map_err(|e| error(e.to_string()))?;
     let symbols = Symbols {
         library,
-        missing: &|name| {
-            error(format!(
-                "the library has no `{name}`; it is not an htex model"
-            ))
+        missing: &|name| HostError::NoFunction {
+            path: origin.clone(),
+            name: name.to_owned(),
         },
     };
     // SAFETY: every version of the ABI has this function with this type.

@@ -7,6 +7,8 @@ use htex_model::abi::ModelTable;
 use htex_model::voices_1::VoicesRenderFn;
 use htex_model::{Band, FitCondition, Knobs, Motion, Usual};
 
+use crate::probe::{ProbeArguments, Unusable};
+
 /// Arguments of a fit, as passed through the ABI.
 pub(crate) struct RawFit<'a> {
     pub(crate) band: Band,
@@ -46,6 +48,10 @@ pub(crate) trait RawModel: Send + Sync {
     /// Returns whether a program takes the model only where it is named.
     fn is_only_named(&self) -> bool {
         false
+    }
+    /// For checkers: the answers to arrays that are not usable.
+    fn unusable_arrays(&self, _: &ProbeArguments<'_>) -> Option<Vec<Unusable>> {
+        None
     }
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64;
     /// Makes a voice; an error is a status.

@@ -5,6 +5,7 @@ use htex_model::motion_1::MotionTable;
 use htex_model::voices_1::VoicesTable;
 use htex_model::{Band, Knobs, Motion, Usual};
 
+use crate::probe::{ProbeArguments, Unusable};
 use crate::raw::{RawFit, RawModel, RawVoice, Together};
 
 /// A model that is called through a table of native functions.
@@ -46,6 +47,10 @@ impl TableModel {
             motion: Some(motion),
             ..self
         }
+    }
+
+    pub(crate) fn table(&self) -> &'static ModelTable {
+        self.table
     }
 
     #[cfg(feature = "fit")]
@@ -168,6 +173,10 @@ impl RawModel for TableModel {
         self.motion.is_some()
     }
 
+    fn unusable_arrays(&self, arguments: &ProbeArguments<'_>) -> Option<Vec<Unusable>> {
+        Some(self.probe(arguments))
+    }
+
     fn knobs(&self) -> Option<&'static Knobs> {
         self.knobs
     }
@@ -207,7 +216,7 @@ impl RawModel for TableModel {
                 seed,
             )
         };
-        if handle < 0 {
+        if handle <= 0 {
             return Err(handle);
         }
         Ok(Box::new(TableVoice {

@@ -114,7 +114,7 @@ fn call(
     // voices are exclusive, so no other thread uses it.
     let status = unsafe { render(handles.as_ptr(), count, out.as_mut_ptr(), frames) };
     first
-        .check("htex_voices_1_render", status)
+        .done("htex_voices_1_render", status)
         .inspect_err(|_| out.fill(0.0))?;
     let mut result = Ok(());
     for (voice, row) in voices.iter().flatten().zip(out.chunks_exact_mut(frames)) {

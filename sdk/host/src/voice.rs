@@ -49,9 +49,13 @@ impl ModelVoice {
     /// When the model fails; `out` is then filled with zeros.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), HostError> {
         let status = self.raw.render(out);
-        self.check("voice_render", status)
+        self.done("voice_render", status)
             .and_then(|()| self.check_finite(out))
             .inspect_err(|_| out.fill(0.0))
+    }
+
+    pub(crate) fn raw_mut(&mut self) -> &mut dyn RawVoice {
+        self.raw.as_mut()
     }
 
     /// Returns the data to render the voice in one call with others, if its model has `htex.voices/1`.
@@ -82,7 +86,7 @@ impl ModelVoice {
     /// When the model refuses the parameters; the voice then continues unchanged.
     pub fn retune(&mut self, parameters: &[f64]) -> Result<(), HostError> {
         let status = self.raw.retune(parameters);
-        self.check("voice_retune", status)
+        self.done("voice_retune", status)
     }
 
     /// Changes to interpolated parameters. `sets` are concatenated; `buffer` receives the interpolated set, which has at
@@ -128,7 +132,7 @@ impl ModelVoice {
     /// What the model returns.
     pub fn set_any_motion(&mut self, motion: Motion) -> Result<(), HostError> {
         let status = self.raw.set_motion(motion);
-        self.check("motion_1_set", status)
+        self.done("motion_1_set", status)
     }
 
     /// For checkers of models: returns the size of this voice's separate WASM memory, bytes; `None` for a native
@@ -144,15 +148,22 @@ impl ModelVoice {
     /// The model's error; in a second call that the handle is unknown.
     pub fn free_and_keep_handle(&mut self) -> Result<(), HostError> {
         let status = self.raw.free();
-        self.check("voice_free", status)
+        self.done("voice_free", status)
     }
 
-    pub(crate) fn check(&self, call: &'static str, status: i64) -> Result<(), HostError> {
-        if status >= 0 {
+    /// Checks an answer that is 0 or a status.
+    pub(crate) fn done(&self, call: &'static str, answer: i64) -> Result<(), HostError> {
+        self.check(call, answer)?;
+        self.model.check_zero(call, answer)
+    }
+
+    /// Checks an answer that is a length or a status.
+    fn check(&self, call: &'static str, answer: i64) -> Result<(), HostError> {
+        if answer >= 0 {
             return Ok(());
         }
         Err(self
             .model
-            .call_error(call, status, |out| self.raw.last_error(out)))
+            .call_error(call, answer, |out| self.raw.last_error(out)))
     }
 }

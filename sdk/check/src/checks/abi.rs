@@ -3,14 +3,23 @@
 use htex_host::{Descriptor, Field, FitOption, HostError, Kind, Store};
 
 use crate::case::Case;
-use htex_check_runner::{Finding, Found, made_up_extensions};
+use htex_check_runner::{Finding, Found, Owner, made_up_extensions};
 
-/// The check that a loading error belongs to.
-pub(crate) fn owner(error: &HostError) -> &'static str {
+/// The check that a loading error belongs to, and whether those before it hold.
+pub(crate) fn owner(error: &HostError) -> Owner {
     match error {
-        HostError::Broken { call, .. } if *call == "htex_model_abi_version" => "marker",
-        HostError::Broken { call, .. } if *call == "htex_model_descriptor" => "descriptor",
-        _ => "exports",
+        HostError::Broken { call, .. } if *call == "htex_model_abi_version" => {
+            Owner::reached("marker")
+        }
+        HostError::Broken { call, .. } if *call == "htex_model_descriptor" => {
+            Owner::reached("descriptor")
+        }
+        HostError::NoFunction { name, .. } if name == "htex_model_abi_version" => {
+            Owner::reached("marker")
+        }
+        HostError::NoFunction { .. } => Owner::reached("exports"),
+        // What cannot be loaded has no marker.
+        _ => Owner::not_reached("exports"),
     }
 }
 
@@ -25,6 +34,14 @@ pub(crate) fn descriptor(case: &Case) -> Found {
     let descriptor = case.model.descriptor();
     if let Some(wrong) = wrong_in(descriptor) {
         return Err(Finding::failed(wrong));
+    }
+    let text = || -> Result<Vec<u8>, HostError> {
+        let mut text = vec![0; case.model.descriptor_into(&mut [])?];
+        case.model.descriptor_into(&mut text)?;
+        Ok(text)
+    };
+    if text()? != text()? {
+        return Err(Finding::failed("the text differs from call to call"));
     }
     let (fields, options) = (descriptor.fields.len(), descriptor.options.len());
     let identity = format!("{} {}", descriptor.id, descriptor.version);

@@ -1,9 +1,10 @@
 //! Fits, and conversions of their parameters.
 
-use htex_host::{Band, Field, Kind, Store};
+use htex_host::{Band, HostError, Status};
 use htex_model::{Values, flatten};
 
-use crate::case::{Case, is_cannot_fit, is_refusal};
+use crate::case::{Case, is_cannot_fit};
+use crate::sets::stored;
 use crate::signal::distance_db;
 use crate::spectra::{HARD, REFERENCES};
 use htex_check_runner::{Finding, Found};
@@ -51,16 +52,29 @@ pub(crate) fn hard(case: &Case) -> Found {
         low_hz: 100.0,
         high_hz: 105.0,
     };
-    let hard = HARD
-        .iter()
-        .map(|h| (h.name, Band::TACTILE, &wide[..], h.curve));
-    let flat: fn(f64) -> f64 = |_| 0.01;
-    for (name, band, grid, curve) in hard.chain([("two bins", two, &[100.0, 105.0][..], flat)]) {
-        let spectrum: Vec<f64> = grid.iter().map(|&f| curve(f)).collect();
-        match case.fit_in(band, grid, &spectrum) {
+    for reference in HARD {
+        let spectrum: Vec<f64> = wide.iter().map(|&f| (reference.curve)(f)).collect();
+        match case.fit_in(Band::TACTILE, &wide, &spectrum) {
             Ok(_) => fitted += 1.0,
-            Err(error) if is_refusal(&error) => refused += 1.0,
-            Err(error) => return Err(Finding::failed(format!("spectrum `{name}`: {error}"))),
+            Err(error) if is_cannot_fit(&error) => refused += 1.0,
+            Err(error) => {
+                let name = reference.name;
+                return Err(Finding::failed(format!(
+                    "spectrum `{name}`: {error}; it must be fitted, or refused with HTEX_CANNOT_FIT"
+                )));
+            }
+        }
+    }
+    match case.fit_in(two, &[100.0, 105.0], &[0.01, 0.01]) {
+        Err(HostError::Call {
+            status: Status::InvalidArgument,
+            ..
+        }) => refused += 1.0,
+        other => {
+            let what = other.map_or_else(|e| e.to_string(), |_| "it is fitted".to_owned());
+            return Err(Finding::failed(format!(
+                "spectrum `two bins`: {what}; fewer than three bins must be refused with HTEX_INVALID_ARGUMENT"
+            )));
         }
     }
     Ok(
@@ -109,21 +123,16 @@ pub(crate) fn round_trip(case: &Case) -> Found {
     Ok(finding.with("stored_db", worst))
 }
 
-/// Returns numbers as a file stores them. At the ends of the range steps are rounded into it, as by the writer of assets.
-fn stored(field: &Field, numbers: &[f64]) -> Vec<f64> {
-    let step = |x: f64, scale: f64, offset: f64, log: bool, most: f64| {
-        let y = if log { x.ln() } else { x };
-        let value = offset + scale * ((y - offset) / scale).round().clamp(0.0, most);
-        if log { value.exp() } else { value }
-    };
-    let keep = |&x: &f64| match field.store {
-        Store::F64 => x,
-        Store::F32 => f64::from(x as f32),
-        Store::U16 { scale, offset, log } => step(x, scale, offset, log, 65_535.0),
-        Store::U8 { scale, offset, log } | Store::Packed { scale, offset, log } => {
-            step(x, scale, offset, log, 255.0)
-        }
-    };
-    debug_assert!(matches!(field.kind, Kind::List { .. }) || numbers.len() == 1);
-    numbers.iter().map(keep).collect()
+/// Fits spectra with the signals behind them.
+pub(crate) fn with_signals(case: &Case) -> Found {
+    let sets = case.fitted_to_signals()?;
+    for set in &sets {
+        let magnitude = case.magnitude(&set.parameters);
+        magnitude.map_err(|error| Finding::failed(format!("{}: {error}", set.name)))?;
+    }
+    let count = sets.len();
+    Ok(
+        Finding::passed(format!("{count} spectra with a signal are fitted"))
+            .with("fitted", count as f64),
+    )
 }

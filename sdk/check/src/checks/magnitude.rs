@@ -3,6 +3,7 @@
 use htex_host::Band;
 
 use crate::case::{Case, Fitted};
+use crate::checks::arrays;
 use htex_check_runner::{Finding, Found};
 
 /// Largest allowed difference between two results for one frequency, relative to the largest magnitude.
@@ -18,6 +19,7 @@ pub(crate) fn sane(case: &Case) -> Found {
     let band = Band::TACTILE;
     let outside = [0.0, 1.0, 19.0, 1001.0, 5_000.0, 1e5];
     let mut asked = 0;
+    arrays::magnitudes(case, &case.parameters()?)?;
     for Fitted {
         reference,
         parameters,

@@ -48,6 +48,7 @@ fn bad_motions_are_refused(case: &Case, parameters: &[f64]) -> Result<(), Findin
         Ok(voice)
     };
     let (mut told, mut spared) = (voices()?, voices()?);
+    let argument = Status::InvalidArgument;
     for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e13, -1e13] {
         let bad = [
             (
@@ -75,14 +76,15 @@ fn bad_motions_are_refused(case: &Case, parameters: &[f64]) -> Result<(), Findin
             ("y_mm", Motion { y_mm: x, ..MOTION }),
         ];
         for (name, motion) in bad {
-            refused(told.set_any_motion(motion), &format!("{name} of {x}"))?;
+            let what = format!("{name} of {x}");
+            refused(told.set_any_motion(motion), argument, &what)?;
         }
     }
     let pulled = Motion {
         force_n: -0.1,
         ..MOTION
     };
-    refused(told.set_any_motion(pulled), "force_n of -0.1")?;
+    refused(told.set_any_motion(pulled), argument, "force_n of -0.1")?;
     let rows = [&mut told, &mut spared].map(|voice| -> Result<Vec<f32>, Finding> {
         let mut out = vec![0.0; FRAMES];
         voice.render(&mut out)?;
@@ -94,14 +96,24 @@ fn bad_motions_are_refused(case: &Case, parameters: &[f64]) -> Result<(), Findin
         return Err(Finding::failed(what));
     }
     told.free_and_keep_handle()?;
-    refused(told.set_any_motion(MOTION), "a voice that was freed")
+    let freed = told.set_any_motion(MOTION);
+    refused(freed, Status::BadHandle, "a voice that was freed")
 }
 
-fn refused(result: Result<(), htex_host::HostError>, what: &str) -> Result<(), Finding> {
+fn refused(
+    result: Result<(), htex_host::HostError>,
+    wanted: Status,
+    what: &str,
+) -> Result<(), Finding> {
+    let code = wanted as i64;
     match result {
-        Err(htex_host::HostError::Call { status, .. }) if status != Status::Panicked => Ok(()),
+        Err(htex_host::HostError::Call { status, .. }) if status == wanted => Ok(()),
         Ok(()) => Err(Finding::failed(format!(
-            "`htex_motion_1_set` accepts {what}; it must return a status below 0"
+            "`htex_motion_1_set` accepts {what}; it must return {code}"
+        ))),
+        Err(htex_host::HostError::Call { status, .. }) => Err(Finding::failed(format!(
+            "`htex_motion_1_set` refuses {what} with {}; it must return {code}",
+            status as i64
         ))),
         Err(error) => Err(Finding::failed(format!("{what}: {error}"))),
     }

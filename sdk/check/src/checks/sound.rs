@@ -4,6 +4,7 @@ use htex_dsp::grid::level_rms;
 use htex_host::{Band, Stream};
 
 use crate::case::{Case, Fitted, RATE_HZ, is_refusal};
+use crate::checks::arrays;
 use crate::checks::magnitude::fine_grid;
 use crate::signal::{
     distance_db, is_line_spectrum, measured_spectrum, read_as_noise, rms, rms_spread,
@@ -35,6 +36,7 @@ const NARROW_DB: f64 = 1.5;
 
 /// Renders one second of every reference.
 pub(crate) fn renders(case: &Case) -> Found {
+    arrays::blocks(case, &case.parameters()?)?;
     let mut voices = 0.0;
     for fitted in case.fitted()? {
         let mut out = vec![0.0; RATE_HZ as usize];

@@ -1,6 +1,6 @@
 //! Several voices in one call.
 
-use htex_host::{ModelVoice, VOICES_EXTENSION, render_together};
+use htex_host::{ModelVoice, Status, VOICES_EXTENSION, render_together};
 
 use crate::case::Case;
 use crate::signal::first_difference;
@@ -13,6 +13,41 @@ const FRAMES: [usize; 5] = [1, 256, 3, 64, 500];
 const RETUNED_AT: usize = 2;
 const RETUNED: usize = 5;
 
+/// Checks that handles that are not usable are refused, and that no voice has moved on.
+fn unusable_handles(case: &Case) -> Result<(), Finding> {
+    let parameters = case.parameters()?;
+    let voice = |i: usize| Ok(case.voice(&parameters, case.seed.wrapping_add(i as u64))?);
+    let mut voices = (0..VOICES)
+        .map(voice)
+        .collect::<Result<Vec<_>, Finding>>()?;
+    let all: Vec<usize> = (0..VOICES).collect();
+    let mut out = vec![0.0; VOICES * 64];
+    for (numbers, what, wanted) in [
+        (&[0, VOICES][..], "a handle of no voice", Status::BadHandle),
+        (&[0, 1, 0], "a handle twice", Status::InvalidArgument),
+        (&all, "17 voices", Status::InvalidArgument),
+    ] {
+        match ModelVoice::render_any_together(&mut voices, numbers, 64, &mut out) {
+            Some(told) if told != wanted as i64 => {
+                return Err(Finding::failed(format!(
+                    "`htex_voices_1_render` with {what} answers {told}; it must answer {}",
+                    wanted as i64
+                )));
+            }
+            _ => {}
+        }
+    }
+    let (mut moved, mut still) = (vec![0.0; 64], vec![0.0; 64]);
+    voices[0].render(&mut moved)?;
+    voice(0)?.render(&mut still)?;
+    match first_difference(&moved, &still) {
+        None => Ok(()),
+        Some(_) => Err(Finding::failed(
+            "a voice has moved on in a call of `htex_voices_1_render` that was refused",
+        )),
+    }
+}
+
 /// Checks that samples of a common call equal those of separate calls.
 pub(crate) fn agrees(case: &Case) -> Found {
     if !case.model.has_extension(VOICES_EXTENSION)? {
@@ -20,6 +55,7 @@ pub(crate) fn agrees(case: &Case) -> Found {
             "the model has no extension `{VOICES_EXTENSION}`"
         )));
     }
+    unusable_handles(case)?;
     let (first, second) = match case.two_sets()? {
         Some(sets) => sets,
         None => (case.parameters()?, case.parameters()?),

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::case::Case;
+use crate::case::{Case, Settings};
 use htex_check_runner::{Finding, Found};
 
 /// Relative difference of parameters that is allowed.
@@ -17,7 +17,11 @@ pub(crate) fn agrees(case: &Case) -> Found {
             "there is no other file of this model to compare with; name one",
         ));
     };
-    let other = Case::load(&file, case.seed, None)
+    let settings = Settings {
+        seed: case.seed,
+        ..Settings::default()
+    };
+    let other = Case::load(&file, settings)
         .map_err(|error| Finding::failed(format!("the other file: {error}")))?;
     if case.model.descriptor() != other.model.descriptor() {
         let file = file.display();

@@ -18,7 +18,10 @@ impl Instance {
 
     pub(super) fn descriptor(&mut self, out: &mut [u8]) -> Result<i64, Fault> {
         let at = self.buffer(out.len().max(8))?;
+        let behind = at + out.len() as u32;
+        self.guard(behind)?;
         let len = self.call(Deadline::Call, |f| &f.descriptor, (at, out.len() as u32))?;
+        self.unharmed(behind, "capacity", out.len())?;
         self.read(at, out)?;
         Ok(len)
     }
@@ -26,7 +29,9 @@ impl Instance {
     pub(super) fn last_error(&mut self) -> Result<String, Fault> {
         let at = self.buffer(LONGEST_ERROR)?;
         let buffer = (at, LONGEST_ERROR as u32);
+        self.guard(at + buffer.1)?;
         let len = self.call(Deadline::Call, |f| &f.last_error, buffer)?;
+        self.unharmed(at + buffer.1, "capacity", LONGEST_ERROR)?;
         let mut text = vec![0; usize::try_from(len).unwrap_or(0).min(LONGEST_ERROR)];
         self.read(at, &mut text)?;
         Ok(String::from_utf8_lossy(&text).into_owned())
@@ -46,6 +51,8 @@ impl Instance {
         let options = self.write(signal, call.signal)?;
         let level = self.write(options, call.options)?;
         let out = self.write(level, &[f64::NAN])?;
+        let behind = out + (parameters.len() * 8) as u32;
+        self.guard(behind)?;
         let (low, high) = call.band.edges();
         let (signals, knobs) = (call.signal.len() as u32, call.options.len() as u32);
         let (rate_hz, capacity) = (call.signal_rate_hz, parameters.len() as u32);
@@ -70,6 +77,7 @@ impl Instance {
                 ),
             )?
         };
+        self.unharmed(behind, "capacity", parameters.len())?;
         self.read(level, std::slice::from_mut(level_rms))?;
         self.read(out, parameters)?;
         Ok(returned)
@@ -86,6 +94,8 @@ impl Instance {
         let at = self.buffer((parameters.len() + 2 * bins) * 8)?;
         let frequency = self.write(at, parameters)?;
         let out = self.write(frequency, &frequency_hz[..bins])?;
+        let after = out + (bins * 8) as u32;
+        self.guard(after)?;
         let (low, high) = band.edges();
         let returned = self.call(
             Deadline::Call,
@@ -100,6 +110,7 @@ impl Instance {
                 bins as u32,
             ),
         )?;
+        self.unharmed(after, "bins", bins)?;
         self.read(out, &mut magnitude[..bins])?;
         Ok(returned)
     }
@@ -113,6 +124,8 @@ impl Instance {
         let at = self.buffer((sets.len() + weights.len() + parameters.len()) * 8)?;
         let behind = self.write(at, sets)?;
         let out = self.write(behind, weights)?;
+        let after = out + (parameters.len() * 8) as u32;
+        self.guard(after)?;
         let (sets, weights) = ((at, sets.len() as u32), (behind, weights.len() as u32));
         let returned = self.call(
             Deadline::Call,
@@ -126,6 +139,7 @@ impl Instance {
                 parameters.len() as u32,
             ),
         )?;
+        self.unharmed(after, "capacity", parameters.len())?;
         self.read(out, parameters)?;
         Ok(returned)
     }
@@ -167,7 +181,10 @@ impl Instance {
     pub(super) fn voice_render(&mut self, voice: i64, out: &mut [f32]) -> Result<i64, Fault> {
         let at = self.buffer(4 * BLOCK)?;
         let block = (voice, at, out.len() as u32);
+        let behind = at + 4 * block.2;
+        self.guard(behind)?;
         let returned = self.call(Deadline::Render, |f| &f.voice_render, block)?;
+        self.unharmed(behind, "frames", out.len())?;
         self.read(at, out)?;
         Ok(returned)
     }

@@ -46,6 +46,8 @@ pub(super) enum Fault {
     Allocation { at: u32, len: u32 },
     #[error("an argument or result lies outside the module's memory")]
     Outside,
+    #[error("the call wrote beyond `{bound}`, which was {len}")]
+    Beyond { bound: &'static str, len: usize },
     #[error("`htex_model_voice_new` returned the handle 0")]
     HandleZero,
 }

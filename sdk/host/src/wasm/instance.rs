@@ -23,6 +23,9 @@ pub(super) struct Instance {
     buffer: (Usize, Usize),
 }
 
+/// Bytes behind an array, by which a call that writes beyond it is found.
+const GUARD: [u8; 4096] = [0xA5; 4096];
+
 /// The time limit of a call.
 #[derive(Clone, Copy)]
 pub(super) enum Deadline {
@@ -118,6 +121,10 @@ impl Instance {
     /// Returns the address of a buffer of at least `bytes`, a multiple of 8, in the module's memory. The buffer is
     /// reallocated only for more bytes.
     pub(super) fn buffer(&mut self, bytes: usize) -> Result<Usize, Fault> {
+        let bytes = match self.module.limits.guards {
+            true => bytes + GUARD.len(),
+            false => bytes,
+        };
         if bytes <= self.buffer.1 as usize {
             return Ok(self.buffer.0);
         }
@@ -150,6 +157,32 @@ impl Instance {
 
     pub(super) fn write_text(&mut self, at: Usize, text: &[u8]) -> Result<(), Fault> {
         self.guest.write(at, text)
+    }
+
+    /// Writes guard bytes behind an array, if the limits want them.
+    pub(super) fn guard(&mut self, behind: Usize) -> Result<(), Fault> {
+        match self.module.limits.guards {
+            true => self.guest.write(behind, &GUARD),
+            false => Ok(()),
+        }
+    }
+
+    /// Fails if a call wrote to the guard bytes behind an array of `len` values, which is the argument `bound`.
+    pub(super) fn unharmed(
+        &self,
+        behind: Usize,
+        bound: &'static str,
+        len: usize,
+    ) -> Result<(), Fault> {
+        if !self.module.limits.guards {
+            return Ok(());
+        }
+        let mut found = [0; GUARD.len()];
+        self.guest.read(behind, &mut found)?;
+        match found == GUARD {
+            true => Ok(()),
+            false => Err(Fault::Beyond { bound, len }),
+        }
     }
 
     /// Reads numbers, samples or bytes at an address.

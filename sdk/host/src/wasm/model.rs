@@ -31,7 +31,7 @@ pub(crate) struct WasmModel {
 impl WasmModel {
     /// Makes the first instance and checks the marker.
     pub(super) fn new(origin: &str, module: Arc<WasmModule>) -> Result<Self, HostError> {
-        let mut instance = Instance::new(&module).loading(origin)?;
+        let mut instance = first(&module, origin)?;
         let marker = instance.abi_version().map_err(|fault| HostError::Call {
             model: origin.to_owned(),
             call: "htex_model_abi_version",
@@ -43,7 +43,7 @@ impl WasmModel {
         let shared = match instance.extension(MotionTable::ID.as_bytes()) {
             Ok(1) => {
                 module.shared.require_motion();
-                Some(Instance::new(&module).loading(origin)?)
+                Some(first(&module, origin)?)
             }
             Ok(_) => Some(instance),
             Err(_) => None,
@@ -83,6 +83,17 @@ impl WasmModel {
 
     fn status(&self, call: impl FnOnce(&mut Instance) -> Result<i64, Fault>) -> i64 {
         self.call(|status| status, |returned| returned < 0, call)
+    }
+}
+
+/// An instance of a module that is loaded: it may lack a function.
+fn first(module: &Arc<WasmModule>, origin: &str) -> Result<Instance, HostError> {
+    match Instance::new(module) {
+        Err(Fault::NoFunction { name }) => Err(HostError::NoFunction {
+            path: origin.to_owned(),
+            name,
+        }),
+        other => other.loading(origin),
     }
 }
 

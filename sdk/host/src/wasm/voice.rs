@@ -77,7 +77,7 @@ impl RawVoice for WasmVoice {
             }
             let result = self.instance.voice_render(self.handle, block);
             let status = self.status_of(result);
-            if status < 0 {
+            if status != 0 {
                 return status;
             }
             self.instance.earn(block.len());

@@ -1,0 +1,110 @@
+//! Arrays with guard values and, on 64-bit Linux, a page behind them that nobody may touch: a call that reads or writes beyond an array
+//! is found and named.
+
+use htex_check_runner::Finding;
+
+#[cfg(all(target_os = "linux", target_pointer_width = "64"))]
+use crate::pages::Pages;
+#[cfg(not(all(target_os = "linux", target_pointer_width = "64")))]
+use crate::vector::Pages;
+
+/// Guard values on both sides of an output.
+const GUARDS: usize = 16;
+
+/// Numbers of arrays, with the value of their guards.
+pub(crate) trait Number: Copy + PartialEq + Default + Send + 'static {
+    const GUARD: Self;
+}
+
+impl Number for u8 {
+    const GUARD: Self = 0xA5;
+}
+
+impl Number for f32 {
+    const GUARD: Self = -1234.5;
+}
+
+impl Number for f64 {
+    const GUARD: Self = -1234.5;
+}
+
+/// An array that a call may read, or write to.
+pub(crate) struct Fenced<T> {
+    pages: Pages<T>,
+    guards: usize,
+    len: usize,
+    /// The call and the argument that bounds the array.
+    call: &'static str,
+    bound: &'static str,
+}
+
+impl<T: Number> Fenced<T> {
+    /// An array that a call reads: the page is directly behind it.
+    pub(crate) fn input(values: &[T], call: &'static str, array: &'static str) -> Self {
+        let mut fenced = Self::new(values.len(), 0, "read or wrote", (call, array));
+        fenced.get().copy_from_slice(values);
+        fenced
+    }
+
+    /// An array that a call writes to, no more than `len` values: its guards are in front of the page.
+    pub(crate) fn output(len: usize, call: &'static str, bound: &'static str) -> Self {
+        let mut fenced = Self::new(len, GUARDS, "wrote", (call, bound));
+        fenced.pages.get().fill(T::GUARD);
+        fenced
+    }
+
+    fn new(
+        len: usize,
+        guards: usize,
+        did: &str,
+        (call, bound): (&'static str, &'static str),
+    ) -> Self {
+        let finding = Finding::failed(format!("`{call}` {did} beyond `{bound}`, which was {len}"));
+        Self {
+            pages: Pages::new(len + 2 * guards, finding),
+            guards,
+            len,
+            call,
+            bound,
+        }
+    }
+
+    pub(crate) fn get(&mut self) -> &mut [T] {
+        let (guards, len) = (self.guards, self.len);
+        &mut self.pages.get()[guards..guards + len]
+    }
+
+    /// Fails if a call wrote to the guards.
+    pub(crate) fn check(&mut self) -> Result<(), Finding> {
+        let (guards, len, call, bound) = (self.guards, self.len, self.call, self.bound);
+        let all = self.pages.get();
+        let written = |part: &[T]| part.iter().filter(|x| **x != T::GUARD).count();
+        let (before, behind) = (written(&all[..guards]), written(&all[guards + len..]));
+        match (before, behind) {
+            (0, 0) => Ok(()),
+            (0, _) => Err(Finding::failed(format!(
+                "`{call}` wrote beyond `{bound}`, which was {len}"
+            ))),
+            _ => Err(Finding::failed(format!(
+                "`{call}` wrote in front of the array that `{bound}` bounds"
+            ))),
+        }
+    }
+
+    /// Fails if a call wrote to an array that it may only read.
+    pub(crate) fn unchanged(&mut self, values: &[T], array: &str) -> Result<(), Finding> {
+        let call = self.call;
+        match self.get() == values {
+            true => Ok(()),
+            false => Err(Finding::failed(format!(
+                "`{call}` wrote to `{array}`, which it may only read"
+            ))),
+        }
+    }
+}
+
+/// From now on a read or write of a fence ends this process, with a finding.
+pub(crate) fn watch() {
+    #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
+    crate::pages::watch();
+}

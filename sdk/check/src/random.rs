@@ -1,0 +1,45 @@
+//! Numbers for seeded parameters and the fuzzer: the same on every machine.
+
+/// A generator of 64 bits (splitmix64).
+#[derive(Debug, Clone)]
+pub(crate) struct Random(u64);
+
+impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    pub(crate) fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// A number from 0 to 1, without 1.
+    pub(crate) fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A number in a range, both ends included; even in its logarithm for a wide range of positive numbers.
+    pub(crate) fn within(&mut self, min: f64, max: f64) -> f64 {
+        let part = self.unit();
+        let is_wide = min > 0.0 && max / min > 100.0;
+        let x = match is_wide {
+            true => min * (part * (max / min).ln()).exp(),
+            // Not `max - min`, which may be infinite.
+            false => min * (1.0 - part) + max * part,
+        };
+        x.clamp(min, max)
+    }
+
+    /// A whole number below `count`, which is above 0.
+    pub(crate) fn below(&mut self, count: usize) -> usize {
+        (self.unit() * count as f64) as usize
+    }
+
+    /// One of `choices`, of which there is at least one.
+    pub(crate) fn choose<'a, T>(&mut self, choices: &'a [T]) -> &'a T {
+        &choices[self.below(choices.len())]
+    }
+}

@@ -5,10 +5,12 @@
  * faults and checks is in cli/tests/checker.rs.
  */
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include "htex_model.h"
 #include "htex_motion_1.h"
@@ -32,6 +34,11 @@ struct voice {
     uint64_t rendered;
     int click;
     int told;
+    int is_poisoned;
+    const double *kept;
+    /* Samples for which the level still falls after a retune, and by how much it is lower. */
+    int dips;
+    double dip;
 };
 
 /* Faults of the extension require a model that has it. */
@@ -84,14 +91,22 @@ int64_t htex_model_descriptor(uint8_t *out, size_t capacity) {
 #endif
 #if defined FAULT_DESCRIPTOR_JSON || defined FAULT_DESCRIPTOR_DEFAULT || defined FAULT_STORE
     size_t len = sizeof text - 1;
-    memcpy(out, text, capacity < len ? capacity : len);
+    if (capacity && !out) return HTEX_INVALID_ARGUMENT;
+    if (capacity) memcpy(out, text, capacity < len ? capacity : len);
     return (int64_t)len;
 #else
     return GOOD(htex_model_descriptor)(out, capacity);
 #endif
 }
 
+#ifdef FAULT_NO_REASON
+static int is_silent; /* the last retune had no parameters */
+#endif
+
 int64_t htex_model_last_error(uint8_t *out, size_t capacity) {
+#ifdef FAULT_NO_REASON
+    if (is_silent && (out || !capacity)) return 0;
+#endif
     return GOOD(htex_model_last_error)(out, capacity);
 }
 
@@ -101,6 +116,17 @@ int64_t htex_model_fit(double band_low_hz, double band_high_hz, const double *fr
                        size_t options_len, double *parameters, size_t capacity, double *level_rms) {
 #ifdef FAULT_FIT_CRASHES
     abort();
+#elif defined FAULT_ACCEPTS_SPECTRUM
+    /* A negative magnitude is taken for 0. */
+    double zeroed[256];
+    for (size_t i = 0; magnitude && i < bins && i < 256; i++) zeroed[i] = magnitude[i] < 0 ? 0 : magnitude[i];
+    if (magnitude) magnitude = zeroed;
+#elif defined FAULT_CAPACITY
+    double whole[64];
+    int64_t len = GOOD(htex_model_fit)(band_low_hz, band_high_hz, frequency_hz, magnitude, bins, signal, signal_len,
+                                       signal_rate_hz, options, options_len, whole, 64, level_rms);
+    for (int64_t i = 0; parameters && i < len; i++) parameters[i] = whole[i];
+    if (parameters) return len;
 #endif
     int64_t answer = GOOD(htex_model_fit)(band_low_hz, band_high_hz, frequency_hz, magnitude, bins,
                                           signal, signal_len, signal_rate_hz, options, options_len,
@@ -110,6 +136,12 @@ int64_t htex_model_fit(double band_low_hz, double band_high_hz, const double *fr
 #endif
 #ifdef FAULT_FIT_HARD
     if (answer == HTEX_CANNOT_FIT) abort();
+#elif defined FAULT_FIT_SIGNAL
+    if (answer > 0 && signal_len) return HTEX_FAILED;
+#elif defined FAULT_FIT_STATUS
+    if (answer == HTEX_CANNOT_FIT) return HTEX_INVALID_ARGUMENT;
+#elif defined FAULT_CAPACITY_LENGTH
+    if (answer > (int64_t)capacity) return (int64_t)capacity;
 #endif
     return answer;
 }
@@ -118,7 +150,7 @@ int64_t htex_model_fit(double band_low_hz, double band_high_hz, const double *fr
 static const double *tolerant(const double *parameters, size_t len) {
 #ifdef FAULT_ACCEPTS_NAN
     static const double usual[] = {2, 5};
-    for (size_t i = 0; i < len; i++)
+    for (size_t i = 0; parameters && i < len; i++)
         if (isnan(parameters[i])) return usual;
 #endif
     (void)len;
@@ -134,11 +166,24 @@ int64_t htex_model_magnitude(const double *parameters, size_t parameters_len, do
 #endif
 #ifdef FAULT_SPECTRUM
     /* The shape of parameters other than those that are played. */
+    if (!parameters) return HTEX_INVALID_ARGUMENT;
     double other[] = {parameters_len ? parameters[0] + 2 : 0, parameters_len > 1 ? parameters[1] : 0};
     if (parameters_len == 2) parameters = other;
 #endif
+#ifdef FAULT_ACCEPTS_NULL
+    if (bins && !magnitude) return HTEX_OK;
+#elif defined FAULT_BOUND_REFUSED
+    if (parameters && parameters_len == 2 && parameters[0] == 0.001) return HTEX_INVALID_PARAMETERS;
+#endif
     int64_t answer = GOOD(htex_model_magnitude)(parameters, parameters_len, band_low_hz,
                                                 band_high_hz, frequency_hz, magnitude, bins);
+#ifdef FAULT_PARAMETERS_STATUS
+    if (answer == HTEX_INVALID_PARAMETERS && parameters_len != 2) return HTEX_FAILED;
+#elif defined FAULT_MAGNITUDE_BEYOND
+    if (answer == 0) magnitude[bins] = 1;
+#elif defined FAULT_MAGNITUDE_ANSWERS_ONE
+    if (answer == 0) answer = 1;
+#endif
     for (size_t i = 0; answer == 0 && i < bins; i++) {
 #ifdef FAULT_MAGNITUDE_NAN
         if (i == bins / 2) magnitude[i] = NAN;
@@ -159,7 +204,17 @@ int64_t htex_model_interpolate(const double *sets, size_t sets_len, const double
                                size_t weights_len, double *parameters, size_t capacity) {
 #ifdef FAULT_INTERPOLATE_ENDS
     double even[] = {0.5, 0.5};
-    if (weights_len == 2 && weights[0] + weights[1] == 1) weights = even;
+    if (weights && weights_len == 2 && (weights[0] == 1 || weights[1] == 1)) weights = even;
+#elif defined FAULT_ACCEPTS_WEIGHTS
+    double scaled[2];
+    if (weights && weights_len == 2 && weights[0] > 0 && weights[1] > 0) {
+        scaled[0] = weights[0] / (weights[0] + weights[1]), scaled[1] = 1 - scaled[0];
+        weights = scaled;
+    }
+#elif defined FAULT_INTERPOLATE_LAST_BIT
+    int64_t answer = GOOD(htex_model_interpolate)(sets, sets_len, weights, weights_len, parameters, capacity);
+    if (answer > 0 && capacity && weights[0] == 1) parameters[0] = nextafter(parameters[0], 1);
+    return answer;
 #endif
     return GOOD(htex_model_interpolate)(sets, sets_len, weights, weights_len, parameters, capacity);
 }
@@ -200,7 +255,13 @@ int64_t htex_model_voice_new(const double *parameters, size_t parameters_len, do
     kept = memset(malloc(65536), 1, 65536);
 #endif
     int64_t handle = __atomic_add_fetch(&voices_made, 1, __ATOMIC_SEQ_CST);
-    voices[handle - 1] = (struct voice){.good = good};
+    voices[handle - 1] = (struct voice){.good = good, .kept = parameters};
+#ifdef FAULT_BOUND_NAN
+    voices[handle - 1].is_poisoned = parameters_len == 2 && parameters[1] == 0.001;
+#elif defined FAULT_SEEDED_NAN
+    /* Between what is fitted to the references and the ends of the ranges. */
+    voices[handle - 1].is_poisoned = parameters_len == 2 && parameters[1] > 1000 && parameters[1] < 900000;
+#endif
     return handle;
 }
 
@@ -210,6 +271,21 @@ int64_t htex_model_voice_render(int64_t handle, float *out, size_t frames) {
     if (!voice && handle > 0 && handle <= voices_made) return HTEX_OK;
 #endif
     if (!voice) return HTEX_BAD_HANDLE;
+#ifdef FAULT_EMPTY_BLOCKS
+    float skipped;
+    if (!frames) return GOOD(htex_model_voice_render)(voice->good, &skipped, 1);
+#elif defined FAULT_FUZZ_CRASHES
+    /* A mix of blocks that only the fuzzer plays. */
+    static size_t before;
+    if (frames == 2 && before == 4096) abort();
+    before = frames;
+#elif defined FAULT_RENDER_WAITS
+    usleep(100);
+#elif defined FAULT_RENDER_WRITES
+    static int null_device;
+    if (!null_device) null_device = open("/dev/null", O_WRONLY);
+    if (write(null_device, "x", 1) != 1) return HTEX_FAILED;
+#endif
 #ifdef FAULT_RENDER_LOOPS
     for (volatile int forever = 1; forever;) {}
 #elif defined FAULT_RENDER_CRASHES
@@ -217,6 +293,16 @@ int64_t htex_model_voice_render(int64_t handle, float *out, size_t frames) {
 #endif
     int64_t answer = GOOD(htex_model_voice_render)(voice->good, out, frames);
     if (answer < 0) return answer;
+#ifdef FAULT_RENDER_ANSWERS_ONE
+    answer = 1;
+#elif defined FAULT_RENDER_BEYOND
+    out[frames] = 9;
+#elif defined FAULT_RENDER_FAR_BEYOND
+    out[frames + 100000] = 9;
+#elif defined FAULT_KEEPS_PARAMETERS
+    /* Reads what was lent for another call. */
+    if (voice->rendered < 64 && frames && voice->kept && isnan(*voice->kept)) out[0] += 1e-3f;
+#endif
     for (size_t i = 0; i < frames; i++, voice->rendered++) {
 #ifdef FAULT_LEVEL
         out[i] *= 2;
@@ -232,6 +318,10 @@ int64_t htex_model_voice_render(int64_t handle, float *out, size_t frames) {
 #ifdef FAULT_MOTION_BLOCKS
         if (voice->told && i == 0) out[i] += 1e-3f;
 #endif
+        if (voice->is_poisoned) out[i] = NAN;
+        voice->dip += ((voice->dips > 0 ? 0.4 : 0) - voice->dip) / 200;
+        voice->dips -= voice->dips > 0;
+        out[i] *= (float)(1 - voice->dip);
         if (voice->click) out[i] += 30, voice->click = 0;
     }
 #ifdef FAULT_LEAK
@@ -249,6 +339,9 @@ int64_t htex_model_voice_render(int64_t handle, float *out, size_t frames) {
 int64_t htex_model_voice_retune(int64_t handle, const double *parameters, size_t parameters_len) {
     struct voice *voice = live(handle);
     if (!voice) return HTEX_BAD_HANDLE;
+#ifdef FAULT_NO_REASON
+    is_silent = parameters_len == 0;
+#endif
 #ifdef FAULT_RETUNE_IGNORED
     /* Checks the parameters, and keeps the old ones. */
     double hz = 100, magnitude;
@@ -263,6 +356,8 @@ int64_t htex_model_voice_retune(int64_t handle, const double *parameters, size_t
 #endif
 #ifdef FAULT_CLICK
     if (answer == 0) voice->click = 1;
+#elif defined FAULT_RETUNE_DIPS
+    if (answer == 0) voice->dips = 100;
 #endif
     return answer;
 }
@@ -278,7 +373,7 @@ int64_t htex_model_voice_free(int64_t handle) {
 
 int64_t htex_model_extension(const uint8_t *id, size_t id_len) {
 #ifdef FAULT_EXTENSIONS
-    return 1;
+    return id != NULL;
 #else
 #ifdef HAS_MOTION
     static const char motion[] = "htex.motion/1";
@@ -290,6 +385,14 @@ int64_t htex_model_extension(const uint8_t *id, size_t id_len) {
 
 #ifndef FAULT_EXTENSION_MISSING
 int64_t htex_voices_1_render(const int64_t *handles, size_t count, float *out, size_t frames) {
+    if (count > 16) return HTEX_INVALID_ARGUMENT;
+    for (size_t i = 0; i < count; i++) {
+        if (!live(handles[i])) return HTEX_BAD_HANDLE;
+#ifndef FAULT_TOGETHER_TWICE
+        for (size_t k = 0; k < i; k++)
+            if (handles[k] == handles[i]) return HTEX_INVALID_ARGUMENT;
+#endif
+    }
     for (size_t i = 0; i < count; i++) {
         int64_t answer = htex_model_voice_render(handles[i], out + i * frames, frames);
         if (answer < 0) return answer;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use htex_check::{CHECKS, Options, Outcome, Report, Runner, check, run_one};
+use htex_check::{CHECKS, Options, Outcome, Report, Runner, Settings, check, run_one};
 use htex_host::Registry;
 
 /// A fault of `tests/bad-plugins/bad.c`, and the check that must fail.
@@ -20,32 +20,56 @@ const FAULTS: &[(&str, &str, Outcome)] = &[
     ("FIT_CRASHES", "fit", Outcome::Crashed),
     ("FIT_RANGE", "fit", Outcome::Failed),
     ("FIT_HARD", "fit-hard", Outcome::Crashed),
+    ("FIT_STATUS", "fit-hard", Outcome::Failed),
+    ("FIT_SIGNAL", "fit-signal", Outcome::Failed),
     ("STORE", "parameters", Outcome::Failed),
     ("MAGNITUDE_NAN", "magnitude", Outcome::Failed),
     ("MAGNITUDE_NEGATIVE", "magnitude", Outcome::Failed),
     ("MAGNITUDE_OUTSIDE", "magnitude", Outcome::Failed),
     ("MAGNITUDE_GRID", "magnitude-grid", Outcome::Failed),
+    ("MAGNITUDE_ANSWERS_ONE", "magnitude", Outcome::Failed),
+    ("MAGNITUDE_BEYOND", "magnitude", Outcome::Failed),
     ("RENDER_LOOPS", "render", Outcome::TimedOut),
     ("RENDER_CRASHES", "render", Outcome::Crashed),
     // The host refuses NaN and infinite samples, from the first block on.
     ("NOT_FINITE", "render", Outcome::Failed),
+    ("RENDER_ANSWERS_ONE", "render", Outcome::Failed),
+    ("RENDER_BEYOND", "render", Outcome::Failed),
+    // A block's guard values are not touched, but the page behind them.
+    #[cfg(target_os = "linux")]
+    ("RENDER_FAR_BEYOND", "render", Outcome::Failed),
+    ("CAPACITY", "arrays", Outcome::Failed),
+    ("CAPACITY_LENGTH", "arrays", Outcome::Failed),
+    ("KEEPS_PARAMETERS", "arrays", Outcome::Failed),
+    ("ACCEPTS_NULL", "arrays", Outcome::Failed),
     ("SUBNORMAL", "samples", Outcome::Failed),
     ("LEVEL", "level", Outcome::Failed),
     ("MAGNITUDE_LEVEL", "level", Outcome::Failed),
     ("SPECTRUM", "spectrum", Outcome::Failed),
+    ("BOUND_REFUSED", "bounds", Outcome::Failed),
+    ("BOUND_NAN", "bounds", Outcome::Failed),
+    ("SEEDED_NAN", "seeded", Outcome::Failed),
     ("BAND_IGNORED", "narrow-band", Outcome::Failed),
     ("NOT_REPRODUCIBLE", "reproducible", Outcome::Failed),
     ("BLOCKS", "blocks", Outcome::Failed),
+    ("EMPTY_BLOCKS", "blocks", Outcome::Failed),
     ("SEED_IGNORED", "seeds", Outcome::Failed),
     ("SHARED_STATE", "voices-apart", Outcome::Failed),
     ("TOGETHER", "voices-together", Outcome::Failed),
+    ("TOGETHER_TWICE", "voices-together", Outcome::Failed),
     ("FREED_HANDLE", "handles", Outcome::Failed),
     ("CLICK", "retune", Outcome::Failed),
+    ("RETUNE_DIPS", "retune-often", Outcome::Failed),
     ("RETUNE_IGNORED", "retune-follows", Outcome::Failed),
     ("INTERPOLATE_ENDS", "interpolate", Outcome::Failed),
+    ("INTERPOLATE_LAST_BIT", "interpolate", Outcome::Failed),
     ("ACCEPTS_NAN", "bad-parameters", Outcome::Failed),
+    ("PARAMETERS_STATUS", "bad-parameters", Outcome::Failed),
+    ("NO_REASON", "bad-parameters", Outcome::Failed),
     ("ACCEPTS_BAND", "bad-band", Outcome::Failed),
     ("ACCEPTS_RATE", "bad-rate", Outcome::Failed),
+    ("ACCEPTS_SPECTRUM", "bad-input", Outcome::Failed),
+    ("ACCEPTS_WEIGHTS", "bad-weights", Outcome::Failed),
     #[cfg(target_os = "linux")]
     ("RENDER_ALLOCATES", "allocation", Outcome::Failed),
     #[cfg(target_os = "linux")]
@@ -55,6 +79,11 @@ const FAULTS: &[(&str, &str, Outcome)] = &[
     ("MOTION_BLOCKS", "motion", Outcome::Failed),
     #[cfg(target_os = "linux")]
     ("MOTION_ALLOCATES", "motion", Outcome::Failed),
+    #[cfg(target_os = "linux")]
+    ("RENDER_WAITS", "waiting", Outcome::Failed),
+    #[cfg(target_os = "linux")]
+    ("RENDER_WRITES", "waiting", Outcome::Failed),
+    ("FUZZ_CRASHES", "fuzz", Outcome::Crashed),
     ("LEAK", "memory", Outcome::Failed),
     ("VOICES_LEAK", "memory", Outcome::Failed),
 ];
@@ -139,6 +168,7 @@ fn check_some(file: &Path, timeout_s: u64, seed: u64, only: Option<Vec<String>>)
         seed,
         only,
         against: None,
+        fuzz: None,
     };
     check(file, &options).unwrap()
 }
@@ -198,7 +228,7 @@ fn each_fault_is_found_by_its_own_check() {
     }
     let unbroken = CHECKS
         .iter()
-        .filter(|c| cfg!(target_os = "linux") || c.name != "allocation")
+        .filter(|c| cfg!(target_os = "linux") || !["allocation", "waiting"].contains(&c.name))
         .filter(|c| !FAULTS.iter().any(|(_, name, _)| name == &c.name));
     let unbroken: Vec<&str> = unbroken.map(|check| check.name).collect();
     // A twin needs two models; a cost is only ever a warning.
@@ -248,7 +278,14 @@ fn twins_must_agree() {
     let folder = tempfile::tempdir().unwrap();
     let good = library("sbeta");
     let seeded = bad(folder.path(), &good, "SEED_IGNORED");
-    let twin = |other: &Path| run_one(&good, "twin", 3, Some(other)).unwrap();
+    let twin = |other: &Path| {
+        let settings = Settings {
+            seed: 3,
+            against: Some(other),
+            fuzz: None,
+        };
+        run_one(&good, "twin", settings).unwrap()
+    };
     assert_eq!(
         twin(&bad(folder.path(), &good, "NONE")).outcome,
         Outcome::Passed

@@ -31,6 +31,8 @@ pub(crate) struct AtBound {
     pub(crate) set: Set,
     /// The value a thousandth of the range further in.
     pub(crate) inside: Vec<f64>,
+    /// Whether the end is 0, which may be silence.
+    pub(crate) is_zero: bool,
 }
 
 impl Case {
@@ -66,6 +68,7 @@ impl Case {
                         parameters: with(bound),
                     },
                     inside: with(inner),
+                    is_zero: bound == 0.0,
                 });
             }
         }
@@ -180,31 +183,41 @@ fn signal(reference: &Reference, depth: f64) -> Vec<f64> {
     (0..(SIGNAL_S * RATE_HZ) as usize).map(sample).collect()
 }
 
-/// Returns numbers as a file stores them. At the ends of the range steps are rounded into it, as by the writer of assets.
+/// Returns numbers as a file stores them. A value in its range stays in it, as by the writer of assets: where the nearest stored value is
+/// outside, the next one towards the range is taken.
 pub(crate) fn stored(field: &Field, numbers: &[f64]) -> Vec<f64> {
-    let step = |x: f64, scale: f64, offset: f64, log: bool, most: f64| {
-        let y = if log { x.ln() } else { x };
-        let value = offset + scale * ((y - offset) / scale).round().clamp(0.0, most);
-        if log { value.exp() } else { value }
-    };
-    let keep = |&x: &f64| match field.store {
-        Store::F64 => x,
-        Store::F32 => f32_within(x, field.min, field.max),
-        Store::U16 { scale, offset, log } => step(x, scale, offset, log, 65_535.0),
-        Store::U8 { scale, offset, log } | Store::Packed { scale, offset, log } => {
-            step(x, scale, offset, log, 255.0)
+    let Field { min, max, .. } = *field;
+    let keep = |&x: &f64| {
+        let nearest = nearest_stored(field.store, x, 0);
+        let towards = match nearest {
+            low if low < min => 1,
+            high if high > max => -1,
+            _ => return nearest,
+        };
+        match nearest_stored(field.store, x, towards) {
+            next if (min..=max).contains(&next) && (min..=max).contains(&x) => next,
+            _ => nearest,
         }
     };
     numbers.iter().map(keep).collect()
 }
 
-/// The nearest number of 32 bits in a range: the one beside it where it lies outside.
-fn f32_within(x: f64, min: f64, max: f64) -> f64 {
-    let near = x as f32;
-    let inside = match f64::from(near) {
-        stored if stored > max => near.next_down(),
-        stored if stored < min => near.next_up(),
-        _ => near,
+/// The stored value next to a number, or the one above it (1) or below it (-1).
+fn nearest_stored(store: Store, x: f64, towards: i8) -> f64 {
+    let step = |scale: f64, offset: f64, log: bool, most: f64| {
+        let y = if log { x.ln() } else { x };
+        let step = ((y - offset) / scale).round() + f64::from(towards);
+        let value = offset + scale * step.clamp(0.0, most);
+        if log { value.exp() } else { value }
     };
-    f64::from(inside)
+    match (store, towards) {
+        (Store::F64, _) => x,
+        (Store::F32, 0) => f64::from(x as f32),
+        (Store::F32, 1..) => f64::from((x as f32).next_up()),
+        (Store::F32, _) => f64::from((x as f32).next_down()),
+        (Store::U16 { scale, offset, log }, _) => step(scale, offset, log, 65_535.0),
+        (Store::U8 { scale, offset, log } | Store::Packed { scale, offset, log }, _) => {
+            step(scale, offset, log, 255.0)
+        }
+    }
 }

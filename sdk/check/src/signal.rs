@@ -73,8 +73,13 @@ pub(crate) fn read_as_noise(magnitude: &[f64]) -> Vec<f64> {
 /// Standard deviation of the RMS, relative, of `seconds` of noise with this spectrum: half that of
 /// its power, `1 / sqrt(B T)` with the equivalent bandwidth `B = (Σ m²)² Δf / Σ m⁴`.
 pub(crate) fn rms_spread(magnitude: &[f64], seconds: f64) -> f64 {
+    rms_spread_at(magnitude, GRID_HZ, seconds)
+}
+
+/// As [`rms_spread`], of magnitudes at steps of `step_hz`.
+pub(crate) fn rms_spread_at(magnitude: &[f64], step_hz: f64, seconds: f64) -> f64 {
     let moment = |n: i32| magnitude.iter().map(|m| m.powi(n)).sum::<f64>();
-    let bandwidth_hz = moment(2).powi(2) / moment(4) * GRID_HZ;
+    let bandwidth_hz = moment(2).powi(2) / moment(4) * step_hz;
     0.5 / (bandwidth_hz * seconds).sqrt()
 }
 

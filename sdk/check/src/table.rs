@@ -71,13 +71,14 @@ htex_check_runner::checks! { Case;
         "A minute, segments of 0.2 s averaged by power, levels matched: within 1 dB RMS over the bins \
          that contain 99 % of the energy, of the magnitude or of the spectrum that the window measures for noise of that \
          density; these differ at steep flanks. A line spectrum is thus compared at its lines.";
-    "bounds" needs ["level"] range::bounds:
+    "bounds" needs ["parameters", "level"] range::bounds:
         "Both ends of every field's range play.",
         "Fitted parameters with one field at an end of its range (a list as a whole), as it is and as a file stores it: a finite \
          magnitude, four seconds of finite samples below 1,000 at unit RMS within 3 dB, or within eight standard deviations of the \
          level of such noise, whichever is larger; finite samples in three other bands; and one voice that is retuned to each of \
-         them. Parameters may describe no spectrum in the band, but not only at the end of a range.";
-    "seeded" needs ["level"] range::seeded:
+         them. Parameters may describe no spectrum in the band, but not only at the end of a range, unless it is 0; and \
+         a voice may refuse a retune.";
+    "seeded" needs ["fit-signal", "level"] range::seeded:
         "Parameters within the ranges play.",
         "Sixteen sets that are drawn by the seed, each field within its range or as it is fitted, and the fits of `fit-signal`; as in \
          `bounds`.";
@@ -167,7 +168,7 @@ htex_check_runner::checks! { Case;
          forward and back, with a motion every 50, are finite, and nothing is allocated, as detected in `allocation`. The \
          references are fitted at a known, a half known and an unknown condition; a negative or infinite speed or force is \
          refused. The check `exports` tests that the model exports the extension's functions.";
-    "fuzz" needs ["magnitude", "blocks", "retune", "level"] fuzz::plays:
+    "fuzz" needs ["bounds", "seeded", "blocks", "retune", "motion"] fuzz::plays:
         "What a host may do plays.",
         "Sixteen seeds from `--seed` on, or as many as `--fuzz SECONDS` has time for. Each draws parameters, one of five bands, a rate, \
          and 24 blocks, retunes, mixes and motions. The sequence is played twice, cut into different blocks: finite samples, the same \

@@ -1,12 +1,13 @@
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::Args;
-use htex_check::{Options, check, run_one};
+use htex_check::{CheckError, Options, Report, Settings, check, run_one};
+use htex_files::FileError;
 
 use crate::checking::CheckArgs;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::of_file::OrFail;
 use crate::output::print_json;
 
 /// Check that a model keeps every promise of the model ABI; exit status 1 if it does not.
@@ -21,9 +22,13 @@ pub(crate) struct Check {
     #[command(flatten)]
     checking: CheckArgs,
 
-    /// Seed of the voices
+    /// Seed of the voices, of drawn parameters, and of the first sequence of `fuzz`
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
+
+    /// Time of the check `fuzz`, s [default: 16 sequences]
+    #[arg(long, value_name = "SECONDS", value_parser = fuzz_time)]
+    fuzz: Option<Duration>,
 
     /// Checks to run, comma-separated, with those that they need [default: all]
     #[arg(
@@ -48,18 +53,49 @@ pub(crate) struct CheckOne {
     seed: u64,
     #[arg(long)]
     against: Option<PathBuf>,
+    #[arg(long, value_parser = fuzz_time)]
+    fuzz: Option<Duration>,
+}
+
+/// A time of at most a week.
+fn fuzz_time(text: &str) -> Result<Duration, String> {
+    let seconds: f64 = text.parse().map_err(|_| "seconds are a number")?;
+    match (0.0..=604_800.0).contains(&seconds) {
+        true => Ok(Duration::from_secs_f64(seconds)),
+        false => Err("0 to 604800 seconds".to_owned()),
+    }
+}
+
+/// A file that cannot be read is an error of reading; a check that does not exist one of usage.
+fn failed(error: CheckError) -> Failure {
+    match error {
+        CheckError::File { path, error } => FileError::reading(path, error).into(),
+        other => Failure::Usage(other.to_string()),
+    }
+}
+
+/// The seed that fails: of a sequence, its own.
+fn seed_of(report: &Report, name: &str) -> u64 {
+    let failed = report.checks.iter().find(|check| check.check == name);
+    let own = failed.and_then(|check| check.finding.numbers.get("seed"));
+    own.map_or(report.subject.seed, |seed| *seed as u64)
 }
 
 impl Check {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let Self { file, seed, .. } = &self;
+        let file = &self.file;
         if let Some(name) = &self.checking.reproduce {
-            let finding = run_one(file, name, *seed, self.against.as_deref()).or_usage()?;
+            let settings = Settings {
+                seed: self.seed,
+                against: self.against.as_deref(),
+                fuzz: self.fuzz,
+            };
+            let finding = run_one(file, name, settings).map_err(failed)?;
             return self.checking.print_one(name, &finding, |text| text.into());
         }
-        let report = check(file, &self.options()?).or_usage()?;
+        let report = check(file, &self.options()?).map_err(failed)?;
         let again = |name: &str| {
-            let file = file.display();
+            let (file, seed) = (file.display(), seed_of(&report, name));
             format!("htex plugin check {file} --reproduce {name} --seed {seed}")
         };
         self.checking
@@ -74,14 +110,19 @@ impl Check {
             seed: self.seed,
             only: self.only.clone(),
             against: self.against.clone(),
+            fuzz: self.fuzz,
         })
     }
 }
 
 impl CheckOne {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let finding = run_one(&self.file, &self.name, self.seed, self.against.as_deref());
-        print_json(&finding.or_usage()?)?;
+        let settings = Settings {
+            seed: self.seed,
+            against: self.against.as_deref(),
+            fuzz: self.fuzz,
+        };
+        print_json(&run_one(&self.file, &self.name, settings).map_err(failed)?)?;
         Ok(Exit::SUCCESS)
     }
 }

@@ -9,9 +9,12 @@ use htex_check_runner::{Finding, Found};
 /// Largest allowed difference between two results for one frequency, relative to the largest magnitude.
 const TOLERANCE: f64 = 1e-9;
 
+/// Step of the fine grid, hertz.
+pub(crate) const FINE_HZ: f64 = 0.5;
+
 /// Returns every 0.5 Hz of the tactile band.
 pub(crate) fn fine_grid() -> Vec<f64> {
-    (40..=2000).map(|i| 0.5 * f64::from(i)).collect()
+    (40..=2000).map(|i| FINE_HZ * f64::from(i)).collect()
 }
 
 /// Checks that magnitudes are finite, not negative, and zero outside the band.

@@ -13,6 +13,7 @@ Generated from the table of checks in `sdk/check/src/table.rs` by
 `htex plugin check FILE` runs these on a native library or a WASM module, each in a separate
 process. A check *passes*, ends with a *warning*, is *skipped* (it does not apply, or a check that
 it needs did not pass), *fails*, *crashes* or is *timed-out*; after the last three the exit status is 1.
+`--fuzz SECONDS` gives the check `fuzz` more time.
 `htex plugin check --help` shows how to run one check in a single process, for a debugger.
 
 | check | guarantee |

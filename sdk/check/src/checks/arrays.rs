@@ -169,6 +169,8 @@ pub(crate) fn blocks(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let mut given = Fenced::input(parameters, "voice_new", "parameters");
     let mut voice = case.voice(given.get(), case.seed)?;
     given.unchanged(parameters, "parameters")?;
+    // They live until the end: that a voice keeps one is found, and named, by `keeps_nothing`.
+    let mut lent = vec![given];
     for frames in FRAMES {
         let mut out = Fenced::output(frames, "voice_render", "frames");
         voice.render_into(out.get())?;
@@ -176,6 +178,7 @@ pub(crate) fn blocks(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
         let mut given = Fenced::input(parameters, "voice_retune", "parameters");
         voice.retune(given.get())?;
         given.unchanged(parameters, "parameters")?;
+        lent.push(given);
     }
     Ok(())
 }

@@ -112,7 +112,6 @@ impl Worker {
             printer: None,
             is_unconfirmed: false,
         };
-        thread("htex-guardian", move || worker.run())?;
         let looks = to_self.clone();
         // Sleeps, and not a wait with a time limit, whose end is computed by a clock that may jump.
         let look = move || {
@@ -121,6 +120,7 @@ impl Worker {
             }
         };
         thread("htex-guardian-clock", look)?;
+        thread("htex-guardian", move || worker.run())?;
         Ok(to_self)
     }
 

@@ -26,16 +26,14 @@ pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
     match wait(&mut child, timeout) {
         None => {
             let seconds = timeout.as_secs_f64();
-            let said = after(last_finding(&text(out)));
-            let message = format!("it did not end within {seconds} s{said}");
-            Finding::new(Outcome::TimedOut, message).with("timeout_s", seconds)
+            let message = format!("it did not end within {seconds} s");
+            let finding = Finding::new(Outcome::TimedOut, message).with("timeout_s", seconds);
+            announced(finding, last_finding(&text(out)))
         }
         Some(status) => match last_finding(&text(out)) {
             // What a check says in advance of a step that may crash.
             Some(finding) if finding.outcome == Outcome::Crashed => {
-                let said = after(Some(finding));
-                let crashed = crashed(status, &text(err));
-                Finding::new(Outcome::Crashed, format!("{}{said}", crashed.message))
+                announced(crashed(status, &text(err)), Some(finding))
             }
             Some(finding) => finding,
             None => crashed(status, &text(err)),
@@ -43,9 +41,13 @@ pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
     }
 }
 
-/// What a check said before it ended without a finding.
-fn after(said: Option<Finding>) -> String {
-    said.map_or_else(String::new, |finding| format!("; {}", finding.message))
+/// A finding with what the check said, and its numbers, before it ended without one.
+fn announced(mut finding: Finding, said: Option<Finding>) -> Finding {
+    if let Some(said) = said {
+        finding.message = format!("{}; {}", finding.message, said.message);
+        finding.numbers.extend(said.numbers);
+    }
+    finding
 }
 
 /// Reads a pipe to its end, so that the child never blocks on it; keeps the last [`MOST_OUTPUT`] bytes.

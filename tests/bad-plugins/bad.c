@@ -260,7 +260,8 @@ int64_t htex_model_voice_new(const double *parameters, size_t parameters_len, do
     voices[handle - 1].is_poisoned = parameters_len == 2 && parameters[1] == 0.001;
 #elif defined FAULT_SEEDED_NAN
     /* Between what is fitted to the references and the ends of the ranges. */
-    voices[handle - 1].is_poisoned = parameters_len == 2 && parameters[1] > 1000 && parameters[1] < 900000;
+    for (int i = 0; parameters_len == 2 && i < 2; i++)
+        voices[handle - 1].is_poisoned |= parameters[i] > 100 && parameters[i] < 900000;
 #endif
     return handle;
 }

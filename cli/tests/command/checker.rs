@@ -273,6 +273,20 @@ fn a_module_that_takes_memory_while_it_renders_is_found() {
     assert_eq!(report.bad(), ["allocation"], "{}", report);
 }
 
+/// A file that is not there is no fault of a model, and one that does not load has no marker.
+#[test]
+fn a_file_that_cannot_be_loaded_has_no_marker() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("text.so");
+    let settings = Settings::default();
+    let missing = run_one(&file, "marker", settings).unwrap_err();
+    assert!(missing.to_string().contains("text.so"), "{missing}");
+    std::fs::write(&file, "no library").unwrap();
+    let outcome = |name: &str| run_one(&file, name, settings).unwrap().outcome;
+    assert_eq!(outcome("marker"), Outcome::Skipped);
+    assert_eq!(outcome("exports"), Outcome::Failed);
+}
+
 #[test]
 fn twins_must_agree() {
     let folder = tempfile::tempdir().unwrap();

@@ -151,6 +151,55 @@ fn a_fit_that_misses_its_bands_is_told_with_what_does_better() {
     let advice = format!("sbeta.error=decibel with {by_decibel_db:.1} dB, the model bands with ");
     assert!(told.contains(&advice), "{told}");
     assert!(!silent.contains("nine-band error of"), "{silent}");
+
+    // A steep spectrum: one band is far off, and the others hide it in the RMS.
+    let mut low = [0.0; 2];
+    let noise = |at: usize| {
+        let mixed = (at as u64 ^ 0x9E37_79B9).wrapping_mul(0xD134_2543_DE82_EF95);
+        let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0x2545_F491_4F6C_DD1D);
+        (mixed >> 40) as f64 / f64::from(1u32 << 23) - 1.0
+    };
+    let mut steep = "t_s,lateral_n\n".to_owned();
+    for at in 0..12_000 {
+        low[0] += 0.04 * (noise(at) - low[0]);
+        low[1] += 0.08 * (low[0] - low[1]);
+        steep += &format!(
+            "{:.6},{:.7}\n",
+            at as f64 / 3000.0,
+            0.3 + 0.1 * (low[1] + 0.005 * noise(at + 500_000))
+        );
+    }
+    place.write("steep.csv", steep);
+    let fitted = place.json(&[
+        "fit",
+        "steep.csv",
+        "--at",
+        "speed=80,force=0.4",
+        "--model",
+        "sbeta",
+        "--option",
+        "sbeta.error=magnitude",
+        "-o",
+        "steep.htex",
+        "--json",
+    ]);
+    let representation = &fitted["representations"][0];
+    println!("{representation}");
+    let rms_db = representation["band_error_rms_db"].as_f64().unwrap();
+    let bands = representation["band_error_db"].as_array().unwrap().iter();
+    let worst_db = bands.fold(0.0, |worst: f64, error| {
+        worst.max(error.as_f64().unwrap().abs())
+    });
+    assert!(
+        rms_db < 12.0 && worst_db > 24.0,
+        "{rms_db} dB, {worst_db} dB"
+    );
+    let warned = format!("{worst_db:.1} dB in the worst band");
+    assert!(
+        fitted["warnings"].to_string().contains(&warned),
+        "{}",
+        fitted["warnings"]
+    );
 }
 
 #[test]

@@ -1,10 +1,11 @@
 //! Grouping of recordings by exploration condition.
 
-use htex_finding::Notice;
+use htex_finding::{Finding, Findings, Notice};
 use htex_format::{Condition, Source};
 use htex_host::FitCondition;
 
-use crate::reading::read_take;
+use crate::findings::{differing, level_of};
+use crate::reading::{read_take, refuse, sentences};
 use crate::recording_finding::RecordingFinding;
 use crate::spectrum::SegmentSpectra;
 use crate::take::{Take, source_of};
@@ -31,6 +32,18 @@ pub(crate) struct Grouped {
 struct Gathering {
     condition: Exploration,
     parts: Vec<SegmentSpectra>,
+    /// Names of the recordings, one for each part.
+    names: Vec<String>,
+}
+
+impl Gathering {
+    /// Recordings whose levels differ from the level of the others, with what is found.
+    fn differing(&self) -> impl Iterator<Item = (&str, Vec<Finding>)> {
+        let levels: Vec<f64> = self.parts.iter().map(level_of).collect();
+        let found = differing(&levels).into_iter().map(Findings::into_list);
+        let named = self.names.iter().map(String::as_str).zip(found);
+        named.filter(|(_, found)| !found.is_empty())
+    }
 }
 
 /// Takes the recordings' spectra and averages those of the same condition.
@@ -53,12 +66,23 @@ pub(crate) fn group_takes(
         ));
         sources.push(source_of(take, part.spectra.len()));
         match gatherings.iter_mut().find(|g| same(g.condition, condition)) {
-            Some(gathering) => gathering.parts.push(part),
+            Some(gathering) => {
+                gathering.parts.push(part);
+                gathering.names.push(take.recording.source.clone());
+            }
             None => gatherings.push(Gathering {
                 condition,
                 parts: vec![part],
+                names: vec![take.recording.source.clone()],
             }),
         }
+    }
+    for (name, found) in gatherings.iter().flat_map(Gathering::differing) {
+        if strict {
+            refuse(name, &found)?;
+        }
+        warnings.add(name, sentences(name, &found, false).collect());
+        findings.extend(RecordingFinding::all(name, found));
     }
     check_known(&gatherings)?;
     let (mut groups, mut conditions) = (Vec::new(), Vec::new());

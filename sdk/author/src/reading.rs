@@ -50,15 +50,15 @@ pub fn read_take(
     let mut findings = recording_findings(recording);
     findings.extend(of_segments.into_list());
     if strict {
-        refuse(recording, &findings)?;
+        refuse(&recording.source, &findings)?;
     }
     let of_part = part.warnings.iter().cloned().map(Notice::from);
     let noticed = recording.warnings.iter().cloned().chain(of_part);
     Ok(Reading {
         warnings: noticed
-            .chain(sentences(recording, &findings, false))
+            .chain(sentences(&recording.source, &findings, false))
             .collect(),
-        notes: sentences(recording, &findings, true).collect(),
+        notes: sentences(&recording.source, &findings, true).collect(),
         part,
         condition,
         spread,
@@ -68,28 +68,28 @@ pub fn read_take(
 
 /// Returns the findings of severity info, or those above it, as sentences.
 pub(crate) fn sentences(
-    recording: &Recording,
+    source: &str,
     findings: &[Finding],
     info: bool,
 ) -> impl Iterator<Item = Notice> {
     let chosen = findings
         .iter()
         .filter(move |f| (f.severity == Severity::Info) == info);
-    chosen.map(|f| {
-        let text = format!("{}: {}: {}", recording.source, f.code, f.message);
+    chosen.map(move |f| {
+        let text = format!("{source}: {}: {}", f.code, f.message);
         Notice::new(text, f.hint)
     })
 }
 
 /// Returns an error if a finding is an error or a warning.
-pub(crate) fn refuse(recording: &Recording, findings: &[Finding]) -> Result<(), AuthorError> {
+pub(crate) fn refuse(source: &str, findings: &[Finding]) -> Result<(), AuthorError> {
     let grave = findings.iter().filter(|f| f.severity != Severity::Info);
     let findings: Vec<Finding> = grave.cloned().collect();
     if findings.is_empty() {
         Ok(())
     } else {
         Err(AuthorError::Strict {
-            source_name: recording.source.clone(),
+            source_name: source.to_owned(),
             findings,
         })
     }

@@ -32,7 +32,7 @@ pub(crate) fn definition() -> String {
          *segment* has the rate over {SEGMENTS_PER_S} samples, rounded. That of a sweep from sample *s* to before sample *e* begins at `(s + e) / 2`, rounded down, less half a segment, rounded \
          down; sweeps that are cut off have none, and are a finding where segments of sweeps are read. Of the sliding, a sweep that is not cut off represents its length, at most {REPRESENTED_S} s. Where there are sweeps, a sample at \
          which the finger does not slide, and sweeps represent at least {REPRESENTED} of the samples of sliding, the segments of sweeps are read. Else *windows* are: segments every half a segment, rounded up, from the \
-         first sample on.\n\n",
+         first sample on. They are a finding, `RECORDING_READ_IN_WINDOWS`, where there are sweeps and a sample at which the finger does not slide.\n\n",
         2.0 * HALF_AVERAGE_S
     )
 }

@@ -404,7 +404,7 @@ impl SegmentReader {
 }
 
 /// Subtracts the straight line of least squares through equally spaced samples, except for its mean.
-fn without_line(segment: &[f64]) -> Vec<f64> {
+pub(crate) fn without_line(segment: &[f64]) -> Vec<f64> {
     let middle = 0.5 * (segment.len() as f64 - 1.0);
     let place = |i: usize| i as f64 - middle;
     let samples = || segment.iter().enumerate();

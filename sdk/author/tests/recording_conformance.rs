@@ -16,6 +16,8 @@ use serde_json::Value;
 use xtask::generated::{file, folder};
 
 const FOLDER: &str = "spec/recording-conformance";
+/// Codes that need several recordings, or parts of one.
+const OF_FITS: [&str; 2] = ["GRID_NOT_BETTER", "RECORDING_LEVELS_DIFFER"];
 
 /// [`FOLDER`], from the folder of this package, in which tests run.
 fn conformance() -> PathBuf {
@@ -46,7 +48,7 @@ fn recordings_raise_the_code_they_are_named_after_and_every_code_has_one() {
         let golden: Value = serde_json::from_str(&case.golden(&conformance())).unwrap();
         let of = |finding: &Value, key: &str| finding[key].as_str().unwrap().to_owned();
         let findings = golden["findings"].as_array().unwrap();
-        let own = case.name.to_uppercase();
+        let own = case.code();
         for finding in findings {
             let code = of(finding, "code");
             // Each case has only the finding of its own code.
@@ -70,8 +72,8 @@ fn recordings_raise_the_code_they_are_named_after_and_every_code_has_one() {
     }
     let silent: Vec<_> = RULES
         .iter()
-        // Those of grids are of fits (`grid.rs`).
-        .filter(|rule| !raised.contains(rule.code) && !rule.code.starts_with("GRID_"))
+        // Those of several recordings are of fits (`grid.rs`, and below).
+        .filter(|rule| !raised.contains(rule.code) && !OF_FITS.contains(&rule.code))
         .collect();
     assert!(silent.is_empty(), "{silent:?}");
 }
@@ -121,4 +123,48 @@ fn sound_recordings_at_any_rate_and_speed_have_no_warning() {
             }
         }
     }
+}
+
+/// Two recordings of one condition whose levels differ are found by the fit that averages them, and refused by a strict one.
+#[test]
+fn recordings_of_one_condition_with_different_levels_are_found() {
+    let take = |gain: f64, name: &str| {
+        let simulation = simulate(&SimulationOptions::new(Surface::Vinyl).with_rate_hz(2000.0));
+        let mut recording = simulation.unwrap().to_recording(name).unwrap();
+        recording.axes[0].iter_mut().for_each(|x| *x *= gain);
+        let given = Exploration {
+            speed_mm_s: Some(80.0),
+            force_n: Some(0.4),
+        };
+        Take { recording, given }
+    };
+    let registry = htex_host::Registry::builtin();
+    let fit = |gains: &[f64], strict: bool| {
+        let names = ["one", "two", "three"];
+        let takes: Vec<Take> = gains.iter().zip(names).map(|(g, n)| take(*g, n)).collect();
+        let models = vec![htex_author::ModelRequest::new(
+            &registry.find("bands").unwrap(),
+        )];
+        let request = htex_author::AssetRequest::new("vinyl")
+            .with_models(models)
+            .with_strict(strict);
+        htex_author::fit_asset(&takes, &request)
+    };
+    let found = |gains: &[f64]| -> Vec<String> {
+        let fitted = fit(gains, false).unwrap();
+        let all = fitted.findings.iter();
+        let differ = all.filter(|f| f.finding.code == "RECORDING_LEVELS_DIFFER");
+        differ.map(|f| f.recording.clone()).collect()
+    };
+    // 6 dB, which takes of one material may have; 10 and 20 dB.
+    assert!(found(&[1.0, 0.5]).is_empty());
+    assert_eq!(found(&[1.0, 0.316]), ["two"]);
+    assert_eq!(found(&[0.1, 1.0]), ["one"]);
+    assert_eq!(found(&[1.0, 1.0, 10.0]), ["three"]);
+    assert!(
+        fit(&[1.0, 0.1], true)
+            .unwrap_err()
+            .to_string()
+            .contains("RECORDING_LEVELS_DIFFER")
+    );
 }

@@ -38,8 +38,27 @@ htex_finding::rule_table! {
     RECORDING_SPIKE Warning ("from", "to"):
         "Single samples of the lateral force are outliers.",
         "A spike of interference or a bit error has energy at all frequencies and can exceed the texture in \
-         its segment.",
+         its segment. Many small spikes raise the whole spectrum.",
         "Leave it out, repair the samples, or record again.";
+    RECORDING_RAMP Error ("map"):
+        "The lateral force is a straight line.",
+        "The friction of a sliding finger is never a line. The column is a time, a counter or a position, or the sensor drifts. The spectrum then shows only \
+         what leaks from the line.",
+        "Name the column of the lateral force in the column map, or repair the sensor.";
+    RECORDING_ALTERNATES Error ("map"):
+        "The lateral force alternates from sample to sample.",
+        "Several channels in one column, or a fault of the converter, repeat every two, three or four samples. The spectrum shows the repetition \
+         and not the texture.",
+        "Give each channel its own column, or record again.";
+    RECORDING_BELOW_BAND Error ("map", "quantity"):
+        "What the spectrum shows leaks from frequencies below the band.",
+        "A drift, a position or a normal force changes slowly and has no texture from 20 Hz on. Segments of 0.2 s cannot separate such a signal \
+         from the lowest frequencies of the band, and the fit would play that leakage.",
+        "Check the sensor, and name the column of the lateral force in the column map.";
+    RECORDING_ABOVE_BAND Warning ("map", "rate"):
+        "The signal above the band is at least 30 dB stronger than the signal in it.",
+        "The sensor or its filter passes next to nothing between 20 and 1000 Hz, or the stated sample rate is too high. The fit plays the noise of the converter.",
+        "Check the sensor and its filter, and give the true sample rate.";
     RECORDING_FORCE_OUTLIER Warning ("force"):
         "Single samples of the normal force are outliers.",
         "A finger cannot press so hard for so short a time. The condition is the median, which outliers do not change; \
@@ -87,6 +106,10 @@ htex_finding::rule_table! {
         "They are 12 dB or more above the median of all segments and dominate the average. Causes are knocks, spikes, \
          and windows over a recording that is mostly rest.",
         "Check the times in the message, and choose a range.";
+    RECORDING_LEVELS_DIFFER Warning ("at", "scale"):
+        "Recordings of one condition differ in level by more than 8 dB.",
+        "Recordings at one speed and force are averaged, and the loudest decide the result. One of them has another gain, unit, speed or force, or a fault.",
+        "Give each recording its own speed and force, correct the scale, or leave the recording out.";
     GRID_NOT_BETTER Warning ("grid"):
         "One condition for all motions predicts what was left out as well as the grid of conditions does.",
         "Each quarter of the recordings is left out in turn and predicted from the rest. A grid that is not nearer than the mean of \

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import segments
+from . import band, segments
 from .findings import Findings
 from .table import NotATable, read_table
 
@@ -52,7 +52,8 @@ def read_recording(path: Path, target_speed: float | None = None, target_force: 
         return findings
     check_clock(recording, findings)
     lateral = recording.signals["lateral"]
-    check_axis(recording, lateral, findings)
+    if check_axis(recording, lateral, findings):
+        band.check(lateral, recording.rate, findings)
     if "normal" in recording.signals:
         check_normal(recording, recording.signals["normal"], findings)
         check_friction(recording, lateral, recording.signals["normal"], findings)
@@ -121,21 +122,41 @@ def clipped_at(values: np.ndarray) -> list[float]:
     return result if separate >= 3 else []
 
 
-def check_axis(recording: Recording, values: np.ndarray, findings: Findings) -> None:
+def check_axis(recording: Recording, values: np.ndarray, findings: Findings) -> bool:
+    """The findings of an axis; whether the band is checked too."""
     segment = segments.length_of(recording.rate)
-    if len(values) < segment:
-        return
-    different = len(np.unique(values))
-    if 2 <= different <= 15:
+    coarse = len(values) >= segment and 2 <= len(np.unique(values)) <= 15
+    if coarse:
         findings.add("RECORDING_COARSE", "/lateral")
-        return
+    course = course_of(values, recording.rate)
+    if coarse or len(values) < segment:
+        if course:
+            findings.add(course, "/lateral")
+        return False
     clipped = clipped_at(values)
     if clipped:
         findings.add("RECORDING_CLIPPED", f"/lateral/{np.flatnonzero(np.isin(values, clipped))[0]}")
+    if course:
+        findings.add(course, "/lateral")
     check_stuck(recording, values, clipped, findings)
     spikes = find_spikes(values, recording.rate)
     if spikes:
         findings.add("RECORDING_SPIKE", f"/lateral/{spikes[0]}")
+    return not course
+
+
+def course_of(values: np.ndarray, rate: float) -> str | None:
+    """The code of a ramp or an alternation."""
+    if len(values) < 5 * segments.length_of(rate) or np.ptp(values) == 0:
+        return None
+    if np.corrcoef(np.arange(len(values)), values)[0, 1] ** 2 >= 0.99:
+        return "RECORDING_RAMP"
+    centred = values - np.mean(values)
+    for period in (2, 3, 4):
+        places = [centred[place::period] for place in range(period)]
+        if sum(len(p) * np.mean(p) ** 2 for p in places) >= 0.5 * np.sum(centred**2):
+            return "RECORDING_ALTERNATES"
+    return None
 
 
 def long_stretches(values: np.ndarray, rate: float) -> list[tuple[int, int]]:
@@ -184,7 +205,35 @@ def find_spikes(values: np.ndarray, rate: float, floor: float = 0.0) -> list[int
                 spikes[-1] = top
         else:
             spikes.append(top)
-    return [] if len(spikes) > max(3, math.floor(0.1 * blocks)) else spikes
+    if len(spikes) > max(3, math.floor(0.1 * blocks)):
+        spikes = []
+    many = many_spikes(values, corners, size, 10 * floor)
+    return many if len(many) > len(spikes) else spikes
+
+
+def many_spikes(values: np.ndarray, corners: np.ndarray, size: int, floor: float) -> list[int]:
+    """The samples that are outliers one by one, if there are enough of them."""
+    inner = corners[1:-1]
+    whole = inner[: len(inner) // size * size].reshape(-1, size)
+    if not len(whole):
+        return []
+    usual = 1.4826 * quantile(np.array([median(block) for block in whole]), 0.75)
+    if usual == 0:
+        return []
+    singles = [at for at in range(3, len(values) - 3) if corners[at] > 5 * usual and is_single(values, corners, at)]
+    small, large = ([at for at in singles if corners[at] > max(floor, ratio * usual)] for ratio in (5, 12))
+    if len(small) >= 0.0075 * len(values):
+        return small
+    return large if len(large) >= 6 else []
+
+
+def is_single(values: np.ndarray, corners: np.ndarray, at: int) -> bool:
+    if corners[at] < corners[at - 1] or corners[at] <= corners[at + 1]:
+        return False
+    around = values[at - 3 : at + 4].copy()
+    around[3] = (4 * (around[2] + around[4]) - (around[1] + around[5])) / 6
+    left = np.abs(around[1:-1] - (around[:-2] + around[2:]) / 2)
+    return bool(np.all(2 * left < corners[at]))
 
 
 def check_normal(recording: Recording, values: np.ndarray, findings: Findings) -> None:

@@ -48,4 +48,5 @@ def find(lateral: np.ndarray, rate: float) -> Reading:
     if sweeps and not np.all(sliding) and represented >= 0.5 * np.count_nonzero(sliding):
         starts = [(s + e) // 2 - length // 2 for s, e in whole]
         return Reading(starts, len(whole) < len(sweeps), False, sliding)
-    return Reading(list(range(0, count - length + 1, (length + 1) // 2)), False, True, sliding)
+    windows = bool(sweeps) and not np.all(sliding)
+    return Reading(list(range(0, count - length + 1, (length + 1) // 2)), False, windows, sliding)

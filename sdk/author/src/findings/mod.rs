@@ -1,6 +1,9 @@
 //! Findings of recordings, with stable codes.
 
+mod band;
 mod coefficient;
+mod course;
+mod differing;
 mod levels;
 mod page;
 mod plausible;
@@ -15,6 +18,7 @@ use htex_format::Quantity;
 use crate::Recording;
 use levels::Levels;
 
+pub(crate) use differing::{differing, level_of};
 pub use htex_recording::rules::RULES;
 pub(crate) use htex_recording::rules::{
     GRID_NOT_BETTER, RECORDING_NOTED, RECORDING_OFF_TARGET, RECORDING_UNREADABLE,
@@ -24,7 +28,7 @@ pub use page::findings_page;
 pub(crate) use quantile::quantile;
 pub(crate) use segments::judge_segments;
 
-/// Checks a recording's signals before any spectrum is taken: clipping, stuck sensors, spikes, and forces and
+/// Checks a recording's signals: clipping, stuck sensors, spikes, ramps, alternation, signals without a texture in the band, and forces and
 /// speeds that a finger cannot have. Findings of the time column are included.
 ///
 /// ```
@@ -36,11 +40,18 @@ pub(crate) use segments::judge_segments;
 /// ```
 pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     let mut findings = Findings::default();
+    let mut is_texture = true;
     for axis in 0..recording.axes.len() {
-        if let Levels::ClippedAt(clips) = levels::judge(recording, axis, &mut findings) {
+        let levels = levels::judge(recording, axis, &mut findings);
+        let has_course = course::judge_axis(recording, axis, &mut findings);
+        is_texture &= !has_course && matches!(levels, Levels::ClippedAt(_));
+        if let Levels::ClippedAt(clips) = levels {
             stuck::judge_axis(recording, axis, &clips, &mut findings);
             spikes::judge_axis(recording, axis, &mut findings);
         }
+    }
+    if is_texture {
+        band::judge(recording, &mut findings);
     }
     if recording.quantity != Quantity::NormalForce {
         stuck::judge_normal(recording, &mut findings);

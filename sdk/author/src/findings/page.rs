@@ -2,7 +2,10 @@
 
 use htex_finding::rules_page;
 
-use super::{RULES, coefficient, levels, plausible, quantile, segments, spikes, stuck};
+use super::{
+    RULES, band, coefficient, course, differing, levels, plausible, quantile, segments, spikes,
+    stuck,
+};
 use crate::exploration;
 use crate::segments::definition as chosen;
 
@@ -20,7 +23,7 @@ A finding has a code, a severity, a JSON pointer and a message. The pointer is i
 arrays, one per signal in use, named by its role: `time`, `lateral` (or `lateral_x` and `lateral_y`), `normal`, `speed`.
 `/lateral/1200` is the first affected sample, counted from 0 in the file; a pointer to a whole signal has no number, and
 the pointer to the whole recording is empty. Times in messages are the sample's number over the rate. Findings are in
-this order: the clock's, each lateral axis', the normal force's, friction, speed, segments (off their target, sweeps cut off, windows, uneven, unsteady), that the
+this order: the clock's, each lateral axis', the band's, the normal force's, friction, speed, segments (off their target, sweeps cut off, windows, uneven, unsteady), that the
 recording is unusable, notes. `RECORDING_OFF_TARGET` points to the whole recording, `RECORDING_UNSTEADY` to `/speed` or `/normal`, friction to `/normal` if
 implausible and to the first lateral axis if a coefficient. A recording is valid when no finding is an error. The meaning of a code never changes.
 
@@ -43,12 +46,15 @@ pub fn findings_page() -> String {
         "\n".to_owned(),
         htex_recording::clock_definition(),
         levels::definition(),
+        course::definition(),
         stuck::definition(),
         spikes::definition(),
+        band::definition(),
         plausible::definition(),
         coefficient::definition(),
         exploration::definition(),
         segments::definition(),
+        differing::definition(),
     ];
     rules_page(
         &format!(

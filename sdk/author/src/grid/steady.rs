@@ -66,11 +66,11 @@ pub(super) fn read_steady(
     })?;
     let findings: Vec<Finding> = recording_findings(recording);
     if strict {
-        refuse(recording, &findings)?;
+        refuse(&recording.source, &findings)?;
     }
     let of_part = part.warnings.iter().cloned().map(Notice::from);
     let noticed = recording.warnings.iter().cloned().chain(of_part);
-    let of = |info: bool| sentences(recording, &findings, info);
+    let of = |info: bool| sentences(&recording.source, &findings, info);
     Ok(Steady {
         quantity: part.quantity,
         band: part.band,

@@ -23,6 +23,11 @@ impl Case {
         format!("{}.csv", self.name)
     }
 
+    /// The code it is named after; several inputs of one code have a word behind it.
+    pub fn code(&self) -> String {
+        self.name.trim_end_matches("_many").to_uppercase()
+    }
+
     pub fn report(&self) -> String {
         format!("{}.report.json", self.name)
     }
@@ -161,6 +166,17 @@ pub fn cases() -> Vec<Case> {
         ),
         case("recording_silent", held(0..sample(1.2), |_| 0.0)),
         case("recording_spike", spikes()),
+        case("recording_spike_many", many_spikes()),
+        case(
+            "recording_ramp",
+            bare(|at, _| 0.2 + 0.03 * at as f64 / RATE_HZ),
+        ),
+        case(
+            "recording_alternates",
+            bare(|at, noise| 0.2 + 0.02 * noise + if at % 2 == 0 { 0.1 } else { -0.1 }),
+        ),
+        case("recording_below_band", bare(|at, _| 0.2 + 0.02 * below(at))),
+        case("recording_above_band", above()),
         case("recording_force_outlier", outlier()),
         case(
             "recording_friction_implausible",
@@ -230,6 +246,40 @@ fn spikes() -> String {
     let at = [sample(0.6), sample(3.1)];
     let change = |n, force| if at.contains(&n) { force + 4.0 } else { force };
     columns.map_lateral(change).lateral()
+}
+
+/// Fifteen small spikes, which are in more than a tenth of the blocks.
+fn many_spikes() -> String {
+    bare(|at, noise| 0.2 + 0.005 * noise + if at % 170 == 50 { 0.15 } else { 0.0 })
+}
+
+/// A force of five seconds by its sample and a noise of unit size.
+fn bare(force: impl Fn(usize, f64) -> f64) -> String {
+    let columns = Columns::new(5.0);
+    columns.map_lateral(|at, _| force(at, noise(at))).lateral()
+}
+
+/// A sum of tones from 1 to 14.7 Hz.
+fn below(at: usize) -> f64 {
+    let t = at as f64 / RATE_HZ;
+    let tone =
+        |k: usize| (std::f64::consts::TAU * (1.0 + 0.7183 * k as f64) * t + (k * k) as f64).sin();
+    (0..20).map(tone).sum::<f64>() / 3.0
+}
+
+/// Tones from 1200 Hz on, at 4 kHz.
+fn above() -> String {
+    let rate_hz = 4000.0;
+    let tone = |k: usize, t: f64| {
+        (std::f64::consts::TAU * (1200.0 + 37.3 * k as f64) * t + (k * k) as f64).sin()
+    };
+    let mut text = "# simulated\nt_s,lateral_n\n".to_owned();
+    for at in 0..6000 {
+        let t = f64::from(at) / rate_hz;
+        let force = 0.2 + 0.02 * (0..20).map(|k| tone(k, t)).sum::<f64>();
+        writeln!(text, "{t:.5},{force:.6}").unwrap();
+    }
+    text
 }
 
 /// The quotient of the forces, at a normal force that rises and falls by 40 %.

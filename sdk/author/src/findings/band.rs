@@ -1,0 +1,188 @@
+//! Detection of recordings without a texture in the band: what their spectra show leaks from below it, or is far weaker
+//! than what is above it.
+//!
+//! A segment of 0.2 s under a Hann window cannot tell 15 Hz from 20 Hz, nor a drift from noise. A window of a second whose side lobes
+//! are 92 dB down can (four-term Blackman-Harris; Harris 1978). Of 242 recordings of fingers, tools and microphones by third parties the segments
+//! show at most 4.3 dB more power in the band than the long windows do. Normal forces and positions of such fingers, read
+//! as a texture, show 32 dB more and above. Noise of 1 to 15 Hz shows 11 dB more and above.
+
+use std::f64::consts::TAU;
+
+use htex_dsp::Band;
+use htex_dsp::fft::RealFft;
+use htex_dsp::window::hann_periodic;
+use htex_finding::Findings;
+
+use crate::Recording;
+use crate::segments::{SEGMENTS_PER_S, SegmentChoice, choose_segments};
+use crate::spectrum::without_line;
+use htex_recording::rules::{RECORDING_ABOVE_BAND, RECORDING_BELOW_BAND};
+
+/// Least ratio of the power that segments show in the band to that of long windows: 7 dB, so that four fifths of it leak.
+const LEAKS: f64 = 5.0;
+/// Least ratio of the power above the band to that in it: 30 dB. White noise at 192 kHz has 20 dB; the microphones that were
+/// tried have up to 3.3 dB, and the current of a motor 5.1 dB.
+const ABOVE: f64 = 1000.0;
+/// Segments in a long window: one second.
+const LONG: usize = SEGMENTS_PER_S as usize;
+/// Least power in the band that leaks, of a recording whose largest value is 1; below it is what rounding leaves of a constant.
+const LEAST: f64 = 1e-24;
+/// Most samples of a long window, for memory; at a rate at which a segment has more than half of it, nothing is checked.
+const MOST: usize = 1 << 22;
+/// Four-term Blackman-Harris window.
+const COSINES: [f64; 4] = [0.35875, -0.48829, 0.14128, -0.01168];
+
+/// Defines the findings of this module, for `spec/recording-findings.md`.
+pub(super) fn definition() -> String {
+    let [a, b, c, d] = COSINES.map(f64::abs);
+    format!(
+        "- `RECORDING_BELOW_BAND` and `RECORDING_ABOVE_BAND`: the *power* of a stretch is the sum over the axes and over the bins of a range of frequencies of the \
+         squared magnitudes of the windowed stretch, over its length and the sum of the squared window. It is read twice: of each \
+         segment less its mean under a periodic Hann window, and of a *long* stretch of {LONG} segments (the whole recording if that is shorter) less its line of least squares \
+         under a periodic Blackman-Harris window, `{a} - {b} cos t + {c} cos 2t - {d} cos 3t`. The long stretch has the segment in its middle, as far as it lies within the recording; a segment that \
+         begins less than a quarter of a long stretch after the last one with a long stretch has none. Powers are averaged. The band is from 20 Hz to 1000 Hz, or to half the rate if that is less; above it is what exceeds 1000 Hz. \
+         The finding is `RECORDING_BELOW_BAND` if the segments' power in the band is above {LEAST} of the square of the largest magnitude of a value and at least {LEAKS} times that of the long stretches, and `RECORDING_ABOVE_BAND` if the long stretches' power above the band is above the same limit and at least {ABOVE} times \
+         that in it. Segments are those that would be read without a choice. A recording with an axis that is a ramp, alternates or is coarse is not checked.\n"
+    )
+}
+
+/// Compares the power in the band with what leaks into it and with what is above it.
+pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
+    let Some(Powers { shown, long }) = Powers::of(recording) else {
+        return;
+    };
+    let pointer = format!("/{}", recording.axis_name(0));
+    let band_hz = Band::TACTILE;
+    if shown > LEAST && shown >= LEAKS * long.inside {
+        let message = format!(
+            "{:.1} % of the power that the spectrum shows from {} Hz on leaks from lower frequencies: there is no texture in the band; \
+             check the sensor and that the column is the lateral signal",
+            100.0 * (1.0 - long.inside / shown),
+            band_hz.low_hz
+        );
+        findings.add(RECORDING_BELOW_BAND, pointer, message);
+    } else if long.above > LEAST && long.above >= ABOVE * long.inside {
+        let message = format!(
+            "above {} Hz the signal is {:.0} dB stronger than in the band: there is next to no texture in it; check the sensor, its filter and the \
+             sample rate",
+            band_hz.high_hz,
+            10.0 * libm::log10(long.above / long.inside.max(f64::MIN_POSITIVE))
+        );
+        findings.add(RECORDING_ABOVE_BAND, pointer, message);
+    }
+}
+
+/// Mean powers in the band and above it.
+#[derive(Default)]
+struct Power {
+    inside: f64,
+    above: f64,
+}
+
+/// What the segments show in the band, and what long windows measure.
+struct Powers {
+    shown: f64,
+    long: Power,
+}
+
+impl Powers {
+    /// `None` of a recording without a segment, or with one that is too long.
+    fn of(recording: &Recording) -> Option<Self> {
+        let segments = choose_segments(recording, SegmentChoice::Auto);
+        let (len, samples) = (segments.len, recording.samples());
+        let long_len = (LONG * len).min(samples).min(MOST);
+        let is_silent = recording.axes.iter().flatten().all(|x| *x == 0.0);
+        if segments.starts.is_empty() || long_len < 2 * len || is_silent {
+            return None;
+        }
+        let short = Reader::new(recording, hann_periodic(len), false);
+        let shown = short.mean(segments.starts.iter().copied());
+        let mut next = 0;
+        let is_due = |start: &usize| {
+            let is_due = *start >= next;
+            next = if is_due { start + long_len / 4 } else { next };
+            is_due
+        };
+        let due = segments.starts.into_iter().filter(is_due);
+        let around = |start: usize| {
+            let first = (start + len / 2).saturating_sub(long_len / 2);
+            first.min(samples - long_len)
+        };
+        let long = Reader::new(recording, blackman_harris(long_len), true);
+        Some(Self {
+            shown: shown.inside,
+            long: long.mean(due.map(around)),
+        })
+    }
+}
+
+/// Periodic four-term Blackman-Harris window.
+fn blackman_harris(len: usize) -> Vec<f64> {
+    let cosine = |k: usize, i: usize| libm::cos(TAU * (k * i % len) as f64 / len as f64);
+    let value = |i| (0..4).map(|k| COSINES[k] * cosine(k, i)).sum();
+    (0..len).map(value).collect()
+}
+
+/// Reads powers of stretches of a recording under a window.
+struct Reader<'a> {
+    recording: &'a Recording,
+    window: Vec<f64>,
+    /// Magnitude of the recording's largest value, by which all are divided: no square overflows.
+    largest: f64,
+    /// Whether a line is removed; else the mean.
+    is_level: bool,
+}
+
+impl<'a> Reader<'a> {
+    fn new(recording: &'a Recording, window: Vec<f64>, is_level: bool) -> Self {
+        let values = recording.axes.iter().flatten();
+        Self {
+            recording,
+            window,
+            largest: values.fold(0.0, |most, x| most.max(x.abs())),
+            is_level,
+        }
+    }
+
+    /// Returns the mean powers of the stretches that begin at these samples.
+    fn mean(&self, starts: impl Iterator<Item = usize>) -> Power {
+        let len = self.window.len();
+        let mut fft = RealFft::new(len);
+        let mut bins = fft.make_bins();
+        let squares: f64 = self.window.iter().map(|w| w * w).sum();
+        let spacing_hz = self.recording.rate_hz / len as f64;
+        let (mut sum, mut count) = (Power::default(), 0.0);
+        for start in starts {
+            count += 1.0;
+            for axis in &self.recording.axes {
+                let stretch = axis.get(start..start + len).unwrap_or_default();
+                let windowed = self.windowed(stretch);
+                fft.forward(&windowed, &mut bins);
+                for (k, bin) in bins.iter().enumerate() {
+                    let hz = k as f64 * spacing_hz;
+                    match () {
+                        () if Band::TACTILE.contains(hz) => sum.inside += bin.norm_sqr(),
+                        () if hz > Band::TACTILE.high_hz => sum.above += bin.norm_sqr(),
+                        () => {}
+                    }
+                }
+            }
+        }
+        let scale = 1.0 / (count * squares * len as f64);
+        Power {
+            inside: scale * sum.inside,
+            above: scale * sum.above,
+        }
+    }
+
+    fn windowed(&self, stretch: &[f64]) -> Vec<f64> {
+        let mut level: Vec<f64> = stretch.iter().map(|x| x / self.largest).collect();
+        let mean = level.iter().sum::<f64>() / level.len() as f64;
+        if self.is_level {
+            level = without_line(&level);
+        }
+        let windowed = level.iter_mut().zip(&self.window);
+        windowed.for_each(|(x, w)| *x = (*x - mean) * w);
+        level
+    }
+}

@@ -1,0 +1,98 @@
+//! Detection of signals whose course no finger causes: a straight line, and values that alternate from sample to sample.
+
+use htex_finding::Findings;
+
+use super::axis_words;
+use crate::{Recording, segment_len};
+use htex_recording::rules::{RECORDING_ALTERNATES, RECORDING_RAMP};
+
+/// Fewest segments of a recording that is checked: 1 s. The friction of a finger may rise along a line for less.
+const FEWEST_SEGMENTS: usize = 5;
+/// Least part of the variance along a line: a ramp. Of 242 recordings of fingers, tools and microphones by third parties, which last 0.8 to
+/// 19 s, none has more than 0.80, and the normal force of a finger no more than 0.84.
+const ALONG_LINE: f64 = 0.99;
+/// Longest alternation, samples: four channels in one column.
+const LONGEST: usize = 4;
+/// Least part of the variance that depends only on the number of the sample within such a period. The recordings by third parties have at
+/// most 0.0005.
+const BY_PLACE: f64 = 0.5;
+
+/// Defines the findings of this module, for `spec/recording-findings.md`.
+pub(super) fn definition() -> String {
+    format!(
+        "- `RECORDING_RAMP`: an axis of at least {FEWEST_SEGMENTS} segments, not of one value, whose squared correlation with the number of the sample is at least {ALONG_LINE}.\n\
+         - `RECORDING_ALTERNATES`: an axis as long, without this finding. For a period *p* of 2 to {LONGEST} samples, each of the *p* places in it has the mean of its samples; the weighted variance of \
+         these means about the axis' mean, each weighted by its samples, is at least {BY_PLACE} of the axis' variance. The finding names the shortest such period. It is also looked for in a coarse axis.\n"
+    )
+}
+
+/// Finds a ramp or an alternation; returns whether there is one.
+pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Findings) -> bool {
+    let values = &recording.axes[axis];
+    let (name, words) = (recording.axis_name(axis), axis_words(recording, axis));
+    if values.len() < FEWEST_SEGMENTS * segment_len(recording.rate_hz) {
+        return false;
+    }
+    let Some(centred) = Centred::of(values) else {
+        return false;
+    };
+    let pointer = format!("/{name}");
+    let along = centred.along_line();
+    if along >= ALONG_LINE {
+        findings.add(RECORDING_RAMP, pointer, format!(
+            "the {words} is a straight line to {:.1} % of its variance; check the sensor and that the column is neither a time, a counter nor a position",
+            100.0 * along
+        ));
+        return true;
+    }
+    let periods = (2..=LONGEST).map(|period| (period, centred.by_place(period)));
+    let Some((period, part)) = periods.into_iter().find(|(_, part)| *part >= BY_PLACE) else {
+        return false;
+    };
+    findings.add(RECORDING_ALTERNATES, pointer, format!(
+        "the {words} repeats every {period} samples, which is {:.1} % of its variance; check whether the column holds several channels in turn",
+        100.0 * part
+    ));
+    true
+}
+
+/// An axis less its mean, relative to its largest value, so that no square overflows.
+struct Centred {
+    values: Vec<f64>,
+    /// Sum of the squares.
+    squares: f64,
+}
+
+impl Centred {
+    /// `None` of an axis of one value.
+    fn of(values: &[f64]) -> Option<Self> {
+        let largest = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        if largest == 0.0 || values.iter().all(|x| *x == values[0]) {
+            return None;
+        }
+        let mean = values.iter().map(|x| x / largest).sum::<f64>() / values.len() as f64;
+        let values: Vec<f64> = values.iter().map(|x| x / largest - mean).collect();
+        let squares: f64 = values.iter().map(|x| x * x).sum();
+        (squares > 0.0).then_some(Self { values, squares })
+    }
+
+    /// Squared correlation with the number of the sample.
+    fn along_line(&self) -> f64 {
+        let count = self.values.len() as f64;
+        let middle = 0.5 * (count - 1.0);
+        let places = self.values.iter().enumerate();
+        let both: f64 = places.map(|(at, x)| (at as f64 - middle) * x).sum();
+        let own = count * (count * count - 1.0) / 12.0;
+        both * both / (own * self.squares)
+    }
+
+    /// Part of the variance that the place within a period explains.
+    fn by_place(&self, period: usize) -> f64 {
+        let of_place = |place: usize| {
+            let own = || self.values.iter().skip(place).step_by(period);
+            let (sum, count) = (own().sum::<f64>(), own().count() as f64);
+            sum * sum / count
+        };
+        (0..period).map(of_place).sum::<f64>() / self.squares
+    }
+}

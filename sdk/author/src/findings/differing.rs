@@ -1,0 +1,54 @@
+//! Detection of recordings of one condition whose levels differ.
+
+use htex_finding::Findings;
+
+use super::quantile::median;
+use crate::SegmentSpectra;
+use htex_recording::rules::RECORDING_LEVELS_DIFFER;
+
+/// Ratio of a recording's level to the median of its condition from which it differs: 8 dB. Of ten slides over each of 20 materials
+/// by a robot, none is further than 5.0 dB from its material's median; the two furthest slides of a material differ by 6.2 dB.
+const DIFFERS: f64 = 2.511_886_431_509_58;
+
+/// Defines the finding of this module, for `spec/recording-findings.md`.
+pub(super) fn definition() -> String {
+    "- `RECORDING_LEVELS_DIFFER`: the level of a recording is the root of the mean over its segments of the sum of their squared magnitudes over the band's bins. Of two or more recordings of one condition, it is more than 8 dB \
+     above or below the median of these levels. `htex validate`, which reads recordings one by one, does not have it.\n"
+        .to_owned()
+}
+
+/// Level of what is read of a recording: RMS over its segments, in its unit but for a constant factor.
+pub(crate) fn level_of(part: &SegmentSpectra) -> f64 {
+    let bins = part.spectra.iter().flatten();
+    let sum: f64 = bins.map(htex_dsp::spectrum::Complex::<f64>::norm_sqr).sum();
+    (sum / part.spectra.len().max(1) as f64).sqrt()
+}
+
+/// Returns the findings of each of the recordings of one condition, by their levels.
+pub(crate) fn differing(levels: &[f64]) -> Vec<Findings> {
+    let usual = median(levels).unwrap_or(0.0);
+    let judge = |level: &f64| {
+        let mut findings = Findings::default();
+        let ratio = level / usual;
+        if usual > 0.0 && !(1.0 / DIFFERS..=DIFFERS).contains(&ratio) {
+            let count = levels.len();
+            let message = match ratio > 0.0 {
+                true => format!(
+                    "its level is {:.1} dB {} the median of the {count} recordings of this condition",
+                    20.0 * libm::log10(ratio).abs(),
+                    if ratio > 1.0 { "above" } else { "below" }
+                ),
+                false => {
+                    format!("it is silent, and the {count} recordings of this condition are not")
+                }
+            };
+            findings.add(
+                RECORDING_LEVELS_DIFFER,
+                "",
+                format!("{message}; give its speed and force, correct its scale, or leave it out"),
+            );
+        }
+        findings
+    };
+    levels.iter().map(judge).collect()
+}

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use htex_dsp::grid::Band;
 use htex_exchange::{MOST_BYTES, SceneSound};
 use htex_files::read_regular;
-use htex_format::Quantity;
+use htex_format::{Quantity, Rights};
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, Limits, LoadedScene, Renderer, read_scene};
 
@@ -32,6 +32,7 @@ pub(crate) struct Scene {
     told: RefCell<BTreeSet<String>>,
     /// Files that it reads.
     pub(crate) inputs: Vec<PathBuf>,
+    rights: Rights,
     quantity: Quantity,
     band: Band,
     seconds: f64,
@@ -65,6 +66,7 @@ impl Scene {
         Ok(Self {
             file: file.to_owned(),
             inputs,
+            rights: rights(&ready),
             quantity: ready.scene.quantity(),
             band: band.unwrap_or(Band::TACTILE),
             seconds: seconds.or(own).unwrap_or(SECONDS),
@@ -79,6 +81,7 @@ impl Scene {
         let name = name.split('.').next().unwrap_or_default();
         call(&SceneSound {
             name,
+            rights: &self.rights,
             quantity: self.quantity,
             band: self.band,
             seconds: self.seconds,
@@ -105,6 +108,12 @@ impl Scene {
             samples.extend_from_slice(&block[..rendered]);
         }
     }
+}
+
+/// The rights of all textures of a scene.
+pub(crate) fn rights(ready: &Ready) -> Rights {
+    let assets = ready.scene.assets.iter();
+    Rights::of_all(assets.map(|asset| Rights::of(asset.manifest())))
 }
 
 /// Whether a file is a scene, by its name.

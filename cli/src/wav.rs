@@ -9,15 +9,17 @@ use hound::{SampleFormat, WavSpec, WavWriter};
 use crate::failure::Failure;
 use crate::shown::shown;
 use htex_files::FileError;
+use htex_format::Rights;
 
 /// Most bytes of samples a WAV file can hold.
 const MAX_FRAMES: u64 = (u32::MAX as u64 - 64) / 4;
 
-/// Writes `frames` samples of one channel, which `render` makes block by block.
+/// Writes `frames` samples of one channel with the rights of what is played, which `render` makes block by block.
 pub(crate) fn write_wav(
     path: &Path,
     rate_hz: u32,
     frames: u64,
+    rights: &Rights,
     mut render: impl FnMut(&mut [f32]) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     if frames > MAX_FRAMES {
@@ -35,7 +37,7 @@ pub(crate) fn write_wav(
     };
     let mut failed = None;
     let written = htex_format::replace_file(path, |file: &mut File| {
-        let mut wav = WavWriter::new(BufWriter::new(file), spec).map_err(Error::other)?;
+        let mut wav = WavWriter::new(BufWriter::new(&mut *file), spec).map_err(Error::other)?;
         let mut block = [0.0f32; 4096];
         let mut left = frames;
         while left > 0 {
@@ -49,7 +51,8 @@ pub(crate) fn write_wav(
             }
             left -= block.len() as u64;
         }
-        wav.finalize().map_err(Error::other)
+        wav.finalize().map_err(Error::other)?;
+        rights.add_to_wav(file)
     });
     match (failed, written) {
         (Some(failure), _) => Err(failure),

@@ -55,7 +55,8 @@ pub(crate) struct Bake {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write: a C array if it ends in .h, a Rust array if it ends in .rs, else (.bin) the bytes
+    /// The file to write: a C array if it ends in .h, a Rust array if it ends in .rs, else (.bin) the bytes. Source states licence and author in
+    /// comments; for bytes, FILE.license states them
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
@@ -86,12 +87,21 @@ impl Bake {
         let limits = BakeLimits::within_db(self.within).with_longest(longest);
         let baked = htex_bake::bake(&asset, self.model.as_deref(), &grid, self.rate, limits)
             .of(&self.asset)?;
+        let rights = match format {
+            Format::Bytes => Some(&baked.rights),
+            Format::C | Format::Rust => None,
+        };
+        let beside = rights.and_then(|rights| rights.beside(&self.output));
+        check_outputs(beside.as_deref(), [self.asset.as_path()])?;
         let written = match format {
             Format::Bytes => baked.bytes.clone(),
             Format::C => htex_bake::c_header(&name, &baked).into_bytes(),
             Format::Rust => htex_bake::rust_source(&name, &baked).into_bytes(),
         };
         htex_format::write_file(&self.output, &written).writing(&self.output)?;
+        if let Some(rights) = rights {
+            rights.add_to_file(&self.output).writing(&self.output)?;
+        }
         let error_db = baked.at_conditions_db.max(baked.between_db);
         if error_db > self.within {
             warn(&[format!(

@@ -9,7 +9,7 @@ use htex_author::{
     AssetRequest, Exploration, FeltError, SetupResponse, SpectrumOptions, Take, fit_asset,
 };
 use htex_files::AtFile;
-use htex_format::{By, Keyed, Measure};
+use htex_format::{By, Keyed, Measure, Rights};
 use htex_host::Registry;
 use htex_report::{Share, Texture, TextureReport, spectra_picture, texture_report};
 use htex_simulate::{SimulationOptions, Surface, simulate};
@@ -218,7 +218,8 @@ fn play(asset: &htex::Asset, model: &str, file: &Path, wav: &Path) -> Result<(),
         .with_rate_hz(f64::from(WAV_RATE_HZ));
     let mut voice = asset.voice(&options).of(file)?;
     let frames = WAV_SECONDS * u64::from(WAV_RATE_HZ);
-    write_wav(wav, WAV_RATE_HZ, frames, |block| {
+    let rights = Rights::of(asset.manifest());
+    write_wav(wav, WAV_RATE_HZ, frames, &rights, |block| {
         voice.render(block).of(file)
     })
 }

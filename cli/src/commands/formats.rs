@@ -28,11 +28,12 @@ fn text() -> String {
     let mut text = String::new();
     for format in FORMATS {
         text += &format!(
-            "{:8} {} ({}): {}\n         keeps {}\n         loses {}\n",
+            "{:8} {} ({}): {}\n         licence and author: {}\n         keeps {}\n         loses {}\n",
             format.name,
             format.title,
             format.dotted(),
             ways(format),
+            format.rights.place,
             format.keeps,
             format.loses,
         );

@@ -5,7 +5,7 @@ use clap::Args;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_exchange::{Format, ImportError, MOST_BYTES, Physical, Profile, SignalSettings, imported};
 use htex_files::{AtFile, read_regular};
-use htex_format::Quantity;
+use htex_format::{Quantity, license_file, read_license_file};
 
 use crate::assets::AssetSummary;
 use crate::exit::Exit;
@@ -23,7 +23,7 @@ use crate::shown::shown;
 ///
 /// A model file of the Penn Haptic Texture Toolkit states units, speeds and forces, and becomes a texture as it is; a glTF file
 /// gives out the texture that its material carries, bit for bit. The others are signals that know none of it, and are fitted as a
-/// recording is: say how strong 1 is (--full-scale), and at which speed and force the file is felt. `htex formats` lists what is kept and lost.
+/// recording is: say how strong 1 is (--full-scale), and at which speed and force the file is felt. Licence and author are taken from the file, or from FILE.license beside it, unless they are given. `htex formats` lists what is kept and lost.
 #[derive(Args)]
 pub(crate) struct Import {
     #[arg(help = format!("The file: {}", imported()))]
@@ -77,7 +77,8 @@ struct Settings {
 impl Import {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let plugins = self.plugins.files().iter().map(PathBuf::as_path);
-        let inputs = [self.file.as_path()].into_iter().chain(plugins);
+        let beside = license_file(&self.file);
+        let inputs = [self.file.as_path(), &beside].into_iter().chain(plugins);
         check_outputs([self.output.as_path()], inputs)?;
         checked(&self.metadata)?;
         let name = self.file.file_name().unwrap_or_default().to_string_lossy();
@@ -91,7 +92,9 @@ impl Import {
             .unwrap_or_default()
             .to_string_lossy();
         let tool = tool();
-        let how = self.how(&stem, &tool)?;
+        let mut how = self.how(&stem, &tool)?;
+        let beside = read_license_file(&self.file).reading(license_file(&self.file))?;
+        how.license_file = beside.as_deref();
         let imported = htex_exchange::import(&name, &bytes, &how, &registry)?;
         self.write(imported)
     }
@@ -113,6 +116,7 @@ impl Import {
             profile: profile.map(Profile::find).transpose()?,
             fit,
             metadata: self.metadata.clone(),
+            license_file: None,
             tool,
         })
     }

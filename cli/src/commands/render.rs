@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_device::{Capabilities, Quantity, Settings, StreamFormat};
+use htex_files::AtFile;
 use htex_scene::file::Motion;
 use htex_scene::{Renderer, output_name};
 use serde_json::json;
@@ -15,6 +16,7 @@ use crate::of_file::ResultOfFile;
 use crate::output::{note, print, print_json};
 use crate::playing::Output;
 use crate::progress::bar;
+use crate::scene_sound::rights;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
 use crate::shown::shown;
 use crate::signals::{self, interrupted};
@@ -59,6 +61,7 @@ impl Render {
         self.check_length(&mut ready)?;
         let plan = ready.plan(&costs())?;
         note(&plan.notes);
+        let rights = rights(&ready);
         let mut renderer = Renderer::new(&ready.scene, &plan).of(&self.scene)?;
         if self.json {
             renderer = renderer.timed();
@@ -83,6 +86,7 @@ impl Render {
         let frames = output.frames();
         output.finish()?;
         aside.map_or(Ok(()), |aside| aside.move_to(&path))?;
+        rights.add_to_file(&path).writing(&path)?;
         let file = path.display().to_string();
         if self.json {
             print_json(&json!({
@@ -156,6 +160,9 @@ impl Render {
             None => settings.text("path").into(),
         };
         ready.check_output(&path)?;
+        if let Some(beside) = rights(ready).beside(&path) {
+            ready.check_output(&beside)?;
+        }
         let is_named = self.output.is_some() || self.choice.names_output()?;
         if !is_named && path.symlink_metadata().is_ok() {
             let path = shown(&path);

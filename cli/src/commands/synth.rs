@@ -13,6 +13,7 @@ use crate::output::warn;
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 use crate::wav::write_wav;
+use htex_format::Rights;
 
 /// Play an asset to a WAV file: 32-bit float samples in the asset's unit, such as newtons.
 #[derive(Args)]
@@ -90,7 +91,8 @@ impl Synth {
         warn(&Vec::from_iter(beyond));
         let mut voice = asset.voice(&options).of(&self.asset)?;
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
-        write_wav(&self.output, self.rate, frames, |block| {
+        let rights = Rights::of(asset.manifest());
+        write_wav(&self.output, self.rate, frames, &rights, |block| {
             voice.render(block).of(&self.asset)
         })?;
         Ok(Exit::SUCCESS)

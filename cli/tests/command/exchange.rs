@@ -538,3 +538,108 @@ fn formats_lists_what_is_kept_and_lost() {
             .contains("MetaQuest.acf")
     );
 }
+
+/// What is written of a texture states its licence and its author: in the file, or beside it. An import reads them again.
+#[test]
+fn every_way_out_carries_the_licence() {
+    let place = Place::new();
+    place.write("hum.haptic", haptic());
+    let stated = "--license CC-BY-4.0 --author Ada";
+    run(
+        &place,
+        &format!("import hum.haptic {GIVEN} --model bands {stated} -o hum.htex"),
+        0,
+    );
+    let has_both = |file: &str| {
+        let bytes = std::fs::read(place.path(file)).unwrap();
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        let tag = "SPDX-License-Identifier: CC-BY-4.0";
+        assert!(text.contains(tag) && text.contains("Ada"), "{file}");
+    };
+    for (format, file, back) in [
+        ("haptic", "a.haptic", Some(GIVEN)),
+        ("ahap", "a.ahap", Some(GIVEN)),
+        ("hjif", "a.hjif", Some(GIVEN)),
+        ("png", "a.png", Some(GIVEN)),
+        ("gltf", "a.glb", Some("")),
+        ("gltf", "b.gltf", Some("")),
+        ("android", "a.json", None),
+        ("android", "a.kt", None),
+        ("wav", "a.wav", None),
+    ] {
+        run(
+            &place,
+            &format!("export hum.htex --to {format} -o {file}"),
+            0,
+        );
+        has_both(file);
+        let Some(given) = back else { continue };
+        let import = |more: &str| format!("import {file} {given} {more} -o again.htex --json");
+        let again = place.json(&words(&import("")));
+        assert_eq!(again["license"], "CC-BY-4.0", "{file}");
+        assert_eq!(again["author"], "Ada", "{file}");
+        // A flag is stronger, and another statement beside the file is an error.
+        let other = place.json(&words(&import("--license MIT")));
+        assert_eq!(other["license"], "MIT", "{file}");
+        place.write(&format!("{file}.license"), "SPDX-License-Identifier: MIT\n");
+        let (_, error) = run(&place, &import(""), 2);
+        assert!(
+            error.contains("\"CC-BY-4.0\" and \"MIT\"") && error.contains("--license"),
+            "{error}"
+        );
+        run(&place, &import("--license MIT"), 0);
+    }
+    // Samples stay as they are.
+    run(&place, "synth hum.htex --seconds 1 -o with.wav", 0);
+    has_both("with.wav");
+    run(&place, "edit hum.htex --license= --author= -o bare.htex", 0);
+    run(&place, "synth bare.htex --seconds 1 -o without.wav", 0);
+    let samples = |file: &str| {
+        let wav = hound::WavReader::open(place.path(file)).unwrap();
+        let samples = wav.into_samples::<f32>();
+        samples.map(Result::unwrap).collect::<Vec<_>>()
+    };
+    assert_eq!(samples("with.wav"), samples("without.wav"));
+
+    // What has no place has a file beside it, which is an output like the other one.
+    run(&place, "bake hum.htex -o hum.h", 0);
+    run(&place, "bake hum.htex -o hum.rs", 0);
+    run(&place, "bake hum.htex -o hum.bin", 0);
+    ["hum.h", "hum.rs", "hum.bin.license"].map(has_both);
+    assert!(!place.path("hum.h.license").exists());
+    std::fs::copy(place.path("hum.htex"), place.path("x.bin.license")).unwrap();
+    let (_, error) = run(&place, "bake x.bin.license -o x.bin", 2);
+    assert!(error.contains("it is read here"), "{error}");
+    let scene = json!({
+        "htex_scene": "1.0",
+        "surfaces": [{ "asset": "hum.htex" }],
+        "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
+    });
+    place.write("hum.scene.json", scene.to_string());
+    run(&place, "render hum.scene.json --seconds 1 -o hum.csv", 0);
+    run(&place, "render hum.scene.json --seconds 1 -o scene.wav", 0);
+    ["hum.csv.license", "scene.wav"].map(has_both);
+
+    // A model file has no place either.
+    place.write("felt.xml", HATT);
+    place.write(
+        "felt.xml.license",
+        "SPDX-FileCopyrightText: Ada\nSPDX-License-Identifier: CC-BY-4.0\n",
+    );
+    let felt = place.json(&words("import felt.xml -o felt.htex --json"));
+    assert_eq!(
+        (&felt["license"], &felt["author"]),
+        (&json!("CC-BY-4.0"), &json!("Ada"))
+    );
+    let all = place.json(&["formats", "--json"]);
+    let places = all["formats"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|f| f["rights"].as_str());
+    assert!(
+        places
+            .into_iter()
+            .all(|place| place.is_some_and(|place| !place.is_empty()))
+    );
+}

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use htex_dsp::grid::GRID_HZ;
-use htex_play::{Asset, Motion, Quantity};
+use htex_play::{Asset, Motion, Quantity, Rights};
 use htex_player::layout::{CHECKSUM, HEADER, MOST_FILTERS, MOST_HALF, MOST_LEVEL};
 use htex_player::{Block, Law};
 
@@ -42,6 +42,8 @@ pub struct Baked {
     pub grid: Grid,
     /// The id of the baked model.
     pub model: String,
+    /// The rights of the asset, which source code has as comments; the bytes have no place for them.
+    pub rights: Rights,
     /// The quantity of the samples, which has their unit.
     pub quantity: Quantity,
     /// The law beyond the grid.
@@ -141,7 +143,9 @@ pub fn bake(
         let refined = grid.refined(&designed.between, reachable_db);
         let is_last = refined == grid || refined.motions().count() > MOST_CONDITIONS;
         if between_db <= within_db || is_last {
-            return designed.baked(&texture, grid, within_db);
+            let baked = designed.baked(&texture, grid, within_db)?;
+            let rights = Rights::of(asset.manifest());
+            return Ok(Baked { rights, ..baked });
         }
         grid = refined;
     }
@@ -332,6 +336,7 @@ impl Designed {
             numbers,
             grid,
             model: texture.id().to_owned(),
+            rights: Rights::default(),
             quantity: content.quantity,
             law,
             ceiling: content.ceiling,

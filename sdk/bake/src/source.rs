@@ -127,13 +127,15 @@ pub fn is_rust_name(name: &str) -> bool {
 }
 
 /// Returns a C header that defines a block as an array of bytes of this name, and the numbers that its player needs as a
-/// macro, `NAME_NUMBERS` in capitals.
+/// macro, `NAME_NUMBERS` in capitals. Comments state the author and the licence.
 pub fn c_header(name: &str, baked: &Baked) -> String {
     let (bytes, numbers) = (&baked.bytes, baked.numbers);
     let macros = name.to_ascii_uppercase();
     let lines = lines(bytes);
+    let comment = |line: &str| format!("/* {line} */\n");
+    let rights: String = baked.rights.to_text().lines().map(comment).collect();
     format!(
-        "/* A baked texture for htex_player.h (spec/baked-1.md). */\n#ifndef {macros}_BAKED_H\n#define {macros}_BAKED_H\n\n\
+        "{rights}/* A baked texture for htex_player.h (spec/baked-1.md). */\n#ifndef {macros}_BAKED_H\n#define {macros}_BAKED_H\n\n\
          #include <stdint.h>\n\n/* For HTEX_PLAYER_MEMORY. */\n#define {macros}_NUMBERS {numbers}\n\n\
          static const uint8_t {name}[{}] = {{\n{lines}}};\n\n#endif\n",
         bytes.len()
@@ -144,8 +146,9 @@ pub fn c_header(name: &str, baked: &Baked) -> String {
 pub fn rust_source(name: &str, baked: &Baked) -> String {
     let bytes = &baked.bytes;
     let lines = lines(bytes);
+    let rights = baked.rights.commented("// ");
     format!(
-        "/// A baked texture for the crate `htex-player` (spec/baked-1.md).\n#[rustfmt::skip]\n\
+        "{rights}/// A baked texture for the crate `htex-player` (spec/baked-1.md).\n#[rustfmt::skip]\n\
          pub static {name}: [u8; {}] = [\n{lines}];\n",
         bytes.len()
     )

@@ -5,6 +5,7 @@
 //! envelope of `BasicEnvelopeBuilder` ends at the intensity 0. The amplitude of `WaveformEnvelopeBuilder` is the part of the strongest vibration at
 //! the frequency. The JSON is this project's own: Android has no file of an effect.
 
+use htex_format::Rights;
 use serde::{Deserialize, Serialize};
 
 use crate::curve::Point;
@@ -22,6 +23,9 @@ const FORMAT: &str = "android.os.VibrationEffect";
 #[serde(deny_unknown_fields)]
 pub struct Android {
     format: String,
+    /// Author and licence, as SPDX lines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    rights: Option<String>,
     /// `VibrationEffect.createWaveform`.
     pub waveform: Waveform,
     /// `VibrationEffect.WaveformEnvelopeBuilder`, API 36.
@@ -83,10 +87,16 @@ impl Android {
     ) -> Self {
         Self {
             format: FORMAT.to_owned(),
+            rights: None,
             waveform,
             waveform_envelope,
             basic_envelope,
         }
+    }
+
+    pub(crate) fn with_rights(mut self, rights: &Rights) -> Self {
+        self.rights = (!rights.is_empty()).then(|| rights.described(""));
+        self
     }
 
     /// Reads the JSON of an effect.

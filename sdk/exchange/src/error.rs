@@ -84,6 +84,14 @@ pub enum ExchangeError {
         value: f64,
         range: &'static str,
     },
+    /// The file, the asset in it and the file `.license` beside it state different rights.
+    #[error("{}", disagree(.setting, .stated, &keyword))]
+    Rights {
+        /// `license` or `author`.
+        setting: &'static str,
+        /// What they state.
+        stated: String,
+    },
     /// There is no profile of this name.
     #[error("there is no profile `{wanted}`; there are {there}")]
     UnknownProfile { wanted: String, there: String },
@@ -148,9 +156,17 @@ impl ExchangeError {
                 takes,
             } => unused(format, way, setting, takes, named),
             Self::OutOfRange { name, value, range } => format!("{} {value}: {range}", named(name)),
+            Self::Rights { setting, stated } => disagree(setting, stated, named),
             other => other.to_string(),
         }
     }
+}
+
+fn disagree(setting: &str, stated: &str, named: &dyn Fn(&str) -> String) -> String {
+    format!(
+        "the {setting} is stated as {stated}, in the file, its asset or its .license file; give {}",
+        named(setting)
+    )
 }
 
 fn keyword(setting: &str) -> String {

@@ -6,6 +6,7 @@ use crate::error::{ExchangeError, Fault};
 #[cfg(feature = "export")]
 use crate::job::{AssetJob, Job, Written};
 use crate::profile::Profile;
+use crate::rights::RightsPlace;
 
 /// A format.
 #[derive(Debug)]
@@ -22,6 +23,8 @@ pub struct Format {
     /// How an asset goes out, if it is exported.
     #[cfg(feature = "export")]
     pub writes: Option<Writes>,
+    /// Where its files carry licence and author.
+    pub rights: RightsPlace,
     /// What of a texture it keeps.
     pub keeps: &'static str,
     /// What it loses.
@@ -261,6 +264,8 @@ struct Described<'a> {
     import_settings: Vec<&'a str>,
     export: Option<&'a str>,
     export_settings: Vec<&'a str>,
+    /// Where its files carry licence and author.
+    rights: &'a str,
     keeps: &'a str,
     loses: &'a str,
 }
@@ -285,6 +290,7 @@ impl Serialize for Format {
             import_settings: self.reads.as_ref().map(Reads::settings).unwrap_or_default(),
             export,
             export_settings,
+            rights: self.rights.place,
             keeps: self.keeps,
             loses: self.loses,
         };

@@ -2,7 +2,7 @@
 
 use crate::error::{ExchangeError, list};
 use crate::format::{Format, Reads};
-use crate::{ahap, gltf, haptic, hjif, import};
+use crate::{ahap, gltf, haptic, hjif, import, rights};
 #[cfg(feature = "export")]
 use crate::{format::Writes, writers};
 
@@ -15,6 +15,7 @@ pub const FORMATS: &[Format] = &[
         reads: Some(Reads::Asset(import::hatt)),
         #[cfg(feature = "export")]
         writes: None,
+        rights: rights::BESIDE,
         keeps: "the filter of each node, speed and force, the unit, triangles, friction",
         loses: "nothing that is played; between nodes levels are mixed, not variances",
     },
@@ -32,6 +33,7 @@ pub const FORMATS: &[Format] = &[
             profile: "quest",
             settings: &[],
         }),
+        rights: rights::HAPTIC,
         keeps: "level and one frequency over time",
         loses: "the spectrum, speed and force, the unit; frequencies are positions in an actuator's range",
     },
@@ -49,6 +51,7 @@ pub const FORMATS: &[Format] = &[
             profile: "iphone",
             settings: &[],
         }),
+        rights: rights::AHAP,
         keeps: "level and one sharpness over time",
         loses: "the spectrum, speed and force, the unit; how sharp a sharpness is",
     },
@@ -63,6 +66,7 @@ pub const FORMATS: &[Format] = &[
             profile: "android",
             settings: &[],
         }),
+        rights: rights::ANDROID,
         keeps: "level and one frequency over time, in as many points as the device takes",
         loses: "the spectrum, speed and force, the unit; what changes faster than the points",
     },
@@ -77,6 +81,7 @@ pub const FORMATS: &[Format] = &[
             profile: "quest",
             settings: &["coding"],
         }),
+        rights: rights::HJIF,
         keeps: "seven tones over way or time (vectorial), or the samples (wavelet)",
         loses: "how the spectrum follows speed and force, the unit; with tones what lies between them",
     },
@@ -91,6 +96,7 @@ pub const FORMATS: &[Format] = &[
             profile: "console",
             settings: &["rate"],
         }),
+        rights: rights::WAV,
         keeps: "the samples, as far as the actuator plays them",
         loses: "speed and force, the unit; what is outside the actuator's range",
     },
@@ -101,6 +107,7 @@ pub const FORMATS: &[Format] = &[
         reads: Some(Reads::Map),
         #[cfg(feature = "export")]
         writes: Some(Writes::Map),
+        rights: rights::PNG,
         keeps: "the friction at each place, 255 x 255 pixels at most, and their distance",
         loses: "speed and force, the unit; of a texture that is no map all but its spectrum at one speed",
     },
@@ -111,6 +118,7 @@ pub const FORMATS: &[Format] = &[
         reads: Some(Reads::Asset(gltf::held)),
         #[cfg(feature = "export")]
         writes: Some(Writes::Asset(gltf::written)),
+        rights: rights::GLTF,
         keeps: "the asset's file, bit for bit, on the material of a mesh",
         loses: "nothing of a texture; of a file that comes in, the meshes",
     },
@@ -174,7 +182,7 @@ pub fn exported() -> Vec<&'static str> {
 #[cfg(feature = "export")]
 pub fn formats_table() -> String {
     let mut text = String::from(
-        "| name | format | files | in | out | keeps | loses |\n|---|---|---|---|---|---|---|\n",
+        "| name | format | files | in | out | licence and author | keeps | loses |\n|---|---|---|---|---|---|---|---|\n",
     );
     for f in FORMATS {
         let comes_in = match &f.reads {
@@ -189,10 +197,11 @@ pub fn formats_table() -> String {
             None => "",
         };
         text += &format!(
-            "| `{}` | {} | {} | {comes_in} | {goes_out} | {} | {} |\n",
+            "| `{}` | {} | {} | {comes_in} | {goes_out} | {} | {} | {} |\n",
             f.name,
             f.title,
             f.dotted(),
+            f.rights.place,
             f.keeps,
             f.loses
         );

@@ -4,7 +4,7 @@ use htex_author::threshold_magnitude;
 use htex_dsp::envelope::Analyser;
 use htex_dsp::grid::Band;
 use htex_dsp::vibrotactile::Listener;
-use htex_format::{Manifest, Quantity};
+use htex_format::{Manifest, Quantity, Rights};
 use htex_play::{Asset, Motion, VoiceOptions};
 
 use crate::error::ExchangeError;
@@ -27,6 +27,8 @@ pub enum Path {
 pub struct SceneSound<'a> {
     /// Its name, which the file gets.
     pub name: &'a str,
+    /// The rights of all its textures.
+    pub rights: &'a Rights,
     pub quantity: Quantity,
     /// The band of its textures.
     pub band: Band,
@@ -86,6 +88,14 @@ impl Source<'_> {
         match self {
             Self::Asset { asset, .. } => &asset.manifest().name,
             Self::Scene(scene) => scene.name,
+        }
+    }
+
+    /// The rights of what is played, which every file carries.
+    pub(crate) fn rights(&self) -> Rights {
+        match self {
+            Self::Asset { asset, .. } => Rights::of(asset.manifest()),
+            Self::Scene(scene) => scene.rights.clone(),
         }
     }
 

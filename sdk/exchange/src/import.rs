@@ -11,6 +11,7 @@ use htex_author::{
     SegmentChoice, Take, fit_asset,
 };
 use htex_finding::{Hint, Notice};
+use htex_format::Rights;
 use htex_host::Registry;
 
 use crate::error::{ExchangeError, Fault, in_file};
@@ -18,6 +19,7 @@ use crate::format::{Format, Held, Naming, Reads, Sampling};
 use crate::map;
 use crate::physical::{Checked, PITCH, Physical};
 use crate::profile::Profile;
+use crate::rights::Stated;
 use crate::signal::{RATE_HZ, signal};
 
 /// A signal is repeated until it is this long, seconds.
@@ -37,6 +39,8 @@ pub struct Import<'a> {
     pub profile: Option<&'a Profile>,
     pub fit: FitSettings,
     pub metadata: Metadata,
+    /// The text of the file `NAME.license` beside it, if there is one ([`htex_format::license_file`]).
+    pub license_file: Option<&'a str>,
     /// Program and version, for the provenance.
     pub tool: &'a str,
 }
@@ -92,7 +96,26 @@ pub fn import(
             fitted(recording, how, registry)?
         }
     };
-    imported.apply(&how.metadata);
+    let given = Rights::new(
+        how.metadata.license.as_deref(),
+        how.metadata.author.as_deref(),
+    );
+    let stated = Stated::of(format, bytes, how.license_file, &given)?;
+    let own = Rights::of(&imported.asset.manifest);
+    stated.check(&own, &given)?;
+    let mut metadata = how.metadata.clone();
+    // What the asset states stays as it is, and so do the bytes of an asset that the file holds.
+    let missing = |own: &Option<String>, stated| if own.is_none() { stated } else { None };
+    metadata.license = metadata
+        .license
+        .or(missing(&own.license, stated.rights.license));
+    metadata.author = metadata
+        .author
+        .or(missing(&own.author, stated.rights.author));
+    imported
+        .warnings
+        .extend(stated.left_out.into_iter().map(Into::into));
+    imported.apply(&metadata);
     if imported.asset.manifest.license.is_none() {
         let asked = Notice::new(UNLICENSED, Hint::new(&["license"]));
         imported.notes.push(asked);

@@ -46,6 +46,7 @@ mod physical;
 mod profile;
 #[cfg(feature = "export")]
 mod reduce;
+mod rights;
 mod settings;
 mod signal;
 #[cfg(feature = "export")]
@@ -83,6 +84,7 @@ pub use loss::Loss;
 pub use pattern::{MOST_S, Pattern, Transient, combined, rendered};
 pub use physical::{Physical, missing};
 pub use profile::{Kind, PROFILES, Profile, Sourced, profile_names, profiles_table};
+pub use rights::RightsPlace;
 pub use settings::SignalSettings;
 pub use signal::RATE_HZ;
 #[cfg(feature = "export")]

@@ -3,10 +3,11 @@
 use std::io::Cursor;
 
 use hound::{SampleFormat, WavReader, WavSpec, WavWriter};
+use htex_format::Rights;
 
 use crate::error::Fault;
 
-pub(crate) fn to_bytes(samples: &[f64], rate_hz: u32) -> Result<Vec<u8>, Fault> {
+pub(crate) fn to_bytes(samples: &[f64], rate_hz: u32, rights: &Rights) -> Result<Vec<u8>, Fault> {
     let spec = WavSpec {
         channels: 1,
         sample_rate: rate_hz,
@@ -20,6 +21,8 @@ pub(crate) fn to_bytes(samples: &[f64], rate_hz: u32) -> Result<Vec<u8>, Fault> 
         wav.write_sample(*sample as f32).map_err(failed)?;
     }
     wav.finalize().map_err(failed)?;
+    let added = rights.add_to_wav(&mut bytes);
+    added.map_err(|error| Fault::whole(error.to_string()))?;
     Ok(bytes.into_inner())
 }
 

@@ -29,11 +29,14 @@ pub(crate) fn haptic(job: &Job<'_>) -> Result<Written, ExchangeError> {
     let metadata = crate::haptic::Metadata {
         editor: concat!("htex ", env!("CARGO_PKG_VERSION")).to_owned(),
         source: source.name().to_owned(),
-        author: text(|manifest| manifest.author.as_ref()),
+        author: source.rights().author.unwrap_or_default(),
         tags: manifest
             .map(|manifest| manifest.tags.clone())
             .unwrap_or_default(),
-        description: text(|manifest| manifest.description.as_ref()),
+        description: {
+            let description = text(|manifest| manifest.description.as_ref());
+            source.rights().described(&description)
+        },
         ..Default::default()
     };
     one_envelope(job, |pattern| {
@@ -44,8 +47,10 @@ pub(crate) fn haptic(job: &Job<'_>) -> Result<Written, ExchangeError> {
 }
 
 pub(crate) fn ahap(job: &Job<'_>) -> Result<Written, ExchangeError> {
+    let rights = job.playing.source.rights();
     one_envelope(job, |pattern| {
-        let bytes = crate::Ahap::of(pattern, job.profile).to_bytes();
+        let ahap = crate::Ahap::of(pattern, job.profile);
+        let bytes = ahap.with_description(&rights.described("")).to_bytes();
         let read = crate::Ahap::from_bytes(&bytes).map_err(|fault| job.own(fault))?;
         Ok((bytes, read.patterns(job.profile)))
     })
@@ -107,12 +112,17 @@ pub(crate) fn android(job: &Job<'_>) -> Result<Written, ExchangeError> {
         as_envelope(job, &heard, &free.pattern),
         as_basic(job, &heard, &free.pattern),
     );
+    let rights = job.playing.source.rights();
+    let effect = effect.with_rights(&rights);
     let json = effect.to_bytes();
     let read = Android::from_bytes(&json).map_err(|fault| job.own(fault))?;
     read.check_device(job.profile)
         .map_err(|fault| job.own(fault))?;
     let bytes = match job.extension {
-        Some("kt") => effect.to_kotlin(job.playing.source.name()),
+        Some("kt") => {
+            let kotlin = effect.to_kotlin(job.playing.source.name());
+            [rights.commented("// ").into_bytes(), kotlin].concat()
+        }
         _ => json,
     };
     let richest =
@@ -264,6 +274,12 @@ pub(crate) fn hjif(job: &Job<'_>) -> Result<Written, ExchangeError> {
 
 type Coded = (Hjif, Heard, f64);
 
+/// The name, and the rights.
+fn described(job: &Job<'_>) -> String {
+    let source = &job.playing.source;
+    source.rights().described(source.name())
+}
+
 fn vectorial_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
     let heard = job.playing.heard(RATE_HZ, job.point_s(MANY))?;
     let several = tones(&heard, job.profile, TONES);
@@ -276,9 +292,9 @@ fn vectorial_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
             .collect(),
     };
     let all: Vec<Tone> = several.tones.into_iter().map(tone).collect();
-    let name = job.playing.source.name();
+    let description = described(job);
     Ok((
-        vectorial(&all, job.profile, space, name),
+        vectorial(&all, job.profile, space, &description),
         heard,
         several.limited,
     ))
@@ -296,8 +312,9 @@ fn wavelet_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
     }
     let heard = job.playing.heard(space.rate_hz(), job.point_s(MANY))?;
     let (samples, limited) = drive(&heard, job.profile);
-    let name = job.playing.source.name();
-    Ok((waveform(&samples, job.profile, space, name), heard, limited))
+    let description = described(job);
+    let file = waveform(&samples, job.profile, space, &description);
+    Ok((file, heard, limited))
 }
 
 pub(crate) fn wav(job: &Job<'_>) -> Result<Written, ExchangeError> {
@@ -305,7 +322,9 @@ pub(crate) fn wav(job: &Job<'_>) -> Result<Written, ExchangeError> {
     let rate_hz = libm::round(job.rate_hz);
     let heard = job.playing.heard(rate_hz, job.point_s(MANY))?;
     let (samples, limited) = drive(&heard, job.profile);
-    let bytes = crate::wav::to_bytes(&samples, rate_hz as u32).map_err(|fault| job.own(fault))?;
+    let rights = job.playing.source.rights();
+    let bytes = crate::wav::to_bytes(&samples, rate_hz as u32, &rights);
+    let bytes = bytes.map_err(|fault| job.own(fault))?;
     let drive = crate::wav::from_bytes(&bytes).map_err(|fault| job.own(fault))?;
     Ok(Written {
         bytes,

@@ -40,6 +40,7 @@ mod plugin;
 mod quality;
 mod quality_json;
 mod quantity;
+mod rights;
 mod rounding;
 mod rules;
 mod schema_words;
@@ -77,6 +78,7 @@ pub use measure::{By, ErrorMeasure, Judged, Measure, MeasureRow};
 pub use page::{manifest_schema, report_schema, validation_page};
 pub use quality::{Keyed, LeftOut, Measures, Quality};
 pub use quantity::Quantity;
+pub use rights::{Rights, license_file, read_license_file};
 pub use rules::{
     DESCRIPTOR_INVALID, EXTENSION_SCHEMA_BROKEN, PLUGIN_UNUSABLE, RULES, SCHEMA_BROKEN,
 };

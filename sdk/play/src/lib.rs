@@ -43,7 +43,7 @@ pub use htex_finding::{Finding, Severity};
 pub use htex_format::Asset as AssetData;
 pub use htex_format::{
     AtCondition, Condition, Contact, Exponent, ExponentSource, Law, Limits, Manifest, Quantity,
-    ReadError, Representation, Triangle, TrianglesError, check_triangles,
+    ReadError, Representation, Rights, Triangle, TrianglesError, check_triangles,
 };
 pub use htex_format::{FieldOrder, SAME_CONDITION};
 pub use htex_host::{

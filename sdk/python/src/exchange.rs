@@ -9,6 +9,7 @@ use htex_exchange::{
     Physical, Profile, Stroke, Writes,
 };
 use htex_files::read_regular;
+use htex_format::{license_file, read_license_file};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyBytes;
@@ -100,6 +101,8 @@ impl Importing {
             unknown("quantity", &self.quantity, &known.join(", "))
         })?;
         let profile = self.profile.as_deref();
+        let beside =
+            read_license_file(file).map_err(|error| of_file(&license_file(file), &error))?;
         let how = Import {
             name: &stem,
             physical: Physical {
@@ -112,6 +115,7 @@ impl Importing {
             profile: profile.map(Profile::find).transpose().or_raise()?,
             fit,
             metadata,
+            license_file: beside.as_deref(),
             tool: TOOL,
         };
         let bytes = read_regular(file, MOST_BYTES).map_err(|error| of_file(file, &error))?;

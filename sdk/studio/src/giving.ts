@@ -67,14 +67,15 @@ export async function keepOnShelf() {
 }
 
 /** Ten seconds at the motion of the pad's sliders; full scale is one unit of the texture times the factor that is told. */
-export function saveSound() {
+export async function saveSound() {
   const [now, document] = [texture.peek(), present.peek()];
   if (!now || !document) return;
   const motion = { speed: pilotSpeed.peek(), force: pilotForce.peek() };
   const voice = now.voice({ model: document.model, rate: WAV_HZ, motion });
   const samples = voice.render(WAV_S * WAV_HZ);
   voice.free();
-  save(wav(samples, WAV_HZ), fileName(document.name, "wav"), "audio/wav");
+  const { riff } = (await theAuthor()).rights(now);
+  save(wav(samples, WAV_HZ, riff), fileName(document.name, "wav"), "audio/wav");
   say(`${WAV_S} s at ${motion.speed.toFixed(0)} mm/s and ${motion.force.toFixed(2)} N, in ${now.unit}: a full-scale sample is 1 ${now.unit}.`);
 }
 

@@ -16,9 +16,9 @@ export function fileName(name: string, extension: string) {
   return `${plain || "texture"}.${extension}`;
 }
 
-/** Samples as a WAV file of 32-bit numbers, one channel. */
-export function wav(samples: Float32Array, rate: number): Uint8Array {
-  const data = new Uint8Array(58 + 4 * samples.length);
+/** Samples as a WAV file of 32-bit numbers, one channel, with chunks behind them. */
+export function wav(samples: Float32Array, rate: number, chunks = new Uint8Array()): Uint8Array {
+  const data = new Uint8Array(58 + 4 * samples.length + chunks.length);
   const view = new DataView(data.buffer);
   const text = (at: number, letters: string) => [...letters].forEach((letter, i) => view.setUint8(at + i, letter.charCodeAt(0)));
   text(0, "RIFF");
@@ -37,5 +37,6 @@ export function wav(samples: Float32Array, rate: number): Uint8Array {
   text(50, "data");
   view.setUint32(54, 4 * samples.length, true);
   samples.forEach((sample, i) => view.setFloat32(58 + 4 * i, sample, true));
+  data.set(chunks, 58 + 4 * samples.length);
   return data;
 }

@@ -223,6 +223,13 @@ export interface BakeOptions {
 }
 
 /** A block for the player on microcontrollers; see `docs/microcontroller.md`. */
+export interface Rights {
+  license: string | null;
+  author: string | null;
+  text: string;
+  riff: Uint8Array;
+}
+
 export interface Baked {
   bytes: Uint8Array;
   model: string;
@@ -330,6 +337,8 @@ export interface Author {
   fit(recordings: NamedBytes | NamedBytes[], settings?: FitSettings): Fitted;
   /** Bakes a block for the player on microcontrollers. */
   bake(texture: Texture | Bytes, options?: BakeOptions): Baked;
+  /** Licence and author of a texture; `text` has both as lines of SPDX, `riff` as a chunk to append to a WAV file. */
+  rights(texture: Texture | Bytes): Rights;
   /** Packs textures, by their names, to a `.htexlib` file. Each states a licence, unless `unlicensed` allows those that do not. */
   library(textures: Record<string, Texture | Bytes>, options?: { name?: string; unlicensed?: boolean }): Uint8Array;
 }

@@ -150,6 +150,12 @@ export class Author {
     return { ...document, bytes };
   }
 
+  /** Licence and author of a texture: each, as lines of SPDX (`text`), and as a chunk to append to a WAV file (`riff`). */
+  rights(texture) {
+    const { document, bytes } = this.core.call("rights", {}, [bytesOfTexture(texture)]);
+    return { ...document, riff: bytes };
+  }
+
   /** Fits models to recordings of a texture. */
   fit(recordings, settings = {}) {
     const { request, files } = callOf(eachOf(filesOf(recordings, settings), named), settings);

@@ -30,6 +30,8 @@ export interface ImportFormat {
   /** What of a texture the format keeps, and what it loses, in words. */
   keeps: string;
   loses: string;
+  /** Where its files carry licence and author. */
+  rights: string;
 }
 
 /** The range of frequencies of an actuator. */

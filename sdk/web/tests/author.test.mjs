@@ -150,6 +150,19 @@ test("a texture is baked to the bytes and the source code of the command", async
   assert.throws(() => author.bake(texture, { within: 0 }), { code: "invalid-argument", message: /within/ });
 });
 
+test("licence and author of a texture are told as text and as a chunk of WAV", async () => {
+  const texture = author.edit(await open(await bytes("vinyl.htex")), { license: "CC-BY-4.0", author: "Ada" });
+  const { license, author: who, text, riff } = author.rights(texture);
+  assert.deepEqual([license, who], ["CC-BY-4.0", "Ada"]);
+  assert.equal(text, "SPDX-FileCopyrightText: Ada\nSPDX-License-Identifier: CC-BY-4.0\n");
+  const chunk = Buffer.from(riff);
+  assert.equal(chunk.toString("latin1", 0, 4), "LIST");
+  assert.equal(chunk.readUInt32LE(4), chunk.length - 8);
+  assert.ok(chunk.includes("ICOP") && chunk.includes(text.trim().split("\n")[1]));
+  const none = author.rights(author.edit(texture, { license: "", author: "" }));
+  assert.deepEqual([none.license, none.text, none.riff.length], [null, "", 0]);
+});
+
 test("a finding says what it means, and a column without a role what to do", () => {
   const silent = "t_s,fx_n\n" + Array.from({ length: 4000 }, (_, i) => `${i / 2000},0.25\n`).join("");
   const { findings } = author.process({ name: "silent.csv", bytes: Buffer.from(silent) });

@@ -30,6 +30,16 @@ impl Ahap {
             pattern: entries,
         }
     }
+
+    /// Sets a description, in the metadata, unless it is empty.
+    #[must_use]
+    pub fn with_description(mut self, description: &str) -> Self {
+        if !description.is_empty() {
+            let metadata = self.metadata.get_or_insert_default();
+            metadata.insert("Description".to_owned(), description.into());
+        }
+        self
+    }
 }
 
 /// A curve in parts, of which each begins with the last point of the one before: between curves a control stays.

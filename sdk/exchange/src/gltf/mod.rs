@@ -11,6 +11,6 @@ mod write;
 pub use material::{EXTENSION, Material, MediaType, material_schema};
 pub use read::{Texture, read};
 
-pub(crate) use read::held;
+pub(crate) use read::{copyright, held};
 #[cfg(feature = "export")]
 pub(crate) use write::written;

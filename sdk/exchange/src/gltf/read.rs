@@ -101,6 +101,11 @@ pub fn read(file: &[u8]) -> Result<Texture, Fault> {
     })
 }
 
+/// The copyright that a file states; `None` of a file without one, or that cannot be read.
+pub(crate) fn copyright(file: &[u8]) -> Option<String> {
+    crate::rights::text(chunks(file).ok()?.json, "asset", "copyright")
+}
+
 /// The texture of a file as an asset, with its own name.
 pub(crate) fn held(file: &[u8], _: &Naming<'_>) -> Result<Held, Fault> {
     let texture = read(file)?;

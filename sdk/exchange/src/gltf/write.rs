@@ -1,5 +1,6 @@
 //! A glTF file of a rectangle whose material carries an asset.
 
+use htex_format::Rights;
 use serde_json::{Value, json};
 
 use super::glb;
@@ -43,7 +44,12 @@ pub(crate) fn written(job: &AssetJob<'_>) -> Result<Vec<u8>, ExchangeError> {
         tex_coord: 0,
         tex_coord_size_mm: Some([SIDE_MM; 2]),
     };
-    let mut document = document(&job.asset.manifest().name, &texture, &buffer);
+    let manifest = job.asset.manifest();
+    let mut document = document(&manifest.name, &texture, &buffer);
+    let rights = Rights::of(manifest);
+    if !rights.is_empty() {
+        document["asset"]["copyright"] = rights.described("").into();
+    }
     let file = match job.extension {
         Some("gltf") => {
             document["buffers"][0]["uri"] = data_uri(&buffer.bytes).into();

@@ -2,6 +2,7 @@
 
 use std::io::Cursor;
 
+use htex_format::Rights;
 use htex_map::MOST_SIDE;
 #[cfg(feature = "export")]
 use png::Encoder;
@@ -85,6 +86,27 @@ pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     })
 }
 
+/// The rights in the text chunks before the pixels; none of a file without any, or that cannot be read.
+pub(crate) fn rights(bytes: &[u8]) -> Rights {
+    let limits = Limits {
+        bytes: MOST_DECODED,
+    };
+    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
+    let Ok(info) = decoder
+        .read_header_info()
+        .map(|_| ())
+        .and_then(|()| decoder.read_info())
+    else {
+        return Rights::default();
+    };
+    let info = info.info();
+    let plain = info.uncompressed_latin1_text.iter();
+    let plain = plain.map(|chunk| Rights::from_text(&chunk.text));
+    let wide = info.utf8_text.iter();
+    let wide = wide.filter_map(|chunk| Some(Rights::from_text(&chunk.get_text().ok()?)));
+    plain.chain(wide).fold(Rights::default(), Rights::or)
+}
+
 /// The grey values of expanded pixels.
 fn grey(pixels: &[u8], color: ColorType, width: usize) -> Result<Vec<u8>, Fault> {
     let place = |index: usize| format!("row {}, column {}", index / width + 1, index % width + 1);
@@ -146,7 +168,7 @@ fn pitch_mm(stated: PixelDimensions) -> Result<Option<f64>, Fault> {
 
 /// Writes an image as 8-bit grey PNG, with whole pixels in a metre.
 #[cfg(feature = "export")]
-pub(super) fn to_bytes(image: &Image) -> Result<Vec<u8>, Fault> {
+pub(super) fn to_bytes(image: &Image, rights: &Rights) -> Result<Vec<u8>, Fault> {
     let failed = |error: png::EncodingError| Fault::whole(error.to_string());
     let rows = image.grey.len() / image.width.max(1);
     let mut bytes = Vec::new();
@@ -161,6 +183,10 @@ pub(super) fn to_bytes(image: &Image) -> Result<Vec<u8>, Fault> {
             unit: Unit::Meter,
         }
     }));
+    if !rights.is_empty() {
+        let text = encoder.add_itxt_chunk("Copyright".to_owned(), rights.described(""));
+        text.map_err(failed)?;
+    }
     let mut writer = encoder.write_header().map_err(failed)?;
     writer.write_image_data(&image.grey).map_err(failed)?;
     writer.finish().map_err(failed)?;

@@ -11,8 +11,8 @@ mod image;
 mod write;
 
 pub(crate) use asset::{Surface, held};
-pub(crate) use image::PITCH_MM;
 pub use image::{Image, read};
+pub(crate) use image::{PITCH_MM, rights};
 #[cfg(feature = "export")]
 pub(crate) use write::written;
 

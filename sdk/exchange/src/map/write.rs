@@ -2,6 +2,7 @@
 
 use htex_author::{AuthorError, Difference, TextureSpectrum};
 use htex_dsp::grid::level_rms;
+use htex_format::Rights;
 use htex_host::{FitCondition, FitRequest, Registry};
 use htex_play::{Asset, Motion};
 
@@ -35,13 +36,14 @@ pub(crate) fn written(
     model: Option<&str>,
     motion: Option<Motion>,
 ) -> Result<Printed, ExchangeError> {
+    let rights = Rights::of(asset.manifest());
     match own(asset, model)? {
         None => fitted(asset, model, motion),
         Some(_) if motion.is_some() => Err(cannot(
             "the texture is a map, whose pixels are the same at every motion; leave out speed and force",
         )),
         Some((parameters, level_rms)) => {
-            let (bytes, white) = image(&parameters, level_rms)?;
+            let (bytes, white) = image(&parameters, level_rms, &rights)?;
             Ok(Printed {
                 bytes,
                 lost: None,
@@ -106,7 +108,11 @@ fn fitted(
         signal: Vec::new(),
         signal_rate_hz: 0.0,
     };
-    let (bytes, white) = image(&fit.parameters, fit.level_rms)?;
+    let (bytes, white) = image(
+        &fit.parameters,
+        fit.level_rms,
+        &Rights::of(asset.manifest()),
+    )?;
     Ok(Printed {
         bytes,
         lost: Some(loss(&reference, shape, fit.level_rms)?),
@@ -133,7 +139,11 @@ fn loss(reference: &TextureSpectrum, shape: Vec<f64>, level: f64) -> Result<Loss
 }
 
 /// The image of parameters, which is read again, and how much white is at a level.
-fn image(parameters: &[f64], level_rms: f64) -> Result<(Vec<u8>, f64), ExchangeError> {
+fn image(
+    parameters: &[f64],
+    level_rms: f64,
+    rights: &Rights,
+) -> Result<(Vec<u8>, f64), ExchangeError> {
     let at = |index: usize| parameters.get(index).copied().unwrap_or_default();
     let grey = parameters.get(GREY..).unwrap_or_default();
     let image = Image {
@@ -142,7 +152,7 @@ fn image(parameters: &[f64], level_rms: f64) -> Result<(Vec<u8>, f64), ExchangeE
         pitch_mm: Some(at(PITCH)),
     };
     let own = |fault: Fault| cannot(&fault.to_string());
-    let bytes = to_bytes(&image).map_err(own)?;
+    let bytes = to_bytes(&image, rights).map_err(own)?;
     match read(&bytes).map_err(own)?.grey == image.grey {
         true => Ok((bytes, level_rms * f64::from(u8::MAX) / at(RMS))),
         false => Err(cannot("what was written is read as another image")),

@@ -56,6 +56,8 @@ struct Described<'a> {
     profile: Option<&'a str>,
     keeps: &'a str,
     loses: &'a str,
+    /// Where its files carry licence and author.
+    rights: &'a str,
 }
 
 #[derive(Serialize)]
@@ -106,6 +108,7 @@ fn described(format: &'static Format) -> Option<Described<'static>> {
         profile,
         keeps: format.keeps,
         loses: format.loses,
+        rights: format.rights.place,
     })
 }
 
@@ -161,6 +164,7 @@ fn how<'a>(name: &'a str, settings: &mut Document) -> Result<Import<'a>, Refusal
         profile: profile.as_deref().map(Profile::find).transpose()?,
         fit: settings.table(&names)?,
         metadata: settings.table(Metadata::NAMES)?,
+        license_file: None,
         tool: TOOL,
     };
     how.metadata.check()?;

@@ -15,6 +15,7 @@ mod recorded;
 mod recordings;
 mod refusal;
 mod represented;
+mod rights;
 mod validate;
 
 use crate::answer::Function;
@@ -32,6 +33,7 @@ pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
     ("models", models::models),
     ("process", process::process),
     ("recorded", recorded::recorded),
+    ("rights", rights::rights),
     ("threshold", felt::threshold),
     ("validate", validate::validate),
 ];

@@ -1,0 +1,150 @@
+//! Where files of a format carry the licence and the author of a texture.
+
+use htex_format::{Rights, check_license};
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::error::{ExchangeError, list};
+use crate::format::Format;
+use crate::gltf;
+use crate::map;
+
+/// Where a format has its place, and how it is read.
+#[derive(Debug, Clone, Copy)]
+pub struct RightsPlace {
+    /// The place, in words.
+    pub place: &'static str,
+    pub(crate) read: fn(&[u8]) -> Rights,
+}
+
+/// Of a format that has no place: the file `NAME.license` beside it.
+pub(crate) const BESIDE: RightsPlace = RightsPlace {
+    place: "FILE.license",
+    read: |_| Rights::default(),
+};
+pub(crate) const HAPTIC: RightsPlace = RightsPlace {
+    place: "metadata.description, metadata.author",
+    read: |bytes| {
+        let author = text(bytes, "metadata", "author");
+        of(text(bytes, "metadata", "description")).or(Rights::new(None, author.as_deref()))
+    },
+};
+pub(crate) const AHAP: RightsPlace = RightsPlace {
+    place: "Metadata.Description",
+    read: |bytes| of(text(bytes, "metadata", "Description")),
+};
+pub(crate) const ANDROID: RightsPlace = RightsPlace {
+    place: "rights (JSON), a comment (Kotlin)",
+    read: |bytes| Rights::from_text(&String::from_utf8_lossy(bytes)),
+};
+pub(crate) const HJIF: RightsPlace = RightsPlace {
+    place: "description",
+    read: |bytes| of(text(bytes, "description", "")),
+};
+pub(crate) const WAV: RightsPlace = RightsPlace {
+    place: "LIST INFO: ICOP, IART",
+    read: |_| Rights::default(),
+};
+pub(crate) const PNG: RightsPlace = RightsPlace {
+    place: "iTXt: Copyright",
+    read: map::rights,
+};
+pub(crate) const GLTF: RightsPlace = RightsPlace {
+    place: "asset.copyright, and the asset",
+    read: |bytes| of(gltf::copyright(bytes)),
+};
+
+fn of(text: Option<String>) -> Rights {
+    text.map(|text| Rights::from_text(&text))
+        .unwrap_or_default()
+}
+
+/// The parts of a JSON file that may hold text for people; the rest is not kept.
+#[derive(Deserialize)]
+struct Head {
+    #[serde(default, alias = "Metadata")]
+    metadata: Value,
+    #[serde(default)]
+    description: Value,
+    #[serde(default)]
+    asset: Value,
+}
+
+/// A string of a JSON file: `description`, or `metadata` or `asset` with a key in it. `None` where there is none.
+pub(crate) fn text(bytes: &[u8], part: &str, key: &str) -> Option<String> {
+    let head: Head = serde_json::from_slice(bytes).ok()?;
+    let part = match part {
+        "metadata" => head.metadata.get(key)?.clone(),
+        "asset" => head.asset.get(key)?.clone(),
+        _ => head.description,
+    };
+    part.as_str().map(str::to_owned)
+}
+
+/// What a file says of its rights, and what the file `NAME.license` beside it says.
+pub(crate) struct Stated {
+    pub(crate) rights: Rights,
+    /// What was not taken, each a sentence.
+    pub(crate) left_out: Vec<String>,
+}
+
+impl Stated {
+    /// Brings both together. What is given anyway is not asked for.
+    ///
+    /// # Errors
+    /// When they state different licences or authors, of which none is given.
+    pub(crate) fn of(
+        format: &Format,
+        bytes: &[u8],
+        beside: Option<&str>,
+        given: &Rights,
+    ) -> Result<Self, ExchangeError> {
+        let inside = (format.rights.read)(bytes);
+        let beside = beside.map(Rights::from_text).unwrap_or_default();
+        agree("license", &inside.license, &beside.license, &given.license)?;
+        agree("author", &inside.author, &beside.author, &given.author)?;
+        let mut stated = Self {
+            rights: inside.or(beside),
+            left_out: Vec::new(),
+        };
+        if let Some(license) = &stated.rights.license
+            && given.license.is_none()
+            && matches!(check_license(license), Err(error) if error.rule().code == "LICENSE_INVALID")
+        {
+            stated.left_out.push(format!(
+                "The licence {license:?} that the file states is no SPDX expression, and is left out."
+            ));
+            stated.rights.license = None;
+        }
+        Ok(stated)
+    }
+
+    /// Checks that an asset that the file holds states the same, where it states something.
+    ///
+    /// # Errors
+    /// When it states another licence or author, of which none is given.
+    pub(crate) fn check(&self, own: &Rights, given: &Rights) -> Result<(), ExchangeError> {
+        agree(
+            "license",
+            &own.license,
+            &self.rights.license,
+            &given.license,
+        )?;
+        agree("author", &own.author, &self.rights.author, &given.author)
+    }
+}
+
+fn agree(
+    setting: &'static str,
+    one: &Option<String>,
+    other: &Option<String>,
+    given: &Option<String>,
+) -> Result<(), ExchangeError> {
+    match (one, other, given) {
+        (Some(one), Some(other), None) if one != other => Err(ExchangeError::Rights {
+            setting,
+            stated: list([one, other].map(|words| format!("{words:?}")).into_iter()),
+        }),
+        _ => Ok(()),
+    }
+}

@@ -7,8 +7,8 @@ use std::time::Instant;
 use clap::Args;
 use htex_author::FeltShare;
 use htex_build::{
-    Build as Recipe, BuildOptions, Built, Destination, FindingShare, Job, Report, Status,
-    TextureReport, Why, report_failure,
+    Build as Recipe, BuildError, BuildOptions, Built, Destination, FindingShare, Job, Report,
+    Status, TextureReport, Why, named_briefly, report_failure,
 };
 use htex_finding::{Severity, plain};
 use htex_storage::Location;
@@ -51,6 +51,10 @@ pub(crate) struct Build {
     /// Go on after a texture that cannot be made, and leave it out
     #[arg(long)]
     keep_going: bool,
+
+    /// Exit with 1 and change nothing if the library would lose textures, e.g. because a folder of recordings was moved
+    #[arg(long)]
+    no_removals: bool,
 
     /// Check the recipe, its files, plugins, options and gates, say what would be fitted and why, and fit nothing
     #[arg(long)]
@@ -95,6 +99,8 @@ struct Summary<'a> {
     /// Textures with a warning that is no finding of a recording.
     other_warnings: usize,
     left_out: Vec<&'a TextureReport>,
+    /// Names of textures that the library before had and the recipe no longer asks for.
+    removed: &'a [String],
 }
 
 /// What is fitted by a build.
@@ -114,10 +120,19 @@ impl Build {
         built
     }
 
+    /// Writes an error into the report, but for a build that changes nothing.
     fn failed(&self, failure: &Failure) -> Result<(), Failure> {
         let lines = failure.to_lines();
         let to = Destination::parse(&self.output, self.work.as_deref());
-        if let (Ok(to), false, Exit::FAILURE) = (to, self.dry_run, failure.exit_code()) {
+        let changes_nothing = self.dry_run
+            || matches!(
+                failure,
+                Failure::Build {
+                    error: BuildError::Removes { .. },
+                    ..
+                }
+            );
+        if let (Ok(to), false, Exit::FAILURE) = (to, changes_nothing, failure.exit_code()) {
             // A folder in which not even that can be written is what `failure` is about.
             let _ = report_failure(to.folder(), &tool(), &lines);
         }
@@ -135,6 +150,7 @@ impl Build {
             .with_limits(WasmLimit::all(&self.wasm_limit))
             .with_plugins(self.plugin.clone())
             .with_prune(self.prune)
+            .with_no_removals(self.no_removals)
             .with_browser_package(self.browser_package.clone());
         let to = Destination::parse(&self.output, self.work.as_deref()).of(&self.recipe)?;
         if to.remote().is_none() && self.work.is_some() {
@@ -142,6 +158,7 @@ impl Build {
                 "--work goes with a URI after -o; a build of this machine works in its own folder";
             return Err(Failure::Usage(sentence.to_owned()));
         }
+        let options = options.with_published(to.remote());
         let mut build = Recipe::open(&self.recipe, to.folder(), options).of(&self.recipe)?;
         let work = Work::of(&build);
         if self.dry_run {
@@ -168,6 +185,7 @@ impl Build {
                 "to_fit": to_fit,
                 "textures": textures,
                 "as_they_were": textures - work.textures,
+                "removed": build.removed(),
                 "recordings": work.recordings,
                 "recording_bytes": work.bytes,
             }))?;
@@ -181,6 +199,7 @@ impl Build {
                 work.recordings,
                 textures - work.textures
             );
+            text += &removed(&build.removed());
             print(&text)?;
         }
         Ok(Exit::SUCCESS)
@@ -218,6 +237,7 @@ impl Build {
             findings: &report.findings,
             other_warnings: other_warnings(report),
             left_out,
+            removed: &report.removed,
         };
         if self.json {
             print_json(&summary)?;
@@ -251,6 +271,18 @@ fn fit(build: &mut Recipe, work: &Work) -> Result<(), htex_build::BuildError> {
     let ended = build.run(&done);
     bar.finish_and_clear();
     ended
+}
+
+/// A line with the textures that are removed, if there are any.
+fn removed(names: &[String]) -> String {
+    match names.len() {
+        0 => String::new(),
+        count => format!(
+            "removed: {count} texture{} ({})\n",
+            if count == 1 { "" } else { "s" },
+            plain(&named_briefly(names))
+        ),
+    }
 }
 
 /// Counts the textures with a warning that is no finding of a recording.
@@ -324,6 +356,7 @@ impl Summary<'_> {
                 share.within_repeatability
             );
         }
+        text += &removed(self.removed);
         text += &self.findings();
         text += &format!(
             "catalogue: {}\n",

@@ -750,3 +750,58 @@ fn a_table_says_what_files_do_not() {
     let recordings = place.json(&["info", "dist/textures/A.htex", "--json"]);
     assert_eq!(recordings["conditions"].as_array().unwrap().len(), 1);
 }
+
+/// A folder that was moved takes its textures out of the library: that is said, and refused where nothing may be removed.
+#[test]
+fn textures_whose_recordings_are_gone_are_named() {
+    let place = place();
+    build(&place, "dist", &[]);
+    let before = results(&place.path("dist"));
+    for take in ["1", "2"] {
+        fs::remove_file(place.path(&format!("rec/vinyl_{take}.csv"))).unwrap();
+    }
+    let names = serde_json::json!(["vinyl/1", "vinyl/2"]);
+    assert_eq!(build(&place, "dist", &["--dry-run"])["removed"], names);
+    let line = ["build", "library.toml", "-o", "dist"];
+    let refused = |place: &Place| {
+        let run = place.run(&[&line[..], &["--no-removals"]].concat());
+        assert_eq!(run.code(), 1, "{}", run.text());
+        assert_same(&results(&place.path("dist")), &before);
+        run.error()
+    };
+    let error = refused(&place);
+    assert!(error.contains("would lose 2 textures (vinyl/…)"), "{error}");
+    // A report that is gone hides nothing: the library has its own index.
+    let report = place.path("dist/build-report.json");
+    fs::remove_file(&report).unwrap();
+    assert_eq!(build(&place, "dist", &["--dry-run"])["removed"], names);
+    fs::write(&report, &before["build-report.json"]).unwrap();
+
+    let text = place.text(&line);
+    assert!(text.contains("removed: 2 textures (vinyl/…)\n"), "{text}");
+    let after = results(&place.path("dist"));
+    assert!(!after.contains_key("textures/vinyl/1.htex"));
+    let report: Value = serde_json::from_slice(&after["build-report.json"]).unwrap();
+    assert_eq!(report["removed"], names);
+    let page = String::from_utf8_lossy(&after["index.html"]).into_owned();
+    assert!(page.contains("2 removed (vinyl/…)"));
+    assert_eq!(
+        build(&place, "dist", &["--no-removals"])["removed"],
+        serde_json::json!([])
+    );
+
+    // A texture that misses a gate is lost, too.
+    let before = results(&place.path("dist"));
+    place.write(
+        "library.toml",
+        RECIPE.replace("min_segments = 1", "min_segments = 900"),
+    );
+    let run = place.run(&[&line[..], &["--no-removals"]].concat());
+    assert_eq!(run.code(), 1, "{}", run.text());
+    assert!(
+        run.error().contains("would lose 4 textures"),
+        "{}",
+        run.error()
+    );
+    assert_same(&results(&place.path("dist")), &before);
+}

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::io::Cursor;
 use std::path::Path;
 
 use htex_files::AtFile;
-use htex_format::Asset;
+use htex_format::{Asset, Rights};
 use htex_library::{Packed, Writer};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -23,11 +24,12 @@ use crate::job::Job;
 use crate::kept::Kept;
 use crate::made::Made;
 use crate::plan::{Plan, PlannedTexture};
+use crate::removed::built;
 use crate::report::{LibraryReport, REPORT, Report, Status, TextureReport, felt_shares};
 
-const REPORT_FILE: &str = "build-report.json";
+pub(crate) const REPORT_FILE: &str = "build-report.json";
 /// Most bytes of a report that is read: a few hundred thousand textures.
-const MOST_REPORT_BYTES: u64 = 1 << 30;
+pub(crate) const MOST_REPORT_BYTES: u64 = 1 << 30;
 
 /// The file of what is known of the library that was written last, in the folder of what is kept.
 const KEPT_LIBRARY: &str = "library.json";
@@ -47,9 +49,8 @@ pub(crate) fn assemble(
     made: &(dyn Fn(&str) -> Option<Made> + Sync),
     (dist, kept): (&Dist, &Kept),
     options: &BuildOptions,
+    textures_before: &BTreeSet<String>,
 ) -> Result<Built, BuildError> {
-    let parts = dist.empty_parts()?;
-    let before = previous(dist);
     let file = format!("{}.htexlib", plan.library);
     let path = dist.at(Path::new(&file))?;
     let found = |key: &str, texture: &PlannedTexture| {
@@ -62,6 +63,18 @@ pub(crate) fn assemble(
         bytes => job.named(bytes),
     };
     let library = path.display();
+    if options.no_removals {
+        let judge = |((key, job), texture): (&(String, Job), &PlannedTexture)| {
+            judged(texture, key, job, &found(key, texture)?)
+        };
+        let planned = jobs.par_iter().zip(&plan.textures);
+        let textures = planned.map(judge).collect::<Result<Vec<_>, BuildError>>()?;
+        let left_out = textures.iter().filter(|t| t.status == Status::LeftOut);
+        let lost = left_out.filter(|t| textures_before.contains(&t.name));
+        BuildError::refuse_removals(lost.map(|t| t.name.clone()).collect())?;
+    }
+    let parts = dist.empty_parts()?;
+    let before = previous(dist);
     let report = |((key, job), texture): (&(String, Job), &PlannedTexture)| {
         let mut made = found(key, texture)?;
         made.asset = asset(job, &made)?;
@@ -69,7 +82,10 @@ pub(crate) fn assemble(
         if report.status == Status::Built {
             dist.put(&Dist::texture(&texture.name), &made.asset)?;
             if options.browser_package.is_none() {
-                dist.put(&Dist::sound(&texture.name), &made.sound)?;
+                dist.put(
+                    &Dist::sound(&texture.name),
+                    &with_rights(made.sound, &report)?,
+                )?;
             }
         }
         Ok(report)
@@ -104,6 +120,7 @@ pub(crate) fn assemble(
         program: options.program.clone(),
         error: Vec::new(),
         library: library_report(plan, file, &packed, &textures),
+        removed: plan.removed(textures_before),
         felt_shares: felt_shares(&textures),
         findings: shares(&textures),
         textures,
@@ -113,6 +130,18 @@ pub(crate) fn assemble(
     put_report(dist, &report)?;
     remove_stale(before, &report, dist, options)?;
     Ok(Built { report })
+}
+
+/// Adds licence and author of a texture to its sound; a change of metadata makes no new sound.
+fn with_rights(sound: Vec<u8>, report: &TextureReport) -> Result<Vec<u8>, BuildError> {
+    let asset = report.asset.as_ref();
+    let license = asset.and_then(|asset| asset.license.as_deref());
+    let author = asset.and_then(|asset| asset.author.as_deref());
+    let mut wav = Cursor::new(sound);
+    Rights::new(license, author)
+        .add_to_wav(&mut wav)
+        .at(&report.name)?;
+    Ok(wav.into_inner())
 }
 
 /// Reports a texture, with the gates that it misses.
@@ -241,12 +270,10 @@ fn remove_stale(
     let Some(before) = before else {
         return Ok(());
     };
-    let built = |report: &Report| -> BTreeSet<String> {
-        let built = report.textures.iter().filter(|t| t.status == Status::Built);
-        built.map(|t| t.name.clone()).collect()
-    };
-    let kept = built(now);
-    for name in built(&before)
+    let kept: BTreeSet<String> = built(now).collect();
+    let before_built: BTreeSet<String> =
+        built(&before).chain(now.removed.iter().cloned()).collect();
+    for name in before_built
         .iter()
         .filter(|name| htex_library::check_name(name).is_ok())
     {

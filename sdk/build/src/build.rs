@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use htex_files::FileError;
 use htex_host::WasmLimits;
+use htex_storage::Location;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -25,6 +26,7 @@ use crate::made::{Made, Outcome};
 use crate::plan::{Plan, PlannedTexture};
 use crate::reasons::{Reasons, Why};
 use crate::recipe::Recipe;
+use crate::removed::textures_before;
 
 /// The file of hashes, in the folder of what is kept.
 const HASHES: &str = "files.json";
@@ -44,6 +46,10 @@ pub struct BuildOptions {
     /// Plugins that a person names: WASM modules, or native libraries, which run with all rights of this program. A recipe names
     /// modules alone.
     pub plugins: Vec<PathBuf>,
+    /// Whether to refuse to remove textures that the library of the build before has.
+    pub no_removals: bool,
+    /// The URI that the results are copied to, whose library is the one before where this machine has none.
+    pub published: Option<Location>,
     /// Whether to remove at once what was fitted and no texture uses any more; otherwise it stays for 30 days.
     pub prune: bool,
 }
@@ -58,6 +64,8 @@ impl BuildOptions {
             program: program.into(),
             browser_package: None,
             plugins: Vec::new(),
+            no_removals: false,
+            published: None,
             prune: false,
         }
     }
@@ -89,6 +97,20 @@ impl BuildOptions {
         self
     }
 
+    /// Sets whether to refuse to remove textures that the library of the build before has.
+    #[must_use]
+    pub fn with_no_removals(mut self, no_removals: bool) -> Self {
+        self.no_removals = no_removals;
+        self
+    }
+
+    /// Sets the URI that the results are copied to ([`crate::Destination::remote`]).
+    #[must_use]
+    pub fn with_published(mut self, location: Option<&Location>) -> Self {
+        self.published = location.cloned();
+        self
+    }
+
     /// Sets whether to remove at once what no texture uses any more.
     #[must_use]
     pub fn with_prune(mut self, prune: bool) -> Self {
@@ -114,6 +136,8 @@ pub struct Build {
     cache: Cache,
     dist: Dist,
     kept: Arc<Kept>,
+    /// Textures of the library before this build.
+    before: BTreeSet<String>,
     /// Indices of jobs that an earlier build has not done.
     pending: Vec<usize>,
     /// What was made and is not kept for the next build.
@@ -130,7 +154,7 @@ impl Build {
     ///
     /// # Errors
     /// See [`Recipe::open`]; when a glob matches nothing, a template or a pattern fails, a name cannot be one, two recordings of a texture have
-    /// different settings; when a file cannot be read, the folder cannot be written, or another build uses it.
+    /// different settings; when the library would lose textures and the options forbid it; when a file cannot be read, the folder cannot be written, or another build uses it.
     pub fn open(recipe: &Path, output: &Path, options: BuildOptions) -> Result<Self, BuildError> {
         let Prepared {
             named,
@@ -140,6 +164,11 @@ impl Build {
             kept,
             lock,
         } = Prepared::new(recipe, output, &options.plugins)?;
+        let dist = Dist::new(output);
+        let before = textures_before(&dist, &plan.library, options.published.as_ref());
+        if options.no_removals {
+            BuildError::refuse_removals(plan.removed(&before))?;
+        }
         let pool = ThreadPoolBuilder::new().num_threads(options.jobs).build();
         let pool = pool.at("jobs")?;
         let job = |texture: &PlannedTexture| {
@@ -162,8 +191,9 @@ impl Build {
             plan,
             jobs,
             cache,
-            dist: Dist::new(output),
+            dist,
             kept,
+            before,
             pending,
             unkept: BTreeMap::new(),
             elsewhere,
@@ -200,6 +230,11 @@ impl Build {
         let mut workbench = Workbench::new(self.options.limits.clone());
         workbench.elsewhere = self.elsewhere.clone();
         workbench
+    }
+
+    /// Returns the names of textures that the library before this build has and the recipe no longer asks for.
+    pub fn removed(&self) -> Vec<String> {
+        self.plan.removed(&self.before)
     }
 
     /// Returns the textures that the recipe asks for.
@@ -312,7 +347,8 @@ impl Build {
     /// Writes the library, the textures, the report and the catalogue.
     ///
     /// # Errors
-    /// When jobs are still pending, or a file cannot be written.
+    /// When jobs are still pending, or a file cannot be written; when a texture of the library before is left out and the options forbid
+    /// removals, in which case nothing was written.
     pub fn finish(self) -> Result<Built, BuildError> {
         if let Some(i) = self.pending.first() {
             let problem = "it is not fitted yet; run the build again";
@@ -323,7 +359,16 @@ impl Build {
             None => self.cache.get(key),
         };
         let put = (&self.dist, &*self.kept);
-        let assemble = || assemble(&self.plan, &self.jobs, &made, put, &self.options);
+        let assemble = || {
+            assemble(
+                &self.plan,
+                &self.jobs,
+                &made,
+                put,
+                &self.options,
+                &self.before,
+            )
+        };
         let built = self.pool.install(assemble)?;
         let keys: BTreeSet<&str> = self.jobs.iter().map(|(key, _)| &key[..]).collect();
         self.cache.keep(&keys, self.options.prune)?;

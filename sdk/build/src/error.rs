@@ -27,6 +27,12 @@ pub enum BuildError {
     /// Another build uses the folder.
     #[error("{folder}: another build is writing to it; wait for it to end, or give another folder")]
     Locked { folder: PathBuf },
+    /// The library would lose textures, and the build keeps all. Nothing was changed.
+    #[error(
+        "the library would lose {} textures ({}); bring back their recordings, or allow removals",
+        .textures.len(), crate::named_briefly(.textures)
+    )]
+    Removes { textures: Vec<String> },
     /// The result of a job is damaged: what is wrong with it.
     #[error("the result of a job is damaged ({0}); make it again")]
     Damaged(String),
@@ -36,6 +42,14 @@ pub enum BuildError {
 }
 
 impl BuildError {
+    /// Refuses to remove textures; none is no error.
+    pub(crate) fn refuse_removals(textures: Vec<String>) -> Result<(), Self> {
+        match textures.is_empty() {
+            true => Ok(()),
+            false => Err(Self::Removes { textures }),
+        }
+    }
+
     pub(crate) fn at(place: impl Display, problem: impl Display) -> Self {
         Self::At {
             place: place.to_string(),

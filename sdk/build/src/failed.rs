@@ -53,6 +53,7 @@ fn of_nothing() -> Report {
             textures: 0,
             left_out: 0,
         },
+        removed: Vec::new(),
         felt_shares: Default::default(),
         findings: Default::default(),
         textures: Vec::new(),

@@ -53,6 +53,7 @@ mod plan;
 mod publish;
 mod reasons;
 mod recipe;
+mod removed;
 mod report;
 mod rules;
 mod sound;
@@ -74,6 +75,7 @@ pub use reasons::Why;
 pub use recipe::{
     At, Gates, LibraryPart, ModelGate, NumberOrTemplate, Override, Recipe, Settings, Textures,
 };
+pub use removed::named_briefly;
 pub use report::{
     AssetReport, LibraryReport, Missed, REPORT, RecordingReport, Report, Status, TextureReport,
     recipe_schema, report_schema,

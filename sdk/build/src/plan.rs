@@ -1,6 +1,6 @@
 //! The plan: the textures that a recipe asks for, each with its recordings and settings.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
 use globset::GlobSet;
@@ -68,6 +68,13 @@ impl PlannedTexture {
 }
 
 impl Plan {
+    /// Returns those of the names that no texture has.
+    pub(crate) fn removed(&self, names: &BTreeSet<String>) -> Vec<String> {
+        let own: BTreeSet<&String> = self.textures.iter().map(|texture| &texture.name).collect();
+        let removed = names.iter().filter(|name| !own.contains(name));
+        removed.cloned().collect()
+    }
+
     /// Finds the recordings of a recipe that lies in `folder`. Files in the build's own `output` folder are no recordings.
     ///
     /// # Errors

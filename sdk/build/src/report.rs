@@ -1,4 +1,5 @@
-//! The report of a build: `build-report.json`. It has no times and no folders: equal builds have equal reports.
+//! The report of a build: `build-report.json`. It has no times and no folders: equal builds have equal reports, except for what
+//! the build before had and this one removed.
 
 use std::collections::BTreeMap;
 
@@ -28,6 +29,9 @@ pub struct Report {
     pub error: Vec<String>,
     /// The library.
     pub library: LibraryReport,
+    /// Names of textures that the library before this build had and the recipe no longer asks for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub removed: Vec<String>,
     /// Of the textures of the library, by the id of a model, how many it keeps at all their conditions below the difference threshold,
     /// and how many within what their recordings vary.
     pub felt_shares: BTreeMap<String, FeltShare>,

@@ -29,11 +29,14 @@ impl Build {
         keep_going: bool,
         work: Option<PathBuf>,
         plugins: Vec<PathBuf>,
+        no_removals: bool,
     ) -> PyResult<Self> {
         let options = BuildOptions::new(TOOL)
             .with_keep_going(keep_going)
-            .with_plugins(plugins);
+            .with_plugins(plugins)
+            .with_no_removals(no_removals);
         let to = Destination::parse(&output, work.as_deref()).map_err(raised)?;
+        let options = options.with_published(to.remote());
         let build = py.detach(|| htex_build::Build::open(&recipe, to.folder(), options));
         let build = build.map_err(|error| failed(&to, error))?;
         Ok(Self(Mutex::new(Some(build)), to))
@@ -175,6 +178,9 @@ pub(crate) fn run_job<'py>(py: Python<'py>, key: &str, job: &str) -> PyResult<Bo
 
 /// Writes an error into the report of the folder, as `htex build` does, and makes its exception.
 fn failed(to: &Destination, error: BuildError) -> PyErr {
+    if matches!(error, BuildError::Removes { .. }) {
+        return raised(error);
+    }
     // A folder in which not even that can be written is what the error is about.
     let _ = htex_build::report_failure(to.folder(), TOOL, &lines(&error));
     raised(error)

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::findings::FindingShare;
+use crate::removed::named_briefly;
 use crate::report::{Report, TextureReport};
 
 const PAGE: &str = include_str!("page.html");
@@ -16,6 +17,7 @@ pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
         "library": report.library,
         "textures": textures,
         "findings": findings(report),
+        "removed": removed(report),
         "browserPackage": browser_package,
     });
     // Inside a script, only `<` could end it.
@@ -24,6 +26,14 @@ pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
         .replace("@SCRIPT@", SCRIPT)
         .replace("@TITLE@", &escaped(&report.library.name))
         .replace("@DATA@", &data)
+}
+
+/// How many textures were removed and which, in words; empty if none.
+fn removed(report: &Report) -> String {
+    match report.removed.len() {
+        0 => String::new(),
+        count => format!("{count} removed ({})", named_briefly(&report.removed)),
+    }
 }
 
 /// Findings by code, the gravest first: code, severity, number of textures, first names.

@@ -1,4 +1,4 @@
-const { library, textures, findings, browserPackage } = JSON.parse(document.getElementById("data").textContent);
+const { library, textures, findings, removed, browserPackage } = JSON.parse(document.getElementById("data").textContent);
 const STEP = 200; // rows shown at a time
 const RATE = 8000; // of sounds that are made in the page, Hz
 const element = (id) => document.getElementById(id);
@@ -146,7 +146,8 @@ function show() {
 
 element("summary").textContent =
   `${library.textures} textures in ${library.file}, ${library.bytes.toLocaleString("en")} bytes` +
-  (library.left_out ? `; ${library.left_out} left out` : "");
+  (library.left_out ? `; ${library.left_out} left out` : "") +
+  (removed ? `; ${removed}` : "");
 for (const { code, severity, textures, inLibrary, first } of findings) {
   const more = textures > first.length ? ", …" : "";
   const find = tag("button", { type: "button" }, code);

@@ -18,6 +18,7 @@ def build(
     keep_going: bool = False,
     work: Path | None = None,
     plugins: Sequence[Path] = (),
+    no_removals: bool = False,
 ) -> dict[str, Any]:
     """Build a library of textures from a recipe, as ``htex build`` does.
 
@@ -31,14 +32,17 @@ def build(
         work: The folder in which results for a URI are made; one of the user's cache when absent.
         plugins: Plugins to fit with: WASM modules (sandboxed), or native libraries, which run with all your rights. A recipe names WASM
             modules alone.
+        no_removals: Raise and change nothing if the library would lose textures, e.g. because a folder of recordings was moved.
 
     Returns:
-        The report, as in ``build-report.json``: ``report["library"]`` and ``report["textures"]``.
+        The report, as in ``build-report.json``: ``report["library"]`` and ``report["textures"]``; ``report["removed"]``, if textures
+        of the library before are gone.
 
     Raises:
-        BuildError: The recipe is wrong, or a texture cannot be made.
+        BuildError: The recipe is wrong, a texture cannot be made, or the library would lose textures.
         OSError: A file cannot be read or written.
     """
-    planned = _htex.Build(os.fspath(recipe), os.fspath(output), keep_going, work, [os.fspath(plugin) for plugin in plugins])
+    named = [os.fspath(plugin) for plugin in plugins]
+    planned = _htex.Build(os.fspath(recipe), os.fspath(output), keep_going, work, named, no_removals)
     planned.run()
     return planned.finish()

@@ -249,7 +249,7 @@ class Build:
     """A build of a library that is planned."""
 
     def __new__(
-        cls, recipe: str, output: str, keep_going: bool, work: _Path | None, plugins: Sequence[_Path]
+        cls, recipe: str, output: str, keep_going: bool, work: _Path | None, plugins: Sequence[_Path], no_removals: bool
     ) -> Build: ...
     @property
     def textures(self) -> int: ...

@@ -50,6 +50,7 @@ def build(
     keep_going: bool = False,
     work: Path | None = None,
     plugins: Sequence[Path] = (),
+    no_removals: bool = False,
     shard_bytes: int = 64_000_000,
     patience_s: float = 300.0,
     done: Callable[[str], None] | None = None,
@@ -67,6 +68,7 @@ def build(
         keep_going: Leave out a texture that cannot be made instead of raising.
         work: The folder in which results for a URI are made; one of the user's cache when absent.
         plugins: Plugins to fit with, as for :func:`htex.build`, under the same paths on every worker.
+        no_removals: Raise and change nothing if the library would lose textures, as for :func:`htex.build`.
         shard_bytes: Bytes of recordings that a worker gets at a time; a texture with more is given alone.
         patience_s: Longest time without scheduler or workers, seconds.
         done: Called with the key of each job that is done.
@@ -96,7 +98,7 @@ def build(
                 _htex.remember(target, hashed)
             break  # What is still not known has just changed; it is read here.
     named = [os.fspath(plugin) for plugin in plugins]
-    planned = _htex.Build(source, os.fspath(output), keep_going, work, named)
+    planned = _htex.Build(source, os.fspath(output), keep_going, work, named, no_removals)
     while pending := planned.pending():
         with patience:
             for results in _results(client, _run, list(_shards(pending, shard_bytes))):

@@ -1,0 +1,90 @@
+//! Textures that the library before this build had and the library after it lacks.
+//!
+//! A glob that matches fewer files than before is not wrong, so a folder that was moved removes its textures. That is said, and refused
+//! where the build keeps all.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use htex_library::Library;
+use htex_storage::{Location, Storage};
+
+use crate::assemble::{MOST_REPORT_BYTES, REPORT_FILE, previous};
+use crate::dist::Dist;
+use crate::report::{Report, Status};
+
+/// Most places in a message.
+const NAMED: usize = 3;
+
+/// Names of the textures in the library that the last build wrote: by its report, and by the library's own index. A folder of this machine without either may be a new
+/// one for results elsewhere, whose report is read.
+pub(crate) fn textures_before(
+    dist: &Dist,
+    library: &str,
+    elsewhere: Option<&Location>,
+) -> BTreeSet<String> {
+    let report = previous(dist);
+    let file = report.as_ref().map(|report| report.library.file.clone());
+    let is_name = |file: &String| !file.contains(['/', '\\']) && file.ends_with(".htexlib");
+    let file = file
+        .filter(is_name)
+        .unwrap_or_else(|| format!("{library}.htexlib"));
+    let mut names = in_library(dist, Path::new(&file));
+    names.extend(report.iter().flat_map(built));
+    if names.is_empty() {
+        names.extend(elsewhere.and_then(report_at).iter().flat_map(built));
+    }
+    names
+}
+
+/// Names of the textures that a report has built.
+pub(crate) fn built(report: &Report) -> impl Iterator<Item = String> {
+    let built = report.textures.iter().filter(|t| t.status == Status::Built);
+    built.map(|texture| texture.name.clone())
+}
+
+/// Names in a library's file; none where it is not there or damaged, which its next writing mends.
+fn in_library(dist: &Dist, file: &Path) -> BTreeSet<String> {
+    let is_file = |path: &Path| path.symlink_metadata().is_ok_and(|at| at.is_file());
+    let path = dist.at(file).ok().filter(|path| is_file(path));
+    let library = path.and_then(|path| Library::open(&path).ok());
+    let entries = library.iter().flat_map(Library::entries);
+    entries
+        .map_while(Result::ok)
+        .map(|entry| entry.name)
+        .collect()
+}
+
+/// The report at a URI.
+fn report_at(location: &Location) -> Option<Report> {
+    let storage = Storage::from_environment().ok()?;
+    let bytes = storage
+        .read(&location.inside(REPORT_FILE), MOST_REPORT_BYTES)
+        .ok()?;
+    serde_json::from_slice(&bytes).ok()
+}
+
+/// Names textures in a few words: those in one folder by the folder, `hatt/…`.
+///
+/// ```
+/// let names = ["hatt/cork", "hatt/felt", "oak"].map(str::to_owned);
+/// assert_eq!(htex_build::named_briefly(&names), "hatt/…, oak");
+/// ```
+#[must_use]
+pub fn named_briefly(names: &[String]) -> String {
+    let folder = |name: &'_ String| name.split_once('/').map(|(folder, _)| folder.to_owned());
+    let mut folders: BTreeMap<String, usize> = BTreeMap::new();
+    for name in names.iter().filter_map(folder) {
+        *folders.entry(name).or_default() += 1;
+    }
+    let word = |name: &String| match folder(name) {
+        Some(folder) if folders.get(&folder) > Some(&1) => format!("{folder}/…"),
+        _ => name.clone(),
+    };
+    let words: BTreeSet<String> = names.iter().map(word).collect();
+    let mut words: Vec<String> = words.into_iter().collect();
+    let more = words.len() > NAMED;
+    words.truncate(NAMED);
+    words.extend(more.then(|| "…".to_owned()));
+    words.join(", ")
+}

@@ -243,7 +243,7 @@ fn lost(lost: &Loss) -> String {
 impl From<ExchangeError> for Failure {
     fn from(error: ExchangeError) -> Self {
         use ExchangeError::{
-            Missing, NoSamples, OutOfRange, UnknownFormat, UnknownProfile, Unused,
+            Missing, NoSamples, OutOfRange, Rights, UnknownFormat, UnknownProfile, Unused,
         };
         let flag = |setting: &str| format!("--{}", setting.replace('_', "-"));
         match error {
@@ -251,6 +251,7 @@ impl From<ExchangeError> for Failure {
             error @ (Missing { .. }
             | Unused { .. }
             | OutOfRange { .. }
+            | Rights { .. }
             | UnknownFormat { .. }
             | UnknownProfile { .. }
             | NoSamples { .. }) => Self::Usage(error.told(&flag)),

@@ -202,7 +202,8 @@ fn metadata_fit_nothing_again() {
         (&"CC-BY-4.0".into(), &"new/vinyl/1".into())
     );
     assert!(!place.path("dist/textures/vinyl").exists());
-    // As if nothing else had ever been built.
+    // As if nothing else had ever been built, once the names that are gone were told.
+    assert_eq!(build(&place, "dist", &[])["removed"], serde_json::json!([]));
     build(&place, "alone", &[]);
     assert_same(
         &results(&place.path("dist")),
@@ -777,7 +778,9 @@ fn textures_whose_recordings_are_gone_are_named() {
     assert_eq!(build(&place, "dist", &["--dry-run"])["removed"], names);
     fs::write(&report, &before["build-report.json"]).unwrap();
 
-    let text = place.text(&line);
+    let run = place.run(&line);
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let text = run.text();
     assert!(text.contains("removed: 2 textures (vinyl/…)\n"), "{text}");
     let after = results(&place.path("dist"));
     assert!(!after.contains_key("textures/vinyl/1.htex"));

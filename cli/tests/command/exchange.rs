@@ -223,7 +223,9 @@ fn an_export_says_what_is_lost() {
     }
     let kotlin = std::fs::read_to_string(place.path("out.kt")).unwrap();
     assert!(
-        kotlin.starts_with("import android.os.VibrationEffect\n"),
+        kotlin.starts_with(
+            "// SPDX-License-Identifier: CC0-1.0\nimport android.os.VibrationEffect\n"
+        ),
         "{kotlin}"
     );
     // What was written comes in again.
@@ -605,7 +607,9 @@ fn every_way_out_carries_the_licence() {
     run(&place, "bake hum.htex -o hum.h", 0);
     run(&place, "bake hum.htex -o hum.rs", 0);
     run(&place, "bake hum.htex -o hum.bin", 0);
-    ["hum.h", "hum.rs", "hum.bin.license"].map(has_both);
+    ["hum.h", "hum.rs", "hum.bin.license"]
+        .iter()
+        .for_each(|file| has_both(file));
     assert!(!place.path("hum.h.license").exists());
     std::fs::copy(place.path("hum.htex"), place.path("x.bin.license")).unwrap();
     let (_, error) = run(&place, "bake x.bin.license -o x.bin", 2);
@@ -618,7 +622,9 @@ fn every_way_out_carries_the_licence() {
     place.write("hum.scene.json", scene.to_string());
     run(&place, "render hum.scene.json --seconds 1 -o hum.csv", 0);
     run(&place, "render hum.scene.json --seconds 1 -o scene.wav", 0);
-    ["hum.csv.license", "scene.wav"].map(has_both);
+    ["hum.csv.license", "scene.wav"]
+        .iter()
+        .for_each(|file| has_both(file));
 
     // A model file has no place either.
     place.write("felt.xml", HATT);

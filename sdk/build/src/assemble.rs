@@ -65,7 +65,9 @@ pub(crate) fn assemble(
     let library = path.display();
     if options.no_removals {
         let judge = |((key, job), texture): (&(String, Job), &PlannedTexture)| {
-            judged(texture, key, job, &found(key, texture)?)
+            let mut made = found(key, texture)?;
+            made.asset = asset(job, &made)?;
+            judged(texture, key, job, &made)
         };
         let planned = jobs.par_iter().zip(&plan.textures);
         let textures = planned.map(judge).collect::<Result<Vec<_>, BuildError>>()?;

@@ -72,7 +72,7 @@ fn report_at(location: &Location) -> Option<Report> {
 /// ```
 #[must_use]
 pub fn named_briefly(names: &[String]) -> String {
-    let folder = |name: &'_ String| name.split_once('/').map(|(folder, _)| folder.to_owned());
+    let folder = |name: &'_ String| name.rsplit_once('/').map(|(folder, _)| folder.to_owned());
     let mut folders: BTreeMap<String, usize> = BTreeMap::new();
     for name in names.iter().filter_map(folder) {
         *folders.entry(name).or_default() += 1;

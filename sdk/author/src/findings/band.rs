@@ -2,7 +2,7 @@
 //! than what is above it.
 //!
 //! A segment of 0.2 s under a Hann window cannot tell 15 Hz from 20 Hz, nor a drift from noise. A window of a second whose side lobes
-//! are 92 dB down can (four-term Blackman-Harris; Harris 1978). Of 242 recordings of fingers, tools and microphones by third parties the segments
+//! are 92 dB down can (four-term Blackman-Harris; Harris 1978). Of 240 recordings of fingers, tools and microphones by third parties the segments
 //! show at most 4.3 dB more power in the band than the long windows do. Normal forces and positions of such fingers, read
 //! as a texture, show 32 dB more and above. Noise of 1 to 15 Hz shows 11 dB more and above.
 

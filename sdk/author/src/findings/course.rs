@@ -8,7 +8,7 @@ use htex_recording::rules::{RECORDING_ALTERNATES, RECORDING_RAMP};
 
 /// Fewest segments of a recording that is checked: 1 s. The friction of a finger may rise along a line for less.
 const FEWEST_SEGMENTS: usize = 5;
-/// Least part of the variance along a line: a ramp. Of 242 recordings of fingers, tools and microphones by third parties, which last 0.8 to
+/// Least part of the variance along a line: a ramp. Of 240 recordings of fingers, tools and microphones by third parties, which last 0.8 to
 /// 19 s, none has more than 0.80, and the normal force of a finger no more than 0.84.
 const ALONG_LINE: f64 = 0.99;
 /// Longest alternation, samples: four channels in one column.

@@ -1,7 +1,7 @@
 //! Detection of single outliers: a few far ones of any form, and many that are one sample each.
 //!
 //! A texture has sharp corners of its own (stick and slip), so many corners say nothing. But its corners last several samples, and
-//! repairing one sample does not remove them. Of 242 recordings by third parties, none has more than four samples that a repair removes at 12 times the usual corner,
+//! repairing one sample does not remove them. Of 240 recordings by third parties, none has more than four samples that a repair removes at 12 times the usual corner,
 //! and at five times no more than 0.1 % (the current of a motor: 0.62 %).
 
 use htex_finding::Findings;

@@ -131,7 +131,8 @@ fn recordings_of_one_condition_with_different_levels_are_found() {
     let take = |gain: f64, name: &str| {
         let simulation = simulate(&SimulationOptions::new(Surface::Vinyl).with_rate_hz(2000.0));
         let mut recording = simulation.unwrap().to_recording(name).unwrap();
-        recording.axes[0].iter_mut().for_each(|x| *x *= gain);
+        let values = recording.axes.iter_mut().flatten();
+        values.for_each(|x| *x *= gain);
         let given = Exploration {
             speed_mm_s: Some(80.0),
             force_n: Some(0.4),

@@ -160,10 +160,10 @@ impl<'a> Reader<'a> {
                 fft.forward(&windowed, &mut bins);
                 for (k, bin) in bins.iter().enumerate() {
                     let hz = k as f64 * spacing_hz;
-                    match () {
-                        () if Band::TACTILE.contains(hz) => sum.inside += bin.norm_sqr(),
-                        () if hz > Band::TACTILE.high_hz => sum.above += bin.norm_sqr(),
-                        () => {}
+                    if Band::TACTILE.contains(hz) {
+                        sum.inside += bin.norm_sqr();
+                    } else if hz > Band::TACTILE.high_hz {
+                        sum.above += bin.norm_sqr();
                     }
                 }
             }

@@ -122,6 +122,9 @@ impl AllPole {
         if let Some(direct) = &mut self.direct {
             direct.process(self.lattice.order(), steady);
             remember(&mut self.past, steady.as_flattened());
+        } else {
+            // It has settled within this block, and stays a lattice.
+            self.run_lattice(steady.as_flattened_mut());
         }
     }
 
@@ -296,6 +299,31 @@ mod tests {
                 for (y, x) in group.iter().zip(expected) {
                     assert!((y - x).abs() <= 1e-8 * x.abs().max(1.0), "{poles}: {y} {x}");
                 }
+            }
+        }
+    }
+
+    /// Blocks of any length give the bits of single groups, also of a filter that stays a lattice and settles within a block.
+    #[test]
+    fn blocks_of_any_length_are_single_groups() {
+        for order in [1, 7, 16, 17, 40] {
+            let coefficients: Vec<f64> = (0..order).map(|i| 0.5 / (i + order) as f64).collect();
+            let mut single = AllPole::new(&coefficients).unwrap();
+            let mut whole = single.clone();
+            let mut noise = GaussianNoise::new(5);
+            for groups in [3, 32, 5, 32] {
+                for filter in [&mut single, &mut whole] {
+                    filter.reflection_mut()[0] *= 0.9;
+                }
+                let mut next = || f64::from(noise.next_sample());
+                let mut block: Vec<Group> =
+                    (0..groups).map(|_| [(); GROUP].map(|()| next())).collect();
+                let mut expected = block.clone();
+                for group in &mut expected {
+                    single.process(core::slice::from_mut(group));
+                }
+                whole.process(&mut block);
+                assert_eq!(block, expected, "order {order}, {groups} groups");
             }
         }
     }

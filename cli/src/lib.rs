@@ -1,5 +1,6 @@
 //! The `htex` command as a library: parses, calls the SDK, prints. [`run`] is the whole command; the program `htex` and the
 //! Python package call it.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 mod adapter_checks;

@@ -74,6 +74,10 @@ impl TypedValueParser for Argument {
 
 impl Elsewhere {
     /// The local path in place of a URI; its name stays, since texts and formats depend on it.
+    #[allow(
+        clippy::disallowed_methods,
+        reason = "a new temporary folder of this user"
+    )]
     fn copy_of(&mut self, location: Location, role: Role) -> Result<PathBuf, String> {
         let known = self.files.iter().find(|file| file.location == location);
         match known {
@@ -137,6 +141,7 @@ pub(crate) fn clear() {
 }
 
 /// Removes the copies; a signal handler calls it before the process ends.
+#[allow(clippy::disallowed_methods, reason = "a temporary folder of this user")]
 pub(crate) fn remove_copies() {
     if let Some(folder) = FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take() {
         let _ = std::fs::remove_dir_all(folder);

@@ -1,9 +1,10 @@
 //! Standard output and standard error.
 
+use std::fs::File;
 use std::io::{ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use htex_files::{AtFile, FileError};
+use htex_files::{AtFile, FileError, OwnFolder};
 use htex_finding::{Notice, plain};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -111,7 +112,43 @@ fn tell_all<N: Clone + Into<Notice>>(kind: &str, notices: &[N]) {
     }
 }
 
-/// Writes a file under a temporary name beside it and renames it.
+/// A file that a command writes. Every command writes its files by [`Self::replace`], so that what is followed is decided here.
+#[derive(Clone, Copy)]
+pub(crate) enum Written<'a> {
+    /// A file that the user named. A link is followed: the user may have named it for that.
+    Named(&'a Path),
+    /// A file by a name of ours in a folder that the user named, also beside a file that the user named. Somebody else may have filled
+    /// the folder, so no link in it is followed.
+    Inside(&'a OwnFolder, &'a Path),
+}
+
+impl Written<'_> {
+    pub(crate) fn path(self) -> PathBuf {
+        match self {
+            Self::Named(path) => path.to_owned(),
+            Self::Inside(folder, name) => folder.path().join(name),
+        }
+    }
+
+    /// Writes the file under a temporary name beside it and renames it.
+    pub(crate) fn replace(
+        self,
+        write: impl FnOnce(&mut File) -> std::io::Result<()>,
+    ) -> Result<(), FileError> {
+        #[allow(clippy::disallowed_methods, reason = "the user named this file")]
+        let written = match self {
+            Self::Named(path) => htex_files::replace_file(path, write),
+            Self::Inside(folder, name) => folder.replace(name, write),
+        };
+        written.writing(&self.path())
+    }
+
+    pub(crate) fn write(self, bytes: &[u8]) -> Result<(), FileError> {
+        self.replace(|file| file.write_all(bytes))
+    }
+}
+
+/// Writes a file that the user named under a temporary name beside it and renames it.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    Ok(htex_format::write_file(path, bytes).writing(path)?)
+    Ok(Written::Named(path).write(bytes)?)
 }

@@ -59,6 +59,9 @@ pub(crate) struct Output {
     /// When the first block was made, for a device without a clock in a scene without an end.
     pace: Option<Instant>,
     frames: u64,
+    /// Frames of the block that was written last.
+    #[cfg(feature = "lab")]
+    last: usize,
     /// The first error; the scene then fades to silence, and the error is reported.
     failed: Option<String>,
     /// Whether the device has a clock of its own.
@@ -101,6 +104,8 @@ impl Output {
             rate_hz,
             pace: None,
             frames: 0,
+            #[cfg(feature = "lab")]
+            last: 0,
             failed: None,
             clocked: false,
         }
@@ -123,6 +128,10 @@ impl Output {
         }
         self.write(frames)?;
         self.frames += frames as u64;
+        #[cfg(feature = "lab")]
+        {
+            self.last = frames;
+        }
         if let Some(start) = self.pace {
             let due = Duration::from_secs_f64(self.frames as f64 / self.rate_hz);
             std::thread::sleep(due.saturating_sub(start.elapsed()));
@@ -147,6 +156,12 @@ impl Output {
     #[cfg(feature = "lab")]
     pub(crate) fn lead_s(&self) -> f64 {
         self.device.status().latency_s - self.frames as f64 / self.rate_hz
+    }
+
+    /// The block that [`Self::step`] wrote last.
+    #[cfg(feature = "lab")]
+    pub(crate) fn last_block(&self) -> &[f32] {
+        &self.block[..self.last]
     }
 
     /// Frames that were written.

@@ -14,6 +14,10 @@ use crate::located::{Role, keep, taken};
 const MOST_RECORDING_BYTES: u64 = 16 << 30;
 
 /// Downloads what is read, and checks that what will be written can be, as far as that is known without a request.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "a new temporary folder of this user"
+)]
 pub(crate) fn fetch() -> Result<(), Failure> {
     let files = taken(|_| true);
     if files.is_empty() {

@@ -2,13 +2,12 @@
 
 use std::fs::File;
 use std::io::{BufWriter, Error};
-use std::path::Path;
 
 use hound::{SampleFormat, WavSpec, WavWriter};
 
 use crate::failure::Failure;
+use crate::output::Written;
 use crate::shown::shown;
-use htex_files::FileError;
 use htex_format::Rights;
 
 /// Most bytes of samples a WAV file can hold.
@@ -16,7 +15,7 @@ const MAX_FRAMES: u64 = (u32::MAX as u64 - 64) / 4;
 
 /// Writes `frames` samples of one channel with the rights of what is played, which `render` makes block by block.
 pub(crate) fn write_wav(
-    path: &Path,
+    wav: Written<'_>,
     rate_hz: u32,
     frames: u64,
     rights: &Rights,
@@ -26,7 +25,7 @@ pub(crate) fn write_wav(
         let hours = MAX_FRAMES as f64 / f64::from(rate_hz) / 3600.0;
         return Err(Failure::Other(format!(
             "{}: a WAV file holds at most 4 GiB, {hours:.1} h at this rate; take fewer seconds",
-            shown(path)
+            shown(&wav.path())
         )));
     }
     let spec = WavSpec {
@@ -36,7 +35,7 @@ pub(crate) fn write_wav(
         sample_format: SampleFormat::Float,
     };
     let mut failed = None;
-    let written = htex_format::replace_file(path, |file: &mut File| {
+    let written = wav.replace(|file: &mut File| {
         let mut wav = WavWriter::new(BufWriter::new(&mut *file), spec).map_err(Error::other)?;
         let mut block = [0.0f32; 4096];
         let mut left = frames;
@@ -56,7 +55,7 @@ pub(crate) fn write_wav(
     });
     match (failed, written) {
         (Some(failure), _) => Err(failure),
-        (None, Err(error)) => Err(FileError::writing(path, error).into()),
+        (None, Err(error)) => Err(error.into()),
         (None, Ok(())) => Ok(()),
     }
 }

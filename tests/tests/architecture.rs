@@ -177,6 +177,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "htex-author",
             "htex-dsp",
+            "htex-files",
             "htex-finding",
             "htex-format",
             "htex-host",

@@ -107,6 +107,42 @@ fn the_tests_that_the_pages_name_are_there() {
     assert!(seen > 80, "{seen} tests are named");
 }
 
+/// Each promise links to the tests that check it, each in the file that the link names. What is only said to be trusted, and where the
+/// protection ends, needs none.
+#[test]
+fn the_promises_of_security_name_their_tests() {
+    const WITHOUT: [&str; 4] = [
+        "The program itself",
+        "**What a person says**",
+        "**Dask**",
+        "A switch on the amplifier",
+    ];
+    let (root, text) = (workspace(), page("SECURITY.md"));
+    let (text, _) = text.split_once("\n## Reporting").unwrap();
+    let mut seen = BTreeSet::new();
+    for promise in text.split("\n- ").skip(1) {
+        let links = promise.split("[`").skip(1);
+        let links: Vec<(&str, &str)> = links
+            .map(|link| {
+                let (name, rest) = link.split_once("`](").unwrap();
+                (name, rest.split_once(')').unwrap().0)
+            })
+            .collect();
+        let is_without = WITHOUT.iter().any(|start| promise.starts_with(start));
+        assert_eq!(links.is_empty(), is_without, "{promise}");
+        for (name, file) in links {
+            let code = std::fs::read_to_string(root.join(file)).unwrap_or_default();
+            let is_test = code.split("#[test]").skip(1).any(|part| {
+                let (head, _) = part.split_once('{').unwrap_or_default();
+                head.contains(&format!("fn {name}("))
+            });
+            assert!(is_test, "SECURITY.md: there is no test {name} in {file}");
+            seen.insert(name);
+        }
+    }
+    assert!(seen.len() > 20, "{} tests", seen.len());
+}
+
 /// Every kind of input has a test that holds what is said of it: a test, a fuzz target, or a file of tests.
 #[test]
 fn each_threat_has_its_test() {

@@ -343,6 +343,7 @@ fn studies_have_the_ranges_of_their_schema() {
         "models": ["ar"], "repetitions": 2, "trial_s": 1, "phases": ["training", "gain", "testing"],
         "motion": "live",
         "seed": 1,
+        "start_db": -20,
         "training": { "trials": 2 },
         "gain": { "model": "ar", "step_db": 1, "large_step_db": 4, "lowest_db": -60, "reversals": 6 },
         "scale": { "min": 0, "max": 6 },
@@ -399,6 +400,7 @@ fn answers_have_the_ranges_of_their_schema() {
     let device = json!({
         "adapter": "org.htex.daq", "profile": "lab", "settings": { "limit_v": "150" }, "limit": 150, "quantity_gain": 2,
     });
+    let output = json!({ "unit": "V", "peak": 40, "rms": 12, "direct": 0.1, "duration_s": 10 });
     let signals = json!([["lateral", "N"], ["normal", "N"]]);
     let source = json!({
         "name": "daq:Dev1/ai0:5", "settings": { "rate_hz": "10000" }, "map": "0=x", "calibrations": [[1.0]],
@@ -415,12 +417,20 @@ fn answers_have_the_ranges_of_their_schema() {
         }),
         json!({
             "kind": "answer", "number": 1, "texture": "t", "model": "m", "repetition": 1, "hidden_reference": true, "attribute": "a",
-            "rating": 3, "response_ms": 500, "at_ms": 1, "gain_db": -3, "repeats": 1,
+            "rating": 3, "response_ms": 500, "at_ms": 1, "gain_db": -3, "drive_v": 40, "output": output, "stops": 1, "repeats": 1,
             "felt": { "file": "f", "blake3": "0", "off_target": ["slow"] }, "simulated": true,
         }),
         json!({
-            "kind": "gain", "texture": "t", "key": "accept", "gain_db": -3, "found": true, "drive_v": 40, "reference_rms": 0.02,
-            "at_ms": 1, "simulated": true,
+            "kind": "gain", "texture": "t", "key": "accept", "gain_db": -3, "found": true, "drive_v": 40, "output": output, "stops": 0,
+            "reference_rms": 0.02, "at_ms": 1, "simulated": true,
+        }),
+        json!({
+            "kind": "rise", "phase": "training", "texture": "t", "model": "m", "key": "accept", "gain_db": -3, "found": true,
+            "drive_v": 40, "output": output, "stops": 0, "reference_rms": 0.02, "at_ms": 1, "simulated": true,
+        }),
+        json!({
+            "kind": "stopped", "phase": "gain", "texture": "t", "model": "m", "reason": "ran_dry", "gain_db": -3, "drive_v": 40,
+            "output": output, "at_ms": 1, "simulated": true,
         }),
         json!({ "kind": "rest", "after": 10, "at_ms": 1, "simulated": true }),
     ];

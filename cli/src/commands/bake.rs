@@ -8,7 +8,7 @@ use serde_json::json;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::of_file::{OfFile, ResultOfFile};
-use crate::output::{print, print_json, warn};
+use crate::output::{print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 use crate::shown::shown;
@@ -98,7 +98,7 @@ impl Bake {
             Format::C => htex_bake::c_header(&name, &baked).into_bytes(),
             Format::Rust => htex_bake::rust_source(&name, &baked).into_bytes(),
         };
-        htex_format::write_file(&self.output, &written).writing(&self.output)?;
+        write_file(&self.output, &written)?;
         if let Some(rights) = rights {
             rights.add_to_file(&self.output).writing(&self.output)?;
         }

@@ -8,7 +8,7 @@ use htex_author::settings::FitSettings;
 use htex_author::{
     AssetRequest, Exploration, FeltError, SetupResponse, SpectrumOptions, Take, fit_asset,
 };
-use htex_files::AtFile;
+use htex_files::{AtFile, OwnFolder};
 use htex_format::{By, Keyed, Measure, Rights};
 use htex_host::Registry;
 use htex_report::{Share, Texture, TextureReport, spectra_picture, texture_report};
@@ -22,7 +22,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::models::tool;
 use crate::of_file::{OrFail, ResultOfFile};
-use crate::output::{print, print_json, write_file};
+use crate::output::{Written, print, print_json};
 use crate::progress::bar;
 use crate::report::{Reported, measures, shares};
 use crate::wav::write_wav;
@@ -33,6 +33,7 @@ const WAV_SECONDS: u64 = 5;
 const PICTURED: [&str; 2] = ["bands", "ar"];
 /// The simulated rig's response.
 const RIG: &str = "rig.csv";
+const REPORT: &str = "report.html";
 /// The condition the surfaces are explored at (paper, Texture recording).
 const CONDITION: Exploration = Exploration {
     speed_mm_s: Some(80.0),
@@ -60,29 +61,29 @@ pub(crate) struct Demo {
 
 impl Demo {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        std::fs::create_dir_all(&self.dir).writing(&self.dir)?;
+        let own = OwnFolder::new(&self.dir);
+        own.make_folder(Path::new("")).writing(&self.dir)?;
+        let inside = |name: &str, bytes: &[u8]| Written::Inside(&own, name.as_ref()).write(bytes);
         let rig = SimulationOptions::new(Surface::Sandpaper)
             .setup_response()
             .or_fail()?;
-        write_response(&rig, &self.dir.join(RIG))?;
+        write_response(&rig, Written::Inside(&own, RIG.as_ref()))?;
         let bar = bar(Surface::ALL.len() as u64);
         let mut done = Vec::new();
         for surface in Surface::ALL {
             bar.set_message(surface.to_string());
-            done.push(self.texture(surface, &rig)?);
+            done.push(self.texture(&own, surface, &rig)?);
             bar.inc(1);
         }
         bar.finish_and_clear();
-        let report = self.dir.join("report.html");
+        let report = self.dir.join(REPORT);
         let rows: Vec<Row> = done.iter().flat_map(DemoTexture::rows).collect();
         let shares = shares(done.iter().map(|d| &d.summary));
         let textures: Vec<Texture> = done.into_iter().map(|d| d.texture).collect();
         let picture = spectra_picture(&textures, &PICTURED);
-        write_file(&self.dir.join("spectra.svg"), picture.as_bytes())?;
-        write_file(
-            &report,
-            texture_report(&self.page(textures, shares)).as_bytes(),
-        )?;
+        inside("spectra.svg", picture.as_bytes())?;
+        let page = texture_report(&self.page(textures, shares));
+        inside(REPORT, page.as_bytes())?;
         if self.json {
             print_json(&rows)?;
         } else {
@@ -96,25 +97,31 @@ impl Demo {
     }
 
     /// Simulates, fits, validates and plays one surface.
-    fn texture(&self, surface: Surface, rig: &SetupResponse) -> Result<DemoTexture, Failure> {
+    fn texture(
+        &self,
+        own: &OwnFolder,
+        surface: Surface,
+        rig: &SetupResponse,
+    ) -> Result<DemoTexture, Failure> {
         let name = surface.to_string();
-        let csv = self.dir.join(format!("{name}.csv"));
-        self.write_recording(surface, &csv)?;
+        let csv = PathBuf::from(format!("{name}.csv"));
+        self.write_recording(surface, Written::Inside(own, &csv))?;
+        let csv = self.dir.join(csv);
         let recording = read_recording(&csv, &ReadOptions::default())?;
         let take = Take {
             recording,
             given: CONDITION,
         };
         let fitted = fit_asset(&[take], &request(&name, rig)?)?;
-        let path = self.dir.join(format!("{name}.htex"));
+        let path = PathBuf::from(format!("{name}.htex"));
         let bytes = fitted.asset.to_bytes()?;
-        write_file(&path, &bytes)?;
+        Written::Inside(own, &path).write(&bytes)?;
+        let path = self.dir.join(path);
         let asset = htex::Asset::open(&path).of(&path)?;
         for representation in &asset.manifest().representations {
-            let wav = self
-                .dir
-                .join(format!("{name}-{}.wav", short_name(&representation.model)));
-            play(&asset, &representation.model, &path, &wav)?;
+            let wav = format!("{name}-{}.wav", short_name(&representation.model));
+            let wav = Written::Inside(own, wav.as_ref());
+            play(&asset, &representation.model, &path, wav)?;
         }
         let summary =
             AssetSummary::new(&path, bytes.len() as u64, &fitted.asset).with_felt(&fitted.felt);
@@ -129,12 +136,12 @@ impl Demo {
         Ok(DemoTexture { texture, summary })
     }
 
-    fn write_recording(&self, surface: Surface, csv: &Path) -> Result<(), Failure> {
+    fn write_recording(&self, surface: Surface, csv: Written<'_>) -> Result<(), Failure> {
         let options = SimulationOptions::new(surface).with_seed(self.seed);
         let simulation = simulate(&options).or_fail()?;
         let write =
             |file: &mut std::fs::File| simulation.write_csv(&mut std::io::BufWriter::new(file));
-        Ok(htex_format::replace_file(csv, write).writing(csv)?)
+        Ok(csv.replace(write)?)
     }
 
     fn page(&self, textures: Vec<Texture>, shares: Vec<Share>) -> TextureReport {
@@ -212,7 +219,7 @@ fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
         .with_tool(tool()))
 }
 
-fn play(asset: &htex::Asset, model: &str, file: &Path, wav: &Path) -> Result<(), Failure> {
+fn play(asset: &htex::Asset, model: &str, file: &Path, wav: Written<'_>) -> Result<(), Failure> {
     let options = VoiceOptions::default()
         .with_model(model)
         .with_rate_hz(f64::from(WAV_RATE_HZ));

@@ -4,7 +4,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use clap::Args;
 use htex_device::Quantity;
 use htex_files::AtFile;
-use htex_scene::{Gain as Kept, Gains, Renderer};
+use htex_scene::{Gain as Kept, Gains, Renderer, START_DB, factor_of_db};
 
 use crate::commands::play;
 use crate::exit::Exit;
@@ -24,8 +24,8 @@ const LARGE_STEP_DB: f64 = 4.0;
 /// Find the gain at which a person wants to feel a surface on a display, by adjustment, and keep it.
 ///
 /// The surface plays without end; `+` and `-`, each with Enter, make it 1 dB stronger and weaker, `++` and
-/// `--` 4 dB, and Enter alone accepts it. As in the paper it starts at the maximum: the device's
-/// limit. `htex play --person` then uses what was found. Ctrl-C keeps nothing.
+/// `--` 4 dB, and Enter alone accepts it. It starts weak, 20 dB below the device's limit, where the paper starts at the limit:
+/// a finger feels nothing stronger than the person asked for. `htex play --person` then uses what was found. Ctrl-C keeps nothing.
 ///
 /// A gain is kept for a person, a texture and a device. All representations share it, and so do assets that are fitted again: a
 /// texture is identified by its name and author. The paper finds it with `--model ar` and plays all models with it.
@@ -38,7 +38,7 @@ pub(crate) struct Gain {
     #[arg(long, value_name = "NAME")]
     person: String,
 
-    /// Largest voltage to start at, V [default: the device's limit]
+    /// Largest voltage to start at, V [default: a tenth of the device's limit]
     #[arg(long, value_name = "V")]
     start: Option<f64>,
 
@@ -78,7 +78,8 @@ impl Gain {
         }
         let mut ready = play::open(&self.with, &self.file, false, device)?;
         let limit_v = limit(&ready)?;
-        let start_v = self.start.unwrap_or(limit_v);
+        let weak_v = limit_v * factor_of_db(START_DB);
+        let start_v = self.start.unwrap_or(weak_v);
         if !(start_v > 0.0 && start_v <= limit_v) {
             let sentence = format!("--start {start_v}: more than 0, at most {limit_v} V");
             return Err(Failure::Usage(sentence));
@@ -145,7 +146,7 @@ fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>
         );
         let wish = play_until_wish(&mut renderer, output, &wishes)?;
         match wish {
-            Some(Wish::Change(db)) => drive_v = (drive_v * 10f64.powf(db / 20.0)).min(limit_v),
+            Some(Wish::Change(db)) => drive_v = (drive_v * factor_of_db(db)).min(limit_v),
             Some(Wish::Keep) => {
                 let reference_rms = plan.reference_rms;
                 kept = Some(Found {

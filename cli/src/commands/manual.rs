@@ -1,15 +1,14 @@
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::PathBuf;
 
 use clap::{Args, Command, CommandFactory};
 use clap_mangen::Man;
-use htex_files::AtFile;
+use htex_files::{AtFile, OwnFolder};
 
 use crate::Cli;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::output::write_file;
 
 /// Write the manual pages, one for each subcommand.
 ///
@@ -23,21 +22,22 @@ pub(crate) struct Manual {
 
 impl Manual {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        fs::create_dir_all(&self.folder).writing(&self.folder)?;
         let mut command = Cli::command().disable_help_subcommand(true);
         command.build();
-        write_pages(&command, &self.folder)?;
+        write_pages(&command, &OwnFolder::new(&self.folder))?;
         Ok(Exit::SUCCESS)
     }
 }
 
 /// The page of a command, and those of its subcommands.
-fn write_pages(command: &Command, folder: &Path) -> Result<(), Failure> {
+fn write_pages(command: &Command, folder: &OwnFolder) -> Result<(), Failure> {
     let page = Man::new(command.clone());
-    let file = folder.join(page.get_filename());
+    let name = PathBuf::from(page.get_filename());
+    let file = folder.path().join(&name);
     let mut text = Vec::new();
     page.render(&mut text).writing(&file)?;
-    write_file(&file, &text)?;
+    let write = |into: &mut std::fs::File| into.write_all(&text);
+    folder.replace(&name, write).writing(&file)?;
     for subcommand in command.get_subcommands().filter(|one| !one.is_hide_set()) {
         write_pages(subcommand, folder)?;
     }

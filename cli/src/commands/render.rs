@@ -13,7 +13,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
 use crate::of_file::ResultOfFile;
-use crate::output::{note, print, print_json};
+use crate::output::{Written, note, print, print_json};
 use crate::playing::Output;
 use crate::progress::bar;
 use crate::scene_sound::rights;
@@ -209,10 +209,8 @@ impl Aside {
     }
 
     fn move_to(self, path: &Path) -> Result<(), Failure> {
-        let copied = htex_format::replace_file(path, |file| {
-            std::io::copy(&mut File::open(&self.path)?, file).map(drop)
-        });
-        copied.map_err(|error| Failure::Other(format!("{}: {error}", shown(path))))
+        let copy = |file: &mut File| std::io::copy(&mut File::open(&self.path)?, file).map(drop);
+        Ok(Written::Named(path).replace(copy)?)
     }
 }
 

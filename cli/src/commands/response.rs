@@ -6,7 +6,6 @@ use clap::Args;
 use htex_author::recording::{
     ColumnMap, MOST_VALUES, ReadError, ReadOptions, ReadProblem, format_names, read_recording,
 };
-use htex_files::AtFile;
 use htex_finding::Notice;
 use htex_lab::response::{
     MeasuredResponse, Piece, Record, ResponseError, ResponseOptions, ResponseSettings, column_map,
@@ -17,7 +16,7 @@ use serde_json::{Value, json};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::output::{note, print, print_json, warn, write_file};
+use crate::output::{Written, note, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 
 /// Measure the frequency response of a recording rig or a finger display.
@@ -86,7 +85,7 @@ impl Response {
         if let Some(csv) = &self.csv {
             let response = measured.setup_response();
             let write = |file: &mut std::fs::File| response.write_csv(&mut BufWriter::new(file));
-            htex_format::replace_file(csv, write).writing(csv)?;
+            Written::Named(csv).replace(write)?;
         }
         if let Some(svg) = &self.svg {
             let picture = response_picture(&measured, &self.title());

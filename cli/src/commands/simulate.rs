@@ -1,5 +1,5 @@
 use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
@@ -11,8 +11,8 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
 use crate::of_file::OrFail;
+use crate::output::Written;
 use crate::outputs::check_outputs;
-use htex_files::AtFile;
 
 /// Write a simulated recording of a finger sliding over a surface.
 ///
@@ -119,13 +119,14 @@ impl Simulate {
         let truth = truth.transpose()?;
         let simulation = simulate(&options).or_usage()?;
         let write = |file: &mut std::fs::File| simulation.write_csv(&mut BufWriter::new(file));
-        htex_format::replace_file(&self.output, write).writing(&self.output)?;
+        Written::Named(&self.output).replace(write)?;
         if let Some((file, truth)) = truth {
             let write = |file: &mut std::fs::File| truth.write_json(&mut BufWriter::new(file));
-            htex_format::replace_file(file, write).writing(file)?;
+            Written::Named(file).replace(write)?;
         }
         if let Some(frf) = &self.frf {
-            write_response(&options.setup_response().or_usage()?, frf)?;
+            let response = options.setup_response().or_usage()?;
+            write_response(&response, Written::Named(frf))?;
         }
         Ok(Exit::SUCCESS)
     }
@@ -175,7 +176,7 @@ impl Simulate {
 }
 
 /// Writes a setup response for `--frf`.
-pub(super) fn write_response(response: &SetupResponse, path: &Path) -> Result<(), Failure> {
+pub(super) fn write_response(response: &SetupResponse, to: Written<'_>) -> Result<(), Failure> {
     let write = |file: &mut std::fs::File| response.write_csv(&mut BufWriter::new(file));
-    Ok(htex_format::replace_file(path, write).writing(path)?)
+    Ok(to.replace(write)?)
 }

@@ -2,11 +2,12 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
+use htex_files::{Key, OwnFolder};
 use htex_lab::page::ServedFolder;
 
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{print, warn};
 use crate::signals;
 
 /// Where the page is served unless another port is given. It stays the same, so that the browser finds one's own textures again.
@@ -19,10 +20,14 @@ const VARIABLE: &str = "HTEX_STUDIO";
 const SHARED: &str = "../share/htex/studio";
 /// The part of a build that a server gives.
 const STATIC: &str = "static";
+/// The file of the key, in the user's folder of settings.
+const KEY: &str = "studio.key";
 
 /// Touch, shape, compare and give away textures in the browser.
 ///
-/// Serves the studio on this machine alone, until Ctrl-C. The page is built by `cargo xtask studio --out DIR`; it asks for nothing beyond
+/// Serves the studio on this machine alone, until Ctrl-C, at an address that only you know: `http://NAME.localhost:8420/`, where NAME belongs
+/// to you and to the folder. Chromium, Edge and Firefox find it. For a browser that does not, such as Safari, add the line
+/// `127.0.0.1 NAME.localhost` to /etc/hosts. The page is built by `cargo xtask studio --out DIR`; it asks for nothing beyond
 /// this address.
 #[derive(Args)]
 pub(crate) struct Studio {
@@ -38,7 +43,7 @@ pub(crate) struct Studio {
 impl Studio {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let folder = self.page()?;
-        let served = ServedFolder::open(&folder, self.port)
+        let served = ServedFolder::open(&folder, self.port, &key()?)
             .map_err(|error| Failure::Other(error.to_string()))?;
         print(&format!(
             "the studio is at {}; Ctrl-C ends it\n",
@@ -70,16 +75,29 @@ impl Studio {
     }
 }
 
+/// The key that makes the address one that only this user knows. Without a folder for it the address is another one the next time.
+fn key() -> Result<Key, Failure> {
+    let config = htex_host::folders::config();
+    if let Some(key) = config.and_then(|folder| Key::of(&folder, KEY).ok()) {
+        return Ok(key);
+    }
+    warn(&["there is no folder of settings that only you can write to; the next time the studio has another address, at which the browser does not find textures that you stored".to_owned()]);
+    Key::passing().map_err(|error| Failure::Other(format!("there are no random numbers: {error}")))
+}
+
 /// The folder of an installation.
 fn shared() -> Option<PathBuf> {
     let command = std::env::current_exe().ok()?;
     Some(command.parent()?.join(SHARED))
 }
 
-/// The page of a folder: of a build, or of its part for servers.
+/// The page of a folder: of a build, or of its part for servers, which is no link.
 fn page_in(folder: &Path) -> Option<PathBuf> {
-    let places = [folder.join(STATIC), folder.to_owned()];
-    places
-        .into_iter()
-        .find(|place| place.join("index.html").is_file())
+    let own = OwnFolder::new(folder);
+    let has_page = |place: &&str| {
+        let page = own.at(&Path::new(place).join("index.html"));
+        page.is_ok_and(|page| page.is_file())
+    };
+    let place = [STATIC, ""].into_iter().find(|place| has_page(place))?;
+    Some(folder.join(place))
 }

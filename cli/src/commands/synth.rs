@@ -9,7 +9,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
 use crate::of_file::ResultOfFile;
-use crate::output::warn;
+use crate::output::{Written, warn};
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 use crate::wav::write_wav;
@@ -92,7 +92,8 @@ impl Synth {
         let mut voice = asset.voice(&options).of(&self.asset)?;
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
         let rights = Rights::of(asset.manifest());
-        write_wav(&self.output, self.rate, frames, &rights, |block| {
+        let wav = Written::Named(&self.output);
+        write_wav(wav, self.rate, frames, &rights, |block| {
             voice.render(block).of(&self.asset)
         })?;
         Ok(Exit::SUCCESS)

@@ -4,6 +4,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use htex_author::recording::format_names;
 use htex_author::{AuthorError, Exploration, Take};
+use htex_files::{AtFile, OwnFolder};
 use htex_format::{By, Measure};
 use htex_host::{LoadedModel, Origin, Registry};
 use htex_simulate::{SimulationOptions, Surface, simulate};
@@ -17,7 +18,7 @@ use crate::failure::Failure;
 use crate::invocation;
 use crate::models::tool;
 use crate::of_file::OrFail;
-use crate::output::{print, print_json, warn, write_file};
+use crate::output::{Written, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
 use crate::progress::bar;
@@ -114,8 +115,14 @@ impl Tradeoff {
         bar.finish_and_clear();
         let tradeoff = htex_tradeoff::Tradeoff::new(&tool(), &subjects, swept);
         let json = serde_json::to_vec(&tradeoff)?;
-        write_file(&csv_file, csv(&tradeoff).as_bytes())?;
-        write_file(&json_file, &json)?;
+        // Their names are ours: no link is followed.
+        for (file, bytes) in [
+            (&csv_file, csv(&tradeoff).as_bytes()),
+            (&json_file, &json[..]),
+        ] {
+            let (own, name) = OwnFolder::of_file(file).writing(file)?;
+            Written::Inside(&own, &name).write(bytes)?;
+        }
         write_file(&self.output, page(&tradeoff, &command()).as_bytes())?;
         journal.discard()?;
         if self.json {

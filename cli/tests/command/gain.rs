@@ -56,14 +56,14 @@ fn a_gain_is_found_by_adjustment_and_played_with() {
     let (code, error) = run(&gain, "-\nlouder\n--\n++\n\n");
     assert_eq!(code, Some(0), "{error}");
     assert!(
-        error.contains("100.0 V at most") && error.contains("\"louder\" is not"),
+        error.contains("10.0 V at most") && error.contains("\"louder\" is not"),
         "{error}"
     );
     let text = std::fs::read_to_string(place.path("own/gains.json")).unwrap();
     let kept: Value = serde_json::from_str(&text).unwrap();
     let drive_v = kept["gains"][0]["drive_v"].as_f64().unwrap();
     assert!(
-        (drive_v - 100.0 * 10f64.powf(-1.0 / 20.0)).abs() < 1e-9,
+        (drive_v - 10.0 * 10f64.powf(-1.0 / 20.0)).abs() < 1e-9,
         "{drive_v} V"
     );
     // Without a match nothing changes.

@@ -655,3 +655,60 @@ fn a_library_in_place_of_an_asset_says_what_to_do() {
         );
     }
 }
+
+/// A folder of results may have links in it, whoever filled it: no command writes through one, neither to a file nor into a folder.
+#[test]
+#[cfg(feature = "lab")]
+fn no_command_follows_a_link_in_the_folder_of_its_results() {
+    let place = place();
+    let vinyl = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes/vinyl.htex");
+    place.write("vinyl.htex", fs::read(vinyl).unwrap());
+    let study = "htex_study = '1.0'\nparticipants = ['Ann', 'Bob']\nmodels = ['ar']\nrepetitions = 1\ntrial_s = 0.05\nphases = ['testing']\n\
+        motion = { constant = { speed_mm_s = 80, force_n = 0.4 } }\ndevice = { adapter = 'file' }\n[[textures]]\nasset = 'vinyl.htex'\n";
+    place.write("study.toml", study);
+    let record = "record --source file:rec/a.csv --fast --take x --seconds 1 -o DIR";
+    let study = "study run study.toml --simulated 1 --fast -o DIR --participant";
+    let demo = "rig.csv vinyl.csv vinyl.htex vinyl-ar.wav report.html spectra.svg";
+    // A command, and what is a link in its folder: files, folders.
+    let cases = [
+        ("demo DIR".to_owned(), demo, ""),
+        ("man DIR".to_owned(), "htex.1 htex-fit.1", ""),
+        (record.to_owned(), "x-001.part x-001.json", "tracker"),
+        (
+            format!("{record} --target-force 5 --attempts 1"),
+            "",
+            "rejected incomplete",
+        ),
+        (format!("{study} Ann"), "Ann.jsonl", ""),
+        (format!("{study} Ann"), "Ann/trial-0001.wav", ""),
+        (format!("{study} Bob"), "", "Bob"),
+    ];
+    let outside = place.path("outside");
+    fs::create_dir(&outside).unwrap();
+    fs::write(outside.join("victim"), "precious").unwrap();
+    for (number, (command, files, folders)) in cases.iter().enumerate() {
+        let folder = format!("results-{number}");
+        let links = files.split_whitespace().map(|name| (name, "victim"));
+        for (name, to) in links.chain(folders.split_whitespace().map(|name| (name, ""))) {
+            let link = place.path(&folder).join(name);
+            fs::create_dir_all(link.parent().unwrap()).unwrap();
+            symlink(outside.join(to), link).unwrap();
+        }
+        let command = command.replace("DIR", &folder);
+        let arguments: Vec<&str> = command.split_whitespace().collect();
+        let run = place.run(&arguments);
+        assert!(
+            run.code() == 0
+                || run.error().contains("symbolic link")
+                || run.error().contains("target"),
+            "{command}: {}",
+            run.error()
+        );
+        assert_eq!(crate::common::entries(&outside), ["victim"], "{command}");
+        assert_eq!(
+            fs::read(outside.join("victim")).unwrap(),
+            b"precious",
+            "{command}"
+        );
+    }
+}

@@ -226,6 +226,14 @@ pub fn address(child: &mut Child) -> String {
     url.unwrap().trim().to_owned()
 }
 
+/// The same address by the number of this machine, for programs: the system need not know names under `localhost`, as browsers do.
+pub fn by_number(url: &str) -> String {
+    let rest = url.strip_prefix("http://").unwrap();
+    let (name, rest) = rest.split_once(".localhost:").unwrap();
+    assert_eq!(name.len(), 32, "{url}");
+    format!("http://127.0.0.1:{rest}")
+}
+
 /// Nothing is scrolled or cut on a tablet, upright or on its side, of which it keeps pictures; the tab is left on its side.
 pub fn fits_tablets(browser: &mut Browser, tab: &Tab, name: &str) {
     let all = "[innerWidth >= document.documentElement.scrollWidth, innerHeight >= document.documentElement.scrollHeight, \

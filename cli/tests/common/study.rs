@@ -61,6 +61,22 @@ pub fn answers(folder: &Path) -> BTreeMap<String, String> {
     files.map(read).collect()
 }
 
+/// The answers of a folder as if nothing had been stopped: without the lines of stops, and without their number in other lines.
+pub fn unstopped(folder: &Path) -> BTreeMap<String, String> {
+    let unstopped = |text: String| {
+        let lines = text.lines();
+        let lines = lines.filter(|line| !line.starts_with("{\"kind\":\"stopped\""));
+        let number = |line: &str| {
+            (1..9).fold(line.to_owned(), |line, stops| {
+                line.replace(&format!("\"stops\":{stops}"), "\"stops\":0")
+            })
+        };
+        lines.map(|line| number(line) + "\n").collect::<String>()
+    };
+    let all = answers(folder).into_iter();
+    all.map(|(name, text)| (name, unstopped(text))).collect()
+}
+
 /// The recordings of a participant and what is beside them, by file name.
 pub fn felt(folder: &Path, participant: &str) -> BTreeMap<String, Vec<u8>> {
     let files = fs::read_dir(folder.join(participant).join("felt")).unwrap();

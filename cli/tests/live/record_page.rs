@@ -311,6 +311,7 @@ fn other_pages_and_programs_neither_start_nor_stop_a_session() {
         format!("lateral_n\n{}", "0.1\n0.2\n".repeat(RATE)),
     );
     let (mut child, url) = command(&place, &["--seconds", "1", "--countdown", "0"]);
+    let url = crate::browser::by_number(&url);
     let rest = url.strip_prefix("http://127.0.0.1:").unwrap();
     let (port, path) = rest.split_once('/').unwrap();
     let host = format!("127.0.0.1:{port}");

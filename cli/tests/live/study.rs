@@ -72,6 +72,7 @@ fn a_whole_study_has_the_same_bytes_however_often_it_is_killed() {
             "{name}"
         );
     }
+    check_levels(&whole["P01.jsonl"]);
     let killed = place.path("killed");
     for kill in 1..=5 {
         let name = ["P01", "P02"][kill % 2];
@@ -121,6 +122,40 @@ fn a_whole_study_has_the_same_bytes_however_often_it_is_killed() {
         table("killed", "P01") == table("answers", "P01"),
         "the spectra differ"
     );
+}
+
+/// Each phase says what the display was given: at first a tenth of its 150 V, and never more than the level that was asked for.
+fn check_levels(text: &str) {
+    let lines: Vec<serde_json::Value> = text
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let mut seen = std::collections::BTreeSet::new();
+    for line in lines.iter().filter(|line| line.get("texture").is_some()) {
+        let kind = line["kind"].as_str().unwrap();
+        let phase = line["phase"].as_str().unwrap_or("");
+        let level = |key: &str| line["output"][key].as_f64().unwrap();
+        let drive_v = line["drive_v"].as_f64().unwrap();
+        if seen.insert(format!("{kind} {phase}")) && kind == "rise" {
+            assert!((drive_v - 15.0).abs() < 1e-9, "{line}");
+        }
+        assert!(level("peak") > 0.0 && level("peak") <= drive_v, "{line}");
+        assert!(level("rms") > 0.0 && level("rms") < level("peak"), "{line}");
+        assert!(level("direct") < 1.0, "{line}");
+        assert!((level("duration_s") - 0.25).abs() < 0.05, "{line}");
+        assert_eq!(
+            (&line["stops"], &line["output"]["unit"]),
+            (&0.into(), &"V".into())
+        );
+    }
+    let expected = [
+        "answer ",
+        "gain ",
+        "rise gain",
+        "rise training",
+        "training ",
+    ];
+    assert_eq!(seen.iter().collect::<Vec<_>>(), expected);
 }
 
 /// Felt spectra are compared with those of the recordings, and every model is felt like its texture.
@@ -200,8 +235,9 @@ fn typed(place: &Place, input: &str) -> (Option<i32>, String) {
 #[test]
 fn a_person_answers_in_a_terminal_and_goes_on_another_day() {
     let place = short(&[]);
-    // Begin; 1 dB and 4 dB weaker, 1 dB stronger, accepted; begin, no rating of the scale, a rating; then the input ends.
-    let (code, error) = typed(&place, "\n-\n--\n+\n\n\n7\n4\n");
+    // Begin; from 20 dB below the maximum up to where it is felt; 1 dB and 4 dB weaker, 1 dB stronger, accepted; begin, no rating of the
+    // scale, a rating; then the input ends.
+    let (code, error) = typed(&place, "\n++\n++\n++\n++\n++\n\n-\n--\n+\n\n\n7\n4\n");
     assert_eq!(code, Some(0), "{error}");
     assert!(
         error.contains("\"7\" is no answer") && error.contains("Ann is not done"),
@@ -212,14 +248,14 @@ fn a_person_answers_in_a_terminal_and_goes_on_another_day() {
         .lines()
         .map(|line| serde_json::from_str(line).unwrap())
         .collect();
-    let gains: Vec<f64> = kept
-        .iter()
-        .filter(|l| l["kind"] == "gain")
-        .map(|l| l["gain_db"].as_f64().unwrap())
-        .collect();
-    assert_eq!(gains, [-1.0, -5.0, -4.0, -4.0]);
+    let levels = |kind: &str| -> Vec<f64> {
+        let lines = kept.iter().filter(|line| line["kind"] == kind);
+        lines.map(|l| l["gain_db"].as_f64().unwrap()).collect()
+    };
+    assert_eq!(levels("rise"), [-16.0, -12.0, -8.0, -4.0, 0.0, 0.0]);
+    assert_eq!(levels("gain"), [-1.0, -5.0, -4.0, -4.0]);
     assert_eq!(
-        (&kept[6]["rating"], &kept[6]["gain_db"]),
+        (&kept[12]["rating"], &kept[12]["gain_db"]),
         (&4.into(), &(-4.0).into())
     );
     assert!(kept.iter().all(|line| line.get("simulated").is_none()));

@@ -89,6 +89,11 @@ impl DirectVoltage {
         }
     }
 
+    /// Mean of the last 100 ms, volts.
+    pub fn mean_v(&self) -> f64 {
+        self.sum_v / self.last_v.len() as f64
+    }
+
     /// The sample before the last one, the one before that, and so on, back and forth within the last 100 ms.
     pub fn mirrored(&self) -> impl Iterator<Item = f64> {
         let frames = self.last_v.len();

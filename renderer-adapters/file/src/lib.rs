@@ -6,6 +6,7 @@
 //! leaves no file.
 //!
 //! A WAV file is limited to 4 GiB, with an error: few programs read RF64.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod describe;
 mod device;

@@ -38,7 +38,21 @@ impl Batch {
     /// # Errors
     /// As [`crate::write_file`]; those of the files before it, whose group it ends.
     pub fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        match Target::of(path, Readers::All)? {
+        self.write_to(Target::of(path, Readers::All)?, bytes)
+    }
+
+    /// As [`Self::write`], in the place of `path`, in which a link is replaced and not followed.
+    pub(crate) fn write_in_place_of(
+        &mut self,
+        path: PathBuf,
+        readable_by: Readers,
+        bytes: &[u8],
+    ) -> io::Result<()> {
+        self.write_to(Target::in_place_of(path, readable_by)?, bytes)
+    }
+
+    fn write_to(&mut self, target: Target, bytes: &[u8]) -> io::Result<()> {
+        match target {
             Target::Direct(mut file) => file.write_all(bytes)?,
             Target::Beside(mut beside, path) => {
                 let written = beside.write_all(bytes);

@@ -91,7 +91,26 @@ impl Target {
                 "its folder does not exist; create it first",
             ));
         }
-        let beside = builder(readable_by).tempfile_in(folder)?;
+        Self::beside(path, there, readable_by)
+    }
+
+    /// A new file for the place of `path`, whatever is there: a link is replaced, not followed.
+    fn in_place_of(path: PathBuf, readable_by: Readers) -> io::Result<Self> {
+        let there = path.symlink_metadata().ok();
+        if there.as_ref().is_some_and(std::fs::Metadata::is_dir) {
+            return Err(io::Error::from(io::ErrorKind::IsADirectory));
+        }
+        let there = there.filter(std::fs::Metadata::is_file);
+        Self::beside(path, there, readable_by)
+    }
+
+    /// A temporary file beside `path`, with the permissions of the file that is there.
+    fn beside(
+        path: PathBuf,
+        there: Option<std::fs::Metadata>,
+        readable_by: Readers,
+    ) -> io::Result<Self> {
+        let beside = builder(readable_by).tempfile_in(folder(&path))?;
         if let Some(there) = there {
             beside.as_file().set_permissions(there.permissions())?;
         }
@@ -115,6 +134,11 @@ impl Unfinished {
     /// As [`Self::create`].
     pub fn create_private(path: &Path) -> io::Result<Self> {
         Target::of(path, Readers::User).map(Self)
+    }
+
+    /// Creates the temporary file for the place of `path`, in which a link is replaced and not followed.
+    fn in_place_of(path: PathBuf, readable_by: Readers) -> io::Result<Self> {
+        Target::in_place_of(path, readable_by).map(Self)
     }
 
     /// Returns the file to write to.

@@ -9,7 +9,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 
-use crate::read_regular;
+use crate::{Batch, Readers, Unfinished, private, read_regular};
 
 /// A folder in which nothing is followed.
 ///
@@ -21,17 +21,41 @@ use crate::read_regular;
 /// # Ok::<(), std::io::Error>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct OwnFolder(PathBuf);
+pub struct OwnFolder {
+    folder: PathBuf,
+    readable_by: Readers,
+}
 
 impl OwnFolder {
     /// The folder at this path, which may itself be a link: a person named it.
     pub fn new(folder: &Path) -> Self {
-        Self(folder.to_owned())
+        Self {
+            folder: folder.to_owned(),
+            readable_by: Readers::All,
+        }
+    }
+
+    /// As [`Self::new`]; only this user may read the folders and files that are made in it, and the folder itself if it is made.
+    pub fn private(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            readable_by: Readers::User,
+        }
+    }
+
+    /// The folder of a file that the user named, for the files that a command writes beside that one; and the file's name in it.
+    ///
+    /// # Errors
+    /// When the path ends in no name.
+    pub fn of_file(path: &Path) -> io::Result<(Self, PathBuf)> {
+        let no_name = || io::Error::new(ErrorKind::InvalidInput, "the path ends in no file name");
+        let name = path.file_name().ok_or_else(no_name)?;
+        Ok((Self::new(crate::folder(path)), PathBuf::from(name)))
     }
 
     /// The path of the folder.
     pub fn path(&self) -> &Path {
-        &self.0
+        &self.folder
     }
 
     /// Returns the path of an entry, or the folder itself for an empty path, after a check that nothing above it is a link.
@@ -39,7 +63,7 @@ impl OwnFolder {
     /// # Errors
     /// When a part above it is a link or no folder, or the path leads out of the folder.
     pub fn at(&self, inside: &Path) -> io::Result<PathBuf> {
-        let mut path = self.0.clone();
+        let mut path = self.folder.clone();
         let mut parts = inside.components().peekable();
         while let Some(part) = parts.next() {
             let Component::Normal(part) = part else {
@@ -59,17 +83,85 @@ impl OwnFolder {
     /// # Errors
     /// As [`Self::at`], when it is a link or no folder, and those of the system.
     pub fn make_folder(&self, inside: &Path) -> io::Result<PathBuf> {
-        fs::create_dir_all(&self.0)?;
+        self.make_itself()?;
         let mut folders: Vec<&Path> = inside.ancestors().collect();
         folders.retain(|folder| *folder != Path::new(""));
         for folder in folders.into_iter().rev() {
             let path = self.at(folder)?;
-            match fs::create_dir(&path) {
+            match self.create_dir(&path) {
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => check_folder(&path)?,
                 made => made?,
             }
         }
-        Ok(self.0.join(inside))
+        Ok(self.folder.join(inside))
+    }
+
+    /// Opens a regular file to read it.
+    ///
+    /// # Errors
+    /// As [`Self::at`], when it is a link or no regular file, and those of the system.
+    pub fn open(&self, inside: &Path) -> io::Result<File> {
+        self.open_with(inside, OpenOptions::new().read(true))
+    }
+
+    /// Opens a regular file to read it and to write behind its end.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn open_to_append(&self, inside: &Path) -> io::Result<File> {
+        self.open_with(inside, OpenOptions::new().read(true).append(true))
+    }
+
+    /// Creates a file that must not be there, to write to it at once; most files are written by [`Self::replace`]. The folders above it are
+    /// made.
+    ///
+    /// # Errors
+    /// As [`Self::make_folder`], and when there is something in its place.
+    pub fn create(&self, inside: &Path) -> io::Result<File> {
+        let path = self.entry(inside)?;
+        let mut options = OpenOptions::new();
+        if self.readable_by == Readers::User {
+            private::only_user(&mut options);
+        }
+        // The system follows no link where a file must be new.
+        options.write(true).create_new(true).open(path)
+    }
+
+    /// Writes a file whole: a new one beside it, which is flushed to disk and renamed into place. A link in its place is replaced. The
+    /// folders above it are made.
+    ///
+    /// # Errors
+    /// Those of `write`, as [`Self::make_folder`], when a folder is in its place, and those of the system. What was there then stays.
+    pub fn replace(
+        &self,
+        inside: &Path,
+        write: impl FnOnce(&mut File) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let path = self.entry(inside)?;
+        let mut unfinished = Unfinished::in_place_of(path, self.readable_by)?;
+        write(unfinished.file())?;
+        unfinished.keep()
+    }
+
+    /// Writes a file as [`Self::replace`] does, with others: it is in its place after [`Batch::finish`].
+    ///
+    /// # Errors
+    /// As [`Self::replace`], and as [`Batch::write`].
+    pub fn write_with(&self, batch: &mut Batch, inside: &Path, bytes: &[u8]) -> io::Result<()> {
+        batch.write_in_place_of(self.entry(inside)?, self.readable_by, bytes)
+    }
+
+    /// The path of a file for a writer that knows only paths, such as a device. The folders above it are made.
+    ///
+    /// # Errors
+    /// As [`Self::make_folder`], and when a link, or anything but a regular file, is in its place.
+    pub fn path_to_write(&self, inside: &Path) -> io::Result<PathBuf> {
+        let path = self.entry(inside)?;
+        refuse_link(&path)?;
+        match path.symlink_metadata() {
+            Ok(is) if !is.is_file() => Err(no_file(&path)),
+            _ => Ok(path),
+        }
     }
 
     /// Reads a regular file of at most `most_bytes`.
@@ -87,14 +179,18 @@ impl OwnFolder {
     /// # Errors
     /// As [`Self::at`], when it is a link or no regular file, and those of the system.
     pub fn open_lock(&self, inside: &Path) -> io::Result<File> {
+        let mut options = OpenOptions::new();
+        self.open_with(inside, options.write(true).create(true).truncate(false))
+    }
+
+    /// Opens a regular file, not through a link, and without waiting for the other end of a pipe.
+    fn open_with(&self, inside: &Path, options: &mut OpenOptions) -> io::Result<File> {
         let path = self.at(inside)?;
         refuse_link(&path)?;
         if path.symlink_metadata().is_ok_and(|is| !is.is_file()) {
             return Err(no_file(&path));
         }
-        let mut options = OpenOptions::new();
-        options.write(true).create(true).truncate(false);
-        no_follow(&mut options);
+        no_follow(options);
         options.open(&path)
     }
 
@@ -148,7 +244,7 @@ impl OwnFolder {
             _ => {}
         }
         let above = path.ancestors().skip(1);
-        for folder in above.take_while(|folder| *folder != self.0) {
+        for folder in above.take_while(|folder| *folder != self.folder) {
             // A folder with files in it stays.
             if fs::remove_dir(folder).is_err() {
                 break;
@@ -193,6 +289,21 @@ impl OwnFolder {
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
             Err(error) => Err(error),
             Ok(()) => fs::remove_dir_all(path),
+        }
+    }
+
+    /// Makes the folder itself, and those above it, through links: the user named it.
+    fn make_itself(&self) -> io::Result<()> {
+        match self.readable_by {
+            Readers::All => fs::create_dir_all(&self.folder),
+            Readers::User => private::make_folder(&self.folder),
+        }
+    }
+
+    fn create_dir(&self, path: &Path) -> io::Result<()> {
+        match self.readable_by {
+            Readers::All => fs::create_dir(path),
+            Readers::User => private::create_folder(path),
         }
     }
 
@@ -278,6 +389,7 @@ mod tests {
         symlink(&victim, inside.path().join("file"))?;
         symlink(&victim, inside.path().join("new.part"))?;
         let own = OwnFolder::new(inside.path());
+        let mut batch = Batch::default();
         for name in [
             "folder/victim",
             "folder/new",
@@ -288,6 +400,10 @@ mod tests {
             let name = Path::new(name);
             assert!(own.write(name, b"x").is_err(), "{}", name.display());
             assert!(own.read(name, 100).is_err() && own.open_lock(name).is_err());
+            assert!(own.open(name).is_err() && own.open_to_append(name).is_err());
+            assert!(own.create(name).is_err() && own.path_to_write(name).is_err());
+            assert!(own.replace(name, |_| Ok(())).is_err());
+            assert!(own.write_with(&mut batch, name, b"x").is_err());
             assert!(own.remove(name).is_err(), "{}", name.display());
         }
         let folder = Path::new("folder");
@@ -295,10 +411,22 @@ mod tests {
         assert!(own.make_folder(folder).is_err());
         let file = Path::new("file");
         assert!(own.read(file, 100).is_err() && own.open_lock(file).is_err());
+        assert!(own.open(file).is_err() && own.open_to_append(file).is_err());
+        assert!(own.create(file).is_err() && own.path_to_write(file).is_err());
         // A link in the place of a result, or of its part, is replaced.
         own.write("new".as_ref(), b"x")?;
         own.write(file, b"x")?;
         assert!(inside.path().join("file").symlink_metadata()?.is_file());
+        for by_batch in [false, true] {
+            own.remove(file)?;
+            symlink(&victim, inside.path().join(file))?;
+            match by_batch {
+                true => own.write_with(&mut batch, file, b"y")?,
+                false => own.replace(file, |made| made.write_all(b"y"))?,
+            }
+            std::mem::take(&mut batch).finish()?;
+            assert_eq!(own.read(file, 1)?, b"y");
+        }
         own.remove(file)?;
         assert_eq!(fs::read(&victim)?, b"precious");
         assert_eq!(fs::read_dir(outside.path())?.count(), 1);

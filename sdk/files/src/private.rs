@@ -25,6 +25,17 @@ pub fn make_folder(path: &Path) -> io::Result<()> {
     builder.create(path)
 }
 
+/// Creates a folder for this user alone.
+///
+/// # Errors
+/// Those of the system, also when there is something in its place.
+pub(crate) fn create_folder(path: &Path) -> io::Result<()> {
+    let mut builder = DirBuilder::new();
+    #[cfg(unix)]
+    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
+    builder.create(path)
+}
+
 /// Takes from others what they may do with a folder of this user.
 ///
 /// # Errors

@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use htex_files::read_regular;
+use htex_files::{OwnFolder, read_regular};
 
 use crate::{Manifest, replace_file};
 
@@ -175,10 +175,12 @@ impl Rights {
             return Ok(());
         }
         if !is_wav(path) {
-            return replace_file(&license_file(path), |file| {
-                file.write_all(self.to_text().as_bytes())
-            });
+            // The name is ours: no link in the folder is followed.
+            let (folder, name) = OwnFolder::of_file(&license_file(path))?;
+            let text = self.to_text();
+            return folder.replace(&name, |file| file.write_all(text.as_bytes()));
         }
+        #[allow(clippy::disallowed_methods, reason = "the user named this file")]
         replace_file(path, |file| {
             io::copy(&mut File::open(path)?, file)?;
             self.add_to_wav(file)

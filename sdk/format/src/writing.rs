@@ -53,6 +53,7 @@ impl Asset {
     ///
     /// # Errors
     /// [`WriteError::Io`] when the file cannot be written, else as [`Self::to_bytes`].
+    #[allow(clippy::disallowed_methods, reason = "the user named this file")]
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
         write_file(path, &self.to_bytes()?).map_err(|error| WriteError::Io {
             path: path.to_owned(),

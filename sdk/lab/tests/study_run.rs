@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use htex_finding::Findings;
 use htex_lab::study::{
-    Asker, Clock, DeviceUsed, Ended, FeltFile, Header, Key, Plan, Played, Rig, Session, Stimulus,
-    Study, StudyError, View, export, read_study, run,
+    Asker, Clock, DeviceUsed, Ended, FeltFile, GainKey, Header, Key, OutputLevels, Plan, Played,
+    Rig, Session, Stimulus, Study, StudyError, View, export, read_study, run,
 };
 use tempfile::TempDir;
 
@@ -33,9 +33,25 @@ enum Fate {
     OnTarget,
 }
 
+#[derive(Default)]
 struct TestRig {
     fates: Vec<Fate>,
     told: RefCell<Vec<String>>,
+    /// The name and the gain of each thing that was played.
+    played: Vec<(String, Option<f64>)>,
+}
+
+/// A display of at most 100 V, whose drive follows the gain.
+fn levels(stimulus: &Stimulus) -> (Option<f64>, OutputLevels) {
+    let drive_v = 100.0 * 10f64.powf(stimulus.gain_db.unwrap_or(0.0) / 20.0);
+    let output = OutputLevels {
+        unit: "V".to_owned(),
+        peak: drive_v,
+        rms: drive_v / 2.0,
+        direct: 0.25,
+        duration_s: 1.5,
+    };
+    (Some(drive_v), output)
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -49,7 +65,18 @@ enum Failing {
 impl Rig for TestRig {
     type Error = Failing;
 
-    fn play(&mut self, _: &Stimulus, _: &mut dyn FnMut() -> bool) -> Result<Played, Failing> {
+    fn play(
+        &mut self,
+        stimulus: &Stimulus,
+        ends: &mut dyn FnMut() -> bool,
+    ) -> Result<Played, Failing> {
+        let (file, gain_db) = (stimulus.file.clone(), stimulus.gain_db);
+        self.played.push((file, gain_db));
+        if stimulus.seconds.is_none() {
+            while !ends() {}
+        } else {
+            ends();
+        }
         let felt = |off_target: Vec<String>| FeltFile {
             file: "P01/felt/trial.npy".to_owned(),
             blake3: String::new(),
@@ -63,11 +90,17 @@ impl Rig for TestRig {
                 Fate::OnTarget => Some(felt(Vec::new())),
             },
         };
+        let (drive_v, output) = levels(stimulus);
         Ok(Played {
-            drive_v: None,
+            drive_v,
+            output,
             reference_rms: 0.1,
             felt,
         })
+    }
+
+    fn output_before_error(&mut self) -> Option<(Option<f64>, OutputLevels)> {
+        Some((None, OutputLevels::default()))
     }
 
     fn ran_dry(error: &Failing) -> bool {
@@ -93,6 +126,8 @@ struct Willing {
     key: Option<Key>,
     begun: usize,
     notices: Vec<String>,
+    /// Leaves while the first trial plays.
+    leaves: bool,
 }
 
 impl Asker for Willing {
@@ -107,6 +142,20 @@ impl Asker for Willing {
                 self.notices.extend(notice.clone());
                 Some(Key::Digit(4))
             }
+            // Felt at -12 dB, and 4 dB weaker as the real one.
+            View::Matching {
+                rising: true,
+                gain_db,
+                ..
+            } => Some(Key::Gain(match *gain_db < -12.0 {
+                true => GainKey::MuchStronger,
+                false => GainKey::Accept,
+            })),
+            View::Matching { gain_db, .. } => Some(Key::Gain(match *gain_db > -16.0 {
+                true => GainKey::MuchWeaker,
+                false => GainKey::Accept,
+            })),
+            View::Playing { .. } if std::mem::take(&mut self.leaves) => Some(Key::Quit),
             _ => None,
         };
     }
@@ -141,14 +190,19 @@ struct Went {
     ended: Result<Ended, Failing>,
     asker: Willing,
     told: Vec<String>,
+    played: Vec<(String, Option<f64>)>,
 }
 
 impl Place {
     fn new() -> Self {
+        Self::with(STUDY)
+    }
+
+    fn with(text: &str) -> Self {
         let folder = TempDir::new().unwrap();
-        fs::write(folder.path().join("study.toml"), STUDY).unwrap();
+        fs::write(folder.path().join("study.toml"), text).unwrap();
         fs::write(folder.path().join("cloth.htex"), "it is hashed alone").unwrap();
-        let study = read_study(STUDY.as_bytes(), &mut Findings::default()).unwrap();
+        let study = read_study(text.as_bytes(), &mut Findings::default()).unwrap();
         let plan = Plan::new(&study);
         Self {
             folder,
@@ -158,6 +212,10 @@ impl Place {
     }
 
     fn run(&self, fates: &[Fate]) -> Went {
+        self.run_with(fates, Willing::default())
+    }
+
+    fn run_with(&self, fates: &[Fate], mut asker: Willing) -> Went {
         let own = &self.plan.participants[0];
         let path = self.folder.path().join("study.toml");
         let device = DeviceUsed::default();
@@ -165,14 +223,14 @@ impl Place {
         let mut session = Session::open(&self.study, own, self.folder.path(), &header).unwrap();
         let mut rig = TestRig {
             fates: fates.to_vec(),
-            told: RefCell::default(),
+            ..TestRig::default()
         };
-        let mut asker = Willing::default();
         let ended = run(&mut session, &mut rig, &mut asker, &mut NoClock, None);
         Went {
             ended,
             asker,
             told: rig.told.into_inner(),
+            played: rig.played,
         }
     }
 
@@ -205,12 +263,78 @@ fn a_trial_in_which_the_device_runs_dry_is_repeated_three_times_at_most() {
         .iter()
         .map(|line| line["kind"].as_str().unwrap())
         .collect();
-    assert_eq!(kinds, ["header", "session", "answer"]);
+    let dry = "stopped";
+    assert_eq!(
+        kinds,
+        ["header", "session", dry, dry, "answer", dry, dry, dry]
+    );
     assert_eq!(lines[1]["date"], "2026-11-25T10:25:25Z");
-    assert_eq!(lines[2]["repeats"], 2);
+    assert_eq!(lines[2]["reason"], "ran_dry");
+    assert_eq!(
+        (&lines[4]["repeats"], &lines[4]["stops"]),
+        (&2.into(), &2.into())
+    );
     // The same command goes on.
     assert_eq!(place.run(&[OnTarget]).ended.unwrap(), Ended::Done);
-    assert_eq!(place.lines().len(), 5);
+    let lines = place.lines();
+    assert_eq!((lines.len(), &lines[9]["stops"]), (10, &3.into()));
+}
+
+/// Training and gain matching start 20 dB below the maximum, nothing is played stronger than the participant asked for, and each line
+/// of each phase says what the device was given.
+#[test]
+fn every_phase_starts_weak_and_says_what_the_device_was_given() {
+    let phases = "phases = ['training', 'gain', 'testing']\ntraining = { trials = 1 }";
+    let place = Place::with(&STUDY.replace("phases = ['testing']", phases));
+    let leaving = Willing {
+        leaves: true,
+        ..Willing::default()
+    };
+    let went = place.run_with(&[], leaving);
+    assert_eq!(went.ended.unwrap(), Ended::Left);
+    let mut played = went.played;
+    let went = place.run(&[]);
+    assert_eq!(went.ended.unwrap(), Ended::Done);
+    played.extend(went.played);
+    let rise = |name: &'static str| [-20.0, -16.0, -12.0].map(|gain_db| (name, gain_db));
+    let mut expected = rise("rise-cloth").to_vec();
+    // The first one was left.
+    expected.extend([("training-0001", -12.0); 2]);
+    expected.extend(rise("gain-cloth"));
+    expected.extend([("gain-cloth", -12.0), ("gain-cloth", -16.0)]);
+    expected.extend([("trial-0001", -16.0), ("trial-0002", -16.0)]);
+    let played: Vec<_> = played
+        .iter()
+        .map(|(file, gain_db)| (&file[..], gain_db.unwrap()))
+        .collect();
+    assert_eq!(played, expected);
+    let lines = place.lines();
+    let plays: Vec<_> = lines
+        .iter()
+        .filter(|line| line["kind"] != "header" && line["kind"] != "session")
+        .collect();
+    assert_eq!(plays.len(), expected.len());
+    let stop = plays.iter().position(|line| line["kind"] == "stopped");
+    let stop = stop.unwrap();
+    assert_eq!((stop, &plays[stop]["reason"]), (3, &"left".into()));
+    for (i, (line, (_, gain_db))) in plays.iter().zip(expected).enumerate() {
+        let drive_v = 100.0 * 10f64.powf(gain_db / 20.0);
+        let output = &line["output"];
+        for (found, is) in [
+            (&line["drive_v"], drive_v),
+            (&output["peak"], drive_v),
+            (&output["rms"], drive_v / 2.0),
+            (&output["direct"], 0.25),
+            (&output["duration_s"], 1.5),
+        ] {
+            let found = found.as_f64().unwrap_or(f64::NAN);
+            assert!((found - is).abs() < 1e-9, "{found}, expected {is}: {line}");
+        }
+        assert_eq!(output["unit"], "V");
+        if i != stop {
+            assert_eq!(line["stops"], u32::from(i == stop + 1), "{line}");
+        }
+    }
 }
 
 #[test]

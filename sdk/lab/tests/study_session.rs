@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use htex_finding::Findings;
 use htex_lab::study::{
-    DeviceUsed, GainKey, Header, Phase, Plan, Presented, Session, SimulatedParticipant, Step,
-    Study, StudyError, export, read_study,
+    DeviceUsed, GainKey, Header, OutputLevels, Phase, Plan, Played, Presented, Session,
+    SimulatedParticipant, Step, Study, StudyError, export, read_study,
 };
 use tempfile::TempDir;
 
@@ -96,11 +96,20 @@ fn act(session: &mut Session<'_>) -> bool {
             .rate((trial.number % 7) as u8, 1, 2, Presented::default())
             .unwrap(),
         Step::Match { matching, .. } => {
-            let key = match matching.gain_db() < -2.0 {
-                true => GainKey::Accept,
-                false => GainKey::Weaker,
+            let gain_db = matching.gain_db();
+            let key = match (matching.is_rising(), gain_db) {
+                (true, 0.0) => GainKey::Accept,
+                (true, _) => GainKey::MuchStronger,
+                (false, gain_db) if gain_db < -2.0 => GainKey::Accept,
+                (false, _) => GainKey::Weaker,
             };
-            session.press(key, None, 0.5, 3).unwrap();
+            let played = Played {
+                drive_v: None,
+                output: OutputLevels::default(),
+                reference_rms: 0.5,
+                felt: None,
+            };
+            session.press(key, &played, 3).unwrap();
         }
         Step::Rest { .. } => session.rested(4).unwrap(),
         Step::Done => return false,
@@ -119,8 +128,8 @@ fn a_session_goes_on_from_every_byte() {
     let whole = fs::read(place.answers()).unwrap();
     let header = whole.iter().position(|b| *b == b'\n').unwrap() + 1;
     let lines = whole.iter().filter(|b| **b == b'\n').count();
-    // 2 training, 4 gain, 8 ratings, 1 rest.
-    assert_eq!(lines, 1 + 2 + 4 + 8 + 1);
+    // 2 training, 4 gain, each after 6 of a rise, 8 ratings, 1 rest.
+    assert_eq!(lines, 1 + 6 + 2 + 6 + 4 + 8 + 1);
     for cut in (header..whole.len())
         .step_by(17)
         .chain([header, whole.len() - 1])
@@ -141,9 +150,12 @@ fn gains_are_adopted_by_the_other_models() {
     loop {
         if let Step::Rate(phase, trial, _) = session.step() {
             let stimulus = session.stimulus(phase, &trial);
-            let gain = (phase == Phase::Testing).then_some(-3.0);
-            assert_eq!(stimulus.gain_db, gain, "{}", trial.model);
-            assert_eq!(stimulus.reference_rms, gain.map(|_| 0.5));
+            let gain_db = match phase {
+                Phase::Training => 0.0,
+                _ => -3.0,
+            };
+            assert_eq!(stimulus.gain_db, Some(gain_db), "{}", trial.model);
+            assert_eq!(stimulus.reference_rms, Some(0.5));
             seen += 1;
         }
         if !act(&mut session) {
@@ -207,32 +219,77 @@ fn damaged_lines_are_named_and_kept() {
     damaged(
         "\"number\":1,",
         "\"number\":9,",
-        &["line 2", "trial 1 of the plan"],
+        &["line 8", "trial 1 of the plan"],
     );
     damaged(
         "\"rating\":1,",
         "\"rating\":9,",
-        &["line 2", "not on the scale"],
+        &["line 8", "not on the scale"],
     );
     damaged(
         "\"rating\":1,",
         "\"rating\":1,\"ratting\":2,",
         &[
-            "line 2",
+            "line 8",
             "unknown field `ratting`, expected one of",
             "`rating`",
         ],
     );
-    damaged("\"kind\":\"rest\"", "\"kind\":\"nap\"", &["line 12"]);
+    // A level that the keys do not give: of other rules, and nobody knows what was felt.
+    damaged(
+        "\"gain_db\":-16.0",
+        "\"gain_db\":-1.0",
+        &["line 2", "cloth is at -16 dB, and the line says -1 dB"],
+    );
+    damaged("\"kind\":\"rest\"", "\"kind\":\"nap\"", &["line 24"]);
     damaged("{\"kind\":\"header\"", "{\"kind\":\"leader\"", &["line 1"]);
     let header = text.lines().next().unwrap();
     damaged(
         "{\"kind\":\"rest\"",
         &format!("{header}\n{{\"kind\":\"rest\""),
-        &["line 12", "second header"],
+        &["line 24", "second header"],
     );
     fs::write(place.answers(), "").unwrap();
     refused(&place, &["line 1"]);
+}
+
+/// A file that is not of this session stays as it is, also its last line without an end, and a link to one is not followed.
+#[test]
+fn a_file_that_is_not_ours_is_not_changed() {
+    let place = Place::new();
+    let mut session = place.open().unwrap();
+    act(&mut session);
+    drop(session);
+    let own = fs::read_to_string(place.answers()).unwrap();
+    let cut = format!("{own}{{\"kind\":\"ris");
+    let of_other = cut.replace("\"participant\":\"P01\"", "\"participant\":\"P02\"");
+    assert_ne!(of_other, cut);
+    let notes = "field notes\nof the year, without a last line's end";
+    let damaged = cut.replacen("\"kind\":\"rise\"", "\"kind\":\"nap\"", 1);
+    for text in [notes, "one line without an end", &of_other, &damaged] {
+        fs::write(place.answers(), text).unwrap();
+        assert!(place.open().is_err());
+        assert_eq!(fs::read_to_string(place.answers()).unwrap(), text);
+    }
+    #[cfg(unix)]
+    for (target, text) in [("notes", notes), ("answers", &*cut), ("new", "")] {
+        let target = place.path(target);
+        if !text.is_empty() {
+            fs::write(&target, text).unwrap();
+        }
+        fs::remove_file(place.answers()).unwrap();
+        std::os::unix::fs::symlink(&target, place.answers()).unwrap();
+        refused(&place, &["P01.jsonl", "is a symbolic link"]);
+        assert_eq!(fs::read_to_string(&target).unwrap_or_default(), text);
+    }
+    // Of our own file only the first line that is written removes the incomplete one.
+    fs::remove_file(place.answers()).unwrap();
+    fs::write(place.answers(), &cut).unwrap();
+    let mut session = place.open().unwrap();
+    assert_eq!(fs::read_to_string(place.answers()).unwrap(), cut);
+    act(&mut session);
+    let text = fs::read_to_string(place.answers()).unwrap();
+    assert!(text.starts_with(&own) && text.lines().count() == own.lines().count() + 1);
 }
 
 fn rows(folder: &Path, attribute: Option<&str>) -> Result<String, StudyError> {

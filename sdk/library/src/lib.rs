@@ -32,6 +32,7 @@
 //!
 //! With the feature `storage`, `Library::open_located` opens libraries by URI. [`Index`] and [`Opening`] do no input or output: they state which bytes of the file they need. [`Library`] reads them from a
 //! [`LibrarySource`]; a browser fetches them.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "write")]

@@ -35,6 +35,7 @@ impl Writer {
     ///
     /// # Errors
     /// When the name has a control character or more than 255 bytes, or a file cannot be written there.
+    #[allow(clippy::disallowed_methods, reason = "the user named this file")]
     pub fn create(path: &Path, name: &str) -> Result<Self, LibraryError> {
         let target = Unfinished::create(path).unchanged(path)?;
         let scratch = ScratchFile(Scratch::beside(path).unchanged(path)?);

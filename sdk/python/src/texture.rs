@@ -447,6 +447,7 @@ pub(crate) fn write_content(py: Python<'_>, path: PathBuf, content: &[u8]) -> Py
     py.detach(|| write(&path, content))
 }
 
+#[allow(clippy::disallowed_methods, reason = "the user named this file")]
 fn write(path: &Path, bytes: &[u8]) -> PyResult<()> {
     write_file(path, bytes).map_err(|error| of_file(path, &error))
 }

@@ -154,6 +154,17 @@ def test_the_files_hold_the_same_and_the_page_is_one_file(golden: study.Analysis
     assert page.count('role="img"') == 6 + 6 + 2
     assert len(list((tmp_path / "figures").glob("*.svg"))) == len(list((tmp_path / "figures").glob("*.pdf"))) == 14
     assert len(pd.read_csv(tmp_path / "pairs.csv")) == 10 + 5 * 10
+    # No link in the folder is followed.
+    linked, outside = tmp_path / "linked", tmp_path / "outside"
+    linked.mkdir()
+    outside.mkdir()
+    (outside / "victim").write_text("precious")
+    (linked / "report.html").symlink_to(outside / "victim")
+    (linked / "figures").symlink_to(outside)
+    with pytest.raises(PermissionError, match="symbolic link"):
+        golden.save(linked)
+    assert [file.name for file in outside.iterdir()] == ["victim"]
+    assert (outside / "victim").read_text() == "precious"
     again = study.Analysis(golden.ratings, golden.spectra, 0.5).files("htex study analyse")
     assert all((tmp_path / name).read_bytes() == data for name, data in again.items())
 

@@ -37,6 +37,10 @@ impl Costs {
     ///
     /// # Errors
     /// If the file cannot be written.
+    #[allow(
+        clippy::disallowed_methods,
+        reason = "the user's own folder of settings"
+    )]
     pub fn save(&self, path: &Path) -> std::io::Result<()> {
         let text = serde_json::to_string_pretty(self)?;
         if let Some(folder) = path.parent() {

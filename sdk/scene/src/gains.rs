@@ -15,6 +15,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+/// Level at which a texture is first played to a finger while its gain is found, decibels relative to the maximum: a tenth of its
+/// voltage. It rises only when the person asks for more.
+pub const START_DB: f64 = -20.0;
+
+/// The factor of an amplitude that is this many decibels.
+pub fn factor_of_db(db: f64) -> f64 {
+    libm::pow(10.0, db / 20.0)
+}
+
 /// Size limit of a gains file, bytes.
 const MAX_BYTES: u64 = 16 << 20;
 
@@ -151,6 +160,10 @@ impl Gains {
     ///
     /// # Errors
     /// As [`Self::load`], and I/O errors of writing.
+    #[allow(
+        clippy::disallowed_methods,
+        reason = "the user's own folder of settings"
+    )]
     pub fn update(path: &Path, change: impl FnOnce(&mut Self)) -> io::Result<()> {
         if let Some(folder) = path.parent() {
             fs::create_dir_all(folder)?;

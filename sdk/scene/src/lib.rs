@@ -45,7 +45,10 @@ pub use cost::Costs;
 pub use device::DeviceOverride;
 pub use error::SceneError;
 pub use file::Scene;
-pub use gains::{Gain, GainKey, Gains, gains_schema, recordings_of, texture_id, texture_name};
+pub use gains::{
+    Gain, GainKey, Gains, START_DB, factor_of_db, gains_schema, recordings_of, texture_id,
+    texture_name,
+};
 pub use limits::Limits;
 pub use load::{LoadError, LoadedScene, SceneFiles, Surroundings, validate};
 pub use motion::Finger;

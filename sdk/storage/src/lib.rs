@@ -20,6 +20,7 @@
 //! assert_eq!(storage.read_range(&location, 2..5)?, b"2,3");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "cloud")]

@@ -37,10 +37,12 @@ pub(crate) fn stat(path: &Path) -> Result<Option<Stat>, StorageError> {
     }
 }
 
+#[allow(clippy::disallowed_methods, reason = "the user named this file")]
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), StorageError> {
     htex_files::write_file(path, bytes).at(path.display())
 }
 
+#[allow(clippy::disallowed_methods, reason = "the user named this file")]
 pub(crate) fn remove(path: &Path) -> Result<(), StorageError> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
@@ -50,6 +52,7 @@ pub(crate) fn remove(path: &Path) -> Result<(), StorageError> {
     }
 }
 
+#[allow(clippy::disallowed_methods, reason = "the user named this file")]
 pub(crate) fn write_copy(path: &Path, of: &Path) -> Result<(), StorageError> {
     let mut from = opened(of)?;
     htex_files::replace_file(path, |into| io::copy(&mut from, into).map(drop)).at(path.display())

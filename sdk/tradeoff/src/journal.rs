@@ -1,10 +1,11 @@
 //! Journal of a sweep, from which an interrupted sweep continues.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
+use htex_files::OwnFolder;
 use serde::{Deserialize, Serialize};
 
 use crate::TradeoffError;
@@ -69,8 +70,10 @@ impl Journal {
 
     /// Reads the file; a file that is not a journal is an error and is not changed.
     fn read(&self, key: &str) -> io::Result<Vec<Entry>> {
-        let Ok(file) = File::open(&self.path) else {
-            return Ok(Vec::new());
+        let (own, name) = OwnFolder::of_file(&self.path)?;
+        let file = match own.open(&name) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            opened => opened?,
         };
         let mut lines = BufReader::new(file).lines().map_while(Result::ok);
         let first = lines.next().unwrap_or_default();
@@ -88,7 +91,8 @@ impl Journal {
 
     /// Rewrites the file with the entries that were read, and opens it for more.
     fn rewrite(&self, key: &str) -> io::Result<File> {
-        htex_format::replace_file(&self.path, |file| {
+        let (own, name) = OwnFolder::of_file(&self.path)?;
+        own.replace(&name, |file| {
             let mut file = io::BufWriter::new(file);
             writeln!(file, "{key}")?;
             for entry in &self.entries {
@@ -96,7 +100,7 @@ impl Journal {
             }
             file.flush()
         })?;
-        OpenOptions::new().append(true).open(&self.path)
+        own.open_to_append(&name)
     }
 
     /// Appends a finished entry. A line is one write, so that only the last one can be truncated.
@@ -116,10 +120,8 @@ impl Journal {
     /// # Errors
     /// When it cannot be removed.
     pub fn discard(self) -> Result<(), TradeoffError> {
-        match std::fs::remove_file(&self.path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-            removed => self.kept(removed),
-        }
+        let removed = OwnFolder::of_file(&self.path).and_then(|(own, name)| own.remove(&name));
+        self.kept(removed)
     }
 
     /// Names the file in an error.

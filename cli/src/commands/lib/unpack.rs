@@ -1,4 +1,4 @@
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use htex_files::{AtFile, Batch, OwnFolder};
@@ -80,8 +80,6 @@ impl Unpack {
             PathBuf::from(format!("{name}.htex")),
         );
         let path = self.output.join(&inside);
-        let above = inside.parent().unwrap_or(Path::new(""));
-        own.make_folder(above).writing(&path)?;
         match path.symlink_metadata() {
             Err(_) => {}
             Ok(is) if self.force && is.is_file() => {}
@@ -97,6 +95,6 @@ impl Unpack {
                 )));
             }
         }
-        Ok(batch.write(&path, bytes).writing(&path)?)
+        Ok(own.write_with(batch, &inside, bytes).writing(&path)?)
     }
 }

@@ -1,3 +1,4 @@
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -5,8 +6,8 @@ use htex_check::templates;
 
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::output::{print, write_file};
-use htex_files::AtFile;
+use crate::output::print;
+use htex_files::{AtFile, OwnFolder};
 
 /// The folder `sdk` of the sources this program was built from; a released one knows none.
 const SDK: Option<&str> = option_env!("HTEX_SDK");
@@ -51,12 +52,15 @@ impl New {
         let dir = self.dir.clone().unwrap_or_else(|| (&self.name).into());
         self.check(&dir)?;
         let sdk = (self.lang == Lang::Rust).then(|| self.sdk()).transpose()?;
-        make_folder(&dir)?;
+        let own = OwnFolder::new(&dir);
+        own.make_folder(Path::new("")).writing(&dir)?;
         let values = self.values(&sdk_from(&dir, sdk)?);
         for (file, template) in self.lang.files() {
             let fill = |text: String, (key, value): &(&str, String)| text.replace(key, value);
             let text = values.iter().fold((*template).to_owned(), fill);
-            write(&dir.join(file), &text)?;
+            let write = |into: &mut std::fs::File| into.write_all(text.as_bytes());
+            let written = own.replace(Path::new(file), write);
+            written.writing(&dir.join(file))?;
         }
         let dir = dir.display();
         print(&match self.lang {
@@ -134,15 +138,4 @@ fn sdk_from(dir: &Path, sdk: Option<PathBuf>) -> Result<String, Failure> {
     let path = pathdiff::diff_paths(&sdk, dir).unwrap_or(sdk);
     // Cargo takes slashes on every system; a backslash would begin an escape.
     Ok(path.display().to_string().replace('\\', "/"))
-}
-
-fn make_folder(folder: &Path) -> Result<(), Failure> {
-    Ok(std::fs::create_dir_all(folder).writing(folder)?)
-}
-
-fn write(file: &Path, text: &str) -> Result<(), Failure> {
-    if let Some(folder) = file.parent() {
-        make_folder(folder)?;
-    }
-    write_file(file, text.as_bytes())
 }

@@ -67,7 +67,7 @@ impl GuideArgs {
             ))));
         }
         let page = GuidePage::open(self.port, setup, guidance, rate_hz)?;
-        tell!("open {} in a browser of this machine", page.url());
+        tell!("open {}", page.address());
         Ok(Guide::Page(page))
     }
 }

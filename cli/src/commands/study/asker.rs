@@ -114,7 +114,7 @@ impl AskingArgs {
             noise_dbfs: study.masking_noise.as_ref().map(|noise| noise.level_dbfs),
             touch_mm_per_px: is_touched.then_some(self.touch_mm_per_px),
         })?;
-        tell!("open {} in a browser of this machine", page.url());
+        tell!("open {}", page.address());
         let motions = match self.motion.as_deref() {
             Some("page") => Some(Motions::Page(page.touch(), self.touch_force)),
             Some(_) => Some(Motions::from_stdin()),

@@ -5,10 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use htex_device::{DeviceError, SettingKind};
+use htex_files::{AtFile, OwnFolder};
 use htex_finding::plain;
 use htex_format::Measure;
 use htex_lab::study::{
-    DeviceUsed, Felt, Played, Rig, Stimulus, Study, StudyError, scene_of, set_gain,
+    DeviceUsed, Felt, Meter, OutputLevels, Played, Rig, Stimulus, Study, StudyError, full_drive,
+    scene_of, set_gain,
 };
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, Finger, LoadedScene, Renderer, output_name};
@@ -32,8 +34,10 @@ pub(super) struct StudyRig<'a> {
     pub(super) device: DeviceOverride,
     /// Format of files that are played to.
     pub(super) format: String,
-    /// Folder of files that are played to.
+    /// Folder of files that are played to, in that of the answers.
     pub(super) folder: PathBuf,
+    /// That of the answers, if a trial is played to a file.
+    pub(super) answers: Option<OwnFolder>,
     /// The finger, if its motion is live.
     pub(super) motions: Option<Motions>,
     /// Whether trials are played as fast as the device takes them.
@@ -43,6 +47,8 @@ pub(super) struct StudyRig<'a> {
     pub(super) ended: bool,
     /// Records what is felt.
     pub(super) felt: Option<Felt>,
+    /// Drive of a display, volts, and levels of what plays or played last; `None` before a device is opened.
+    pub(super) playing: Option<(Option<f64>, Meter)>,
 }
 
 impl StudyRig<'_> {
@@ -54,8 +60,9 @@ impl StudyRig<'_> {
             return Err(Failure::Other(sentence));
         };
         let name = output_name(file.as_ref(), &self.format);
+        let path = self.folder.join(name);
         let device = DeviceOverride {
-            output: Some(self.folder.join(name).display().to_string()),
+            output: Some(path.display().to_string()),
             ..self.device.clone()
         };
         let scene = scene_of(self.study, &listed.asset, model);
@@ -99,15 +106,33 @@ impl StudyRig<'_> {
         Ok(settings.iter().any(|s| s.kind == SettingKind::Path))
     }
 
+    /// Refuses a trial that would be played through a link in the folder of answers.
+    fn check_file(&self, stimulus: &Stimulus) -> Result<(), Failure> {
+        let Some(answers) = &self.answers else {
+            return Ok(());
+        };
+        let path = self
+            .folder
+            .join(output_name(stimulus.file.as_ref(), &self.format));
+        let inside = path.strip_prefix(answers.path()).unwrap_or(&path);
+        answers.path_to_write(inside).writing(&path)?;
+        Ok(())
+    }
+
     fn begin(&self, stimulus: &Stimulus) -> Result<(Ready, Option<f64>), Failure> {
+        self.check_file(stimulus)?;
         let mut ready = self.load(&stimulus.texture, &stimulus.model, &stimulus.file)?;
         let scene = &mut ready.scene.scene;
         scene.duration_s = stimulus.seconds;
         scene.seed = stimulus.seed;
-        let drive_v = stimulus.gain_db.and_then(|gain_db| {
-            let rms = stimulus.reference_rms;
-            set_gain(&mut scene.device, &ready.capabilities, gain_db, rms)
-        });
+        let able = &ready.capabilities;
+        let drive_v = match stimulus.gain_db {
+            Some(gain_db) => {
+                let rms = stimulus.reference_rms;
+                set_gain(&mut scene.device, able, gain_db, rms)
+            }
+            None => full_drive(&scene.device, able),
+        };
         Ok((ready, drive_v))
     }
 
@@ -137,12 +162,18 @@ impl Rig for StudyRig<'_> {
         ends: &mut dyn FnMut() -> bool,
     ) -> Result<Played, Failure> {
         let mut felt = self.felt.take();
+        self.playing = None;
         let played = self.play_with(felt.as_mut(), stimulus, ends);
         if let (Err(_), Some(felt)) = (&played, &mut felt) {
             felt.abort();
         }
         self.felt = felt;
         played
+    }
+
+    fn output_before_error(&mut self) -> Option<(Option<f64>, OutputLevels)> {
+        let (drive_v, meter) = self.playing.take()?;
+        Some((drive_v, meter.levels()))
     }
 
     fn ran_dry(error: &Failure) -> bool {
@@ -197,9 +228,14 @@ impl StudyRig<'_> {
         if !self.is_fast && !ready.capabilities.paced {
             output = output.paced();
         }
+        let unit = ready.capabilities.quantity.unit();
+        self.playing = Some((drive_v, Meter::new(unit, plan.rate_hz)));
         let (mut stopped, mut left) = (false, false);
         loop {
             let goes_on = output.step(&mut renderer)?;
+            if let Some((_, meter)) = &mut self.playing {
+                meter.take(output.last_block());
+            }
             if let Some(felt) = felt.as_deref().filter(|felt| felt.waits()) {
                 felt.sounds(output.lead_s());
             }
@@ -220,8 +256,10 @@ impl StudyRig<'_> {
         if underruns > 0 {
             return Err(ran_dry(&ready).into());
         }
+        let levels = self.output_before_error().map(|(_, levels)| levels);
         let mut played = Played {
             drive_v,
+            output: levels.unwrap_or_default(),
             reference_rms: plan.reference_rms,
             felt: None,
         };

@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_files::AtFile;
+use htex_files::{AtFile, OwnFolder};
 use htex_finding::Severity;
 use htex_lab::study::{
     Clock, Ended, Felt, Header, Plan, Session, SimulatedParticipant, Study, StudyError,
@@ -175,7 +175,7 @@ impl Run {
         let format = device.settings.get("format").map(String::as_str).or(asked);
         let format = format.unwrap_or("wav").to_owned();
         let folder = self.output.join(participant);
-        let rig = StudyRig {
+        let mut rig = StudyRig {
             study,
             path: self.study.clone(),
             loader: self.with.loader()?,
@@ -184,13 +184,18 @@ impl Run {
             motions: None,
             is_fast: self.fast,
             folder,
+            answers: None,
             told: Default::default(),
             errors_db: Default::default(),
             ended: false,
             felt: None,
+            playing: None,
         };
         if rig.plays_to_files()? {
-            htex_files::private::make_folder(&rig.folder).writing(&rig.folder)?;
+            let answers = OwnFolder::private(&self.output);
+            let made = answers.make_folder(participant.as_ref());
+            made.writing(&rig.folder)?;
+            rig.answers = Some(answers);
         }
         Ok(rig)
     }

@@ -43,7 +43,12 @@ fn a_source_that_fails_ends_the_session_and_the_trial_is_repeated() {
             error.contains(words) && error.contains("what is felt"),
             "{error}"
         );
-        let so_far = &answers(&place.path(&folder))["Ann.jsonl"];
+        let stopped = &answers(&place.path(&folder))["Ann.jsonl"];
+        assert!(
+            stopped.contains("\"kind\":\"stopped\"") && stopped.contains("\"reason\":\"failed\""),
+            "{stopped}"
+        );
+        let so_far = &unstopped(&place.path(&folder))["Ann.jsonl"];
         assert!(
             expected["Ann.jsonl"].starts_with(&so_far[..])
                 && so_far.len() < expected["Ann.jsonl"].len()
@@ -54,7 +59,7 @@ fn a_source_that_fails_ends_the_session_and_the_trial_is_repeated() {
             "{}",
             String::from_utf8_lossy(&again.stderr)
         );
-        assert_eq!(answers(&place.path(&folder)), expected, "{fault}");
+        assert_eq!(unstopped(&place.path(&folder)), expected, "{fault}");
         let found = felt(&place.path(&folder), "Ann");
         assert!(found == felt(&place.path("whole"), "Ann"), "{fault}");
     }

@@ -41,6 +41,7 @@ struct Session {
     place: Place,
     child: Child,
     url: String,
+    by_number: String,
 }
 
 impl Session {
@@ -69,11 +70,17 @@ impl Session {
             .spawn()
             .unwrap();
         let url = crate::browser::address(&mut child);
-        Self { place, child, url }
+        let by_number = crate::browser::by_number(&url);
+        Self {
+            place,
+            child,
+            url,
+            by_number,
+        }
     }
 
     fn tab<'a>(&'a self, name: &'a str) -> TabOf<'a> {
-        let rest = self.url.strip_prefix("http://").unwrap();
+        let rest = self.by_number.strip_prefix("http://").unwrap();
         let (host, path) = rest.split_once('/').unwrap();
         TabOf { host, path, name }
     }

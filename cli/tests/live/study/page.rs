@@ -100,8 +100,13 @@ fn one_press_is_one_answer_in_one_tab() {
     let (mut child, url) = session(&place);
     let mut browser = Browser::start(installed.unwrap(), &place.path("browser"));
     let tab = browser.open(&url);
-    browser.shows(&tab, "A trial for practice");
+    browser.shows(&tab, "This is for practice");
     fits_tablets(&mut browser, &tab, "practice");
+    // The texture starts weak, and rises until it is felt.
+    go(&mut browser, &tab);
+    felt_after(&mut browser, &tab, 1);
+    browser.shows(&tab, "Begin");
+    assert_eq!(levels(&place, "rise"), [-16.0, -16.0]);
     go(&mut browser, &tab);
     browser.shows(&tab, "How similar");
     fits_tablets(&mut browser, &tab, "question");
@@ -128,9 +133,11 @@ fn one_press_is_one_answer_in_one_tab() {
     assert_eq!(ratings(&place), [3]);
     browser.press(&tab, "6", 0);
     wait_for(&place, &[3, 6]);
-    // The gain is matched on the pad from the maximum down.
+    // The gain is matched on the pad, from where the texture is felt down.
     browser.shows(&tab, "You will match its strength");
     go(&mut browser, &tab);
+    fits_tablets(&mut browser, &tab, "rising-pad");
+    felt_after(&mut browser, &tab, 5);
     browser.shows(&tab, "it matches");
     fits_tablets(&mut browser, &tab, "descending-pad");
     browser.slide(&tab);
@@ -200,6 +207,7 @@ models = ['ar']
 repetitions = 2
 trial_s = 2
 phases = ['gain', 'testing']
+start_db = 0
 gain = { method = 'METHOD', reversals = 3 }
 masking_noise = { level_dbfs = -30 }
 rests = { every = 1, seconds = 2 }
@@ -210,10 +218,26 @@ name = 'coarse_fabric'
 asset = 'vinyl.htex'
 ";
 
-/// Gains after each key so far, decibels.
+/// Presses Page Up so many times, and says that the texture is felt.
+fn felt_after(browser: &mut Browser, tab: &Tab, steps: usize) {
+    browser.shows(tab, "Make it stronger until you feel it");
+    for key in std::iter::repeat_n("PageUp", steps).chain(["Enter"]) {
+        // What is shown takes no key at once.
+        std::thread::sleep(Duration::from_millis(900));
+        browser.press(tab, key, 0);
+    }
+    std::thread::sleep(Duration::from_millis(500));
+}
+
+/// Gains after each key of the matching so far, decibels.
 fn gains(place: &Place) -> Vec<f64> {
+    levels(place, "gain")
+}
+
+/// Levels of lines of a kind so far, decibels.
+fn levels(place: &Place, kind: &str) -> Vec<f64> {
     let lines = kept(place).into_iter();
-    let gains = lines.filter(|line| line["kind"] == "gain");
+    let gains = lines.filter(|line| line["kind"] == kind);
     gains
         .map(|line| line["gain_db"].as_f64().unwrap())
         .collect()
@@ -243,6 +267,8 @@ fn matched(method: &str, buttons: &[&str], keys: &[(&str, Option<f64>)]) {
     browser.shows(&tab, "You will match its strength");
     fits_tablets(&mut browser, &tab, "ready");
     go(&mut browser, &tab);
+    fits_tablets(&mut browser, &tab, "rising");
+    felt_after(&mut browser, &tab, 0);
     browser.shows(&tab, "Compare it");
     fits_tablets(&mut browser, &tab, method);
     let shown = "[...document.querySelectorAll('main button')].map((b) => b.dataset.key)";
@@ -352,6 +378,7 @@ fn masking_noise_has_its_level_and_its_times() {
         return connect.call(this, to, ...rest); }; true";
     assert_eq!(browser.value(&tab, listen), true);
     go(&mut browser, &tab);
+    felt_after(&mut browser, &tab, 0);
     browser.shows(&tab, "Compare it");
     // Level, decibels relative to full scale, and bands of an octave above the first, decibels relative to the mean power of a bin.
     let measure = "(async () => { for (let i = 0; i < 100 && audio.state !== 'running'; i++) await new Promise((r) => setTimeout(r, 50)); \
@@ -414,7 +441,8 @@ fn masking_noise_has_its_level_and_its_times() {
 fn other_pages_and_programs_cannot_answer() {
     let place = Place::new();
     let (mut child, url) = session(&place);
-    let rest = url.strip_prefix("http://127.0.0.1:").unwrap();
+    let number = crate::browser::by_number(&url);
+    let rest = number.strip_prefix("http://127.0.0.1:").unwrap();
     let (port, path) = rest.trim().split_once('/').unwrap();
     let host = format!("127.0.0.1:{port}");
     let get = |path: &str, host: &str| {
@@ -431,6 +459,12 @@ fn other_pages_and_programs_cannot_answer() {
         "with another token"
     );
     assert_eq!(get(path, "evil.example"), "403", "under another name");
+    let name = url.split('/').nth(2).unwrap();
+    assert_eq!(get(path, name), "200", "by the name that is printed");
+    let other = format!("{}.localhost:{port}", "0".repeat(32));
+    for name in [other, format!("localhost:{port}")] {
+        assert_eq!(get(path, &name), "403", "{name}");
+    }
     let post = |body: &str| {
         let length = body.len();
         status(
@@ -453,4 +487,35 @@ fn other_pages_and_programs_cannot_answer() {
         2,
         "there are a header, a session and no answer"
     );
+}
+
+/// At a port that another program may have had, only the name is served at which nothing was before: a script that the program left at
+/// the number (a service worker) sees no request.
+#[test]
+fn at_a_port_that_was_chosen_only_a_new_name_is_served() {
+    let place = Place::new();
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port().to_string();
+    drop(listener);
+    let mut names = std::collections::BTreeSet::new();
+    for _ in 0..2 {
+        let (mut child, url) = asked(&place, STUDY, &["--motion", "page", "--port", &port]);
+        let (host, path) = url
+            .strip_prefix("http://")
+            .unwrap()
+            .split_once('/')
+            .unwrap();
+        let get = |host: &str| {
+            status(
+                &port,
+                &format!("GET /{path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"),
+            )
+        };
+        assert_eq!(get(host), "200");
+        assert_eq!(get(&format!("127.0.0.1:{port}")), "403");
+        names.insert(host.to_owned());
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    assert_eq!(names.len(), 2, "each session has another name");
 }

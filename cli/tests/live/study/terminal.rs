@@ -19,6 +19,7 @@ models = ['ar']
 repetitions = 2
 trial_s = 0.2
 phases = ['gain', 'testing']
+start_db = -4
 gain = { method = 'adjustment' }
 motion = { constant = { speed_mm_s = 80, force_n = 0.4 } }
 device = { adapter = 'file' }
@@ -120,7 +121,7 @@ fn a_double_press_at_a_rest_begins_no_trial() {
             "phases = ['gain', 'testing']",
             "phases = ['testing']\nrests = { every = 1 }",
         )
-        .replace("gain = { method = 'adjustment' }\n", "");
+        .replace("start_db = -4\ngain = { method = 'adjustment' }\n", "");
     place.write("study.toml", rests);
     for apart_ms in [0, 150, 300, 450] {
         let mut session = Session::start(&place);
@@ -168,13 +169,19 @@ fn single_keys_answer_without_enter() {
     assert!(!modes.intersects(LocalModes::ICANON | LocalModes::ECHO));
     assert!(modes.contains(LocalModes::ISIG), "Ctrl-C is a signal");
     session.press(b"\r");
+    // 4 dB stronger by Page Up, where it is felt.
+    session.says("make it stronger until you feel it", 1);
+    for keys in [&b"\x1b[5~"[..], b"\r"] {
+        session.press(keys);
+    }
     // 1 dB weaker by a key that is held, 4 dB by Page Down, 1 dB stronger by the arrow.
     session.says("compared with the real one", 1);
     for keys in [&b"---"[..], b"\x1b[6~", b"\x1b[A", b"\r"] {
         session.press(keys);
     }
     session.says("Enter to begin", 2);
-    assert_eq!(kept(&place, "gain_db"), [-1.0, -5.0, -4.0, -4.0]);
+    let levels = [0.0, 0.0, -1.0, -5.0, -4.0, -4.0];
+    assert_eq!(kept(&place, "gain_db"), levels);
     session.press(b" ");
     session.says("How similar", 1);
     // No rating of the scale; a rating twice at once, which is one answer.
@@ -200,7 +207,7 @@ fn the_terminal_is_restored_after_a_signal() {
         session.says("Enter to begin", 1);
         assert!(!session.is_restored());
         session.press(b"\r");
-        session.says("compared with the real one", 1);
+        session.says("make it stronger until you feel it", 1);
         let id = Pid::from_raw(session.child.id() as i32).unwrap();
         kill_process(id, signal).unwrap();
         assert!(
@@ -209,5 +216,6 @@ fn the_terminal_is_restored_after_a_signal() {
             session.said()
         );
         assert!(session.is_restored(), "{signal:?}");
+        assert_eq!(kept(&place, "reason"), ["interrupted"], "{signal:?}");
     }
 }

@@ -60,6 +60,10 @@ impl Cache {
         self.keep_as(&name(engine, module), artifact)
     }
 
+    #[allow(
+        clippy::disallowed_methods,
+        reason = "a folder of this user that no other user may write to"
+    )]
     fn keep_as(&self, name: &str, artifact: &[u8]) -> io::Result<()> {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -92,6 +96,10 @@ fn is_own(name: &str) -> bool {
 }
 
 /// Removes the cache's oldest files above the limit; other files are left.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "a folder of this user that no other user may write to"
+)]
 fn forget_oldest(folder: &Path) -> io::Result<()> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder)? {

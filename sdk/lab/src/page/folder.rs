@@ -1,22 +1,33 @@
 //! A folder of files, served on this machine alone: the studio.
 //!
-//! All files are read at the start, so that no request names a file of the disk. Nothing of it is secret: the address has no token, and stays the
-//! same from one time to the next, by which a browser finds what it keeps for it.
+//! All files are read at the start, so that no request names a file of the disk, and links are refused: the folder may come from
+//! somebody else, and its scripts would read what they lead to.
+//!
+//! The address is `http://NAME.localhost:PORT/`. The name is a keyed hash of the folder, by a key that only this user can read. A browser
+//! keeps service workers and stored textures for each name. So no other program can leave a script at this address, a page of one folder
+//! cannot read what the page of another one stored, and the name of a folder stays the same from one time to the next. Requests by any
+//! other name, also by `127.0.0.1`, are refused.
+//!
+//! A page cannot lead its tab elsewhere, so that its scripts cannot carry away what a user drops on it. No header forbids that: browsers
+//! never had `navigate-to`, and a sandbox without `allow-top-navigation` binds only frames. So each page begins with `stay.js`, which
+//! cancels what leads to another origin, by the Navigation API of Chromium 102, Safari 26.2 and Firefox 147. Older browsers cannot be
+//! told. Service workers, which could answer with a page of their own, are refused. Not covered are names that a browser looks up
+//! ahead of time (`dns-prefetch`) and WebRTC.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use htex_files::read_regular;
+use htex_files::{Key, OwnFolder};
 use http_body_util::Full;
 use hyper::body::{Bytes, Incoming};
 use hyper::header::HeaderValue;
 use hyper::{Method, Request, Response, StatusCode};
 
 use super::PageError;
-use super::gate::{Refusal, check_origin, hosts};
-use super::server::{Answers, Server, listen};
+use super::gate::{Refusal, check_origin, host};
+use super::server::{Answers, Server, hexadecimal, listen};
 
 /// Most files of a folder, most bytes of one, and how deep folders lie.
 const MOST_FILES: usize = 1_000;
@@ -25,6 +36,18 @@ const MOST_DEPTH: usize = 4;
 /// The page that `/` is.
 const INDEX: &str = "index.html";
 
+/// The script that keeps a page at its address, and what each page begins with; a second doctype is ignored.
+const STAY: &str = include_str!("stay.js");
+const STAY_NAME: &str = "htex-stay.js";
+const BEGINNING: &str = "<!doctype html><script src=\"/htex-stay.js\"></script>";
+
+const HTML: &str = "text/html; charset=utf-8";
+const SVG: &str = "image/svg+xml";
+
+/// What a picture may do that is opened as a page: nothing.
+const PICTURE_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; sandbox";
+const POLICY: &str = "Content-Security-Policy";
+
 /// What a page of the folder may do: nothing beyond the folder.
 const HEADERS: [(&str, &str); 5] = [
     ("Cache-Control", "no-cache"),
@@ -32,9 +55,10 @@ const HEADERS: [(&str, &str); 5] = [
     ("X-Content-Type-Options", "nosniff"),
     ("X-Frame-Options", "DENY"),
     (
-        "Content-Security-Policy",
+        POLICY,
         "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' data: blob:; \
-         connect-src 'self'; worker-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+         connect-src 'self'; worker-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; \
+         sandbox allow-scripts allow-same-origin allow-downloads allow-modals",
     ),
 ];
 
@@ -55,13 +79,14 @@ pub struct ServedFolder {
 }
 
 impl ServedFolder {
-    /// Serves a folder's files on this machine; port 0 is any that is free.
+    /// Serves a folder's files on this machine; port 0 is any that is free. `key` is the user's: with the same one, the address of the
+    /// folder is the same.
     ///
     /// # Errors
-    /// If the folder has no `index.html`, a file cannot be read or is too large, or the port is taken.
-    pub fn open(folder: &Path, port: u16) -> Result<Self, FolderError> {
+    /// If the folder has no `index.html`, a file is a link, cannot be read or is too large, or the port is taken.
+    pub fn open(folder: &Path, port: u16, key: &Key) -> Result<Self, FolderError> {
         let mut files = BTreeMap::new();
-        read(folder, "", 0, &mut files)?;
+        read(&OwnFolder::new(folder), "", 0, &mut files)?;
         if !files.contains_key(INDEX) {
             return Err(wrong(folder, format!("there is no {INDEX}")));
         }
@@ -70,9 +95,11 @@ impl ServedFolder {
             problem: error.to_string(),
         };
         let (listener, port) = listen(port).map_err(failed)?;
-        let hosts = hosts(port);
-        let url = format!("http://{}/", hosts[0]);
-        let shelf = Files { hosts, files };
+        let mut files = files.into_iter().map(begun).collect::<BTreeMap<_, _>>();
+        files.insert(STAY_NAME.to_owned(), Bytes::from_static(STAY.as_bytes()));
+        let host = host(&name(folder, key), port);
+        let url = format!("http://{host}/");
+        let shelf = Files { host, files };
         let server = Server::start(listener, Arc::new(shelf)).map_err(failed)?;
         Ok(Self {
             url,
@@ -86,6 +113,23 @@ impl ServedFolder {
     }
 }
 
+/// A file as it is served: a page begins with the script that keeps it at its address.
+fn begun((name, bytes): (String, Bytes)) -> (String, Bytes) {
+    if kind_of(&name) != HTML {
+        return (name, bytes);
+    }
+    let text = bytes.strip_prefix("\u{FEFF}".as_bytes()).unwrap_or(&bytes);
+    let begun = [BEGINNING.as_bytes(), text].concat();
+    (name, begun.into())
+}
+
+/// The name at which a folder is served: 32 hexadecimal digits, which only who has the key can know.
+fn name(folder: &Path, key: &Key) -> String {
+    let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let tag = key.tag("page", folder.as_os_str().as_encoded_bytes());
+    hexadecimal(&tag[..16])
+}
+
 fn wrong(path: &Path, problem: impl ToString) -> FolderError {
     FolderError::Folder {
         path: path.to_owned(),
@@ -95,13 +139,15 @@ fn wrong(path: &Path, problem: impl ToString) -> FolderError {
 
 /// Reads the files of a folder and of its folders, by their paths in an address.
 fn read(
-    folder: &Path,
+    own: &OwnFolder,
     below: &str,
     depth: usize,
     files: &mut BTreeMap<String, Bytes>,
 ) -> Result<(), FolderError> {
-    let failed = |error: std::io::Error| wrong(folder, error);
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
+    let folder = own.at(below.as_ref());
+    let folder = folder.map_err(|error| wrong(own.path(), error))?;
+    let failed = |error: std::io::Error| wrong(&folder, error);
+    for entry in std::fs::read_dir(&folder).map_err(failed)? {
         let entry = entry.map_err(failed)?;
         let (path, kind) = (entry.path(), entry.file_type().map_err(failed)?);
         let name = format!("{below}{}", entry.file_name().to_string_lossy());
@@ -109,15 +155,16 @@ fn read(
             if depth == MOST_DEPTH {
                 return Err(wrong(&path, "the folders lie too deep for a page"));
             }
-            read(&path, &format!("{name}/"), depth + 1, files)?;
+            read(own, &format!("{name}/"), depth + 1, files)?;
             continue;
         }
         if files.len() == MOST_FILES {
             let problem =
                 format!("there are more than {MOST_FILES} files; give the folder of a page");
-            return Err(wrong(folder, problem));
+            return Err(wrong(&folder, problem));
         }
-        let bytes = read_regular(&path, MOST_BYTES).map_err(|error| wrong(&path, error))?;
+        let bytes = own.read(name.as_ref(), MOST_BYTES);
+        let bytes = bytes.map_err(|error| wrong(&path, error))?;
         files.insert(name, bytes.into());
     }
     Ok(())
@@ -125,7 +172,7 @@ fn read(
 
 /// The files, by their paths.
 struct Files {
-    hosts: [String; 2],
+    host: String,
     files: BTreeMap<String, Bytes>,
 }
 
@@ -136,10 +183,14 @@ impl Answers for Files {
         is_known: &AtomicBool,
     ) -> Result<Response<Full<Bytes>>, Refusal> {
         let (head, _) = request.into_parts();
-        check_origin(&head, &self.hosts)?;
+        check_origin(&head, std::slice::from_ref(&self.host))?;
         is_known.store(true, Ordering::Relaxed);
         if head.method != Method::GET && head.method != Method::HEAD {
             return Err((StatusCode::METHOD_NOT_ALLOWED, "this page is only read"));
+        }
+        if head.headers.contains_key("Service-Worker") {
+            let why = "a script of this page may not answer in its place (service worker)";
+            return Err((StatusCode::FORBIDDEN, why));
         }
         let path = head.uri.path().trim_start_matches('/');
         let name = if path.is_empty() { INDEX } else { path };
@@ -151,9 +202,13 @@ impl Answers for Files {
         };
         let mut response = Response::new(Full::new(body));
         let headers = response.headers_mut();
-        headers.insert("Content-Type", HeaderValue::from_static(kind_of(name)));
+        let kind = kind_of(name);
+        headers.insert("Content-Type", HeaderValue::from_static(kind));
         for (name, value) in HEADERS {
             headers.insert(name, HeaderValue::from_static(value));
+        }
+        if kind == SVG {
+            headers.insert(POLICY, HeaderValue::from_static(PICTURE_POLICY));
         }
         Ok(response)
     }
@@ -163,11 +218,11 @@ impl Answers for Files {
 fn kind_of(name: &str) -> &'static str {
     let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
     match extension {
-        "html" => "text/html; charset=utf-8",
+        "html" => HTML,
         "js" | "mjs" => "text/javascript; charset=utf-8",
         "css" => "text/css; charset=utf-8",
         "json" | "webmanifest" => "application/json",
-        "svg" => "image/svg+xml",
+        "svg" => SVG,
         "png" => "image/png",
         "wasm" => "application/wasm",
         _ => "application/octet-stream",
@@ -181,14 +236,20 @@ mod tests {
 
     use super::*;
 
-    /// The reply to the head of a request.
-    fn ask(served: &ServedFolder, request: &str, host: &str) -> String {
-        let address = served
+    /// The host of a page.
+    fn host_of(served: &ServedFolder) -> &str {
+        served
             .url()
             .trim_start_matches("http://")
-            .trim_end_matches('/');
-        let mut stream = TcpStream::connect(address).unwrap();
-        let host = if host.is_empty() { address } else { host };
+            .trim_end_matches('/')
+    }
+
+    /// The reply to the head of a request.
+    fn ask(served: &ServedFolder, request: &str, host: &str) -> String {
+        let own = host_of(served);
+        let port: u16 = own.split_once(':').unwrap().1.parse().unwrap();
+        let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
+        let host = if host.is_empty() { own } else { host };
         write!(
             stream,
             "{request} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"
@@ -207,14 +268,16 @@ mod tests {
         std::fs::write(outer.path().join("secret.html"), "secret").unwrap();
         std::fs::write(folder.join(INDEX), "<title>page</title>").unwrap();
         std::fs::write(folder.join("assets/a.wasm"), [0, 97, 115, 109]).unwrap();
-        let served = ServedFolder::open(&folder, 0).unwrap();
+        let key = Key::passing().unwrap();
+        let served = ServedFolder::open(&folder, 0, &key).unwrap();
         let page = ask(&served, "GET /", "");
         assert!(page.starts_with("HTTP/1.1 200"), "{page}");
         assert!(
             page.contains("script-src 'self' 'wasm-unsafe-eval';"),
             "{page}"
         );
-        assert!(page.ends_with("<title>page</title>"), "{page}");
+        let begun = format!("{BEGINNING}<title>page</title>");
+        assert!(page.ends_with(&begun), "{page}");
         let module = ask(&served, "GET /assets/a.wasm", "");
         assert!(module.contains("application/wasm"), "{module}");
         for (request, code) in [
@@ -229,14 +292,61 @@ mod tests {
                 "{request}: {reply}"
             );
         }
-        let reply = ask(&served, "GET /", "elsewhere.example");
-        assert!(reply.starts_with("HTTP/1.1 403"), "{reply}");
+        let port = host_of(&served).split_once(':').unwrap().1;
+        let by_number = format!("127.0.0.1:{port}");
+        let by_name = format!("localhost:{port}");
+        for host in ["elsewhere.example", &by_number, &by_name] {
+            let reply = ask(&served, "GET /", host);
+            assert!(reply.starts_with("HTTP/1.1 403"), "{host}: {reply}");
+        }
+    }
+
+    /// A folder has the same name as long as the user has the same key; every other folder, and every other user, has another one.
+    #[test]
+    fn the_name_is_of_the_user_and_of_the_folder() {
+        let outer = tempfile::tempdir().unwrap();
+        let [one, other] = ["one", "other"].map(|name| outer.path().join(name));
+        for folder in [&one, &other] {
+            std::fs::create_dir(folder).unwrap();
+        }
+        let key = Key::of(&outer.path().join("config"), "studio.key").unwrap();
+        let again = Key::of(&outer.path().join("config"), "studio.key").unwrap();
+        let own = name(&one, &key);
+        assert!(own.len() == 32 && own.bytes().all(|c| c.is_ascii_hexdigit()));
+        assert_eq!(own, name(&one.join("../one"), &again));
+        assert_ne!(own, name(&other, &key));
+        assert_ne!(own, name(&one, &Key::passing().unwrap()));
+    }
+
+    /// The scripts of a page that somebody else made would read what a link leads to.
+    #[cfg(unix)]
+    #[test]
+    fn a_link_in_the_folder_is_refused() {
+        let outer = tempfile::tempdir().unwrap();
+        std::fs::write(outer.path().join("id_rsa"), "secret").unwrap();
+        for link in ["id.txt", "assets"] {
+            let folder = outer.path().join(format!("page-{link}"));
+            std::fs::create_dir(&folder).unwrap();
+            std::fs::write(folder.join(INDEX), "<title>page</title>").unwrap();
+            let target = match link {
+                "assets" => outer.path().to_owned(),
+                _ => outer.path().join("id_rsa"),
+            };
+            std::os::unix::fs::symlink(target, folder.join(link)).unwrap();
+            let error = ServedFolder::open(&folder, 0, &Key::passing().unwrap());
+            let error = error.err().unwrap().to_string();
+            assert!(
+                error.contains(link) && error.contains("is a symbolic link"),
+                "{error}"
+            );
+        }
     }
 
     #[test]
     fn a_folder_without_a_page_is_refused() {
         let folder = tempfile::tempdir().unwrap();
-        let error = ServedFolder::open(folder.path(), 0).err().unwrap();
+        let key = Key::passing().unwrap();
+        let error = ServedFolder::open(folder.path(), 0, &key).err().unwrap();
         assert!(
             error.to_string().contains("there is no index.html"),
             "{error}"

@@ -14,8 +14,8 @@ const SILENT: Duration = Duration::from_secs(8);
 pub(super) struct Gate {
     /// Path that every request begins with: `/token/`.
     root: String,
-    /// Host names of this server.
-    hosts: [String; 2],
+    /// Host names of this server, the one that is printed first.
+    hosts: Vec<String>,
 }
 
 /// What a request asks for.
@@ -31,15 +31,22 @@ pub(super) enum Asked {
 pub(super) type Refusal = (StatusCode, &'static str);
 
 impl Gate {
-    pub(super) fn new(token: &str, port: u16) -> Self {
+    /// The gate of a page whose path begins with a token, at a name that no page had before. At a port that the system chose the number
+    /// of this machine is a name of it, too, for browsers that do not resolve the other one.
+    pub(super) fn new(token: &str, name: &str, port: u16, is_chosen: bool) -> Self {
+        let number = (!is_chosen).then(|| format!("127.0.0.1:{port}"));
         Self {
             root: format!("/{token}/"),
-            hosts: hosts(port),
+            hosts: [host(name, port)].into_iter().chain(number).collect(),
         }
     }
 
-    pub(super) fn url(&self) -> String {
-        format!("http://{}{}", self.hosts[0], self.root)
+    /// The addresses of the page, of which the first one is safe from what other programs left in the browser.
+    pub(super) fn urls(&self) -> Vec<String> {
+        let hosts = self.hosts.iter();
+        hosts
+            .map(|host| format!("http://{host}{}", self.root))
+            .collect()
     }
 
     /// Decides by the head of a request, whose body has not been read.
@@ -59,9 +66,10 @@ impl Gate {
     }
 }
 
-/// Host names of a server of this machine.
-pub(super) fn hosts(port: u16) -> [String; 2] {
-    [format!("127.0.0.1:{port}"), format!("localhost:{port}")]
+/// The host of a server of this machine by a name that only its user knows. A browser keeps scripts (service workers) and data for each
+/// name: what another program left at `127.0.0.1` has no part in this one.
+pub(super) fn host(name: &str, port: u16) -> String {
+    format!("{name}.localhost:{port}")
 }
 
 /// Refuses a request with another host name, or of another page.

@@ -64,7 +64,7 @@ const HEADERS: [(&str, &str); 4] = [
 /// A page that is served while this value lives.
 pub(crate) struct LocalPage {
     owner: Arc<Owner>,
-    url: String,
+    urls: Vec<String>,
     /// Ends when it is dropped.
     _server: Server,
 }
@@ -108,29 +108,38 @@ impl LocalPage {
     /// If the port is taken or there are no random numbers.
     pub(crate) fn open<C: Content>(port: u16, content: Arc<C>) -> Result<Self, PageError> {
         let failed = |problem: String| PageError { port, problem };
+        let is_chosen = port != 0;
         let listener = listen(port).map_err(|error| failed(error.to_string()))?;
         let port = listener.1;
-        let mut token = [0u8; 16];
-        getrandom::fill(&mut token).map_err(|e| failed(e.to_string()))?;
-        let token: String = token.iter().map(|byte| format!("{byte:02x}")).collect();
+        let mut random = [[0u8; 16]; 2];
+        for bytes in &mut random {
+            getrandom::fill(bytes).map_err(|e| failed(e.to_string()))?;
+        }
+        let [token, name] = random.map(|bytes| hexadecimal(&bytes));
         let owner = Arc::new(Owner::default());
         let desk = Desk {
-            gate: Gate::new(&token, port),
+            gate: Gate::new(&token, &name, port, is_chosen),
             owner: Arc::clone(&owner),
             content,
             requests: [&[STATE, LEAVE, STOP], C::REQUESTS].concat(),
         };
-        let url = desk.gate.url();
+        let urls = desk.gate.urls();
         let started = Server::start(listener.0, Arc::new(desk));
         Ok(Self {
             owner,
-            url,
+            urls,
             _server: started.map_err(|error| failed(error.to_string()))?,
         })
     }
 
-    pub(crate) fn url(&self) -> &str {
-        &self.url
+    /// What the user is asked to open.
+    pub(crate) fn address(&self) -> String {
+        match &self.urls[..] {
+            [url, by_number] => format!(
+                "{url} in a browser of this machine; one that does not find that name, such as Safari, opens {by_number}"
+            ),
+            urls => format!("{} in a browser of this machine", urls.join(" ")),
+        }
     }
 
     /// Waits until the page has what it shows at the end, if a tab has the page.
@@ -140,6 +149,10 @@ impl LocalPage {
             std::thread::sleep(Duration::from_millis(20));
         }
     }
+}
+
+pub(super) fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Listens on this machine alone; returns the port, too.

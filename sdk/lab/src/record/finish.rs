@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex_files::{AtFile, InFile};
+use htex_files::{AtFile, InFile, OwnFolder};
 use serde::Serialize;
 
 use crate::record::error::RecordError;
@@ -66,7 +66,10 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, Rec
             })
         }
     };
-    std::fs::remove_file(path).writing(path)?;
+    let name = path.file_name().unwrap_or_default();
+    OwnFolder::new(folder)
+        .remove(Path::new(name))
+        .writing(path)?;
     Ok(recorded)
 }
 

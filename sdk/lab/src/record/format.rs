@@ -1,6 +1,6 @@
 //! The formats of recordings that are written, and what becomes of a take.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -71,12 +71,12 @@ impl Format {
 }
 
 impl Outcome {
-    /// The folder of such takes.
-    pub(crate) fn folder(self, folder: &Path) -> PathBuf {
-        match self {
-            Self::Kept => folder.to_owned(),
-            Self::Rejected => folder.join(names::REJECTED),
-            Self::Incomplete => folder.join(names::INCOMPLETE),
-        }
+    /// The folder of such takes in that of all; empty for this one itself.
+    pub(crate) fn folder(self) -> &'static Path {
+        Path::new(match self {
+            Self::Kept => "",
+            Self::Rejected => names::REJECTED,
+            Self::Incomplete => names::INCOMPLETE,
+        })
     }
 }

@@ -174,8 +174,8 @@ impl GuidePage {
     }
 
     #[must_use]
-    pub fn url(&self) -> &str {
-        self.served.url()
+    pub fn address(&self) -> String {
+        self.served.address()
     }
 
     /// Whether the person has started the session.

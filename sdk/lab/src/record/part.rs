@@ -4,11 +4,11 @@
 //! f64, and the first eight bytes of the BLAKE3 hash of all these; all little-endian. A chunk that a crash left incomplete or damaged
 //! ends the file for a reader.
 
-use std::fs::{File, OpenOptions, TryLockError};
-use std::io::Write;
+use std::fs::{File, TryLockError};
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-use htex_files::{AtFile, ContentError, InFile};
+use htex_files::{AtFile, ContentError, InFile, OwnFolder};
 
 use crate::record::data::{TakeData, TakeHeader};
 use crate::record::error::RecordError;
@@ -42,9 +42,8 @@ impl PartFile {
     /// [`RecordError::File`].
     pub fn create(path: &Path, header: &TakeHeader) -> Result<Self, RecordError> {
         let begun = || -> std::io::Result<File> {
-            let mut options = OpenOptions::new();
-            htex_files::private::only_user(&mut options);
-            let mut file = options.create_new(true).write(true).open(path)?;
+            let (folder, name) = OwnFolder::of_file(path)?;
+            let mut file = OwnFolder::private(folder.path()).create(&name)?;
             file.try_lock().map_err(std::io::Error::other)?;
             file.write_all((serde_json::to_string(header)? + "\n").as_bytes())?;
             file.sync_all()?;
@@ -116,17 +115,19 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
     bytes.extend(&hash.as_bytes()[..HASH]);
 }
 
-/// Reads a part file: all whole chunks. `None` if its header is incomplete, so that nothing was recorded.
+/// Reads a part file, not through a link: all whole chunks. `None` if its header is incomplete, so that nothing was recorded.
 ///
 /// # Errors
 /// [`RecordError::Content`] if it cannot be read or is no part file; [`RecordError::Busy`] while another program writes it.
 pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
-    let file = File::open(path).in_file(path)?;
+    let opened = OwnFolder::of_file(path).and_then(|(folder, name)| folder.open(&name));
+    let mut file = opened.in_file(path)?;
     if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
         let file = path.to_owned();
         return Err(RecordError::Busy { file });
     }
-    let bytes = std::fs::read(path).in_file(path)?;
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).in_file(path)?;
     let Some(end) = bytes.iter().take(MOST_HEADER).position(|b| *b == b'\n') else {
         return Ok(None);
     };

@@ -1,9 +1,11 @@
 //! A session: takes of one name, recorded until one keeps to its target.
 
+use std::path::Path;
+
 use htex_author::recording::Role;
 use htex_device::Source;
 
-use htex_files::{AtFile, ContentError};
+use htex_files::{AtFile, ContentError, OwnFolder};
 
 use crate::record::data::TakeHeader;
 use crate::record::error::RecordError;
@@ -59,7 +61,8 @@ impl Session {
                 advice: "map the channel of the normal force, as in normal=ai2:0.31",
             });
         }
-        htex_files::private::make_folder(&setup.folder).writing(&setup.folder)?;
+        let own = OwnFolder::private(&setup.folder);
+        own.make_folder(Path::new("")).writing(&setup.folder)?;
         let inputs = Inputs { signals, tracker };
         let reader = Reader::new(source, inputs, setup.seconds);
         Ok(Self {

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use htex_files::AtFile;
+use htex_files::{AtFile, OwnFolder};
 use htex_format::Quantity;
 use serde_json::{Value, json};
 
@@ -22,7 +22,7 @@ pub(crate) struct Written {
     pub(crate) fit: Vec<String>,
 }
 
-/// Writes a take, each file beside its name and then renamed.
+/// Writes a take into a folder that the user named, each file beside its name and then renamed.
 ///
 /// # Errors
 /// [`RecordError::File`].
@@ -33,7 +33,8 @@ pub(crate) fn write_take(
     verdict: &Verdict,
 ) -> Result<Written, RecordError> {
     let stem = names::stem(&data.header.name, data.header.number);
-    write_signals(&outcome.folder(folder), &stem, data, &|fit| {
+    let own = OwnFolder::private(folder);
+    write_signals(&own, outcome.folder(), &stem, data, &|fit| {
         json!({
             "outcome": outcome,
             "take": data.header,
@@ -45,40 +46,40 @@ pub(crate) fn write_take(
     })
 }
 
-/// Writes a recording, the tracker's rows, and JSON beside it, each file beside its name and then renamed. `beside` gets the arguments of
+/// Writes a recording, the tracker's rows, and JSON beside it into a folder `inside` the user's, each file beside its name and then
+/// renamed. `beside` gets the arguments of
 /// `htex fit` that read the recording.
 ///
 /// # Errors
 /// [`RecordError::File`].
 pub(crate) fn write_signals(
-    folder: &Path,
+    own: &OwnFolder,
+    inside: &Path,
     stem: &str,
     data: &TakeData,
     beside: &dyn Fn(&[String]) -> Value,
 ) -> Result<Written, RecordError> {
     let header = &data.header;
-    let recording = folder.join(format!("{stem}.{}", header.format.extension()));
-    let make = |folder: &Path| htex_files::private::make_folder(folder).writing(folder);
-    let put = |path: &Path, write: &dyn Fn(&mut File) -> io::Result<()>| {
-        htex_files::replace_private_file(path, write).writing(path)
+    let name = inside.join(format!("{stem}.{}", header.format.extension()));
+    let recording = own.path().join(&name);
+    let put = |inside: &Path, write: &dyn Fn(&mut File) -> io::Result<()>| {
+        own.replace(inside, write).writing(&own.path().join(inside))
     };
-    make(folder)?;
     let mut fit = vec![recording.display().to_string()];
     fit.extend(flags(header));
     if !data.tracker.is_empty() && data.tracker[0].len() > 1 {
-        let tracker = folder.join("tracker");
-        make(&tracker)?;
-        let tracker = tracker.join(format!("{stem}.csv"));
+        let tracker = inside.join("tracker").join(format!("{stem}.csv"));
         put(&tracker, &|file| tracker_csv(data, file))?;
+        let tracker = own.path().join(&tracker);
         fit.extend(["--tracker".to_owned(), tracker.display().to_string()]);
     }
     let beside = serde_json::to_string_pretty(&beside(&fit)).unwrap_or_default() + "\n";
-    put(&recording, &|file| match header.format {
+    put(&name, &|file| match header.format {
         Format::Csv => csv(data, file),
         Format::Npy => npy(data, file),
         Format::Wav => wav(data, file),
     })?;
-    put(&folder.join(format!("{stem}.json")), &|file| {
+    put(&inside.join(format!("{stem}.json")), &|file| {
         file.write_all(beside.as_bytes())
     })?;
     Ok(Written { recording, fit })

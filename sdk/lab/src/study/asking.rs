@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::study::error::StudyError;
 use crate::study::file::{Attribute, GainMethod, Phase, Scale};
 use crate::study::gain::GainKey;
-use crate::study::lines::FeltFile;
+use crate::study::lines::{FeltFile, OutputLevels};
 use crate::study::stimulus::Stimulus;
 
 /// What a participant sees.
@@ -30,11 +30,13 @@ pub enum View {
         /// What happened in the trial, such as a motion off its target.
         notice: Option<String>,
     },
-    /// The texture plays, and its gain is matched.
+    /// The texture plays, and its level rises until it is felt, or its gain is matched.
     Matching {
         texture: String,
         /// The method, which says which keys there are.
         method: GainMethod,
+        /// Whether the level still rises to where the texture is felt: all keys have a meaning then.
+        rising: bool,
         /// The present gain, decibels relative to the maximum.
         gain_db: f64,
     },
@@ -105,6 +107,8 @@ pub trait Clock {
 pub struct Played {
     /// Drive of a display, volts.
     pub drive_v: Option<f64>,
+    /// What the device was given.
+    pub output: OutputLevels,
     /// RMS that had this drive, in the assets' unit.
     pub reference_rms: f64,
     /// The recording of what was felt, which is on disk.
@@ -124,6 +128,10 @@ pub trait Rig {
         stimulus: &Stimulus,
         ends: &mut dyn FnMut() -> bool,
     ) -> Result<Played, Self::Error>;
+
+    /// What the device was given in the last [`Self::play`] that ended with an error, and the drive of a display, volts; `None` if the
+    /// device was not opened.
+    fn output_before_error(&mut self) -> Option<(Option<f64>, OutputLevels)>;
 
     /// Whether an error of [`Self::play`] is that of a device that ran dry, so that playing again may succeed.
     fn ran_dry(error: &Self::Error) -> bool;

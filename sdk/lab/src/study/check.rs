@@ -138,6 +138,7 @@ fn check_numbers(study: &Study, findings: &mut Findings) {
     require_in(study.trial_s, "/trial_s", 0.01, 3600.0, findings);
     let trials = f64::from(study.training.trials);
     require_in(trials, "/training/trials", 1.0, 1000.0, findings);
+    require_in(study.start_db, "/start_db", -120.0, 0.0, findings);
     if let Some(noise) = &study.masking_noise {
         let level = noise.level_dbfs;
         require_in(level, "/masking_noise/level_dbfs", -80.0, -10.0, findings);

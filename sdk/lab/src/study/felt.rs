@@ -13,7 +13,7 @@ use std::thread::JoinHandle;
 use htex_author::Exploration;
 use htex_author::recording::Role;
 use htex_device::{DeviceError, Source};
-use htex_files::AtFile;
+use htex_files::{AtFile, OwnFolder};
 use htex_format::Quantity;
 use serde_json::json;
 
@@ -95,8 +95,9 @@ impl Felt {
         tracker: Option<Box<dyn TrackerRows>>,
     ) -> Result<Self, RecordError> {
         setup.format.check(rate_hz)?;
-        let folder = setup.folder.join(&setup.participant).join(FOLDER);
-        remove_unfinished(&folder).writing(&folder)?;
+        let own = OwnFolder::private(&setup.folder);
+        let inside = Path::new(&setup.participant).join(FOLDER);
+        remove_unfinished(&own, &inside).writing(&setup.folder.join(&inside))?;
         let inputs = Some(Inputs { signals, tracker });
         Ok(Self {
             setup,
@@ -225,8 +226,9 @@ impl Felt {
         let data = data?;
         let verdict = judge(&data);
         let participant = &self.setup.participant;
-        let folder = self.setup.folder.join(participant).join(FOLDER);
-        let written = write_signals(&folder, name, &data, &|fit| {
+        let own = OwnFolder::private(&self.setup.folder);
+        let inside = Path::new(participant).join(FOLDER);
+        let written = write_signals(&own, &inside, name, &data, &|fit| {
             json!({
                 "trial": {
                     "participant": participant,
@@ -349,14 +351,12 @@ fn after(error: RecordError, data: &TakeData) -> RecordError {
 }
 
 /// Makes a folder, and removes files in it that a program that was killed had not finished.
-fn remove_unfinished(folder: &Path) -> std::io::Result<()> {
-    htex_files::private::make_folder(folder)?;
-    for entry in std::fs::read_dir(folder)? {
-        let path = entry?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if name.starts_with(".htex-") && name.ends_with(".part") {
-            std::fs::remove_file(&path)?;
-        }
+fn remove_unfinished(own: &OwnFolder, inside: &Path) -> std::io::Result<()> {
+    own.make_folder(inside)?;
+    let left = |name: &String| name.starts_with(".htex-") && name.ends_with(".part");
+    for name in own.files(inside)?.into_iter().filter(left) {
+        own.remove(&inside.join(name))?;
     }
-    Ok(())
+    // Removing the last file removes the folder.
+    own.make_folder(inside).map(drop)
 }

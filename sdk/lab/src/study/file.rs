@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use htex_scene::START_DB;
 use htex_scene::file::{DeviceChoice, Motion};
 use schemars::JsonSchema;
 use serde::de::{SeqAccess, Visitor};
@@ -67,6 +68,11 @@ pub struct Study {
     /// The phases that take place; their order is fixed.
     #[serde(default = "all_phases")]
     pub phases: Vec<Phase>,
+    /// Level at which each texture starts in the training and in the gain matching, decibels relative to the maximum. It rises from
+    /// there until the participant feels the texture. Nothing is played stronger before the participant asks for it.
+    #[serde(default = "start")]
+    #[schemars(range(min = -120, max = 0))]
+    pub start_db: f64,
     /// The phase `training`.
     #[serde(default)]
     pub training: Training,
@@ -162,7 +168,8 @@ pub struct Training {
 
 /// The phase `gain`: each texture is matched in one model, and the gain is adopted for the others (paper, "Gain matching task").
 ///
-/// A gain is in decibels relative to the maximum: `device.drive_v`, `gain_db` or `level_dbfs`, else a display's limit, 0 dB or -18 dBFS.
+/// The paper starts at the maximum. Here the level first rises from `start_db` until the participant feels the texture, and the matching
+/// starts from the level found. A gain is in decibels relative to the maximum: `device.drive_v`, `gain_db` or `level_dbfs`, else a display's limit, 0 dB or -18 dBFS.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Matching {
@@ -190,7 +197,7 @@ pub struct Matching {
     pub reversals: u32,
 }
 
-/// Method of matching a gain. All of them start at the maximum.
+/// Method of matching a gain. All of them start at the level at which the participant felt the texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GainMethod {
@@ -412,6 +419,10 @@ fn one_db() -> f64 {
 
 fn four_db() -> f64 {
     4.0
+}
+
+fn start() -> f64 {
+    START_DB
 }
 
 fn lowest() -> f64 {

@@ -17,40 +17,65 @@ pub enum GainKey {
     Weaker,
     /// Weaker by a large step.
     MuchWeaker,
-    /// It matches.
+    /// While the level rises: the participant feels the texture. In the matching: it matches.
     Accept,
 }
 
-/// The matching of one texture. Gains are in decibels relative to the maximum.
+/// The level of one texture: it rises from a weak start until the participant feels the texture, and is then matched to the real
+/// texture, starting from the level found. Levels are in decibels relative to the maximum.
 ///
 /// ```
 /// use htex_lab::study::{GainKey, Match, Matching};
-/// let mut descending = Match::new(&Matching::default());
-/// assert!(!descending.press(GainKey::Stronger), "only down");
-/// assert!(descending.press(GainKey::Weaker) && descending.press(GainKey::MuchWeaker));
-/// descending.press(GainKey::Accept);
-/// assert_eq!((descending.is_found(), descending.gain_db()), (true, -5.0));
+/// let mut matching = Match::new(&Matching::default(), -20.0);
+/// assert!(matching.is_rising() && matching.gain_db() == -20.0);
+/// for _ in 0..4 {
+///     matching.press(GainKey::MuchStronger);
+/// }
+/// matching.press(GainKey::Accept); // It is felt at -4 dB.
+/// assert!(!matching.press(GainKey::Stronger), "the descending method goes only down");
+/// matching.press(GainKey::Weaker);
+/// matching.press(GainKey::Accept);
+/// assert_eq!((matching.is_found(), matching.gain_db()), (true, -5.0));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Match {
     settings: Matching,
     gain_db: f64,
-    is_found: bool,
+    stage: Stage,
+    /// Whether the level that is felt is the result; it is not matched afterwards.
+    ends_when_felt: bool,
     /// Gains at which a staircase turned.
     reversals: Vec<f64>,
     /// Whether the last judgement of a staircase was `stronger`.
     rose: Option<bool>,
 }
 
+/// How far a level is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    Rising,
+    Matching,
+    Found,
+}
+
 impl Match {
-    /// A matching at the maximum, 0 dB.
-    pub fn new(settings: &Matching) -> Self {
+    /// A rise from `start_db`, and then a matching.
+    pub fn new(settings: &Matching, start_db: f64) -> Self {
         Self {
             settings: settings.clone(),
-            gain_db: 0.0,
-            is_found: false,
+            gain_db: start_db.min(0.0),
+            stage: Stage::Rising,
+            ends_when_felt: false,
             reversals: Vec::new(),
             rose: None,
+        }
+    }
+
+    /// A rise from `start_db` alone: its result is the level at which the texture is felt. The steps are those of `settings`.
+    pub fn rise(settings: &Matching, start_db: f64) -> Self {
+        Self {
+            ends_when_felt: true,
+            ..Self::new(settings, start_db)
         }
     }
 
@@ -61,33 +86,37 @@ impl Match {
 
     /// Whether the gain is found.
     pub fn is_found(&self) -> bool {
-        self.is_found
+        self.stage == Stage::Found
+    }
+
+    /// Whether the level still rises to where the texture is felt.
+    pub fn is_rising(&self) -> bool {
+        self.stage == Stage::Rising
     }
 
     pub fn method(&self) -> GainMethod {
         self.settings.method
     }
 
-    /// Whether the key has a meaning in this method.
+    /// Whether the key has a meaning now. While the level rises all have one: weaker is never refused there.
     pub fn takes(&self, key: GainKey) -> bool {
-        match self.settings.method {
-            GainMethod::Adjustment => true,
-            GainMethod::Descending => !matches!(key, GainKey::Stronger | GainKey::MuchStronger),
-            GainMethod::Staircase => matches!(key, GainKey::Stronger | GainKey::Weaker),
-        }
+        takes(self.settings.method, self.is_rising(), key)
     }
 
     /// Takes a key; false, and nothing changes, if it has no meaning here or the gain is found.
     pub fn press(&mut self, key: GainKey) -> bool {
-        if self.is_found || !self.takes(key) {
+        if self.is_found() || !self.takes(key) {
             return false;
         }
         if key == GainKey::Accept {
-            self.is_found = true;
+            self.stage = match self.is_rising() && !self.ends_when_felt {
+                true => Stage::Matching,
+                false => Stage::Found,
+            };
             return true;
         }
         match self.settings.method {
-            GainMethod::Staircase => self.judge(key == GainKey::Stronger),
+            GainMethod::Staircase if !self.is_rising() => self.judge(key == GainKey::Stronger),
             _ => self.change(match key {
                 GainKey::Stronger => self.settings.step_db,
                 GainKey::MuchStronger => self.settings.large_step_db,
@@ -107,7 +136,7 @@ impl Match {
             // The first two come from large steps and from the start.
             let counted = self.reversals.get(2..).unwrap_or_default();
             self.gain_db = counted.iter().sum::<f64>() / counted.len().max(1) as f64;
-            self.is_found = true;
+            self.stage = Stage::Found;
             return;
         }
         let step_db = match self.reversals.is_empty() {
@@ -118,8 +147,19 @@ impl Match {
     }
 
     fn change(&mut self, by_db: f64) {
-        let lowest = self.settings.lowest_db.min(0.0);
+        // A start below the lowest gain stays where it is until the participant raises it.
+        let lowest = self.settings.lowest_db.min(self.gain_db);
         self.gain_db = (self.gain_db + by_db).clamp(lowest, 0.0);
+    }
+}
+
+/// Whether a key has a meaning while the level rises, or in a method of matching.
+pub(crate) fn takes(method: GainMethod, is_rising: bool, key: GainKey) -> bool {
+    match method {
+        _ if is_rising => true,
+        GainMethod::Adjustment => true,
+        GainMethod::Descending => !matches!(key, GainKey::Stronger | GainKey::MuchStronger),
+        GainMethod::Staircase => matches!(key, GainKey::Stronger | GainKey::Weaker),
     }
 }
 
@@ -137,7 +177,14 @@ mod tests {
                     method,
                     ..Matching::default()
                 };
-                let mut matching = Match::new(&settings);
+                let mut matching = Match::new(&settings, -20.0);
+                while matching.is_rising() {
+                    let key = match matching.gain_db() < 0.0 {
+                        true => GainKey::MuchStronger,
+                        false => GainKey::Accept,
+                    };
+                    assert!(matching.press(key));
+                }
                 let mut presses = 0;
                 while !matching.is_found() && presses < 200 {
                     let off = matching.gain_db() - wanted_db;
@@ -156,5 +203,27 @@ mod tests {
                 assert!(!matching.press(GainKey::Weaker), "it is found");
             }
         }
+    }
+
+    /// No method plays more than its start before the participant asks for more, and a matching starts where the texture was felt.
+    #[test]
+    fn every_method_starts_weak_and_goes_on_from_the_level_that_is_felt() {
+        use GainMethod::{Adjustment, Descending, Staircase};
+        for method in [Descending, Adjustment, Staircase] {
+            let settings = Matching {
+                method,
+                ..Matching::default()
+            };
+            let mut matching = Match::new(&settings, -20.0);
+            assert_eq!(matching.gain_db(), -20.0);
+            let rise = [GainKey::MuchStronger, GainKey::Stronger, GainKey::Weaker];
+            assert!(rise.into_iter().all(|key| matching.press(key)));
+            assert!(matching.is_rising() && matching.gain_db() == -16.0);
+            assert!(matching.press(GainKey::Accept) && !matching.is_found());
+            assert!(!matching.is_rising() && matching.gain_db() == -16.0);
+        }
+        let mut rise = Match::rise(&Matching::default(), -20.0);
+        assert!(rise.press(GainKey::Stronger) && rise.press(GainKey::Accept));
+        assert_eq!((rise.is_found(), rise.gain_db()), (true, -19.0));
     }
 }

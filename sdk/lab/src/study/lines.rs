@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::record::Format;
+use crate::study::file::Phase;
 use crate::study::gain::GainKey;
 
 /// Version of the files of answers.
@@ -20,10 +21,14 @@ pub enum Line {
     Header(Box<Header>),
     /// A session begins; sessions with a simulated clock, which has no date, are not marked.
     Session(Began),
+    /// A key press while the level of a texture rises, before it is felt; in the training and in the gain matching.
+    Rise(Rise),
     /// A rating in the training, which is not a result.
     Training(Answer),
     /// A key press of the gain matching.
     Gain(Matched),
+    /// Something that played ended before its time.
+    Stopped(Stopped),
     /// A rest that is over.
     Rest {
         /// Trials before it.
@@ -208,6 +213,15 @@ pub struct Answer {
     /// Gain that it was played with, decibels relative to the maximum; absent without gain matching.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_db: Option<f64>,
+    /// Drive of a display at which it was played, volts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive_v: Option<f64>,
+    /// What the device was given; absent in files of an earlier htex.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub output: Option<OutputLevels>,
+    /// How often it was stopped before its end, by anything, since the line before that is no stop.
+    #[serde(default)]
+    pub stops: u32,
     /// How often the trial was begun before and not felt to its end, because the device ran dry.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub repeats: u32,
@@ -232,12 +246,102 @@ pub struct Matched {
     /// Drive of a display at which the texture was felt before the key, volts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_v: Option<f64>,
+    /// What the device was given before the key; absent in files of an earlier htex.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub output: Option<OutputLevels>,
+    /// How often it was stopped before the key, by anything but the keys of the line before.
+    #[serde(default)]
+    pub stops: u32,
     /// RMS that had this drive, in the assets' unit.
     pub reference_rms: f64,
     /// Time, milliseconds, as in ratings.
     pub at_ms: u64,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
+}
+
+/// A key press while the level of a texture rises.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rise {
+    /// The phase: training or gain.
+    pub phase: Phase,
+    pub texture: String,
+    /// The model in which it plays.
+    pub model: String,
+    pub key: GainKey,
+    /// The level after it, decibels relative to the maximum.
+    pub gain_db: f64,
+    /// Whether the participant feels the texture at this level.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub found: bool,
+    /// Drive of a display before the key, volts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive_v: Option<f64>,
+    /// What the device was given before the key.
+    pub output: OutputLevels,
+    /// How often it was stopped before the key, by anything but the key of the line before.
+    #[serde(default)]
+    pub stops: u32,
+    /// RMS that had this drive, in the assets' unit.
+    pub reference_rms: f64,
+    /// Time, milliseconds, as in ratings.
+    pub at_ms: u64,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub simulated: bool,
+}
+
+/// What a device was given while something played, as it was written to the device.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OutputLevels {
+    /// Unit of the levels: `V` of a display.
+    pub unit: String,
+    /// Largest magnitude.
+    pub peak: f64,
+    /// Root of the mean square.
+    pub rms: f64,
+    /// Direct component: the largest magnitude of the mean over any 100 ms; silence comes before.
+    pub direct: f64,
+    /// Length, seconds.
+    pub duration_s: f64,
+}
+
+/// Something that played ended before its time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stopped {
+    pub phase: Phase,
+    pub texture: String,
+    pub model: String,
+    pub reason: StopReason,
+    /// Gain that it was played with, decibels relative to the maximum; absent without gain matching.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain_db: Option<f64>,
+    /// Drive of a display, volts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive_v: Option<f64>,
+    /// What the device was given; absent if it was not opened.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub output: Option<OutputLevels>,
+    /// Time, milliseconds, as in ratings.
+    pub at_ms: u64,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub simulated: bool,
+}
+
+/// Why something ended before its time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum StopReason {
+    /// The participant, or whoever conducts the session, left it.
+    Left,
+    /// The program was asked to end, or the motion's input ended.
+    Interrupted,
+    /// The device ran dry.
+    RanDry,
+    /// The device, the renderer or the source reported an error.
+    Failed,
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref)] // As serde calls it.
@@ -267,7 +371,9 @@ impl Line {
             Self::Header(_) => 0,
             Self::Session(began) => began.at_ms,
             Self::Training(answer) | Self::Answer(answer) => answer.at_ms,
+            Self::Rise(rise) => rise.at_ms,
             Self::Gain(matched) => matched.at_ms,
+            Self::Stopped(stopped) => stopped.at_ms,
             Self::Rest { at_ms, .. } => *at_ms,
         }
     }

@@ -1,10 +1,10 @@
 //! The file of one participant's answers: append-only, and on disk before the next trial.
 
-use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::fs::{File, TryLockError};
+use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use htex_files::{AtFile, FileError};
+use htex_files::{AtFile, FileError, OwnFolder};
 
 use crate::study::error::StudyError;
 use crate::study::lines::{Header, Line, SourceUsed};
@@ -19,24 +19,28 @@ pub fn participant_file(folder: &Path, participant: &str) -> PathBuf {
 pub struct Log {
     path: PathBuf,
     file: File,
+    /// Bytes of the whole lines, if a crash left an incomplete one behind them.
+    whole: Option<u64>,
 }
 
 impl Log {
-    /// Opens the answers of a session, or begins them, and returns them without the header. A last line that a crash left incomplete
-    /// is removed.
+    /// Opens the answers of a session, or begins them, and returns them without the header. Opening changes nothing of a file that is
+    /// there: a last line that a crash left incomplete is removed by the first [`Self::append`], when the header and all whole lines
+    /// are known to be of this session. A link is never followed.
     ///
     /// # Errors
     /// [`StudyError::OtherVersion`] if they were begun with another header; [`StudyError::Busy`] while another program has them open;
-    /// [`StudyError::Line`] if a line is damaged; errors of the file system.
+    /// [`StudyError::Line`] if a line is damaged; errors of the file system, also for a link or a pipe.
     pub fn open(path: &Path, header: &Header) -> Result<(Self, Vec<Line>), StudyError> {
-        if !path.exists() {
-            begin(path, header)?;
+        let (folder, name) = place(path).reading(path)?;
+        let mut file = match folder.open_to_append(&name) {
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                begin(path, header)?;
+                folder.open_to_append(&name)
+            }
+            opened => opened,
         }
-        let mut file = OpenOptions::new()
-            .read(true)
-            .append(true)
-            .open(path)
-            .reading(path)?;
+        .reading(path)?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
@@ -52,15 +56,14 @@ impl Log {
             .iter()
             .rposition(|b| *b == b'\n')
             .map_or(0, |end| end + 1);
-        if whole < bytes.len() {
-            let cut = file.set_len(whole as u64).and_then(|()| file.sync_all());
-            let at_end = cut.and_then(|()| file.seek(SeekFrom::End(0)).map(|_| ()));
-            at_end.writing(path)?;
-        }
         let (begun, lines) = parse(path, &bytes[..whole])?;
         same_version(path, &begun, header)?;
-        let path = path.to_owned();
-        Ok((Self { path, file }, lines))
+        let log = Self {
+            path: path.to_owned(),
+            file,
+            whole: (whole < bytes.len()).then_some(whole as u64),
+        };
+        Ok((log, lines))
     }
 
     /// Appends a line, and returns when it is on disk.
@@ -69,9 +72,21 @@ impl Log {
     /// [`StudyError::File`]; the line may then be incomplete, and is removed when the file is opened again.
     pub fn append(&mut self, line: &Line) -> Result<(), StudyError> {
         let text = text(line).writing(&self.path)?;
-        let written = self.file.write_all(text.as_bytes());
-        let synced = written.and_then(|()| self.file.sync_data());
+        let synced = self.whole_lines().and_then(|()| {
+            self.file.write_all(text.as_bytes())?;
+            self.file.sync_data()
+        });
         Ok(synced.writing(&self.path)?)
+    }
+
+    /// Removes the incomplete line behind the whole ones.
+    fn whole_lines(&mut self) -> io::Result<()> {
+        if let Some(whole) = self.whole {
+            self.file.set_len(whole)?;
+            self.file.sync_all()?;
+            self.whole = None;
+        }
+        Ok(())
     }
 
     pub fn path(&self) -> &Path {
@@ -93,21 +108,19 @@ fn text(line: &Line) -> std::io::Result<String> {
     Ok(serde_json::to_string(line)? + "\n")
 }
 
-/// Writes the header under a temporary name and renames it, so that no file is without.
+/// The folder of a file of answers, and the file's name in it.
+fn place(path: &Path) -> io::Result<(OwnFolder, PathBuf)> {
+    let (folder, name) = OwnFolder::of_file(path)?;
+    Ok((OwnFolder::private(folder.path()), name))
+}
+
+/// Writes the header under a temporary name and renames it, so that no file is without. It is on disk then.
 fn begin(path: &Path, header: &Header) -> Result<(), StudyError> {
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let begun = htex_files::private::make_folder(folder)
-        .and_then(|()| text(&Line::Header(Box::new(header.clone()))))
-        .and_then(|text| {
-            htex_files::replace_private_file(path, |file| file.write_all(text.as_bytes()))
-        })
-        .and_then(|()| File::open(path)?.sync_all());
-    begun.writing(path)?;
-    // The name is on disk, too, where folders can be synced.
-    if let Ok(folder) = File::open(folder) {
-        let _ = folder.sync_all();
-    }
-    Ok(())
+    let begun = place(path).and_then(|(folder, name)| {
+        let text = text(&Line::Header(Box::new(header.clone())))?;
+        folder.replace(&name, |file| file.write_all(text.as_bytes()))
+    });
+    Ok(begun.writing(path)?)
 }
 
 fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), StudyError> {

@@ -5,7 +5,8 @@
 //! is computed again from these files, such as the table of ratings ([`export`]).
 //!
 //! The defaults are those of the study in the paper (Methods, "Experiment"): 14 participants, five models, five repetitions, trials of
-//! 10 s, training, gain matching with AR from the maximum down, and similarity from 0 "Different" to 6 "Same".
+//! 10 s, training, gain matching with AR, and similarity from 0 "Different" to 6 "Same". One thing differs: the paper starts at the
+//! maximum voltage, and here each texture starts weak and rises until the participant feels it.
 //!
 //! From a study to ratings:
 //!
@@ -30,6 +31,7 @@ mod gain;
 mod header;
 mod lines;
 mod log;
+mod meter;
 mod order;
 mod page;
 mod plan;
@@ -54,10 +56,11 @@ pub use file::{
 };
 pub use gain::{GainKey, Match};
 pub use lines::{
-    Answer, Began, DeviceUsed, FeltFile, Header, Line, Matched, Simulated, SourceUsed,
-    answers_schema,
+    Answer, Began, DeviceUsed, FeltFile, Header, Line, Matched, OutputLevels, Rise, Simulated,
+    SourceUsed, StopReason, Stopped, answers_schema,
 };
 pub use log::{Log, participant_file};
+pub use meter::Meter;
 pub use page::{Page, PageOptions, Touch, Touched};
 pub use plan::{ParticipantPlan, Plan, Trial};
 pub use progress::Step;
@@ -66,4 +69,4 @@ pub use rules::{RULES, findings_page};
 pub use run::{Ended, run};
 pub use session::{Presented, Session};
 pub use simulated::SimulatedParticipant;
-pub use stimulus::{Stimulus, scene_of, set_gain};
+pub use stimulus::{Stimulus, full_drive, scene_of, set_gain};

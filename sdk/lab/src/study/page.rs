@@ -11,8 +11,7 @@ use serde_json::{Value, json};
 use crate::page::{Content, LocalPage};
 use crate::study::asking::{Asker, Key, View};
 use crate::study::error::StudyError;
-use crate::study::file::GainMethod;
-use crate::study::gain::GainKey;
+use crate::study::gain::{GainKey, takes};
 
 /// A page that has said nothing of its finger for this long may be gone, and its finger counts as lifted.
 const SILENT: Duration = Duration::from_millis(300);
@@ -93,8 +92,8 @@ impl Page {
         })
     }
 
-    pub fn url(&self) -> &str {
-        self.served.url()
+    pub fn address(&self) -> String {
+        self.served.address()
     }
 
     /// The finger on the page.
@@ -236,16 +235,9 @@ fn key(name: &str, view: &View) -> Option<Key> {
             let is_on_scale = (scale.min..=scale.max).contains(&digit);
             is_on_scale.then_some(Key::Digit(digit))
         }
-        View::Matching { method, .. } => {
+        View::Matching { method, rising, .. } => {
             let key: GainKey = serde_json::from_value(Value::String(name.to_owned())).ok()?;
-            let is_up = matches!(key, GainKey::Stronger | GainKey::MuchStronger);
-            let is_single = matches!(key, GainKey::Stronger | GainKey::Weaker);
-            let is_taken = match method {
-                GainMethod::Adjustment => true,
-                GainMethod::Descending => !is_up,
-                GainMethod::Staircase => is_single,
-            };
-            is_taken.then_some(Key::Gain(key))
+            takes(*method, *rising, key).then_some(Key::Gain(key))
         }
         View::Playing { .. } | View::Rest { .. } | View::Done => None,
     }

@@ -4,18 +4,24 @@
 
 use crate::study::Study;
 use crate::study::file::{Attribute, Phase};
-use crate::study::gain::Match;
-use crate::study::lines::{Answer, Line, Matched};
+use crate::study::gain::{GainKey, Match};
+use crate::study::lines::{Answer, Line, Matched, Rise, Stopped};
 use crate::study::plan::{ParticipantPlan, Trial};
+
+/// Largest difference of a level that a line states from the level that its key gives, decibels.
+const LEVEL_TOLERANCE_DB: f64 = 1e-6;
 
 /// What comes next in a session.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
     /// A trial is played, unless it just was, and rated by an attribute.
     Rate(Phase, Trial, Attribute),
-    /// The gain of a texture is matched.
+    /// The level of a texture rises until it is felt, before its first trial for practice; or its gain is matched.
     Match {
+        phase: Phase,
         texture: String,
+        /// The model in which it plays.
+        model: String,
         /// The matching so far.
         matching: Match,
     },
@@ -34,9 +40,23 @@ pub(crate) struct Progress {
     training: usize,
     answers: usize,
     rests: u32,
+    /// The textures of the training, in the order in which they first occur.
+    rises: Vec<Level>,
     /// The textures that are matched, or being matched, in the plan's order.
-    gains: Vec<(Match, Option<Matched>)>,
+    gains: Vec<Level>,
+    /// Stops since the last line that is none.
+    stops: u32,
     last_ms: u64,
+}
+
+/// The level of a texture in one phase.
+#[derive(Debug)]
+struct Level {
+    texture: String,
+    model: String,
+    matching: Match,
+    /// The RMS that the drive of the level belongs to, once it is found.
+    reference_rms: f64,
 }
 
 impl Progress {
@@ -45,9 +65,16 @@ impl Progress {
             training: 0,
             answers: 0,
             rests: 0,
-            gains: vec![(Match::new(&study.gain), None); plan.gain.len()],
+            rises: rises(study, plan),
+            gains: gains(study, plan),
+            stops: 0,
             last_ms: 0,
         }
+    }
+
+    /// Stops since the last line that is none.
+    pub(crate) fn stops(&self) -> u32 {
+        self.stops
     }
 
     /// Time of the last line, milliseconds.
@@ -63,13 +90,10 @@ impl Progress {
     /// What comes next.
     pub(crate) fn step(&self, study: &Study, plan: &ParticipantPlan) -> Step {
         if let Some(step) = rate(Phase::Training, &plan.training, self.training, study) {
-            return step;
+            return self.rise_before(&step).unwrap_or(step);
         }
-        if let Some(i) = self.gains.iter().position(|(m, _)| !m.is_found()) {
-            return Step::Match {
-                texture: plan.gain[i].clone(),
-                matching: self.gains[i].0.clone(),
-            };
+        if let Some(level) = self.gains.iter().find(|level| !level.matching.is_found()) {
+            return level.step(Phase::Gain);
         }
         let trials_done = self.answers / study.attributes.len().max(1);
         let is_between = self.answers.is_multiple_of(study.attributes.len().max(1));
@@ -86,10 +110,27 @@ impl Progress {
         rate(Phase::Testing, &plan.trials, self.answers, study).unwrap_or(Step::Done)
     }
 
-    /// The gain that was found for a texture.
-    pub(crate) fn found(&self, plan: &ParticipantPlan, texture: &str) -> Option<&Matched> {
-        let i = plan.gain.iter().position(|name| name == texture)?;
-        self.gains.get(i)?.1.as_ref()
+    /// The rise of a texture that was not felt before its trial for practice.
+    fn rise_before(&self, step: &Step) -> Option<Step> {
+        let Step::Rate(Phase::Training, trial, _) = step else {
+            return None;
+        };
+        let of_trial = |level: &&Level| level.texture == trial.texture;
+        let level = self.rises.iter().find(of_trial)?;
+        (!level.matching.is_found()).then(|| level.step(Phase::Training))
+    }
+
+    /// The level that was found for a texture, for the trials of a phase: decibels relative to the maximum, and the RMS that it belongs
+    /// to.
+    pub(crate) fn found(&self, phase: Phase, texture: &str) -> Option<(f64, f64)> {
+        let levels = match phase {
+            Phase::Training => &self.rises,
+            Phase::Gain | Phase::Testing => &self.gains,
+        };
+        let level = levels.iter().find(|level| level.texture == texture)?;
+        let matching = &level.matching;
+        let found = (matching.gain_db(), level.reference_rms);
+        matching.is_found().then_some(found)
     }
 
     /// Applies a line.
@@ -114,37 +155,131 @@ impl Progress {
                 belongs(&trial, &attribute.name, answer, study)?;
                 self.answers += 1;
             }
-            (Step::Match { texture, .. }, Line::Gain(matched)) => {
-                self.press(plan, &texture, matched)?;
+            (
+                Step::Match {
+                    phase, matching, ..
+                },
+                Line::Rise(rise),
+            ) if matching.is_rising() => {
+                self.rise(phase, rise)?;
+            }
+            (Step::Match { matching, .. }, Line::Gain(matched)) if !matching.is_rising() => {
+                self.press(matched)?;
+            }
+            (step, Line::Stopped(stopped)) => {
+                stops(&step, stopped)?;
+                self.stops += 1;
+                self.last_ms = line.at_ms();
+                return Ok(());
             }
             (Step::Rest { after, .. }, Line::Rest { after: is, .. }) if after == *is => {
                 self.rests += 1;
             }
             _ => return Err("it does not come next in the study's plan".to_owned()),
         }
+        self.stops = 0;
         self.last_ms = line.at_ms();
         Ok(())
     }
 
-    fn press(
-        &mut self,
-        plan: &ParticipantPlan,
-        texture: &str,
-        line: &Matched,
-    ) -> Result<(), String> {
+    fn rise(&mut self, phase: Phase, line: &Rise) -> Result<(), String> {
+        let levels = match phase {
+            Phase::Training => &mut self.rises,
+            Phase::Gain | Phase::Testing => &mut self.gains,
+        };
+        let mut open = levels.iter_mut().filter(|one| !one.matching.is_found());
+        let level = open.find(|one| one.texture == line.texture && one.model == line.model);
+        let level = level.filter(|_| phase == line.phase);
         let wrong = || format!("this key for {} does not come next", line.texture);
-        let at = plan.gain.iter().position(|name| name == texture);
-        let (matching, found) = at.and_then(|i| self.gains.get_mut(i)).ok_or_else(wrong)?;
-        if line.texture != texture || !matching.press(line.key) {
-            return Err(wrong());
+        level
+            .ok_or_else(wrong)?
+            .press(line.key, line.gain_db, line.reference_rms)
+    }
+
+    fn press(&mut self, line: &Matched) -> Result<(), String> {
+        let wrong = || format!("this key for {} does not come next", line.texture);
+        let mut open = self.gains.iter_mut();
+        let level = open.find(|level| !level.matching.is_found());
+        let level = level.filter(|level| level.texture == line.texture);
+        level
+            .ok_or_else(wrong)?
+            .press(line.key, line.gain_db, line.reference_rms)
+    }
+}
+
+impl Level {
+    fn step(&self, phase: Phase) -> Step {
+        Step::Match {
+            phase,
+            texture: self.texture.clone(),
+            model: self.model.clone(),
+            matching: self.matching.clone(),
         }
-        if matching.is_found() {
-            *found = Some(Matched {
-                gain_db: matching.gain_db(),
-                ..line.clone()
+    }
+
+    /// Takes a key, after which the level is `gain_db`: else the line belongs to other rules than ours, and nobody knows what was felt.
+    fn press(&mut self, key: GainKey, gain_db: f64, reference_rms: f64) -> Result<(), String> {
+        let mut pressed = self.matching.clone();
+        if !pressed.press(key) {
+            return Err(format!("this key for {} does not come next", self.texture));
+        }
+        let level_db = pressed.gain_db();
+        if (level_db - gain_db).abs() > LEVEL_TOLERANCE_DB {
+            return Err(format!(
+                "after this key {} is at {level_db} dB, and the line says {gain_db} dB",
+                self.texture
+            ));
+        }
+        self.matching = pressed;
+        self.reference_rms = reference_rms;
+        Ok(())
+    }
+}
+
+/// Each texture of the training, in the model of its first trial.
+fn rises(study: &Study, plan: &ParticipantPlan) -> Vec<Level> {
+    let mut levels: Vec<Level> = Vec::new();
+    for trial in &plan.training {
+        if levels.iter().all(|level| level.texture != trial.texture) {
+            levels.push(Level {
+                texture: trial.texture.clone(),
+                model: trial.model.clone(),
+                matching: Match::rise(&study.gain, study.start_db),
+                reference_rms: 0.0,
             });
         }
-        Ok(())
+    }
+    levels
+}
+
+fn gains(study: &Study, plan: &ParticipantPlan) -> Vec<Level> {
+    let level = |texture: &String| Level {
+        texture: texture.clone(),
+        model: study.gain.model.clone(),
+        matching: Match::new(&study.gain, study.start_db),
+        reference_rms: 0.0,
+    };
+    plan.gain.iter().map(level).collect()
+}
+
+/// Checks that what was stopped is what plays now.
+fn stops(step: &Step, line: &Stopped) -> Result<(), String> {
+    let is_this = match step {
+        Step::Rate(phase, trial, _) => {
+            (*phase, &trial.texture, &trial.model) == (line.phase, &line.texture, &line.model)
+        }
+        Step::Match {
+            phase,
+            texture,
+            model,
+            ..
+        } => (*phase, texture, model) == (line.phase, &line.texture, &line.model),
+        Step::Rest { .. } | Step::Done => false,
+    };
+    let (texture, model) = (&line.texture, &line.model);
+    match is_this {
+        true => Ok(()),
+        false => Err(format!("{texture} with {model} does not play here")),
     }
 }
 

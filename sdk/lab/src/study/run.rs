@@ -6,6 +6,7 @@ use crate::study::asking::{Asker, Clock, Key, Played, Rig, View};
 use crate::study::error::StudyError;
 use crate::study::file::{Attribute, Phase};
 use crate::study::gain::{GainKey, Match};
+use crate::study::lines::StopReason;
 use crate::study::plan::Trial;
 use crate::study::progress::Step;
 use crate::study::session::{Presented, Session};
@@ -55,7 +56,12 @@ pub fn run<R: Rig>(
     loop {
         let goes_on = match run.session.step() {
             Step::Rate(phase, trial, attribute) => run.rate(phase, &trial, &attribute)?,
-            Step::Match { texture, matching } => run.matching(&texture, &matching)?,
+            Step::Match {
+                phase,
+                texture,
+                model,
+                matching,
+            } => run.matching(phase, &texture, &model, &matching)?,
             Step::Rest { seconds, .. } => run.rest(seconds)?,
             Step::Done => {
                 run.show(&View::Done);
@@ -74,7 +80,7 @@ struct Run<'r, 's, R: Rig> {
     asker: &'r mut dyn Asker,
     clock: &'r mut dyn Clock,
     simulated: Option<&'r SimulatedParticipant>,
-    /// What was felt last: a trial before its questions, or a texture that is being matched.
+    /// What was felt last, by the name of its file: a trial before its questions, or a texture that is being matched.
     felt: Option<(Phase, String)>,
     /// How the trial that was felt last was played.
     presented: Presented,
@@ -159,9 +165,46 @@ impl<R: Rig> Run<'_, '_, R> {
         };
         let seconds = stimulus.seconds.unwrap_or(0.0);
         self.clock.played(Duration::from_secs_f64(seconds));
-        self.presented.felt = played.felt;
+        if left || self.rig.is_interrupted() {
+            return self.stopped(left, played);
+        }
+        self.presented = Presented {
+            drive_v: played.drive_v,
+            output: Some(played.output),
+            stops: self.session.stops(),
+            felt: played.felt,
+            repeats: self.presented.repeats,
+        };
         self.tell_off_target(stimulus);
-        Ok(!left && !self.rig.is_interrupted())
+        Ok(true)
+    }
+
+    /// Records that what played was left; false: the session ends.
+    fn stopped(&mut self, left: bool, played: Played) -> Result<bool, R::Error> {
+        let reason = match left {
+            true => StopReason::Left,
+            false => StopReason::Interrupted,
+        };
+        let at_ms = self.clock.now_ms();
+        let Played {
+            drive_v, output, ..
+        } = played;
+        self.session.stopped(reason, drive_v, Some(output), at_ms)?;
+        Ok(false)
+    }
+
+    /// Records that what played ended with an error.
+    fn failed(&mut self, error: &R::Error) -> Result<(), R::Error> {
+        let reason = match R::ran_dry(error) {
+            true => StopReason::RanDry,
+            false => StopReason::Failed,
+        };
+        // What was never given to a device is no stop.
+        if let Some((drive_v, output)) = self.rig.output_before_error() {
+            let at_ms = self.clock.now_ms();
+            self.session.stopped(reason, drive_v, Some(output), at_ms)?;
+        }
+        Ok(())
     }
 
     /// Plays once; `None` if the device ran dry, and it is to be played again. [`Presented::repeats`] counts.
@@ -172,9 +215,13 @@ impl<R: Rig> Run<'_, '_, R> {
     ) -> Result<Option<Played>, R::Error> {
         let asker = &mut *self.asker;
         let error = match self.rig.play(stimulus, &mut || ends(&mut *asker)) {
-            Err(error) if R::ran_dry(&error) => error,
-            played => return played.map(Some),
+            Err(error) => error,
+            Ok(played) => return Ok(Some(played)),
         };
+        self.failed(&error)?;
+        if !R::ran_dry(&error) {
+            return Err(error);
+        }
         if self.presented.repeats == MOST_REPEATS {
             let (times, error) = (MOST_REPEATS + 1, error.to_string());
             return Err(StudyError::RanDry { times, error }.into());
@@ -244,16 +291,24 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(rating.map(|rating| (rating, took_ms)))
     }
 
-    /// Plays a texture until a key of the matching, and records it.
-    fn matching(&mut self, texture: &str, matching: &Match) -> Result<bool, R::Error> {
-        let this = (Phase::Gain, texture.to_owned());
+    /// Plays a texture until a key of its rising level or of the matching, and records it.
+    fn matching(
+        &mut self,
+        phase: Phase,
+        texture: &str,
+        model: &str,
+        matching: &Match,
+    ) -> Result<bool, R::Error> {
+        let stimulus = self
+            .session
+            .matching_stimulus(phase, texture, model, matching);
+        let this = (phase, stimulus.file.clone());
         if self.felt.as_ref() != Some(&this) {
-            if !self.ready(Phase::Gain, texture) {
+            if !self.ready(phase, texture) {
                 return Ok(false);
             }
             self.felt = Some(this);
         }
-        let stimulus = self.session.matching_stimulus(texture, matching);
         self.presented = Presented::default();
         let (key, played) = match self.simulated {
             Some(simulated) => {
@@ -275,15 +330,10 @@ impl<R: Rig> Run<'_, '_, R> {
             None => self.felt_until_key(&stimulus, matching)?,
         };
         let Some(key) = key else {
-            return Ok(false);
+            return self.stopped(!self.rig.is_interrupted(), played);
         };
         let at_ms = self.clock.now_ms();
-        let Played {
-            drive_v,
-            reference_rms,
-            ..
-        } = played;
-        self.session.press(key, drive_v, reference_rms, at_ms)?;
+        self.session.press(key, &played, at_ms)?;
         Ok(true)
     }
 
@@ -295,6 +345,7 @@ impl<R: Rig> Run<'_, '_, R> {
         self.show(&View::Matching {
             texture: stimulus.texture.clone(),
             method: matching.method(),
+            rising: matching.is_rising(),
             gain_db: matching.gain_db(),
         });
         let (mut pressed, mut left) = (None, false);

@@ -3,10 +3,14 @@
 use std::path::Path;
 
 use crate::study::Study;
+use crate::study::asking::Played;
 use crate::study::error::StudyError;
 use crate::study::file::Phase;
 use crate::study::gain::{GainKey, Match};
-use crate::study::lines::{Answer, Began, DeviceUsed, FeltFile, Header, Line, Matched};
+use crate::study::lines::{
+    Answer, Began, DeviceUsed, FeltFile, Header, Line, Matched, OutputLevels, Rise, StopReason,
+    Stopped,
+};
 use crate::study::log::{Log, participant_file};
 use crate::study::plan::{ParticipantPlan, Trial};
 use crate::study::progress::{Progress, Step};
@@ -26,8 +30,14 @@ pub struct Session<'a> {
 }
 
 /// How a trial was played before it was rated.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Presented {
+    /// Drive of a display, volts.
+    pub drive_v: Option<f64>,
+    /// What the device was given.
+    pub output: Option<OutputLevels>,
+    /// How often it was stopped before, by anything.
+    pub stops: u32,
     /// The recording of what was felt, if there is one.
     pub felt: Option<FeltFile>,
     /// How often it was begun before, and ended because the device ran dry.
@@ -103,7 +113,7 @@ impl<'a> Session<'a> {
 
     /// What a trial plays.
     pub fn stimulus(&self, phase: Phase, trial: &Trial) -> Stimulus {
-        let found = self.progress.found(self.plan, &trial.texture);
+        let found = self.progress.found(phase, &trial.texture);
         let name = match phase {
             Phase::Training => "training",
             _ => "trial",
@@ -113,25 +123,40 @@ impl<'a> Session<'a> {
             model: trial.model.clone(),
             seconds: Some(self.study.trial_s),
             seed: self.seed(name, trial.number),
-            gain_db: found.map(|found| found.gain_db),
-            reference_rms: found.map(|found| found.reference_rms),
+            gain_db: found.map(|(gain_db, _)| gain_db),
+            reference_rms: found.map(|(_, reference_rms)| reference_rms),
             felt: self.is_recorded.then(|| felt_name(name, trial)),
             file: format!("{name}-{:04}", trial.number),
         }
     }
 
-    /// What plays while the gain of a texture is matched.
-    pub fn matching_stimulus(&self, texture: &str, matching: &Match) -> Stimulus {
+    /// What plays while the level of a texture rises, or its gain is matched.
+    pub fn matching_stimulus(
+        &self,
+        phase: Phase,
+        texture: &str,
+        model: &str,
+        matching: &Match,
+    ) -> Stimulus {
+        let name = match phase {
+            Phase::Training => "rise",
+            Phase::Gain | Phase::Testing => "gain",
+        };
         Stimulus {
             texture: texture.to_owned(),
-            model: self.study.gain.model.clone(),
+            model: model.to_owned(),
             seconds: None,
-            seed: self.seed(&format!("gain {texture}"), 0),
+            seed: self.seed(&format!("{name} {texture}"), 0),
             gain_db: Some(matching.gain_db()),
             reference_rms: None,
             felt: None,
-            file: format!("gain-{texture}"),
+            file: format!("{name}-{texture}"),
         }
+    }
+
+    /// How often what plays now was stopped before.
+    pub fn stops(&self) -> u32 {
+        self.progress.stops()
     }
 
     /// A seed for the samples of one trial of one participant.
@@ -171,6 +196,9 @@ impl<'a> Session<'a> {
         let answer = Answer {
             number: trial.number,
             gain_db: self.stimulus(phase, &trial).gain_db,
+            drive_v: presented.drive_v,
+            output: presented.output,
+            stops: presented.stops,
             texture: trial.texture,
             model: trial.model,
             repetition: trial.repetition,
@@ -189,32 +217,88 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Records a key of the gain matching, with the drive at which the texture was felt.
+    /// Records a key of a rising level or of the gain matching, and how the texture was played before the key.
     ///
     /// # Errors
     /// As [`Self::rate`].
-    pub fn press(
-        &mut self,
-        key: GainKey,
-        drive_v: Option<f64>,
-        reference_rms: f64,
-        at_ms: u64,
-    ) -> Result<(), StudyError> {
+    pub fn press(&mut self, key: GainKey, played: &Played, at_ms: u64) -> Result<(), StudyError> {
         let Step::Match {
+            phase,
             texture,
+            model,
             mut matching,
         } = self.step()
         else {
             return Err(self.misplaced("no gain is matched now"));
         };
+        let was_rising = matching.is_rising();
         matching.press(key);
-        self.record(Line::Gain(Matched {
+        let gain_db = matching.gain_db();
+        let (drive_v, output) = (played.drive_v, played.output.clone());
+        let (stops, simulated) = (self.stops(), self.is_simulated);
+        let reference_rms = played.reference_rms;
+        self.record(match was_rising {
+            true => Line::Rise(Rise {
+                phase,
+                texture,
+                model,
+                key,
+                gain_db,
+                found: !matching.is_rising(),
+                drive_v,
+                output,
+                stops,
+                reference_rms,
+                at_ms,
+                simulated,
+            }),
+            false => Line::Gain(Matched {
+                texture,
+                key,
+                gain_db,
+                found: matching.is_found(),
+                drive_v,
+                output: Some(output),
+                stops,
+                reference_rms,
+                at_ms,
+                simulated,
+            }),
+        })
+    }
+
+    /// Records that what plays now ended before its time, and what the device was given until then.
+    ///
+    /// # Errors
+    /// As [`Self::rate`].
+    pub fn stopped(
+        &mut self,
+        reason: StopReason,
+        drive_v: Option<f64>,
+        output: Option<OutputLevels>,
+        at_ms: u64,
+    ) -> Result<(), StudyError> {
+        let (phase, texture, model, gain_db) = match self.step() {
+            Step::Rate(phase, trial, _) => {
+                let gain_db = self.stimulus(phase, &trial).gain_db;
+                (phase, trial.texture, trial.model, gain_db)
+            }
+            Step::Match {
+                phase,
+                texture,
+                model,
+                matching,
+            } => (phase, texture, model, Some(matching.gain_db())),
+            Step::Rest { .. } | Step::Done => return Err(self.misplaced("nothing plays now")),
+        };
+        self.record(Line::Stopped(Stopped {
+            phase,
             texture,
-            key,
-            gain_db: matching.gain_db(),
-            found: matching.is_found(),
+            model,
+            reason,
+            gain_db,
             drive_v,
-            reference_rms,
+            output,
             at_ms,
             simulated: self.is_simulated,
         }))

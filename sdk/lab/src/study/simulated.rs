@@ -69,6 +69,13 @@ impl SimulatedParticipant {
         let share = (dice.bits() >> 11) as f64 / (1u64 << 53) as f64;
         let wanted_db = GAIN_DB.0 + share * (GAIN_DB.1 - GAIN_DB.0);
         let off_db = matching.gain_db() - wanted_db;
+        if matching.is_rising() {
+            // It stops where the texture is at least as strong as it wants it.
+            return match off_db < 0.0 && matching.gain_db() < 0.0 {
+                true => GainKey::MuchStronger,
+                false => GainKey::Accept,
+            };
+        }
         let key = match off_db {
             off if off > 5.0 => GainKey::MuchWeaker,
             off if off > 0.5 => GainKey::Weaker,

@@ -26,7 +26,7 @@ pub struct Stimulus {
     pub reference_rms: Option<f64>,
     /// Name of the recording of what is felt, without extension; `None` if it is not recorded.
     pub felt: Option<String>,
-    /// Name for a file that it is played to: `training-003`, `trial-017`, `gain-vinyl-02`.
+    /// Name for a file that it is played to: `rise-vinyl`, `training-0003`, `gain-vinyl`, `trial-0017`.
     pub file: String,
 }
 
@@ -50,6 +50,12 @@ pub fn scene_of(study: &Study, asset: &Path, model: &str) -> Vec<u8> {
     serde_json::to_vec(&scene).unwrap_or_default()
 }
 
+/// The drive of a display to which nothing sets a gain, volts: `drive_v` of the study, or the limit.
+pub fn full_drive(device: &DeviceChoice, able: &Capabilities) -> Option<f64> {
+    let is_display = able.quantity == Quantity::DisplayVoltage;
+    device.drive_v.or(able.limit).filter(|_| is_display)
+}
+
 /// Sets a gain on a scene's device, relative to the maximum: a display's `drive_v` or its limit, the `gain_db` of other forces, or the
 /// level of a sound. Returns the drive of a display, volts.
 pub fn set_gain(
@@ -63,7 +69,7 @@ pub fn set_gain(
     }
     match able.quantity {
         Quantity::DisplayVoltage => {
-            let most_v = device.drive_v.or(able.limit)?;
+            let most_v = full_drive(device, able)?;
             let drive_v = most_v * libm::pow(10.0, gain_db / 20.0);
             device.drive_v = Some(drive_v);
             Some(drive_v)

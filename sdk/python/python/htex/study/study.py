@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import pathlib
@@ -93,6 +94,10 @@ class Analysis:
         """Write report.html, analysis.json, the tables as CSV, and the figures as SVG and PDF."""
         for name, data in self.files(command).items():
             path = pathlib.Path(folder, name)
+            # The folder is the user's word; what is in it may be somebody else's, and no link in it is followed.
+            if path.parent != pathlib.Path(folder) and path.parent.is_symlink():
+                problem = "it is a symbolic link, and nothing is written through one here; remove it"
+                raise PermissionError(errno.EPERM, problem, str(path.parent))
             path.parent.mkdir(parents=True, exist_ok=True)
             with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as beside:
                 beside.write(data)

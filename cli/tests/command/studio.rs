@@ -42,6 +42,7 @@ fn a_page_leads_nowhere_else_and_leaves_no_service_worker() {
         return;
     }
     let place = Place::new();
+    std::fs::create_dir(place.path("page")).unwrap();
     place.write(
         "page/index.html",
         "<!doctype html><html lang=en><head><title>page</title></head><body></body></html>",

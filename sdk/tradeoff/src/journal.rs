@@ -70,7 +70,7 @@ impl Journal {
 
     /// Reads the file; a file that is not a journal is an error and is not changed.
     fn read(&self, key: &str) -> io::Result<Vec<Entry>> {
-        let (own, name) = OwnFolder::of_file(&self.path)?;
+        let (own, name) = self.place()?;
         let file = match own.open(&name) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
             opened => opened?,
@@ -91,7 +91,7 @@ impl Journal {
 
     /// Rewrites the file with the entries that were read, and opens it for more.
     fn rewrite(&self, key: &str) -> io::Result<File> {
-        let (own, name) = OwnFolder::of_file(&self.path)?;
+        let (own, name) = self.place()?;
         own.replace(&name, |file| {
             let mut file = io::BufWriter::new(file);
             writeln!(file, "{key}")?;
@@ -120,8 +120,20 @@ impl Journal {
     /// # Errors
     /// When it cannot be removed.
     pub fn discard(self) -> Result<(), TradeoffError> {
-        let removed = OwnFolder::of_file(&self.path).and_then(|(own, name)| own.remove(&name));
+        let removed = self.place().and_then(|(own, name)| own.remove(&name));
         self.kept(removed)
+    }
+
+    /// The folder of the file, which must be there, and the file's name in it.
+    fn place(&self) -> io::Result<(OwnFolder, PathBuf)> {
+        let (own, name) = OwnFolder::of_file(&self.path)?;
+        match own.path().is_dir() {
+            true => Ok((own, name)),
+            false => Err(io::Error::new(
+                io::ErrorKind::NotFound,
+                "its folder does not exist; create it first",
+            )),
+        }
     }
 
     /// Names the file in an error.

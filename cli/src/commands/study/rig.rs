@@ -256,7 +256,7 @@ impl StudyRig<'_> {
         if underruns > 0 {
             return Err(ran_dry(&ready).into());
         }
-        let levels = self.output_before_error().map(|(_, levels)| levels);
+        let levels = self.playing.as_ref().map(|(_, meter)| meter.levels());
         let mut played = Played {
             drive_v,
             output: levels.unwrap_or_default(),

@@ -140,7 +140,7 @@ impl Written<'_> {
             Self::Named(path) => htex_files::replace_file(path, write),
             Self::Inside(folder, name) => folder.replace(name, write),
         };
-        written.writing(&self.path())
+        written.writing(self.path())
     }
 
     pub(crate) fn write(self, bytes: &[u8]) -> Result<(), FileError> {

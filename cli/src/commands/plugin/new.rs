@@ -60,7 +60,7 @@ impl New {
             let text = values.iter().fold((*template).to_owned(), fill);
             let write = |into: &mut std::fs::File| into.write_all(text.as_bytes());
             let written = own.replace(Path::new(file), write);
-            written.writing(&dir.join(file))?;
+            written.writing(dir.join(file))?;
         }
         let dir = dir.display();
         print(&match self.lang {

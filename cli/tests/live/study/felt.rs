@@ -46,7 +46,11 @@ fn a_source_that_fails_ends_the_session_and_the_trial_is_repeated() {
         // A source that cannot be opened stops nothing that plays.
         let stops = fault.starts_with("DAQmxRead");
         let text = &answers(&place.path(&folder))["Ann.jsonl"];
-        assert_eq!(text.contains("\"reason\":\"failed\""), stops, "{fault}: {text}");
+        assert_eq!(
+            text.contains("\"reason\":\"failed\""),
+            stops,
+            "{fault}: {text}"
+        );
         let so_far = &unstopped(&place.path(&folder))["Ann.jsonl"];
         assert!(
             expected["Ann.jsonl"].starts_with(&so_far[..])

@@ -63,7 +63,7 @@ pub(crate) fn write_signals(
     let name = inside.join(format!("{stem}.{}", header.format.extension()));
     let recording = own.path().join(&name);
     let put = |inside: &Path, write: &dyn Fn(&mut File) -> io::Result<()>| {
-        own.replace(inside, write).writing(&own.path().join(inside))
+        own.replace(inside, write).writing(own.path().join(inside))
     };
     let mut fit = vec![recording.display().to_string()];
     fit.extend(flags(header));

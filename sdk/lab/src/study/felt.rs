@@ -97,7 +97,7 @@ impl Felt {
         setup.format.check(rate_hz)?;
         let own = OwnFolder::private(&setup.folder);
         let inside = Path::new(&setup.participant).join(FOLDER);
-        remove_unfinished(&own, &inside).writing(&setup.folder.join(&inside))?;
+        remove_unfinished(&own, &inside).writing(setup.folder.join(&inside))?;
         let inputs = Some(Inputs { signals, tracker });
         Ok(Self {
             setup,

@@ -1,5 +1,5 @@
 /* htex_model_parts.h: common parts of models in C: the text of the last error, checks of arguments, second-order sections
- * and white noise. They call no C library, and compilers for any processor give the same numbers.
+ * and white noise. They call no C library, and compilers for any processor give the same numbers. C11 and C++11.
  *
  * Not part of the ABI: a model may use other code. Include it in one file of the model.
  *
@@ -12,7 +12,11 @@
 
 /* ---- errors ---- */
 
+#ifdef __cplusplus
+static thread_local const char *last_error = "";
+#else
 static _Thread_local const char *last_error = "";
+#endif
 
 static inline int64_t fail(int64_t status, const char *text)
 {
@@ -115,13 +119,13 @@ static inline struct biquad section(double corner_hz, double q, double rate_hz, 
     double t = tangent(3.14159265358979323846 * corner_hz / rate_hz);
     double norm = 1.0 / (1.0 + t / q + t * t);
     double low = numerator[0] * t * t, mid = numerator[1] * t / q, high = numerator[2];
-    struct biquad s = {
-        .b0 = (low + mid + high) * norm,
-        .b1 = 2.0 * (low - high) * norm,
-        .b2 = (low - mid + high) * norm,
-        .a1 = 2.0 * (t * t - 1.0) * norm,
-        .a2 = (1.0 - t / q + t * t) * norm,
-    };
+    struct biquad s;
+    s.b0 = (low + mid + high) * norm;
+    s.b1 = 2.0 * (low - high) * norm;
+    s.b2 = (low - mid + high) * norm;
+    s.a1 = 2.0 * (t * t - 1.0) * norm;
+    s.a2 = (1.0 - t / q + t * t) * norm;
+    s.s1 = s.s2 = 0.0;
     return s;
 }
 
@@ -140,7 +144,7 @@ static inline double noise(uint64_t *state)
     z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
     z = (z ^ z >> 27) * 0x94d049bb133111ebu;
     z ^= z >> 31;
-    return ((double)(z >> 11) * 0x1p-53 - 0.5) * 3.4641016151377544; /* sqrt(12) */
+    return ((double)(z >> 11) * 1.1102230246251565e-16 - 0.5) * 3.4641016151377544; /* 2^-53, sqrt(12) */
 }
 
 #endif

@@ -7,11 +7,13 @@ mod builds;
 
 use std::fs;
 use std::path::PathBuf;
+use std::process::Command;
 
 use builds::*;
 use htex_host::{Band, Fit, FitRequest, HostError, LoadedModel, Motion, Status, Stream};
 use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum, rms};
 use htex_tests::{deflated_bytes, smooth_spectrum, workspace};
+use xtask::needs;
 
 /// Most deflated bytes of the template's module, built without flags.
 const TEMPLATE_BYTES: usize = 42_000;
@@ -62,6 +64,54 @@ fn the_template_in_c() {
     follows_the_speed(&load(&build_c(&project, "native")));
     if has_clang() {
         follows_the_speed(&load(&build_c(&project, "wasm")));
+    }
+}
+
+/// A model or a device may be written in C++: every header compiles without a warning, and its functions are used.
+#[test]
+fn the_headers_compile_as_cpp() {
+    let there = Command::new("c++").arg("--version").output().is_ok();
+    if !needs::CXX.met(there) {
+        return;
+    }
+    let project = folder("headers-cpp");
+    let include = workspace().join("spec/include");
+    let mut text = String::new();
+    for header in fs::read_dir(&include).unwrap() {
+        let name = header.unwrap().file_name();
+        text += &format!("#include \"{}\"\n", name.to_str().unwrap());
+    }
+    text += "int main() {
+        const double numerator[3] = {1.0, 0.0, 0.0};
+        struct biquad f = section(100.0, 0.7, 20000.0, numerator);
+        uint64_t state = 1;
+        double y = tick(&f, noise(&state));
+        uint8_t text[4];
+        bool all = copy_text(last_error, text, 4) == 0 && check_band(20, 1000) == HTEX_OK && clamp(y, -1, 1) == y;
+        all = all && check_spectrum(nullptr, nullptr, 0) != HTEX_OK && check_signal(nullptr, 0, 0) == HTEX_OK;
+        return all ? 0 : 1;
+    }\n";
+    let (source, program) = (project.join("all.cpp"), project.join("all"));
+    fs::write(&source, text).unwrap();
+    for standard in ["c++11", "c++14", "c++17", "c++20"] {
+        let mut compiler = Command::new("c++");
+        compiler.args(["-Wall", "-Wextra", "-pedantic", "-Werror", "-I"]);
+        compiler.arg(&include).arg(format!("-std={standard}"));
+        let compiled = compiler
+            .arg("-o")
+            .arg(&program)
+            .arg(&source)
+            .output()
+            .unwrap();
+        assert!(
+            compiled.status.success(),
+            "{standard}: {}",
+            String::from_utf8_lossy(&compiled.stderr)
+        );
+        assert!(
+            Command::new(&program).status().unwrap().success(),
+            "{standard}"
+        );
     }
 }
 

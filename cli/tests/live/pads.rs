@@ -45,6 +45,51 @@ fn texture(place: &Place) {
     assert_eq!(fit.code(), 0, "{}", fit.error());
 }
 
+/// A loader of OpenXR on a machine without a runtime prints what is wrong, unless its environment says that it prints nothing.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_list_of_devices_has_no_line_of_the_openxr_loader() {
+    let place = Place::new();
+    place.write(
+        "loader.c",
+        r#"#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+int xrGetInstanceProcAddr(void *instance, const char *name, void **function)
+{
+    const char *prints = getenv("XR_LOADER_DEBUG");
+    (void)instance;
+    if (prints == NULL || strcmp(prints, "none") != 0) {
+        fprintf(stderr, "Error [GENERAL | %s | OpenXR-Loader] : no runtime\n", name);
+        printf("Info [GENERAL | %s | OpenXR-Loader] : no runtime\n", name);
+        fflush(stdout);
+    }
+    *function = NULL;
+    return -51;
+}
+"#,
+    );
+    let mut cc = Command::new("cc");
+    cc.args(["-shared", "-fPIC", "-o"]);
+    let built = cc
+        .arg(place.path("libopenxr_loader.so.1"))
+        .arg(place.path("loader.c"));
+    assert!(built.status().unwrap().success());
+    let list = |variable: Option<&str>| {
+        let mut command = place.command(&["device", "list", "--json"]);
+        command.env("LD_LIBRARY_PATH", place.path(""));
+        command.env_remove("XR_LOADER_DEBUG");
+        command.envs(variable.map(|value| ("XR_LOADER_DEBUG", value)));
+        Run::of(command.output().unwrap())
+    };
+    let quiet = list(None);
+    assert_eq!((quiet.code(), &quiet.error()[..]), (0, ""));
+    let listed: serde_json::Value = serde_json::from_str(&quiet.text()).unwrap();
+    assert!(!listed["devices"].as_array().unwrap().is_empty());
+    // Who debugs a loader says so, and gets its lines.
+    assert!(list(Some("all")).error().contains("OpenXR-Loader"));
+}
+
 fn recorded(place: &Place, variable: &str, arguments: &[&str]) -> (String, String) {
     let record = place.path("record.txt");
     let run = place

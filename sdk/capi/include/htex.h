@@ -168,7 +168,8 @@ typedef struct htex_bytes {
  Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to zero for the defaults: the
  built-in models alone, which make no thread, file or handler of signals.
 
- WASM modules, which assets may bring along, are run by an engine that must be turned on. Each module is compiled when it is
+ WASM modules, which assets may bring along, are run by an engine that must be turned on. The library in `lib/whole` has one; in a
+ build without it, turning it on is HTEX_STATUS_UNSUPPORTED when an asset is opened. Each module is compiled when it is
  first used (that example takes 0.07 to 0.4 s, and 5 s is the limit, unless `cache` has it), and as long as it is loaded one thread sleeps and wakes every 50 ms to stop
  calls at their time limit. All is limited: 64 MiB of memory for a voice, 0.5 s for a block, 5 s to compile.
  */
@@ -455,7 +456,7 @@ typedef struct htex_voice_options {
      */
     uint64_t seed;
     /*
-     Motion of the start; NULL: the first recorded condition.
+     Motion of the start; NULL: the first recorded condition, or the strongest if the first is silent.
      */
     const struct htex_motion *motion;
     /*
@@ -623,7 +624,7 @@ htex_status htex_asset_representation_model(struct htex_asset asset,
 
 /*
  [any thread; may load a model] Magnitudes that a recording of the voice reads at frequencies in Hz, in the asset's unit. `model` may be
- NULL (the representation of least error), and so may `at` (its first condition). Between conditions it is interpolated, outside them
+ NULL (the representation of least error), and so may `at` (its first condition, or its strongest if the first is silent). Between conditions it is interpolated, outside them
  it follows the law of the asset, and where the finger does not slide it is 0.
  */
 htex_status htex_asset_magnitude(struct htex_asset asset,

@@ -31,7 +31,8 @@ pub const HTEX_ENGINE_SIGNALS: u32 = 2;
 /// Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to zero for the defaults: the
 /// built-in models alone, which make no thread, file or handler of signals.
 ///
-/// WASM modules, which assets may bring along, are run by an engine that must be turned on. Each module is compiled when it is
+/// WASM modules, which assets may bring along, are run by an engine that must be turned on. The library in `lib/whole` has one; in a
+/// build without it, turning it on is HTEX_STATUS_UNSUPPORTED when an asset is opened. Each module is compiled when it is
 /// first used (that example takes 0.07 to 0.4 s, and 5 s is the limit, unless `cache` has it), and as long as it is loaded one thread sleeps and wakes every 50 ms to stop
 /// calls at their time limit. All is limited: 64 MiB of memory for a voice, 0.5 s for a block, 5 s to compile.
 #[repr(C)]
@@ -70,7 +71,7 @@ pub struct htex_voice_options {
     pub rate_hz: f64,
     /// Seed of the noise. Equal seeds give equal samples.
     pub seed: u64,
-    /// Motion of the start; NULL: the first recorded condition.
+    /// Motion of the start; NULL: the first recorded condition, or the strongest if the first is silent.
     pub motion: *const htex_motion,
     /// How samples are made: "streamed", "loop:SECONDS" or "filter:TAPS"; NULL: streamed.
     pub synthesis: *const c_char,
@@ -163,7 +164,7 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
         Some(folder) => WasmCache::Dir(folder.into()),
         None => WasmCache::Off,
     };
-    let engine = engine(options.engine)?;
+    let engine = engine(options.engine, htex::RUNS_WASM)?;
     let installed = options.installed != 0;
     let limits = WasmLimits::default().with_engine(engine).with_cache(cache);
     let search = Search::builtin()
@@ -189,8 +190,14 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
     })
 }
 
-fn engine(number: u32) -> Result<WasmEngine, Failure> {
+/// The engine of a number; one that this build does not have is an error here, and not where a module is first used.
+fn engine(number: u32, is_built: bool) -> Result<WasmEngine, Failure> {
     match number {
+        HTEX_ENGINE_CHECKED | HTEX_ENGINE_SIGNALS if !is_built => Err(Failure::plain(
+            htex_status::HTEX_STATUS_UNSUPPORTED,
+            "this libhtex has no engine of modules: link the whole library of `lib/whole` (pkg-config `htex-whole`, CMake `htex::whole`), \
+             or set `engine` to HTEX_ENGINE_OFF",
+        )),
         HTEX_ENGINE_OFF => Ok(WasmEngine::Off),
         HTEX_ENGINE_CHECKED => Ok(WasmEngine::Checked),
         HTEX_ENGINE_SIGNALS => Ok(WasmEngine::Signals),
@@ -259,4 +266,21 @@ pub(crate) unsafe fn voice_options<'a>(
         voice = voice.with_limit(options.limit);
     }
     Ok((model, voice))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_engine_that_is_not_built_is_refused_with_the_library_that_has_it() {
+        for number in [HTEX_ENGINE_CHECKED, HTEX_ENGINE_SIGNALS] {
+            let text = format!("{:?}", engine(number, false).err());
+            for words in ["HTEX_STATUS_UNSUPPORTED", "lib/whole", "htex-whole"] {
+                assert!(text.contains(words), "{text}");
+            }
+            assert!(engine(number, true).is_ok());
+        }
+        assert!(engine(HTEX_ENGINE_OFF, false).is_ok());
+    }
 }

@@ -1,5 +1,5 @@
 //! `include/htex.h` is that of the functions, and its contents are frozen.
-#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+#![allow(clippy::unwrap_used, unsafe_code)] // A failed unwrap is a failed test; a text of C is read.
 
 use std::path::Path;
 
@@ -45,6 +45,55 @@ fn generated_listing_is_frozen() {
             .filter(|line| !line.contains("HTEX_API_VERSION"));
         assert!(lines.all(|line| now.contains(line)), "{THAW}");
     }
+}
+
+/// The tables of statuses in C# and in the npm package are those of the header, which are those of the Rust enumeration, and each has a
+/// text.
+#[test]
+fn all_tables_of_statuses_agree() {
+    let header = header();
+    let statuses = header.lines().filter_map(|line| {
+        let (name, number) = line
+            .trim()
+            .strip_prefix("HTEX_STATUS_")?
+            .split_once(" = ")?;
+        Some((name, number.trim_end_matches(',').parse::<i32>().ok()?))
+    });
+    let statuses: Vec<(&str, i32)> = statuses.collect();
+    let numbers: Vec<i32> = statuses.iter().map(|(_, number)| *number).collect();
+    assert_eq!(numbers, Vec::from_iter(0..statuses.len() as i32));
+    let lower = |name: &str| name.to_ascii_lowercase();
+    for (name, number) in &statuses {
+        // SAFETY: a static text.
+        let text = unsafe { std::ffi::CStr::from_ptr(htex_c::htex_status_text(*number)) };
+        assert_ne!(text.to_str().unwrap(), "unknown status", "{name}");
+    }
+
+    let sharp = std::fs::read_to_string("unity/Runtime/Htex.cs").unwrap();
+    let (_, sharp) = sharp.split_once("public enum Status").unwrap();
+    let (sharp, _) = sharp.split_once('}').unwrap();
+    let own = sharp
+        .lines()
+        .filter_map(|line| line.trim().split_once(" = "));
+    let own: Vec<(String, String)> = own
+        .map(|(name, number)| (lower(name), number.trim_end_matches(',').to_owned()))
+        .collect();
+    let wanted = statuses.iter();
+    let wanted: Vec<(String, String)> = wanted
+        .map(|(name, number)| (lower(&name.replace('_', "")), number.to_string()))
+        .collect();
+    assert_eq!(own, wanted, "Htex.cs");
+
+    let script = std::fs::read_to_string("../web/src/core.js").unwrap();
+    let (_, script) = script.split_once("const STATUS = [").unwrap();
+    let (script, _) = script.split_once(']').unwrap();
+    let own = script.split(',').map(|name| name.trim().trim_matches('"'));
+    let own: Vec<&str> = own.filter(|name| !name.is_empty()).collect();
+    let wanted = statuses.iter();
+    let wanted: Vec<String> = wanted
+        .map(|(name, _)| lower(&name.replace('_', "-")))
+        .collect();
+    assert_eq!(own, wanted, "core.js");
 }
 
 /// The declarations, one on each line, without comments.

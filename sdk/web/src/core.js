@@ -23,6 +23,7 @@ const STATUS = [
   "internal",
   "invalid-library",
   "absent",
+  "device",
 ];
 
 /** An error of the library; `code` is the kind, such as "invalid-asset". */

@@ -25,7 +25,7 @@ export interface Readable {
 export class HtexError extends Error {
   readonly name: "HtexError";
   /** The kind of error: "invalid-argument", "invalid-asset", "no-representation", "no-model", "model", "invalid-motion", "bad-handle",
-   * "unsupported", "internal", "invalid-library", "absent", "io", "untrusted" and others. */
+   * "unsupported", "internal", "invalid-library", "absent", "device", "io", "untrusted" and others. */
   readonly code: string;
 }
 
@@ -59,7 +59,7 @@ export interface VoiceOptions {
   rate?: number;
   /** Seed of the noise: equal seeds give equal samples. Default 0. */
   seed?: number | bigint;
-  /** Motion of the start. Default: the first recorded condition. */
+  /** Motion of the start. Default: the first recorded condition, or the strongest if the first is silent. */
   motion?: Motion;
   /** How samples are made. Default "streamed". */
   synthesis?: "streamed" | `loop:${number}` | `filter:${number}`;
@@ -104,7 +104,7 @@ export interface Envelope {
 export interface At {
   /** The model of the representation. Default: the representation of least error. */
   model?: string;
-  /** The motion; between conditions the spectrum is interpolated. Default: the first recorded condition. */
+  /** The motion; between conditions the spectrum is interpolated. Default: the first recorded condition, or the strongest if the first is silent. */
   at?: Motion;
 }
 
@@ -130,9 +130,17 @@ export class Texture {
   readonly models: string[];
   /** Whether models of modules may run. */
   readonly hasModules: boolean;
+  /**
+   * Index of the condition at which a representation (default: the one of least error) is played where no motion is given: its first,
+   * or its strongest if the first is silent. Loads no model.
+   */
+  defaultCondition(model?: string): number;
   /** Magnitudes of the texture spectrum at frequencies in Hz, in the unit. */
   spectrum(frequencies: ArrayLike<number>, options?: At): Float64Array;
-  /** Magnitudes at a recorded condition, as a recording of the voice reads them: without chance, and of sums of sinusoids from 20 s of their samples. */
+  /**
+   * Magnitudes at a recorded condition (default: the default condition), as a recording of the voice reads them: without chance, and of
+   * sums of sinusoids from 20 s of their samples.
+   */
   readSpectrum(options?: { model?: string; condition?: number }): { frequencies: Float64Array; magnitudes: Float64Array };
   /** Level of a representation, RMS in the unit. */
   level(options?: At): number;
@@ -290,7 +298,7 @@ export interface LoadOptions extends Omit<VoiceOptions, "rate"> {
   /** Whether models of modules may run in the audio thread, where a call that does not return stops all sound. Default: only those of
    * textures that were opened as trusted; others play in a worker, 32 ms later. */
   trusted?: boolean;
-  /** Factor from the texture's unit to full scale. Default: an RMS of 0.1, -20 dB, at the first condition; of `load` the present ratio to
+  /** Factor from the texture's unit to full scale. Default: an RMS of 0.1, -20 dB, at the default condition; of `load` the present ratio to
    * that. */
   gain?: number;
   /** Number of bands of the envelopes that `onenvelope` is told, 1 to 32. Default 0: none. */
@@ -387,7 +395,7 @@ export interface PadOptions {
   seed?: number | bigint;
   /** The motion of the start. Default: at rest, until `setMotion`. */
   motion?: Motion;
-  /** Factor from the texture's unit to full scale. Default: an RMS of 0.1 at the first condition. */
+  /** Factor from the texture's unit to full scale. Default: an RMS of 0.1 at the default condition. */
   gain?: number;
 }
 
@@ -417,12 +425,13 @@ export interface PointerOptions {
 }
 
 /** Calls `moved` with the motion of a pointer over an element: one pointer at a time, of a mouse with the primary button. The element has
- * `touch-action: none` meanwhile. Returns a function that ends this. */
+ * `touch-action: none` meanwhile. `null`, of a `querySelector` that found none, is an HtexError. Returns a function that ends this. */
 export function followPointer(
-  element: ElementLike,
+  element: ElementLike | null,
   moved: (motion: { speed: number; force: number; position: number; x: number; y: number }) => void,
   options?: PointerOptions,
 ): () => void;
 
-/** Lets a node follow a pointer over an element, and resumes its context on the first press. Returns a function that ends this. */
-export function follow(element: ElementLike, node: HtexNode, options?: PointerOptions): () => void;
+/** Lets a node follow a pointer over an element, and resumes its context on the first press. `null`, of a `querySelector` that found none,
+ * is an HtexError. Returns a function that ends this. */
+export function follow(element: ElementLike | null, node: HtexNode, options?: PointerOptions): () => void;

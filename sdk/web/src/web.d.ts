@@ -4,7 +4,7 @@ type Instance<Name extends string> = typeof globalThis extends { [N in Name]: { 
 
 export type AudioContextLike = Instance<"BaseAudioContext">;
 export type AudioParamLike = Instance<"AudioParam">;
-export type ElementLike = Instance<"HTMLElement">;
+export type ElementLike = Instance<"Element">;
 export type EventLike = Instance<"Event">;
 export type WorkerLike = Instance<"Worker">;
 export type SignalLike = Instance<"AbortSignal">;

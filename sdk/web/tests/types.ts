@@ -39,6 +39,10 @@ export async function play(context: AudioContext, element: HTMLElement, file: Fi
   node.onenvelope = ({ level, bands }) => console.log(level, bands[0], node.envelopeEdges[0]);
   await node.load(await open(file), { gain: 0.5 });
   const end: () => void = follow(element, node, { force: (pressure) => pressure, defaultForce: 0.4 });
+  follow(document.querySelector("#surface"), node);
+  followPointer(document.querySelector("svg path"), ({ x, y }) => console.log(x + y));
+  // @ts-expect-error: no element.
+  follow("#surface", node);
   for (const pad of navigator.getGamepads()) if (pad) pads.push(playOnPad(pad, texture, { model: "ar", seed: 7n, gain: 1, motion: { speed: 80 } }));
   console.log(dualRumble({ level: 0.1, centroid: 200 }, { gain: 3, duration: 100 }).strongMagnitude, pads[0]?.way);
   followPointer(element, ({ speed, force, position }) => console.log(speed + force + position));

@@ -6,6 +6,7 @@ use crate::adapters::{listed_json, listed_text};
 use crate::devices::DeviceArgs;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::invocation;
 use crate::output::{print, print_json};
 use crate::sources::{SourceArgs, source_json};
 
@@ -27,8 +28,18 @@ pub(crate) struct List {
     json: bool,
 }
 
+/// Tells the OpenXR loader what to print. Without it, the loader prints errors of its own on a machine without a runtime.
+const LOADER_PRINTS: &str = "XR_LOADER_DEBUG";
+
 impl List {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
+        match listed_quietly() {
+            Some(exit) => Ok(exit),
+            None => self.list(),
+        }
+    }
+
+    fn list(&self) -> Result<Exit, Failure> {
         let devices = self.devices.devices_quietly()?;
         let sources = self.sources.sources_quietly()?;
         if self.json {
@@ -43,6 +54,23 @@ impl List {
         }
         Ok(Exit::SUCCESS)
     }
+}
+
+/// Lists in a second process, in which the OpenXR loader prints nothing: a process cannot change its own environment safely. `None`
+/// where the user decided what it prints, or in that process.
+fn listed_quietly() -> Option<Exit> {
+    if std::env::var_os(LOADER_PRINTS).is_some() {
+        return None;
+    }
+    let mut command = invocation::program().ok()?.command();
+    command
+        .args(invocation::arguments())
+        .env(LOADER_PRINTS, "none");
+    Some(match command.status().ok()?.code() {
+        Some(0) => Exit::SUCCESS,
+        Some(code) if code == i32::from(Exit::USAGE.code()) => Exit::USAGE,
+        _ => Exit::FAILURE,
+    })
 }
 
 fn texts<A: htex_device::AdapterKind + ?Sized>(all: &Registry<A>) -> impl Iterator<Item = String> {

@@ -131,7 +131,7 @@ impl Fit {
                 print(&grid_text(grid))?;
             }
         }
-        Ok(Exit::SUCCESS)
+        all_named_were_fitted(&self.fit, &fitted.skipped)
     }
 
     fn write_report(
@@ -189,6 +189,21 @@ impl Fit {
         let stem = self.output.file_stem();
         let name = stem.map(|s| s.to_string_lossy()).unwrap_or_default();
         Ok(settings.request(registry, &self.reading.settings, &name, &tool())?)
+    }
+}
+
+/// An error if a model that the user named could not be fitted; what was written has the others.
+pub(crate) fn all_named_were_fitted(
+    fit: &FitSettings,
+    skipped: &[(String, String)],
+) -> Result<Exit, Failure> {
+    let named = fit.named_of(skipped);
+    match named.is_empty() {
+        true => Ok(Exit::SUCCESS),
+        false => Err(Failure::Other(format!(
+            "a model named by `--model` could not be fitted, and the asset holds only the others: {}",
+            named.join("; ")
+        ))),
     }
 }
 

@@ -8,6 +8,7 @@ use htex_files::{AtFile, read_regular};
 use htex_format::{Quantity, license_file, read_license_file};
 
 use crate::assets::AssetSummary;
+use crate::commands::fit::all_named_were_fitted;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::given::Given;
@@ -122,6 +123,7 @@ impl Import {
     }
 
     fn write(&self, imported: htex_exchange::Imported) -> Result<Exit, Failure> {
+        let fit = &self.given.values.fit;
         let bytes = imported.to_bytes()?;
         write_file(&self.output, &bytes)?;
         let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &imported.asset)
@@ -133,14 +135,15 @@ impl Import {
             summary.warnings.extend(new);
             let notes = imported.notes.iter().map(ToString::to_string);
             summary.notes.extend(notes);
-            return print_json(&summary).map(|()| Exit::SUCCESS);
+            print_json(&summary)?;
+            return all_named_were_fitted(fit, &imported.skipped);
         }
         warn(&imported.warnings);
         note(&imported.notes);
         summary.warnings.clear();
         let text = summary.to_text();
         print(&format!("imported {}\n{text}", shown(&self.file)))?;
-        Ok(Exit::SUCCESS)
+        all_named_were_fitted(fit, &imported.skipped)
     }
 }
 

@@ -118,7 +118,7 @@ fn error_of(model: &LoadedModel, options: &[f64], group: &Group, level: Level) -
     let request = group.spectrum.fit_request(options);
     let fit = model.fit_at(&request, group.condition).ok()?;
     let fields = stored_fields(model.descriptor());
-    let stored = htex_format::round_parameters(&fields, &fit.parameters).ok()?;
+    let stored = htex_format::round_within(&fields, model.descriptor(), &fit.parameters).ok()?;
     let level_rms = stored_level(model, &fit, &stored, reference, level).ok()?;
     let magnitude = read_spectrum(model, &stored, level_rms, reference).ok()?;
     let error = agreement(reference, &magnitude).get(Measure::NineBand);

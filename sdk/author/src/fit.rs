@@ -7,7 +7,7 @@ use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_finding::Notice;
 use htex_format::{
     Asset, AtCondition, Condition, Contact, Law, Manifest, Measure, Provenance, Quality, Quantity,
-    Reference, Representation, round_parameters,
+    Reference, Representation, round_within,
 };
 use htex_host::{HostError, Instant, LoadedModel, Origin};
 
@@ -193,7 +193,11 @@ fn fit_group(choice: &ModelRequest, group: &Group, level: Level) -> Result<Group
     let request = group.spectrum.fit_request(&choice.options);
     let fit = model.fit_at(&request, group.condition)?;
     let fit_ms = start.elapsed().as_secs_f64() * 1e3;
-    let stored = round_parameters(&stored_fields(model.descriptor()), &fit.parameters)?;
+    let stored = round_within(
+        &stored_fields(model.descriptor()),
+        model.descriptor(),
+        &fit.parameters,
+    )?;
     let level_rms = stored_level(model, &fit, &stored, group.spectrum.as_ref(), level)?;
     Ok(GroupFit {
         fitted: fit.parameters,

@@ -54,6 +54,8 @@ pub struct Imported {
     held: Option<Vec<u8>>,
     /// What is felt of the difference from the signal, of each representation at each condition; empty where nothing was fitted.
     pub felt: Vec<Vec<Option<FeltError>>>,
+    /// Ids of models that could not be fitted, each with its reason; empty where nothing was fitted.
+    pub skipped: Vec<(String, String)>,
     /// What a person should know.
     pub warnings: Vec<Notice>,
     /// What a person may want to know; that a licence is missing is among them.
@@ -183,6 +185,7 @@ fn held(file: &str, read: Result<Held, Fault>) -> Result<Imported, ExchangeError
         asset: held.asset,
         held: held.bytes,
         felt: Vec::new(),
+        skipped: Vec::new(),
         warnings: held.warnings.into_iter().map(Into::into).collect(),
         notes: Vec::new(),
     })
@@ -318,6 +321,7 @@ fn fitted(
         asset: fitted.asset,
         held: None,
         felt: fitted.felt,
+        skipped: fitted.skipped,
         warnings: fitted.warnings,
         notes: fitted.notes,
     })

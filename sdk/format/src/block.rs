@@ -7,6 +7,8 @@
 use bincode::config::{Configuration, standard};
 use bincode::{Decode, Encode};
 
+use htex_model::Descriptor;
+
 use crate::packed::{most_steps, pack, packed_bytes, unpack};
 use crate::{Steps, StoredAs, StoredField, WriteError};
 
@@ -139,6 +141,56 @@ pub fn round_parameters(fields: &[StoredField], flat: &[f64]) -> Result<Vec<f64>
     Ok(rounded)
 }
 
+/// As [`round_parameters`], of parameters for a model: a value in its field's range stays in it. Where the nearest stored value is
+/// outside, the next one inside is taken: 0.2, a field's maximum, is 0.200000003 in 32 bits, which the model refuses, and becomes
+/// 0.199999988. Every writer of a model's parameters rounds here.
+///
+/// # Errors
+/// As [`round_parameters`], and [`WriteError::OutOfRange`] where the store has no value in the field's range.
+pub fn round_within(
+    fields: &[StoredField],
+    model: &Descriptor,
+    flat: &[f64],
+) -> Result<Vec<f64>, WriteError> {
+    let mut rounded = Vec::with_capacity(flat.len());
+    for (field, values) in split(fields, flat)? {
+        if field.list {
+            rounded.push(values.len() as f64);
+        }
+        let own = model.fields.iter().find(|own| own.name == field.name);
+        for (index, &value) in values.iter().enumerate() {
+            let nearest = quantise(field, index, value)?;
+            let stored = match own {
+                Some(own) if own.min <= value && value <= own.max => {
+                    let inside = inside(nearest, field.store, own.min, own.max);
+                    inside.ok_or_else(|| WriteError::OutOfRange {
+                        field: field.name.clone(),
+                        index,
+                        value,
+                        low: value_of(nearest, field.store),
+                        high: value_of(nearest, field.store),
+                    })?
+                }
+                _ => value_of(nearest, field.store),
+            };
+            rounded.push(stored);
+        }
+    }
+    Ok(rounded)
+}
+
+/// Returns the value of a number or of the next one in the direction of a range; `None` if both are outside.
+fn inside(nearest: Number, store: StoredAs, min: f64, max: f64) -> Option<f64> {
+    let value = value_of(nearest, store);
+    let next = match value {
+        low if low < min => nearest.next(1),
+        high if high > max => nearest.next(-1),
+        _ => return Some(value),
+    };
+    let next = value_of(next?, store);
+    (min <= next && next <= max).then_some(next)
+}
+
 /// Splits a flat array into the values of each field, without the lengths of lists.
 pub(crate) fn split<'a>(
     fields: &'a [StoredField],
@@ -178,6 +230,19 @@ enum Number {
     F32(f32),
     U16(u16),
     U8(u8),
+}
+
+impl Number {
+    /// Returns the next number above (1) or below (-1); `None` if there is none.
+    fn next(self, direction: i8) -> Option<Self> {
+        let up = direction > 0;
+        Some(match self {
+            Self::F64(x) => Self::F64(if up { x.next_up() } else { x.next_down() }),
+            Self::F32(x) => Self::F32(if up { x.next_up() } else { x.next_down() }),
+            Self::U16(q) => Self::U16(q.checked_add_signed(direction.into())?),
+            Self::U8(q) => Self::U8(q.checked_add_signed(direction)?),
+        })
+    }
 }
 
 fn quantise(field: &StoredField, index: usize, value: f64) -> Result<Number, WriteError> {

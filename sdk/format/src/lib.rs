@@ -56,7 +56,7 @@ mod zip_records;
 mod zip_writer;
 
 pub use asset::Asset;
-pub use block::{round_parameters, stored_bytes};
+pub use block::{round_parameters, round_within, stored_bytes};
 pub use check_manifest::is_extension_name;
 pub use document::{Document, DocumentRules, Opened};
 pub use doi::{InvalidDoi, check_doi};

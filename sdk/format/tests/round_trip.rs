@@ -4,7 +4,11 @@
 mod common;
 
 use common::{Fitted, asset, fitted, reference, steps};
-use htex_format::{Asset, Reference, Steps, StoredAs, WriteError, round_parameters, stored_bytes};
+use htex_format::{
+    Asset, Reference, Steps, StoredAs, StoredField, WriteError, round_parameters, round_within,
+    stored_bytes,
+};
+use htex_model::{Descriptor, Kind, StaticDescriptor, StaticField, Store};
 use proptest::prelude::*;
 
 fn number() -> impl Strategy<Value = f64> {
@@ -142,6 +146,101 @@ proptest! {
         prop_assert!((once[0] - value).abs() <= scale * 0.500001);
         prop_assert_eq!(&round_parameters(&fields, &once).unwrap(), &once);
     }
+}
+
+/// Both bounds of a field, and all between, stay in its range in every store.
+#[test]
+fn a_value_in_its_range_is_stored_in_it() {
+    let stores = [
+        (Store::F64, StoredAs::F64),
+        (Store::F32, StoredAs::F32),
+        stores(
+            |scale, offset, log| Store::U16 { scale, offset, log },
+            StoredAs::U16,
+        ),
+        stores(
+            |scale, offset, log| Store::U8 { scale, offset, log },
+            StoredAs::U8,
+        ),
+        stores(
+            |scale, offset, log| Store::Packed { scale, offset, log },
+            StoredAs::Packed,
+        ),
+    ];
+    for (store, stored_as) in stores {
+        for (min, max) in [(-0.1, 0.2), (0.1, 0.7), (0.012, 1.2), (-0.3, -0.1)] {
+            let list = matches!(store, Store::Packed { .. });
+            let kind = match list {
+                true => Kind::List { max_len: 9 },
+                false => Kind::Scalar,
+            };
+            let mut model = model();
+            let field = &mut model.fields[0];
+            (field.kind, field.min, field.max, field.store) = (kind, min, max, store);
+            let fields = [StoredField {
+                name: "a".to_owned(),
+                unit: String::new(),
+                list,
+                store: stored_as,
+            }];
+            for part in [0.0, 0.001, 0.3, 0.999, 1.0] {
+                let value = if part == 1.0 {
+                    max
+                } else {
+                    min + part * (max - min)
+                };
+                let flat = if list { vec![1.0, value] } else { vec![value] };
+                let rounded = round_within(&fields, &model, &flat).unwrap();
+                let own = *rounded.last().unwrap();
+                assert!(
+                    min <= own && own <= max,
+                    "{stored_as:?}: {value} became {own}"
+                );
+                assert!(
+                    (own - value).abs() <= 0.011,
+                    "{stored_as:?}: {value} became {own}"
+                );
+                // A file is read as it was rounded.
+                assert_eq!(round_parameters(&fields, &rounded).unwrap(), rounded);
+            }
+        }
+    }
+    // Nothing of the store lies in the range.
+    let mut model = model();
+    (model.fields[0].min, model.fields[0].max) = (0.2, 0.2);
+    let fields = [StoredField {
+        name: "a".to_owned(),
+        unit: String::new(),
+        list: false,
+        store: StoredAs::F32,
+    }];
+    let refused = round_within(&fields, &model, &[0.2]);
+    assert!(matches!(refused, Err(WriteError::OutOfRange { .. })));
+    // A value that was outside stays there, and is refused where it is read.
+    model.fields[0].min = 0.0;
+    let outside = round_within(&fields, &model, &[0.3]).unwrap();
+    assert!(outside[0] > 0.2);
+}
+
+/// A model with one field, from 0 to 1.
+fn model() -> Descriptor {
+    const FIELDS: &[StaticField] = &[StaticField::scalar("a", "1", (0.0, 1.0), "A.")];
+    let model = StaticDescriptor::new("org.example.x", "X", "1.0.0", "X.");
+    Descriptor::from(&model.fields(FIELDS))
+}
+
+/// Steps of 0.01 that begin below all ranges, between two hundredths.
+fn stores(
+    store: fn(f64, f64, bool) -> Store,
+    stored_as: fn(Steps) -> StoredAs,
+) -> (Store, StoredAs) {
+    let (scale, offset) = (0.01, -0.994);
+    let steps = Steps {
+        scale,
+        offset,
+        log: false,
+    };
+    (store(scale, offset, false), stored_as(steps))
 }
 
 #[test]

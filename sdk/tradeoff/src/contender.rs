@@ -2,7 +2,7 @@
 
 use htex_author::{Level, TextureSpectrum, stored_fields, stored_level};
 use htex_dsp::grid::level_rms;
-use htex_format::{StoredAs, StoredField, round_parameters, stored_bytes};
+use htex_format::{StoredAs, StoredField, round_within, stored_bytes};
 use htex_host::{Fit, HostError, LoadedModel};
 
 use crate::baseline::quantise;
@@ -69,7 +69,7 @@ impl Contender {
             ContenderKind::Model(model, _) => {
                 let mut fields = stored_fields(model.descriptor());
                 self.keep(&mut fields);
-                let parameters = round_parameters(&fields, &fit.parameters)?;
+                let parameters = round_within(&fields, model.descriptor(), &fit.parameters)?;
                 let (reference, level) = (spectrum.as_ref(), Level::default());
                 return Ok(Stored {
                     level_rms: stored_level(model, fit, &parameters, reference, level)?,

@@ -2,7 +2,7 @@
 
 use htex_format::{
     Asset, AtCondition, Condition, How, Ingredient, Made, Manifest, Representation, Triangle,
-    round_parameters,
+    round_within,
 };
 use htex_host::LoadedModel;
 use htex_play::Motion;
@@ -211,7 +211,7 @@ fn mixed(
             1.0 => second,
             _ => model.interpolate(&[&first, &second], &[1.0 - weight, weight])?,
         };
-        parameters.push(round_parameters(&fields, &flat)?);
+        parameters.push(round_within(&fields, model.descriptor(), &flat)?);
         at.push(AtCondition {
             condition,
             level_rms: (1.0 - weight) * first_level + weight * second_level,

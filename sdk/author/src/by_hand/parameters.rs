@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use htex_format::{
-    Asset, AtCondition, Condition, Contact, How, Law, Made, Quantity, Representation,
-    round_parameters,
+    Asset, AtCondition, Condition, Contact, How, Law, Made, Quantity, Representation, round_within,
 };
 use htex_host::{Band, Field, Kind, LoadedModel};
 
@@ -192,7 +191,7 @@ fn representation(
     let (mut at, mut parameters) = (Vec::new(), Vec::new());
     for own in &of.at {
         let flat = flat(model, &own.values)?;
-        let stored = round_parameters(&fields, &flat)?;
+        let stored = round_within(&fields, model.descriptor(), &flat)?;
         let magnitude = model.magnitude(&stored, band, &band.grid_hz())?;
         let level_rms = match own.level_rms {
             Some(level_rms) => level_rms,

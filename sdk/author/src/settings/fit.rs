@@ -175,6 +175,20 @@ impl FitSettings {
         models.into_iter().map(request).collect()
     }
 
+    /// Returns the reasons why models that were named could not be fitted, of all that were left out of an asset
+    /// ([`FittedAsset::skipped`](crate::FittedAsset::skipped)): a model that was taken because none was named may be left out.
+    pub fn named_of(&self, skipped: &[(String, String)]) -> Vec<String> {
+        let names = || self.models.iter().flatten();
+        let is_named = |id: &str| {
+            let short = id.rsplit('.').next().unwrap_or(id);
+            names().any(|name| name == id || name.eq_ignore_ascii_case(short))
+        };
+        let named = skipped.iter().filter(|(id, _)| is_named(id));
+        named
+            .map(|(id, reason)| format!("{id}: {reason}"))
+            .collect()
+    }
+
     /// Returns the request of an asset that is fitted with these settings to recordings that are read with `reading`.
     ///
     /// # Errors

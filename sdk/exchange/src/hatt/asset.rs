@@ -6,7 +6,7 @@ use htex_dsp::line_spectrum::{coefficients_of_lines, line_spectral_frequencies, 
 use htex_dsp::linear_prediction::{ar_magnitude, is_stable};
 use htex_format::{
     Asset, AtCondition, Condition, Contact, Manifest, Provenance, Quantity, Representation, Steps,
-    StoredAs, VERSION, round_parameters,
+    StoredAs, VERSION, round_within,
 };
 use htex_host::Registry;
 
@@ -48,8 +48,8 @@ pub fn asset(texture: &Texture, imported: &Imported<'_>) -> Result<Asset, Fault>
     let (mut at, mut parameters) = (Vec::new(), Vec::new());
     for (condition, node) in texture.nodes.iter().enumerate() {
         let flat = flat(node, texture.rate_hz)?;
-        let stored =
-            round_parameters(&fields, &flat).map_err(|error| of(node, error.to_string()))?;
+        let stored = round_within(&fields, model.descriptor(), &flat)
+            .map_err(|error| of(node, error.to_string()))?;
         at.push(AtCondition {
             condition,
             level_rms: level_rms(node, &stored, texture.rate_hz, band)?,

@@ -4,7 +4,7 @@ use htex_author::stored_fields;
 use htex_dsp::grid::Band;
 use htex_format::{
     Asset, AtCondition, Condition, Contact, Manifest, Provenance, Quantity, Representation,
-    VERSION, round_parameters,
+    VERSION, round_within,
 };
 use htex_host::Registry;
 
@@ -50,7 +50,8 @@ pub(crate) fn held(image: &Image, surface: &Surface<'_>) -> Result<Held, Fault> 
         grey.len() as f64,
     ];
     let flat = [&numbers[..], &grey].concat();
-    let parameters = round_parameters(&fields, &flat).map_err(|error| fault(&error))?;
+    let parameters =
+        round_within(&fields, model.descriptor(), &flat).map_err(|error| fault(&error))?;
     let representation = Representation {
         model: MODEL.to_owned(),
         model_version: model.descriptor().version.clone(),

@@ -114,7 +114,10 @@ impl Failure {
                 ..
             })
             | Self::Asset {
-                error: htex::Error::Model(UnknownModel { .. }) | htex::Error::EmbeddedOff { .. },
+                error:
+                    htex::Error::Model(UnknownModel { .. })
+                    | htex::Error::EmbeddedOff { .. }
+                    | htex::Error::ModelOlder { embedded: true, .. },
                 ..
             } => Exit::USAGE,
             _ => Exit::FAILURE,
@@ -204,7 +207,9 @@ impl From<htex_format::WriteError> for Failure {
 /// The flag that caused an error of the library, which knows no flags.
 fn flag_of(error: &htex::Error) -> &'static str {
     match error {
-        htex::Error::EmbeddedOff { .. } => " (by --no-embedded-plugins)",
+        htex::Error::EmbeddedOff { .. } | htex::Error::ModelOlder { embedded: true, .. } => {
+            " (by --no-embedded-plugins)"
+        }
         _ => "",
     }
 }

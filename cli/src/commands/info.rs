@@ -39,7 +39,9 @@ impl Info {
         let bytes = std::fs::metadata(&self.asset).map_or(0, |m| m.len());
         let mut summary = AssetSummary::new(&self.asset, bytes, &asset);
         let models = Registry::builtin();
-        for representation in &asset.manifest.representations {
+        let embeds = |id: &str| asset.manifest.plugins.iter().any(|p| p.model == id);
+        let representations = asset.manifest.representations.iter();
+        for representation in representations.filter(|r| !embeds(&r.model)) {
             let model = htex::model_of(&models, representation).ok();
             let order = model.map(|model| htex::field_order(representation, model));
             if let Some(Err(error)) = order {

@@ -58,3 +58,4 @@ mod studio;
 mod tradeoff;
 mod triangles;
 mod validate;
+mod versions;

@@ -193,6 +193,11 @@ impl LoadedModel {
         Err(no_wasm(name))
     }
 
+    /// Returns whether both are clones of one model.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.raw, &other.raw)
+    }
+
     /// Returns the origin of the model's code.
     pub fn origin(&self) -> &Origin {
         &self.origin

@@ -20,7 +20,7 @@ use crate::{HostError, Origin};
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Note {
-    /// Two models have the same id; the one found first is used.
+    /// Two models have the same id; [`Registry`](crate::Registry) says which one is used.
     Shadowed {
         id: String,
         /// Version and origin of the model that is used.

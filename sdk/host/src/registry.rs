@@ -1,5 +1,6 @@
 //! The models available to a program.
 
+use std::cmp::Reverse;
 use std::sync::Arc;
 
 use htex_model::{Descriptor, Model, MotionVoice};
@@ -10,8 +11,14 @@ use crate::sandbox::Sandbox;
 use crate::{HostError, LoadedModel, Note, Origin, Search, WasmLimits};
 use crate::{builtin, own};
 
-/// Models by id. Of several models with one id, the first in the order of [`Search`] is used; the others are
-/// returned only for requests of their version.
+/// Models by id. Several models may have one id:
+///
+/// - A model that was named by its file or added by the program precedes the others, in the order in which they came.
+/// - Of the installed ones and the built-in one, the newest of each major version is used, wherever it was found; of equal
+///   versions the one that comes first in the order of [`Search`]. Major versions are in the order of the first place that has
+///   them (the folders of plugins, the user's folder, this program), the newest first within one place.
+///
+/// The others are returned only for requests of their version.
 ///
 /// ```
 /// use htex_host::Registry;
@@ -24,12 +31,19 @@ use crate::{builtin, own};
 pub struct Registry {
     /// In display order.
     models: Vec<LoadedModel>,
-    /// Models with the same id as one of `models`.
-    shadowed: Vec<LoadedModel>,
     /// The rank of each of `models`, ascending.
     ranks: Vec<Rank>,
+    /// Models with the same id as one of `models`; those of one id by precedence.
+    shadowed: Vec<Candidate>,
     notes: Vec<Note>,
     sandbox: Sandbox,
+}
+
+/// A model, and where it comes from.
+#[derive(Debug, Clone)]
+struct Candidate {
+    rank: Rank,
+    model: LoadedModel,
 }
 
 /// Precedence of origins.
@@ -40,6 +54,43 @@ pub(crate) enum Rank {
     Folder,
     User,
     Builtin,
+}
+
+impl Rank {
+    /// Returns whether a person or a program chose this model itself, rather than a place that has it.
+    fn is_chosen(self) -> bool {
+        matches!(self, Self::File | Self::Embedded)
+    }
+}
+
+impl Candidate {
+    fn version(&self) -> Option<Version> {
+        Version::parse(&self.model.descriptor().version).ok()
+    }
+
+    fn major(&self) -> Option<u64> {
+        self.version().map(|version| version.major)
+    }
+}
+
+/// Sorts models of one id, in the order in which they came, by the precedence that [`Registry`] describes.
+fn by_precedence(all: &mut [Candidate]) {
+    let first_place = |major: Option<u64>| {
+        let installed = all.iter().filter(|one| !one.rank.is_chosen());
+        installed
+            .filter(|one| one.major() == major)
+            .map(|one| one.rank)
+            .min()
+    };
+    let places: Vec<_> = all.iter().map(|one| first_place(one.major())).collect();
+    let mut keyed: Vec<_> = places.into_iter().zip(all.iter().cloned()).collect();
+    keyed.sort_by_cached_key(|(place, one)| match one.rank.is_chosen() {
+        true => (one.rank, None, Reverse(None), one.rank),
+        false => (Rank::Folder, *place, Reverse(one.version()), one.rank),
+    });
+    for (sorted, (_, one)) in all.iter_mut().zip(keyed) {
+        *sorted = one;
+    }
 }
 
 impl Registry {
@@ -214,44 +265,64 @@ impl Registry {
         Ok(())
     }
 
-    /// Adds a model after those of its rank, and a note if it shadows a model or is shadowed.
+    /// Adds a model, and a note if it shadows a model or is shadowed.
     pub(crate) fn add(&mut self, rank: Rank, model: LoadedModel) {
-        let at = self.ranks.partition_point(|other| *other <= rank);
-        let same = self.models.iter().position(|m| m.id() == model.id());
-        match same {
-            Some(used) if used < at => {
-                self.note_shadow(used, &model);
-                self.shadowed.push(model);
-                return;
-            }
-            Some(later) => {
-                let old = std::mem::replace(&mut self.models[later], model.clone());
-                self.note_shadow(later, &old);
-                self.shadowed.insert(0, old);
-                self.models.remove(later);
-                self.ranks.remove(later);
-            }
-            None => self.note_same_name(at, &model),
-        }
-        self.models.insert(at, model);
-        self.ranks.insert(at, rank);
+        let id = model.id().to_owned();
+        let new = Candidate { rank, model };
+        let Some(used) = self.models.iter().position(|m| m.id() == id) else {
+            let at = self.place_of(rank);
+            self.note_same_name(at, &new.model);
+            return self.insert(at, new);
+        };
+        let old = Candidate {
+            rank: self.ranks.remove(used),
+            model: self.models.remove(used),
+        };
+        let (mut same, others): (Vec<_>, Vec<_>) = std::mem::take(&mut self.shadowed)
+            .into_iter()
+            .partition(|one| one.model.id() == id);
+        same.insert(0, old.clone());
+        same.push(new.clone());
+        by_precedence(&mut same);
+        let first = same.remove(0);
+        let shadowed = match first.model.is_same(&new.model) {
+            true => &old.model,
+            false => &new.model,
+        };
+        self.note_shadow(&first.model, shadowed);
+        self.shadowed = [others, same].concat();
+        self.insert(self.place_of(first.rank), first);
+    }
+
+    /// Returns the place after the models of a rank.
+    fn place_of(&self, rank: Rank) -> usize {
+        self.ranks.partition_point(|other| *other <= rank)
+    }
+
+    fn insert(&mut self, at: usize, new: Candidate) {
+        self.models.insert(at, new.model);
+        self.ranks.insert(at, new.rank);
     }
 
     /// Returns all models of one id: the one that is used, and those that it shadows.
-    pub fn all<'a>(&'a self, id: &'a str) -> impl Iterator<Item = &'a LoadedModel> {
-        let models = self.models.iter().chain(&self.shadowed);
-        models.filter(move |model| model.id() == id)
+    pub fn all<'a>(&'a self, id: &'a str) -> impl Iterator<Item = &'a LoadedModel> + Clone {
+        self.every().filter(move |model| model.id() == id)
+    }
+
+    fn every(&self) -> impl Iterator<Item = &LoadedModel> + Clone {
+        let shadowed = self.shadowed.iter().map(|one| &one.model);
+        self.models.iter().chain(shadowed)
     }
 
     pub(crate) fn note(&mut self, note: Note) {
         self.notes.push(note);
     }
 
-    fn note_shadow(&mut self, used: usize, shadowed: &LoadedModel) {
+    fn note_shadow(&mut self, used: &LoadedModel, shadowed: &LoadedModel) {
         let named = |m: &LoadedModel| (m.descriptor().version.clone(), m.origin().clone());
         self.notes.push(Note::Shadowed {
             id: shadowed.id().to_owned(),
-            used: named(&self.models[used]),
+            used: named(used),
             shadowed: named(shadowed),
         });
     }
@@ -311,16 +382,16 @@ impl Registry {
             let version = Version::parse(&m.descriptor().version);
             m.id() == id && version.is_ok_and(|version| wanted.matches(&version))
         };
-        let mut all = self.models.iter().chain(&self.shadowed);
-        all.find(matches).ok_or_else(|| HostError::UnknownModel {
-            wanted: format!("{id} {wanted}"),
-            known: self.known(|m| format!("{} {}", m.id(), m.descriptor().version)),
-        })
+        self.every()
+            .find(matches)
+            .ok_or_else(|| HostError::UnknownModel {
+                wanted: format!("{id} {wanted}"),
+                known: self.known(|m| format!("{} {}", m.id(), m.descriptor().version)),
+            })
     }
 
     fn known(&self, name: impl Fn(&LoadedModel) -> String) -> String {
-        let all = self.models.iter().chain(&self.shadowed);
-        let mut names: Vec<String> = all.map(name).collect();
+        let mut names: Vec<String> = self.every().map(name).collect();
         names.dedup();
         names.join(", ")
     }

@@ -14,7 +14,8 @@ const VARIABLE: &str = "HTEX_PLUGIN_PATH";
 const FOLDER: &str = "htex/plugins";
 
 /// The places that are searched for models, in order of precedence: `files`, models embedded in an asset, `dirs`,
-/// `HTEX_PLUGIN_PATH`, the user's folder, built-in models.
+/// `HTEX_PLUGIN_PATH`, the user's folder, built-in models. From `dirs` on, a newer version of the same major version
+/// precedes an older one, wherever each was found ([`Registry`]).
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmLimits};

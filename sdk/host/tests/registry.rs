@@ -6,7 +6,7 @@ mod common;
 
 use std::path::Path;
 
-use common::{ID, limits, text};
+use common::{ID, limits, text, with_descriptor};
 use htex_host::{HostError, Note, Origin, Registry, Search};
 use semver::VersionReq;
 
@@ -37,7 +37,7 @@ fn files_precede_embedded_models_then_folders_then_built_in_models() {
     let mut search = search();
     search.dirs.push(folder);
     let mut registry = Registry::search(&search).unwrap();
-    assert_eq!(version(&registry), "2.0.0", "by file name");
+    assert_eq!(version(&registry), "2.0.0");
     assert_eq!(registry.models()[0].id(), ID, "before the built-in ones");
     let all = Registry::builtin_names().len() + 1;
     assert_eq!(registry.models().len(), all);
@@ -67,6 +67,71 @@ fn files_precede_embedded_models_then_folders_then_built_in_models() {
         error.contains("^9") && error.contains("hostile 1.2.0"),
         "{error}"
     );
+}
+
+/// The name of a file does not decide, and neither does the place: a newer minor version plays all that an older one does.
+#[test]
+fn the_newest_installed_version_of_a_major_version_is_used() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = |name: &str| dir.path().join(name);
+    let versions = |places: &[&[(&str, &str)]]| -> Vec<String> {
+        let mut search = search();
+        for (i, place) in places.iter().enumerate() {
+            let at = folder(&format!("{i}"));
+            let _ = std::fs::remove_dir_all(&at);
+            std::fs::create_dir(&at).unwrap();
+            for (file, version) in *place {
+                write(&at, file, version);
+            }
+            search.dirs.push(at);
+        }
+        let registry = Registry::search(&search).unwrap();
+        let all = registry
+            .all(ID)
+            .map(|model| model.descriptor().version.clone());
+        all.collect()
+    };
+    let in_one = [
+        ("a.wasm", "1.0.0"),
+        ("b.wasm", "1.10.0"),
+        ("c.wasm", "1.9.0"),
+    ];
+    assert_eq!(versions(&[&in_one]), ["1.10.0", "1.9.0", "1.0.0"]);
+    let in_two: [&[_]; 2] = [&[("a.wasm", "1.0.0")], &[("b.wasm", "1.1.0")]];
+    assert_eq!(versions(&in_two), ["1.1.0", "1.0.0"]);
+    let majors: [&[_]; 2] = [
+        &[("a.wasm", "1.0.0")],
+        &[("b.wasm", "2.0.0"), ("c.wasm", "1.1.0")],
+    ];
+    assert_eq!(versions(&majors), ["2.0.0", "1.1.0", "1.0.0"]);
+
+    // An installed model is used in place of a built-in one of its version, and not in place of a newer one.
+    for (installed, is_used) in [
+        ("0.9.0", true),
+        ("1.0.0", true),
+        ("1.0.1", true),
+        ("1.0.0-a", false),
+    ] {
+        let at = folder("sbeta");
+        std::fs::create_dir_all(&at).unwrap();
+        let json = format!(
+            r#"{{"id":"org.htex.sbeta","name":"H","version":"{installed}","summary":"S.","fields":[{{"name":"x","unit":"1","kind":{{"type":"scalar"}},"min":0,"max":1,"store":{{"type":"f32"}},"description":"X."}}]}}"#
+        );
+        let module = wat::parse_str(with_descriptor(&json, &[], "")).unwrap();
+        std::fs::write(at.join("a.wasm"), module).unwrap();
+        let registry = Registry::search(&search().with_dirs(vec![at])).unwrap();
+        let sbeta = registry.find("sbeta").unwrap();
+        assert_eq!(*sbeta.origin() != Origin::Builtin, is_used, "{installed}");
+        assert_eq!(registry.notes().len(), 1);
+    }
+
+    // A file that a person names is used whatever its version is.
+    write(dir.path(), "named.wasm", "0.1.0");
+    write(&folder("0"), "a.wasm", "3.0.0");
+    let named = search()
+        .with_files(vec![folder("named.wasm")])
+        .with_dirs(vec![folder("0")]);
+    assert_eq!(version(&Registry::search(&named).unwrap()), "0.1.0");
 }
 
 #[test]

@@ -6,10 +6,11 @@
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use htex_format::{Manifest, Measure, Quantity, Representation};
+use htex_format::{Condition, Manifest, Measure, Quantity, Representation};
 use htex_host::{Band, HostError, LoadedModel, RUNS_WASM, Registry, StillSound, Synthesis};
 
-use crate::exploration::{CEILING, Scaling};
+use crate::condition::default_condition;
+use crate::exploration::{CEILING, Scaling, USUAL};
 use crate::known::{Known, Motions};
 use crate::parameter::{Parameter, named};
 use crate::playable::{field_order, model_of};
@@ -88,7 +89,7 @@ impl Asset {
     }
 
     /// Allows embedded models to run, in a sandbox. They precede the models of the registry, except plugins named by
-    /// their files. An embedded model is loaded when a representation of its id is first used; a module that cannot be
+    /// their files that play the representation ([`model_of`]). An embedded model is loaded when a representation of its id is first used; a module that cannot be
     /// loaded, or has another id or version than declared, is an error of that use.
     #[must_use]
     pub fn with_embedded(mut self) -> Self {
@@ -126,9 +127,12 @@ impl Asset {
         Ok(registry)
     }
 
-    /// Returns whether there is a model of this id, without loading it.
+    /// Returns whether there is a model of this id that plays the asset's representation, without loading it.
     pub fn knows_model(&self, id: &str) -> bool {
-        self.embedded && self.embeds(id) || self.registry.find(id).is_ok()
+        let stored = self.data.manifest.representations.iter();
+        stored
+            .filter(|r| r.model == id)
+            .any(|r| self.is_runnable(r))
     }
 
     /// Returns the data of the file.
@@ -239,7 +243,7 @@ impl Asset {
     /// As [`Self::voice`].
     pub fn source(&self, options: &VoiceOptions<'_>) -> Result<SampleSource, Error> {
         let r = self.representation(options.model)?;
-        let motion = options.motion.unwrap_or_else(|| self.first_condition(r));
+        let motion = options.motion.unwrap_or_else(|| self.start(r));
         let model = self.model(r)?;
         let known = self.known(r, &model)?;
         SampleSource::new(
@@ -252,7 +256,7 @@ impl Asset {
         )
     }
 
-    /// Returns the magnitudes that a long recording of the voice reads at a motion (else the first condition), at frequencies
+    /// Returns the magnitudes that a long recording of the voice reads at a motion (else the default condition), at frequencies
     /// in hertz and in the asset's unit: with the law of the asset outside the recorded conditions, and 0 where the finger does
     /// not slide. At a ratio r of frequencies a noise of magnitude m(f) reads `m(f / r) / sqrt(r)`, and a sum of sinusoids
     /// `m(f / r)`.
@@ -282,7 +286,7 @@ impl Asset {
         )
     }
 
-    /// Returns the level of a voice at a motion, else at the first condition: RMS in the asset's unit, with the law of the asset
+    /// Returns the level of a voice at a motion, else at the default condition: RMS in the asset's unit, with the law of the asset
     /// outside the recorded conditions, and 0 where the finger does not slide.
     ///
     /// # Errors
@@ -352,7 +356,7 @@ impl Asset {
     }
 
     /// Returns parameters (the flat array) and level (RMS, in the asset's unit) of a representation at a motion, else
-    /// at its first condition, as recorded or interpolated between recordings.
+    /// at its default condition, as recorded or interpolated between recordings.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -362,9 +366,7 @@ impl Asset {
         motion: Option<Motion>,
     ) -> Result<(Vec<f64>, f64), Error> {
         let r = self.representation(model)?;
-        let motion = motion
-            .unwrap_or_else(|| self.first_condition(r))
-            .checked()?;
+        let motion = motion.unwrap_or_else(|| self.start(r)).checked()?;
         let model = self.model(r)?;
         let known = self.known(r, &model)?;
         let located = known.motions.locate(motion);
@@ -397,7 +399,7 @@ impl Asset {
         let all = &self.data.manifest.representations;
         let found = match model {
             Some(name) => all.iter().position(|r| is_named(r, name)),
-            None => nearest(all, |r| self.is_runnable(&r.model)),
+            None => nearest(all, |r| self.is_runnable(r)),
         };
         found.ok_or_else(|| Error::NoRepresentation {
             wanted: model.unwrap_or("any").to_owned(),
@@ -415,32 +417,53 @@ impl Asset {
             return Ok(model.clone());
         }
         let stored = &self.data.manifest.representations[representation];
-        let model = if self.runs_embedded(&stored.model) {
-            model_of(&self.registry_with(&stored.model)?, stored)?.clone()
-        } else {
-            self.installed(stored)?
+        let model = match self.may_run_embedded(&stored.model) {
+            true => model_of(&self.registry_with(&stored.model)?, stored)?.clone(),
+            false => self.installed(stored)?,
         };
         Ok(kept.get_or_init(|| model).clone())
     }
 
-    /// Returns whether the embedded model of this id is used. A program without a sandbox uses an installed model if
-    /// there is one.
-    fn runs_embedded(&self, id: &str) -> bool {
-        self.embedded && (RUNS_WASM || self.registry.find(id).is_err())
+    /// Returns whether the embedded model of this id may run; a program without a sandbox runs none.
+    fn may_run_embedded(&self, id: &str) -> bool {
+        RUNS_WASM && self.embedded && self.embeds(id)
     }
 
-    /// Returns whether this program can run a model of this id, without loading it.
-    fn is_runnable(&self, id: &str) -> bool {
-        self.registry.find(id).is_ok() || RUNS_WASM && self.embedded && self.embeds(id)
+    /// Returns whether this program has a model that plays a representation, without loading it.
+    fn is_runnable(&self, stored: &Representation) -> bool {
+        self.may_run_embedded(&stored.model) || self.installed(stored).is_ok()
     }
 
     /// Returns the model of a representation from the registry, without the embedded ones.
     fn installed(&self, stored: &Representation) -> Result<LoadedModel, Error> {
         let id = &stored.model;
-        match model_of(&self.registry, stored) {
+        let found = model_of(&self.registry, stored);
+        match found.and_then(|model| field_order(stored, model).map(|_| model)) {
+            // Without a sandbox this says how to get one.
+            Err(Error::Model(HostError::UnknownModel { .. }))
+                if self.embeds(id) && self.embedded =>
+            {
+                self.registry_with(id)?
+                    .find(id)
+                    .cloned()
+                    .map_err(Error::from)
+            }
             Err(Error::Model(HostError::UnknownModel { .. })) if self.embeds(id) => {
                 Err(Error::EmbeddedOff { id: id.clone() })
             }
+            Err(Error::ModelOlder {
+                model,
+                asset,
+                installed,
+                problem,
+                ..
+            }) => Err(Error::ModelOlder {
+                embedded: self.embeds(id) && !self.embedded,
+                model,
+                asset,
+                installed,
+                problem,
+            }),
             found => found.cloned(),
         }
     }
@@ -471,13 +494,60 @@ impl Asset {
         })
     }
 
-    fn first_condition(&self, representation: usize) -> Motion {
+    /// Returns the index of the condition at which a representation, named by its model's id or short name, else the best one, is
+    /// played where no motion is given: its first, or its strongest if the first is silent ([`default_condition`]). Loads no model.
+    ///
+    /// # Errors
+    /// When there is no such representation.
+    pub fn default_condition(&self, model: Option<&str>) -> Result<usize, Error> {
+        Ok(self.default_of(self.representation(model)?))
+    }
+
+    /// Returns a motion of a speed, mm/s, and a force, newtons. What is not given is that of [`Self::default_condition`], and 80 mm/s
+    /// and 0.4 N where it does not state them.
+    ///
+    /// ```no_run
+    /// let asset = htex::Asset::open("sandpaper.htex")?;
+    /// let faster = asset.motion(None, Some(160.0), None)?; // at the force of the default condition
+    /// # Ok::<(), htex::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::default_condition`].
+    pub fn motion(
+        &self,
+        model: Option<&str>,
+        speed_mm_s: Option<f64>,
+        force_n: Option<f64>,
+    ) -> Result<Motion, Error> {
+        let default = self.condition(self.default_condition(model)?);
+        let (usual_mm_s, usual_n) = USUAL;
+        Ok(Motion::new(
+            speed_mm_s.or(default.speed_mm_s).unwrap_or(usual_mm_s),
+            force_n.or(default.force_n).unwrap_or(usual_n),
+        ))
+    }
+
+    fn default_of(&self, representation: usize) -> usize {
         let manifest = &self.data.manifest;
-        let first = manifest.representations[representation].at.first();
-        let condition = first.and_then(|at| manifest.conditions.get(at.condition));
-        condition.map_or(Motion::new(0.0, 0.0), |c| {
-            Motion::new(c.speed_mm_s.unwrap_or(0.0), c.force_n.unwrap_or(0.0))
-        })
+        let stored = &manifest.representations[representation];
+        let at = stored
+            .at
+            .get(default_condition(stored, &manifest.conditions));
+        at.map_or(0, |at| at.condition)
+    }
+
+    fn condition(&self, index: usize) -> Condition {
+        let condition = self.data.manifest.conditions.get(index);
+        condition.copied().unwrap_or_default()
+    }
+
+    /// Returns the motion of the default condition; 0 for what it does not state, as in the mesh.
+    fn start(&self, representation: usize) -> Motion {
+        let default = self.condition(self.default_of(representation));
+        let [speed_mm_s, force_n] =
+            [default.speed_mm_s, default.force_n].map(Option::unwrap_or_default);
+        Motion::new(speed_mm_s, force_n)
     }
 }
 

@@ -50,6 +50,21 @@ pub enum Error {
         asset: String,
         installed: String,
     },
+    /// The installed model is older than the one that fitted the asset, and lacks some of its fields.
+    #[error(
+        "version {installed} of {model} is installed, and the asset was fitted by {asset}: {problem}; install version {asset} or \
+         newer of {model}{}", if *.embedded { ", or allow the model that the asset embeds" } else { "" }
+    )]
+    ModelOlder {
+        model: String,
+        /// The version that fitted the asset.
+        asset: String,
+        installed: String,
+        /// Each field that differs, and its difference.
+        problem: String,
+        /// Whether the asset embeds a model of this id, which was not allowed to run.
+        embedded: bool,
+    },
     /// The stored fields differ from those of the model.
     #[error(
         "the parameters do not match the fields of {model}: {problem}; fit the recording again"

@@ -18,6 +18,7 @@
 #![forbid(unsafe_code)]
 
 mod asset;
+mod condition;
 pub mod envelope;
 mod error;
 pub mod exploration;
@@ -35,6 +36,7 @@ mod travel;
 mod voice;
 
 pub use asset::Asset;
+pub use condition::default_condition;
 pub use envelope::Envelope;
 pub use error::Error;
 pub use exploration::{Coverage, Effects, Explored, Reach, Recorded, Scaling};
@@ -47,8 +49,9 @@ pub use htex_format::{
 };
 pub use htex_format::{FieldOrder, SAME_CONDITION};
 pub use htex_host::{
-    Band, Descriptor, DescriptorError, HostError, LoadedModel, Note, OptionError, Origin, Registry,
-    Search, Synthesis, WasmCache, WasmCompiler, WasmEngine, WasmLimits, WasmTotal,
+    Band, Descriptor, DescriptorError, HostError, LoadedModel, Note, OptionError, Origin,
+    RUNS_WASM, Registry, Search, Synthesis, WasmCache, WasmCompiler, WasmEngine, WasmLimits,
+    WasmTotal,
 };
 pub use known::Motions;
 pub use mesh::{Mesh, Weights};

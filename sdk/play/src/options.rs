@@ -24,7 +24,7 @@ pub struct VoiceOptions<'a> {
     pub rate_hz: f64,
     /// Seed of the noise; equal seeds give equal samples.
     pub seed: u64,
-    /// The motion at the start; else that of the first condition.
+    /// The motion at the start; else that of the default condition ([`Asset::default_condition`](crate::Asset::default_condition)).
     pub motion: Option<Motion>,
     /// Method of synthesis: the model's voice, or one with less computation and a constant spectrum.
     /// [`Asset::source`](crate::Asset::source) is always streamed.
@@ -44,7 +44,7 @@ pub struct VoiceOptions<'a> {
 }
 
 impl Default for VoiceOptions<'_> {
-    /// 20 kHz (the paper's rate), seed 0, the first condition, streamed, all effects, 4 times the strongest level, a gain of 1, no
+    /// 20 kHz (the paper's rate), seed 0, the default condition, streamed, all effects, 4 times the strongest level, a gain of 1, no
     /// limit and no envelope.
     fn default() -> Self {
         Self {
@@ -84,7 +84,7 @@ impl<'a> VoiceOptions<'a> {
         self
     }
 
-    /// Sets the motion at the start, or `None` for that of the first condition.
+    /// Sets the motion at the start, or `None` for that of the default condition.
     #[must_use]
     pub fn with_motion(mut self, motion: impl Into<Option<Motion>>) -> Self {
         self.motion = motion.into();

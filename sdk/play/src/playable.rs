@@ -2,11 +2,13 @@
 
 use htex_format::{FieldOrder, Representation, match_fields};
 use htex_host::{LoadedModel, Registry};
-use semver::{Version, VersionReq};
+use semver::Version;
 
 use crate::Error;
 
-/// Returns the model of `registry` that can play a representation: one with its id and the same major version.
+/// Returns the model of `registry` that plays a representation: of the models of its id and its major version, in their order in
+/// the registry, the first that is not older than the representation and has its fields, else the first that has its
+/// fields, else the first.
 ///
 /// ```no_run
 /// let asset = htex::Asset::open("sandpaper.htex")?;
@@ -23,21 +25,30 @@ pub fn model_of<'a>(
     registry: &'a Registry,
     representation: &Representation,
 ) -> Result<&'a LoadedModel, Error> {
-    let model = registry.find(&representation.model)?;
-    let installed = &model.descriptor().version;
+    let used = registry.find(&representation.model)?;
     let wanted = major(&representation.model_version);
-    if wanted.is_some() && wanted == major(installed) {
-        return Ok(model);
-    }
-    // A model that a newer one shadows may have the right version.
-    let other = wanted
-        .and_then(|major| VersionReq::parse(&format!("={major}")).ok())
-        .and_then(|wanted| registry.find_version(model.id(), &wanted).ok());
-    other.ok_or_else(|| Error::ModelVersion {
+    let of_major = |m: &&LoadedModel| wanted.is_some() && wanted == major(&m.descriptor().version);
+    let all = || registry.all(used.id()).filter(of_major);
+    let has_fields =
+        |m: &&LoadedModel| match_fields(&representation.fields, m.descriptor()).is_ok();
+    let is_new = |m: &&LoadedModel| !is_older(m, representation);
+    let first = all().filter(is_new).find(has_fields);
+    let first = first.or_else(|| all().find(has_fields));
+    let first = first.or_else(|| all().next());
+    first.ok_or_else(|| Error::ModelVersion {
         model: representation.model.clone(),
         asset: representation.model_version.clone(),
-        installed: installed.clone(),
+        installed: used.descriptor().version.clone(),
     })
+}
+
+/// Returns whether a model is of an earlier version than the one that fitted a representation.
+fn is_older(model: &LoadedModel, representation: &Representation) -> bool {
+    let versions = [&model.descriptor().version, &representation.model_version];
+    match versions.map(|version| Version::parse(version).ok()) {
+        [Some(own), Some(fitted)] => own.cmp_precedence(&fitted).is_lt(),
+        _ => false,
+    }
 }
 
 /// Returns the order in which a representation's fields are passed to its model.
@@ -51,21 +62,28 @@ pub fn model_of<'a>(
 /// ```
 ///
 /// # Errors
-/// [`Error::Fields`] when the fields differ from the model's.
+/// When the fields differ from the model's: [`Error::ModelOlder`] if a newer version fitted them, else [`Error::Fields`].
 pub fn field_order<'a>(
     representation: &'a Representation,
-    model: &LoadedModel,
+    loaded: &LoadedModel,
 ) -> Result<FieldOrder<'a>, Error> {
-    let descriptor = model.descriptor();
+    let descriptor = loaded.descriptor();
     match_fields(&representation.fields, descriptor).map_err(|mismatches| {
         let all: Vec<String> = mismatches.iter().map(ToString::to_string).collect();
+        let (model, problem) = (representation.model.clone(), all.join("; "));
         let (fitted, installed) = (&representation.model_version, &descriptor.version);
+        if is_older(loaded, representation) {
+            return Error::ModelOlder {
+                model,
+                asset: fitted.clone(),
+                installed: installed.clone(),
+                problem,
+                embedded: false,
+            };
+        }
         Error::Fields {
-            model: representation.model.clone(),
-            problem: format!(
-                "{}; it was fitted by {fitted}, and {installed} is installed",
-                all.join("; ")
-            ),
+            model,
+            problem: format!("{problem}; it was fitted by {fitted}, and {installed} is installed"),
         }
     })
 }

@@ -20,9 +20,6 @@ use crate::plugins::{PlayerArgs, PluginArgs};
 use crate::schemas::Named;
 use crate::shown::shown;
 
-/// Default motion: the paper's usual speed (mm/s) and force (newtons).
-pub(crate) const USUAL: (f64, f64) = (80.0, 0.4);
-
 /// Models and devices for a scene.
 #[derive(Args)]
 pub(crate) struct SceneArgs {
@@ -270,14 +267,17 @@ pub(crate) fn is_asset(file: &Path) -> bool {
         .is_some_and(|e| e.eq_ignore_ascii_case("htex"))
 }
 
-/// The motion of an asset's first condition.
-pub(crate) fn first_motion(file: &Path) -> Result<Motion, Failure> {
-    let asset = htex_format::Asset::open(file).of(file)?;
-    let first = asset.manifest.conditions.first();
-    let (speed, force) = USUAL;
+/// The motion of an asset's default condition.
+pub(crate) fn default_motion(file: &Path) -> Result<Motion, Failure> {
+    let asset = htex::Asset::new(htex_format::Asset::open(file).of(file)?);
+    let htex::Motion {
+        speed_mm_s,
+        force_n,
+        ..
+    } = asset.motion(None, None, None).of(file)?;
     Ok(Motion::Constant(Constant {
-        speed_mm_s: first.and_then(|c| c.speed_mm_s).unwrap_or(speed),
-        force_n: first.and_then(|c| c.force_n).unwrap_or(force),
+        speed_mm_s,
+        force_n,
         from_mm: None,
         direction_deg: 0.0,
     }))

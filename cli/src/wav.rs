@@ -2,18 +2,19 @@
 
 use std::fs::File;
 use std::io::{BufWriter, Error};
+use std::path::Path;
 
 use hound::{SampleFormat, WavSpec, WavWriter};
 
 use crate::failure::Failure;
-use crate::output::Written;
+use crate::output::{Written, warn};
 use crate::shown::shown;
 use htex_format::Rights;
 
 /// Most bytes of samples a WAV file can hold.
 const MAX_FRAMES: u64 = (u32::MAX as u64 - 64) / 4;
 
-/// Writes `frames` samples of one channel with the rights of what is played, which `render` makes block by block.
+/// Writes `frames` samples of one channel with the rights of what is played, which `render` makes block by block. Warns if all are 0.
 pub(crate) fn write_wav(
     wav: Written<'_>,
     rate_hz: u32,
@@ -35,6 +36,8 @@ pub(crate) fn write_wav(
         sample_format: SampleFormat::Float,
     };
     let mut failed = None;
+    let mut is_silent = true;
+    let path = wav.path();
     let written = wav.replace(|file: &mut File| {
         let mut wav = WavWriter::new(BufWriter::new(&mut *file), spec).map_err(Error::other)?;
         let mut block = [0.0f32; 4096];
@@ -45,6 +48,7 @@ pub(crate) fn write_wav(
                 failed = Some(failure);
                 return Err(Error::other("rendering failed"));
             }
+            is_silent &= block.iter().all(|sample| *sample == 0.0);
             for &sample in &*block {
                 wav.write_sample(sample).map_err(Error::other)?;
             }
@@ -56,6 +60,17 @@ pub(crate) fn write_wav(
     match (failed, written) {
         (Some(failure), _) => Err(failure),
         (None, Err(error)) => Err(error.into()),
-        (None, Ok(())) => Ok(()),
+        (None, Ok(())) => {
+            warn(&Vec::from_iter(is_silent.then(|| silence(&path))));
+            Ok(())
+        }
     }
+}
+
+/// The warning of a file whose samples are all 0.
+pub(crate) fn silence(path: &Path) -> String {
+    format!(
+        "{}: all samples are 0: nothing is felt at this motion; `htex info` lists the speeds and the forces at which a texture plays",
+        shown(path)
+    )
 }

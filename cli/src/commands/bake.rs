@@ -32,7 +32,7 @@ pub(crate) struct Bake {
     model: Option<String>,
 
     /// A condition: speed=80,force=0.4; may be given several times, for all combinations of some speeds and forces
-    /// [default: the asset's first condition]
+    /// [default: the asset's first condition, or the strongest if the first is silent]
     #[arg(long, value_name = "CONDITION", conflicts_with = "grid")]
     at: Vec<String>,
 
@@ -81,7 +81,7 @@ impl Bake {
         let asset = self.player.open(&self.asset)?;
         let grid = match given {
             Some(grid) => grid,
-            None => Grid::of_first_condition(&asset).of(&self.asset)?,
+            None => Grid::of_default_condition(&asset, self.model.as_deref()).of(&self.asset)?,
         };
         let longest = self.longest.map_or(BakeLimits::MOST, usize::from);
         let limits = BakeLimits::within_db(self.within).with_longest(longest);

@@ -177,7 +177,9 @@ impl Export {
         }
         let beyond = settings.choice.beyond(asset, htex::Effects::default());
         note(&Vec::from_iter(beyond.of(&self.asset)?));
-        Ok(Path::Condition(settings.choice.motion(asset)))
+        Ok(Path::Condition(
+            settings.choice.motion(asset).of(&self.asset)?,
+        ))
     }
 
     /// An error of playing names the asset.

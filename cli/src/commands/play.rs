@@ -16,12 +16,12 @@ use crate::motions::{Motions, Moved};
 use crate::of_file::ResultOfFile;
 use crate::output::{note, print};
 use crate::playing::Output;
-use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs, first_motion, is_asset};
+use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs, default_motion, is_asset};
 use crate::signals::{self, interrupted};
 
 /// Play a scene or an asset on a device, until its end or Ctrl-C.
 ///
-/// An asset is played at the speed and force of its first condition, as sound when no device is named.
+/// An asset is played at the speed and force of its first condition (of the strongest, if the first is silent), as sound when no device is named.
 #[derive(Args)]
 #[command(after_help = without_sound())]
 pub(crate) struct Play {
@@ -135,7 +135,7 @@ pub(crate) fn open(
     let motion = if live {
         Motion::Live
     } else {
-        first_motion(file)?
+        default_motion(file)?
     };
     with.of_asset(file, motion, None, &device)
 }

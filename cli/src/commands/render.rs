@@ -13,13 +13,14 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
 use crate::of_file::ResultOfFile;
-use crate::output::{Written, note, print, print_json};
+use crate::output::{Written, note, print, print_json, warn};
 use crate::playing::Output;
 use crate::progress::bar;
 use crate::scene_sound::rights;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
 use crate::shown::shown;
 use crate::signals::{self, interrupted};
+use crate::wav::silence;
 
 /// Frames in a block.
 const BLOCK: usize = 4096;
@@ -87,6 +88,9 @@ impl Render {
         output.finish()?;
         aside.map_or(Ok(()), |aside| aside.move_to(&path))?;
         rights.add_to_file(&path).writing(&path)?;
+        if renderer.peak() == 0.0 {
+            warn(&[silence(&path)]);
+        }
         let file = path.display().to_string();
         if self.json {
             print_json(&json!({

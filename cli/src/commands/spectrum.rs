@@ -9,7 +9,6 @@ use crate::located;
 use crate::of_file::ResultOfFile;
 use crate::output::{print, print_json, warn};
 use crate::plugins::PlayerArgs;
-use crate::scenes::USUAL;
 
 /// Show the spectrum of one representation of an asset, 20 to 1000 Hz in steps of 5 Hz.
 ///
@@ -43,24 +42,24 @@ pub(crate) struct ChoiceArgs {
     #[arg(long, value_name = "ID")]
     pub(crate) model: Option<String>,
 
-    /// Scanning speed, mm/s [default: that of the first condition]
+    /// Scanning speed, mm/s [default: that of the first condition, or of the strongest if the first is silent]
     #[arg(long, value_name = "MM_S")]
     speed: Option<f64>,
 
-    /// Normal force, N [default: that of the first condition]
+    /// Normal force, N [default: that of the first condition, or of the strongest if the first is silent]
     #[arg(long, value_name = "N")]
     force: Option<f64>,
 }
 
 impl ChoiceArgs {
-    /// The requested motion; what is missing comes from the asset's first condition,
-    /// else is the paper's default.
-    pub(crate) fn motion(&self, asset: &htex::Asset) -> Option<htex::Motion> {
-        let first = asset.manifest().conditions.first();
-        let speed = self.speed.or(first.and_then(|c| c.speed_mm_s));
-        let force = self.force.or(first.and_then(|c| c.force_n));
-        (self.speed.is_some() || self.force.is_some())
-            .then(|| htex::Motion::new(speed.unwrap_or(USUAL.0), force.unwrap_or(USUAL.1)))
+    /// The requested motion; what is missing comes from the asset's default condition, else is the paper's default.
+    pub(crate) fn motion(&self, asset: &htex::Asset) -> Result<Option<htex::Motion>, htex::Error> {
+        if self.speed.is_none() && self.force.is_none() {
+            return Ok(None);
+        }
+        asset
+            .motion(self.model.as_deref(), self.speed, self.force)
+            .map(Some)
     }
 }
 
@@ -71,7 +70,7 @@ impl ChoiceArgs {
         asset: &htex::Asset,
         effects: htex::Effects,
     ) -> Result<Option<String>, htex::Error> {
-        let Some(motion) = self.motion(asset) else {
+        let Some(motion) = self.motion(asset)? else {
             return Ok(None);
         };
         let motions = asset.motions(self.model.as_deref())?;
@@ -84,7 +83,7 @@ impl Spectrum {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let asset = self.player.open(&self.asset)?;
         let grid = htex::Band::TACTILE.grid_hz();
-        let motion = self.choice.motion(&asset);
+        let motion = self.choice.motion(&asset).of(&self.asset)?;
         let model = self.choice.model.as_deref();
         let (magnitude, effects) = match self.unscaled {
             true => (

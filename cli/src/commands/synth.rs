@@ -76,7 +76,7 @@ impl Synth {
         let mut options = VoiceOptions::default()
             .with_rate_hz(f64::from(self.rate))
             .with_seed(self.seed)
-            .with_motion(self.choice.motion(&asset))
+            .with_motion(self.choice.motion(&asset).of(&self.asset)?)
             .with_synthesis(self.quality)
             .with_ceiling(self.ceiling)
             .with_effects(match self.as_recorded {

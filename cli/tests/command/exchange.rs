@@ -101,6 +101,78 @@ fn a_signal_is_imported_with_what_it_does_not_say() {
     assert!(!place.path("other.htex").exists());
 }
 
+/// A file of the toolkit begins at rest. What is not told a motion plays the strongest condition: 240 mm/s and 3 N.
+#[test]
+fn a_silent_first_condition_gives_way_to_the_strongest() {
+    let place = Place::new();
+    place.write("felt.xml", HATT);
+    run(&place, "import felt.xml --license CC0-1.0 -o felt.htex", 0);
+    let spectrum = |given: &str| run(&place, &format!("spectrum felt.htex {given}"), 0).0;
+    assert_eq!(spectrum(""), spectrum("--speed 240 --force 3"));
+    assert_eq!(spectrum("--speed 120"), spectrum("--speed 120 --force 3"));
+    assert_eq!(spectrum("--force 2"), spectrum("--speed 240 --force 2"));
+    let largest = |file: &str| {
+        let mut wav = hound::WavReader::open(place.path(file)).unwrap();
+        wav.samples::<f32>()
+            .fold(0.0f32, |most, x| most.max(x.unwrap().abs()))
+    };
+    let (_, error) = run(&place, "synth felt.htex --seconds 0.5 -o felt.wav", 0);
+    assert!(!error.contains("all samples are 0"), "{error}");
+    assert!(largest("felt.wav") > 0.3);
+    for format in ["ahap", "haptic", "hjif", "android", "wav", "png"] {
+        run(
+            &place,
+            &format!("export felt.htex --to {format} -o out.{format}"),
+            0,
+        );
+    }
+    let baked = place.json(&words("bake felt.htex -o felt.bin --json"));
+    assert_eq!(baked["speeds_mm_s"][0], 240.0);
+    assert_eq!(baked["forces_n"][0], 3.0);
+    run(
+        &place,
+        "play felt.htex --device file --set path=played.wav --set quantity=acceleration --seconds 0.5",
+        0,
+    );
+    assert!(largest("played.wav") > 0.0);
+
+    // Nothing to feel is said.
+    let (_, error) = run(
+        &place,
+        "synth felt.htex --speed 0 --seconds 0.1 -o rest.wav",
+        0,
+    );
+    assert!(error.contains("rest.wav: all samples are 0"), "{error}");
+    run(
+        &place,
+        "export felt.htex --speed 0 --to ahap -o rest.ahap",
+        1,
+    );
+    assert!(!place.path("rest.ahap").exists());
+}
+
+/// An effect that is there, and that nobody can feel.
+#[test]
+fn an_effect_below_the_detection_threshold_is_not_exported() {
+    let place = Place::new();
+    place.write("hum.haptic", haptic());
+    let import = "import hum.haptic --speed 80 --force 0.5 --model bands --license CC0-1.0";
+    run(
+        &place,
+        &format!("{import} --full-scale 1e-7 -o faint.htex"),
+        0,
+    );
+    for format in ["ahap", "haptic", "hjif", "android", "wav"] {
+        let (_, error) = run(
+            &place,
+            &format!("export faint.htex --to {format} -o faint.{format}"),
+            1,
+        );
+        assert!(error.contains("below the detection threshold"), "{error}");
+        assert!(!place.path(&format!("faint.{format}")).exists());
+    }
+}
+
 #[test]
 fn a_model_file_states_all_and_takes_no_flag_of_a_signal() {
     let place = Place::new();
@@ -134,8 +206,9 @@ fn a_model_file_states_all_and_takes_no_flag_of_a_signal() {
     }
     assert!(!place.path("other.htex").exists());
 
-    // The first node is silent, of which nothing is exported.
-    let (_, error) = run(&place, "export felt.htex --to wav -o felt.wav", 1);
+    // A silent node is not exported.
+    let line = "export felt.htex --to wav --speed 240 --force 0 -o felt.wav";
+    let (_, error) = run(&place, line, 1);
     assert!(error.contains("silent at this motion"), "{error}");
     assert!(!place.path("felt.wav").exists());
     let line = "export felt.htex --to wav --speed 240 --force 3 -o felt.wav";

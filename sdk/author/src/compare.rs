@@ -97,7 +97,7 @@ impl Difference {
 }
 
 /// Compares each representation of an asset with a recording: at the recording's speed and force where both are known, else at the asset's
-/// first condition.
+/// default condition.
 ///
 /// # Errors
 /// When the quantities differ, a representation cannot be read, or a model refuses its parameters.

@@ -7,9 +7,6 @@ use htex_player::layout::{
 
 use crate::BakeError;
 
-/// Speed, mm/s, and force, newtons, where an asset states none: those of the command.
-const USUAL: (f64, f64) = (80.0, 0.4);
-
 /// Speeds and forces; a block has a condition for each combination.
 ///
 /// ```
@@ -71,19 +68,13 @@ impl Grid {
         }
     }
 
-    /// Makes the grid of an asset's first condition; a speed or a force that it does not state is 80 mm/s or 0.4 N.
+    /// Makes the grid of the default condition of a representation, named by its model's id or short name, else of the best one
+    /// ([`Asset::default_condition`]); a speed or a force that it does not state is 80 mm/s or 0.4 N.
     ///
     /// # Errors
-    /// As [`Self::new`].
-    pub fn of_first_condition(asset: &Asset) -> Result<Self, BakeError> {
-        let first = asset.manifest().conditions.first();
-        let speed = first.and_then(|c| c.speed_mm_s);
-        let force = first.and_then(|c| c.force_n);
-        let (usual_mm_s, usual_n) = USUAL;
-        Self::new(
-            vec![speed.unwrap_or(usual_mm_s)],
-            vec![force.unwrap_or(usual_n)],
-        )
+    /// As [`Self::new`], and when there is no such representation.
+    pub fn of_default_condition(asset: &Asset, model: Option<&str>) -> Result<Self, BakeError> {
+        Self::of_conditions(&[asset.motion(model, None, None)?])
     }
 
     /// Returns the speeds, mm/s, ascending.

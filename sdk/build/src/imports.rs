@@ -6,8 +6,6 @@ use std::path::Path;
 use htex_exchange::{
     ExchangeError, Format, ImportError, Missing, Physical, Profile, Reads, SignalSettings,
 };
-use htex_format::{Condition, Representation};
-use htex_play::Motion;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -241,21 +239,6 @@ fn by_keys(error: &ExchangeError) -> String {
         }
         other => other.to_string(),
     }
-}
-
-/// The sliding motion at which a representation is strongest, which stands for a texture whose first conditions may be silent.
-pub(crate) fn strongest(
-    representation: &Representation,
-    conditions: &[Condition],
-) -> Option<Motion> {
-    let sliding = representation.at.iter().filter_map(|at| {
-        let condition = conditions.get(at.condition)?;
-        let (speed_mm_s, force_n) = (condition.speed_mm_s?, condition.force_n?);
-        let slides = speed_mm_s > 0.0 && force_n > 0.0;
-        slides.then(|| (at.level_rms, Motion::new(speed_mm_s, force_n)))
-    });
-    let strongest = sliding.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
-    Some(strongest.1)
 }
 
 #[cfg(test)]

@@ -13,11 +13,10 @@ use htex_exchange::{Import, MOST_BYTES, Physical, Profile, fit_signals};
 use htex_files::{AtFile, FileError, read_regular};
 use htex_format::Asset;
 use htex_host::Registry;
-use htex_play::Motion;
 
 use crate::BuildError;
 use crate::findings::by_code;
-use crate::imports::{FileKind, refused, strongest};
+use crate::imports::{FileKind, refused};
 use crate::job::{Job, JobFile, JobRecording};
 use crate::made::{Made, Outcome, Record};
 use crate::sound::sound;
@@ -29,7 +28,7 @@ const UNNAMED: &str = "texture";
 impl Job {
     /// Makes the texture.
     pub(crate) fn made(&self, registry: &Registry) -> Result<Made, Box<dyn Error>> {
-        let (mut asset, record, motion) = match self.kind {
+        let (mut asset, record) = match self.kind {
             FileKind::Asset => self.imported(registry)?,
             FileKind::Recording | FileKind::Signal => self.fitted(registry)?,
         };
@@ -46,7 +45,7 @@ impl Job {
             .collect();
         embed_plugins(&mut asset, registry, &files, None)?;
         let bytes = asset.to_bytes()?;
-        let sound = sound(&bytes, motion, registry)?;
+        let sound = sound(&bytes, registry)?;
         Ok(Made {
             record,
             asset: bytes,
@@ -68,17 +67,14 @@ impl Job {
         };
         let imported = htex_exchange::import(&recording.name, &bytes, &how, registry);
         let asset = imported.map_err(refused)?.asset;
-        let manifest = &asset.manifest;
-        let motion = manifest.representations.first();
-        let motion = motion.and_then(|r| strongest(r, &manifest.conditions));
         let record = Record {
             outcome: Outcome::Fitted,
             segments: Vec::new(),
             felt: BTreeMap::new(),
             findings: Vec::new(),
-            thumbnail: played(&asset, motion, registry)?,
+            thumbnail: played(&asset, registry)?,
         };
-        Ok((asset, record, motion))
+        Ok((asset, record))
     }
 
     fn fitted(&self, registry: &Registry) -> Result<Unfinished, Box<dyn Error>> {
@@ -104,7 +100,7 @@ impl Job {
             findings: by_code(&fitted.findings),
             thumbnail: fitted.spectra.first().map(thumbnail).unwrap_or_default(),
         };
-        Ok((fitted.asset, record, None))
+        Ok((fitted.asset, record))
     }
 
     /// Returns the request of the fit.
@@ -196,18 +192,14 @@ impl JobRecording {
     }
 }
 
-/// An asset without plugins, what is known of it, and the motion of its sound.
-type Unfinished = (Asset, Record, Option<Motion>);
+/// An asset without plugins, and what is known of it.
+type Unfinished = (Asset, Record);
 
-/// The spectrum that an asset plays at a motion, else at its first condition.
-fn played(
-    asset: &Asset,
-    motion: Option<Motion>,
-    registry: &Registry,
-) -> Result<Thumbnail, htex_play::Error> {
+/// The spectrum that an asset plays at its default condition.
+fn played(asset: &Asset, registry: &Registry) -> Result<Thumbnail, htex_play::Error> {
     let frequency_hz = asset.manifest.band.grid_hz();
     let asset = htex_play::Asset::with_registry(asset.clone(), registry.clone());
-    let magnitude = asset.magnitude(None, motion, &frequency_hz)?;
+    let magnitude = asset.magnitude(None, None, &frequency_hz)?;
     Ok(of_magnitudes(&frequency_hz, &magnitude))
 }
 

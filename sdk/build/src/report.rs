@@ -151,7 +151,7 @@ pub struct AssetReport {
     /// Warnings of the fit, those of the findings among them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
-    /// The recorded spectrum of the first condition, or of a texture that a file states, that of its strongest: 48 points evenly spaced in log frequency; 63 is the largest magnitude, 0 is 40 dB
+    /// The recorded spectrum of the first condition; of a texture that a file states, that of its default condition: 48 points evenly spaced in log frequency; 63 is the largest magnitude, 0 is 40 dB
     /// below or less.
     #[schemars(with = "Vec<u8>")]
     pub spectrum: Thumbnail,

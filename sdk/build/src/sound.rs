@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io::Cursor;
 
 use htex_host::Registry;
-use htex_play::{Asset, Motion, VoiceOptions};
+use htex_play::{Asset, VoiceOptions};
 
 /// Rate of the sound, hertz: twice the band's upper edge and a little, so that browsers play it and files are small.
 const RATE_HZ: u32 = 8_000;
@@ -15,18 +15,12 @@ const RMS: f32 = 0.1;
 /// Length of the fade at both ends, samples.
 const FADE: usize = 200;
 
-/// Returns a second of the asset's first representation at a motion, else at its first condition, as a WAV of 16 bits, at the same loudness for
-/// all textures.
-pub(crate) fn sound(
-    asset: &[u8],
-    motion: Option<Motion>,
-    registry: &Registry,
-) -> Result<Vec<u8>, Box<dyn Error>> {
+/// Returns a second of the asset's best representation at its default condition, as a WAV of 16 bits, at the same loudness for all
+/// textures.
+pub(crate) fn sound(asset: &[u8], registry: &Registry) -> Result<Vec<u8>, Box<dyn Error>> {
     let data = htex_format::Asset::from_bytes(asset)?;
     let asset = Asset::with_registry(data, registry.clone());
-    let options = VoiceOptions::default()
-        .with_rate_hz(f64::from(RATE_HZ))
-        .with_motion(motion);
+    let options = VoiceOptions::default().with_rate_hz(f64::from(RATE_HZ));
     let mut voice = asset.voice(&options)?;
     let mut samples = vec![0.0_f32; SAMPLES];
     voice.render(&mut samples)?;

@@ -262,7 +262,7 @@ pub unsafe extern "C" fn htex_asset_representation_model(
 }
 
 /// [any thread; may load a model] Magnitudes that a recording of the voice reads at frequencies in Hz, in the asset's unit. `model` may be
-/// NULL (the representation of least error), and so may `at` (its first condition). Between conditions it is interpolated, outside them
+/// NULL (the representation of least error), and so may `at` (its first condition, or its strongest if the first is silent). Between conditions it is interpolated, outside them
 /// it follows the law of the asset, and where the finger does not slide it is 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_magnitude(

@@ -40,7 +40,7 @@ pub struct Export<'a> {
 }
 
 impl<'a> Export<'a> {
-    /// Two seconds at the asset's first condition.
+    /// Two seconds at the asset's default condition.
     #[must_use]
     pub fn new(format: &'static Format) -> Self {
         Self {
@@ -250,8 +250,17 @@ fn of_signal(
         };
         return Err(job.cannot(problem.to_owned()));
     }
+    let lost = loss(&written.heard, &written.drive, profile)?;
+    if let Some(db) = lost.sensation_db.filter(|db| *db <= 0.0) {
+        return Err(job.cannot(format!(
+            "nobody feels what the actuator `{}` makes of it: {} below the detection threshold of a sensitive finger; give a speed and a \
+             force at which the texture is stronger, or another profile",
+            profile.name,
+            below(db)
+        )));
+    }
     Ok(Exported {
-        lost: Some(loss(&written.heard, &written.drive, profile)?),
+        lost: Some(lost),
         played: Some(Played {
             profile: profile.name.clone(),
             seconds: job.playing.seconds,
@@ -262,6 +271,14 @@ fn of_signal(
         loses: export.format.loses,
         notes: [written.notes, job.notes()].concat(),
     })
+}
+
+/// By how much a level, decibels, is below 0.
+fn below(db: f64) -> String {
+    match db.is_finite() {
+        true => format!("it is {:.1} dB", -db),
+        false => "all of it is".to_owned(),
+    }
 }
 
 impl Export<'_> {

@@ -18,7 +18,7 @@ const BEFORE_S: f64 = 0.2;
 /// Where a finger moves.
 #[derive(Debug, Clone)]
 pub enum Path {
-    /// At one speed and force; `None` for those of the asset's first condition.
+    /// At one speed and force; `None` for those of the asset's default condition.
     Condition(Option<Motion>),
     Stroke(Stroke),
 }
@@ -141,9 +141,13 @@ impl Source<'_> {
             } => Some(motion.speed_mm_s),
             Self::Asset {
                 asset,
+                model,
                 path: Path::Condition(None),
                 ..
-            } => asset.manifest().conditions.first()?.speed_mm_s,
+            } => {
+                let default = asset.default_condition(*model).ok()?;
+                asset.manifest().conditions.get(default)?.speed_mm_s
+            }
             _ => None,
         }
     }

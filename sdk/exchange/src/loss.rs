@@ -2,10 +2,11 @@
 
 use htex_author::{
     AuthorError, Averaging, Difference, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum,
-    segment_spectra, spectrum_of_samples,
+    felt, segment_spectra, spectrum_of_samples,
 };
 
 use htex_dsp::grid::level_rms;
+use htex_dsp::vibrotactile::Listener;
 use serde::Serialize;
 
 use crate::error::ExchangeError;
@@ -21,6 +22,10 @@ pub struct Loss {
     pub difference: Difference,
     /// Level of that over the asset's, decibels.
     pub level_db: f64,
+    /// Level of what the actuator makes of the file over the detection threshold of a sensitive finger, decibels; 0 or less is felt by
+    /// nobody. `None` where no actuator plays the file.
+    #[serde(skip)]
+    pub(crate) sensation_db: Option<f64>,
 }
 
 /// Compares what an actuator makes of a drive, at the rate of what was heard, with what was heard.
@@ -57,11 +62,20 @@ pub(crate) fn loss(heard: &Heard, drive: &[f64], profile: &Profile) -> Result<Lo
         magnitude,
         ..reference.clone()
     };
+    let listener = Listener::sensitive();
+    let felt = felt(
+        reference.as_ref(),
+        &other.magnitude,
+        heard.quantity,
+        &listener,
+    );
+    let energy = felt.level_db.iter().map(|db| libm::pow(10.0, db / 10.0));
     let level = |spectrum: &TextureSpectrum| level_rms(&spectrum.magnitude);
     let level_db = 20.0 * libm::log10(level(&other) / level(&reference));
     let difference = Difference::between(&reference, &other);
     Ok(Loss {
         difference: difference.ok_or(AuthorError::QuantitiesDiffer)?,
         level_db,
+        sensation_db: Some(10.0 * libm::log10(energy.sum())),
     })
 }

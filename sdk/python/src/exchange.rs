@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex::{Motion, Quantity};
+use htex::Quantity;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_exchange::{
     Coding, ExchangeError, Export, FORMATS, Format, Import, ImportError, MOST_BYTES, PROFILES,
@@ -154,10 +154,8 @@ impl Exporting {
         let motion = match (self.speed_mm_s, self.force_n) {
             (None, None) => None,
             (speed, force) => {
-                let first = texture.asset().manifest().conditions.first();
-                let speed = speed.or(first.and_then(|one| one.speed_mm_s));
-                let force = force.or(first.and_then(|one| one.force_n));
-                Some(Motion::new(speed.unwrap_or(0.0), force.unwrap_or(0.0)))
+                let motion = texture.asset().motion(self.model.as_deref(), speed, force);
+                Some(motion.or_raise()?)
             }
         };
         match (&self.stroke, motion) {

@@ -15,9 +15,6 @@ use crate::path::located;
 use crate::python::{data, from_json, spectrum};
 use crate::voice::Voice;
 
-/// Speed (mm/s) and force (newtons) where neither the caller nor the asset states them: the usual ones of the paper.
-const USUAL: (f64, f64) = (80.0, 0.4);
-
 /// A texture: an opened asset, and the models that play it.
 #[pyclass(frozen, module = "htex")]
 pub(crate) struct Texture {
@@ -143,22 +140,23 @@ impl Texture {
         &self.asset
     }
 
-    /// Returns the motion at a condition; a missing value is that of the first condition.
-    fn motion(&self, at: Option<At>) -> Option<Motion> {
-        let At {
-            speed_mm_s,
-            force_n,
-        } = at?;
-        if speed_mm_s.is_none() && force_n.is_none() {
-            return None;
+    /// Returns the motion at a condition; a missing value is that of the default condition.
+    fn motion(&self, model: Option<&str>, at: Option<At>) -> PyResult<Option<Motion>> {
+        match at {
+            None
+            | Some(At {
+                speed_mm_s: None,
+                force_n: None,
+            }) => Ok(None),
+            Some(At {
+                speed_mm_s,
+                force_n,
+            }) => self
+                .asset
+                .motion(model, speed_mm_s, force_n)
+                .map(Some)
+                .or_raise(),
         }
-        let first = self.asset.manifest().conditions.first();
-        let speed = speed_mm_s.or(first.and_then(|c| c.speed_mm_s));
-        let force = force_n.or(first.and_then(|c| c.force_n));
-        Some(Motion::new(
-            speed.unwrap_or(USUAL.0),
-            force.unwrap_or(USUAL.1),
-        ))
     }
 
     pub(crate) fn bytes(&self) -> PyResult<Vec<u8>> {
@@ -276,20 +274,23 @@ impl Texture {
         at: Option<At>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let frequency_hz = frequency_hz.unwrap_or_else(|| self.asset.band().grid_hz());
-        let motion = self.motion(at);
+        let motion = self.motion(model, at)?;
         let magnitude = py.detach(|| self.asset.magnitude(model, motion, &frequency_hz));
         let (quantity, band) = (self.asset.quantity(), self.asset.band());
         spectrum(py, quantity, band, frequency_hz, magnitude.or_raise()?)
     }
 
     /// Returns the magnitudes of a representation at a recorded condition as a recording of its voice reads them.
-    #[pyo3(signature = (model=None, condition=0))]
+    #[pyo3(signature = (model=None, condition=None))]
     fn read_spectrum<'py>(
         &self,
         py: Python<'py>,
         model: Option<&str>,
-        condition: usize,
+        condition: Option<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let condition = condition
+            .map_or_else(|| self.asset.default_condition(model), Ok)
+            .or_raise()?;
         let known = self.asset.manifest().conditions.get(condition);
         let known =
             known.ok_or_else(|| option(format!("condition is {condition}; there is none")))?;
@@ -312,7 +313,7 @@ impl Texture {
     /// Returns the level of a representation at a condition: RMS in the band, in the unit of the samples.
     #[pyo3(signature = (model=None, at=None))]
     fn level(&self, py: Python<'_>, model: Option<&str>, at: Option<At>) -> PyResult<f64> {
-        let motion = self.motion(at);
+        let motion = self.motion(model, at)?;
         py.detach(|| self.asset.level_rms(model, motion)).or_raise()
     }
 
@@ -324,7 +325,7 @@ impl Texture {
         model: Option<&str>,
         at: Option<At>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let motion = self.motion(at);
+        let motion = self.motion(model, at)?;
         let all = py
             .detach(|| self.asset.named_parameters(model, motion))
             .or_raise()?;
@@ -375,10 +376,11 @@ impl Texture {
         envelope_bands: usize,
     ) -> PyResult<Voice> {
         check_rate(rate_hz)?;
-        let motion = self.motion(Some(At {
+        let at = At {
             speed_mm_s,
             force_n,
-        }));
+        };
+        let motion = self.motion(model, Some(at))?;
         let motion = match motion {
             Some(motion) => Some(located(motion, position_mm, [x_mm, y_mm])?),
             None if [position_mm, x_mm, y_mm].iter().any(Option::is_some) => {

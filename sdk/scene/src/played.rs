@@ -39,7 +39,7 @@ pub(crate) struct PlayedSurface {
     pub(crate) force_n: Span,
     pub(crate) always_touched: bool,
     pub(crate) share: f64,
-    /// Motion the voice starts with; `None`: the first condition.
+    /// Motion the voice starts with; `None`: the default condition.
     pub(crate) start: Option<htex_play::Motion>,
     /// Rate of the model, hertz.
     pub(crate) rate_hz: f64,

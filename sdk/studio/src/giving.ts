@@ -79,7 +79,7 @@ export async function saveSound() {
   say(`${WAV_S} s at ${motion.speed.toFixed(0)} mm/s and ${motion.force.toFixed(2)} N, in ${now.unit}: a full-scale sample is 1 ${now.unit}.`);
 }
 
-/** A block for the player on microcontrollers, as a C header: the texture's first condition by the present model. */
+/** A block for the player on microcontrollers, as a C header: the texture's default condition by the present model. */
 export async function saveBlock() {
   const [now, document] = [texture.peek(), present.peek()];
   if (!now || !document) return;

@@ -218,7 +218,7 @@ export interface BakeOptions {
   rate?: number;
   /** Largest error of nine bands between conditions, dB. Default 0.3. */
   within?: number;
-  /** Speeds, mm/s, and forces, N, which are all combined. Default: the first condition. */
+  /** Speeds, mm/s, and forces, N, which are all combined. Default: the first condition, or the strongest if the first is silent. */
   grid?: { speed: number[]; force: number[] };
 }
 
@@ -264,7 +264,7 @@ export interface FeltSide {
   texture: Texture | Bytes;
   /** Default: the representation of least error. */
   model?: string;
-  /** Default: the first recorded condition. */
+  /** Default: the first recorded condition, or the strongest if the first is silent. */
   at?: { speed?: number; force?: number };
 }
 

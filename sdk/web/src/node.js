@@ -29,7 +29,9 @@ function isLoop(given) {
 export function usualGain(texture, model) {
   if (isLoop(texture)) return texture.level_rms > 0 ? LEVEL / texture.level_rms : 0;
   const chosen = texture.chosenModel(model);
-  const level = texture.manifest.representations.find((representation) => representation.model === chosen).at[0].level_rms;
+  const { at } = texture.manifest.representations.find((representation) => representation.model === chosen);
+  const condition = texture.defaultCondition(chosen);
+  const level = at.find((one) => one.condition === condition)?.level_rms ?? 0;
   return level > 0 ? LEVEL / level : 0;
 }
 

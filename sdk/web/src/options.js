@@ -4,6 +4,7 @@ import { HtexError } from "./core.js";
 
 export const OPEN = { modules: "array", embedded: "boolean", trusted: "boolean" };
 export const AT = { model: "string", at: "object" };
+export const READ = { model: "string", condition: "number" };
 export const VOICE = {
   model: "string",
   rate: "number",

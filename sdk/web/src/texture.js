@@ -2,7 +2,7 @@
 
 import { BLOCK, HtexError, MOTION_SIZE, toBytes } from "./core.js";
 import { GRID_HZ, measured } from "./measured.js";
-import { AT, VOICE, checked, checkedMotion } from "./options.js";
+import { AT, READ, VOICE, checked, checkedMotion } from "./options.js";
 
 /** Frees what its owner did not free. */
 const abandoned =
@@ -128,6 +128,15 @@ export class Texture extends Handle {
     return this.manifest.representations.map((representation) => representation.model);
   }
 
+  /** Index of the condition at which a representation is played where no motion is given: the first, or the strongest if it is silent. */
+  defaultCondition(model) {
+    const { core } = this;
+    return core.scope((take) => {
+      core.call("htex_asset_default_condition", this.id, core.putText(take, model), core.results);
+      return core.view().getUint32(core.results, true);
+    });
+  }
+
   /** Magnitudes of the texture spectrum at frequencies in Hz, in the unit. */
   spectrum(frequencies, options = {}) {
     const { core } = this;
@@ -139,9 +148,8 @@ export class Texture extends Handle {
   }
 
   /** Magnitudes at a recorded condition, as a recording of the voice reads them: frequencies, and magnitudes in the unit. */
-  readSpectrum({ model, condition = 0, ...rest } = {}) {
-    const { core } = this;
-    checked({ model, condition, ...rest }, { model: "string", condition: "number" }, "texture.readSpectrum");
+  readSpectrum(options = {}) {
+    const { model, condition = this.defaultCondition(options.model) } = checked(options, READ, "texture.readSpectrum");
     if (!this.manifest.conditions[condition]) {
       const last = this.manifest.conditions.length - 1;
       throw new HtexError(`texture.readSpectrum: there is no condition ${condition}; they are 0 to ${last}`, "invalid-argument");

@@ -19,6 +19,7 @@ from .models import Models
 from .shapes import FOLLOW_THE_MOTION, SUMS_OF_SINUSOIDS, Band, Refusal, Values, magnitude
 
 LEFT_OUT = 1e-12
+SLIDES_MM_S = 0.5
 
 
 @dataclass
@@ -57,6 +58,7 @@ class Voice:
         conditions = [manifest["conditions"][int(element["condition"])] for element in representation["at"]]
         speeds = [condition.get("speed_mm_s") for condition in conditions]
         forces = [condition.get("force_n") for condition in conditions]
+        self.stated = list(zip(speeds, forces))
         if "triangles" in representation:
             self.axes = (StoredAxis(speeds), StoredAxis(forces))
             triangles = [tuple(map(int, triangle)) for triangle in representation["triangles"]]
@@ -71,6 +73,17 @@ class Voice:
 
     def positions(self, speeds: list[float | None], forces: list[float | None]) -> list[tuple[float, float]]:
         return [(self.axes[0].position(v), self.axes[1].position(f)) for v, f in zip(speeds, forces)]
+
+    def default(self) -> tuple[float, float]:
+        """Speed and force of the default condition: the first, or the strongest if the first is silent."""
+        known = list(zip(self.levels, self.stated))
+        heard = [i for i, (level, motion) in enumerate(known) if level > 0 and slides(*motion)]
+        if not heard or heard[0] == 0:
+            chosen = 0
+        else:
+            chosen = max(heard, key=lambda i: (self.levels[i], -i))
+        speed, force = self.stated[chosen]
+        return speed or 0.0, force or 0.0
 
     def at(self, speed: float, force: float) -> Played:
         point = (self.axes[0].position(speed), self.axes[1].position(force))
@@ -100,6 +113,11 @@ class Voice:
             nearest = axis.nearest(place, value) if axis.complete else 0.0
             result.append(value / nearest if nearest > 0 else 1.0)
         return result[0], result[1]
+
+
+def slides(speed: float | None, force: float | None) -> bool:
+    """Whether something is felt at a condition, as far as it is known."""
+    return (speed is None or speed >= SLIDES_MM_S) and (force is None or force > 0)
 
 
 def check_ranges(model: dict, values: Values) -> None:
@@ -141,11 +159,13 @@ def compare_playing(folder: Path, models: Models, say: Callable[[str], None]) ->
         frequencies = np.array(cases["frequency_hz"])
         for case in cases["cases"]:
             total += 1
-            what = f"{path.stem} {case['model']} {case['speed_mm_s']} mm/s {case['force_n']} N"
+            given = "speed_mm_s" in case
+            where = f"{case['speed_mm_s']} mm/s {case['force_n']} N" if given else "no motion"
+            what = f"{path.stem} {case['model']} {where}"
             try:
                 voice = voices.setdefault(case["model"], None) or Voice(asset, models[case["model"]])
                 voices[case["model"]] = voice
-                played = voice.at(case["speed_mm_s"], case["force_n"])
+                played = voice.at(*(case["speed_mm_s"], case["force_n"]) if given else voice.default())
                 errors = {
                     "parameters": close(played.parameters, case["parameters"]),
                     "frequency_factor": close(played.frequency_factor, case["frequency_factor"]),

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use crate::asset::{ASSETS, htex_asset};
 use crate::motion::{htex_motion, motion};
-use crate::pointers::{slice, slice_mut, text, write_text};
+use crate::pointers::{place, slice, slice_mut, text, write_text};
 use crate::status::{Failure, guarded, htex_status};
 use crate::voice::{VOICES, htex_voice};
 
@@ -26,6 +26,24 @@ pub unsafe extern "C" fn htex_asset_chosen_model(
         let id = asset.representation_id(unsafe { text(model) }?)?;
         // SAFETY: as above.
         unsafe { write_text(id, out, capacity, length) }
+    })
+}
+
+/// Index of the condition at which a representation is played where no motion is given. `model` as for htex_asset_magnitude. Loads no
+/// model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_default_condition(
+    asset: htex_asset,
+    model: *const c_char,
+    out: *mut u32,
+) -> htex_status {
+    guarded(|| {
+        let asset = ASSETS.shared(asset.id)?;
+        // SAFETY: the text is the caller's.
+        let condition = asset.default_condition(unsafe { text(model) }?)?;
+        // SAFETY: the place is the caller's.
+        *unsafe { place(out) }? = u32::try_from(condition).unwrap_or(u32::MAX);
+        Ok(())
     })
 }
 

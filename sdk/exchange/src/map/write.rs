@@ -27,7 +27,7 @@ pub(crate) struct Printed {
     pub(crate) notes: Vec<String>,
 }
 
-/// Writes a texture as an image: its own pixels, or those of a row that is fitted to what it plays at a motion, else at its first condition.
+/// Writes a texture as an image: its own pixels, or those of a row that is fitted to what it plays at a motion, else at its default condition.
 ///
 /// # Errors
 /// When the texture is silent, the speed is unknown, or 255 pixels hold nothing of it.
@@ -68,14 +68,15 @@ fn fitted(
 ) -> Result<Printed, ExchangeError> {
     let band = asset.band();
     let frequency_hz = band.grid_hz();
-    let first = asset.manifest().conditions.first();
+    let default = asset.default_condition(model)?;
+    let default = asset.manifest().conditions.get(default);
     let condition = FitCondition {
         speed_mm_s: motion
             .map(|motion| motion.speed_mm_s)
-            .or(first.and_then(|one| one.speed_mm_s)),
+            .or(default.and_then(|one| one.speed_mm_s)),
         force_n: motion
             .map(|motion| motion.force_n)
-            .or(first.and_then(|one| one.force_n)),
+            .or(default.and_then(|one| one.force_n)),
     };
     if condition.speed_mm_s.is_none() {
         return Err(cannot(
@@ -135,6 +136,7 @@ fn loss(reference: &TextureSpectrum, shape: Vec<f64>, level: f64) -> Result<Loss
     Ok(Loss {
         difference: difference.ok_or(AuthorError::QuantitiesDiffer)?,
         level_db,
+        sensation_db: None,
     })
 }
 

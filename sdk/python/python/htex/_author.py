@@ -136,7 +136,7 @@ def compare(recording: Recording, other: _htex.Texture | Recording, **settings: 
     """Measure each representation of a texture, or another recording, against a recording, as ``htex compare`` does.
 
     ``other`` is a texture, an ``.htex`` file, or a recording as ``process`` takes it. A texture plays at the recording's speed and force
-    where both are known, else at its first condition.
+    where both are known, else at its default condition (the first, or the strongest if the first is silent).
     """
     if isinstance(other, (str, os.PathLike)) and os.fspath(other).lower().endswith(".htex"):
         other = _htex.open(other)

@@ -134,7 +134,7 @@ export function Give() {
               <button class="button" onClick={after(saveBlock)}>Save as C block</button>
             </div>
             <p class="small soft">
-              The player page is one file that plays this texture, without a network. The C block is a header for the player on microcontrollers, at the first condition; <code>htex bake</code> makes blocks of several.
+              The player page is one file that plays this texture, without a network. The C block is a header for the player on microcontrollers, at the default condition; <code>htex bake</code> makes blocks of several.
             </p>
             <Report />
           </div>

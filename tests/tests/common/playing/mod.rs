@@ -24,6 +24,8 @@ struct Plan {
     law: Option<[f64; 3]>,
     /// Triangles that it stores, by its conditions.
     triangles: &'static [[usize; 3]],
+    /// Levels, newtons, where they are not those of its number; it is also read where no motion is given then.
+    levels: Option<&'static [f64]>,
 }
 
 impl Plan {
@@ -37,11 +39,12 @@ const TACTILE_HZ: [f64; 2] = [20.0, 1000.0];
 
 /// Conditions of the assets of three to five are far from a line and from a circle. Those of `grid`, as measured by hand, are in
 /// neither order of a grid; those of `circle` have positions on one.
-const PLANS: [Plan; 8] = [
+const PLANS: [Plan; 9] = [
     Plan {
         name: "one_condition",
         contact: "finger",
         law: None,
+        levels: None,
         triangles: &[],
         band_hz: TACTILE_HZ,
         conditions: &[[80.0, 0.4]],
@@ -51,6 +54,7 @@ const PLANS: [Plan; 8] = [
         name: "two_speeds",
         contact: "tool",
         law: None,
+        levels: None,
         triangles: &[],
         band_hz: TACTILE_HZ,
         conditions: &[[40.0, 0.4], [160.0, 0.4]],
@@ -60,6 +64,7 @@ const PLANS: [Plan; 8] = [
         name: "three_conditions",
         contact: "unknown",
         law: Some([0.3, -0.6, 0.9]),
+        levels: None,
         triangles: &[],
         band_hz: TACTILE_HZ,
         conditions: &[[50.0, 0.2], [150.0, 0.3], [90.0, 0.9]],
@@ -75,6 +80,7 @@ const PLANS: [Plan; 8] = [
         name: "narrow_band",
         contact: "unknown",
         law: None,
+        levels: None,
         triangles: &[],
         band_hz: [32.5, 437.5],
         conditions: &[[50.0, 0.2], [170.0, 0.25], [60.0, 0.8], [140.0, 0.9]],
@@ -84,6 +90,7 @@ const PLANS: [Plan; 8] = [
         name: "five_conditions",
         contact: "finger",
         law: Some([1.0, 0.25, 0.0]),
+        levels: None,
         triangles: &[],
         band_hz: TACTILE_HZ,
         conditions: &[
@@ -105,6 +112,7 @@ const PLANS: [Plan; 8] = [
         name: "grid",
         contact: "finger",
         law: None,
+        levels: None,
         triangles: &[],
         band_hz: TACTILE_HZ,
         conditions: &[
@@ -128,6 +136,7 @@ const PLANS: [Plan; 8] = [
         name: "circle",
         contact: "tool",
         law: None,
+        levels: None,
         triangles: &[],
         band_hz: [32.5, 437.5],
         conditions: &[
@@ -146,6 +155,7 @@ const PLANS: [Plan; 8] = [
         name: "triangles",
         contact: "tool",
         law: None,
+        levels: None,
         // The other diagonal than the fan from the slow and light condition has, in both senses of turning. By its force the last
         // condition would be grouped with the lower edge; here it is the corner of a narrow triangle.
         triangles: &[[3, 2, 1], [4, 1, 3], [0, 4, 1], [0, 3, 4]],
@@ -165,6 +175,23 @@ const PLANS: [Plan; 8] = [
             [200.0, 2.0],
             [20.0, 0.7],
         ],
+    },
+    Plan {
+        name: "silent_first",
+        contact: "tool",
+        law: None,
+        // As in files of the Penn Haptic Texture Toolkit: nothing is felt at rest. The strongest level stands where no finger presses.
+        levels: Some(&[0.0, 0.09, 0.02, 0.05, 0.03]),
+        triangles: &[],
+        band_hz: TACTILE_HZ,
+        conditions: &[
+            [0.0, 0.0],
+            [150.0, 0.0],
+            [60.0, 0.5],
+            [150.0, 0.5],
+            [60.0, 1.2],
+        ],
+        motions: &[[100.0, 0.6], [30.0, 0.2]],
     },
 ];
 
@@ -212,7 +239,12 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
             .map(|flat| htex_format::round_parameters(&fields, &flat).unwrap())
             .collect();
         let at: Vec<Value> = (0..sets.len())
-            .map(|i| json!({"condition": i, "level_rms": 0.01 * (1 + i + number) as f64}))
+            .map(|i| {
+                let level_rms = plan
+                    .levels
+                    .map_or(0.01 * (1 + i + number) as f64, |all| all[i]);
+                json!({"condition": i, "level_rms": level_rms})
+            })
             .collect();
         representations.push(json!({
             "model": model.id(),
@@ -258,30 +290,34 @@ fn numbers(plan: &Plan, asset: &Asset) -> String {
     let mut cases = Vec::new();
     for representation in &asset.manifest().representations {
         let model = Some(&representation.model[..]);
-        for motion in plan.conditions.iter().chain(plan.motions) {
-            let motion = htex::Motion::new(motion[0], motion[1]);
-            let (parameters, _) = asset.parameters(model, Some(motion)).unwrap();
+        let given = plan.conditions.iter().chain(plan.motions);
+        let given = given.filter(|motion| htex::exploration::slides(motion[0], motion[1]));
+        let given = given.map(|motion| Some(htex::Motion::new(motion[0], motion[1])));
+        for motion in given.chain(plan.levels.map(|_| None)) {
+            let (parameters, _) = asset.parameters(model, motion).unwrap();
             let follows = asset.loaded_model(model).unwrap().follows_motion();
-            let factor = match follows {
-                true => 1.0,
-                false => {
+            let factor = match motion {
+                Some(motion) if !follows => {
                     let motions = asset.motions(model).unwrap();
-                    motions
-                        .scaling(motion, htex::exploration::CEILING)
-                        .frequency
+                    let ceiling = htex::exploration::CEILING;
+                    motions.scaling(motion, ceiling).frequency
                 }
+                _ => 1.0,
             };
-            let level_rms = asset.level_rms(model, Some(motion)).unwrap();
-            let magnitude = asset.magnitude(model, Some(motion), &frequency_hz);
-            cases.push(json!({
+            let level_rms = asset.level_rms(model, motion).unwrap();
+            let magnitude = asset.magnitude(model, motion, &frequency_hz);
+            let mut case = json!({
                 "model": representation.model,
-                "speed_mm_s": motion.speed_mm_s,
-                "force_n": motion.force_n,
                 "parameters": parameters,
                 "frequency_factor": factor,
                 "level_rms": level_rms,
                 "magnitude": rounded(&magnitude.unwrap()),
-            }));
+            });
+            if let Some(motion) = motion {
+                case["speed_mm_s"] = motion.speed_mm_s.into();
+                case["force_n"] = motion.force_n.into();
+            }
+            cases.push(case);
         }
     }
     let cases: Vec<String> = cases.iter().map(Value::to_string).collect();

@@ -46,7 +46,8 @@ pub(crate) fn bake(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
         return Err(Refusal::argument("give one texture"));
     };
     let asset = Asset::new(AssetData::from_bytes(bytes)?);
-    let grid = given(grid)?.map_or_else(|| Grid::of_first_condition(&asset), Ok)?;
+    let grid =
+        given(grid)?.map_or_else(|| Grid::of_default_condition(&asset, model.as_deref()), Ok)?;
     let baked = baked(&asset, model.as_deref(), &grid, rate_hz, within_db)?;
     Answer::new(&block(&baked, &name, rate_hz), baked.bytes.clone())
 }

@@ -1,6 +1,6 @@
 //! What a fingertip feels of textures: of the difference of two, and from which magnitude on.
 
-use htex::{Asset, AssetData, Motion};
+use htex::{Asset, AssetData};
 use htex_author::by_hand::ByHandError;
 use htex_author::{Felt, SpectrumRef, felt as difference, threshold_magnitude};
 use htex_dsp::vibrotactile::Listener;
@@ -68,20 +68,20 @@ fn told(felt: Felt, if_sensitive: &Felt) -> Told {
 /// A texture, and its magnitudes at a motion by a model.
 fn magnitude(bytes: &[u8], mut side: Document) -> Result<(Asset, Vec<f64>), Refusal> {
     let model = side.text("model")?;
-    let at = motion(side.object("at")?)?;
+    let mut at = side.object("at")?;
+    let (speed, force) = (at.number("speed")?, at.number("force")?);
+    at.finish()?;
     side.finish()?;
     let asset = Asset::new(AssetData::from_bytes(bytes)?);
     let grid = asset.band().grid_hz();
-    let magnitude = asset.magnitude(model.as_deref(), at, &grid);
+    let model = model.as_deref();
+    let magnitude = match (speed, force) {
+        (None, None) => asset.magnitude(model, None, &grid),
+        (speed, force) => asset
+            .motion(model, speed, force)
+            .and_then(|motion| asset.magnitude(model, Some(motion), &grid)),
+    };
     Ok((asset, magnitude.map_err(ByHandError::from)?))
-}
-
-/// A motion; none of an empty document.
-fn motion(mut given: Document) -> Result<Option<Motion>, Refusal> {
-    let (speed, force) = (given.number("speed")?, given.number("force")?);
-    given.finish()?;
-    let motion = Motion::new(speed.unwrap_or_default(), force.unwrap_or_default());
-    Ok((speed.is_some() || force.is_some()).then_some(motion))
 }
 
 /// The magnitudes at which sinusoids are at the detection threshold, at frequencies.

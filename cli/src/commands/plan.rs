@@ -92,6 +92,7 @@ fn text(plan: &Planned) -> String {
         let (name, reason) = (name(stage.name, stage.surface), &stage.reason);
         let _ = writeln!(text, "  {:9.2}  {name:18} {reason}", stage.ns_per_sample);
     }
+    let _ = writeln!(text, "  {:9.2}  the renderer itself", plan.renderer_ns);
     let _ = writeln!(text, "  {:9.2}  in all", plan.ns_per_sample_total);
     if !plan.left_out.is_empty() {
         text += "\nleft out\n";

@@ -16,6 +16,7 @@ mod catalogue;
 mod checker;
 mod compat;
 mod embed;
+mod every_feature;
 mod exchange;
 mod fit;
 mod flags;

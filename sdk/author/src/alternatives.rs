@@ -22,22 +22,22 @@ struct Tried {
     error_db: f64,
 }
 
-/// Returns a warning if a representation exceeds an error limit at one of its conditions. `models` are tried
+/// Returns a warning if a representation exceeds an error limit at one of its `measured` conditions. `models` are tried
 /// beside the model's own options.
 pub(crate) fn warning(
     choice: &ModelRequest,
-    qualities: &[&Quality],
-    groups: &[Group],
+    measured: &[(&Quality, &Group)],
     models: &[LoadedModel],
     level: Level,
 ) -> Option<String> {
-    let conditions = qualities.iter().zip(groups);
     let error_db = |quality: &Quality| quality.get(Measure::NineBand).unwrap_or(0.0);
     // A band that is far off is a fault also where the others hide it in the RMS.
     let excess = |quality: &Quality| {
         (error_db(quality) / LIMIT_DB).max(worst_band_db(quality) / BAND_LIMIT_DB)
     };
-    let (quality, group) = conditions.max_by(|a, b| excess(a.0).total_cmp(&excess(b.0)))?;
+    let worst =
+        |a: &&(&Quality, &Group), b: &&(&Quality, &Group)| excess(a.0).total_cmp(&excess(b.0));
+    let (quality, group) = *measured.iter().max_by(worst)?;
     let nine_band_db = error_db(quality);
     let worst_db = worst_band_db(quality);
     if nine_band_db <= LIMIT_DB && worst_db <= BAND_LIMIT_DB {

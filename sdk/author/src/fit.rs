@@ -276,8 +276,9 @@ fn band_error_warning(
     groups: &[Group],
     request: &AssetRequest,
 ) -> Option<String> {
-    let at = &fitted.representation.at;
-    let qualities: Vec<&Quality> = at.iter().filter_map(|at| at.quality.as_ref()).collect();
+    let all = fitted.representation.at.iter().zip(groups);
+    let measured = all.filter_map(|(at, group)| Some((at.quality.as_ref()?, group)));
+    let measured: Vec<(&Quality, &Group)> = measured.collect();
     let mut models: Vec<LoadedModel> = request.models.iter().map(|m| m.model.clone()).collect();
     let known = |models: &[LoadedModel], id: &str| models.iter().any(|m| m.id() == id);
     for model in &request.alternatives {
@@ -285,7 +286,7 @@ fn band_error_warning(
             models.push(model.clone());
         }
     }
-    warning(choice, &qualities, groups, &models, request.level)
+    warning(choice, &measured, &models, request.level)
 }
 
 /// Measures the agreement of parameters and level with a recorded spectrum: by magnitude, as a recording of the voice reads it, and by samples.

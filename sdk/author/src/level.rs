@@ -6,6 +6,10 @@
 //! low. A model whose level is one of the energies that it stores says so ([`htex_host::Descriptor::keeps_level`],
 //! Bands) and keeps it.
 //! sBeta and sSlope round their parameters as files do before they compute the level.
+//!
+//! A model with a rate of its own plays too weak where its spectrum reaches up to half that rate, since a conversion to the player's rate
+//! takes up to half the power away there: AR at its Nyquist frequency of 1000 Hz by up to 3.0 dB. The stored level makes up for it
+//! ([`LoadedModel::played_part`]), so that what is played has the level of the recording.
 
 use htex_dsp::grid::level_rms;
 use htex_host::{Fit, HostError, LoadedModel};
@@ -53,7 +57,8 @@ pub fn stored_level(
 ) -> Result<f64, HostError> {
     match level {
         Level::Recording if !model.descriptor().keeps_level => {
-            Ok(recorded_level(spectrum.magnitude))
+            let part = model.played_part(stored, spectrum.band)?;
+            Ok(recorded_level(spectrum.magnitude) / part)
         }
         _ => fitted_level(model, fit, stored, spectrum),
     }

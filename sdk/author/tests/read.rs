@@ -2,9 +2,10 @@
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_author::{
-    SpectrumOptions, TextureSpectrum, agreement, read_spectrum, segment_spectra,
-    spectrum_of_samples,
+    Level, SpectrumOptions, TextureSpectrum, agreement, read_spectrum, segment_spectra,
+    spectrum_of_samples, stored_level,
 };
+use htex_dsp::grid::level_rms;
 use htex_format::Measure;
 use htex_host::{LoadedModel, Registry, Stream};
 use htex_simulate::{SimulationOptions, Surface, simulate};
@@ -61,5 +62,38 @@ fn measures_of_magnitudes_are_those_of_the_voice() {
                 );
             }
         }
+    }
+}
+
+/// A filter loses up to half the power near half its own rate when it is played; the stored level makes up for it.
+#[test]
+fn a_filter_plays_at_the_level_of_a_recording_near_half_its_rate() {
+    let mut spectrum = spectrum(Surface::Sandpaper);
+    for (m, hz) in spectrum.magnitude.iter_mut().zip(&spectrum.frequency_hz) {
+        *m = if *hz > 980.0 { 1.0 } else { 1e-4 };
+    }
+    let recorded = level_rms(&spectrum.magnitude);
+    let registry = Registry::builtin();
+    for name in ["ar", "arma"] {
+        let model = registry.find(name).unwrap();
+        let options = model.descriptor().default_options();
+        let fit = model.fit(&spectrum.fit_request(&options)).unwrap();
+        let reference = spectrum.as_ref();
+        let stored = stored_level(model, &fit, &fit.parameters, reference, Level::Recording);
+        let heard = level_rms(&played(model, &fit.parameters, &spectrum));
+        let off_db = |level: f64| 20.0 * (level * heard / recorded).log10();
+        let [before, after] = [recorded, stored.unwrap()].map(off_db);
+        println!("{name}: {before:.2} dB at the recording's level, {after:.2} dB as stored");
+        // 0.3 dB is chance.
+        assert!(
+            before < -0.6 && after.abs() < 0.3,
+            "{name}: {before} {after}"
+        );
+        let part = model.played_part(&fit.parameters, spectrum.band).unwrap();
+        let read = read_spectrum(model, &fit.parameters, 1.0, reference).unwrap();
+        assert!(
+            (level_rms(&read) - part).abs() < 1e-9 && part < 0.93,
+            "{part}"
+        );
     }
 }

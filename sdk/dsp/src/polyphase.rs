@@ -44,6 +44,14 @@ impl Polyphase {
         }
     }
 
+    /// A filter between equal rates whose outputs are `phase` of `phases` parts of a sample behind the source's.
+    pub(crate) fn at(phase: usize, phases: usize, taps: usize, kernel: Arc<[f32]>) -> Self {
+        Self {
+            phase,
+            ..Self::new(phases, (1, 0), taps, kernel)
+        }
+    }
+
     pub(crate) fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         let (whole, rest) = self.step;
         for sample in out {

@@ -8,6 +8,7 @@
 //! eight times fewer samples, and the steep filter at the top of the band is the converter's. It is not a library's,
 //! since those work in chunks of their own size.
 
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::kernels;
@@ -66,34 +67,59 @@ impl Resampler {
     /// # Errors
     /// Rates outside 1 mHz to 10 MHz, or that differ by more than a factor of 10,000.
     pub fn new(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Option<Self>, UnusableRates> {
-        let specs = specs(from_hz, to_hz, top_hz)?;
+        Self::of(specs(from_hz, to_hz, top_hz)?)
+    }
+
+    /// As [`Self::new`], for a source that has `from_hz` whichever rate is wanted, such as a filter. Its level is the same at all rates
+    /// that hold its content. Near half its own rate it loses up to half its power at high rates, so it loses as much at low ones:
+    /// where the rates are equal ([`OwnRate`]), and where the wanted one is lower.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_own_rate(
+        from_hz: f64,
+        to_hz: f64,
+        top_hz: f64,
+    ) -> Result<Option<Self>, UnusableRates> {
+        Self::of(own_specs(from_hz, to_hz, top_hz)?)
+    }
+
+    fn of(specs: Vec<Spec>) -> Result<Option<Self>, UnusableRates> {
         let stages: Vec<Stage> = specs.iter().map(Stage::new).collect();
         Ok((!stages.is_empty()).then_some(Self { stages }))
     }
 
-    /// Multiply-accumulates per output sample of such a converter, on average; `None` if no conversion is
-    /// needed.
+    /// Returns the work of such a converter; `None` if no conversion is needed. `own_rate`: of [`Self::of_own_rate`].
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn macs_per_output(
+    pub fn work(
         from_hz: f64,
         to_hz: f64,
         top_hz: f64,
-    ) -> Result<Option<f64>, UnusableRates> {
-        let specs = specs(from_hz, to_hz, top_hz)?;
-        let mut macs = 0.0;
+        own_rate: bool,
+    ) -> Result<Option<Work>, UnusableRates> {
+        let specs = match own_rate {
+            true => own_specs(from_hz, to_hz, top_hz)?,
+            false => specs(from_hz, to_hz, top_hz)?,
+        };
+        let mut work = Work::default();
         for spec in &specs {
-            let rate = spec.to as f64 / 1000.0 / to_hz;
+            let samples = spec.to as f64 / 1000.0 / to_hz;
             // When a rate is doubled, every other sample is a copy.
             let rows = match spec.up() {
-                2 => 0.5,
+                2 if spec.is_whole() => 0.5,
                 _ if spec.is_exact() => 1.0,
                 _ => 2.0,
             };
-            macs += rate * rows * spec.taps() as f64;
+            let part = match spec.is_whole() {
+                true => &mut work.whole,
+                false => &mut work.rational,
+            };
+            part.samples += samples;
+            part.macs += samples * rows * spec.taps() as f64;
         }
-        Ok((!specs.is_empty()).then_some(macs))
+        Ok((!specs.is_empty()).then_some(work))
     }
 
     /// Fills `out`, pulling source samples through `source`, which must fill the whole slice that it is
@@ -103,12 +129,106 @@ impl Resampler {
     }
 }
 
+/// Work of a converter for each sample of its output, on average.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Work {
+    /// Stages that raise the rate by an integer factor.
+    pub whole: Part,
+    /// All other stages.
+    pub rational: Part,
+}
+
+/// Samples that stages of a kind give for each sample of a converter's output, and their multiply-accumulates.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Part {
+    /// Samples.
+    pub samples: f64,
+    /// Multiply-accumulates of all of them.
+    pub macs: f64,
+}
+
+/// What a conversion to high rates passes of a source that has a rate of its own, and content up to the transition band around half
+/// that rate: in the middle of it, half the amplitude, beside an image of the same amplitude.
+#[derive(Debug, Clone)]
+pub struct OwnRate {
+    rate_hz: f64,
+    kernel: Arc<[f32]>,
+    taps: usize,
+}
+
+/// Phases of the kernel of [`OwnRate`].
+const OWN_PHASES: u64 = 4;
+
+impl OwnRate {
+    /// Takes the rate and the highest frequency of the source, hertz; `None` if the content ends below the transition band, which
+    /// passes whole.
+    pub fn new(rate_hz: f64, top_hz: f64) -> Option<Self> {
+        let spec = Spec::of_own_rate(rate_hz, millihertz(rate_hz)?, top_hz)?;
+        Some(Self {
+            rate_hz,
+            kernel: spec.own_kernel(),
+            taps: spec.taps(),
+        })
+    }
+
+    /// Returns the rate of the source, hertz.
+    pub fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// Returns the amplitude that passes at a frequency, hertz, which is an image above half the rate.
+    pub fn amplitude(&self, hz: f64) -> f64 {
+        let middle = 0.5 * self.taps as f64 - 1.0;
+        let turn = core::f64::consts::TAU * hz / self.rate_hz;
+        let (step_sin, step_cos) = crate::trig::sincos(turn);
+        let row = |(row, kernel): (usize, &[f32])| -> f64 {
+            let first = -middle - row as f64 / OWN_PHASES as f64;
+            let (mut sin, mut cos) = crate::trig::sincos(turn * first);
+            let mut sum = 0.0;
+            for x in kernel {
+                sum += f64::from(*x) * cos;
+                (cos, sin) = (
+                    cos * step_cos - sin * step_sin,
+                    sin * step_cos + cos * step_sin,
+                );
+            }
+            sum
+        };
+        let rows = self.kernel.chunks_exact(self.taps).enumerate();
+        rows.map(row).sum::<f64>() / OWN_PHASES as f64
+    }
+}
+
 /// Specification of a stage: rates in millihertz, edges of its transition band in hertz.
 struct Spec {
     from: u64,
     to: u64,
     pass_hz: f64,
     stop_hz: f64,
+}
+
+/// As [`specs`], for [`Resampler::of_own_rate`].
+fn own_specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRates> {
+    let all = specs(from_hz, to_hz, top_hz)?;
+    if all.is_empty() {
+        let same = millihertz(from_hz).and_then(|rate| Spec::of_own_rate(from_hz, rate, top_hz));
+        return Ok(same.into_iter().collect());
+    }
+    let is_cut = top_hz > 0.5 * to_hz * (1.0 - TRANSITION) && top_hz <= 0.5 * to_hz;
+    if to_hz >= from_hz || !is_cut {
+        return Ok(all);
+    }
+    // All of the content fits below half the lower rate, and passes as at a high rate.
+    let edges = |spec: Spec| {
+        let nyquist = 0.5 * from_hz;
+        let pass_hz = top_hz.min(nyquist * (1.0 - TRANSITION));
+        Spec {
+            pass_hz,
+            stop_hz: (from_hz - pass_hz).max(nyquist * (1.0 + TRANSITION)),
+            ..spec
+        }
+    };
+    Ok(all.into_iter().map(edges).collect())
 }
 
 /// The stages of a converter; empty if no conversion is needed.
@@ -151,6 +271,28 @@ fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRat
 }
 
 impl Spec {
+    /// The filter of a source at its own rate; `None` if its content ends below the transition band.
+    fn of_own_rate(rate_hz: f64, rate: u64, top_hz: f64) -> Option<Self> {
+        let nyquist = 0.5 * rate_hz;
+        let pass_hz = nyquist * (1.0 - TRANSITION);
+        (top_hz > pass_hz).then_some(Self {
+            from: rate,
+            to: rate,
+            pass_hz,
+            stop_hz: nyquist * (1.0 + TRANSITION),
+        })
+    }
+
+    /// The kernel of that filter, in quarters of a sample.
+    fn own_kernel(&self) -> Arc<[f32]> {
+        kernels::kernel(self.taps(), OWN_PHASES, true, self.cutoff())
+    }
+
+    /// Cycles per sample of the source.
+    fn cutoff(&self) -> f64 {
+        0.5 * (self.pass_hz + self.stop_hz) / self.source_hz()
+    }
+
     fn up(&self) -> u64 {
         self.to / gcd(self.from, self.to)
     }
@@ -161,7 +303,7 @@ impl Spec {
 
     /// Whether the rate is raised by an integer factor.
     fn is_whole(&self) -> bool {
-        self.down() == 1 && self.is_exact()
+        self.from != self.to && self.down() == 1 && self.is_exact()
     }
 
     /// Whether each phase has its own row.
@@ -201,14 +343,19 @@ enum Stage {
 
 impl Stage {
     fn new(spec: &Spec) -> Self {
+        if spec.from == spec.to {
+            // A quarter of a sample from the source's, a frequency and its image add up in power, as at other rates: their phases are a
+            // quarter turn apart.
+            let kernel = spec.own_kernel();
+            return Self::Rational(Polyphase::at(1, OWN_PHASES as usize, spec.taps(), kernel));
+        }
         let (up, down, taps) = (spec.up(), spec.down(), spec.taps());
         let phases = if spec.is_exact() {
             up
         } else {
             INTERPOLATED_PHASES
         };
-        let cutoff = 0.5 * (spec.pass_hz + spec.stop_hz) / spec.source_hz();
-        let kernel = kernels::kernel(taps, phases, spec.is_exact(), cutoff);
+        let kernel = kernels::kernel(taps, phases, spec.is_exact(), spec.cutoff());
         if spec.is_whole() {
             return Self::Whole(Upsampler::new(up as usize, taps, kernel, spec.source_hz()));
         }
@@ -294,13 +441,52 @@ mod tests {
     #[test]
     fn a_steep_filter_is_cheap_at_a_low_rate() {
         let macs = |to_hz| {
-            Resampler::macs_per_output(2_000.0, to_hz, 1_000.0)
-                .unwrap()
-                .unwrap()
+            let work = Resampler::work(2_000.0, to_hz, 1_000.0, false);
+            work.unwrap().unwrap().whole.macs
         };
         let taps = specs(2_000.0, 4_000.0, 1_000.0).unwrap()[0].taps() as f64;
         // Every other sample is a copy; the second stage makes five times as many samples with few taps.
         assert_eq!(macs(4_000.0), 0.5 * taps);
         assert!(macs(20_000.0) < 0.2 * macs(4_000.0) + 12.0);
+    }
+
+    /// Noise in the transition band of a source at 2 kHz has one power at all rates, which is what [`OwnRate`] states.
+    #[test]
+    fn a_source_of_its_own_rate_has_one_level_at_all_rates() {
+        let own = OwnRate::new(2_000.0, 1_000.0).unwrap();
+        assert!(OwnRate::new(2_000.0, 970.0).is_none());
+        assert!((own.amplitude(500.0) - 1.0).abs() < 1e-3 && own.amplitude(1_030.0).abs() < 1e-3);
+        for hz in [970.3, 985.3, 992.3, 997.3, 999.3] {
+            let stated = own.amplitude(hz).powi(2) + own.amplitude(2_000.0 - hz).powi(2);
+            for to_hz in [2_000.0, 2_001.0, 2_050.0, 2_400.0, 8_000.0, 48_000.0] {
+                let found = 2.0 * power(2_000.0, to_hz, hz);
+                let off_db = 10.0 * libm::log10(found / stated);
+                // Lengths of kernels are rounded up to multiples of 2 or 8.
+                assert!(off_db.abs() < 0.04, "{hz} Hz at {to_hz}: {off_db} dB");
+            }
+        }
+        for from_hz in [2_020.0, 2_500.0, 4_000.0] {
+            let ratio = power(from_hz, 2_000.0, 991.3) / power(from_hz, 48_000.0, 991.3);
+            let off_db = 10.0 * libm::log10(ratio);
+            assert!(off_db.abs() < 0.04, "from {from_hz}: {off_db} dB");
+        }
+    }
+
+    /// Mean square of a converted sine over ten seconds.
+    fn power(from_hz: f64, to_hz: f64, hz: f64) -> f64 {
+        let mut resampler = Resampler::of_own_rate(from_hz, to_hz, 1_000.0).unwrap();
+        let mut n = 0usize;
+        let mut source = |block: &mut [f32]| {
+            for x in block {
+                *x = libm::sin(core::f64::consts::TAU * hz * n as f64 / from_hz) as f32;
+                n += 1;
+            }
+        };
+        let mut out = alloc::vec![0.0f32; (10.0 * to_hz) as usize];
+        match &mut resampler {
+            Some(resampler) => resampler.process(&mut out, &mut source),
+            None => source(&mut out),
+        }
+        out.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / out.len() as f64
     }
 }

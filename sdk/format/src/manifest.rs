@@ -12,6 +12,7 @@ use serde_json::Value;
 
 use crate::Quantity;
 use crate::law::{Contact, Law};
+use crate::measure::ErrorMeasure;
 use crate::quality::{LeftOut, Quality};
 use crate::schema_words::{
     DOI, ENTRY_NAME, MODEL_ID, SEMANTIC_VERSION, open_variants, own_entries, quantities_and_units,
@@ -334,6 +335,39 @@ impl StoredAs {
 
 fn is_zero(x: &f64) -> bool {
     *x == 0.0
+}
+
+impl Representation {
+    /// Returns the error by a measure, decibels, by which a program chooses among the representations of an asset: the error at the
+    /// first condition, with which a voice starts. Where that one was not measured, for example since it was computed between
+    /// recorded ones, it is [`Self::largest_error_db`]. `None` if no condition was measured.
+    ///
+    /// ```no_run
+    /// # use htex_format::ErrorMeasure;
+    /// # let asset = htex_format::Asset::open("sandpaper.htex".as_ref())?;
+    /// for representation in &asset.manifest.representations {
+    ///     println!("{}: {:?} dB", representation.model, representation.error_db(ErrorMeasure::NineBand));
+    /// }
+    /// # Ok::<(), htex_format::ReadError>(())
+    /// ```
+    pub fn error_db(&self, measure: ErrorMeasure) -> Option<f64> {
+        let first = self.at.first().and_then(|at| at.error_db(measure));
+        first.or_else(|| self.largest_error_db(measure))
+    }
+
+    /// Returns the largest error by a measure over the conditions that were measured, decibels; `None` if no condition was.
+    pub fn largest_error_db(&self, measure: ErrorMeasure) -> Option<f64> {
+        let measured = self.at.iter().filter_map(|at| at.error_db(measure));
+        measured.max_by(f64::total_cmp)
+    }
+}
+
+impl AtCondition {
+    fn error_db(&self, measure: ErrorMeasure) -> Option<f64> {
+        self.quality
+            .as_ref()
+            .and_then(|quality| measure.of(quality))
+    }
 }
 
 /// A representation at one condition.

@@ -18,6 +18,9 @@ use crate::raw::RawModel;
 use crate::sandbox::Sandbox;
 use crate::{HostError, ModelVoice, Origin, WasmLimits};
 
+/// Rate of a usual sound card, hertz.
+pub(crate) const HIGH_RATE_HZ: f64 = 48_000.0;
+
 /// The extension of models that follow the motion.
 pub const MOTION_EXTENSION: &str = htex_model::motion_1::MotionTable::ID;
 /// Length of the parameter buffer in the first call.
@@ -354,6 +357,20 @@ impl LoadedModel {
             return Ok(rate_hz);
         }
         Err(self.broken("voice_rate", format!("a rate of {rate_hz} Hz")))
+    }
+
+    /// Returns whether a voice that renders at `rate_hz` has this rate of its own, since it would have it at a high rate too.
+    ///
+    /// # Errors
+    /// As [`Self::voice_rate_hz`].
+    pub fn has_own_rate(
+        &self,
+        parameters: &[f64],
+        band: Band,
+        rate_hz: f64,
+    ) -> Result<bool, HostError> {
+        let high_hz = HIGH_RATE_HZ.max(4.0 * rate_hz).min(MAX_RATE_HZ);
+        Ok(self.voice_rate_hz(parameters, band, high_hz)? == rate_hz)
     }
 
     /// Makes a voice that renders at `rate_hz`, a rate that [`Self::voice_rate_hz`] returned.

@@ -23,7 +23,8 @@ pub struct Stream<S = ModelVoice> {
 }
 
 impl<S> Stream<S> {
-    /// Makes a stream at `rate_hz` of a source with samples at `source_rate_hz` and frequencies up to `top_hz`.
+    /// Makes a stream at `rate_hz` of a source with samples at `source_rate_hz` and frequencies up to `top_hz`. `own_rate`: it has this
+    /// rate whichever is wanted ([`LoadedModel::has_own_rate`]).
     ///
     /// # Errors
     /// When the one rate cannot be converted to the other.
@@ -32,9 +33,14 @@ impl<S> Stream<S> {
         source_rate_hz: f64,
         rate_hz: f64,
         top_hz: f64,
+        own_rate: bool,
     ) -> Result<Self, HostError> {
+        let resampler = match own_rate {
+            true => Resampler::of_own_rate(source_rate_hz, rate_hz, top_hz)?,
+            false => Resampler::new(source_rate_hz, rate_hz, top_hz)?,
+        };
         Ok(Self {
-            resampler: Resampler::new(source_rate_hz, rate_hz, top_hz)?,
+            resampler,
             source,
             source_rate_hz,
         })
@@ -84,7 +90,8 @@ impl Stream {
     ) -> Result<Self, HostError> {
         let voice_rate_hz = model.voice_rate_hz(parameters, band, rate_hz)?;
         let voice = model.voice(parameters, band, voice_rate_hz, seed)?;
-        Self::of(voice, voice_rate_hz, rate_hz, band.high_hz)
+        let own_rate = model.has_own_rate(parameters, band, voice_rate_hz)?;
+        Self::of(voice, voice_rate_hz, rate_hz, band.high_hz, own_rate)
     }
 
     /// Returns the rate at which the model renders, hertz.

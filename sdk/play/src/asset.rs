@@ -6,7 +6,7 @@
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use htex_format::{Condition, Manifest, Measure, Quantity, Representation};
+use htex_format::{Condition, ErrorMeasure, Manifest, Quantity, Representation};
 use htex_host::{Band, HostError, LoadedModel, RUNS_WASM, Registry, StillSound, Synthesis};
 
 use crate::condition::default_condition;
@@ -394,12 +394,37 @@ impl Asset {
         Ok(named(&self.loaded_model(model)?.descriptor().fields, flat))
     }
 
+    /// Returns the indices of the representations in the order in which a program chooses among them: models that it can run before
+    /// the others, then those that were measured, then the smallest [`Representation::error_db`]; among equals as in the file.
+    ///
+    /// ```no_run
+    /// let asset = htex::Asset::open("sandpaper.htex")?;
+    /// for i in asset.ranked(htex::ErrorMeasure::NineBand) {
+    ///     println!("{}", asset.manifest().representations[i].model);
+    /// }
+    /// # Ok::<(), htex::Error>(())
+    /// ```
+    pub fn ranked(&self, measure: ErrorMeasure) -> Vec<usize> {
+        let all = &self.data.manifest.representations;
+        let order = |i: &usize| {
+            let error_db = all[*i].error_db(measure);
+            let last = [!self.is_runnable(&all[*i]), error_db.is_none()];
+            (last, error_db.unwrap_or_default())
+        };
+        let mut ranked: Vec<usize> = (0..all.len()).collect();
+        ranked.sort_by(|a, b| {
+            let (a, b) = (order(a), order(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
+        ranked
+    }
+
     /// Returns the index of a representation by its model's id or short name, else of the best.
     fn representation(&self, model: Option<&str>) -> Result<usize, Error> {
         let all = &self.data.manifest.representations;
         let found = match model {
             Some(name) => all.iter().position(|r| is_named(r, name)),
-            None => nearest(all, |r| self.is_runnable(r)),
+            None => self.ranked(ErrorMeasure::NineBand).first().copied(),
         };
         found.ok_or_else(|| Error::NoRepresentation {
             wanted: model.unwrap_or("any").to_owned(),
@@ -558,19 +583,4 @@ fn is_named(representation: &Representation, name: &str) -> bool {
             .rsplit('.')
             .next()
             .is_some_and(|short| short.eq_ignore_ascii_case(name))
-}
-
-/// Returns the representation with the smallest nine-band error at its first condition. Representations without a
-/// measurement follow, and then those of models that this program cannot run.
-fn nearest(all: &[Representation], runnable: impl Fn(&Representation) -> bool) -> Option<usize> {
-    let error = |r: &Representation| {
-        let quality = r.at.first().and_then(|at| at.quality.as_ref());
-        let error = quality.and_then(|q| q.get(Measure::NineBand));
-        error.unwrap_or(f64::INFINITY)
-    };
-    let order = |i: usize| (!runnable(&all[i]), error(&all[i]));
-    (0..all.len()).min_by(|&a, &b| {
-        let (a, b) = (order(a), order(b));
-        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
-    })
 }

@@ -44,8 +44,8 @@ pub use htex_finding::{Finding, Severity};
 /// An asset's data, the argument of [`Asset::new`].
 pub use htex_format::Asset as AssetData;
 pub use htex_format::{
-    AtCondition, Condition, Contact, Exponent, ExponentSource, Law, Limits, Manifest, Quantity,
-    ReadError, Representation, Rights, Triangle, TrianglesError, check_triangles,
+    AtCondition, Condition, Contact, ErrorMeasure, Exponent, ExponentSource, Law, Limits, Manifest,
+    Quantity, ReadError, Representation, Rights, Triangle, TrianglesError, check_triangles,
 };
 pub use htex_format::{FieldOrder, SAME_CONDITION};
 pub use htex_host::{

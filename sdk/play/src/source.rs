@@ -31,6 +31,8 @@ pub struct SampleSource {
     sets: Vec<f64>,
     mixed: Vec<f64>,
     rate_hz: f64,
+    /// Whether the model has this rate whichever is wanted.
+    own_rate: bool,
     band: Band,
     motion: Motion,
     level_rms: f64,
@@ -60,6 +62,7 @@ impl SampleSource {
             mixed: vec![0.0; model.most_parameters()],
             known,
             rate_hz,
+            own_rate: model.has_own_rate(&parameters, band, rate_hz)?,
             band,
             motion,
             level_rms: located.level_rms,
@@ -73,6 +76,12 @@ impl SampleSource {
     /// Returns the rate at which the model renders, hertz.
     pub fn rate_hz(&self) -> f64 {
         self.rate_hz
+    }
+
+    /// Returns whether the model renders at this rate whichever is wanted. Its conversion is then
+    /// [`Resampler::of_own_rate`](htex_dsp::resample::Resampler::of_own_rate), so that it has one level at all rates.
+    pub fn has_own_rate(&self) -> bool {
+        self.own_rate
     }
 
     /// Returns the highest frequency of the texture, hertz.

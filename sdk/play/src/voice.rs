@@ -89,10 +89,11 @@ impl Voice {
         let level_rms = source.level_rms() * follow.gain();
         let analyser = envelope::analyser(options.envelope_bands, source.band(), rate_hz)?;
         let (source_rate_hz, top_hz) = (source.rate_hz() * base, source.top_hz() * base);
+        let own_rate = source.has_own_rate();
         let mut voice = Self {
             started: source.motion(),
             level_rms: Glide::new(level_rms as f32, ramp),
-            stream: Stream::of(source, source_rate_hz, rate_hz, top_hz)?,
+            stream: Stream::of(source, source_rate_hz, rate_hz, top_hz, own_rate)?,
             still,
             follow,
             travel,

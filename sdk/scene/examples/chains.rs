@@ -17,7 +17,7 @@ use common::{
 use htex_device::Capabilities;
 use htex_play::Registry;
 use htex_scene::file::{Budget, Effect, Motion, Switch};
-use htex_scene::{Costs, Finger, LoadedScene, Renderer, plan};
+use htex_scene::{Costs, Finger, LoadedScene, Renderer, Response, plan};
 
 const BLOCK: usize = 64;
 const ROUNDS: usize = 150;
@@ -25,7 +25,8 @@ const STRETCH: usize = 32;
 
 fn main() {
     let only = std::env::args().nth(1);
-    let tables: [(&str, fn()); 5] = [
+    let tables: [(&str, fn()); 6] = [
+        ("stated", stated),
         ("saved", saved),
         ("live", live),
         ("budgets", budgets),
@@ -90,6 +91,65 @@ fn interleaved(renderers: &mut [Renderer]) -> Vec<f64> {
     }
     least
 }
+
+/// The typical scenes, with a response of the display that is compensated, and with all effects on.
+fn variants() -> Vec<(String, LoadedScene, Capabilities)> {
+    let mut all = Vec::new();
+    for (name, scene, device) in typical() {
+        let mut full = scene.clone();
+        full.scene.effects = Effect::ALL.map(|effect| (effect, Switch::On)).into();
+        let mut compensated = scene.clone();
+        compensated.response = Some(response());
+        all.push((format!("{name}, compensated"), compensated, device.clone()));
+        all.push((format!("{name}, all stages"), full, device.clone()));
+        all.push((name.to_owned(), scene, device));
+    }
+    all
+}
+
+/// A display that resonates at 150 Hz.
+fn response() -> Response {
+    let frequency_hz: Vec<f64> = (1..=100).map(|i| f64::from(10 * i)).collect();
+    let resonance = |hz: &f64| 1.0 + 3.0 / (1.0 + ((hz - 150.0) / 60.0).powi(2));
+    Response {
+        magnitude: frequency_hz.iter().map(resonance).collect(),
+        phase_rad: vec![0.0; frequency_hz.len()],
+        frequency_hz,
+    }
+}
+
+/// What the plans of all chains state, by costs that are measured here, and what the chains take.
+fn stated() {
+    let costs = Costs::measure(&Registry::builtin(), "this machine").unwrap();
+    println!(
+        "ns a sample                                          stated    takes   stated / takes"
+    );
+    for (name, scene, device) in variants() {
+        let plan = plan(&scene, &device, &costs).unwrap();
+        let takes = over_strokes(&mut Renderer::new(&scene, &plan).unwrap());
+        let total = plan.ns_per_sample_total;
+        println!("{name:50} {total:8.2} {takes:8.2} {:8.2}", total / takes);
+    }
+}
+
+/// The minimum time per sample over whole strokes, nanoseconds, within which the motion changes.
+fn over_strokes(renderer: &mut Renderer) -> f64 {
+    let blocks = (renderer.rate_hz() * STROKES_S / BLOCK as f64).ceil() as usize;
+    let mut block = [0.0f32; BLOCK];
+    let mut least = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let start = Instant::now();
+        for _ in 0..blocks {
+            renderer.render(std::hint::black_box(&mut block));
+        }
+        let ns = start.elapsed().as_nanos() as f64 / (blocks * BLOCK) as f64;
+        least = least.min(ns);
+    }
+    least
+}
+
+/// Duration of a stroke to and fro, seconds.
+const STROKES_S: f64 = 1.0;
 
 fn saved() {
     println!("ns a sample                          stages  planned  all stages   ratio");

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use htex_dsp::resample::Work;
 use serde::{Deserialize, Serialize};
 
 /// Costs of models and stages on one machine.
@@ -15,11 +16,36 @@ pub struct Costs {
     pub model_ns: BTreeMap<String, f64>,
     /// Model id to the time of interpolating two parameter sets and retuning a voice, nanoseconds.
     pub retune_ns: BTreeMap<String, f64>,
-    /// Stage to the time of one sample at the stage's rate, nanoseconds; for filtering stages without their
-    /// multiplications.
+    /// Stage to the time of one sample at the stage's rate, nanoseconds.
     pub stage_ns: BTreeMap<String, f64>,
-    /// Time of one multiply-accumulate of a filter, nanoseconds.
+    /// Stage to the time of one sample at the stage's rate where a scene switches it on and it changes nothing, nanoseconds. Interpolation
+    /// and crossfades take none then.
+    pub neutral_ns: BTreeMap<String, f64>,
+    /// Time of a sample of the renderer itself where nothing changes, nanoseconds, and where the motion is read before every block.
+    pub renderer_ns: [f64; 2],
+    /// Compensation, in the short blocks that a resampler pulls.
+    pub compensation: FilterCost,
+    /// Conversions that raise a rate by an integer factor.
+    pub whole: FilterCost,
+    /// Conversions between other rates.
+    pub rational: FilterCost,
+}
+
+/// Cost of a filter.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FilterCost {
+    /// Time of a sample without its multiplications, nanoseconds.
+    pub sample_ns: f64,
+    /// Time of one multiply-accumulate, nanoseconds.
     pub mac_ns: f64,
+}
+
+impl FilterCost {
+    /// Time of filters that give `samples` by `macs` multiply-accumulates, nanoseconds.
+    pub(crate) fn of(self, samples: f64, macs: f64) -> f64 {
+        samples * self.sample_ns + macs * self.mac_ns
+    }
 }
 
 impl Costs {
@@ -62,13 +88,27 @@ impl Costs {
         self.stage_ns.get(name).copied().unwrap_or(0.0)
     }
 
+    /// Cost of a conversion, per sample of its output.
+    pub(crate) fn resampling(&self, work: Work) -> f64 {
+        let Work { whole, rational } = work;
+        self.whole.of(whole.samples, whole.macs) + self.rational.of(rational.samples, rational.macs)
+    }
+
+    pub(crate) fn neutral(&self, name: &str) -> f64 {
+        self.neutral_ns.get(name).copied().unwrap_or(0.0)
+    }
+
     pub(crate) fn nothing() -> Self {
         Self {
             machine: "not measured".to_owned(),
             model_ns: BTreeMap::new(),
             retune_ns: BTreeMap::new(),
             stage_ns: BTreeMap::new(),
-            mac_ns: 0.0,
+            neutral_ns: BTreeMap::new(),
+            renderer_ns: [0.0; 2],
+            compensation: FilterCost::default(),
+            whole: FilterCost::default(),
+            rational: FilterCost::default(),
         }
     }
 }

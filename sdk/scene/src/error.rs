@@ -29,18 +29,16 @@ pub enum SceneError {
     },
     /// No representation is within the error budget.
     #[error(
-        "surface {surface}: no representation comes within {wanted_db} dB; the nearest is {model} \
-         at {nearest_db:.2} dB: raise budget.max_error_db"
+        "surface {surface}: no representation comes within {wanted_db} dB; {}", nearest_of(.nearest)
     )]
     NotNearEnough {
         /// Index of the surface.
         surface: usize,
         /// The budget, decibels.
         wanted_db: f64,
-        /// The representation with the smallest error.
-        model: String,
-        /// Its error, decibels.
-        nearest_db: f64,
+        /// The representation with the smallest error, and the largest error over its conditions, decibels; `None` if the asset
+        /// states no error by this measure.
+        nearest: Option<(String, f64)>,
     },
     /// No choice of representations is within the time budget.
     #[error(
@@ -114,6 +112,18 @@ pub enum SceneError {
         /// Normal force, newtons.
         force_n: f64,
     },
+}
+
+fn nearest_of(nearest: &Option<(String, f64)>) -> String {
+    match nearest {
+        Some((model, db)) => {
+            format!("the nearest is {model} at {db:.2} dB: raise budget.max_error_db")
+        }
+        None => {
+            "its asset states no such error: name a representation, or remove budget.max_error_db"
+                .to_owned()
+        }
+    }
 }
 
 /// Adds the surface to an error of its asset or its model.

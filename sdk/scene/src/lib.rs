@@ -41,7 +41,7 @@ mod trace;
 mod track;
 mod validate;
 
-pub use cost::Costs;
+pub use cost::{Costs, FilterCost};
 pub use device::DeviceOverride;
 pub use error::SceneError;
 pub use file::Scene;

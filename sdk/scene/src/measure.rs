@@ -7,20 +7,31 @@ use std::time::Instant;
 
 use htex_device::{Capabilities, Quantity, Rates};
 use htex_dsp::fir::Fir;
-use htex_dsp::resample::UnusableRates;
+use htex_dsp::resample::{Part, Resampler, UnusableRates};
 use htex_host::{Band, FitRequest, HostError, LoadedModel, Registry};
 use htex_play::{AtCondition, Condition, Contact, Law, Motions};
 
-use crate::cost::Costs;
+use crate::cost::{Costs, FilterCost};
 use crate::motion::Finger;
 use crate::played::PlayedSurface;
+use crate::render::Renderer;
 use crate::requirements::{Requirements, Span};
-use crate::stages::{Context, EFFECTS, Level, Stage, StagePlace, resampling_macs};
+use crate::stages::{Context, EFFECTS, Level, Stage, StagePlace};
 
 const BLOCK: usize = 64;
 /// Samples per timed run: short enough that some runs are not interrupted.
 const STRETCH: usize = 2_048;
-const ROUNDS: usize = 60;
+const ROUNDS: usize = 400;
+/// Samples that a resampler pulls at a time, at the rates of the models.
+const PULLED: usize = 8;
+/// Blocks that are pulled in a control block.
+const CONTROL: usize = 2;
+/// Coefficients of the two filters that are measured.
+const SHORT: usize = 201;
+const LONG: usize = 801;
+/// Converters of one stage with few and with many coefficients: from a rate to a rate, for a highest frequency, hertz.
+const WHOLE: [[f64; 3]; 2] = [[4_000.0, 20_000.0, 1_000.0], [2_000.0, 6_000.0, 1_000.0]];
+const RATIONAL: [[f64; 3]; 2] = [[4_000.0, 44_100.0, 1_000.0], [2_000.0, 2_500.0, 1_000.0]];
 
 impl Costs {
     /// Measures all models of a registry and all stages; takes about a second.
@@ -37,8 +48,16 @@ impl Costs {
             costs.model_ns.insert(model.id().to_owned(), sample_ns);
             costs.retune_ns.insert(model.id().to_owned(), retune_ns);
         }
-        costs.mac_ns = mac_ns();
-        costs.stage_ns = stages(costs.mac_ns)?;
+        costs.renderer_ns = [true, false].map(|constant| {
+            let mut renderer = Renderer::silent(&example_required(), constant);
+            least(|block| {
+                renderer.render(block);
+            })
+        });
+        costs.compensation = compensation();
+        costs.whole = conversion(WHOLE)?;
+        costs.rational = conversion(RATIONAL)?;
+        (costs.stage_ns, costs.neutral_ns) = stages()?;
         Ok(costs)
     }
 }
@@ -63,7 +82,10 @@ fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
     let rate_hz = model.voice_rate_hz(&one, Band::TACTILE, 20_000.0)?;
     let mut voice = model.voice(&one, Band::TACTILE, rate_hz, 1)?;
     let mut failed = Ok(());
-    let steady = least(|block| failed = voice.render(block));
+    let steady = least(|block| {
+        let pulls = block.chunks_mut(PULLED).map(|block| voice.render(block));
+        failed = pulls.fold(Ok(()), Result::and);
+    });
     failed?;
     let mut failed = Ok(());
     let mut turn = false;
@@ -71,9 +93,12 @@ fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
         turn = !turn;
         let weights = if turn { [0.25, 0.75] } else { [0.75, 0.25] };
         let mixed = model.interpolate(&[&one, &other], &weights);
-        failed = mixed
-            .and_then(|mixed| voice.retune(&mixed))
-            .and_then(|()| voice.render(block));
+        let pulls = block.chunks_mut(PULLED);
+        failed = mixed.and_then(|mixed| voice.retune(&mixed)).and_then(|()| {
+            pulls
+                .map(|block| voice.render(block))
+                .fold(Ok(()), Result::and)
+        });
     });
     failed?;
     Ok((steady, (retuned - steady).max(0.0) * BLOCK as f64))
@@ -96,59 +121,125 @@ fn fitted(model: &LoadedModel, corner_hz: f64) -> Result<Vec<f64>, HostError> {
     Ok(model.fit(&request)?.parameters)
 }
 
-fn mac_ns() -> f64 {
-    let taps = 400;
-    let mut fir = Fir::with_magnitude(taps, 2_000.0, |hz| 1.0 / (1.0 + hz));
-    least(|block| fir.process(block)) / taps as f64
+/// The cost of a filter from the work and the time of a short and a long one, per sample.
+fn filter_cost([(few, short_ns), (many, long_ns)]: [(Part, f64); 2]) -> FilterCost {
+    let per_sample = |part: Part| part.macs / part.samples;
+    let [short_ns, long_ns] = [short_ns / few.samples, long_ns / many.samples];
+    let mac_ns = (long_ns - short_ns).max(0.0) / (per_sample(many) - per_sample(few));
+    FilterCost {
+        sample_ns: (short_ns - per_sample(few) * mac_ns).max(0.0),
+        mac_ns,
+    }
 }
 
-/// Time per sample of each stage at its own rate, nanoseconds, without the multiplications of filters.
-fn stages(mac_ns: f64) -> Result<BTreeMap<String, f64>, UnusableRates> {
-    let (required, played) = (example_required(), example_surface());
-    let mut costs = BTreeMap::new();
-    let mut note = |name: &str, mut stage: Box<dyn Stage>, macs: f64| {
-        let ns = measure_stage(&mut *stage) - macs * mac_ns;
-        costs.insert(name.to_owned(), ns.max(0.0));
+/// Measures filters of two lengths, in the blocks that a resampler pulls.
+fn compensation() -> FilterCost {
+    let source_ns = least(signal());
+    filter_cost([SHORT, LONG].map(|taps| {
+        let mut fir = Fir::with_magnitude(taps, 2_000.0, |hz| 1.0 / (1.0 + hz));
+        let mut source = signal();
+        let ns = least(|block| {
+            source(block);
+            block
+                .chunks_mut(PULLED)
+                .for_each(|block| fir.process(block));
+        });
+        let (samples, macs) = (1.0, taps as f64);
+        (Part { samples, macs }, ns - source_ns)
+    }))
+}
+
+/// Measures two converters of one stage: from a rate to a rate, for a highest frequency, hertz.
+fn conversion(rates_hz: [[f64; 3]; 2]) -> Result<FilterCost, UnusableRates> {
+    let one = |[from_hz, to_hz, top_hz]: [f64; 3]| {
+        let work = Resampler::work(from_hz, to_hz, top_hz, false)?.unwrap_or_default();
+        let mut source = signal();
+        let source_ns = least(&mut source) * from_hz / to_hz;
+        let ns = match Resampler::new(from_hz, to_hz, top_hz)? {
+            Some(mut resampler) => least(|block| resampler.process(block, &mut source)),
+            None => source_ns,
+        };
+        let part = match work.whole.samples > 0.0 {
+            true => work.whole,
+            false => work.rational,
+        };
+        Ok((part, ns - source_ns))
     };
-    note("level", Box::new(Level::new(&played, 0.1)), 0.0);
+    let [short, long] = rates_hz.map(one);
+    Ok(filter_cost([short?, long?]))
+}
+
+/// Stage to time.
+type Times = BTreeMap<String, f64>;
+
+/// Time per sample of each stage at its own rate, nanoseconds, but of filters: where it is needed, and where it changes nothing.
+fn stages() -> Result<(Times, Times), UnusableRates> {
+    let (required, played) = (example_required(), example_surface());
+    let (mut needed, mut neutral) = (BTreeMap::new(), BTreeMap::new());
+    let level = measure_stage(&mut Level::new(&played, 0.1), PULLED, false);
+    needed.insert("level".to_owned(), level);
     for entry in EFFECTS {
-        match &entry.place {
-            StagePlace::Surface { build: None, .. } => {}
-            StagePlace::Surface {
-                build: Some(build), ..
-            } => note(entry.name, build(&required, &played, false), 0.0),
-            StagePlace::Mix { build, .. } => {
-                let macs = resampling_macs(&required, &played)?.unwrap_or(0.0);
-                note(entry.name, build(&required, &played, false)?, macs);
-            }
-            StagePlace::Device { build, .. } => note(entry.name, build(&required, false), 0.0),
+        for (costs, is_neutral) in [(&mut needed, false), (&mut neutral, true)] {
+            // A resampler pulls short blocks from what is before it.
+            let (mut stage, block) = match &entry.place {
+                StagePlace::Surface { build: None, .. } => continue,
+                StagePlace::Surface {
+                    build: Some(build), ..
+                } => (build(&required, &played, is_neutral), PULLED),
+                StagePlace::Mix { .. } if !is_neutral => continue,
+                StagePlace::Mix { build, .. } => (build(&required, &played, true)?, PULLED),
+                StagePlace::Device { build, .. } => (build(&required, is_neutral), BLOCK),
+            };
+            costs.insert(
+                entry.name.to_owned(),
+                measure_stage(&mut *stage, block, !is_neutral),
+            );
         }
     }
-    Ok(costs)
+    Ok((needed, neutral))
 }
 
-fn measure_stage(stage: &mut dyn Stage) -> f64 {
+/// A source of samples.
+fn signal() -> impl FnMut(&mut [f32]) {
     let mut at = 0;
     let input: Vec<f32> = (0..4 * BLOCK)
         .map(|n| libm::sinf(n as f32 * 0.7) * 0.1)
         .collect();
-    let mut source = move |block: &mut [f32]| {
+    move |block: &mut [f32]| {
         for piece in block.chunks_mut(BLOCK) {
             at = (at + BLOCK) % (3 * BLOCK);
             piece.copy_from_slice(&input[at..at + piece.len()]);
         }
-    };
-    stage.follow(&Context {
+    }
+}
+
+/// Time per sample of a stage that is rendered in blocks of `pulled`. `moves`: the motion changes at every control block, of which one lasts
+/// about two blocks that are pulled.
+fn measure_stage(stage: &mut dyn Stage, pulled: usize, moves: bool) -> f64 {
+    let mut source = signal();
+    let context = |turn: bool| Context {
         finger: Finger {
-            speed_mm_s: 100.0,
-            force_n: 0.5,
+            speed_mm_s: if turn { 100.0 } else { 110.0 },
+            force_n: if turn { 0.5 } else { 0.55 },
             at_mm: None,
         },
         level_rms: 0.1,
         ends_in: None,
+    };
+    stage.follow(&context(true));
+    let alone = least(|block| block.chunks_mut(pulled).for_each(&mut source));
+    let mut turn = false;
+    let both = least(|block| {
+        for control in block.chunks_mut(CONTROL * pulled) {
+            if moves {
+                turn = !turn;
+                stage.follow(&context(turn));
+            }
+            let pulls = control.chunks_mut(pulled);
+            pulls.for_each(|block| stage.render(block, &mut source));
+        }
     });
-    let alone = least(&mut source);
-    (least(|block| stage.render(block, &mut source)) - alone).max(0.0)
+    (both - alone).max(0.0)
 }
 
 /// A scene on an electrovibration display, in which every stage is active.
@@ -204,7 +295,8 @@ fn example_surface() -> PlayedSurface {
     PlayedSurface {
         surface: 0,
         model: String::new(),
-        error_db: 0.0,
+        error_db: None,
+        largest_error_db: None,
         known: 1,
         follows_motion: false,
         motions: Arc::new(example_motions()),
@@ -216,6 +308,7 @@ fn example_surface() -> PlayedSurface {
         share: 1.0,
         start: None,
         rate_hz: 2_000.0,
+        own_rate: false,
         oversampling: 2.0,
         mix_rate_hz: 4_000.0,
         voice_top_hz: 1_000.0,

@@ -12,7 +12,7 @@ use crate::load::LoadedScene;
 use crate::played::PlayedSurface;
 use crate::representation::{self, Choice};
 use crate::requirements::Requirements;
-use crate::stages::{EFFECTS, Entry, HEADROOM, Need, StagePlace, resampling_macs};
+use crate::stages::{EFFECTS, Entry, HEADROOM, Need, StagePlace, resampling_work};
 
 /// A plan: the stages that run, the effects left out, and the reason for each.
 #[derive(Debug, Serialize)]
@@ -23,7 +23,9 @@ pub struct Plan {
     pub left_out: Vec<LeftOut>,
     /// The representation of each surface that is touched.
     pub representation: Vec<Chosen>,
-    /// Sum of the stages' costs, nanoseconds per sample.
+    /// What the renderer takes beside the stages, nanoseconds per sample.
+    pub renderer_ns: f64,
+    /// Sum of the stages' costs and the renderer's, nanoseconds per sample.
     pub ns_per_sample_total: f64,
     /// Whether nothing changes while the scene plays, so that stages are not updated between blocks.
     pub constant: bool,
@@ -111,9 +113,8 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
     let choices = {
         let cost = |surfaces: &[PlayedSurface]| {
             let mut draft = Draft::new(scene, &required, costs);
-            draft
-                .all(surfaces)
-                .map_or(f64::INFINITY, |()| draft.total())
+            draft.all(surfaces)?;
+            Ok(draft.total())
         };
         representation::choose(scene, &required, &cost)?
     };
@@ -129,6 +130,7 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
     let surfaces: Vec<PlayedSurface> = choices.iter().map(|c| c.played.clone()).collect();
     let mut draft = Draft::new(scene, &required, costs);
     draft.all(&surfaces)?;
+    let (renderer_ns, ns_per_sample_total) = (draft.renderer_ns(), draft.total());
     let Draft {
         stages,
         left_out,
@@ -139,7 +141,8 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
     } = draft;
     let constant = is_constant(&required, &surfaces);
     Ok(Plan {
-        ns_per_sample_total: stages.iter().map(|s| s.ns_per_sample).sum(),
+        renderer_ns,
+        ns_per_sample_total,
         stages,
         left_out,
         representation: choices.iter().map(chosen).collect(),
@@ -232,6 +235,12 @@ fn notes(required: &Requirements, constant: bool, loudest_rms: f64) -> Vec<Strin
     notes
 }
 
+/// Cost of a stage per frame of the device, nanoseconds: where it is needed, and where it changes nothing.
+struct Ns {
+    needed: f64,
+    neutral: f64,
+}
+
 /// A plan under construction.
 struct Draft<'a> {
     scene: &'a LoadedScene,
@@ -259,7 +268,15 @@ impl<'a> Draft<'a> {
     }
 
     fn total(&self) -> f64 {
-        self.stages.iter().map(|s| s.ns_per_sample).sum()
+        let stages = self.stages.iter().map(|s| s.ns_per_sample);
+        stages.sum::<f64>() + self.renderer_ns()
+    }
+
+    /// What the renderer takes itself, which reads the motion before every block unless nothing changes.
+    fn renderer_ns(&self) -> f64 {
+        let ends = |(entry, _): &(&Entry, bool)| entry.effect == Effect::Contact;
+        let constant = is_constant(self.required, &self.surfaces);
+        self.costs.renderer_ns[usize::from(!constant || self.device.iter().any(ends))]
     }
 
     fn all(&mut self, surfaces: &[PlayedSurface]) -> Result<(), SceneError> {
@@ -273,7 +290,10 @@ impl<'a> Draft<'a> {
         let required = self.required;
         for entry in EFFECTS {
             if let StagePlace::Device { need, .. } = &entry.place {
-                let ns = self.costs.stage(entry.name);
+                let ns = Ns {
+                    needed: self.costs.stage(entry.name),
+                    neutral: self.costs.neutral(entry.name),
+                };
                 if let Some(neutral) =
                     self.decide(entry, None, need(required), required.rate_hz, ns)?
                 {
@@ -301,17 +321,22 @@ impl<'a> Draft<'a> {
             let StagePlace::Surface { need, .. } = &entry.place else {
                 continue;
             };
-            let ns = match entry.effect {
-                Effect::Interpolation => {
-                    self.costs.retune(&played.model) * played.share / self.required.control as f64
-                }
-                _ => self.costs.stage(entry.name) * per_frame * played.oversampling,
+            let per_frame = per_frame * played.oversampling;
+            let ns = Ns {
+                needed: match entry.effect {
+                    Effect::Interpolation => {
+                        self.costs.retune(&played.model) * played.share
+                            / self.required.control as f64
+                    }
+                    _ => self.costs.stage(entry.name) * per_frame,
+                },
+                neutral: self.costs.neutral(entry.name) * per_frame,
             };
             let need = need(self.required, played);
             let decided = self.decide(entry, surface, need, played.mix_rate_hz, ns)?;
             effects.extend(decided.map(|neutral| (entry.effect, neutral)));
             if entry.effect == Effect::FrequencyScaling {
-                let level_ns = self.costs.stage("level") * per_frame * played.oversampling;
+                let level_ns = self.costs.stage("level") * per_frame;
                 let reason = "the model's samples have unit RMS; the asset gives the level";
                 self.push(
                     "level",
@@ -365,20 +390,23 @@ impl<'a> Draft<'a> {
     }
 
     /// Output rate of a mix's stage, and its cost per frame of the device.
-    fn mix_cost(&self, entry: &Entry, played: &PlayedSurface) -> Result<(f64, f64), SceneError> {
-        let own = self.costs.stage(entry.name);
+    fn mix_cost(&self, entry: &Entry, played: &PlayedSurface) -> Result<(f64, Ns), SceneError> {
+        let costs = self.costs;
+        let neutral = costs.neutral(entry.name);
         Ok(match entry.effect {
             Effect::Resampling => {
-                let macs = resampling_macs(self.required, played)?.unwrap_or(0.0);
-                (self.required.rate_hz, own + macs * self.costs.mac_ns)
+                let work = resampling_work(self.required, played)?;
+                let needed = work.map_or(0.0, |work| costs.resampling(work));
+                (self.required.rate_hz, Ns { needed, neutral })
             }
             _ => {
                 let taps = crate::stages::compensation_taps(played) as f64;
                 let per_frame = played.mix_rate_hz * played.fixed_ratio / self.required.rate_hz;
-                (
-                    played.mix_rate_hz,
-                    (own + taps * self.costs.mac_ns) * per_frame,
-                )
+                let ns = Ns {
+                    needed: costs.compensation.of(1.0, taps) * per_frame,
+                    neutral: neutral * per_frame,
+                };
+                (played.mix_rate_hz, ns)
             }
         })
     }
@@ -390,7 +418,7 @@ impl<'a> Draft<'a> {
         surface: Option<usize>,
         need: Need,
         rate_hz: f64,
-        ns: f64,
+        ns: Ns,
     ) -> Result<Option<bool>, SceneError> {
         let switch = self.scene.scene.effects.get(&entry.effect);
         match (switch.copied().unwrap_or_default(), need) {
@@ -408,12 +436,12 @@ impl<'a> Draft<'a> {
                 Ok(None)
             }
             (_, Need::In(reason)) => {
-                self.push(entry.name, surface, reason, rate_hz, ns);
+                self.push(entry.name, surface, reason, rate_hz, ns.needed);
                 Ok(Some(false))
             }
             (Switch::On, Need::Out(reason)) => {
                 let reason = format!("switched on by the scene; neutral, since {reason}");
-                self.push(entry.name, surface, reason, rate_hz, ns);
+                self.push(entry.name, surface, reason, rate_hz, ns.neutral);
                 Ok(Some(true))
             }
         }
@@ -470,7 +498,7 @@ fn always(played: &PlayedSurface) -> String {
 
 /// Indices of surfaces that can share one resampler, in groups.
 fn groups(surfaces: &[PlayedSurface]) -> Vec<Vec<usize>> {
-    let key = |p: &PlayedSurface| [p.mix_rate_hz, p.fixed_ratio, p.top_hz];
+    let key = |p: &PlayedSurface| (p.own_rate, [p.mix_rate_hz, p.fixed_ratio, p.top_hz]);
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (i, played) in surfaces.iter().enumerate() {
         match groups

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use htex_format::ErrorMeasure;
 use htex_play::exploration::CEILING;
-use htex_play::{Motions, SampleSource, Scaling, VoiceOptions};
+use htex_play::{Motions, Representation, SampleSource, Scaling, VoiceOptions};
 
 use crate::SceneError;
 use crate::error::OfSurface;
@@ -24,8 +23,10 @@ const FILTERED_OVERSAMPLING: f64 = 2.5;
 pub(crate) struct PlayedSurface {
     pub(crate) surface: usize,
     pub(crate) model: String,
-    /// Error by the budget's measure, decibels; infinite if not measured.
-    pub(crate) error_db: f64,
+    /// Error by which the representation is chosen, by the budget's measure, decibels; `None` if not measured.
+    pub(crate) error_db: Option<f64>,
+    /// Largest error over the measured conditions, which the budget limits, decibels.
+    pub(crate) largest_error_db: Option<f64>,
     /// Number of known conditions.
     pub(crate) known: usize,
     /// Known speeds and forces, and the law beyond them.
@@ -43,6 +44,8 @@ pub(crate) struct PlayedSurface {
     pub(crate) start: Option<htex_play::Motion>,
     /// Rate of the model, hertz.
     pub(crate) rate_hz: f64,
+    /// The model has this rate whichever is wanted, and nothing changes it before the conversion.
+    pub(crate) own_rate: bool,
     /// Rate after speed scaling, relative to the rate of the model.
     pub(crate) oversampling: f64,
     pub(crate) mix_rate_hz: f64,
@@ -69,14 +72,16 @@ impl PlayedSurface {
         model: &str,
     ) -> Result<Self, SceneError> {
         let (asset, touch) = (&scene.assets[surface], &required.touches[surface]);
-        let (known, error_db) = known(asset, model, scene.scene.budget.error);
+        let measure = scene.scene.budget.error;
+        let stored = representation(asset, model);
         let motions = asset.motions(Some(model)).of_surface(surface, scene)?;
         let loaded = asset.loaded_model(Some(model)).of_surface(surface, scene)?;
         let mut played = Self {
             surface,
             model: model.to_owned(),
-            error_db,
-            known,
+            error_db: stored.and_then(|r| r.error_db(measure)),
+            largest_error_db: stored.and_then(|r| r.largest_error_db(measure)),
+            known: stored.map_or(0, |r| r.at.len()),
             motions: Arc::new(motions),
             frequency: Span::NONE,
             level: Span::NONE,
@@ -87,6 +92,7 @@ impl PlayedSurface {
             share: touch.share,
             start: touch.first.map(|finger| finger.motion()),
             rate_hz: 0.0,
+            own_rate: false,
             oversampling: 1.0,
             mix_rate_hz: 0.0,
             voice_top_hz: asset.band().high_hz,
@@ -102,6 +108,7 @@ impl PlayedSurface {
         let source = played.source(scene, required).of_surface(surface, scene)?;
         played.rate_hz = source.rate_hz();
         played.divide_rate(required.rate_hz);
+        played.own_rate = source.has_own_rate() && played.oversampling == 1.0;
         played.mix_rate_hz = played.rate_hz * played.oversampling;
         let shape = played
             .compensated(required, asset)
@@ -218,23 +225,15 @@ impl PlayedSurface {
     }
 }
 
-/// Number of conditions of a representation, and the largest error.
-fn known(asset: &htex_play::Asset, model: &str, measure: ErrorMeasure) -> (usize, f64) {
-    let manifest = asset.manifest();
-    let found = manifest.representations.iter().find(|r| r.model == model);
-    let at = found.map_or(&[][..], |r| &r.at);
-    let error = |at: &htex_format::AtCondition| {
-        let quality = at.quality.as_ref();
-        quality.and_then(|q| measure.of(q)).unwrap_or(f64::INFINITY)
-    };
-    let worst = at.iter().map(error).fold(0.0, f64::max);
-    (at.len(), worst)
+/// The representation of a model.
+fn representation<'a>(asset: &'a htex_play::Asset, model: &str) -> Option<&'a Representation> {
+    let all = &asset.manifest().representations;
+    all.iter().find(|r| r.model == model)
 }
 
 /// The largest level of a representation, in the asset's unit.
 fn loudest(asset: &htex_play::Asset, model: &str, level_rms: f64) -> f64 {
-    let manifest = asset.manifest();
-    let found = manifest.representations.iter().find(|r| r.model == model);
-    let levels = found.into_iter().flat_map(|r| &r.at).map(|at| at.level_rms);
+    let found = representation(asset, model).into_iter();
+    let levels = found.flat_map(|r| &r.at).map(|at| at.level_rms);
     levels.fold(level_rms, f64::max)
 }

@@ -43,6 +43,17 @@ struct Timing {
     ramp: u64,
 }
 
+impl Timing {
+    fn of(required: &Requirements) -> Self {
+        Self {
+            rate_hz: required.rate_hz,
+            control: required.control,
+            frames: required.frames,
+            ramp: required.ramp_frames(),
+        }
+    }
+}
+
 /// Surfaces of one rate, and the stages after their sum.
 struct MixChain {
     tracks: Vec<Track>,
@@ -79,12 +90,7 @@ impl Renderer {
             path: Path::of(&course),
             readings: Readings::new(required.control_s()),
             course,
-            timing: Timing {
-                rate_hz: required.rate_hz,
-                control: required.control,
-                frames: required.frames,
-                ramp: required.ramp_frames(),
-            },
+            timing: Timing::of(required),
             mixes,
             device,
             sum: vec![0.0; PIECE],
@@ -96,6 +102,28 @@ impl Renderer {
             timed: false,
             peak: 0.0,
         })
+    }
+
+    /// Makes a renderer without surfaces and stages, to measure what it takes itself.
+    pub(crate) fn silent(required: &Requirements, constant: bool) -> Self {
+        let course = Course::Live;
+        Self {
+            surfaces: Vec::new(),
+            path: Path::of(&course),
+            readings: Readings::new(required.control_s()),
+            course,
+            timing: Timing::of(required),
+            mixes: Vec::new(),
+            device: Chain::default(),
+            sum: Vec::new(),
+            live: Finger::AWAY,
+            frame: 0,
+            left: 0,
+            follows: !constant,
+            ahead: Ahead::new(constant, 0),
+            timed: false,
+            peak: 0.0,
+        }
     }
 
     /// Enables timing of each stage, which slows rendering down.

@@ -1,5 +1,7 @@
 //! Choice of the representation of each surface.
 
+use std::cmp::Ordering;
+
 use crate::SceneError;
 use crate::error::OfSurface;
 use crate::file::Budget;
@@ -18,7 +20,11 @@ pub(crate) struct Choice {
     pub(crate) why: String,
 }
 
-/// The candidate representations of a surface.
+/// Gives the time of a set of representations, nanoseconds per sample, or why they cannot be planned.
+type Cost<'a> = &'a dyn Fn(&[PlayedSurface]) -> Result<f64, SceneError>;
+
+/// The candidate representations of a surface, the first of which is chosen without a budget.
+#[derive(Clone)]
 struct Candidates {
     surface: usize,
     options: Vec<PlayedSurface>,
@@ -26,12 +32,11 @@ struct Candidates {
     named: bool,
 }
 
-/// Chooses a representation for each surface that is touched. `cost` gives the time of a set of representations,
-/// nanoseconds per sample.
+/// Chooses a representation for each surface that is touched.
 pub(crate) fn choose(
     scene: &LoadedScene,
     required: &Requirements,
-    cost: &dyn Fn(&[PlayedSurface]) -> f64,
+    cost: Cost<'_>,
 ) -> Result<Vec<Choice>, SceneError> {
     let touched = (0..scene.assets.len()).filter(|&i| required.touches[i].share > 0.0);
     let all: Vec<Candidates> = touched
@@ -74,11 +79,7 @@ fn candidates(
         &scene.assets[surface],
         &scene.scene.surfaces[surface].representation,
     );
-    let models = asset
-        .manifest()
-        .representations
-        .iter()
-        .map(|r| &r.model[..]);
+    let all = &asset.manifest().representations;
     if wanted != "auto" {
         let id = asset
             .representation_id(Some(wanted))
@@ -89,17 +90,21 @@ fn candidates(
             named: true,
         });
     }
-    let known = models.clone().filter(|id| asset.knows_model(id));
-    let mut options = known
+    // In the order in which all programs choose.
+    let ranked = asset.ranked(scene.scene.budget.error).into_iter();
+    let known = ranked
+        .map(|i| &all[i].model[..])
+        .filter(|id| asset.knows_model(id));
+    let options = known
         .map(|id| PlayedSurface::new(scene, required, surface, id))
         .collect::<Result<Vec<_>, _>>()?;
     if options.is_empty() {
+        let there: Vec<&str> = all.iter().map(|r| &r.model[..]).collect();
         return Err(SceneError::NoModel {
             surface,
-            there: models.collect::<Vec<_>>().join(", "),
+            there: there.join(", "),
         });
     }
-    options.sort_by(|a, b| a.error_db.total_cmp(&b.error_db));
     Ok(Candidates {
         surface,
         options,
@@ -111,15 +116,38 @@ fn candidates(
 fn within(
     all: &[Candidates],
     budget: &Budget,
-    cost: &dyn Fn(&[PlayedSurface]) -> f64,
+    cost: Cost<'_>,
 ) -> Result<Vec<PlayedSurface>, SceneError> {
-    if let Some(error_db) = budget.max_error_db {
-        check_error(all, error_db)?;
-    }
+    let limited = |c: &Candidates| match budget.max_error_db {
+        None => Ok(c.clone()),
+        Some(most_db) => c.within(most_db),
+    };
+    let near = all.iter().map(limited).collect::<Result<Vec<_>, _>>()?;
     match (budget.max_error_db, budget.ns_per_sample) {
-        (None, None) => Ok(all.iter().map(|c| c.options[0].clone()).collect()),
-        (Some(error_db), None) => Ok(quickest(all, error_db, cost)),
-        (error_db, Some(ns)) => nearest_within(all, error_db, ns, cost),
+        (None, None) => Ok(near.iter().map(|c| c.options[0].clone()).collect()),
+        (Some(_), None) => quickest(&near, None, cost),
+        (error_db, Some(ns)) => nearest_within(&near, error_db, ns, cost),
+    }
+}
+
+impl Candidates {
+    /// Leaves the representations whose largest error is within the limit.
+    fn within(&self, wanted_db: f64) -> Result<Self, SceneError> {
+        let is_within = |p: &&PlayedSurface| {
+            p.largest_error_db
+                .is_some_and(|error_db| error_db <= wanted_db)
+        };
+        let options: Vec<PlayedSurface> = self.options.iter().filter(is_within).cloned().collect();
+        if !options.is_empty() {
+            return Ok(Self { options, ..*self });
+        }
+        let measured = self.options.iter();
+        let measured = measured.filter_map(|p| Some((p.model.clone(), p.largest_error_db?)));
+        Err(SceneError::NotNearEnough {
+            surface: self.surface,
+            wanted_db,
+            nearest: measured.min_by(|a, b| a.1.total_cmp(&b.1)),
+        })
     }
 }
 
@@ -127,76 +155,93 @@ fn within(
 fn nearest_within(
     all: &[Candidates],
     error_db: Option<f64>,
-    ns: f64,
-    cost: &dyn Fn(&[PlayedSurface]) -> f64,
+    wanted_ns: f64,
+    cost: Cost<'_>,
 ) -> Result<Vec<PlayedSurface>, SceneError> {
-    let mut bounds: Vec<f64> = all
-        .iter()
-        .flat_map(|c| c.options.iter().map(|p| p.error_db))
-        .filter(|bound| error_db.is_none_or(|most| *bound <= most))
-        .collect();
-    bounds.sort_by(f64::total_cmp);
+    let errors = all.iter().flat_map(|c| &c.options).map(|p| p.error_db);
+    let mut bounds: Vec<Option<f64>> = errors.collect();
+    bounds.sort_by(|a, b| by_error(*a, *b));
     // Below this bound, some surface has no representation.
-    let least = all.iter().filter(|c| !c.named);
-    let least = least.map(|c| c.options[0].error_db).fold(0.0, f64::max);
-    let mut quickest_ns = f64::INFINITY;
-    for bound in bounds.into_iter().filter(|bound| *bound >= least) {
-        let options = quickest(all, bound, cost);
-        let takes = RESERVE * cost(&options);
-        if takes <= ns {
+    let unnamed = all.iter().filter(|c| !c.named);
+    let least = unnamed.map(|c| c.options[0].error_db);
+    let least = least.max_by(|a, b| by_error(*a, *b)).unwrap_or(Some(0.0));
+    let mut quickest_ns: Option<f64> = None;
+    for bound in bounds
+        .into_iter()
+        .filter(|bound| by_error(*bound, least).is_ge())
+    {
+        let options = quickest(all, bound, cost)?;
+        let takes_ns = RESERVE * cost(&options)?;
+        if takes_ns <= wanted_ns {
             return Ok(options);
         }
-        quickest_ns = quickest_ns.min(takes);
+        quickest_ns = Some(quickest_ns.map_or(takes_ns, |least_ns| least_ns.min(takes_ns)));
     }
-    if all.is_empty() {
+    let Some(quickest_ns) = quickest_ns else {
         return Ok(Vec::new());
-    }
+    };
     Err(match error_db {
         None => SceneError::TooSlow {
-            wanted_ns: ns,
+            wanted_ns,
             quickest_ns,
         },
         Some(wanted_db) => SceneError::Budgets {
             wanted_db,
-            wanted_ns: ns,
+            wanted_ns,
             quickest_ns,
         },
     })
 }
 
-/// The fastest representation of each surface with an error of at most `error_db`.
+/// The fastest representation of each surface with an error of at most `bound`; `None` for any.
+///
+/// # Errors
+/// If none of a surface's representations can be planned.
 fn quickest(
     all: &[Candidates],
-    error_db: f64,
-    cost: &dyn Fn(&[PlayedSurface]) -> f64,
-) -> Vec<PlayedSurface> {
+    bound: Option<f64>,
+    cost: Cost<'_>,
+) -> Result<Vec<PlayedSurface>, SceneError> {
     let one = |c: &Candidates| {
-        let near = c
-            .options
-            .iter()
-            .filter(|p| c.named || p.error_db <= error_db);
-        let alone = |played: &&PlayedSurface| cost(std::slice::from_ref(*played));
-        let best = near.min_by(|a, b| alone(a).total_cmp(&alone(b)));
-        best.unwrap_or(&c.options[0]).clone()
+        let is_near = |p: &&PlayedSurface| c.named || by_error(p.error_db, bound).is_le();
+        let mut best: Option<(f64, &PlayedSurface)> = None;
+        let mut refused = None;
+        for played in c.options.iter().filter(is_near) {
+            match cost(std::slice::from_ref(played)) {
+                Ok(ns) if best.is_none_or(|(least_ns, _)| ns < least_ns) => {
+                    best = Some((ns, played));
+                }
+                Ok(_) => {}
+                Err(error) => refused = refused.or(Some(error)),
+            }
+        }
+        match (best, refused) {
+            (Some((_, played)), _) => Ok(played.clone()),
+            (None, Some(error)) => Err(error),
+            (None, None) => Ok(c.options[0].clone()),
+        }
     };
     all.iter().map(one).collect()
 }
 
-fn check_error(all: &[Candidates], wanted_db: f64) -> Result<(), SceneError> {
-    let far = |c: &&Candidates| c.options[0].error_db > wanted_db;
-    match all.iter().find(far) {
-        None => Ok(()),
-        Some(c) => Err(SceneError::NotNearEnough {
-            surface: c.surface,
-            wanted_db,
-            model: c.options[0].model.clone(),
-            nearest_db: c.options[0].error_db,
-        }),
-    }
+/// The order of errors; one that was not measured comes last.
+fn by_error(a: Option<f64>, b: Option<f64>) -> Ordering {
+    let order = |error_db: Option<f64>| (error_db.is_none(), error_db.unwrap_or_default());
+    let (a, b) = (order(a), order(b));
+    a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
 }
 
 fn reason(played: &PlayedSurface, from: &Candidates, budget: &Budget) -> String {
-    let error = format!("{} {:.2} dB", budget.error, played.error_db);
+    let error = match (played.error_db, played.largest_error_db) {
+        (Some(error_db), Some(largest_db)) if largest_db > error_db => {
+            format!(
+                "{} {error_db:.2} dB, at most {largest_db:.2} dB",
+                budget.error
+            )
+        }
+        (Some(error_db), _) => format!("{} {error_db:.2} dB", budget.error),
+        (None, _) => format!("{} not measured", budget.error),
+    };
     let of = from.options.len();
     match (from.named, budget.max_error_db, budget.ns_per_sample) {
         (true, _, _) => format!("named by the scene; {error}"),

@@ -3,8 +3,9 @@
 
 mod common;
 
-use common::{constant, file, planned, scene, single};
+use common::{constant, file, grid, nine, planned, scene, single, three_speeds};
 use htex_format::ErrorMeasure;
+use htex_play::Asset;
 use htex_scene::file::Budget;
 use htex_scene::{Costs, Plan, SceneError, plan};
 
@@ -38,11 +39,15 @@ fn error_of(all: &[(String, f64, f64)], plan: &Plan) -> f64 {
 #[test]
 fn a_smaller_time_budget_never_reduces_the_error() {
     let all = measured(ErrorMeasure::NineBand);
-    let dearest = all.iter().map(|(.., ns)| *ns).fold(0.0, f64::max);
     let cheapest = all.iter().map(|(.., ns)| *ns).fold(f64::INFINITY, f64::min);
     let (mut last_error, mut choices) = (0.0, std::collections::BTreeSet::new());
-    for step in 0..=100 {
-        let ns = dearest * 1.01 - f64::from(step) / 100.0 * (dearest - cheapest * 0.98);
+    // Just above and just below what each representation takes.
+    let mut budgets: Vec<f64> = all
+        .iter()
+        .flat_map(|(.., ns)| [1.0001 * ns, 0.9999 * ns])
+        .collect();
+    budgets.sort_by(|a, b| b.total_cmp(a));
+    for ns in budgets {
         let budget = Budget {
             ns_per_sample: Some(ns),
             ..Budget::default()
@@ -106,4 +111,66 @@ fn a_larger_error_budget_never_takes_more_time() {
         let cheapest = near.map(|(.., ns)| *ns).fold(f64::INFINITY, f64::min);
         assert_eq!(last_ns, cheapest);
     }
+}
+
+/// Without a budget a scene plays the representation that a voice plays, also where conditions were computed or none was measured.
+#[test]
+fn a_scene_chooses_as_a_voice_does() {
+    let computed = |asset: &Asset| {
+        let all = asset.manifest().representations.iter();
+        all.flat_map(|r| &r.at).any(|at| at.quality.is_none())
+    };
+    assert!(computed(three_speeds()));
+    let mut unmeasured = three_speeds().data().clone();
+    let all = unmeasured.manifest.representations.iter_mut();
+    all.flat_map(|r| &mut r.at).for_each(|at| at.quality = None);
+    let mut later = three_speeds().data().clone();
+    for representation in &mut later.manifest.representations {
+        representation.at[0].quality = None;
+    }
+    let (unmeasured, later) = (Asset::new(unmeasured), Asset::new(later));
+    for asset in [
+        single(),
+        grid(),
+        nine(),
+        three_speeds(),
+        &unmeasured,
+        &later,
+    ] {
+        let chosen = planned(&scene(asset, constant(80.0, 0.4), 1.0), &file());
+        let voice = asset.representation_id(None).unwrap();
+        assert_eq!(chosen.representation[0].model, voice);
+        assert!(!chosen.representation[0].why.contains("inf"));
+    }
+    // Sandpaper is nearest by Bands; a choice by infinity took the first in the file.
+    let first = &later.manifest().representations[0].model;
+    assert_ne!(later.representation_id(None).unwrap(), first);
+    assert_eq!(unmeasured.representation_id(None).unwrap(), first);
+}
+
+/// The budget limits the largest error over the conditions that were measured.
+#[test]
+fn computed_conditions_do_not_break_a_budget() {
+    let with = |asset: &Asset, most_db: f64| {
+        let mut scene = scene(asset, constant(80.0, 0.4), 1.0);
+        scene.scene.budget.max_error_db = Some(most_db);
+        plan(&scene, &file(), &Costs::embedded())
+    };
+    let asset = three_speeds();
+    let all = asset.manifest().representations.iter();
+    let largest = all.map(|r| r.largest_error_db(ErrorMeasure::NineBand).unwrap());
+    let least_db = largest.min_by(f64::total_cmp).unwrap();
+    assert!(with(asset, least_db + 1e-9).is_ok());
+    let refused = with(asset, least_db - 1e-9).unwrap_err().to_string();
+    assert!(
+        refused.contains(&format!("at {least_db:.2} dB")),
+        "{refused}"
+    );
+    let mut unmeasured = asset.data().clone();
+    let all = unmeasured.manifest.representations.iter_mut();
+    all.flat_map(|r| &mut r.at).for_each(|at| at.quality = None);
+    let refused = with(&Asset::new(unmeasured), 100.0)
+        .unwrap_err()
+        .to_string();
+    assert!(refused.contains("states no such error"), "{refused}");
 }

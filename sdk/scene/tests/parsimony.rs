@@ -77,7 +77,11 @@ fn pair(effect: Effect) -> (Scene, Scene) {
             (plain(), display()),
             (with(&|s| s.response = Some(response.clone())), display()),
         ),
-        Effect::Resampling => ((ar.clone(), model_rate), (ar, file())),
+        // sBeta renders at the rate that is wanted, AR at one of its own.
+        Effect::Resampling => {
+            let sbeta = with(&|s| s.scene.surfaces[0].representation = "sbeta".to_owned());
+            ((sbeta, model_rate), (ar, file()))
+        }
         Effect::Direction => ((strokes(single(), 0.2), file()), (turning, file())),
         Effect::Gain => (
             (plain(), file()),

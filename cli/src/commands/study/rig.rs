@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use htex_device::{DeviceError, SettingKind};
 use htex_files::{AtFile, OwnFolder};
 use htex_finding::plain;
-use htex_format::Measure;
+use htex_format::ErrorMeasure;
 use htex_lab::study::{
     DeviceUsed, Felt, Meter, OutputLevels, Played, Rig, Stimulus, Study, StudyError, full_drive,
     scene_of, set_gain,
@@ -193,8 +193,8 @@ impl Rig for StudyRig<'_> {
             let asset = ready.scene.assets.first()?;
             let id = asset.representation_id(Some(model)).ok()?;
             let mut all = asset.manifest().representations.iter();
-            let first = all.find(|r| r.model == id)?.at.first()?;
-            first.quality.as_ref()?.get(Measure::NineBand)
+            all.find(|r| r.model == id)?
+                .error_db(ErrorMeasure::NineBand)
         });
         self.errors_db.borrow_mut().insert(key, error_db);
         error_db

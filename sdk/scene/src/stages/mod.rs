@@ -29,7 +29,7 @@ pub(crate) use compensation::taps as compensation_taps;
 pub(crate) use crossfade::Crossfade;
 pub(crate) use gain::{Drive, HEADROOM};
 pub(crate) use level::Level;
-pub(crate) use resampling::macs as resampling_macs;
+pub(crate) use resampling::work as resampling_work;
 pub(crate) use synthesis::Synthesis;
 
 use htex_dsp::resample::UnusableRates;

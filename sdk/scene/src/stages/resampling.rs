@@ -1,6 +1,6 @@
 //! Conversion from the rate of the models to the rate of the device, once for all surfaces of a rate.
 
-use htex_dsp::resample::{Resampler, UnusableRates};
+use htex_dsp::resample::{Resampler, UnusableRates, Work};
 
 use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
@@ -14,7 +14,13 @@ pub(crate) const ENTRY: Entry = Entry {
 };
 
 fn need(required: &Requirements, played: &PlayedSurface) -> Need {
-    match macs(required, played) {
+    match work(required, played) {
+        Ok(Some(_)) if played.mix_rate_hz * played.fixed_ratio == required.rate_hz => {
+            Need::yes(format!(
+                "the model has its own rate of {:.0} Hz, and its level is the one at higher rates",
+                required.rate_hz
+            ))
+        }
         // Rates that cannot be converted are refused when the stage is planned.
         Ok(Some(_)) | Err(_) => Need::yes(format!(
             "the model renders at {:.0} Hz, the device runs at {:.0} Hz",
@@ -39,13 +45,13 @@ fn rates(required: &Requirements, played: &PlayedSurface) -> (f64, f64, f64) {
     )
 }
 
-/// Multiplications per sample of the device; `None` if no conversion is needed.
-pub(crate) fn macs(
+/// Work per sample of the device; `None` if no conversion is needed.
+pub(crate) fn work(
     required: &Requirements,
     played: &PlayedSurface,
-) -> Result<Option<f64>, UnusableRates> {
+) -> Result<Option<Work>, UnusableRates> {
     let (from, to, top) = rates(required, played);
-    Resampler::macs_per_output(from, to, top)
+    Resampler::work(from, to, top, played.own_rate)
 }
 
 fn build(
@@ -56,6 +62,7 @@ fn build(
     let (from, to, top) = rates(required, played);
     Ok(Box::new(match neutral {
         true => Resampling(None),
+        false if played.own_rate => Resampling(Resampler::of_own_rate(from, to, top)?),
         false => Resampling(Resampler::new(from, to, top)?),
     }))
 }

@@ -40,6 +40,13 @@ pub fn nine() -> &'static Asset {
     })
 }
 
+/// An asset of three speeds, between which conditions were computed.
+pub fn three_speeds() -> &'static Asset {
+    static ASSET: OnceLock<Asset> = OnceLock::new();
+    let known = [(40.0, 0.4), (80.0, 0.4), (160.0, 0.4)];
+    ASSET.get_or_init(|| asset(Simulated::Sandpaper, &known))
+}
+
 fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Asset {
     let take = |&(speed_mm_s, force_n): &(f64, f64)| {
         let options = SimulationOptions::new(surface)

@@ -1,0 +1,193 @@
+//! A file of every feature of the format through every command that takes an asset: an exit status that is expected, no number that is
+//! infinite or none, and one choice of the model in all commands.
+
+use crate::common::Place;
+use htex_format::Asset;
+use serde_json::json;
+
+const COMPAT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/compat/0.2.0");
+
+/// One condition, four, a filter with zeros, a friction map, an embedded module, a mixture; three speeds with computed conditions, the same
+/// without measures, and with a silent first condition.
+const FILES: [&str; 9] = [
+    "one.htex",
+    "grid.htex",
+    "arma.htex",
+    "map.htex",
+    "embedded.htex",
+    "mixed.htex",
+    "three.htex",
+    "unmeasured.htex",
+    "silent.htex",
+];
+
+/// What may be refused, with the reason: a file, a command and words of its error.
+const REFUSED: [(&str, &str, &str); 3] = [
+    ("mixed.htex", "lib", "states no licence"),
+    ("silent.htex", "bake", "the speeds of the grid: [0.0]"),
+    ("silent.htex", "export", "silent"),
+];
+
+fn place() -> Place {
+    let place = Place::new();
+    for name in FILES.iter().take(6) {
+        place.write(name, std::fs::read(format!("{COMPAT}/{name}")).unwrap());
+    }
+    let speeds = ["40", "80", "160"].map(|speed| {
+        let name = format!("at-{speed}.csv");
+        let simulate = ["simulate", "--surface", "sandpaper", "--seconds", "4"];
+        let at = ["--speed", speed, "--force", "0.4", "-o", &name];
+        assert_eq!(place.run(&[&simulate[..], &at].concat()).code(), 0);
+        name
+    });
+    let fit = ["fit", &speeds[0], &speeds[1], &speeds[2]];
+    let to = [
+        "--name",
+        "Three",
+        "--license",
+        "CC0-1.0",
+        "-o",
+        "three.htex",
+    ];
+    let run = place.run(&[&fit[..], &to].concat());
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let three = Asset::open(&place.path("three.htex")).unwrap();
+    let mut unmeasured = three.clone();
+    for representation in &mut unmeasured.manifest.representations {
+        representation
+            .at
+            .iter_mut()
+            .for_each(|at| at.quality = None);
+    }
+    place.write("unmeasured.htex", unmeasured.to_bytes().unwrap());
+    let mut silent = three;
+    let first = silent.manifest.representations[0].at[0].condition;
+    silent.manifest.conditions[first].speed_mm_s = Some(0.0);
+    for representation in &mut silent.manifest.representations {
+        representation.at[0].level_rms = 0.0;
+        representation.at[0].quality = None;
+    }
+    place.write("silent.htex", silent.to_bytes().unwrap());
+    for name in FILES {
+        let scene = json!({
+            "htex_scene": "1.0",
+            "surfaces": [{ "asset": name }],
+            "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
+            "duration_s": 0.2,
+        });
+        place.write(&format!("{name}.scene.json"), scene.to_string());
+    }
+    place
+}
+
+/// The commands that take an asset or a scene of it; `FILE` is its name.
+const COMMANDS: &[&[&str]] = &[
+    &["info", "FILE"],
+    &["info", "FILE", "--json"],
+    &["validate", "FILE", "--json"],
+    &["spectrum", "FILE", "--json"],
+    &["spectrum", "FILE", "--speed", "500", "--force", "3"],
+    &["synth", "FILE", "--seconds", "0.2", "-o", "out.wav"],
+    &[
+        "synth",
+        "FILE",
+        "--seconds",
+        "0.2",
+        "--quality",
+        "loop",
+        "-o",
+        "out.wav",
+    ],
+    &[
+        "synth",
+        "FILE",
+        "--seconds",
+        "0.2",
+        "--rate",
+        "2000",
+        "-o",
+        "out.wav",
+    ],
+    &["edit", "FILE", "--name", "Other", "-o", "out.htex"],
+    &["compare", "at-80.csv", "FILE", "--json"],
+    &["bake", "FILE", "-o", "out.bin", "--json"],
+    &[
+        "mix", "FILE", "one.htex", "--weight", "0.5", "-o", "out.htex",
+    ],
+    &[
+        "play",
+        "FILE",
+        "--device",
+        "file",
+        "--set",
+        "path=out.wav",
+        "--seconds",
+        "0.1",
+    ],
+    &["plan", "FILE.scene.json"],
+    &["plan", "FILE.scene.json", "--json"],
+    &["plan", "FILE.scene.json", "--measure"],
+    &["render", "FILE.scene.json", "-o", "out.wav"],
+    &["lib", "pack", "out.htexlib", "FILE"],
+    &["lib", "ls", "out.htexlib", "--json"],
+    &["export", "FILE", "--to", "png", "-o", "out.png"],
+    &["export", "FILE", "--to", "hjif", "-o", "out.hjif"],
+    &["export", "FILE", "--to", "haptic", "-o", "out.haptic"],
+    &["export", "FILE", "--to", "ahap", "-o", "out.ahap"],
+];
+
+#[test]
+fn every_command_takes_a_file_of_every_feature() {
+    let place = place();
+    let mut wrong = Vec::new();
+    for name in FILES {
+        for command in COMMANDS {
+            let arguments: Vec<String> = command.iter().map(|a| a.replace("FILE", name)).collect();
+            let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+            let run = place.run(&arguments);
+            let reason = REFUSED
+                .iter()
+                .find(|(file, of, _)| *file == name && of == &command[0]);
+            let refused = reason.is_some_and(|(.., words)| {
+                [1, 2].contains(&run.code()) && run.error().contains(words)
+            });
+            let expected = run.code() == 0 || refused;
+            let printed = run.text() + &run.error();
+            let words = printed.split(|c: char| !c.is_ascii_alphanumeric());
+            let numbers =
+                words.filter(|word| ["inf", "nan", "infinity"].contains(&&word.to_lowercase()[..]));
+            if !expected || numbers.count() > 0 {
+                wrong.push(format!("{arguments:?}: {}: {printed}", run.code()));
+            }
+            entries_away(&place);
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Results of a command, which the next one would not overwrite.
+fn entries_away(place: &Place) {
+    for name in ["out.htex", "out.png", "out.bin"] {
+        let _ = std::fs::remove_file(place.path(name));
+    }
+}
+
+/// A scene, a voice and the spectrum play one model.
+#[test]
+fn all_commands_choose_one_model() {
+    let place = place();
+    for name in FILES {
+        let plan = place.json(&["plan", &format!("{name}.scene.json"), "--json"]);
+        let in_scene = plan["representation"][0]["model"]
+            .as_str()
+            .unwrap()
+            .to_owned();
+        let wav = |arguments: &[&str]| {
+            assert_eq!(place.run(arguments).code(), 0, "{arguments:?}");
+            std::fs::read(place.path("out.wav")).unwrap()
+        };
+        let synth = ["synth", name, "--seconds", "0.2", "-o", "out.wav"];
+        let named = [&synth[..], &["--model", &in_scene]].concat();
+        assert!(wav(&synth) == wav(&named), "{name}: {in_scene}");
+    }
+}

@@ -64,9 +64,9 @@ impl From<serde_json::Error> for BuildError {
     }
 }
 
-impl From<toml::de::Error> for BuildError {
-    fn from(error: toml::de::Error) -> Self {
-        Self::Recipe(error.to_string().trim_end().to_owned())
+impl From<htex_files::toml::TomlError> for BuildError {
+    fn from(error: htex_files::toml::TomlError) -> Self {
+        Self::Recipe(error.to_string())
     }
 }
 

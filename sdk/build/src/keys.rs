@@ -1,44 +1,31 @@
 //! Keys that a recipe has and its schema has not: a misspelt one would change nothing, in silence.
 
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use htex_files::toml::lines_of_keys;
+use serde_json::Value;
 
 use crate::{BuildError, recipe_schema};
 
+/// Most keys that one message names.
+const MOST_NAMED: usize = 20;
+
 /// Refuses keys that recipes do not have, each with its line and the known key that is most like it.
-pub(crate) fn check_keys(text: &str, recipe: &toml::Table) -> Result<(), BuildError> {
-    let document = serde_json::to_value(recipe).unwrap_or_default();
-    let unknown = htex_schema::unknown_keys(&recipe_schema(), &document);
-    let sentence = |key: &htex_schema::UnknownKey| match line(text, &key.path) {
+pub(crate) fn check_keys(text: &str, recipe: &Value) -> Result<(), BuildError> {
+    let unknown = htex_schema::unknown_keys(&recipe_schema(), recipe);
+    let named = &unknown[..unknown.len().min(MOST_NAMED)];
+    let lines = lines_of_keys(text, named.iter().map(|key| &key.path[..]));
+    let sentence = |(key, line): (&htex_schema::UnknownKey, Option<usize>)| match line {
         Some(line) => format!("line {line}: {key}"),
         None => key.to_string(),
     };
-    let sentences: Vec<String> = unknown.iter().map(sentence).collect();
+    let mut sentences: Vec<String> = named.iter().zip(lines).map(sentence).collect();
+    if unknown.len() > named.len() {
+        let more = unknown.len() - named.len();
+        sentences.push(format!("and {more} more keys that recipes do not have"));
+    }
     match sentences.is_empty() {
         true => Ok(()),
         false => Err(BuildError::Recipe(sentences.join("\n"))),
     }
-}
-
-/// Returns the line of a key, from 1.
-fn line(text: &str, path: &[String]) -> Option<usize> {
-    let table = DeTable::parse(text).ok()?;
-    let (key, folders) = path.split_last()?;
-    let mut inside: &DeTable<'_> = table.get_ref();
-    let mut items: &[Spanned<DeValue<'_>>] = &[];
-    for folder in folders {
-        let value = match folder.parse::<usize>() {
-            Ok(index) if index < items.len() => items.get(index),
-            _ => inside.get(&folder[..]),
-        };
-        match value?.get_ref() {
-            DeValue::Table(table) => (inside, items) = (table, &[]),
-            DeValue::Array(array) => items = array,
-            _ => return None,
-        }
-    }
-    let (key, _) = inside.get_key_value(&key[..])?;
-    Some(text.get(..key.span().start)?.matches('\n').count() + 1)
 }
 
 #[cfg(test)]

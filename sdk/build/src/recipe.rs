@@ -199,8 +199,8 @@ impl Recipe {
     /// # Errors
     /// When it is not TOML, or has other keys or values than a recipe, or a gate by a code that no finding has.
     pub fn parse(text: &str) -> Result<Self, BuildError> {
-        check_keys(text, &toml::from_str(text)?)?;
-        let recipe: Self = toml::from_str(text)?;
+        check_keys(text, &htex_files::toml::from_str(text)?)?;
+        let recipe: Self = htex_files::toml::from_str(text)?;
         recipe.check_codes()?;
         Ok(recipe)
     }

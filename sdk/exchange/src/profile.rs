@@ -17,7 +17,7 @@ pub static PROFILES: LazyLock<Vec<Profile>> = LazyLock::new(|| {
         profile: Vec<Profile>,
     }
     // A test reads the file; a build without it has no profiles, and says so of every name.
-    toml::from_str(include_str!("profiles.toml"))
+    htex_files::toml::from_str(include_str!("profiles.toml"))
         .map_or_else(|_| Vec::new(), |all: Profiles| all.profile)
 });
 

@@ -7,7 +7,7 @@
 //!
 //! A symbolic link is followed, and its target is replaced with the permissions that it had. A device or a pipe is
 //! written to directly. A process that is asked to end removes its unfinished files with
-//! [`remove_unfinished`].
+//! [`remove_unfinished`]. Files of a process that was killed are removed by the next process that writes to their folder.
 //!
 //! ```
 //! let folder = tempfile::tempdir()?;
@@ -22,10 +22,13 @@ mod batch;
 mod error;
 #[cfg(feature = "key")]
 mod key;
+mod killed;
 mod lines;
 mod own_folder;
 pub mod private;
 mod regular;
+#[cfg(feature = "toml")]
+pub mod toml;
 
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions, Permissions};
@@ -111,6 +114,7 @@ impl Target {
         readable_by: Readers,
     ) -> io::Result<Self> {
         let beside = builder(readable_by).tempfile_in(folder(&path))?;
+        killed::remove_from(folder(&path), &beside.as_file().metadata()?);
         if let Some(there) = there {
             beside.as_file().set_permissions(there.permissions())?;
         }
@@ -278,7 +282,7 @@ enum Readers {
 /// process' mask; or with those of the library, for this user alone.
 fn builder(readable_by: Readers) -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".htex-").suffix(".part");
+    builder.prefix(&killed::OWN[..]).suffix(killed::ENDING);
     if readable_by == Readers::All
         && let Some(permissions) = ordinary()
     {

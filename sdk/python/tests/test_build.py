@@ -170,6 +170,17 @@ def test_what_cannot_be_made_is_named(recipe: pathlib.Path, cluster: Cluster, tm
     assert "no file matches" in error_of(tmp_path / "dist")[0]
 
 
+def test_a_recipe_that_nests_without_end_is_an_exception(tmp_path: pathlib.Path) -> None:
+    """The parser of TOML would end the interpreter by its stack; on a thread the stack is smaller still."""
+    lines = "motion = { const']\nphases = ['testing']\n" * 7_200
+    deep = "[library]\nname = " + "[" * 100_000
+    for text, place in ((lines, "line 1, column 18"), (deep, "line 2, column 32")):
+        file = tmp_path / "library.toml"
+        file.write_text(text)
+        with pytest.raises(htex.BuildError, match=place):
+            htex.build(file, tmp_path / "dist")
+
+
 def error_of(folder: pathlib.Path) -> list[str]:
     """The error that a report has, line by line."""
     report = json.loads((folder / "build-report.json").read_text())

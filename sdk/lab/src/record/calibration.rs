@@ -64,7 +64,7 @@ impl Calibration {
             .extension()
             .is_some_and(|e| e.eq_ignore_ascii_case("toml"));
         let matrix = match is_toml {
-            true => toml::from_str::<File>(text)?.matrix,
+            true => htex_files::toml::from_str::<File>(text)?.matrix,
             false => lines(text)?,
         };
         let width = matrix.iter().position(|row| row.len() != AXES);

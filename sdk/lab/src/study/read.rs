@@ -68,25 +68,13 @@ pub fn read_study(bytes: &[u8], findings: &mut Findings) -> Option<Study> {
 fn parse(bytes: &[u8], findings: &mut Findings) -> Option<Value> {
     let problem = match std::str::from_utf8(bytes) {
         Err(error) => format!("the study is not UTF-8 after byte {}", error.valid_up_to()),
-        Ok(text) => match toml::from_str::<toml::Table>(text) {
-            Ok(table) => return serde_json::to_value(table).ok(),
-            Err(error) => {
-                let at = error.span().map_or(0, |span| span.start);
-                format!("{}: {}", place(text, at), error.message())
-            }
+        Ok(text) => match htex_files::toml::from_str(text) {
+            Ok(table) => return Some(table),
+            Err(error) => error.to_string(),
         },
     };
     findings.add(rule::STUDY_SYNTAX, "", format!("{problem}; correct it"));
     None
-}
-
-/// Line and column of a byte.
-fn place(text: &str, byte: usize) -> String {
-    let before = text.get(..byte).unwrap_or(text);
-    let line = before.matches('\n').count() + 1;
-    let start = before.rfind('\n').map_or(0, |end| end + 1);
-    let column = before[start..].chars().count() + 1;
-    format!("line {line}, column {column}")
 }
 
 /// Reports settings of phases that do not take place.

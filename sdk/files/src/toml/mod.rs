@@ -1,0 +1,120 @@
+//! The reader of every TOML file: recipes, studies, calibrations and the profiles of actuators.
+//!
+//! The parser of the crate `toml` recurses. Its own bound (80 levels) counts wrongly after an error: a closing bracket without an
+//! opening one lowers its count, so 7,200 lines of `motion = { const']` overflowed a stack of 8 MiB. It counts the dots of each
+//! dotted key alone, so that 80 tables in each other with 80 names each are 6,400 levels. Therefore the brackets and dots of the
+//! text are counted before it is parsed ([`check_nesting`]), and a text beyond [`MOST_LEVELS`] is an error. No other module may
+//! call the crate (`clippy.toml`; no other crate depends on it).
+#![allow(clippy::disallowed_methods)] // The one place that may call the crate `toml`.
+
+mod nesting;
+
+use std::fmt;
+
+use serde::de::DeserializeOwned;
+use toml::de::{DeTable, DeValue};
+use toml::{Spanned, de};
+
+pub use nesting::MOST_LEVELS;
+use nesting::check_nesting;
+
+/// What is wrong with a TOML text, and where. Displays as `line 3, column 5: …`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TomlError {
+    /// The line, from 1.
+    pub line: usize,
+    /// The column, in characters from 1.
+    pub column: usize,
+    /// What is wrong, on one line.
+    pub message: String,
+}
+
+impl fmt::Display for TomlError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { line, column, .. } = self;
+        write!(f, "line {line}, column {column}: {}", self.message)
+    }
+}
+
+impl std::error::Error for TomlError {}
+
+impl TomlError {
+    /// An error at a byte of the text.
+    fn at(text: &str, byte: usize, message: String) -> Self {
+        let (line, column) = place(text, byte);
+        Self {
+            line,
+            column,
+            message,
+        }
+    }
+
+    fn of(text: &str, error: &de::Error) -> Self {
+        let byte = error.span().map_or(0, |span| span.start);
+        Self::at(text, byte, error.message().replace('\n', "; "))
+    }
+}
+
+/// Reads a TOML text into a value. Takes less than 256 KiB of stack, whatever the text is.
+///
+/// ```
+/// # use std::collections::BTreeMap;
+/// let read = htex_files::toml::from_str::<BTreeMap<String, f64>>;
+/// assert_eq!(read("gain = 2.5"), Ok(BTreeMap::from([("gain".to_owned(), 2.5)])));
+/// let error = read("gain = 2.5\nlimit = { volts = 3").unwrap_err().to_string();
+/// assert_eq!(error, "line 2, column 20: unclosed inline table, expected `}`");
+/// ```
+///
+/// # Errors
+/// When the text is not TOML, holds another value, or is nested deeper than [`MOST_LEVELS`].
+pub fn from_str<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
+    check_nesting(text)?;
+    toml::from_str(text).map_err(|error| TomlError::of(text, &error))
+}
+
+/// Returns the line of each key, from 1, or `None` where the text has no such key. A path has the names of the tables that the
+/// key stands in, and the indices of arrays.
+pub fn lines_of_keys<'p>(
+    text: &str,
+    paths: impl IntoIterator<Item = &'p [String]>,
+) -> Vec<Option<usize>> {
+    let table = check_nesting(text)
+        .ok()
+        .and_then(|()| DeTable::parse(text).ok());
+    let line = |path| {
+        let at = place_of_key(table.as_ref()?.get_ref(), path)?;
+        Some(place(text, at).0)
+    };
+    paths.into_iter().map(line).collect()
+}
+
+/// Returns the byte at which a key begins.
+fn place_of_key(table: &DeTable<'_>, path: &[String]) -> Option<usize> {
+    let (key, folders) = path.split_last()?;
+    let mut inside = table;
+    let mut items: &[Spanned<DeValue<'_>>] = &[];
+    for folder in folders {
+        let value = match folder.parse::<usize>() {
+            Ok(index) if index < items.len() => items.get(index),
+            _ => inside.get(&folder[..]),
+        };
+        match value?.get_ref() {
+            DeValue::Table(table) => (inside, items) = (table, &[]),
+            DeValue::Array(array) => items = array,
+            _ => return None,
+        }
+    }
+    let (key, _) = inside.get_key_value(&key[..])?;
+    Some(key.span().start)
+}
+
+/// Line and column of a byte, from 1.
+fn place(text: &str, byte: usize) -> (usize, usize) {
+    let before = text.get(..byte).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    (line, before[start..].chars().count() + 1)
+}
+
+#[cfg(test)]
+mod tests;

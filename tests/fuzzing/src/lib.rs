@@ -34,6 +34,7 @@ pub mod seeds;
 mod signed;
 mod studies;
 mod take;
+mod toml_text;
 
 pub use asset::open_asset;
 pub use baked::baked_block;
@@ -57,6 +58,7 @@ pub use scene::scene;
 pub use signed::signed_plugin;
 pub use studies::{answers, study};
 pub use take::take_part;
+pub use toml_text::toml_text;
 
 /// A fuzz target.
 #[derive(Debug, Clone, Copy)]
@@ -101,6 +103,7 @@ pub const TARGETS: &[Target] = &[
     target("answers", answers),
     target("recipe", recipe),
     target("recipe_folder", recipe_folder),
+    target("toml_text", toml_text),
     target("take_part", take_part),
     target("hatt", hatt),
     target("haptic", haptic),

@@ -202,7 +202,7 @@ fn parts() -> Vec<Seed> {
     seeds
 }
 
-/// A study, answers of its first participant, and a recipe.
+/// A study, answers of its first participant, a recipe, and choices of a grammar.
 fn studies() -> Vec<Seed> {
     let recipe = "[library]\nname = 'vinyls'\n[[textures]]\nrecordings = 'rec/*.csv'\nmodels = ['bands', 'sbeta']\n";
     let tabulated = recipe.replace("recordings = 'rec/*.csv'", "table = 'table.csv'");
@@ -210,6 +210,11 @@ fn studies() -> Vec<Seed> {
         ("study", "two", STUDY.to_owned()),
         ("answers", "begun", answered()),
         ("recipe", "vinyls", recipe.to_owned()),
+        // Choices of the grammar: the beginnings of valid texts, and a bracket that is opened again and again.
+        ("toml_text", "recipe", "\0\0\x04".to_owned()),
+        ("toml_text", "study", "\x01".to_owned()),
+        ("toml_text", "calibration", "\x02".to_owned()),
+        ("toml_text", "unclosed", "\x03\x05\x13\x06\x0d".to_owned()),
         ("recipe_folder", "vinyls", recipe.to_owned()),
         (
             "recipe_folder",

@@ -11,7 +11,7 @@ use crate::curve::{Point, value_at};
 use crate::error::Fault;
 use crate::format::{Sampling, Signal};
 use crate::json::{self, within};
-use crate::pattern::{MOST_S, Pattern, Transient, rendered};
+use crate::pattern::{MOST_S, Pattern, Transient, rendered_of_file};
 use crate::profile::Profile;
 
 /// The frequency where a file says none (section Frequency Envelope).
@@ -332,7 +332,7 @@ fn emphasise(points: &mut Vec<Amplitude>, transient: &Transient, profile: &Profi
 pub(crate) fn signal(bytes: &[u8], sampling: Sampling, profile: &Profile) -> Result<Signal, Fault> {
     let haptic = Haptic::from_bytes(bytes)?;
     Ok(Signal {
-        samples: rendered(&[haptic.pattern(profile)], sampling.rate_hz),
+        samples: rendered_of_file(&[haptic.pattern(profile)], sampling.rate_hz, AMPLITUDE)?,
         left_out: haptic.left_out(),
     })
 }

@@ -1,12 +1,32 @@
 //! What the formats of envelopes have in common: a level and a frequency over time, and transients.
 
 use crate::curve::{Point, Reader};
+use crate::error::Fault;
 
 /// Longest pattern that is rendered, seconds.
 pub const MOST_S: f64 = 600.0;
 /// Periods of the sine that stands for a transient. Renderers play one or two of a square wave (Meta, *.haptic File Specification 1.0*,
 /// Emphasis Object).
 const PERIODS: f64 = 2.0;
+
+/// Most samples that the vibrations of a file are added to, counted for each vibration, and points of their curves. At the rate of
+/// imports, a vibration of ten minutes takes 4.8 million.
+const MOST_WORK: f64 = 4e7;
+
+/// Refuses more than [`MOST_WORK`] samples and points at a rate; `at` is where they are in the file.
+pub(crate) fn check_work(
+    work: f64,
+    rate_hz: f64,
+    at: impl FnOnce() -> String,
+) -> Result<(), Fault> {
+    if work <= MOST_WORK {
+        return Ok(());
+    }
+    let problem = format!(
+        "its effects have more than {MOST_WORK:e} samples and keyframes at {rate_hz} Hz; leave some out"
+    );
+    Err(Fault::new(at(), problem))
+}
 
 /// A vibration of one actuator: a sine whose level and frequency follow curves, and transients.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -49,6 +69,14 @@ impl Pattern {
         }
     }
 
+    /// Samples that the vibration and its transients are added to, and points.
+    fn work(&self, rate_hz: f64) -> f64 {
+        let sine = (self.to_s - self.from_s).max(0.0) * rate_hz;
+        let pulse = |t: &Transient| (t.end_s() - t.time_s) * rate_hz + 1.0;
+        let pulses: f64 = self.transients.iter().map(pulse).sum();
+        sine + pulses + (self.level.len() + self.frequency_hz.len()) as f64
+    }
+
     fn add_sine(&self, samples: &mut [f64], rate_hz: f64) {
         let (mut level, mut frequency) =
             (Reader::new(&self.level), Reader::new(&self.frequency_hz));
@@ -89,6 +117,17 @@ impl Transient {
                 self.amplitude * libm::sin(std::f64::consts::TAU * self.frequency_hz * into_s);
         }
     }
+}
+
+/// As [`rendered`], of a file from anyone; `at` is where its vibrations are.
+pub(crate) fn rendered_of_file(
+    patterns: &[Pattern],
+    rate_hz: f64,
+    at: &str,
+) -> Result<Vec<f64>, Fault> {
+    let work = patterns.iter().map(|pattern| pattern.work(rate_hz)).sum();
+    check_work(work, rate_hz, || at.to_owned())?;
+    Ok(rendered(patterns, rate_hz))
 }
 
 /// Renders patterns together, held within ±1 as an actuator holds them, from time 0 to the last end.

@@ -1,8 +1,12 @@
 //! Files that are damaged, or too large, are refused with their place.
 #![allow(clippy::unwrap_used)] // Test code: a failed unwrap is a failed test.
 
-use std::time::{Duration, Instant};
+#[path = "common/busy.rs"]
+mod busy;
 
+use std::time::Duration;
+
+use busy::Busy;
 use htex_exchange::{Physical, missing, recording_of};
 use serde_json::{Value, json};
 
@@ -436,7 +440,7 @@ fn files_that_end_anywhere_or_repeat_a_key_are_named_with_place() {
 fn sizes_are_limited() {
     let large = vec![b' '; htex_exchange::MOST_BYTES as usize + 1];
     for name in ["a.haptic", "a.ahap", "a.hjif", "a.xml"] {
-        let start = Instant::now();
+        let start = Busy::start();
         let said = match name {
             "a.xml" => {
                 let none = htex_exchange::Import::default();
@@ -490,11 +494,58 @@ fn work_is_limited() {
     file["perceptions"][0]["effect_library"][0]["keyframes"] = json!(vec![keyframe; 30_000]);
     let reference = json!({"effect_type": "Reference", "id": 7, "position": 300});
     file["perceptions"][0]["channels"][0]["bands"][0]["effects"] = json!(vec![reference; 2_000]);
-    let start = Instant::now();
+    let start = Busy::start();
     let said = said("a.hjif", file.to_string().as_bytes());
     assert!(
         said.contains("samples and keyframes at 8000 Hz; leave some out"),
         "{said}"
     );
+    assert!(start.elapsed() < Duration::from_secs(10));
+}
+
+/// Files whose work grew with a product that nothing counted: pulses of a referenced effect, pulses of a low frequency, points of
+/// curves by parameters of their event, channels by devices.
+#[test]
+fn no_work_is_left_out_of_the_count() {
+    let start = Busy::start();
+    let mut pulses = hjif();
+    let pulse = json!({"relative_position": 0, "amplitude_modulation": 1});
+    let perception = &mut pulses["perceptions"][0];
+    perception["effect_library"][0]["keyframes"] = json!(vec![pulse; 3_000]);
+    let reference = json!({"effect_type": "Reference", "id": 7, "position": 300});
+    perception["channels"][0]["bands"][1]["effects"] = json!(vec![reference; 3_000]);
+    let text = pulses.to_string();
+    let refused = said("a.hjif", text.as_bytes());
+    assert!(refused.contains("/bands/1"), "{refused}");
+    assert!(refused.contains("4e7 samples"), "{refused}");
+
+    let low = r#"{"Event":{"Time":0,"EventType":"HapticTransient"}}"#;
+    let controlled =
+        r#"{"Parameter":{"ParameterID":"HapticSharpnessControl","ParameterValue":-1,"Time":0}}"#;
+    let lows = [low].repeat(320_000).join(",");
+    let text = format!(r#"{{"Version":1,"Pattern":[{controlled},{lows}]}}"#);
+    let refused = said("a.ahap", text.as_bytes());
+    assert!(refused.contains("/Pattern: its effects have"), "{refused}");
+
+    let parameter = json!({"ParameterID": "a", "ParameterValue": 0});
+    let event = json!({"Time": 0, "EventType": "HapticContinuous", "EventDuration": 100,
+        "EventParameters": vec![parameter; 60_000]});
+    let point = |i: u32| json!({"Time": f64::from(i) / 1e3, "ParameterValue": f64::from(i % 2)});
+    let points: Vec<Value> = (0..60_000).map(point).collect();
+    let curve = json!({"ParameterID": "HapticIntensityControl", "Time": 0,
+        "ParameterCurveControlPoints": points});
+    let file = json!({"Version": 1, "Pattern": [{ "Event": event }, { "ParameterCurve": curve }]});
+    assert_eq!(said("a.ahap", file.to_string().as_bytes()), "it is read");
+
+    let mut many = hjif();
+    many["level"] = json!(2);
+    let perception = &mut many["perceptions"][0];
+    let channel = |i: u32| json!({"id": i, "reference_device_id": 300_000, "bands": []});
+    let channels = perception["channels"].as_array_mut().unwrap();
+    channels[0]["reference_device_id"] = json!(300_000);
+    channels.extend((1..60_000).map(channel));
+    let devices: Vec<Value> = (0..=300_000).map(|i| json!({ "id": i })).collect();
+    perception["reference_devices"] = json!(devices);
+    assert_eq!(said("a.hjif", many.to_string().as_bytes()), "it is read");
     assert!(start.elapsed() < Duration::from_secs(10));
 }

@@ -1,10 +1,14 @@
 //! Model files of the Penn Haptic Texture Toolkit, of its shape: filters, triangles, silent edges.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
+#[path = "common/busy.rs"]
+mod busy;
 mod common;
 
 use std::f64::consts::TAU;
+use std::time::Duration;
 
+use busy::Busy;
 use common::{Model, draw, file};
 use htex_dsp::line_spectrum::coefficients_of_lines;
 use htex_dsp::linear_prediction::is_stable;
@@ -26,7 +30,7 @@ fn magnitude(model: &Model, hz: f64) -> f64 {
     let response = |coefficients: &[f64]| {
         let terms = coefficients.iter().enumerate().map(|(i, b)| {
             let angle = -TAU * hz * (i as f64) / 1_000.0;
-            (b * angle.cos(), b * angle.sin())
+            (b * libm::cos(angle), b * angle.sin())
         });
         let (re, im) = terms.fold((0.0, 0.0), |(re, im), (a, b)| (re + a, im + b));
         re.hypot(im)
@@ -244,6 +248,52 @@ fn entities_and_sizes_are_refused() {
             .to_string()
             .contains("line 2: this is no UTF-8")
     );
+}
+
+/// Blanks are looked at once, and the search for zeros is counted over the whole file.
+#[test]
+fn no_file_takes_more_than_seconds() {
+    let start = Busy::start();
+    let of = |text: &str| read(text.as_bytes()).map_err(|error| error.to_string());
+    let blanks = " ".repeat(500_000) + &"&#32;".repeat(120_000);
+    let text = file(&draw(1, 6, 4)).replacen("<material>", "<material>x", 1);
+    let plain = of(&text).unwrap().material;
+    let blank = text.replacen("</material>", &format!("{blanks}</material>"), 1);
+    assert_eq!(of(&blank).unwrap().material, plain);
+    let inner = text.replacen("</material>", &format!("{blanks}y</material>"), 1);
+    assert!(of(&inner).unwrap_err().contains("more than 4096 bytes"));
+    let attributes: String = (0..65).map(|i| format!(" a{i}=''")).collect();
+    let refused = of(&format!("<modelSet{attributes}/>")).unwrap_err();
+    assert!(refused.contains("more than 64 attributes"), "{refused}");
+
+    // Sixteen pairs of zeros outside the circle.
+    let mut numerator = vec![1.0];
+    for k in 0..16 {
+        let (radius, angle) = (1.02 + 0.03 * f64::from(k), 0.05 + 0.19 * f64::from(k));
+        let before = numerator.clone();
+        numerator.extend([0.0, 0.0]);
+        for (i, b) in before.iter().enumerate() {
+            numerator[i + 1] -= 2.0 * radius * libm::cos(angle) * b;
+            numerator[i + 2] += radius * radius * b;
+        }
+    }
+    let values: String = numerator
+        .iter()
+        .map(|b| format!("<value>{b:e}</value>"))
+        .collect();
+    let model = |i: usize| {
+        format!(
+            "<model><ARcoeff><value>1</value><value>-0.5</value></ARcoeff><MAcoeff>{values}</MAcoeff>\
+             <var>1</var><speedMod>{i}</speedMod><forceMod>1</forceMod></model>"
+        )
+    };
+    let models: String = (0..4_000).map(model).collect();
+    let refused = of(&format!(
+        "<modelSet><SampleRate>1000</SampleRate>{models}</modelSet>"
+    ))
+    .unwrap_err();
+    assert!(refused.contains("too many filters have zeros"), "{refused}");
+    assert!(start.elapsed() < Duration::from_secs(10));
 }
 
 /// Triangles that cover nothing are left out with a note, and the format's own are used.

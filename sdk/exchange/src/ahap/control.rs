@@ -31,9 +31,9 @@ impl Controls {
         Pattern {
             from_s: event.time,
             to_s: event.end_s(),
-            level: self.intensity.over(event, |c| level(event, c)),
+            level: self.intensity.over(event, level(event)),
             exponent: 2,
-            frequency_hz: self.sharpness.over(event, |c| hertz(event, c, profile)),
+            frequency_hz: self.sharpness.over(event, hertz(event, profile)),
             transients: Vec::new(),
         }
     }
@@ -41,18 +41,22 @@ impl Controls {
     pub(super) fn transient(&self, event: &Event, profile: &Profile) -> Transient {
         Transient {
             time_s: event.time,
-            amplitude: libm::pow(level(event, self.intensity.at(event.time)), 2.0),
-            frequency_hz: hertz(event, self.sharpness.at(event.time), profile),
+            amplitude: libm::pow(level(event)(self.intensity.at(event.time)), 2.0),
+            frequency_hz: hertz(event, profile)(self.sharpness.at(event.time)),
         }
     }
 }
 
-fn level(event: &Event, control: f64) -> f64 {
-    (event.parameter(INTENSITY, 1.0) * control).clamp(0.0, 1.0)
+/// The level of an event by its control. The event's parameters are looked through once, not at each point.
+fn level(event: &Event) -> impl Fn(f64) -> f64 {
+    let intensity = event.parameter(INTENSITY, 1.0);
+    move |control| (intensity * control).clamp(0.0, 1.0)
 }
 
-fn hertz(event: &Event, control: f64, profile: &Profile) -> f64 {
-    profile.hertz_of((event.parameter(SHARPNESS, 0.5) + control).clamp(0.0, 1.0))
+/// The frequency of an event by its control, hertz.
+fn hertz(event: &Event, profile: &Profile) -> impl Fn(f64) -> f64 {
+    let sharpness = event.parameter(SHARPNESS, 0.5);
+    move |control| profile.hertz_of((sharpness + control).clamp(0.0, 1.0))
 }
 
 /// A control over time, and its value before its first point.

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::Fault;
 use crate::format::{Sampling, Signal};
 use crate::json::{self, within};
-use crate::pattern::{MOST_S, Pattern, rendered};
+use crate::pattern::{MOST_S, Pattern, rendered_of_file};
 use crate::profile::Profile;
 use control::Controls;
 
@@ -297,7 +297,7 @@ impl Event {
 pub(crate) fn signal(bytes: &[u8], sampling: Sampling, profile: &Profile) -> Result<Signal, Fault> {
     let ahap = Ahap::from_bytes(bytes)?;
     Ok(Signal {
-        samples: rendered(&ahap.patterns(profile), sampling.rate_hz),
+        samples: rendered_of_file(&ahap.patterns(profile), sampling.rate_hz, "/Pattern")?,
         left_out: ahap.left_out(),
     })
 }

@@ -13,8 +13,10 @@ pub const MOST_BYTES: usize = 16 << 20;
 pub const MOST_ELEMENTS: usize = 200_000;
 /// Most elements in each other.
 const MOST_DEPTH: usize = 16;
-/// Most bytes of an element's text.
+/// Most bytes of an element's text, without the blanks at its ends.
 const MOST_TEXT: usize = 4096;
+/// Most attributes of an element; the reader compares each with all before it.
+const MOST_ATTRIBUTES: usize = 64;
 
 /// Reads the root element.
 pub(super) fn root(bytes: &[u8]) -> Result<Element, Fault> {
@@ -44,6 +46,9 @@ struct Builder<'a> {
     reader: Reader<&'a [u8]>,
     /// Elements that are not closed, the outermost first.
     open: Vec<Element>,
+    /// Bytes of the innermost open element's text up to its last character that is not blank. It is kept so that no blank is
+    /// looked at twice.
+    filled: usize,
     root: Option<Element>,
     count: usize,
     /// The last position of which the line is known, and the line.
@@ -56,6 +61,7 @@ impl<'a> Builder<'a> {
             text,
             reader: Reader::from_str(text),
             open: Vec::new(),
+            filled: 0,
             root: None,
             count: 0,
             known: (0, 1),
@@ -118,6 +124,9 @@ impl<'a> Builder<'a> {
         }
         let mut attributes = Vec::new();
         for attribute in start.attributes() {
+            if attributes.len() >= MOST_ATTRIBUTES {
+                return Err(self.fault(format!("more than {MOST_ATTRIBUTES} attributes")));
+            }
             let attribute = attribute.map_err(|error| self.fault(short(&error.to_string())))?;
             attributes.push((
                 lossy(attribute.key.as_ref()),
@@ -125,6 +134,7 @@ impl<'a> Builder<'a> {
             ));
         }
         let line = self.line();
+        self.filled = 0;
         self.open.push(Element {
             name: lossy(start.name().as_ref()),
             attributes,
@@ -140,13 +150,18 @@ impl<'a> Builder<'a> {
             return;
         };
         match self.open.last_mut() {
-            Some(parent) => parent.children.push(closed),
+            Some(parent) => {
+                self.filled = parent.text.trim_end().len();
+                parent.text.truncate(self.filled);
+                parent.children.push(closed);
+            }
             None => self.root = Some(closed),
         }
     }
 
     fn words(&mut self, words: &str) -> Result<(), Fault> {
-        let is_blank = words.trim().is_empty();
+        let filled = words.trim_end().len();
+        let is_blank = filled == 0;
         let Some(open) = self.open.last_mut() else {
             return match is_blank {
                 true => Ok(()),
@@ -154,12 +169,15 @@ impl<'a> Builder<'a> {
             };
         };
         // The space between elements is no text.
-        if !is_blank || !open.text.is_empty() {
-            open.text.push_str(
-                words.trim_start_matches(|c: char| open.text.is_empty() && c.is_whitespace()),
-            );
+        let skipped = match open.text.is_empty() {
+            true => words.len() - words.trim_start().len(),
+            false => 0,
+        };
+        if !is_blank {
+            self.filled = open.text.len() + filled - skipped;
         }
-        match open.text.trim_end().len() > MOST_TEXT {
+        open.text.push_str(words.get(skipped..).unwrap_or_default());
+        match self.filled > MOST_TEXT {
             true => Err(open.fault(format!("a text of more than {MOST_TEXT} bytes"))),
             false => Ok(()),
         }

@@ -6,7 +6,7 @@ use htex_dsp::linear_prediction::is_stable;
 
 use super::element::Element;
 use super::fault::{Fault, Place};
-use super::zeros::inside;
+use super::zeros::{NotFound, Work, inside};
 
 /// Largest difference of a line in the file from that of the coefficients, radians, without a warning.
 const LINE_ERROR: f64 = 1e-3;
@@ -28,7 +28,11 @@ pub struct Node {
 }
 
 impl Node {
-    pub(super) fn read(element: &Element, notes: &mut Vec<String>) -> Result<Self, Fault> {
+    pub(super) fn read(
+        element: &Element,
+        notes: &mut Vec<String>,
+        work: &mut Work,
+    ) -> Result<Self, Fault> {
         let ar = coefficients(element, "ARcoeff", true)?;
         let ma = coefficients(element, "MAcoeff", false)?;
         let of = |name: &str, most: f64| element.required(name)?.number_in(0.0, most);
@@ -39,10 +43,15 @@ impl Node {
                 given.fault("the filter is not stable: a pole lies on or outside the unit circle")
             );
         }
-        let Some((ma, mirrored)) = inside(&ma) else {
-            let at = element.one("MAcoeff")?.unwrap_or(element);
-            return Err(at.fault("the zeros of these coefficients cannot be found"));
-        };
+        let at = element.one("MAcoeff")?.unwrap_or(element);
+        let (ma, mirrored) = inside(&ma, work).map_err(|error| {
+            at.fault(match error {
+                NotFound::Here => "the zeros of these coefficients cannot be found",
+                NotFound::TooMuch => {
+                    "up to here, too many filters have zeros outside the unit circle, which take long to find; split the file, or move the zeros inside"
+                }
+            })
+        })?;
         compare_lines(element, "ARlsf", &ar, notes)?;
         if mirrored == 1.0 {
             compare_lines(element, "MAlsf", &ma, notes)?;

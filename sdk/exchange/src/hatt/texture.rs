@@ -6,6 +6,7 @@ use super::document::root;
 use super::element::Element;
 use super::fault::Fault;
 use super::node::Node;
+use super::zeros::Work;
 
 /// Relative difference of two numbers that are the same.
 const SAME: f64 = 1e-6;
@@ -83,7 +84,10 @@ fn nodes(root: &Element, notes: &mut Vec<String>) -> Result<Vec<Node>, Fault> {
     if models.is_empty() {
         return Err(root.fault("it has no element model"));
     }
-    let nodes = models.iter().map(|model| Node::read(model, notes));
+    let mut work = Work::default();
+    let nodes = models
+        .iter()
+        .map(|model| Node::read(model, notes, &mut work));
     let nodes = nodes.collect::<Result<Vec<Node>, Fault>>()?;
     for (name, order) in [
         ("numARCoeff", nodes.first().map_or(0, |node| node.ar.len())),

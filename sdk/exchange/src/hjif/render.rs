@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use super::{Band, BandType, BaseSignal, Chosen, Effect, EffectType, Hjif, Keyframe, synthesised};
 use crate::curve::{Point, Reader};
 use crate::error::Fault;
-use crate::pattern::MOST_S;
+use crate::pattern::{MOST_S, check_work};
 
 /// Length of a transient, seconds: two periods of a sine (source/Types/include/Band.h).
 const TRANSIENT_S: f64 = 0.022;
-/// Most samples and keyframes of all effects together, those of a referenced effect counted at each reference.
-const MOST_WORK: f64 = 4e7;
+/// Operations for a coefficient of a block of wavelets, in samples.
+const PER_COEFFICIENT: f64 = 4.0;
 
 /// The effects of a library that bands refer to.
 type Library<'a> = BTreeMap<i64, &'a Effect>;
@@ -75,13 +75,8 @@ fn length(bands: &[Timed<'_>], chosen: &Chosen<'_>, rate_hz: f64) -> Result<usiz
                 return Err(Fault::new(at(), problem));
             }
             end_s = end_s.max(to_s);
-            work += (to_s - from_s) * rate_hz + effect.effect.keyframes.len() as f64;
-            if work > MOST_WORK {
-                let problem = format!(
-                    "its effects have more than {MOST_WORK:e} samples and keyframes at {rate_hz} Hz; leave some out"
-                );
-                return Err(Fault::new(at(), problem));
-            }
+            work += band.work(effect.effect, to_s - from_s);
+            check_work(work, rate_hz, at)?;
         }
     }
     Ok(first_from(end_s, rate_hz))
@@ -123,6 +118,17 @@ impl<'a> Timed<'a> {
             BandType::Curve | BandType::VectorialWave => last as f64 * self.tick_s,
         };
         self.start_s(placed) + own_s
+    }
+
+    /// Samples that an effect is added to, and its keyframes; a transient has its own samples at each keyframe.
+    fn work(&self, effect: &Effect, length_s: f64) -> f64 {
+        let keyframes = effect.keyframes.len() as f64;
+        let samples = length_s * self.rate_hz;
+        match self.band.band_type {
+            BandType::Transient => keyframes * (TRANSIENT_S * self.rate_hz + 1.0),
+            BandType::WaveletWave => samples + PER_COEFFICIENT * keyframes,
+            BandType::Curve | BandType::VectorialWave => samples + keyframes,
+        }
     }
 
     /// Length of a block of wavelets, whose rate is the upper limit.
@@ -202,8 +208,10 @@ impl<'a> Timed<'a> {
     fn add_transients(&self, effect: &Effect, own: &mut [f64], clock: Clock) {
         for at in self.curve(effect, |k| k.amplitude_modulation) {
             let (from, to) = (clock.index(at.time_s), clock.index(at.time_s + TRANSIENT_S));
-            for (index, sample) in own.iter_mut().enumerate().take(to).skip(from) {
-                let part = (clock.into_s(index) - at.time_s) / TRANSIENT_S;
+            let to = to.min(own.len());
+            let pulse = own.get_mut(from.min(to)..to).unwrap_or_default();
+            for (index, sample) in pulse.iter_mut().enumerate() {
+                let part = (clock.into_s(from + index) - at.time_s) / TRANSIENT_S;
                 *sample += at.value * libm::sin(2.0 * std::f64::consts::TAU * part);
             }
         }

@@ -114,9 +114,10 @@ fn check_perception(perception: &Perception, kind: Kind, at: &str) -> Result<(),
     )?;
     unique(&of(), channels.iter().map(|c| Some(c.id)))?;
     let known: BTreeSet<i64> = band::basis_ids(library);
+    let devices: BTreeSet<i64> = devices.iter().map(|device| device.id).collect();
     for (index, channel) in channels.iter().enumerate() {
         let at = format!("{at}/channels/{index}");
-        check_channel(channel, perception, &at)?;
+        check_channel(channel, &devices, &at)?;
         let most = kind.most_bands as f64;
         let count = channel.bands.len() as f64;
         within(
@@ -137,15 +138,14 @@ fn check_perception(perception: &Perception, kind: Kind, at: &str) -> Result<(),
     Ok(())
 }
 
-fn check_channel(channel: &Channel, perception: &Perception, at: &str) -> Result<(), Fault> {
+fn check_channel(channel: &Channel, devices: &BTreeSet<i64>, at: &str) -> Result<(), Fault> {
     let gain = || format!("{at}/gain");
     within(gain, "the gain", channel.gain, -MOST_GAIN..=MOST_GAIN)?;
     let mixing = channel.mixing_coefficient;
     let of = || format!("{at}/mixing_coefficient");
     within(of, "the coefficient", mixing, 0.0..=MOST_GAIN)?;
-    let is_there = |id| perception.reference_devices.iter().any(|d| d.id == id);
     match channel.reference_device_id {
-        Some(id) if !is_there(id) => Err(Fault::new(
+        Some(id) if !devices.contains(&id) => Err(Fault::new(
             format!("{at}/reference_device_id"),
             format!("there is no reference device {id}"),
         )),

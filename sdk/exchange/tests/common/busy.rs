@@ -1,0 +1,31 @@
+//! Time that a thread computed, which other programs on the machine do not lengthen.
+
+use std::time::{Duration, Instant};
+
+/// A clock of this thread's computing; where the system does not tell it, of the time that passes.
+pub struct Busy {
+    computed: Option<Duration>,
+    start: Instant,
+}
+
+impl Busy {
+    pub fn start() -> Self {
+        Self {
+            computed: computed(),
+            start: Instant::now(),
+        }
+    }
+
+    pub fn elapsed(&self) -> Duration {
+        match (self.computed, computed()) {
+            (Some(start), Some(now)) => now - start,
+            _ => self.start.elapsed(),
+        }
+    }
+}
+
+fn computed() -> Option<Duration> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds = text.split(' ').next()?.parse().ok()?;
+    Some(Duration::from_nanos(nanoseconds))
+}

@@ -29,7 +29,7 @@ pub use cell::as_text;
 pub use finding::{Finding, Severity, listed, summary};
 pub use hint::{Hint, Notice};
 pub use page::rules_page;
-pub use plain::plain;
+pub use plain::{plain, steers};
 pub use pointer::{Place, escape};
 pub use report::{FileReport, Findings, Report};
 pub use rule::{COUNT, FINDINGS_TRUNCATED, Rule, Stage};

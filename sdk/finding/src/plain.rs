@@ -24,7 +24,8 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(plain)
 }
 
-fn steers(c: char) -> bool {
+/// Whether [`plain`] escapes a character: a control character, or an invisible one that changes the text around it.
+pub fn steers(c: char) -> bool {
     // All of Unicode's format characters (Cf) except the visible ones, and the plane of tags and selectors.
     let is_mark = matches!(c, '\u{00ad}' | '\u{061c}' | '\u{180e}' | '\u{feff}')
         || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}')

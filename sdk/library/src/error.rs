@@ -61,8 +61,8 @@ pub enum LibraryError {
     /// Two textures have the same name.
     #[error("two textures have the name {}; rename one", plain(.name))]
     Duplicate { name: String },
-    /// Two names differ in case alone.
-    #[error("{} and {} differ in case alone, and are one file on some systems; rename one", plain(.name), plain(.other))]
+    /// Two names differ in case or normalisation only.
+    #[error("{} and {} differ only in case or in Unicode normalisation, and are one file on some systems; rename one", plain(.name), plain(.other))]
     Alike {
         name: String,
         /// The name that was added before.

@@ -75,7 +75,7 @@ pub use library::{Entries, Library};
 pub use limits::Limits;
 #[cfg(feature = "storage")]
 pub use located::Located;
-pub use name::{InvalidName, check_name};
+pub use name::{InvalidName, Names, check_name};
 pub use opening::{FIRST_READ, Opening, Progress};
 #[cfg(feature = "write")]
 pub use packer::Packed;

@@ -1,5 +1,11 @@
 //! Rules of the names of textures: each is also a relative path of a file, on every system.
 
+use std::collections::BTreeSet;
+
+use htex_finding::steers;
+use icu_casemap::CaseMapper;
+use icu_normalizer::DecomposingNormalizer;
+
 use crate::wire::TEXT_BYTES;
 
 /// Ending of a texture's file.
@@ -20,7 +26,9 @@ pub enum InvalidName {
     #[error("it has {0} bytes and the most is 255; shorten it")]
     TooLong(usize),
     /// It contains a character that file systems or terminals interpret.
-    #[error("it contains {0:?}; leave out control characters and \\ : * ? \" < > |")]
+    #[error(
+        "it contains {0:?}; leave out control characters, invisible characters, and \\ : * ? \" < > |"
+    )]
     Character(char),
     /// A part between slashes is empty, `.` or `..`.
     #[error("a part of it is empty, `.` or `..`; write the parts with one `/` between them")]
@@ -61,28 +69,63 @@ pub fn check_name(name: &str) -> Result<(), InvalidName> {
     }
     name.split('/').try_for_each(check_part)?;
     let mut folders = name.split('/').rev().skip(1);
-    match folders.any(|folder| caseless(folder).ends_with(&caseless(ENDING))) {
+    let has_ending = |folder: &str| folder.to_ascii_lowercase().ends_with(ENDING);
+    match folders.any(has_ending) {
         true => Err(InvalidName::Folder),
         false => Ok(()),
     }
 }
 
-/// Returns what names of one file have in common on systems that ignore case: each character's full upper case.
-pub(crate) fn caseless(name: &str) -> String {
-    name.to_uppercase()
+/// Returns what names of one file have in common on systems that ignore case or compare names after normalisation: two names
+/// are a canonical caseless match (The Unicode Standard, definition D145) if these are equal.
+fn of_one_file(name: &str) -> String {
+    let decomposed = DecomposingNormalizer::new_nfd();
+    let folded = |text: &str| CaseMapper::new().fold_string(text).into_owned();
+    decomposed
+        .normalize(&folded(&decomposed.normalize(name)))
+        .into_owned()
 }
 
-/// Checks the name of a library: up to 255 bytes of UTF-8 without control characters; it may be empty.
+/// The first 16 bytes of the hash of [`of_one_file`]: a library may have millions of names.
+pub(crate) fn file_key(name: &str) -> [u8; 16] {
+    let mut start = [0; 16];
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(of_one_file(name).as_bytes());
+    hasher.finalize_xof().fill(&mut start);
+    start
+}
+
+/// Names of textures that are different files on every system. Packing, validating and unpacking compare names by it.
+///
+/// ```
+/// let mut names = htex_library::Names::default();
+/// assert!(names.insert("wood/café"));
+/// assert!(!names.insert("WOOD/CAFE\u{301}"));
+/// ```
+#[derive(Debug, Default)]
+pub struct Names {
+    seen: BTreeSet<[u8; 16]>,
+}
+
+impl Names {
+    /// Adds a name. Returns false if some system takes it and a name before for one file: they differ in case or in Unicode's
+    /// normalisation only.
+    pub fn insert(&mut self, name: &str) -> bool {
+        self.seen.insert(file_key(name))
+    }
+}
+
+/// Checks the name of a library: up to 255 bytes of UTF-8 without characters that steer a terminal; it may be empty.
 pub(crate) fn check_library_name(name: &str) -> Result<(), InvalidName> {
     if name.len() > TEXT_BYTES {
         return Err(InvalidName::TooLong(name.len()));
     }
-    let refused = name.chars().find(|c| c.is_control());
+    let refused = name.chars().find(|c| steers(*c));
     refused.map_or(Ok(()), |c| Err(InvalidName::Character(c)))
 }
 
 fn is_refused(c: char) -> bool {
-    c.is_control() || matches!(c, '\\' | ':' | '*' | '?' | '"' | '<' | '>' | '|')
+    steers(c) || matches!(c, '\\' | ':' | '*' | '?' | '"' | '<' | '>' | '|')
 }
 
 fn check_part(part: &str) -> Result<(), InvalidName> {
@@ -143,6 +186,9 @@ mod tests {
             ("x/con", InvalidName::Device),
             ("Lpt1.htex", InvalidName::Device),
             ("a/COM².x", InvalidName::Device),
+            ("a\u{202e}gnp.oak", InvalidName::Character('\u{202e}')),
+            ("a\u{200d}b", InvalidName::Character('\u{200d}')),
+            ("\u{feff}a", InvalidName::Character('\u{feff}')),
             ("conin$", InvalidName::Device),
             ("CONOUT$ .b/c", InvalidName::Device),
             ("a.HTEX/b", InvalidName::Folder),
@@ -155,6 +201,31 @@ mod tests {
             check_name(&"a".repeat(251)),
             Err(InvalidName::LongPart(251))
         );
-        assert_eq!(caseless("Straße/σ"), caseless("STRASSE/ς"));
+        assert_eq!(
+            check_library_name("a\u{2066}b"),
+            Err(InvalidName::Character('\u{2066}'))
+        );
+    }
+
+    #[test]
+    fn names_of_one_file_on_some_system_are_alike() {
+        for (one, other) in [
+            ("Straße/σ", "STRASSE/ς"),
+            ("café", "cafe\u{301}"),
+            ("K", "\u{212a}"),
+            ("Å", "\u{212b}"),
+            ("CAFÉ", "cafe\u{301}"),
+            // A fold whose decomposition is in another order.
+            ("\u{1fb3}\u{301}", "\u{3b1}\u{301}\u{345}"),
+        ] {
+            let mut names = Names::default();
+            assert!(names.insert(one) && !names.insert(other), "{one} {other}");
+        }
+        let mut names = Names::default();
+        assert!(
+            ["a", "b", "á", "ａ", "aa"]
+                .iter()
+                .all(|name| names.insert(name))
+        );
     }
 }

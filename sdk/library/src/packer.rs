@@ -14,7 +14,7 @@ use crate::facts::{Facts, MOST_WORDS};
 use crate::header::{HEADER_BYTES, Header, MINOR};
 use crate::leaf::length;
 use crate::limits::Limits;
-use crate::name::{caseless, check_library_name, check_name};
+use crate::name::{check_library_name, check_name, file_key};
 use crate::sharing::Sharing;
 use crate::spool::{Spool, SpoolReader, Spooled, Store};
 use crate::wire::TEXT_BYTES;
@@ -28,7 +28,8 @@ pub(crate) struct Packer<S> {
     /// The textures by name.
     added: BTreeMap<String, Added>,
     /// Their names, by what names have in common where case does not count.
-    caseless: BTreeMap<String, String>,
+    /// The name of each file, by [`file_key`].
+    files: BTreeMap<[u8; 16], String>,
     /// Different tags and models, which many textures have in common.
     words: BTreeSet<Arc<Words>>,
     /// Textures without a licence are packed, too.
@@ -83,7 +84,7 @@ impl<S: Store> Packer<S> {
             name: name.to_owned(),
             spool: Spool::new(store),
             added: BTreeMap::new(),
-            caseless: BTreeMap::new(),
+            files: BTreeMap::new(),
             words: BTreeSet::new(),
             allows_unlicensed: false,
         })
@@ -100,7 +101,8 @@ impl<S: Store> Packer<S> {
                 name: name.to_owned(),
             });
         }
-        if let Some(other) = self.caseless.get(&caseless(name)) {
+        let file = file_key(name);
+        if let Some(other) = self.files.get(&file) {
             return Err(LibraryError::Alike {
                 name: name.to_owned(),
                 other: other.clone(),
@@ -124,7 +126,7 @@ impl<S: Store> Packer<S> {
             spooled,
         };
         self.added.insert(name.to_owned(), added);
-        self.caseless.insert(caseless(name), name.to_owned());
+        self.files.insert(file, name.to_owned());
         Ok(())
     }
 

@@ -3,7 +3,6 @@
 use htex_format::Condition;
 
 use crate::entry::{Entry, Interval};
-use crate::name::caseless;
 
 /// What a texture must have to be found; what is `None` or empty is not asked for.
 ///
@@ -55,6 +54,11 @@ impl Query {
                 .as_ref()
                 .is_none_or(|model| has_model(entry, model))
     }
+}
+
+/// A text without its case, for searches.
+fn caseless(text: &str) -> String {
+    text.to_uppercase()
 }
 
 fn is_among(asked: Option<f64>, known: Option<Interval>) -> bool {

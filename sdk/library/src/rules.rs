@@ -57,11 +57,11 @@ rule_table! {
         "Pack the library again.";
     LIBRARY_NAME_INVALID Error:
         "A name is not allowed.",
-        "Each name is a relative path of a file too, on every system: a name with `..` could write outside a folder.",
+        "Each name is a relative path of a file too, on every system: a name with `..` could write outside a folder, and one with an invisible character could look like another name.",
         "Rename the texture and pack the library again.";
     LIBRARY_NAMES_ALIKE Error:
-        "Two names differ only in case.",
-        "On systems that ignore case both are one file, so that one texture would replace the other.",
+        "Two names differ only in case or in Unicode normalisation.",
+        "Some systems take both for one file, so that one texture would replace the other.",
         "Rename one of the textures and pack the library again.";
     LIBRARY_ORDER_INVALID Error:
         "Names are not sorted, or one appears twice.",

@@ -14,7 +14,7 @@ use crate::index::{assembled, changed};
 use crate::leaf::length;
 use crate::library::Library;
 use crate::limits::Limits;
-use crate::name::caseless;
+use crate::name::Names;
 use crate::ratio::Ratio;
 use crate::rules as rule;
 use crate::source::{LibrarySource, LocalFile};
@@ -59,7 +59,7 @@ struct Validation<'a, S> {
     /// Shared objects: start and end.
     objects: BTreeMap<u64, u64>,
     /// Hashes of the names so far, without their case: 128 bits each, however long a name is.
-    caseless: BTreeSet<[u8; 16]>,
+    names: Names,
     entries: u64,
     /// Bytes of all textures so far.
     ratio: Ratio,
@@ -75,7 +75,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             findings: Findings::default(),
             next: Some(0),
             objects: BTreeMap::new(),
-            caseless: BTreeSet::new(),
+            names: Names::default(),
             entries: 0,
             ratio: library.ratio(),
             is_whole: true,
@@ -131,17 +131,13 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         Ok(true)
     }
 
-    /// Checks that no name before differs in case alone.
+    /// Checks that no name before is the same file on some system.
     fn check_name(&mut self, entry: &Entry, place: &str) {
-        let mut hash = [0; 16];
-        let mut whole = blake3::Hasher::new();
-        whole.update(caseless(&entry.name).as_bytes());
-        whole.finalize_xof().fill(&mut hash);
-        let is_other = self.caseless.insert(hash);
+        let is_other = self.names.insert(&entry.name);
         self.findings
             .require(is_other, rule::LIBRARY_NAMES_ALIKE, place, || {
                 format!(
-                    "{} differs from another name in case alone; rename one and pack the library again",
+                    "{} differs from another name only in case or in Unicode normalisation; rename one and pack the library again",
                     entry.name
                 )
             });

@@ -14,7 +14,7 @@ from .asset import read_asset
 from .findings import Findings, Refused
 from .law import SOURCES, exponents
 from .models import Models
-from .pages import Entry, Root, most_in_file, name_is_allowed, read_leaf, read_root, unpack
+from .pages import Entry, Root, most_in_file, name_is_allowed, one_file, read_leaf, read_root, unpack
 
 SIGNATURE = bytes.fromhex("8948544c0d0a1a0a")
 HEADER_BYTES = 128
@@ -156,10 +156,10 @@ class Validator:
         if self.total > self.limits["ratio"] * len(self.data):
             self.findings.add("LIBRARY_RATIO", pointer)
             raise Ended
-        upper = entry.name.upper()
-        if upper in self.names:
+        file = one_file(entry.name)
+        if file in self.names:
             self.findings.add("LIBRARY_NAMES_ALIKE", pointer)
-        self.names.add(upper)
+        self.names.add(file)
         if self.own_end is not None and entry.start != self.own_end:
             self.findings.add("LIBRARY_RANGE_INVALID", pointer, "own bytes")
         self.own_end = entry.start + entry.length

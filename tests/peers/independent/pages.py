@@ -14,6 +14,10 @@ from .findings import Refused
 MAX_TEXT, MAX_LIST, MAX_OBJECTS = 255, 64, 256
 MAX_PART = 250
 FORBIDDEN = set('\\:*?"<>|')
+INVISIBLE = [
+    (0xAD, 0xAD), (0x61C, 0x61C), (0x180E, 0x180E), (0x200B, 0x200F), (0x2028, 0x202E), (0x2060, 0x206F), (0xFEFF, 0xFEFF),
+    (0xFFF9, 0xFFFB), (0x13430, 0x1343F), (0x1BCA0, 0x1BCA3), (0x1D173, 0x1D17A), (0xE0000, 0xE0FFF),
+]
 DEVICE = re.compile(r"(CON|PRN|AUX|NUL|CONIN\$|CONOUT\$|(COM|LPT)[0-9¹²³])", re.ASCII | re.IGNORECASE)
 
 
@@ -149,7 +153,7 @@ def read_root(contents: bytes, leaves: int, leaves_length: int, newer: bool) -> 
     """Section 4."""
     cursor = Cursor(contents, "/root")
     name = cursor.text()
-    if any(unicodedata.category(char) == "Cc" for char in name):
+    if any(steers(char) for char in name):
         raise Refused("LIBRARY_NAME_INVALID", "/root", "a control character")
     count = cursor.varint()
     if count != leaves:
@@ -248,11 +252,23 @@ def read_objects(cursor: Cursor) -> list[Object]:
     return result
 
 
+def steers(char: str) -> bool:
+    """Section 6: a control character, or an invisible one."""
+    invisible = any(low <= ord(char) <= high for low, high in INVISIBLE)
+    return unicodedata.category(char) == "Cc" or invisible
+
+
+def one_file(name: str) -> str:
+    """Section 6: what names have in common that some system takes for one file."""
+    folded = unicodedata.normalize("NFD", name).casefold()
+    return unicodedata.normalize("NFD", folded)
+
+
 def name_is_allowed(name: str) -> bool:
     """Section 6, of one name."""
     if not 1 <= len(name.encode("utf-8")) <= MAX_TEXT:
         return False
-    if any(char in FORBIDDEN or unicodedata.category(char) == "Cc" for char in name):
+    if any(char in FORBIDDEN or steers(char) for char in name):
         return False
     parts = name.split("/")
     for index, part in enumerate(parts):

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use htex_files::{AtFile, Batch, OwnFolder};
-use htex_library::{Entry, LibraryError};
+use htex_library::{Entry, LibraryError, Names};
 
 use super::given::Given;
 use crate::exit::Exit;
@@ -43,13 +43,17 @@ impl Unpack {
             self.names.len() as u64
         };
         let bar = bar(count);
-        // The index says how large all are, before anything is written.
-        let mut ratio = library.ratio();
+        // The index says how large all are and which files they become, before anything is written.
+        let (mut ratio, mut names) = (library.ratio(), Names::default());
         if self.names.is_empty() {
-            library
-                .entries()
-                .try_for_each(|entry| ratio.add(&entry?))
-                .of(&file)?;
+            for entry in library.entries() {
+                let entry = entry.of(&file)?;
+                ratio.add(&entry).of(&file)?;
+                check_alike(&mut names, &entry.name)?;
+            }
+        }
+        for name in &self.names {
+            check_alike(&mut names, name)?;
         }
         let mut batch = Batch::default();
         let mut write = |entry: Entry| {
@@ -96,5 +100,16 @@ impl Unpack {
             }
         }
         Ok(own.write_with(batch, &inside, bytes).writing(&path)?)
+    }
+}
+
+/// Refuses a name that is the same file as one before on some system, so that neither is lost.
+fn check_alike(names: &mut Names, name: &str) -> Result<(), Failure> {
+    match names.insert(name) {
+        true => Ok(()),
+        false => Err(Failure::Other(format!(
+            "{}: some systems take its file for the file of another texture of this library; unpack one of them by its name, or rename it",
+            shown(Path::new(name))
+        ))),
     }
 }

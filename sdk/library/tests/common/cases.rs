@@ -288,6 +288,18 @@ fn entries() -> Vec<Named> {
             changed(|raw| raw.leaves[0][0].name = "WOOD/ÖLWEIDE".into()),
         ),
         (
+            "library_names_alike_decomposed",
+            changed(|raw| raw.leaves[0][0].name = "WOOD/O\u{308}LWEIDE".into()),
+        ),
+        (
+            "library_name_invalid_direction",
+            changed(|raw| raw.leaves[0][0].name = "bark\u{202e}gnp".into()),
+        ),
+        (
+            "library_name_invalid_invisible",
+            changed(|raw| raw.leaves[0][0].name = "bark\u{2060}".into()),
+        ),
+        (
             "library_page_invalid_utf8",
             changed(|raw| raw.leaves[0][0].name = b"\xff".to_vec()),
         ),

@@ -743,13 +743,26 @@ fn a_table_says_what_files_do_not() {
     );
     place.write("recordings.csv", table.replace("160", "80"));
     build(&place, "dist", &[]);
-    let entries = entries(&place.path("dist/t.htexlib"));
+    let entries_of = entries;
+    let entries = entries_of(&place.path("dist/t.htexlib"));
     assert_eq!(
         (&entries[0].name[..], &entries[1].tags[0][..]),
         ("A", "dear")
     );
     let recordings = place.json(&["info", "dist/textures/A.htex", "--json"]);
     assert_eq!(recordings["conditions"].as_array().unwrap().len(), 1);
+
+    // A row whose file is missing stops the build, or its texture is left out and the others stand.
+    let missing = table.replace("160", "80") + "rec/none.csv,C,80,0.4,dear\n";
+    place.write("recordings.csv", missing);
+    let run = place.run(&["build", "library.toml", "-o", "dist"]);
+    assert_eq!(run.code(), 1);
+    assert!(run.error().contains("none.csv"), "{}", run.error());
+    let run = place.run(&["build", "library.toml", "-o", "dist", "--keep-going"]);
+    assert_eq!(run.code(), 3, "{}", run.error());
+    let text = run.text();
+    assert!(text.contains("left out: C: cannot read"), "{text}");
+    assert_eq!(entries_of(&place.path("dist/t.htexlib")).len(), 2);
 }
 
 /// A folder that was moved takes its textures out of the library: that is said, and refused where nothing may be removed.

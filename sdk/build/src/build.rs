@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use htex_files::FileError;
 use htex_host::WasmLimits;
-use htex_storage::Location;
+use htex_storage::{Location, StorageProblem};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -16,7 +16,7 @@ use crate::BuildError;
 use crate::assemble::{Built, assemble};
 use crate::cache::Cache;
 use crate::dist::Dist;
-use crate::elsewhere::{Elsewhere, folder_of, joined, origin};
+use crate::elsewhere::{Elsewhere, folder_of, is_elsewhere, joined, origin};
 use crate::error::AtPlace;
 use crate::failed::put_failure;
 use crate::hashes::{Hashed, Hashes, hash};
@@ -171,16 +171,26 @@ impl Build {
         }
         let pool = ThreadPoolBuilder::new().num_threads(options.jobs).build();
         let pool = pool.at("jobs")?;
-        let job = |texture: &PlannedTexture| {
-            let job = Job::new(texture, &named, &options.program, &hashes)?;
-            Ok((job.key(), job))
-        };
-        let jobs: Result<Vec<_>, BuildError> =
+        let job =
+            |texture: &PlannedTexture| match Job::new(texture, &named, &options.program, &hashes) {
+                Err(error) if options.keep_going && is_of_input(&error) => {
+                    let (key, job) = Job::absent(texture, &named, &options.program, &hashes)?;
+                    let refused = Made::refused(Outcome::Refused(error.to_string()));
+                    Ok((key, job, Some(refused)))
+                }
+                job => job.map(|job| (job.key(), job, None)),
+            };
+        let made: Result<Vec<_>, BuildError> =
             pool.install(|| plan.textures.par_iter().map(job).collect());
-        let jobs = jobs?;
+        let (mut jobs, mut unkept) = (Vec::new(), BTreeMap::new());
+        for (key, job, refused) in made? {
+            unkept.extend(refused.map(|refused| (key.clone(), refused)));
+            jobs.push((key, job));
+        }
         kept.put(HASHES, &hashes.to_keep())?;
         let cache = Cache::open(kept.clone())?;
-        let is_pending = |i: &usize| cache.get(&jobs[*i].0).is_none();
+        let is_pending =
+            |i: &usize| !unkept.contains_key(&jobs[*i].0) && cache.get(&jobs[*i].0).is_none();
         let mut pending: Vec<usize> =
             pool.install(|| (0..jobs.len()).into_par_iter().filter(is_pending).collect());
         // Textures of the same recordings and settings are one fit.
@@ -195,7 +205,7 @@ impl Build {
             kept,
             before,
             pending,
-            unkept: BTreeMap::new(),
+            unkept,
             elsewhere,
             pool,
             _lock: lock,
@@ -314,11 +324,9 @@ impl Build {
         workbench: &mut Workbench,
     ) -> Result<Option<Made>, BuildError> {
         let made = match job.run(workbench) {
-            Err(
-                error @ BuildError::File(FileError {
-                    is_output: false, ..
-                }),
-            ) if self.options.keep_going => Made::refused(Outcome::Refused(error.to_string())),
+            Err(error) if self.options.keep_going && is_of_input(&error) => {
+                Made::refused(Outcome::Refused(error.to_string()))
+            }
             made => made?,
         };
         self.keep(key, job, made)
@@ -378,6 +386,15 @@ impl Build {
     }
 }
 
+/// Whether a file that is read is at fault: it cannot be read, or is not there.
+fn is_of_input(error: &BuildError) -> bool {
+    match error {
+        BuildError::File(FileError { is_output, .. }) => !is_output,
+        BuildError::Storage(error) => matches!(error.problem, StorageProblem::Missing),
+        _ => false,
+    }
+}
+
 /// Returns the files of a recipe whose contents a build would have to read to know their hashes, so that others can read them:
 /// [`hash_file`] and [`remember`].
 ///
@@ -392,7 +409,9 @@ pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError
     let files: BTreeSet<PathBuf> = files.map(|file| joined(folder, file)).collect();
     let unknown = files
         .into_iter()
-        .filter(|file| !prepared.hashes.is_known(file));
+        .filter(|file| !prepared.hashes.is_known(file))
+        // The build that follows says that it is missing, or goes on without it.
+        .filter(|file| is_elsewhere(file) || file.exists());
     Ok(unknown.collect())
 }
 

@@ -217,6 +217,26 @@ impl Job {
         })
     }
 
+    /// Returns the job, and its key, of a texture of which a recording or a tracker cannot be read. It makes nothing, and no job that
+    /// can be done has its key.
+    ///
+    /// # Errors
+    /// When another of its files cannot be read: a response or a plugin, which other textures need as well.
+    pub(crate) fn absent(
+        texture: &PlannedTexture,
+        named: &Named,
+        program: &str,
+        hashes: &Hashes,
+    ) -> Result<(String, Self), BuildError> {
+        let without = PlannedTexture {
+            recordings: Vec::new(),
+            ..texture.clone()
+        };
+        let job = Self::new(&without, named, program, hashes)?;
+        let key = hash_of(&serde_json::json!(["absent", texture.name, job.key()]));
+        Ok((key, job))
+    }
+
     /// Returns the key of what this job makes: a hash of everything that its bytes depend on. Folders and times of files are no
     /// part of it, their names and contents are.
     pub fn key(&self) -> String {

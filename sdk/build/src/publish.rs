@@ -129,10 +129,14 @@ impl Destination {
 
 /// Returns the folder in which results for a URI are made: `htex/builds/HASH` in the user's cache, by the URI's hash.
 fn default_folder(location: &Location) -> Result<PathBuf, BuildError> {
-    let variable = |name| std::env::var_os(name).filter(|value| !value.is_empty());
-    let home = || variable("HOME").map(|home| PathBuf::from(home).join(".cache"));
+    // A relative path is ignored, as the XDG base directory specification has it.
+    let variable = |name| {
+        let path = PathBuf::from(std::env::var_os(name)?);
+        path.is_absolute().then_some(path)
+    };
+    let home = || variable("HOME").map(|home| home.join(".cache"));
     let cache = variable("XDG_CACHE_HOME").or_else(|| variable("LOCALAPPDATA"));
-    let cache = cache.map(PathBuf::from).or_else(home).ok_or_else(|| {
+    let cache = cache.or_else(home).ok_or_else(|| {
         let problem = "there is no folder for the work: HOME is not set; name one (`--work DIR`)";
         BuildError::at(location, problem)
     })?;

@@ -13,6 +13,7 @@ mod commands;
 mod devices;
 mod exit;
 mod failure;
+mod folders;
 mod gains;
 mod given;
 mod grid;
@@ -50,7 +51,7 @@ mod wav;
 
 use std::ffi::OsString;
 
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches, Parser};
 
 use commands::Command;
 use exit::Exit;
@@ -123,14 +124,21 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, program: Vec<OsString>
 /// # Errors
 /// What the command would print.
 pub fn check_usage(arguments: impl IntoIterator<Item = OsString>) -> Result<(), String> {
-    match Cli::try_parse_from(arguments) {
+    match parsed(arguments) {
         Err(error) if error.use_stderr() => Err(error.to_string()),
         _ => Ok(()),
     }
 }
 
+fn parsed(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
+    let mut command = Cli::command();
+    let matches = command.try_get_matches_from_mut(arguments)?;
+    located::check_paths(&command, &matches)?;
+    Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+}
+
 fn parse_and_run(arguments: Vec<OsString>) -> u8 {
-    let command = match Cli::try_parse_from(arguments) {
+    let command = match parsed(arguments) {
         Ok(cli) => cli.command,
         Err(error) => {
             // A closed standard output or standard error is no error of the command.
@@ -153,6 +161,7 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
 /// Runs a command between the downloads of its inputs and the uploads of its outputs.
 fn run_command(command: Command) -> Result<Exit, Failure> {
     signals::handle()?;
+    folders::check()?;
     transfer::fetch()?;
     let exit = command.run()?;
     // A command may have asked for signals, and from here on nothing looks at them.

@@ -7,8 +7,10 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use clap::ArgMatches;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::error::ErrorKind;
+use clap::parser::ValueSource;
 use htex_finding::plain;
 use htex_storage::Location;
 use tempfile::TempDir;
@@ -65,11 +67,106 @@ impl TypedValueParser for Argument {
             clap::Error::raw(ErrorKind::ValueValidation, text).with_cmd(command)
         };
         let location = Location::parse(value).map_err(|error| wrong(error.to_string()))?;
+        if self.0 == Role::Output {
+            check_format(&location, argument).map_err(wrong)?;
+        }
         match location.local() {
             Some(path) => PathBufValueParser::new().parse_ref(command, argument, path.as_os_str()),
             None => local().copy_of(location, self.0).map_err(wrong),
         }
     }
+}
+
+/// Extensions of formats that some command writes, or that a user may expect of a table.
+const FORMATS: [&str; 27] = [
+    "ahap", "arrow", "csv", "feather", "flac", "glb", "gltf", "h5", "haptic", "hdf5", "hjif",
+    "htex", "htexlib", "html", "json", "jsonl", "mat", "mp3", "npy", "ogg", "parquet", "png",
+    "svg", "toml", "tsv", "wav", "xlsx",
+];
+
+/// Refuses an output whose extension names another format than the one that is written, which the argument's value name states
+/// (`CSV`, `OUT.htexlib`). A value name that is no format (`FILE`) leaves the choice to the extension, and to the command.
+fn check_format(location: &Location, argument: Option<&clap::Arg>) -> Result<(), String> {
+    let names = argument.and_then(clap::Arg::get_value_names);
+    let written = names.and_then(<[_]>::first).map(|name| name.as_str());
+    let written = written.map(|name| name.rsplit('.').next().unwrap_or(name).to_ascii_lowercase());
+    let name = location.file_name().unwrap_or_default();
+    let given = name
+        .rsplit_once('.')
+        .map(|(_, end)| end.to_ascii_lowercase());
+    let (Some(written), Some(given)) = (written, given) else {
+        return Ok(());
+    };
+    let is_format = |extension: &String| FORMATS.contains(&&extension[..]);
+    match is_format(&written) && is_format(&given) && written != given {
+        true => Err(format!(
+            "{location}: {} is written here, and .{given} is another format; name a file that ends in .{written}",
+            written.to_ascii_uppercase()
+        )),
+        false => Ok(()),
+    }
+}
+
+/// An argument that may be a URI, which the command reads itself.
+#[cfg(feature = "build")]
+#[derive(Debug, Clone)]
+pub(crate) struct Anywhere(PathBuf);
+
+#[cfg(feature = "build")]
+impl From<OsString> for Anywhere {
+    fn from(argument: OsString) -> Self {
+        Self(argument.into())
+    }
+}
+
+#[cfg(feature = "build")]
+impl std::ops::Deref for Anywhere {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.0
+    }
+}
+
+/// Refuses a URI in an argument that is a path of this machine: it would name a file or a folder such as `s3:`. An argument that may
+/// be a URI has the parser [`Argument`], which leaves a local path, or another type than a path.
+///
+/// # Errors
+/// With the argument, and what to give.
+pub(crate) fn check_paths(
+    command: &clap::Command,
+    matches: &ArgMatches,
+) -> Result<(), clap::Error> {
+    let is_path =
+        |arg: &&clap::Arg| arg.get_value_parser().type_id() == std::any::TypeId::of::<PathBuf>();
+    for arg in command.get_arguments().filter(is_path) {
+        let id = arg.get_id().as_str();
+        if matches.value_source(id) != Some(ValueSource::CommandLine) {
+            continue;
+        }
+        let given = matches.try_get_many::<PathBuf>(id).ok().flatten();
+        for path in given.into_iter().flatten() {
+            check_path(arg, path).map_err(|words| {
+                let text = format!("{}\n", plain(&words));
+                clap::Error::raw(ErrorKind::ValueValidation, text).with_cmd(command)
+            })?;
+        }
+    }
+    let inner = matches.subcommand();
+    let inner = inner.and_then(|(name, inner)| Some((command.find_subcommand(name)?, inner)));
+    inner.map_or(Ok(()), |(command, inner)| check_paths(command, inner))
+}
+
+fn check_path(arg: &clap::Arg, path: &Path) -> Result<(), String> {
+    let is_local = |location: &Location| location.local() == Some(path);
+    let shown = match Location::parse(path.as_os_str()) {
+        Ok(location) if is_local(&location) => return Ok(()),
+        Ok(location) => location.to_string(),
+        Err(error) => return Err(error.to_string()),
+    };
+    Err(format!(
+        "{shown}: {arg} takes a path of this machine, not a URI; give a path, and copy the results or get the file by another program"
+    ))
 }
 
 impl Elsewhere {

@@ -17,6 +17,7 @@ use serde::Serialize;
 use crate::assets::short_name;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::located::Anywhere;
 use crate::models::tool;
 use crate::of_file::ResultOfFile;
 use crate::output::{print, print_json};
@@ -34,7 +35,7 @@ use crate::wasm_limits::WasmLimit;
 #[derive(Args)]
 pub(crate) struct Build {
     /// The recipe: library.toml, a path or URI (its JSON Schema: `htex schema recipe`)
-    recipe: PathBuf,
+    recipe: Anywhere,
 
     /// The folder of the results, or the URI of one (s3://, gs://, az://), to which they are copied when they are complete
     #[arg(short, long, value_name = "DIR|URI")]

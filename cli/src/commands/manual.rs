@@ -16,7 +16,7 @@ use crate::located;
 #[derive(Args)]
 pub(crate) struct Manual {
     /// The folder to write to; it is made
-    #[arg(value_name = "DIR", value_parser = located::OUTPUT)]
+    #[arg(value_name = "DIR")]
     folder: PathBuf,
 }
 

@@ -262,6 +262,95 @@ fn an_ended_program_leaves_no_part() {
     }
 }
 
+/// An argument that is a path of this machine takes no URI, and an output no extension of another format: nothing is written.
+#[test]
+fn no_output_is_another_place_or_format_than_its_name_says() {
+    let place = place();
+    let before = entries(&place);
+    let uris: [&[&str]; 10] = [
+        &["lib", "unpack", "a.htexlib", "-o", "s3://bucket/key"],
+        &["demo", "s3://bucket/key"],
+        &["man", "gs://bucket/key"],
+        &["tradeoff", "vinyl.csv", "-o", "s3://bucket/t.html"],
+        &["study", "export", "s3://bucket/answers", "-o", "a.csv"],
+        &["study", "run", "s.toml", "-o", "az://container/answers"],
+        &["study", "plan", "https://example.org/study.toml"],
+        &["plan", "file:///tmp/s.scene.json"],
+        &["plugin", "new", "felt", "--dir", "s3://bucket/key"],
+        &[
+            "record",
+            "--source",
+            "file:vinyl.csv",
+            "--take",
+            "x",
+            "-o",
+            "ftp://host/d",
+        ],
+    ];
+    for arguments in uris {
+        let run = place.run(arguments);
+        assert_eq!(run.code(), 2, "{arguments:?}: {}", run.error());
+        let said = run.error();
+        let is_named = said.contains("takes a path of this machine, not a URI")
+            || said.contains("its scheme is none of");
+        assert!(is_named, "{arguments:?}: {said}");
+    }
+    let formats: [(&[&str], &str); 7] = [
+        (
+            &["study", "export", "answers", "-o", "a.parquet"],
+            "ends in .csv",
+        ),
+        (
+            &["study", "export", "answers", "-o", "a.jsonl"],
+            "ends in .csv",
+        ),
+        (
+            &["study", "plan", "s.toml", "-o", "plan.csv"],
+            "ends in .json",
+        ),
+        (
+            &["simulate", "--surface", "vinyl", "-o", "v.json"],
+            "ends in .csv",
+        ),
+        (&["synth", "cloth.htex", "-o", "v.FLAC"], "ends in .wav"),
+        (&["fit", "vinyl.csv", "-o", "v.htexlib"], "ends in .htex"),
+        (&["lib", "pack", "v.htex", "cloth.htex"], "ends in .htexlib"),
+    ];
+    for (arguments, end) in formats {
+        let run = place.run(arguments);
+        assert_eq!(run.code(), 2, "{arguments:?}: {}", run.error());
+        assert!(run.error().contains(end), "{arguments:?}: {}", run.error());
+    }
+    assert!(entries(&place) == before);
+    for folder in ["s3:", "gs:", "az:", "ftp:"] {
+        assert!(!place.path(folder).exists(), "{folder}");
+    }
+    // A name without a known format is the user's.
+    place.json(&["info", "cloth.htex", "--json"]);
+    let run = place.run(&["synth", "cloth.htex", "--seconds", "0.1", "-o", "sound.dat"]);
+    assert_eq!(run.code(), 0, "{}", run.error());
+}
+
+/// A relative folder in a variable of htex is an error; one in a variable of all programs is ignored, and said.
+#[test]
+fn a_relative_folder_of_the_environment_is_not_ignored_in_silence() {
+    let place = place();
+    for variable in ["HTEX_CONFIG_DIR", "HTEX_CACHE_DIR"] {
+        let mut command = place.command(&["info", "cloth.htex"]);
+        let run = command.env(variable, "relative").output().unwrap();
+        let said = String::from_utf8(run.stderr).unwrap();
+        assert_eq!(run.status.code(), Some(2), "{said}");
+        let expected = format!("{variable} is relative, which is no absolute path; give one");
+        assert!(said.contains(&expected), "{said}");
+    }
+    let mut command = place.command(&["info", "cloth.htex"]);
+    let run = command.env("XDG_CONFIG_HOME", "relative").output().unwrap();
+    let said = String::from_utf8(run.stderr).unwrap();
+    assert!(run.status.success(), "{said}");
+    assert!(said.contains("XDG_CONFIG_HOME is relative"), "{said}");
+    assert!(said.contains("it is ignored"), "{said}");
+}
+
 /// An output that is not a regular file is kept, and a closed standard error is not a failure.
 #[cfg(unix)]
 #[test]

@@ -31,6 +31,7 @@ enum Fate {
     RunsDry,
     OffTarget,
     OnTarget,
+    NotMeasured,
 }
 
 #[derive(Default)]
@@ -77,17 +78,19 @@ impl Rig for TestRig {
         } else {
             ends();
         }
-        let felt = |off_target: Vec<String>| FeltFile {
+        let felt = |off_target: Vec<String>, compared: bool| FeltFile {
             file: "P01/felt/trial.npy".to_owned(),
             blake3: String::new(),
             off_target,
+            compared,
         };
         let felt = match self.fates.is_empty() {
             true => None,
             false => match self.fates.remove(0) {
                 Fate::RunsDry => return Err(Failing::Dry),
-                Fate::OffTarget => Some(felt(vec![REASON.to_owned()])),
-                Fate::OnTarget => Some(felt(Vec::new())),
+                Fate::OffTarget => Some(felt(vec![REASON.to_owned()], true)),
+                Fate::OnTarget => Some(felt(Vec::new(), true)),
+                Fate::NotMeasured => Some(felt(Vec::new(), false)),
             },
         };
         let (drive_v, output) = levels(stimulus);
@@ -354,8 +357,21 @@ fn a_trial_off_its_target_is_said_at_once_kept_and_marked() {
         .collect();
     assert_eq!(marks, ["off_target", "yes", "no"]);
     assert_eq!((table.ratings, table.off_target), (2, 1));
+
+    // Neither speed nor force was measured: the table does not say that the trial kept to the target.
+    let unknown = Place::new();
+    unknown
+        .run(&[Fate::NotMeasured, Fate::OnTarget])
+        .ended
+        .unwrap();
+    let rows = export(unknown.folder.path(), None).unwrap().csv;
+    let marks: Vec<&str> = rows
+        .lines()
+        .map(|row| row.rsplit(',').next().unwrap())
+        .collect();
+    assert_eq!(marks, ["off_target", "", "no"]);
     assert!(
-        table.warnings[0].starts_with("P01: 1 of 2 recorded trials"),
+        table.warnings[0].starts_with("P01: 1 of 2 trials whose motion was measured"),
         "{:?}",
         table.warnings
     );

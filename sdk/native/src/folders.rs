@@ -14,6 +14,26 @@ pub fn config() -> Option<PathBuf> {
     absolute("HTEX_CONFIG_DIR").or_else(|| Some(base("XDG_CONFIG_HOME", ".config")?.join("htex")))
 }
 
+/// The variables that name one folder each.
+const VARIABLES: [&str; 6] = [
+    "HTEX_CACHE_DIR",
+    "HTEX_CONFIG_DIR",
+    "XDG_CACHE_HOME",
+    "XDG_CONFIG_HOME",
+    "XDG_DATA_HOME",
+    "HOME",
+];
+
+/// Returns the variables that hold a relative path, with the path: the functions of this module ignore it.
+pub fn relative() -> Vec<(&'static str, PathBuf)> {
+    let path = |variable: &'static str| {
+        let path = PathBuf::from(var_os(variable)?);
+        let is_relative = !path.as_os_str().is_empty() && !path.is_absolute();
+        is_relative.then_some((variable, path))
+    };
+    VARIABLES.into_iter().filter_map(path).collect()
+}
+
 /// Returns a folder in the user's data folder, if it exists: `htex/plugins`, `htex/devices`, `htex/sources`.
 pub fn data(folder: &str) -> Option<PathBuf> {
     let data = base("XDG_DATA_HOME", ".local/share")?.join(folder);

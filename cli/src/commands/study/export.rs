@@ -15,14 +15,14 @@ use super::spectra::SpectraArgs;
 /// Write the ratings of all participants as a table, and the spectra of what they felt as another.
 ///
 /// The columns are participant, texture, model, repetition, rating, attribute, hidden_reference, response_ms, gain_db, simulated and
-/// off_target (whether speed or force left the study's by more than 10 %; empty without a recording); of the spectra participant, texture, model, and a magnitude for 20, 25, …, 1000 Hz.
+/// off_target (whether speed or force left the study's by more than 10 %; empty if neither was measured); of the spectra participant, texture, model, and a magnitude for 20, 25, …, 1000 Hz.
 #[derive(Args)]
 pub(super) struct Export {
     /// The folder of answers that `htex study run` wrote
     folder: PathBuf,
 
     /// The table to write, CSV
-    #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
+    #[arg(short, long, value_name = "CSV", value_parser = located::OUTPUT)]
     output: PathBuf,
 
     /// The attribute whose ratings are written, where there are several
@@ -39,13 +39,6 @@ pub(super) struct Export {
 
 impl Export {
     pub(super) fn run(self) -> Result<Exit, Failure> {
-        if self.output.extension().is_some_and(|e| e == "jsonl") {
-            let sentence = format!(
-                "{}: .jsonl is the extension of answers; write a .csv",
-                shown(&self.output)
-            );
-            return Err(Failure::Usage(sentence));
-        }
         let table = export(&self.folder, self.attribute.as_deref())?;
         warn(&table.warnings);
         // No problem of a recording costs the ratings.

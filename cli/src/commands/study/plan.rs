@@ -20,7 +20,7 @@ pub(super) struct Plan {
     study: PathBuf,
 
     /// Write the plan as JSON
-    #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
+    #[arg(short, long, value_name = "JSON", value_parser = located::OUTPUT)]
     output: Option<PathBuf>,
 
     /// Print the plan as JSON

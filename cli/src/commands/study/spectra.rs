@@ -19,7 +19,7 @@ use crate::recordings::RecordingArgs;
 pub(super) struct SpectraArgs {
     /// The table of spectra to write, CSV: what each participant felt of each texture and model, averaged over its trials, and the
     /// spectrum of each real texture; `htex study analyse --spectra` reads it
-    #[arg(long, value_name = "FILE", value_parser = located::OUTPUT)]
+    #[arg(long, value_name = "CSV", value_parser = located::OUTPUT)]
     spectra: Option<PathBuf>,
 
     /// The study, whose assets have the spectra of the real textures

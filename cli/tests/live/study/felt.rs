@@ -270,7 +270,7 @@ fn a_person_is_recorded_from_the_beginning_of_each_trial() {
     );
     assert_eq!(felt.len(), 2 + 1);
     assert!(
-        warned.contains("Ann: 2 of 2 recorded trials were off"),
+        warned.contains("Ann: 2 of 2 trials whose motion was measured were off"),
         "{warned}"
     );
     let (said, ratings, felt, warned) = spectra(&["--off-target", "leave-out"]);

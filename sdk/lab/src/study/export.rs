@@ -7,7 +7,7 @@ use htex_files::AtFile;
 use htex_finding::as_text;
 
 use crate::study::error::StudyError;
-use crate::study::lines::{Answer, Header, Line};
+use crate::study::lines::{Answer, FeltFile, Header, Line};
 use crate::study::log;
 
 /// Columns of the table; the first five are those that analyses read.
@@ -169,7 +169,7 @@ fn table(sessions: &[Answers], attribute: &str, folder: &Path) -> Result<Export,
         off_target += off;
         if off > 0 {
             warnings.push(format!(
-                "{}: {off} of {all} recorded trials were off the study's speed or force by more than 10 %; the column off_target marks them",
+                "{}: {off} of {all} trials whose motion was measured were off the study's speed or force by more than 10 %; the column off_target marks them",
                 header.participant
             ));
         }
@@ -205,11 +205,11 @@ fn other_settings(sessions: &[Answers]) -> Vec<String> {
 }
 
 impl Answers {
-    /// Trials off their target, and trials that were recorded.
+    /// Trials off their target, and trials whose motion was measured.
     fn off_target(&self) -> (usize, usize) {
         let recorded = self.answers.iter().filter_map(|answer| {
             let felt = answer.felt.as_ref()?;
-            Some((answer.number, !felt.off_target.is_empty()))
+            Some((answer.number, felt.is_off_target()?))
         });
         let recorded: BTreeSet<(u32, bool)> = recorded.collect();
         (
@@ -232,7 +232,9 @@ fn row(header: &Header, answer: &Answer) -> [String; COLUMNS.len()] {
         answer.response_ms.to_string(),
         answer.gain_db.map_or(String::new(), |db| format!("{db}")),
         yes(answer.simulated || header.simulated.is_some()),
-        // Without a recording it is not known.
-        (answer.felt.as_ref()).map_or(String::new(), |felt| yes(!felt.off_target.is_empty())),
+        // Without a recording of speed or force it is not known.
+        (answer.felt.as_ref())
+            .and_then(FeltFile::is_off_target)
+            .map_or(String::new(), yes),
     ]
 }

@@ -250,6 +250,11 @@ impl Felt {
         Ok(Some(FeltFile {
             file: format!("{participant}/{FOLDER}/{}", file.to_string_lossy()),
             blake3: hash(&written.recording)?,
+            compared: data
+                .header
+                .target_speed_mm_s
+                .or(data.header.target_force_n)
+                .is_some(),
             off_target: verdict.reasons,
         }))
     }

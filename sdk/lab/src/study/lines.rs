@@ -188,6 +188,19 @@ pub struct FeltFile {
     /// How speed or force left the study's motion by more than 10 %, each a phrase; absent if they did not, or have no target.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub off_target: Vec<String>,
+    /// Whether speed or force was measured and compared with the study's motion; absent if neither was.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub compared: bool,
+}
+
+impl FeltFile {
+    /// Whether the motion was off the study's target; `None` where nothing was measured to tell it.
+    pub(crate) fn is_off_target(&self) -> Option<bool> {
+        match self.off_target.is_empty() {
+            false => Some(true),
+            true => self.compared.then_some(false),
+        }
+    }
 }
 
 /// A rating.

@@ -8,7 +8,6 @@ use htex_files::{AtFile, OwnFolder};
 use crate::Cli;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::located;
 
 /// Write the manual pages, one for each subcommand.
 ///

@@ -11,7 +11,7 @@ const PERIODS: f64 = 2.0;
 
 /// Most samples that the vibrations of a file are added to, counted for each vibration, and points of their curves. At the rate of
 /// imports, a vibration of ten minutes takes 4.8 million.
-const MOST_WORK: f64 = 4e7;
+const MOST_WORK: f64 = 3.2e7;
 
 /// Refuses more than [`MOST_WORK`] samples and points at a rate; `at` is where they are in the file.
 pub(crate) fn check_work(

@@ -16,6 +16,7 @@ mod extension;
 mod fault;
 mod node;
 mod texture;
+mod work;
 mod zeros;
 
 pub use asset::{Imported, asset};

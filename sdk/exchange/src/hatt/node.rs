@@ -6,10 +6,14 @@ use htex_dsp::linear_prediction::is_stable;
 
 use super::element::Element;
 use super::fault::{Fault, Place};
-use super::zeros::{NotFound, Work, inside};
+use super::work::Work;
+use super::zeros::{NotFound, inside};
 
 /// Largest difference of a line in the file from that of the coefficients, radians, without a warning.
 const LINE_ERROR: f64 = 1e-3;
+
+/// What is wrong with a file whose filters take too long.
+const TOO_MUCH: &str = "the filters up to here take too much work, by their number, their orders and their zeros outside the unit circle; split the file";
 
 /// A filter at a speed and a force: the acceleration is noise of `variance` through `gain (1 + Σ ma_i z⁻ⁱ) / (1 + Σ ar_i z⁻ⁱ)`.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,13 +47,13 @@ impl Node {
                 given.fault("the filter is not stable: a pole lies on or outside the unit circle")
             );
         }
+        let lines = work.add_lines(ar.len()).and(work.add_lines(ma.len()));
+        lines.ok_or_else(|| element.fault(TOO_MUCH))?;
         let at = element.one("MAcoeff")?.unwrap_or(element);
         let (ma, mirrored) = inside(&ma, work).map_err(|error| {
             at.fault(match error {
                 NotFound::Here => "the zeros of these coefficients cannot be found",
-                NotFound::TooMuch => {
-                    "up to here, too many filters have zeros outside the unit circle, which take long to find; split the file, or move the zeros inside"
-                }
+                NotFound::TooMuch => TOO_MUCH,
             })
         })?;
         compare_lines(element, "ARlsf", &ar, notes)?;

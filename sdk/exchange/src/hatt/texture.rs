@@ -6,7 +6,7 @@ use super::document::root;
 use super::element::Element;
 use super::fault::Fault;
 use super::node::Node;
-use super::zeros::Work;
+use super::work::Work;
 
 /// Relative difference of two numbers that are the same.
 const SAME: f64 = 1e-6;

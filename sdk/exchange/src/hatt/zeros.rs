@@ -5,13 +5,12 @@ use std::f64::consts::TAU;
 use htex_dsp::linear_prediction::step_down_in_place;
 use htex_dsp::spectrum::Complex;
 
+use super::work::Work;
+
 /// Largest radius of a zero that was moved.
 const MOST_RADIUS: f64 = 1.0 - 1e-7;
 /// Rounds in which roots are improved, some ten of which suffice unless roots are equal.
 const ROUNDS: usize = 500;
-/// Most work of all filters of a file: a zero compared with another one, in a round. 256 filters of 32 zeros that take all rounds,
-/// or 12,800 filters of 16 zeros that take 40. It takes about a second; a file of the toolkit has some 40 filters.
-const MOST_WORK: usize = 256 * 32 * 32 * ROUNDS;
 /// Angles at which the result is compared with the polynomial.
 const COMPARED: u32 = 512;
 /// Most by which they differ, relative to the largest power.
@@ -24,24 +23,6 @@ pub(super) enum NotFound {
     Here,
     /// The filters of the file together take too much work.
     TooMuch,
-}
-
-/// The work that is left for the filters of a file.
-#[derive(Debug, Clone)]
-pub(super) struct Work(usize);
-
-impl Default for Work {
-    fn default() -> Self {
-        Self(MOST_WORK)
-    }
-}
-
-impl Work {
-    /// Counts a round over `order` zeros.
-    fn round(&mut self, order: usize) -> Result<(), NotFound> {
-        self.0 = self.0.checked_sub(order * order).ok_or(NotFound::TooMuch)?;
-        Ok(())
-    }
 }
 
 /// Returns the coefficients `B_1` to `B_q` of `1 + Σ B_i z⁻ⁱ` with all zeros inside the unit circle, and the gain by which it is the
@@ -82,7 +63,7 @@ fn roots(coefficients: &[f64], work: &mut Work) -> Result<Vec<Complex<f64>>, Not
     let start = |i: usize| turned(radius, TAU * (i as f64 + 0.25) / order as f64);
     let mut zeros: Vec<Complex<f64>> = (0..order).map(start).collect();
     for _ in 0..ROUNDS {
-        work.round(order)?;
+        work.add(order * order).ok_or(NotFound::TooMuch)?;
         let mut moved = 0.0f64;
         for i in 0..order {
             let at = *zeros.get(i).ok_or(NotFound::Here)?;
@@ -180,9 +161,9 @@ mod tests {
             assert!(gain >= 1.0);
         }
         for given in [&[0.5, 0.1][..], &[], &[0.0, 0.0]] {
-            let found = inside(given, &mut Work(0));
+            let found = inside(given, &mut Work::none());
             assert_eq!(found, Ok((given.to_vec(), 1.0)));
         }
-        assert_eq!(inside(&[2.0], &mut Work(0)), Err(NotFound::TooMuch));
+        assert_eq!(inside(&[2.0], &mut Work::none()), Err(NotFound::TooMuch));
     }
 }

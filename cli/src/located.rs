@@ -22,6 +22,9 @@ pub(crate) const RECORDING: Argument = Argument(Role::Recording);
 /// An argument that is a file to write.
 pub(crate) const OUTPUT: Argument = Argument(Role::Output);
 
+/// An argument that is a file of this machine to write, with others beside it.
+pub(crate) const LOCAL_OUTPUT: Argument = Argument(Role::LocalOutput);
+
 /// The files elsewhere of the current run.
 static ELSEWHERE: Mutex<Elsewhere> = Mutex::new(Elsewhere {
     folder: None,
@@ -47,6 +50,7 @@ pub(crate) enum Role {
     Asset,
     Recording,
     Output,
+    LocalOutput,
 }
 
 /// A parser of an argument that is a path or a URI.
@@ -67,8 +71,12 @@ impl TypedValueParser for Argument {
             clap::Error::raw(ErrorKind::ValueValidation, text).with_cmd(command)
         };
         let location = Location::parse(value).map_err(|error| wrong(error.to_string()))?;
-        if self.0 == Role::Output {
+        if matches!(self.0, Role::Output | Role::LocalOutput) {
             check_format(&location, argument).map_err(wrong)?;
+        }
+        if self.0 == Role::LocalOutput {
+            // `check_paths` refuses a URI.
+            return PathBufValueParser::new().parse_ref(command, argument, value);
         }
         match location.local() {
             Some(path) => PathBufValueParser::new().parse_ref(command, argument, path.as_os_str()),

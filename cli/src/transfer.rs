@@ -29,7 +29,7 @@ pub(crate) fn fetch() -> Result<(), Failure> {
     }
     for (location, local, role) in files {
         let most_bytes = match role {
-            Role::Output => continue,
+            Role::Output | Role::LocalOutput => continue,
             Role::Asset => Limits::default().file_bytes,
             Role::Recording => MOST_RECORDING_BYTES,
         };

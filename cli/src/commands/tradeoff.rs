@@ -16,6 +16,7 @@ use crate::columns::{Column, cells, headings};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::invocation;
+use crate::located;
 use crate::models::tool;
 use crate::of_file::OrFail;
 use crate::output::{Written, print, print_json, warn, write_file};
@@ -56,7 +57,7 @@ pub(crate) struct Tradeoff {
     error: Option<ErrorAxis>,
 
     /// The page to write; points go beside it as .csv and .json
-    #[arg(short, long, value_name = "HTML")]
+    #[arg(short, long, value_name = "HTML", value_parser = located::LOCAL_OUTPUT)]
     output: PathBuf,
 
     #[command(flatten)]

@@ -382,6 +382,19 @@ fn compiled(packages: &[&str]) -> BTreeSet<String> {
         .collect()
 }
 
+/// The parser of TOML recurses on what a file holds; `htex_files::toml` bounds it.
+#[test]
+fn only_one_crate_parses_toml() {
+    let metadata = metadata();
+    let parses = |package: &&cargo_metadata::Package| {
+        let names = package.dependencies.iter().map(|used| used.name.as_str());
+        names.into_iter().any(|name| name.starts_with("toml"))
+    };
+    let names = metadata.packages.iter().filter(parses);
+    let names: Vec<&str> = names.map(|package| package.name.as_str()).collect();
+    assert_eq!(names, ["htex-files"]);
+}
+
 /// The engine of WASM modules, which takes minutes, is compiled once for all that is installed.
 #[test]
 fn what_the_command_compiles_is_not_compiled_again() {

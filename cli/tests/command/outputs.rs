@@ -50,28 +50,28 @@ fn entries(place: &Place) -> Vec<(String, Vec<u8>)> {
 #[test]
 fn no_command_writes_over_what_it_reads() {
     let place = place();
-    std::fs::hard_link(place.path("vinyl.csv"), place.path("second.csv")).unwrap();
+    // Second names without an extension, since that of another format is refused before.
+    for (file, second) in [
+        ("vinyl.csv", "second"),
+        ("rig.csv", "rig"),
+        ("s.scene.json", "scene"),
+    ] {
+        std::fs::hard_link(place.path(file), place.path(second)).unwrap();
+    }
     std::os::unix::fs::symlink("cloth.htex", place.path("link.wav")).unwrap();
     std::os::unix::fs::symlink("cloth.htex", place.path("link.htex")).unwrap();
     std::fs::create_dir(place.path("sub")).unwrap();
     let before = entries(&place);
     for arguments in [
-        &["fit", "vinyl.csv", "-o", "vinyl.csv"][..],
-        &["fit", "vinyl.csv", "-o", "./sub/../vinyl.csv"],
-        &["fit", "vinyl.csv", "-o", "second.csv"],
-        &["fit", "vinyl.csv", "--frf", "rig.csv", "-o", "rig.csv"],
-        &["process", "vinyl.csv", "--svg", "second.csv"],
-        &[
-            "process",
-            "vinyl.csv",
-            "--frf",
-            "rig.csv",
-            "--svg",
-            "rig.csv",
-        ],
-        &["synth", "cloth.htex", "-o", "cloth.htex"],
+        &["fit", "second", "-o", "second"][..],
+        &["fit", "second", "-o", "./sub/../second"],
+        &["fit", "vinyl.csv", "-o", "second"],
+        &["fit", "vinyl.csv", "--frf", "rig.csv", "-o", "rig"],
+        &["process", "vinyl.csv", "--svg", "second"],
+        &["process", "vinyl.csv", "--frf", "rig.csv", "--svg", "rig"],
+        &["synth", "link.wav", "-o", "link.wav"],
         &["synth", "cloth.htex", "-o", "link.wav"],
-        &["synth", "link.htex", "-o", "cloth.htex"],
+        &["mix", "link.htex", "cloth.htex", "-o", "cloth.htex"],
         &["tradeoff", "vinyl.csv", "-o", "vinyl.html", "--quick"],
         &[
             "tradeoff",
@@ -82,8 +82,8 @@ fn no_command_writes_over_what_it_reads() {
             "rig.html",
             "--quick",
         ],
-        &["plan", "s.scene.json", "--svg", "s.scene.json"],
-        &["plan", "s.scene.json", "--svg", "rig.csv"],
+        &["plan", "s.scene.json", "--svg", "scene"],
+        &["plan", "s.scene.json", "--svg", "rig"],
         &["render", "s.scene.json", "-o", "rig.csv"],
         &["render", "s.scene.json", "-o", "link.wav"],
         &["play", "s.scene.json", "--set", "path=link.wav"],
@@ -273,7 +273,15 @@ fn no_output_is_another_place_or_format_than_its_name_says() {
         &["man", "gs://bucket/key"],
         &["tradeoff", "vinyl.csv", "-o", "s3://bucket/t.html"],
         &["study", "export", "s3://bucket/answers", "-o", "a.csv"],
-        &["study", "run", "s.toml", "-o", "az://container/answers"],
+        &[
+            "study",
+            "run",
+            "s.toml",
+            "--participant",
+            "P01",
+            "-o",
+            "az://container/answers",
+        ],
         &["study", "plan", "https://example.org/study.toml"],
         &[
             "plugin",

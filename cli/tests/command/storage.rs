@@ -291,14 +291,16 @@ fn wrong_usage_is_refused_before_any_request() {
     let bench = Bench::new();
     bench.server.fail(|_, _| Fault::None);
     let (csv, htex) = ("s3://surfaces/vinyl.csv", "s3://surfaces/cloth.htex");
+    // Without an extension, since that of another format is refused before.
+    let file = "s3://surfaces/cloth";
     for (arguments, code, words) in [
         (
-            &["fit", csv, "-o", csv][..],
+            &["fit", file, "-o", file][..],
             2,
             "it is read here, and would be lost",
         ),
         (
-            &["fit", csv, "-o", htex, "--report", htex],
+            &["fit", csv, "-o", file, "--report", file],
             2,
             "two outputs would be written to it",
         ),

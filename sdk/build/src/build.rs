@@ -20,6 +20,7 @@ use crate::elsewhere::{Elsewhere, folder_of, is_elsewhere, joined, origin};
 use crate::error::AtPlace;
 use crate::failed::put_failure;
 use crate::hashes::{Hashed, Hashes, hash};
+use crate::inputs::Missing;
 use crate::job::{Job, Named, Workbench};
 use crate::kept::Kept;
 use crate::made::{Made, Outcome};
@@ -82,6 +83,13 @@ impl BuildOptions {
     pub fn with_keep_going(mut self, keep_going: bool) -> Self {
         self.keep_going = keep_going;
         self
+    }
+
+    fn missing(&self) -> Missing {
+        match self.keep_going {
+            true => Missing::LeftOut,
+            false => Missing::Error,
+        }
     }
 
     #[must_use]
@@ -163,7 +171,7 @@ impl Build {
             elsewhere,
             kept,
             lock,
-        } = Prepared::new(recipe, output, &options.plugins)?;
+        } = Prepared::new(recipe, output, &options.plugins, options.missing())?;
         let dist = Dist::new(output);
         let before = textures_before(&dist, &plan.library, options.published.as_ref());
         if options.no_removals {
@@ -401,7 +409,8 @@ fn is_of_input(error: &BuildError) -> bool {
 /// # Errors
 /// As [`Build::open`].
 pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError> {
-    let prepared = Prepared::new(recipe, output, &[])?;
+    // The build that follows says what is missing.
+    let prepared = Prepared::new(recipe, output, &[], Missing::LeftOut)?;
     let textures = prepared.plan.textures.iter();
     let files = textures.flat_map(PlannedTexture::files);
     let files = files.chain(&prepared.named.of_recipe);
@@ -410,7 +419,6 @@ pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError
     let unknown = files
         .into_iter()
         .filter(|file| !prepared.hashes.is_known(file))
-        // The build that follows says that it is missing, or goes on without it.
         .filter(|file| is_elsewhere(file) || file.exists());
     Ok(unknown.collect())
 }
@@ -426,7 +434,7 @@ pub fn check(recipe: &Path, options: &BuildOptions) -> Result<Plan, BuildError> 
     let origin = origin(recipe)?;
     let elsewhere = Arc::new(Elsewhere::temporary(origin.clone()));
     // No folder is that of its results.
-    let plan = Plan::new(&parsed, &folder, Path::new(""), &elsewhere)?;
+    let plan = Plan::new(&parsed, &folder, Path::new(""), &elsewhere, Missing::Error)?;
     let named = Named::new(&options.plugins, parsed.library.plugins, folder, origin)?;
     let hashes = Hashes::new(elsewhere.clone());
     let mut workbench = Workbench::new(options.limits.clone());
@@ -483,14 +491,19 @@ struct Prepared {
 }
 
 impl Prepared {
-    fn new(recipe: &Path, output: &Path, plugins: &[PathBuf]) -> Result<Self, BuildError> {
+    fn new(
+        recipe: &Path,
+        output: &Path,
+        plugins: &[PathBuf],
+        missing: Missing,
+    ) -> Result<Self, BuildError> {
         let parsed = Recipe::open(recipe)?;
         let kept = Arc::new(Kept::new(output)?);
         let lock = kept.claim()?;
         let folder = folder_of(recipe);
         let origin = origin(recipe)?;
         let elsewhere = Arc::new(Elsewhere::with_copies(kept.own().clone(), origin.clone()));
-        let plan = Plan::new(&parsed, &folder, output, &elsewhere)?;
+        let plan = Plan::new(&parsed, &folder, output, &elsewhere, missing)?;
         Ok(Self {
             named: Named::new(plugins, parsed.library.plugins, folder, origin)?,
             plan,

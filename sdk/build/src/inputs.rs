@@ -31,18 +31,27 @@ pub(crate) struct Input {
     pub(crate) fields: Fields,
 }
 
+/// What becomes of a row of a table whose file is not there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Missing {
+    /// It is an error.
+    Error,
+    /// It is planned as any other, and its texture is left out when the file cannot be read.
+    LeftOut,
+}
+
 /// Returns the recordings of a rule, in the order of their paths; those of a table in the order of its rows.
 pub(crate) fn inputs(
     rule: &Textures,
     place: &str,
-    folder: &Path,
-    output: &Path,
+    (folder, output): (&Path, &Path),
     elsewhere: &Elsewhere,
+    missing: Missing,
 ) -> Result<Vec<Input>, BuildError> {
     let pattern = rule.pattern.as_deref().map(Regex::new).transpose();
     let pattern = pattern.at(format!("{place}.pattern"))?;
     let found = match (&rule.recordings[..], &rule.table) {
-        ([], Some(table)) => tabulated(&joined(folder, table), place, folder, elsewhere)?,
+        ([], Some(table)) => tabulated(&joined(folder, table), place, folder, elsewhere, missing)?,
         ([], None) => {
             let problem = "it names no recordings; give `recordings` (a glob) or `table` (a CSV)";
             return Err(BuildError::at(place, problem));
@@ -138,6 +147,7 @@ fn tabulated(
     place: &str,
     folder: &Path,
     elsewhere: &Elsewhere,
+    missing: Missing,
 ) -> Result<Vec<Input>, BuildError> {
     let place = format!("{place}.table");
     let shown = table.display();
@@ -165,7 +175,7 @@ fn tabulated(
         let cell = row.get(column).unwrap_or_default();
         let file = joined(&beside, Path::new(cell));
         let is_away = is_elsewhere(&file);
-        if !is_away && !file.is_file() {
+        if !is_away && missing == Missing::Error && !file.is_file() {
             let line = row.position().map_or(0, csv::Position::line);
             let problem = format!("{shown}, line {line}: there is no file {}", file.display());
             return Err(BuildError::at(&place, problem));

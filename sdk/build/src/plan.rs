@@ -11,7 +11,7 @@ use crate::elsewhere::Elsewhere;
 use crate::error::AtPlace;
 use crate::globs::glob_set;
 use crate::imports::{FileKind, check_files};
-use crate::inputs::{Input, MOST_RECORDINGS, inputs, slashed, too_many};
+use crate::inputs::{Input, MOST_RECORDINGS, Missing, inputs, slashed, too_many};
 use crate::recipe::{Gates, NumberOrTemplate, Recipe, Settings, Textures};
 use crate::template::{Fields, fill};
 
@@ -85,6 +85,7 @@ impl Plan {
         folder: &Path,
         output: &Path,
         elsewhere: &Elsewhere,
+        missing: Missing,
     ) -> Result<Self, BuildError> {
         check_name("library.name", &recipe.library.name)?;
         if recipe.library.name.contains('/') {
@@ -101,7 +102,7 @@ impl Plan {
         for (i, rule) in recipe.textures.iter().enumerate() {
             let place = format!("textures[{i}]");
             let settings = rule.settings.clone().over(recipe.defaults.clone());
-            for input in inputs(rule, &place, folder, output, elsewhere)? {
+            for input in inputs(rule, &place, (folder, output), elsewhere, missing)? {
                 let planned = planned(rule, &settings, &overrides, input, &place)?;
                 check_once(&mut known, &planned, &place)?;
                 gather(&mut textures, planned, &place)?;

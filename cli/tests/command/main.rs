@@ -5,6 +5,8 @@
 mod browser;
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../../../sdk/host/tests/common/mod.rs"]
+mod model;
 
 mod bake;
 mod build;

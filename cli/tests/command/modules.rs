@@ -3,13 +3,12 @@
 #[path = "../../../tests/fuzzing/src/heavy.rs"]
 #[allow(dead_code)]
 mod heavy;
-#[path = "../../../sdk/host/tests/common/mod.rs"]
-mod model;
 
 use std::time::Duration;
 
 use crate::common::Place;
 use crate::common::measured::{End, run};
+use crate::model;
 use heavy::Heavy;
 use htex_format::{Asset, Plugin};
 

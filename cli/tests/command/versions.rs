@@ -1,14 +1,11 @@
 //! Models of third parties: an asset that a newer version fitted, where older versions are installed, and a model that fails. Version
 //! 1.1.0 has a field more, which is fitted at its bound, 0.2.
 
-#[path = "../../../sdk/host/tests/common/mod.rs"]
-mod model;
-
 use std::path::Path;
 
 use crate::common::{Place, Run};
+use crate::model::{ID, with_descriptor};
 use htex::{Asset, Registry, Search, VoiceOptions};
-use model::{ID, with_descriptor};
 
 const FIELDS: &str = concat!(
     r#"{"name":"centre_hz","unit":"Hz","kind":{"type":"scalar"},"min":5,"max":2000,"store":{"type":"f32"},"description":"C."},"#,

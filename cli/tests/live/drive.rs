@@ -415,8 +415,9 @@ fn an_output_that_nothing_brings_to_zero_is_told_every_second() {
         // A helper process that is left goes on when the driver does.
         std::fs::remove_file(&hangs).unwrap();
         let rest: Vec<String> = lines.map(Result::unwrap).collect();
+        let code = child.wait().unwrap().code();
         if !ends_by_signal {
-            assert_eq!(child.wait().unwrap().code(), Some(1), "{rest:?}");
+            assert_eq!(code, Some(1), "{rest:?}");
             assert_eq!(rest.last().unwrap(), "htex: the output was set to zero");
         }
         bench.comes_to_zero();

@@ -144,7 +144,7 @@ fn recordings_of_one_condition_with_different_levels_are_found() {
         let names = ["one", "two", "three"];
         let takes: Vec<Take> = gains.iter().zip(names).map(|(g, n)| take(*g, n)).collect();
         let models = vec![htex_author::ModelRequest::new(
-            &registry.find("bands").unwrap(),
+            registry.find("bands").unwrap(),
         )];
         let request = htex_author::AssetRequest::new("vinyl")
             .with_models(models)

@@ -1,6 +1,6 @@
 //! Validation of a whole library: the index, page by page, and every texture.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use htex_finding::{Findings, Report};

@@ -56,12 +56,12 @@ pub enum Error {
          newer of {model}{}", if *.embedded { ", or allow the model that the asset embeds" } else { "" }
     )]
     ModelOlder {
-        model: String,
+        model: Box<str>,
         /// The version that fitted the asset.
-        asset: String,
-        installed: String,
+        asset: Box<str>,
+        installed: Box<str>,
         /// Each field that differs, and its difference.
-        problem: String,
+        problem: Box<str>,
         /// Whether the asset embeds a model of this id, which was not allowed to run.
         embedded: bool,
     },

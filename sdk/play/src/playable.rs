@@ -74,10 +74,10 @@ pub fn field_order<'a>(
         let (fitted, installed) = (&representation.model_version, &descriptor.version);
         if is_older(loaded, representation) {
             return Error::ModelOlder {
-                model,
-                asset: fitted.clone(),
-                installed: installed.clone(),
-                problem,
+                model: model.into(),
+                asset: fitted.as_str().into(),
+                installed: installed.as_str().into(),
+                problem: problem.into(),
                 embedded: false,
             };
         }

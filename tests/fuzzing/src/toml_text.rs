@@ -176,20 +176,25 @@ impl<'a> Grammar<'a> {
         usize::from(*self.bytes.next().unwrap_or(&0)) % of
     }
 
+    fn one_of(&mut self, texts: &[&str]) {
+        let chosen = self.choice(texts.len());
+        self.text.push_str(texts[chosen]);
+    }
+
     fn line(&mut self) {
         let kind = self.choice(10);
         if kind != 6 {
             self.last = self.text.len();
         }
         match kind {
-            0 => self.text.push_str(LINES[self.choice(LINES.len())]),
+            0 => self.one_of(&LINES),
             1 => self.around("[", "]\n", Self::key),
             2 => self.around("[[", "]]\n", Self::key),
             3 | 4 => {
                 self.pair(0);
                 self.text.push('\n');
             }
-            5 => self.text.push_str(PIECES[self.choice(PIECES.len())]),
+            5 => self.one_of(&PIECES),
             6 => self.repeat(),
             7 => self.around("# ", "\n", Self::scalar),
             8 => {
@@ -198,7 +203,9 @@ impl<'a> Grammar<'a> {
             }
             _ => {
                 let cut = self.choice(8);
-                (0..cut).for_each(|_| drop(self.text.pop()));
+                for _ in 0..cut {
+                    self.text.pop();
+                }
                 self.last = self.last.min(self.text.len());
             }
         }
@@ -228,12 +235,12 @@ impl<'a> Grammar<'a> {
         for part in 0..parts {
             let dot = if part == 0 { "" } else { "." };
             self.text.push_str(dot);
-            self.text.push_str(KEYS[self.choice(KEYS.len())]);
+            self.one_of(&KEYS);
         }
     }
 
     fn scalar(&mut self) {
-        self.text.push_str(SCALARS[self.choice(SCALARS.len())]);
+        self.one_of(&SCALARS);
     }
 
     fn pair(&mut self, depth: usize) {

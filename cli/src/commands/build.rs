@@ -107,6 +107,8 @@ struct Summary<'a> {
 /// What is fitted by a build.
 struct Work {
     textures: usize,
+    /// Textures of the recipe that are as an earlier build left them.
+    unchanged: usize,
     recordings: usize,
     bytes: u64,
 }
@@ -185,7 +187,7 @@ impl Build {
             print_json(&serde_json::json!({
                 "to_fit": to_fit,
                 "textures": textures,
-                "as_they_were": textures - work.textures,
+                "as_they_were": work.unchanged,
                 "removed": build.removed(),
                 "recordings": work.recordings,
                 "recording_bytes": work.bytes,
@@ -196,9 +198,7 @@ impl Build {
             let megabytes = work.bytes as f64 / 1e6;
             text += &format!(
                 "{textures} textures: {} to fit from {} recordings ({megabytes:.1} MB), {} as they were\n",
-                work.textures,
-                work.recordings,
-                textures - work.textures
+                work.textures, work.recordings, work.unchanged
             );
             text += &removed(&build.removed());
             print(&text)?;
@@ -230,7 +230,7 @@ impl Build {
             library_bytes: report.library.bytes,
             textures: report.library.textures,
             fitted: work.textures,
-            unchanged: report.textures.len() - work.textures,
+            unchanged: work.unchanged,
             recordings: work.recordings,
             recording_bytes: work.bytes,
             seconds,
@@ -254,6 +254,7 @@ impl Work {
         let jobs = || build.pending().map(|(_, job)| job);
         Self {
             textures: build.pending().len(),
+            unchanged: build.plan().textures.len() - build.pending().len() - build.unreadable(),
             recordings: jobs().map(|job| job.recordings.len()).sum(),
             bytes: jobs().map(Job::recording_bytes).sum(),
         }

@@ -636,7 +636,7 @@ fn an_error_that_ends_a_build_is_in_its_report() {
         assert_eq!(run.code(), 1, "{}", run.error());
         serde_json::from_str::<Value>(&run.text()).unwrap()["error"].clone()
     };
-    place.write("library.toml", "[library\nname = 1\n");
+    place.write("library.toml", "[library]\nnames = 1\nnome = 2\n");
     failed("dist");
     assert!(!place.path("dist").exists(), "no build has begun");
 
@@ -658,7 +658,7 @@ fn an_error_that_ends_a_build_is_in_its_report() {
     after.as_object_mut().unwrap().remove("error");
     assert_eq!(after, whole);
 
-    place.write("library.toml", "[library\nname = 1\n");
+    place.write("library.toml", "[library]\nnames = 1\nnome = 2\n");
     let before = report();
     let dry = place.run(&["build", "library.toml", "-o", "dist", "--dry-run"]);
     assert_eq!((dry.code(), report()), (1, before));
@@ -761,7 +761,11 @@ fn a_table_says_what_files_do_not() {
     let run = place.run(&["build", "library.toml", "-o", "dist", "--keep-going"]);
     assert_eq!(run.code(), 3, "{}", run.error());
     let text = run.text();
-    assert!(text.contains("left out: C: cannot read"), "{text}");
+    assert!(
+        text.contains("left out: C: fit: cannot read ./rec/none.csv"),
+        "{text}"
+    );
+    assert!(text.contains("0 fitted, 2 as they were"), "{text}");
     assert_eq!(entries_of(&place.path("dist/t.htexlib")).len(), 2);
 }
 

@@ -71,7 +71,15 @@ fn no_command_writes_over_what_it_reads() {
         &["process", "vinyl.csv", "--frf", "rig.csv", "--svg", "rig"],
         &["synth", "link.wav", "-o", "link.wav"],
         &["synth", "cloth.htex", "-o", "link.wav"],
-        &["mix", "link.htex", "cloth.htex", "-o", "cloth.htex"],
+        &[
+            "mix",
+            "link.htex",
+            "cloth.htex",
+            "--weight",
+            "0.5",
+            "-o",
+            "cloth.htex",
+        ],
         &["tradeoff", "vinyl.csv", "-o", "vinyl.html", "--quick"],
         &[
             "tradeoff",

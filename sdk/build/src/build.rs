@@ -148,6 +148,8 @@ pub struct Build {
     before: BTreeSet<String>,
     /// Indices of jobs that an earlier build has not done.
     pending: Vec<usize>,
+    /// Keys of textures of which a file cannot be read.
+    unreadable: BTreeSet<String>,
     /// What was made and is not kept for the next build.
     unkept: BTreeMap<String, Made>,
     elsewhere: Arc<Elsewhere>,
@@ -213,6 +215,7 @@ impl Build {
             kept,
             before,
             pending,
+            unreadable: unkept.keys().cloned().collect(),
             unkept,
             elsewhere,
             pool,
@@ -258,6 +261,12 @@ impl Build {
     /// Returns the textures that the recipe asks for.
     pub fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// Returns how many textures are left out because a recording or a tracker of theirs cannot be read.
+    pub fn unreadable(&self) -> usize {
+        let keys = self.jobs.iter().map(|(key, _)| key);
+        keys.filter(|key| self.unreadable.contains(*key)).count()
     }
 
     /// Returns the jobs that are to be done, by key.

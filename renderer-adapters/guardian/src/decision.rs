@@ -1,6 +1,6 @@
 //! What the player decides about its guardian: how long it waits, when it kills, how it gets the output to zero, and what it says.
 //!
-//! This is a state machine without clock, process or pipe. The program runs it in [`crate::worker`]; the model checker
+//! This is a state machine without clock, process or pipe. The program runs it in `src/worker.rs`; the model checker
 //! (`cargo xtask prove zero`) runs the same code against a model of the guardian, the helpers, the card and the signals.
 //!
 //! A guardian that does not answer in time gets SIGKILL, which also ends a process that is stopped. Then attempts follow, one at a

@@ -22,7 +22,20 @@ const FILES: [&str; 9] = [
 ];
 
 /// What may be refused, with the reason: a file, a command and words of its error.
-const REFUSED: [(&str, &str, &str); 3] = [
+const REFUSED: [(&str, &str, &str); 8] = [
+    ("arma.htex", "mix", "no model describes both"),
+    ("map.htex", "mix", "no model describes both"),
+    ("embedded.htex", "mix", "no model describes both"),
+    (
+        "map.htex",
+        "bake",
+        "follows the position of the finger itself",
+    ),
+    (
+        "embedded.htex",
+        "bake",
+        "follows the position of the finger itself",
+    ),
     ("mixed.htex", "lib", "states no licence"),
     ("silent.htex", "bake", "the speeds of the grid: [0.0]"),
     ("silent.htex", "export", "silent"),

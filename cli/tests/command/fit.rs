@@ -119,8 +119,13 @@ fn a_copy_of_a_copy_plays_as_strong_as_the_recording() {
             }
             let off_db: Vec<f64> = levels.iter().map(|level| db(level / recorded)).collect();
             println!("{surface:16} {model:6} {off_db:+.3?} dB over the recording");
-            // Bands keeps the energies of its bands, which are rounded to steps of 1 dB.
-            let first_db = if model == "bands" { 0.25 } else { 1e-6 };
+            // Bands keeps the energies of its bands, which are rounded to steps of 1 dB. The level of AR makes up for what a
+            // conversion takes near its Nyquist frequency.
+            let first_db = match model {
+                "bands" => 0.25,
+                "ar" => 0.02,
+                _ => 1e-6,
+            };
             assert!(off_db[0].abs() < first_db, "{model}: {off_db:?}");
             assert!(
                 off_db.iter().all(|db| (db - off_db[0]).abs() < 0.1),

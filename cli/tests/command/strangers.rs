@@ -180,7 +180,10 @@ fn a_recipe_runs_no_native_code() {
     );
     let run = build(&place, &["--plugin", "https://example.org/m.so"]);
     assert!(
-        run.code() == 1 && run.error().contains("it is a URI"),
+        run.code() == 2
+            && run
+                .error()
+                .contains("takes a path of this machine, not a URI"),
         "{}",
         run.error()
     );
@@ -617,14 +620,14 @@ fn json_steers_no_terminal() {
     assert_eq!(json["asset"], name);
 }
 
-/// The mistake in a recipe is shown below its line, and not as one line with escapes.
+/// The mistake in a recipe is named with its file, line and column, without escapes.
 #[test]
-fn a_mistake_in_toml_has_lines() {
+fn a_mistake_in_toml_has_its_place() {
     let place = place();
     place.write("library.toml", "[library]\nname = \"a\nmodels");
     let error = build(&place, &[]).error();
     assert!(
-        error.lines().count() > 2 && !error.contains("\\n"),
+        error.contains("library.toml: line 3, column 7: ") && !error.contains("\\n"),
         "{error}"
     );
 }

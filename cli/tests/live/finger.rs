@@ -91,7 +91,8 @@ fn a_study_takes_no_carrier_away() {
     let (done, place) = run("settings = { carrier_hz = 0 }");
     assert!(done.status.success(), "{}", text(&done));
     let Volts { dc_v, peak_v, .. } = volts(&crate::bench::card_v(&place), RATE_HZ);
-    assert!(dc_v <= 1.0 && peak_v > 60.0, "{dc_v} V, {peak_v} V");
+    // A study begins 20 dB below the drive.
+    assert!(dc_v <= 1.0 && peak_v > 15.0, "{dc_v} V, {peak_v} V");
 }
 
 /// A command whose card is recorded in a folder, with a clock that advances by calls.

@@ -9,7 +9,7 @@ use crate::common::{Place, Run};
 use htex_device_check::CHECKS;
 
 /// Checks that are of libraries: marker, exports, extensions, settings as lines, handles.
-const OF_LIBRARIES: usize = 5;
+const OF_LIBRARIES: usize = 7;
 
 /// A library of C of the tests of an adapter; `None` without what it is linked with.
 fn built(place: &Place, source: &str, links: &[&str]) -> Option<PathBuf> {

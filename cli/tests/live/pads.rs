@@ -8,7 +8,7 @@ use crate::common::native::{self, complaints, count};
 use crate::common::{Place, Run};
 use htex_device_check::CHECKS;
 
-/// Checks that are of libraries: marker, exports, extensions, settings as lines, handles.
+/// Checks that are of libraries: marker, exports, extensions, settings as lines, blocks, handles, arrays.
 const OF_LIBRARIES: usize = 7;
 
 /// A library of C of the tests of an adapter; `None` without what it is linked with.

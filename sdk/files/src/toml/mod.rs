@@ -3,7 +3,7 @@
 //! The parser of the crate `toml` recurses. Its own bound (80 levels) counts wrongly after an error: a closing bracket without an
 //! opening one lowers its count, so 7,200 lines of `motion = { const']` overflowed a stack of 8 MiB. It counts the dots of each
 //! dotted key alone, so that 80 tables in each other with 80 names each are 6,400 levels. Therefore the brackets and dots of the
-//! text are counted before it is parsed ([`check_nesting`]), and a text beyond [`MOST_LEVELS`] is an error. No other module may
+//! text are counted before it is parsed (`nesting.rs`), and a text beyond [`MOST_LEVELS`] is an error. No other module may
 //! call the crate (`clippy.toml`; no other crate depends on it).
 #![allow(clippy::disallowed_methods)] // The one place that may call the crate `toml`.
 

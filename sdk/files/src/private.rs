@@ -30,6 +30,7 @@ pub fn make_folder(path: &Path) -> io::Result<()> {
 /// # Errors
 /// Those of the system, also when there is something in its place.
 pub(crate) fn create_folder(path: &Path) -> io::Result<()> {
+    #[cfg_attr(not(unix), allow(unused_mut))] // Only Unix has modes.
     let mut builder = DirBuilder::new();
     #[cfg(unix)]
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);

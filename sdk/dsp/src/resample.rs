@@ -461,8 +461,8 @@ mod tests {
             for to_hz in [2_000.0, 2_001.0, 2_050.0, 2_400.0, 8_000.0, 48_000.0] {
                 let found = 2.0 * power(2_000.0, to_hz, hz);
                 let off_db = 10.0 * libm::log10(found / stated);
-                // Lengths of kernels are rounded up to multiples of 2 or 8.
-                assert!(off_db.abs() < 0.04, "{hz} Hz at {to_hz}: {off_db} dB");
+                // Lengths of kernels are rounded up to multiples of 2 or 8. A level, of many frequencies, differs by less.
+                assert!(off_db.abs() < 0.06, "{hz} Hz at {to_hz}: {off_db} dB");
             }
         }
         for from_hz in [2_020.0, 2_500.0, 4_000.0] {

@@ -123,7 +123,7 @@ fn what_is_too_strong_is_counted() {
     let lra = Profile::find("lra-175").unwrap();
     let weak = Profile {
         strongest_m_s2: htex_exchange::Sourced {
-            value: 0.05,
+            value: 0.1,
             source: "assumed".to_owned(),
         },
         ..lra.clone()

@@ -64,9 +64,14 @@ fn played(place: &Place, line: &str) -> String {
     let bytes = match line.strip_prefix("player ") {
         Some(block) => of_block(&fs::read(place.path(block)).unwrap()),
         None => {
-            run(place, line);
-            let bytes = fs::read(place.path("out.wav")).unwrap();
-            fs::remove_file(place.path("out.wav")).unwrap();
+            // An asset is written to a file of its own extension.
+            let out = match line.starts_with("lib cat") {
+                true => "out.htex",
+                false => "out.wav",
+            };
+            run(place, &line.replace("out.wav", out));
+            let bytes = fs::read(place.path(out)).unwrap();
+            fs::remove_file(place.path(out)).unwrap();
             without_rights(bytes)
         }
     };

@@ -42,15 +42,28 @@ const BYTES = 8;
 const ENVELOPE = 32;
 /** Most bands of an envelope. */
 const MOST_BANDS = 32;
-/** Size of htex_motion, and its first 8 bytes, the size and a gap, as the number that has these bits. */
-const MOTION = 48;
-export const MOTION_SIZE = new Float64Array(Uint32Array.of(MOTION, 0).buffer)[0];
+/** Size of htex_motion. */
+export const MOTION = 48;
 /** HTEX_ENGINE_CHECKED: the browser itself runs the modules that are given or allowed. */
 const ENGINE = 1;
 /** Bytes for results, at the start of each call. */
 const RESULTS = ENVELOPE + 8 * (MOST_BANDS + 1);
 /** Frames that are rendered at once; longer blocks are rendered in parts. */
 export const BLOCK = 4096;
+
+/**
+ * Writes a htex_motion at an address. Its size is written as an integer: as a float, the same bits would be a subnormal number, which an
+ * audio thread may round to zero.
+ */
+export function writeMotion(view, at, { speed = 0, force = 0, position = NaN, x = NaN, y = NaN }) {
+  view.setUint32(at, MOTION, true);
+  view.setUint32(at + 4, 0, true);
+  view.setFloat64(at + 8, speed, true);
+  view.setFloat64(at + 16, force, true);
+  view.setFloat64(at + 24, position, true);
+  view.setFloat64(at + 32, x, true);
+  view.setFloat64(at + 40, y, true);
+}
 
 function fault(error) {
   return new HtexError(`an error of the library itself; please report it: ${error.message}`, "internal");
@@ -176,8 +189,9 @@ export class Core {
 
   putMotion(take, motion) {
     if (!motion) return 0;
-    const { speed = 0, force = 0, position = NaN, x = NaN, y = NaN } = motion;
-    return this.putNumbers(take, [MOTION_SIZE, speed, force, position, x, y]);
+    const at = take(MOTION);
+    writeMotion(this.view(), at, motion);
+    return at;
   }
 
   /** The options of opening; see `OpenOptions` in index.d.ts. */

@@ -1,6 +1,6 @@
 // Textures and their voices.
 
-import { BLOCK, HtexError, MOTION_SIZE, toBytes } from "./core.js";
+import { BLOCK, HtexError, MOTION, toBytes, writeMotion } from "./core.js";
 import { GRID_HZ, measured } from "./measured.js";
 import { AT, READ, VOICE, checked, checkedMotion } from "./options.js";
 
@@ -273,8 +273,7 @@ export class Voice extends Handle {
    * surface, if they are known. */
   setMotion(speed, force, position = NaN, x = NaN, y = NaN) {
     const { core } = this;
-    const view = core.view();
-    [MOTION_SIZE, speed, force, position, x, y].forEach((number, i) => view.setFloat64(core.results + 8 * i, number, true));
+    writeMotion(core.view(), core.results, { speed, force, position, x, y });
     core.call("htex_voice_set_motion", this.id, core.results);
   }
 
@@ -302,12 +301,12 @@ export class Voice extends Handle {
       throw new HtexError("the arrays of the motion differ in length", "invalid-argument");
     }
     return core.scope((take) => {
-      const given = [speeds, forces, positions, xs, ys];
-      const all = new Float64Array((1 + given.length) * count);
+      const motions = take(MOTION * Math.max(count, 1));
+      const view = core.view();
       for (let i = 0; i < count; i++) {
-        all.set([MOTION_SIZE, ...given.map((numbers) => (numbers ? numbers[i] : NaN))], (1 + given.length) * i);
+        const motion = { speed: speeds[i], force: forces[i], position: positions?.[i], x: xs?.[i], y: ys?.[i] };
+        writeMotion(view, motions + MOTION * i, motion);
       }
-      const motions = core.putNumbers(take, all);
       const out = take(Math.max(4 * count * frames, 8));
       core.call("htex_voice_render_path", this.id, motions, count, out, frames);
       return new Float32Array(core.exports.memory.buffer, out, count * frames).slice();

@@ -810,7 +810,7 @@ fn textures_whose_recordings_are_gone_are_named() {
         serde_json::json!([])
     );
 
-    // A texture that misses a gate is lost, too.
+    // A texture that misses a gate is also lost.
     let before = results(&place.path("dist"));
     place.write(
         "library.toml",

@@ -50,7 +50,7 @@ fn entries(place: &Place) -> Vec<(String, Vec<u8>)> {
 #[test]
 fn no_command_writes_over_what_it_reads() {
     let place = place();
-    // Second names without an extension, since that of another format is refused before.
+    // Second names have no extension, since the extension of another format would be refused first.
     for (file, second) in [
         ("vinyl.csv", "second"),
         ("rig.csv", "rig"),

@@ -291,7 +291,7 @@ fn wrong_usage_is_refused_before_any_request() {
     let bench = Bench::new();
     bench.server.fail(|_, _| Fault::None);
     let (csv, htex) = ("s3://surfaces/vinyl.csv", "s3://surfaces/cloth.htex");
-    // Without an extension, since that of another format is refused before.
+    // Without an extension, since the extension of another format would be refused first.
     let file = "s3://surfaces/cloth";
     for (arguments, code, words) in [
         (

@@ -97,7 +97,7 @@ impl Emergency {
         }
     }
 
-    /// Notes the task whose clock runs from now on, or that there is none any more; before the task is cleared.
+    /// Notes the task whose clock runs from now on; `None` before the task is cleared.
     pub(crate) fn runs(&self, task: Option<Stopper>) {
         *self.running.lock().unwrap_or_else(PoisonError::into_inner) = task;
     }

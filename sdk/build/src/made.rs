@@ -33,7 +33,7 @@ pub struct Record {
     pub felt: BTreeMap<String, FeltError>,
     /// Findings of the recordings, by code.
     pub findings: Vec<FindingReport>,
-    /// The recorded spectrum of the first condition; of a texture that a file states, that of its default condition.
+    /// The recorded spectrum of the first condition; for a texture that a file states, the spectrum of its default condition.
     pub thumbnail: Thumbnail,
 }
 

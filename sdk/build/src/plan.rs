@@ -68,7 +68,7 @@ impl PlannedTexture {
 }
 
 impl Plan {
-    /// Returns those of the names that no texture has.
+    /// Returns the names that no texture has.
     pub(crate) fn removed(&self, names: &BTreeSet<String>) -> Vec<String> {
         let own: BTreeSet<&String> = self.textures.iter().map(|texture| &texture.name).collect();
         let removed = names.iter().filter(|name| !own.contains(name));

@@ -47,7 +47,7 @@ fn generated_listing_is_frozen() {
     }
 }
 
-/// The tables of statuses in C# and in the npm package are those of the header, which are those of the Rust enumeration, and each has a
+/// The header, C# and the npm package have the statuses of the Rust enumeration, and each has a
 /// text.
 #[test]
 fn all_tables_of_statuses_agree() {

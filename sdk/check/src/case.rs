@@ -205,7 +205,7 @@ pub(crate) fn is_cannot_fit(error: &HostError) -> bool {
     )
 }
 
-/// Returns whether the model refused a call: a status other than those of a model that failed, or of a module that trapped.
+/// Returns whether the model refused a call: a status that neither a failed model nor a trapped module gives.
 pub(crate) fn is_refusal(error: &HostError) -> bool {
     matches!(error, HostError::Call { status, .. } if !matches!(status, Status::Panicked | Status::Failed))
 }

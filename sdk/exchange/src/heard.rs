@@ -18,7 +18,7 @@ const BEFORE_S: f64 = 0.2;
 /// Where a finger moves.
 #[derive(Debug, Clone)]
 pub enum Path {
-    /// At one speed and force; `None` for those of the asset's default condition.
+    /// At one speed and force; `None` for the asset's default condition.
     Condition(Option<Motion>),
     Stroke(Stroke),
 }

@@ -70,7 +70,7 @@ struct Head {
     asset: Value,
 }
 
-/// A string of a JSON file: `description`, or `metadata` or `asset` with a key in it. `None` where there is none.
+/// A string of a JSON file: `description`, or `metadata` or `asset` with a key in it. `None` if it is missing.
 pub(crate) fn text(bytes: &[u8], part: &str, key: &str) -> Option<String> {
     let head: Head = serde_json::from_slice(bytes).ok()?;
     let part = match part {

@@ -99,7 +99,7 @@ impl OwnFolder {
     /// Opens a regular file to read it.
     ///
     /// # Errors
-    /// As [`Self::at`], when it is a link or no regular file, and those of the system.
+    /// As [`Self::at`]; when it is a link or no regular file; errors of the system.
     pub fn open(&self, inside: &Path) -> io::Result<File> {
         self.open_with(inside, OpenOptions::new().read(true))
     }
@@ -131,7 +131,7 @@ impl OwnFolder {
     /// folders above it are made.
     ///
     /// # Errors
-    /// Those of `write`, as [`Self::make_folder`], when a folder is in its place, and those of the system. What was there then stays.
+    /// Errors of `write` and of the system, as [`Self::make_folder`], and when a folder is in its place. The previous file then stays.
     pub fn replace(
         &self,
         inside: &Path,
@@ -177,7 +177,7 @@ impl OwnFolder {
     /// Opens a file for writing, for a lock: one that is there keeps its contents.
     ///
     /// # Errors
-    /// As [`Self::at`], when it is a link or no regular file, and those of the system.
+    /// As [`Self::at`]; when it is a link or no regular file; errors of the system.
     pub fn open_lock(&self, inside: &Path) -> io::Result<File> {
         let mut options = OpenOptions::new();
         self.open_with(inside, options.write(true).create(true).truncate(false))

@@ -233,7 +233,7 @@ enum Number {
 }
 
 impl Number {
-    /// Returns the next number above (1) or below (-1); `None` if there is none.
+    /// Returns the next number above (1) or below (-1); `None` at the end of the range.
     fn next(self, direction: i8) -> Option<Self> {
         let up = direction > 0;
         Some(match self {

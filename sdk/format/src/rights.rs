@@ -40,7 +40,7 @@ pub struct Rights {
 }
 
 impl Rights {
-    /// Rights of these words; what is empty is none.
+    /// Rights of these words; an empty word counts as missing.
     #[must_use]
     pub fn new(license: Option<&str>, author: Option<&str>) -> Self {
         Self {
@@ -117,7 +117,7 @@ impl Rights {
         Self::new(after(LICENSE, text), after(AUTHOR, text))
     }
 
-    /// The words of this, or those of another where this has none.
+    /// The words of this, completed by the words of another.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self {
@@ -202,7 +202,7 @@ pub fn license_file(path: &Path) -> PathBuf {
     name.into()
 }
 
-/// Reads the file of the rights of a file; `None` if there is none.
+/// Reads `FILE.license`, the rights beside a file; `None` if it is missing.
 ///
 /// # Errors
 /// When it cannot be read, is no regular file or too long.

@@ -267,15 +267,7 @@ impl LoadedModel {
             );
             return Err(self.error(call, Status::InvalidArgument, what));
         }
-        let raw = RawFit {
-            band: request.band,
-            frequency_hz: request.frequency_hz,
-            magnitude: request.magnitude,
-            signal: request.signal,
-            signal_rate_hz: request.signal_rate_hz,
-            options: request.options,
-            condition,
-        };
+        let raw = RawFit::of(request, condition);
         let mut level_rms = f64::NAN;
         let parameters = self.numbers(call, |out| self.raw.fit(&raw, out, &mut level_rms))?;
         if !level_rms.is_finite() || level_rms < 0.0 {

@@ -54,15 +54,7 @@ impl LoadedModel {
         parameters: &mut [f64],
         level_rms: &mut f64,
     ) -> Result<usize, HostError> {
-        let raw = RawFit {
-            band: request.band,
-            frequency_hz: request.frequency_hz,
-            magnitude: request.magnitude,
-            signal: request.signal,
-            signal_rate_hz: request.signal_rate_hz,
-            options: request.options,
-            condition,
-        };
+        let raw = RawFit::of(request, condition);
         self.check("fit", self.raw().fit(&raw, parameters, level_rms))
     }
 

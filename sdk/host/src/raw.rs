@@ -7,6 +7,8 @@ use htex_model::abi::ModelTable;
 use htex_model::voices_1::VoicesRenderFn;
 use htex_model::{Band, FitCondition, Knobs, Motion, Usual};
 
+#[cfg(feature = "fit")]
+use crate::FitRequest;
 use crate::probe::{ProbeArguments, Unusable};
 
 /// Arguments of a fit, as passed through the ABI.
@@ -19,6 +21,21 @@ pub(crate) struct RawFit<'a> {
     pub(crate) options: &'a [f64],
     /// For models that follow the motion.
     pub(crate) condition: FitCondition,
+}
+
+#[cfg(feature = "fit")]
+impl<'a> RawFit<'a> {
+    pub(crate) fn of(request: &FitRequest<'a>, condition: FitCondition) -> Self {
+        Self {
+            band: request.band,
+            frequency_hz: request.frequency_hz,
+            magnitude: request.magnitude,
+            signal: request.signal,
+            signal_rate_hz: request.signal_rate_hz,
+            options: request.options,
+            condition,
+        }
+    }
 }
 
 /// The functions of one model. Returned numbers are those of `htex_model::abi`: a length or a status.

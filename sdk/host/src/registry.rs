@@ -33,7 +33,7 @@ pub struct Registry {
     models: Vec<LoadedModel>,
     /// The rank of each of `models`, ascending.
     ranks: Vec<Rank>,
-    /// Models with the same id as one of `models`; those of one id by precedence.
+    /// Models with the same id as one of `models`; models of one id by precedence.
     shadowed: Vec<Candidate>,
     notes: Vec<Note>,
     sandbox: Sandbox,
@@ -57,7 +57,7 @@ pub(crate) enum Rank {
 }
 
 impl Rank {
-    /// Returns whether a person or a program chose this model itself, rather than a place that has it.
+    /// Returns whether the user or a program named this model itself, not only a folder that has it.
     fn is_chosen(self) -> bool {
         matches!(self, Self::File | Self::Embedded)
     }

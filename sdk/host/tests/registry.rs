@@ -125,7 +125,7 @@ fn the_newest_installed_version_of_a_major_version_is_used() {
         assert_eq!(registry.notes().len(), 1);
     }
 
-    // A file that a person names is used whatever its version is.
+    // A file that the user names is used whatever its version is.
     write(dir.path(), "named.wasm", "0.1.0");
     write(&folder("0"), "a.wasm", "3.0.0");
     let named = search()

@@ -528,7 +528,7 @@ impl Asset {
         Ok(self.default_of(self.representation(model)?))
     }
 
-    /// Returns a motion of a speed, mm/s, and a force, newtons. What is not given is that of [`Self::default_condition`], and 80 mm/s
+    /// Returns a motion of a speed, mm/s, and a force, newtons. What is not given comes from [`Self::default_condition`], and 80 mm/s
     /// and 0.4 N where it does not state them.
     ///
     /// ```no_run

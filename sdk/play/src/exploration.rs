@@ -20,7 +20,7 @@ pub const MOST_SPEED_MM_S: f64 = 1_000.0;
 pub const MOST_FORCE_N: f64 = 20.0;
 /// Longest time for which the last good motion is held while readings are out of range, seconds.
 pub const HOLD_S: f64 = 0.1;
-/// Speed, mm/s, and force, newtons, of a texture that states neither: those of the paper's study.
+/// Speed, mm/s, and force, newtons, of a texture that states neither: as in the paper's study.
 pub const USUAL: (f64, f64) = (80.0, 0.4);
 /// Highest level of a voice unless its options say another, as a multiple of the strongest recorded one.
 pub const CEILING: f64 = 4.0;

@@ -24,7 +24,7 @@ pub struct VoiceOptions<'a> {
     pub rate_hz: f64,
     /// Seed of the noise; equal seeds give equal samples.
     pub seed: u64,
-    /// The motion at the start; else that of the default condition ([`Asset::default_condition`](crate::Asset::default_condition)).
+    /// The motion at the start; `None`: the default condition ([`Asset::default_condition`](crate::Asset::default_condition)).
     pub motion: Option<Motion>,
     /// Method of synthesis: the model's voice, or one with less computation and a constant spectrum.
     /// [`Asset::source`](crate::Asset::source) is always streamed.
@@ -84,7 +84,7 @@ impl<'a> VoiceOptions<'a> {
         self
     }
 
-    /// Sets the motion at the start, or `None` for that of the default condition.
+    /// Sets the motion at the start, or `None` for the default condition.
     #[must_use]
     pub fn with_motion(mut self, motion: impl Into<Option<Motion>>) -> Self {
         self.motion = motion.into();

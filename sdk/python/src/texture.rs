@@ -140,7 +140,7 @@ impl Texture {
         &self.asset
     }
 
-    /// Returns the motion at a condition; a missing value is that of the default condition.
+    /// Returns the motion at a condition; a missing value comes from the default condition.
     fn motion(&self, model: Option<&str>, at: Option<At>) -> PyResult<Option<Motion>> {
         match at {
             None

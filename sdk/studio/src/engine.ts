@@ -10,7 +10,7 @@ import { fail, origin, present, texture } from "./state.ts";
 export interface Sounding {
   readonly texture: Texture;
   readonly model: string;
-  /** RMS of full scale at the default condition relative to that of the piece of work; 1 for the piece itself. */
+  /** RMS of full scale at the default condition, relative to the piece of work's; 1 for the piece itself. */
   readonly gain?: number;
   /** Its own usual loudness instead of that of the piece of work: for textures that are looked through. */
   readonly own?: boolean;

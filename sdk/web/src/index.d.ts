@@ -425,13 +425,13 @@ export interface PointerOptions {
 }
 
 /** Calls `moved` with the motion of a pointer over an element: one pointer at a time, of a mouse with the primary button. The element has
- * `touch-action: none` meanwhile. `null`, of a `querySelector` that found none, is an HtexError. Returns a function that ends this. */
+ * `touch-action: none` while it is followed. A `null` element, such as an unmatched `querySelector` returns, is an HtexError. Returns a function that ends this. */
 export function followPointer(
   element: ElementLike | null,
   moved: (motion: { speed: number; force: number; position: number; x: number; y: number }) => void,
   options?: PointerOptions,
 ): () => void;
 
-/** Lets a node follow a pointer over an element, and resumes its context on the first press. `null`, of a `querySelector` that found none,
- * is an HtexError. Returns a function that ends this. */
+/** Lets a node follow a pointer over an element, and resumes its context on the first press. A `null` element, such as an
+ * unmatched `querySelector` returns, is an HtexError. Returns a function that ends this. */
 export function follow(element: ElementLike | null, node: HtexNode, options?: PointerOptions): () => void;

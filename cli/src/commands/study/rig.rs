@@ -34,7 +34,7 @@ pub(super) struct StudyRig<'a> {
     pub(super) device: DeviceOverride,
     /// Format of files that are played to.
     pub(super) format: String,
-    /// Folder of files that are played to, in that of the answers.
+    /// Folder, inside the folder of answers, of the files that are played to.
     pub(super) folder: PathBuf,
     /// That of the answers, if a trial is played to a file.
     pub(super) answers: Option<OwnFolder>,

@@ -162,7 +162,7 @@ pub struct World {
     pub said: Option<u32>,
     /// Since when the player has known, counted in its own running steps.
     pub known_for: Option<u32>,
-    /// Steps that a voltage has stood, and those of them in which the player ran without a pause.
+    /// Steps that a voltage has stood, and how many of these steps the player ran without a pause.
     pub stood: u32,
     pub stood_before_player: u32,
 }

@@ -27,7 +27,7 @@ pub(crate) struct Printed {
     pub(crate) notes: Vec<String>,
 }
 
-/// Writes a texture as an image: its own pixels, or those of a row that is fitted to what it plays at a motion, else at its default condition.
+/// Writes a texture as an image: its own pixels, or pixels of a row that is fitted to what it plays at a motion (by default, at its default condition).
 ///
 /// # Errors
 /// When the texture is silent, the speed is unknown, or 255 pixels hold nothing of it.

@@ -10,7 +10,7 @@
 //!
 //! A page cannot lead its tab elsewhere, so that its scripts cannot carry away what a user drops on it. No header forbids that: browsers
 //! never had `navigate-to`, and a sandbox without `allow-top-navigation` binds only frames. So each page begins with `stay.js`, which
-//! cancels what leads to another origin, by the Navigation API of Chromium 102, Safari 26.2 and Firefox 147. Older browsers cannot be
+//! cancels what leads to another origin, by the Navigation API. A browser without it (`'navigation' in window` is false) cannot be
 //! told. Service workers, which could answer with a page of their own, are refused. Not covered are names that a browser looks up
 //! ahead of time (`dns-prefetch`) and WebRTC.
 

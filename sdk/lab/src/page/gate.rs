@@ -32,7 +32,7 @@ pub(super) type Refusal = (StatusCode, &'static str);
 
 impl Gate {
     /// The gate of a page whose path begins with a token, at a name that no page had before. At a port that the system chose the number
-    /// of this machine is a name of it, too, for browsers that do not resolve the other one.
+    /// of this machine is also accepted, for browsers that do not resolve the other one.
     pub(super) fn new(token: &str, name: &str, port: u16, is_chosen: bool) -> Self {
         let number = (!is_chosen).then(|| format!("127.0.0.1:{port}"));
         Self {

@@ -71,7 +71,7 @@ impl Format {
 }
 
 impl Outcome {
-    /// The folder of such takes in that of all; empty for this one itself.
+    /// The subfolder of such takes; empty for the folder itself.
     pub(crate) fn folder(self) -> &'static Path {
         Path::new(match self {
             Self::Kept => "",

@@ -71,7 +71,7 @@ impl Match {
         }
     }
 
-    /// A rise from `start_db` alone: its result is the level at which the texture is felt. The steps are those of `settings`.
+    /// A rise from `start_db` alone: its result is the level at which the texture is felt. The steps come from `settings`.
     pub fn rise(settings: &Matching, start_db: f64) -> Self {
         Self {
             ends_when_felt: true,

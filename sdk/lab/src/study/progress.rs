@@ -44,7 +44,7 @@ pub(crate) struct Progress {
     rises: Vec<Level>,
     /// The textures that are matched, or being matched, in the plan's order.
     gains: Vec<Level>,
-    /// Stops since the last line that is none.
+    /// Stops since the last line that is not a stop.
     stops: u32,
     last_ms: u64,
 }
@@ -72,7 +72,7 @@ impl Progress {
         }
     }
 
-    /// Stops since the last line that is none.
+    /// Stops since the last line that is not a stop.
     pub(crate) fn stops(&self) -> u32 {
         self.stops
     }

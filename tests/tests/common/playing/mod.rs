@@ -24,7 +24,7 @@ struct Plan {
     law: Option<[f64; 3]>,
     /// Triangles that it stores, by its conditions.
     triangles: &'static [[usize; 3]],
-    /// Levels, newtons, where they are not those of its number; it is also read where no motion is given then.
+    /// Levels, newtons, if they differ from the condition's number; it is then also read where no motion is given.
     levels: Option<&'static [f64]>,
 }
 

@@ -14,6 +14,8 @@ use crate::error::Fault;
 const MOST_BYTES: usize = 1 << 20;
 /// Most bytes that the decoder may hold.
 const MOST_DECODED: usize = 4 << 20;
+/// Longest text that is unpacked, bytes.
+const MOST_TEXT: usize = 64 << 10;
 /// The distances of pixels that a map may have, mm, as the model states them.
 pub(crate) const PITCH_MM: std::ops::RangeInclusive<f64> =
     htex_map::PITCH_MM.0..=htex_map::PITCH_MM.1;
@@ -102,8 +104,12 @@ pub(crate) fn rights(bytes: &[u8]) -> Rights {
     let info = info.info();
     let plain = info.uncompressed_latin1_text.iter();
     let plain = plain.map(|chunk| Rights::from_text(&chunk.text));
-    let wide = info.utf8_text.iter();
-    let wide = wide.filter_map(|chunk| Some(Rights::from_text(&chunk.get_text().ok()?)));
+    let wide = info.utf8_text.iter().filter_map(|chunk| {
+        let mut chunk = chunk.clone();
+        // `get_text` alone would unpack a megabyte to a gigabyte.
+        chunk.decompress_text_with_limit(MOST_TEXT).ok()?;
+        Some(Rights::from_text(&chunk.get_text().ok()?))
+    });
     plain.chain(wide).fold(Rights::default(), Rights::or)
 }
 
@@ -191,4 +197,36 @@ pub(super) fn to_bytes(image: &Image, rights: &Rights) -> Result<Vec<u8>, Fault>
     writer.write_image_data(&image.grey).map_err(failed)?;
     writer.finish().map_err(failed)?;
     Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use png::text_metadata::ITXtChunk;
+
+    use super::*;
+
+    /// An image of one pixel with a packed text.
+    fn with_text(text: String) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut encoder = Encoder::new(&mut bytes, 1, 1);
+        encoder.set_color(ColorType::Grayscale);
+        let mut writer = encoder.write_header().unwrap();
+        let mut chunk = ITXtChunk::new("Copyright", text);
+        chunk.compressed = true;
+        writer.write_text_chunk(&chunk).unwrap();
+        writer.write_image_data(&[0]).unwrap();
+        writer.finish().unwrap();
+        bytes
+    }
+
+    #[test]
+    fn a_packed_text_is_read_up_to_a_length() {
+        let text =
+            |blanks: usize| format!("SPDX-License-Identifier: CC0-1.0\n{}", " ".repeat(blanks));
+        assert_eq!(
+            rights(&with_text(text(1_000))).license.as_deref(),
+            Some("CC0-1.0")
+        );
+        assert!(rights(&with_text(text(MOST_TEXT))).is_empty());
+    }
 }

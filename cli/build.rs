@@ -1,5 +1,6 @@
-//! The commit of the sources, which `htex --version` says: that of `HTEX_COMMIT`, else of the clone that an optimised build is made in.
-//! Builds for development are not compiled anew with each commit. And where the sources are, for `htex plugin new`: what is released, for which
+//! The commit of the sources, which `htex --version` says: that of `HTEX_COMMIT`, else of the clone
+//! that an optimised build is made in. Builds for development are not compiled anew with each
+//! commit. And where the sources are, for `htex plugin new`: what is released, for which
 //! `HTEX_COMMIT` is given, names no folder of the machine that built it.
 
 use std::path::Path;
@@ -40,9 +41,7 @@ fn of_clone() -> Option<String> {
         return None;
     }
     println!("cargo:rerun-if-changed={}", log.display());
-    let command = Command::new("git")
-        .args(["rev-parse", "--short=12", "HEAD"])
-        .output();
+    let command = Command::new("git").args(["rev-parse", "--short=12", "HEAD"]).output();
     let output = command.ok().filter(|output| output.status.success())?;
     Some(String::from_utf8(output.stdout).ok()?.trim().to_owned())
 }

@@ -27,7 +27,8 @@ impl<A: CheckedKind + ?Sized> Checked<'_, A> {
         if let Some(name) = &checking.reproduce {
             return checking.print_one(name, &self.run_one(name)?, with_quoted);
         }
-        // A wrong setting is reported once, not by each check; so is a wrong name, of which there is no subject.
+        // A wrong setting is reported once, not by each check; so is a wrong name, of which there
+        // is no subject.
         self.settings.given()?;
         let (kind, adapter) = (A::WORD, self.name);
         let mut arguments = vec![kind.into(), "check-one".into()];

@@ -15,18 +15,12 @@ use crate::output::{tamed, warn};
 
 /// The places of a search: named files and folders, then those of the environment and of the user.
 pub(crate) fn search(files: &[PathBuf], dirs: &[PathBuf]) -> Search {
-    Search {
-        files: files.to_vec(),
-        dirs: dirs.to_vec(),
-        ..Search::default()
-    }
+    Search { files: files.to_vec(), dirs: dirs.to_vec(), ..Search::default() }
 }
 
 /// Each path behind its flag, for another run of this program.
 pub(crate) fn again<'a>(pairs: impl Iterator<Item = (&'static str, &'a PathBuf)>) -> Vec<OsString> {
-    pairs
-        .flat_map(|(flag, path)| [flag.into(), path.into()])
-        .collect()
+    pairs.flat_map(|(flag, path)| [flag.into(), path.into()]).collect()
 }
 
 /// The adapter in the file of this name if there is one, else that of this short name or id.
@@ -63,7 +57,8 @@ pub(crate) fn reported<A: AdapterKind + ?Sized>(found: Registry<A>) -> Registry<
     found
 }
 
-/// An adapter and what is connected. A missing driver is reported beside the adapter and is not an error.
+/// An adapter and what is connected. A missing driver is reported beside the adapter and is not an
+/// error.
 pub(crate) fn listed_json<A: AdapterKind + ?Sized>(known: &Known<A>) -> Value {
     let descriptor = known.descriptor();
     let (endpoints, problem) = match known.endpoints() {
@@ -100,10 +95,7 @@ pub(crate) fn listed_text<A: AdapterKind + ?Sized>(all: &Registry<A>) -> String 
 fn adapter_text<A: AdapterKind + ?Sized>(known: &Known<A>) -> String {
     let descriptor = &tamed(known.descriptor());
     let (name, version) = (descriptor.short_name(), &descriptor.version);
-    let mut text = format!(
-        "  {name:8} {version:8} {:20} {}\n",
-        descriptor.id, known.origin
-    );
+    let mut text = format!("  {name:8} {version:8} {:20} {}\n", descriptor.id, known.origin);
     text += &format!("           {}\n", descriptor.summary);
     let setting = |s: &Setting| format!("{}={}", s.name, s.default.as_deref().unwrap_or("…"));
     let settings: Vec<String> = descriptor.settings.iter().map(setting).collect();
@@ -122,13 +114,7 @@ fn adapter_text<A: AdapterKind + ?Sized>(known: &Known<A>) -> String {
 
 /// A descriptor with all settings and profiles.
 pub(crate) fn descriptor_text(descriptor: &Descriptor) -> String {
-    let Descriptor {
-        id,
-        name,
-        version,
-        summary,
-        ..
-    } = descriptor;
+    let Descriptor { id, name, version, summary, .. } = descriptor;
     let settings: String = descriptor.settings.iter().map(setting).collect();
     let profiles: String = descriptor.profiles.iter().map(profile).collect();
     let none = |text: String| match text.is_empty() {
@@ -159,9 +145,7 @@ fn setting(setting: &Setting) -> String {
 
 fn profile(profile: &Profile) -> String {
     let fixed = profile.settings.iter();
-    let fixed: Vec<String> = fixed
-        .map(|(name, value)| format!("{name}={value}"))
-        .collect();
+    let fixed: Vec<String> = fixed.map(|(name, value)| format!("{name}={value}")).collect();
     let (name, summary) = (&profile.name, &profile.summary);
     format!("  {name}: {summary}\n      {}\n", fixed.join(" "))
 }

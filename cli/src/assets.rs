@@ -16,8 +16,9 @@ use crate::columns::{Column, cells, columns, headings};
 
 /// The summary of an asset that `fit` and `info` print.
 ///
-/// The manifest is not flattened into it, because its JSON differs: `name` precedes `htex`, empty `tags` and a false
-/// `simulated` are written, the band is a list, and plugins and representations have their sizes and their numbers.
+/// The manifest is not flattened into it, because its JSON differs: `name` precedes `htex`, empty
+/// `tags` and a false `simulated` are written, the band is a list, and plugins and representations
+/// have their sizes and their numbers.
 #[derive(Serialize)]
 pub(crate) struct AssetSummary {
     pub(crate) asset: String,
@@ -140,16 +141,9 @@ impl AssetSummary {
             plugins: plugins(asset),
             representations,
             grid: None,
-            repeatability_rms_db: manifest
-                .conditions
-                .first()
-                .and_then(|c| c.repeatability_rms_db),
+            repeatability_rms_db: manifest.conditions.first().and_then(|c| c.repeatability_rms_db),
             warnings: manifest.provenance.warnings.clone(),
-            notes: asset
-                .notes
-                .iter()
-                .map(|note| note.message.clone())
-                .collect(),
+            notes: asset.notes.iter().map(|note| note.message.clone()).collect(),
         }
     }
 
@@ -181,14 +175,8 @@ impl AssetSummary {
             self.unit,
             self.band_hz[0],
             self.band_hz[1],
-            self.author
-                .as_ref()
-                .map(|a| format!(", by {}", plain(a)))
-                .unwrap_or_default(),
-            self.license
-                .as_ref()
-                .map(|l| format!(", licence {}", plain(l)))
-                .unwrap_or_default(),
+            self.author.as_ref().map(|a| format!(", by {}", plain(a))).unwrap_or_default(),
+            self.license.as_ref().map(|l| format!(", licence {}", plain(l))).unwrap_or_default(),
         );
         text += &self.made.as_ref().map(made_text).unwrap_or_default();
         text += &self.metadata_text();
@@ -235,12 +223,9 @@ impl AssetSummary {
             ("sensor", &self.sensor),
             ("finger", &self.finger),
         ];
-        let said = lines
-            .into_iter()
-            .filter_map(|(name, text)| Some((name, text.as_ref()?)));
-        let mut said: String = said
-            .map(|(name, text)| format!("{name}: {}\n", plain(text)))
-            .collect();
+        let said = lines.into_iter().filter_map(|(name, text)| Some((name, text.as_ref()?)));
+        let mut said: String =
+            said.map(|(name, text)| format!("{name}: {}\n", plain(text))).collect();
         let _ = writeln!(said, "contact: {}", self.contact.name());
         let _ = writeln!(said, "law outside the recorded motions: {}", self.law);
         said
@@ -254,17 +239,15 @@ impl AssetSummary {
         let stored = stored.filter(|r| !r.triangles.is_empty());
         let line = |r: &RepresentationSummary| {
             let count = r.triangles.len();
-            format!(
-                "  {}: interpolated in {count} stored triangles\n",
-                short_name(&r.model)
-            )
+            format!("  {}: interpolated in {count} stored triangles\n", short_name(&r.model))
         };
         stored.map(line).collect()
     }
 }
 
 impl AssetSummary {
-    /// The errors of blocks of time that were left out, of each model, where they are known: RMS and largest over the conditions.
+    /// The errors of blocks of time that were left out, of each model, where they are known: RMS
+    /// and largest over the conditions.
     fn left_out_text(&self) -> String {
         let measures = LeftOut::measures().filter(|m| m.row().column.is_some());
         let mut text = String::new();
@@ -329,7 +312,8 @@ impl RepresentationSummary {
         }
     }
 
-    /// Counts the conditions whose difference is below the difference threshold, and those within what their recording varies.
+    /// Counts the conditions whose difference is below the difference threshold, and those within
+    /// what their recording varies.
     pub(crate) fn count(&self, share: &mut FeltShare) {
         let felt = self.all().iter().filter_map(|at| at.felt.as_ref());
         felt.for_each(|felt| share.count(felt));
@@ -360,11 +344,8 @@ fn row(
     quantity: Quantity,
     columns: &[Column],
 ) -> String {
-    let parameters: Vec<String> = at
-        .parameters
-        .iter()
-        .map(|(k, v)| parameter_text(&plain(k), v))
-        .collect();
+    let parameters: Vec<String> =
+        at.parameters.iter().map(|(k, v)| parameter_text(&plain(k), v)).collect();
     format!(
         "  {:8} {:>5}  {:>10}{}  {:>5}  {}\n",
         short_name(&r.model),
@@ -379,10 +360,7 @@ fn row(
 fn parameter_text(name: &str, value: &Value) -> String {
     match value {
         Value::Array(list) => format!("{name}[{}]", list.len()),
-        other => format!(
-            "{name}={}",
-            short_number(other.as_f64().unwrap_or(f64::NAN))
-        ),
+        other => format!("{name}={}", short_number(other.as_f64().unwrap_or(f64::NAN))),
     }
 }
 
@@ -420,9 +398,7 @@ fn made_text(made: &Made) -> String {
 /// Speed and force of a condition, as far as they are known.
 pub(crate) fn motion_text(condition: &Condition) -> String {
     let part = |value: Option<f64>, unit: &str, what: &str| {
-        value.map_or(format!("{what} unknown"), |v| {
-            format!("{} {unit}", short_number(v))
-        })
+        value.map_or(format!("{what} unknown"), |v| format!("{} {unit}", short_number(v)))
     };
     let speed = part(condition.speed_mm_s, "mm/s", "speed");
     format!("{speed}, {}", part(condition.force_n, "N", "force"))
@@ -437,10 +413,7 @@ impl RepresentationSummary {
     /// `None` for a representation without conditions, which is not valid.
     fn new(r: &Representation, sets: &[Vec<f64>], payload_bytes: usize) -> Option<Self> {
         let at: Vec<AtSummary> =
-            r.at.iter()
-                .zip(sets)
-                .map(|(at, set)| AtSummary::new(at, &r.fields, set))
-                .collect();
+            r.at.iter().zip(sets).map(|(at, set)| AtSummary::new(at, &r.fields, set)).collect();
         Some(Self {
             model: r.model.clone(),
             model_version: r.model_version.clone(),
@@ -497,8 +470,6 @@ impl AtSummary {
             let values = self.parameters.get(name).and_then(Value::as_array);
             values.into_iter().flatten().filter_map(Value::as_f64)
         };
-        list("frequency_hz")
-            .zip(list("amplitude").map(|a| a * self.level_rms))
-            .collect()
+        list("frequency_hz").zip(list("amplitude").map(|a| a * self.level_rms)).collect()
     }
 }

@@ -13,8 +13,6 @@ use crate::failure::Failure;
 pub(crate) fn read_asset(path: &Path) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     let most = Limits::default().file_bytes.saturating_add(1);
-    File::open(path)
-        .and_then(|file| file.take(most).read_to_end(&mut bytes))
-        .reading(path)?;
+    File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes)).reading(path)?;
     Ok(bytes)
 }

@@ -60,8 +60,8 @@ impl CheckArgs {
         Ok(exit_code(finding.outcome.is_bad()))
     }
 
-    /// Prints a report; `worded` replaces options of its messages by flags, and `again` is the command that runs one check
-    /// of it in a single process.
+    /// Prints a report; `worded` replaces options of its messages by flags, and `again` is the
+    /// command that runs one check of it in a single process.
     pub(crate) fn print_report<Subject: Display + Serialize>(
         &self,
         report: &Report<Subject>,

@@ -13,7 +13,8 @@ pub(crate) struct Column {
     by: By,
 }
 
-/// Those of these measures that have a column: of magnitudes, of rendered samples, and what no asset stores.
+/// Those of these measures that have a column: of magnitudes, of rendered samples, and what no
+/// asset stores.
 pub(crate) fn columns(measures: impl IntoIterator<Item = Measure>) -> Vec<Column> {
     let all: Vec<Measure> = measures.into_iter().collect();
     let (stored, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|m| m.row().stored);
@@ -21,9 +22,7 @@ pub(crate) fn columns(measures: impl IntoIterator<Item = Measure>) -> Vec<Column
     let own = |m: &Measure| Column::new(*m, By::Magnitude);
     let columns = stored.iter().map(own).chain(played);
     let columns = columns.chain(others.iter().map(own));
-    columns
-        .filter(|column| !column.heading().is_empty())
-        .collect()
+    columns.filter(|column| !column.heading().is_empty()).collect()
 }
 
 /// The headings, each after two spaces.

@@ -15,18 +15,14 @@ use crate::failure::Failure;
 
 /// How to have a device or source that is left out.
 pub(crate) fn built_with(left_out: &Optional) -> String {
-    let Optional {
-        what,
-        feature,
-        package,
-        ..
-    } = left_out;
+    let Optional { what, feature, package, .. } = left_out;
     format!(
         "`cargo install --path cli --features {feature}` builds one with {what}, which on Linux needs {package}"
     )
 }
 
-/// The reason why a device or source of this name is absent, if it is left out of this build; `instead` is a sentence.
+/// The reason why a device or source of this name is absent, if it is left out of this build;
+/// `instead` is a sentence.
 pub(crate) fn left_out(name: &str, instead: &str) -> Option<DeviceError> {
     let left_out = Optional::left_out(name)?;
     let (what, how) = (left_out.what, built_with(&left_out));
@@ -97,7 +93,8 @@ pub(crate) struct SettingArgs {
     #[arg(long, value_name = "NAME")]
     profile: Option<String>,
 
-    /// A setting of the device or source, such as rate_hz=20000, over its profile; may be given several times
+    /// A setting of the device or source, such as rate_hz=20000, over its profile; may be given
+    /// several times
     #[arg(long = "set", value_name = "NAME=VALUE")]
     settings: Vec<String>,
 }

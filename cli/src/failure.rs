@@ -31,10 +31,7 @@ pub(crate) enum Failure {
     #[error("{file}: {error}{}", flag_of(.error))]
     Asset { file: String, error: htex::Error },
     #[error("{file}: {error}")]
-    Library {
-        file: String,
-        error: htex_library::LibraryError,
-    },
+    Library { file: String, error: htex_library::LibraryError },
     #[error("{file}: {cannot} (`htex explain CODE` says more){}", listed(.findings))]
     Findings {
         file: String,
@@ -43,16 +40,10 @@ pub(crate) enum Failure {
         findings: Vec<Finding>,
     },
     #[error("{file}: {error}")]
-    Scene {
-        file: String,
-        error: Box<htex_scene::SceneError>,
-    },
+    Scene { file: String, error: Box<htex_scene::SceneError> },
     #[cfg(feature = "build")]
     #[error("{recipe}: {error}")]
-    Build {
-        recipe: String,
-        error: htex_build::BuildError,
-    },
+    Build { recipe: String, error: htex_build::BuildError },
     #[cfg(feature = "lab")]
     #[error(transparent)]
     Study(#[from] htex_lab::study::StudyError),
@@ -109,10 +100,7 @@ impl Failure {
             Self::Usage(_)
             | Self::Model(Option { .. } | UnknownModel { .. })
             | Self::Device(Setting { .. } | Rate { .. } | Unknown { .. } | UnknownSource { .. })
-            | Self::Storage(StorageError {
-                problem: NoCloud | ReadOnly,
-                ..
-            })
+            | Self::Storage(StorageError { problem: NoCloud | ReadOnly, .. })
             | Self::Asset {
                 error:
                     htex::Error::Model(UnknownModel { .. })
@@ -124,8 +112,8 @@ impl Failure {
         }
     }
 
-    /// The message, line by line. It may quote files and their names: control characters are escaped, and lines
-    /// end only where this program ends them.
+    /// The message, line by line. It may quote files and their names: control characters are
+    /// escaped, and lines end only where this program ends them.
     pub(crate) fn to_lines(&self) -> Vec<String> {
         let text = self.to_string();
         if self.has_lines() {
@@ -145,14 +133,11 @@ impl Failure {
         lines.map(|line| shown_line(&line)).collect()
     }
 
-    /// Whether the message has lines of its own: the place in a TOML file, under which a mark stands.
+    /// Whether the message has lines of its own: the place in a TOML file, under which a mark
+    /// stands.
     fn has_lines(&self) -> bool {
         #[cfg(feature = "build")]
-        if let Self::Build {
-            error: htex_build::BuildError::Recipe(_),
-            ..
-        } = self
-        {
+        if let Self::Build { error: htex_build::BuildError::Recipe(_), .. } = self {
             return true;
         }
         false

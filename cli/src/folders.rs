@@ -5,14 +5,11 @@ use htex_native::folders::relative;
 use crate::failure::Failure;
 use crate::output::warn;
 
-/// Refuses a relative path in one of htex's own variables, and warns of one in a variable that other programs read too: the XDG base
-/// directory specification has it ignored.
+/// Refuses a relative path in one of htex's own variables, and warns of one in a variable that
+/// other programs read too: the XDG base directory specification has it ignored.
 pub(crate) fn check() -> Result<(), Failure> {
     let shown = |variable: &str, path: &std::path::Path| {
-        format!(
-            "{variable} is {}, which is no absolute path",
-            crate::shown::shown(path)
-        )
+        format!("{variable} is {}, which is no absolute path", crate::shown::shown(path))
     };
     let mut ignored = Vec::new();
     for (variable, path) in relative() {
@@ -21,9 +18,7 @@ pub(crate) fn check() -> Result<(), Failure> {
             let words = format!("{words}; give one that begins with / (on Windows with a drive)");
             return Err(Failure::Usage(words));
         }
-        ignored.push(format!(
-            "{words}; it is ignored, and the usual folder is used"
-        ));
+        ignored.push(format!("{words}; it is ignored, and the usual folder is used"));
     }
     warn(&ignored);
     Ok(())

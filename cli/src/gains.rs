@@ -19,8 +19,8 @@ pub(crate) struct FeltArgs {
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 
-    /// `normalised`: every representation is as strong; `own`: each keeps its energy, measured by the one that the
-    /// gain of --person was found with, else by the strongest
+    /// `normalised`: every representation is as strong; `own`: each keeps its energy, measured by
+    /// the one that the gain of --person was found with, else by the strongest
     #[arg(long, value_name = "LEVELS", value_parser = ["normalised", "own"])]
     levels: Option<String>,
 }

@@ -1,4 +1,5 @@
-//! Arguments, and which of them the command line has: what has a default is not what a person asked for.
+//! Arguments, and which of them the command line has: what has a default is not what a person asked
+//! for.
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
@@ -24,10 +25,7 @@ impl<T: Args> Given<T> {
 
 impl<T: Args> FromArgMatches for Given<T> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-        Ok(Self {
-            settings: Self::settings_of(matches),
-            values: T::from_arg_matches(matches)?,
-        })
+        Ok(Self { settings: Self::settings_of(matches), values: T::from_arg_matches(matches)? })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {

@@ -5,7 +5,8 @@ use std::fmt::Write;
 use htex_author::{CellStatus, GridCell, GridReport};
 use htex_report::{Axis, Plot, Series};
 
-/// Classes of repeatability: upper limit in decibels, name, colour. The colours darken from good to bad.
+/// Classes of repeatability: upper limit in decibels, name, colour. The colours darken from good to
+/// bad.
 const CLASSES: [(f64, &str, &str); 4] = [
     (0.5, "repeats within 0.5 dB", "#009e73"),
     (1.0, "0.5 to 1 dB", "#0072b2"),
@@ -41,11 +42,7 @@ pub(crate) fn grid_text(grid: &GridReport) -> String {
     for (i, speed) in grid.speed_mm_s.iter().enumerate() {
         let _ = write!(text, "  {:>10}", short(*speed));
         for j in 0..grid.force_n.len() {
-            let _ = write!(
-                text,
-                "  {:>11}",
-                grid.cell(i, j).map_or(String::new(), entry)
-            );
+            let _ = write!(text, "  {:>11}", grid.cell(i, j).map_or(String::new(), entry));
         }
         text.push('\n');
     }
@@ -64,11 +61,7 @@ fn entry(cell: &GridCell) -> String {
         _ => " ",
     };
     let repeats = cell.repeatability_rms_db.map(|db| format!("{db:.2}"));
-    format!(
-        "{}{mark} {:>5}",
-        cell.averaged,
-        repeats.unwrap_or("?".to_owned())
-    )
+    format!("{}{mark} {:>5}", cell.averaged, repeats.unwrap_or("?".to_owned()))
 }
 
 /// Three digits.
@@ -89,15 +82,11 @@ pub(crate) fn grid_plot(name: &str, grid: &GridReport) -> Plot {
     );
     (plot.width, plot.height) = (860.0, 560.0);
     let windows = grid.motions.iter().map(|[speed, force]| (*speed, *force));
-    let windows = Series::scatter(
-        &format!("{} steady windows", grid.steady),
-        windows.collect(),
-    );
+    let windows = Series::scatter(&format!("{} steady windows", grid.steady), windows.collect());
     let mut windows = windows.colored(WINDOWS).behind();
     windows.marker_radius_px = Some(1.6);
     plot.series.push(windows);
-    plot.series
-        .push(Series::line("mesh", mesh(grid)).colored(MESH).behind());
+    plot.series.push(Series::line("mesh", mesh(grid)).colored(MESH).behind());
     let mut from_db = f64::NEG_INFINITY;
     for (to_db, name, color) in CLASSES {
         let within = |cell: &&GridCell| {

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use htex_finding::Hint;
 
-/// Settings that messages about scenes and devices name in backquotes, with or without a value (`setting driver=x`), and
-/// their flags.
+/// Settings that messages about scenes and devices name in backquotes, with or without a value
+/// (`setting driver=x`), and their flags.
 const QUOTED: [(&str, &str); 2] = [("profile", "--profile"), ("setting", "--set")];
 
 /// The settings of a hint as flags: a setting has the name of its flag.
@@ -20,7 +20,8 @@ pub(crate) fn with_hint(message: &str, hint: Hint) -> Cow<'_, str> {
     with_flags(message, flags_of(hint))
 }
 
-/// A message with settings of scenes and devices as flags, and with the flags that help, before its last stop or colon.
+/// A message with settings of scenes and devices as flags, and with the flags that help, before its
+/// last stop or colon.
 pub(crate) fn with_flags(message: &str, flags: Option<String>) -> Cow<'_, str> {
     let message = with_quoted(message);
     let Some(flags) = flags else {
@@ -71,10 +72,7 @@ mod tests {
         for (text, expected) in [
             ("give `profile` X", "give `--profile` X"),
             ("give `setting driver=x`", "give `--set driver=x`"),
-            (
-                "column `settings`, `profile_`",
-                "column `settings`, `profile_`",
-            ),
+            ("column `settings`, `profile_`", "column `settings`, `profile_`"),
             ("an open ` setting", "an open ` setting"),
         ] {
             assert_eq!(with_hint(text, Hint::NONE), expected);
@@ -86,10 +84,7 @@ mod tests {
         let hint = Hint::new(&["from", "most_numbers"]);
         for (text, expected) in [
             ("leave it out", "leave it out (see --from, --most-numbers)"),
-            (
-                "Leave it out.",
-                "Leave it out (see --from, --most-numbers).",
-            ),
+            ("Leave it out.", "Leave it out (see --from, --most-numbers)."),
         ] {
             assert_eq!(with_hint(text, hint), expected);
         }
@@ -99,23 +94,12 @@ mod tests {
     fn hints_of_rules_are_flags_of_the_command() {
         let mut known = BTreeSet::new();
         for command in crate::Cli::command().get_subcommands() {
-            known.extend(
-                command
-                    .get_arguments()
-                    .filter_map(clap::Arg::get_long)
-                    .map(str::to_owned),
-            );
+            known
+                .extend(command.get_arguments().filter_map(clap::Arg::get_long).map(str::to_owned));
         }
         for rule in rules() {
-            for setting in [rule.hint, rule.checked_by]
-                .iter()
-                .flat_map(|hint| hint.settings())
-            {
-                let flag = setting
-                    .split(' ')
-                    .next()
-                    .unwrap_or_default()
-                    .replace('_', "-");
+            for setting in [rule.hint, rule.checked_by].iter().flat_map(|hint| hint.settings()) {
+                let flag = setting.split(' ').next().unwrap_or_default().replace('_', "-");
                 assert!(known.contains(&flag), "{}: {flag}", rule.code);
             }
         }

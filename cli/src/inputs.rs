@@ -1,4 +1,5 @@
-//! Arguments about a source's channels and a tracker, and opening of sources, shared by the commands that record.
+//! Arguments about a source's channels and a tracker, and opening of sources, shared by the
+//! commands that record.
 
 use std::collections::BTreeMap;
 use std::io::{BufReader, IsTerminal};
@@ -21,22 +22,24 @@ pub(crate) struct InputArgs {
     #[command(flatten)]
     pub(crate) sources: SourceArgs,
 
-    /// Roles and scales of the channels, as in `htex fit`: lateral_x=fx1+fx2,normal=-fz*0.31. Without it channels are
-    /// known by their names
+    /// Roles and scales of the channels, as in `htex fit`: lateral_x=fx1+fx2,normal=-fz*0.31.
+    /// Without it channels are known by their names
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Option<String>,
 
-    /// Calibration of a six-axis sensor on the first six channels, whose names become fx, fy, fz, tx, ty, tz: six rows of six
-    /// numbers (N and N m for a volt) as CSV, or `matrix` in TOML. A second one is that of the next six; axes are then fx1, fx2, …
+    /// Calibration of a six-axis sensor on the first six channels, whose names become fx, fy, fz,
+    /// tx, ty, tz: six rows of six numbers (N and N m for a volt) as CSV, or `matrix` in TOML. A
+    /// second one is that of the next six; axes are then fx1, fx2, …
     #[arg(long, value_name = "FILE")]
     calibration: Vec<PathBuf>,
 
-    /// What the texture's signal is: lateral-force, normal-force, acceleration, velocity, displacement [default: lateral-force]
+    /// What the texture's signal is: lateral-force, normal-force, acceleration, velocity,
+    /// displacement [default: lateral-force]
     #[arg(long, value_name = "NAME", value_parser = quantity)]
     quantity: Option<Quantity>,
 
-    /// The finger's motion: a file to replay (file:track.csv), or lines `x_mm y_mm` from a pipe or port (lines:/dev/ttyACM0) or
-    /// from standard input (lines:-)
+    /// The finger's motion: a file to replay (file:track.csv), or lines `x_mm y_mm` from a pipe or
+    /// port (lines:/dev/ttyACM0) or from standard input (lines:-)
     #[arg(long, value_name = "NAME:TARGET")]
     tracker: Option<String>,
 
@@ -84,13 +87,8 @@ impl InputArgs {
         let map = parsed(self.map.as_deref())?;
         let calibrations = self.calibration.iter().map(|path| Calibration::read(path));
         let calibrations = calibrations.collect::<Result<_, _>>()?;
-        let signals = Signals::new(
-            name,
-            source.channels(),
-            calibrations,
-            map.as_ref(),
-            self.quantity(),
-        )?;
+        let signals =
+            Signals::new(name, source.channels(), calibrations, map.as_ref(), self.quantity())?;
         Ok(signals)
     }
 
@@ -130,9 +128,6 @@ fn parsed(map: Option<&str>) -> Result<Option<ColumnMap>, Failure> {
 fn quantity(name: &str) -> Result<Quantity, String> {
     Quantity::from_name(&name.replace('-', "_")).ok_or_else(|| {
         let names = Quantity::ALL.iter().map(|q| q.name().replace('_', "-"));
-        format!(
-            "the quantities are {}",
-            names.collect::<Vec<_>>().join(", ")
-        )
+        format!("the quantities are {}", names.collect::<Vec<_>>().join(", "))
     })
 }

@@ -1,17 +1,15 @@
 //! How the command was started: its arguments, and the program that starts it again.
 //!
-//! The program that starts the command again is passed to the library, since the own file is the Python interpreter in
-//! the command of the Python package.
+//! The program that starts the command again is passed to the library, since the own file is the
+//! Python interpreter in the command of the Python package.
 
 use std::ffi::OsString;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
 /// Arguments and program of the current run.
-static CURRENT: Mutex<Invocation> = Mutex::new(Invocation {
-    arguments: Vec::new(),
-    program: Vec::new(),
-});
+static CURRENT: Mutex<Invocation> =
+    Mutex::new(Invocation { arguments: Vec::new(), program: Vec::new() });
 
 struct Invocation {
     arguments: Vec<OsString>,
@@ -57,8 +55,5 @@ pub(crate) fn arguments() -> Vec<OsString> {
 pub(crate) fn program() -> Result<Program, UnknownProgram> {
     let current = CURRENT.lock().unwrap_or_else(PoisonError::into_inner);
     let (file, arguments) = current.program.split_first().ok_or(UnknownProgram)?;
-    Ok(Program {
-        file: file.clone(),
-        arguments: arguments.to_vec(),
-    })
+    Ok(Program { file: file.clone(), arguments: arguments.to_vec() })
 }

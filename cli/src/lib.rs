@@ -1,5 +1,5 @@
-//! The `htex` command as a library: parses, calls the SDK, prints. [`run`] is the whole command; the program `htex` and the
-//! Python package call it.
+//! The `htex` command as a library: parses, calls the SDK, prints. [`run`] is the whole command;
+//! the program `htex` and the Python package call it.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
@@ -90,9 +90,10 @@ Exit status: 0 ok, 1 findings or failure, 2 wrong usage."
 
 /// Runs the command and returns its exit status: 0 ok, 1 findings or failure, 2 wrong usage.
 ///
-/// `arguments` are those of a program, the first of them its name. `program` starts the command again, in a process of its own:
-/// the file, and arguments that precede those of the command, such as `python -m htex`. Checks of models and devices and the
-/// output of a display need it. An empty `program` is not known, and they fail with an error.
+/// `arguments` are those of a program, the first of them its name. `program` starts the command
+/// again, in a process of its own: the file, and arguments that precede those of the command, such
+/// as `python -m htex`. Checks of models and devices and the output of a display need it. An empty
+/// `program` is not known, and they fail with an error.
 ///
 /// The first call handles Ctrl-C for the rest of the process. At most one call may run at a time.
 ///
@@ -103,18 +104,15 @@ Exit status: 0 ok, 1 findings or failure, 2 wrong usage."
 /// ```
 pub fn run(arguments: impl IntoIterator<Item = OsString>, program: Vec<OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let shown = arguments
-        .iter()
-        .skip(1)
-        .cloned()
-        .map(located::without_secrets);
+    let shown = arguments.iter().skip(1).cloned().map(located::without_secrets);
     invocation::set(shown.collect(), program);
     let code = parse_and_run(arguments);
     located::clear();
     code
 }
 
-/// Whether the command takes these arguments, the first of them its name; nothing is run. By this, tests hold pages to the command.
+/// Whether the command takes these arguments, the first of them its name; nothing is run. By this,
+/// tests hold pages to the command.
 ///
 /// ```
 /// assert!(htex_cli::check_usage(["htex", "info", "a.htex"].map(Into::into)).is_ok());

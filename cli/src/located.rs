@@ -1,7 +1,8 @@
-//! Arguments that are URIs: downloaded before the command runs, written when it is done. The command itself sees local files.
+//! Arguments that are URIs: downloaded before the command runs, written when it is done. The
+//! command itself sees local files.
 //!
-//! A parser of arguments ([`ASSET`], [`RECORDING`], [`OUTPUT`]) puts a path in a temporary folder in place of a URI; what is
-//! printed names the URI again ([`named`]).
+//! A parser of arguments ([`ASSET`], [`RECORDING`], [`OUTPUT`]) puts a path in a temporary folder
+//! in place of a URI; what is printed names the URI again ([`named`]).
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -26,10 +27,7 @@ pub(crate) const OUTPUT: Argument = Argument(Role::Output);
 pub(crate) const LOCAL_OUTPUT: Argument = Argument(Role::LocalOutput);
 
 /// The files elsewhere of the current run.
-static ELSEWHERE: Mutex<Elsewhere> = Mutex::new(Elsewhere {
-    folder: None,
-    files: Vec::new(),
-});
+static ELSEWHERE: Mutex<Elsewhere> = Mutex::new(Elsewhere { folder: None, files: Vec::new() });
 /// The temporary folder, for a signal handler, which may run while the other lock is held.
 static FOLDER: Mutex<Option<PathBuf>> = Mutex::new(None);
 
@@ -92,16 +90,15 @@ const FORMATS: [&str; 27] = [
     "svg", "toml", "tsv", "wav", "xlsx",
 ];
 
-/// Refuses an output whose extension names another format than the one that is written, which the argument's value name states
-/// (`CSV`, `OUT.htexlib`). A value name that is no format (`FILE`) leaves the choice to the extension, and to the command.
+/// Refuses an output whose extension names another format than the one that is written, which the
+/// argument's value name states (`CSV`, `OUT.htexlib`). A value name that is no format (`FILE`)
+/// leaves the choice to the extension, and to the command.
 fn check_format(location: &Location, argument: Option<&clap::Arg>) -> Result<(), String> {
     let names = argument.and_then(clap::Arg::get_value_names);
     let written = names.and_then(<[_]>::first).map(|name| name.as_str());
     let written = written.map(|name| name.rsplit('.').next().unwrap_or(name).to_ascii_lowercase());
     let name = location.file_name().unwrap_or_default();
-    let given = name
-        .rsplit_once('.')
-        .map(|(_, end)| end.to_ascii_lowercase());
+    let given = name.rsplit_once('.').map(|(_, end)| end.to_ascii_lowercase());
     let (Some(written), Some(given)) = (written, given) else {
         return Ok(());
     };
@@ -136,8 +133,9 @@ impl std::ops::Deref for Anywhere {
     }
 }
 
-/// Refuses a URI in an argument that is a path of this machine: it would name a file or a folder such as `s3:`. An argument that may
-/// be a URI has the parser [`Argument`], which leaves a local path, or another type than a path.
+/// Refuses a URI in an argument that is a path of this machine: it would name a file or a folder
+/// such as `s3:`. An argument that may be a URI has the parser [`Argument`], which leaves a local
+/// path, or another type than a path.
 ///
 /// # Errors
 /// With the argument, and what to give.
@@ -179,10 +177,7 @@ fn check_path(arg: &clap::Arg, path: &Path) -> Result<(), String> {
 
 impl Elsewhere {
     /// The local path in place of a URI; its name stays, since texts and formats depend on it.
-    #[allow(
-        clippy::disallowed_methods,
-        reason = "a new temporary folder of this user"
-    )]
+    #[allow(clippy::disallowed_methods, reason = "a new temporary folder of this user")]
     fn copy_of(&mut self, location: Location, role: Role) -> Result<PathBuf, String> {
         let known = self.files.iter().find(|file| file.location == location);
         match known {
@@ -200,22 +195,13 @@ impl Elsewhere {
             None => {}
         }
         let Some(name) = location.file_name() else {
-            return Err(format!(
-                "{location}: it has no file name at its end; name a file"
-            ));
+            return Err(format!("{location}: it has no file name at its end; name a file"));
         };
         let failed = |error| format!("no temporary folder for {location}: {error}");
-        let folder = self
-            .folder()
-            .map_err(failed)?
-            .join(self.files.len().to_string());
+        let folder = self.folder().map_err(failed)?.join(self.files.len().to_string());
         std::fs::create_dir(&folder).map_err(failed)?;
         let local = folder.join(name);
-        self.files.push(Copied {
-            location,
-            local: local.clone(),
-            role,
-        });
+        self.files.push(Copied { location, local: local.clone(), role });
         Ok(local)
     }
 
@@ -257,9 +243,7 @@ pub(crate) fn remove_copies() {
 pub(crate) fn taken(is_wanted: impl Fn(Role) -> bool) -> Vec<(Location, PathBuf, Role)> {
     let elsewhere = local();
     let wanted = elsewhere.files.iter().filter(|file| is_wanted(file.role));
-    wanted
-        .map(|file| (file.location.clone(), file.local.clone(), file.role))
-        .collect()
+    wanted.map(|file| (file.location.clone(), file.local.clone(), file.role)).collect()
 }
 
 /// Keeps the local copies beyond the command.

@@ -16,11 +16,7 @@ impl From<SettingsError> for Failure {
             SettingsError::Model(error) => Self::Model(error),
             SettingsError::Response(error) => Self::Recording(*error),
             SettingsError::Grid(error) => Self::Usage(format!("--{error}")),
-            SettingsError::Map {
-                keyword,
-                text,
-                error,
-            } => {
+            SettingsError::Map { keyword, text, error } => {
                 let flag = keyword.replace('_', "-");
                 Self::Usage(format!("--{flag} {text}: {error}"))
             }

@@ -1,4 +1,5 @@
-//! A live motion: read from lines and passed to the playing loop without a lock, or of the finger on a page.
+//! A live motion: read from lines and passed to the playing loop without a lock, or of the finger
+//! on a page.
 
 use std::io::BufRead;
 use std::thread;
@@ -34,8 +35,9 @@ pub(crate) enum Moved {
 }
 
 impl Motions {
-    /// Reads lines `speed_mm_s force_n [x_mm y_mm]` from standard input in a thread of its own. A line of other words is reported
-    /// with its number and skipped; one with a number that no finger has is a failed reading, as for the renderer.
+    /// Reads lines `speed_mm_s force_n [x_mm y_mm]` from standard input in a thread of its own. A
+    /// line of other words is reported with its number and skipped; one with a number that no
+    /// finger has is a failed reading, as for the renderer.
     pub(crate) fn from_stdin() -> Self {
         let (sender, receiver) = RingBuffer::new(ROOM);
         thread::spawn(move || read(std::io::stdin().lock(), sender));
@@ -47,13 +49,9 @@ impl Motions {
         match self {
             Self::Queue(queue) => newest(queue),
             #[cfg(feature = "lab")]
-            Self::Page(touch, force_n) => {
-                Moved::To(touch.now().map_or(Finger::AWAY, |touched| Finger {
-                    speed_mm_s: touched.speed_mm_s,
-                    force_n: *force_n,
-                    at_mm: None,
-                }))
-            }
+            Self::Page(touch, force_n) => Moved::To(touch.now().map_or(Finger::AWAY, |touched| {
+                Finger { speed_mm_s: touched.speed_mm_s, force_n: *force_n, at_mm: None }
+            })),
         }
     }
 }
@@ -108,11 +106,7 @@ fn parse(line: &str) -> Option<Finger> {
         [speed, force, x, y] => (speed, force, Some([x, y])),
         _ => return None,
     };
-    Some(Finger {
-        speed_mm_s,
-        force_n,
-        at_mm,
-    })
+    Some(Finger { speed_mm_s, force_n, at_mm })
 }
 
 #[cfg(test)]
@@ -122,10 +116,7 @@ mod tests {
     #[test]
     fn the_newest_motion_counts_and_bad_lines_do_not() {
         let (sender, receiver) = RingBuffer::new(ROOM);
-        read(
-            &b"80 0.4\nfast\n1 2 3\n-60,0.5, 1 2\n50 -1\nNaN 1\n9e9 1\n"[..],
-            sender,
-        );
+        read(&b"80 0.4\nfast\n1 2 3\n-60,0.5, 1 2\n50 -1\nNaN 1\n9e9 1\n"[..], sender);
         let mut motions = Motions::Queue(receiver);
         let Moved::To(finger) = motions.look() else {
             unreachable!("two lines were good");
@@ -142,10 +133,7 @@ mod tests {
             let (sender, receiver) = RingBuffer::new(ROOM);
             read(line.as_bytes(), sender);
             let moved = Motions::Queue(receiver).look();
-            assert!(
-                matches!(moved, Moved::To(finger) if !finger.is_reading()),
-                "{line}"
-            );
+            assert!(matches!(moved, Moved::To(finger) if !finger.is_reading()), "{line}");
         }
     }
 }

@@ -1,4 +1,5 @@
-//! In place of the validator of JSON Schemas, in a program that is built without the feature `schemas`.
+//! In place of the validator of JSON Schemas, in a program that is built without the feature
+//! `schemas`.
 
 use std::convert::Infallible;
 

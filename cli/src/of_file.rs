@@ -18,10 +18,7 @@ pub(crate) trait OfFile {
 
 impl OfFile for htex::Error {
     fn of(self, file: &Path) -> Failure {
-        Failure::Asset {
-            file: shown(file),
-            error: self,
-        }
+        Failure::Asset { file: shown(file), error: self }
     }
 }
 
@@ -38,10 +35,7 @@ impl OfFile for LibraryError {
             Self::Write { path, error } => FileError::writing(path, error).into(),
             Self::Storage(error) => error.into(),
             Self::Asset { error, .. } => error.of(file),
-            error => Failure::Library {
-                file: shown(file),
-                error,
-            },
+            error => Failure::Library { file: shown(file), error },
         }
     }
 }
@@ -62,10 +56,7 @@ impl OfFile for LoadError {
 
 impl OfFile for SceneError {
     fn of(self, file: &Path) -> Failure {
-        Failure::Scene {
-            file: shown(file),
-            error: Box::new(self),
-        }
+        Failure::Scene { file: shown(file), error: Box::new(self) }
     }
 }
 
@@ -75,10 +66,7 @@ impl OfFile for htex_build::BuildError {
         match self {
             Self::File(error) => error.into(),
             Self::Storage(error) => error.into(),
-            error => Failure::Build {
-                recipe: shown(recipe),
-                error,
-            },
+            error => Failure::Build { recipe: shown(recipe), error },
         }
     }
 }

@@ -23,8 +23,8 @@ macro_rules! tell {
 }
 pub(crate) use tell;
 
-/// Writes text to standard output with control characters escaped, since it may quote untrusted files. A reader that has ended
-/// (`| head`) is not an error.
+/// Writes text to standard output with control characters escaped, since it may quote untrusted
+/// files. A reader that has ended (`| head`) is not an error.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let lines: String = text
         .split_inclusive('\n')
@@ -52,8 +52,8 @@ pub(crate) fn write_bytes(bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Writes a value as JSON, and a line end. What would steer a terminal, or show text in another order than it has, is escaped as JSON
-/// escapes it: these characters are in strings alone.
+/// Writes a value as JSON, and a line end. What would steer a terminal, or show text in another
+/// order than it has, is escaped as JSON escapes it: these characters are in strings alone.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     use std::fmt::Write as _;
     let text = serde_json::to_string(value)?;
@@ -68,7 +68,8 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     write(&(escaped + "\n"))
 }
 
-/// Whether a character is a control character, or one that changes the direction of text or ends a line.
+/// Whether a character is a control character, or one that changes the direction of text or ends a
+/// line.
 fn steers(c: char) -> bool {
     matches!(c, '\u{7F}'..='\u{9F}' | '\u{61C}' | '\u{200E}' | '\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
 }
@@ -112,13 +113,14 @@ fn tell_all<N: Clone + Into<Notice>>(kind: &str, notices: &[N]) {
     }
 }
 
-/// A file that a command writes. Every command writes its files by [`Self::replace`], so that what is followed is decided here.
+/// A file that a command writes. Every command writes its files by [`Self::replace`], so that what
+/// is followed is decided here.
 #[derive(Clone, Copy)]
 pub(crate) enum Written<'a> {
     /// A file that the user named. A link is followed: the user may have named it for that.
     Named(&'a Path),
-    /// A file by a name of ours in a folder that the user named, also beside a file that the user named. Somebody else may have filled
-    /// the folder, so no link in it is followed.
+    /// A file by a name of ours in a folder that the user named, also beside a file that the user
+    /// named. Somebody else may have filled the folder, so no link in it is followed.
     Inside(&'a OwnFolder, &'a Path),
 }
 

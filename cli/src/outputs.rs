@@ -1,6 +1,7 @@
 //! Protects a command's inputs from being overwritten by its outputs.
 //!
-//! Files are compared by device and inode before the command starts, so that another name of an input is recognised.
+//! Files are compared by device and inode before the command starts, so that another name of an
+//! input is recognised.
 
 use std::fs::Metadata;
 use std::path::Path;
@@ -35,7 +36,8 @@ pub(crate) fn check_outputs<'a>(
     Ok(())
 }
 
-/// Whether two paths lead to the same file, following links; for files that do not exist, whether they would.
+/// Whether two paths lead to the same file, following links; for files that do not exist, whether
+/// they would.
 fn is_same(a: &Path, b: &Path) -> bool {
     match (std::fs::metadata(a), std::fs::metadata(b)) {
         (Ok(a_is), Ok(b_is)) => is_one_file((a, &a_is), (b, &b_is)),

@@ -41,8 +41,9 @@ fn guardian() -> Result<Command, DeviceError> {
     Ok(command)
 }
 
-/// Waits while the output of a display is not confirmed to be at zero. The guardian's crate goes on trying and prints every second
-/// that the amplifier is to be switched off. A signal ends the program.
+/// Waits while the output of a display is not confirmed to be at zero. The guardian's crate goes on
+/// trying and prints every second that the amplifier is to be switched off. A signal ends the
+/// program.
 pub(crate) fn stay_until_zero() {
     if is_unconfirmed() && signals::handle().is_ok() {
         while is_unconfirmed() {
@@ -72,29 +73,18 @@ impl Output {
     /// Opens the device of a scene.
     pub(crate) fn open(ready: &Ready, plan: &Plan) -> Result<Self, Failure> {
         let frames = block_frames(ready, plan);
-        let format = StreamFormat {
-            rate_hz: plan.rate_hz,
-            block_frames: frames,
-        };
+        let format = StreamFormat { rate_hz: plan.rate_hz, block_frames: frames };
         let settings = ready.settings();
         let written = ready.device.descriptor().settings.iter();
         for file in written.filter(|s| s.kind == SettingKind::Path) {
             ready.check_output(Path::new(settings.text(&file.name)))?;
         }
         let device: Box<dyn Device> = match is_wanted(&ready.capabilities) {
-            true => Box::new(Guarded::open(
-                &ready.device,
-                settings,
-                &format,
-                guardian()?,
-            )?),
+            true => Box::new(Guarded::open(&ready.device, settings, &format, guardian()?)?),
             false => ready.device.adapter.open(settings, &format)?,
         };
         let output = Self::new(device, frames as usize, plan.rate_hz);
-        Ok(Self {
-            clocked: ready.capabilities.paced,
-            ..output
-        })
+        Ok(Self { clocked: ready.capabilities.paced, ..output })
     }
 
     pub(crate) fn new(device: Box<dyn Device>, block_frames: usize, rate_hz: f64) -> Self {
@@ -152,7 +142,8 @@ impl Output {
         Ok(())
     }
 
-    /// Seconds from now until the first frame that was written is at the display, as far as the device knows.
+    /// Seconds from now until the first frame that was written is at the display, as far as the
+    /// device knows.
     #[cfg(feature = "lab")]
     pub(crate) fn lead_s(&self) -> f64 {
         self.device.status().latency_s - self.frames as f64 / self.rate_hz

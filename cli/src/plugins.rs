@@ -25,10 +25,10 @@ pub(crate) struct PluginArgs {
 
     /// What a WASM model may use, by name: memory-mib (of an instance) [64], stack-kib [256],
     /// call-ms (longest call) [5000], render-ms (of 8192 samples, or a retune) [500], voices [256],
-    /// table-elements [10000], module-mib [16], fuel (instructions of a call) [not counted], compile-ms [5000],
-    /// compile-mib [512]; of all models of an asset together asset-ms (but voices) [10000], asset-mib [512],
-    /// asset-instances [512], and of all in one command all-ms [30000], all-mib [1024], all-instances [2048]; may be given
-    /// several times
+    /// table-elements [10000], module-mib [16], fuel (instructions of a call) [not counted],
+    /// compile-ms [5000], compile-mib [512]; of all models of an asset together asset-ms (but
+    /// voices) [10000], asset-mib [512], asset-instances [512], and of all in one command all-ms
+    /// [30000], all-mib [1024], all-instances [2048]; may be given several times
     #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]
     wasm_limit: Vec<WasmLimit>,
 }
@@ -59,9 +59,7 @@ impl PluginArgs {
 
     /// The models that are found without arguments, without reports.
     pub(crate) fn installed() -> Result<Registry, Failure> {
-        Ok(Registry::search(
-            &Search::default().with_limits(WasmLimit::all(&[])),
-        )?)
+        Ok(Registry::search(&Search::default().with_limits(WasmLimit::all(&[])))?)
     }
 
     pub(crate) fn limits(&self) -> WasmLimits {

@@ -11,12 +11,10 @@ const READ: &str = "#0072b2";
 const LEFT_OUT: &str = "#d55e00";
 const QUIET: &str = "#b5b5b5";
 
-/// The signal's magnitude over time, with the segments that are read, those that are left out, and the threshold
-/// that sweeps are found by.
+/// The signal's magnitude over time, with the segments that are read, those that are left out, and
+/// the threshold that sweeps are found by.
 pub(crate) fn recording_plot(recording: &Recording, segments: &Segments) -> Plot {
-    let values: Vec<f64> = (0..recording.samples())
-        .map(|at| recording.magnitude_at(at))
-        .collect();
+    let values: Vec<f64> = (0..recording.samples()).map(|at| recording.magnitude_at(at)).collect();
     let draw = |name: String, color: &str, parts: &[Range<usize>]| {
         let mut series = Series::line(&name, envelope(recording, &values, parts)).colored(color);
         (series.hover, series.line_width_px) = (false, 1.0);
@@ -33,15 +31,10 @@ pub(crate) fn recording_plot(recording: &Recording, segments: &Segments) -> Plot
     );
     (plot.width, plot.height) = (960.0, 320.0);
     let whole = 0..values.len();
-    plot.series
-        .push(draw("recorded".to_owned(), QUIET, &[whole]));
+    plot.series.push(draw("recorded".to_owned(), QUIET, &[whole]));
     let left_out = left_out(segments, values.len());
     if !left_out.is_empty() {
-        plot.series.push(draw(
-            format!("left out ({})", left_out.len()),
-            LEFT_OUT,
-            &left_out,
-        ));
+        plot.series.push(draw(format!("left out ({})", left_out.len()), LEFT_OUT, &left_out));
     }
     let read = format!("read ({} segments)", segments.starts.len());
     plot.series.push(draw(read, READ, &segments.stretches()));
@@ -60,10 +53,7 @@ fn left_out(segments: &Segments, samples: usize) -> Vec<Range<usize>> {
         .iter()
         .filter(|sweep| segments.from_sweeps && (sweep.start == 0 || sweep.end == samples))
         .map(|sweep| sweep.start..sweep.end);
-    let off_target = segments
-        .off_target
-        .iter()
-        .map(|start| *start..start + segments.len);
+    let off_target = segments.off_target.iter().map(|start| *start..start + segments.len);
     cut_off.chain(off_target).collect()
 }
 

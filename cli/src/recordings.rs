@@ -33,13 +33,15 @@ pub(crate) struct RecordingArgs {
     #[arg(long, value_name = "N")]
     force: Option<f64>,
 
-    /// Exploration condition of each recording, in their order, or one for all: speed=80,force=0.4. Where the
-    /// recording has the motion too, segments that leave this by more than 10 % are left out
+    /// Exploration condition of each recording, in their order, or one for all: speed=80,force=0.4.
+    /// Where the recording has the motion too, segments that leave this by more than 10 % are left
+    /// out
     #[arg(long, value_name = "CONDITION")]
     at: Vec<String>,
 
-    /// Refuse a recording with findings that are errors or warnings (`htex validate` lists them): clipping, spikes,
-    /// a stuck sensor, a speed or force that leaves its target by more than 10 %, …
+    /// Refuse a recording with findings that are errors or warnings (`htex validate` lists them):
+    /// clipping, spikes, a stuck sensor, a speed or force that leaves its target by more than 10 %,
+    /// …
     #[arg(long)]
     strict: bool,
 }
@@ -79,15 +81,15 @@ impl RecordingArgs {
             .collect()
     }
 
-    /// Reads one recording, with its condition. A recording of `htex record` or of a study is read as the JSON beside it says, unless
-    /// flags say what its columns are.
+    /// Reads one recording, with its condition. A recording of `htex record` or of a study is read
+    /// as the JSON beside it says, unless flags say what its columns are.
     pub(crate) fn read_one(&self, file: &Path) -> Result<Take, Failure> {
         let own = known_take(file)?.filter(|_| !self.settings.says_columns());
         self.read_as(file, own)
     }
 
-    /// Reads one of several recordings, with its condition. One of `htex record` or of a study is read as the JSON beside it says, also
-    /// if flags say what the columns of the others are.
+    /// Reads one of several recordings, with its condition. One of `htex record` or of a study is
+    /// read as the JSON beside it says, also if flags say what the columns of the others are.
     pub(crate) fn read_among(&self, file: &Path) -> Result<Take, Failure> {
         let own = known_take(file)?;
         if own.is_some() && self.settings.says_columns() {
@@ -116,21 +118,13 @@ impl RecordingArgs {
         let given = self.conditions(1)?.pop().unwrap_or_default();
         let settings = &self.settings;
         let read = settings.read_options(1)?.pop().unwrap_or_default();
-        Ok(validate_recording(
-            file,
-            &read,
-            given,
-            &settings.spectrum_options()?,
-        )?)
+        Ok(validate_recording(file, &read, given, &settings.spectrum_options()?)?)
     }
 
     /// Whether any option of reading recordings was given.
     pub(crate) fn is_given(&self) -> bool {
         let condition = self.speed.is_some() || self.force.is_some() || !self.at.is_empty();
-        let bounded = self
-            .settings
-            .most_values
-            .is_some_and(|most| most != MOST_VALUES);
+        let bounded = self.settings.most_values.is_some_and(|most| most != MOST_VALUES);
         condition || self.strict || bounded || !self.settings.recorded().is_empty()
     }
 
@@ -140,15 +134,9 @@ impl RecordingArgs {
 
     /// A condition for each of `count` recordings.
     fn conditions(&self, count: usize) -> Result<Vec<Exploration>, Failure> {
-        let common = Exploration {
-            speed_mm_s: self.speed,
-            force_n: self.force,
-        };
-        let given: Vec<Exploration> = self
-            .at
-            .iter()
-            .map(|text| parse_condition(text, common))
-            .collect::<Result<_, _>>()?;
+        let common = Exploration { speed_mm_s: self.speed, force_n: self.force };
+        let given: Vec<Exploration> =
+            self.at.iter().map(|text| parse_condition(text, common)).collect::<Result<_, _>>()?;
         match given.len() {
             0 => Ok(vec![common; count]),
             1 => Ok(vec![given[0]; count]),
@@ -189,18 +177,11 @@ pub(crate) fn parse_condition(
     mut condition: Exploration,
 ) -> Result<Exploration, Failure> {
     let wrong = |what: &str| {
-        Failure::Usage(format!(
-            "--at {text}: {what}; it looks like speed=80,force=0.4 (mm/s, N)"
-        ))
+        Failure::Usage(format!("--at {text}: {what}; it looks like speed=80,force=0.4 (mm/s, N)"))
     };
     for part in text.split(',') {
-        let (key, value) = part
-            .split_once('=')
-            .ok_or_else(|| wrong("`=` is missing"))?;
-        let value: f64 = value
-            .trim()
-            .parse()
-            .map_err(|_| wrong("a value is not a number"))?;
+        let (key, value) = part.split_once('=').ok_or_else(|| wrong("`=` is missing"))?;
+        let value: f64 = value.trim().parse().map_err(|_| wrong("a value is not a number"))?;
         match key.trim() {
             "speed" | "speed_mm_s" => condition.speed_mm_s = Some(value),
             "force" | "force_n" => condition.force_n = Some(value),

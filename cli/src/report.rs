@@ -105,11 +105,7 @@ fn tables() -> Vec<(Column, Measure)> {
         let row = measure.row();
         let of = [
             (By::Magnitude, "fitted magnitude", row.caption),
-            (
-                By::Samples,
-                "rendered samples",
-                row.caption.filter(|_| row.played.is_some()),
-            ),
+            (By::Samples, "rendered samples", row.caption.filter(|_| row.played.is_some())),
         ];
         for (by, what, caption) in of {
             tables.extend(caption.map(|caption| {
@@ -137,13 +133,11 @@ fn note(quality: Option<&Quality>) -> String {
         htex_report::fixed(value.unwrap_or(f64::NAN), decimals)
     };
     let r = of(htex_format::Measure::SpectralCorrelation, 2);
-    format!(
-        "r = {r}, error {} dB RMS",
-        of(htex_format::Measure::NineBand, 1)
-    )
+    format!("r = {r}, error {} dB RMS", of(htex_format::Measure::NineBand, 1))
 }
 
-/// Of the textures at all their conditions, how many each model keeps below the difference threshold, and within what the recording varies.
+/// Of the textures at all their conditions, how many each model keeps below the difference
+/// threshold, and within what the recording varies.
 pub(crate) fn shares<'a>(summaries: impl IntoIterator<Item = &'a AssetSummary>) -> Vec<Share> {
     let mut shares: Vec<(String, FeltShare)> = Vec::new();
     for summary in summaries {

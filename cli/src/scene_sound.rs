@@ -39,7 +39,8 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// Reads a scene, which plays for `seconds` if they are given, else for its own length, else for two seconds.
+    /// Reads a scene, which plays for `seconds` if they are given, else for its own length, else
+    /// for two seconds.
     pub(crate) fn open(
         file: &Path,
         player: &PlayerArgs,
@@ -118,11 +119,11 @@ pub(crate) fn rights(ready: &Ready) -> Rights {
 
 /// Whether a file is a scene, by its name.
 pub(crate) fn is_scene(file: &Path) -> bool {
-    file.extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("json"))
+    file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
 }
 
-/// The quantity of the first texture. A scene or a texture that cannot be read is an error of loading it.
+/// The quantity of the first texture. A scene or a texture that cannot be read is an error of
+/// loading it.
 fn quantity(scene: &Path) -> Option<Quantity> {
     let bytes = read_regular(scene, MOST_BYTES).ok()?;
     let read = read_scene(&bytes, &Limits::default(), &mut Default::default())?;
@@ -148,7 +149,5 @@ fn load(
     device: &DeviceOverride,
     told: &RefCell<BTreeSet<String>>,
 ) -> Result<Ready, Failure> {
-    loader.load(file, &mut told.borrow_mut(), |around| {
-        LoadedScene::open(file, around, device)
-    })
+    loader.load(file, &mut told.borrow_mut(), |around| LoadedScene::open(file, around, device))
 }

@@ -40,14 +40,15 @@ pub(crate) struct ChoiceArgs {
     #[command(flatten)]
     settings: SettingArgs,
 
-    /// What one unit of the assets' quantity is in the device's unit, where they differ: 0.1 plays an acceleration
-    /// of 1 m/s2 as 0.1 N
+    /// What one unit of the assets' quantity is in the device's unit, where they differ: 0.1 plays
+    /// an acceleration of 1 m/s2 as 0.1 N
     #[arg(long, value_name = "GAIN", help_heading = "Devices")]
     quantity_gain: Option<f64>,
 }
 
 impl ChoiceArgs {
-    /// The device and settings that were given; `output` is the default file. A rehearsal opens no device.
+    /// The device and settings that were given; `output` is the default file. A rehearsal opens no
+    /// device.
     pub(crate) fn to_override(
         &self,
         output: Option<&Path>,
@@ -70,7 +71,8 @@ impl ChoiceArgs {
         DeviceArgs::missing(name).map_or(Ok(()), |why| Err(why.into()))
     }
 
-    /// Refuses to replace a file that was not named: the default, which is the scene's name with an extension.
+    /// Refuses to replace a file that was not named: the default, which is the scene's name with an
+    /// extension.
     pub(crate) fn check_unnamed(&self, ready: &Ready) -> Result<(), Failure> {
         let given = self.settings.given()?;
         let settings = ready.device.descriptor().settings.iter();
@@ -128,9 +130,7 @@ impl SceneArgs {
         seconds: Option<f64>,
         device: &DeviceOverride,
     ) -> Result<Ready, Failure> {
-        self.load(file, |around| {
-            LoadedScene::of_asset(file, motion, seconds, around, device)
-        })
+        self.load(file, |around| LoadedScene::of_asset(file, motion, seconds, around, device))
     }
 
     fn load(
@@ -188,14 +188,11 @@ impl Loader {
     }
 
     pub(crate) fn around(&self) -> Surroundings<'_> {
-        Surroundings {
-            models: &self.models,
-            embedded: self.embedded,
-            devices: &self.devices,
-        }
+        Surroundings { models: &self.models, embedded: self.embedded, devices: &self.devices }
     }
 
-    /// Loads a scene, and prints those of its warnings that are not in `told`, to which they are added.
+    /// Loads a scene, and prints those of its warnings that are not in `told`, to which they are
+    /// added.
     pub(crate) fn load(
         &self,
         file: &Path,
@@ -235,8 +232,8 @@ impl Ready {
     }
 }
 
-/// The capabilities of a device. Those of a display that is not connected are derived from its settings, as far as a plan or
-/// a file needs them.
+/// The capabilities of a device. Those of a display that is not connected are derived from its
+/// settings, as far as a plan or a file needs them.
 fn capabilities(
     device: &KnownDevice,
     settings: &Settings,
@@ -263,24 +260,14 @@ fn capabilities(
 
 /// Whether a file is an asset, by its name; else it is a scene.
 pub(crate) fn is_asset(file: &Path) -> bool {
-    file.extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("htex"))
+    file.extension().is_some_and(|e| e.eq_ignore_ascii_case("htex"))
 }
 
 /// The motion of an asset's default condition.
 pub(crate) fn default_motion(file: &Path) -> Result<Motion, Failure> {
     let asset = htex::Asset::new(htex_format::Asset::open(file).of(file)?);
-    let htex::Motion {
-        speed_mm_s,
-        force_n,
-        ..
-    } = asset.motion(None, None, None).of(file)?;
-    Ok(Motion::Constant(Constant {
-        speed_mm_s,
-        force_n,
-        from_mm: None,
-        direction_deg: 0.0,
-    }))
+    let htex::Motion { speed_mm_s, force_n, .. } = asset.motion(None, None, None).of(file)?;
+    Ok(Motion::Constant(Constant { speed_mm_s, force_n, from_mm: None, direction_deg: 0.0 }))
 }
 
 /// Where measured costs are kept.

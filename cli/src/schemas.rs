@@ -58,7 +58,8 @@ impl Named {
         Ok(Self { file, schema })
     }
 
-    /// Adds the schema's violations: each to the finding about the same place, else as a finding of its own.
+    /// Adds the schema's violations: each to the finding about the same place, else as a finding of
+    /// its own.
     pub(crate) fn hold(&self, document: &Value, report: &mut Report) {
         for violation in self.schema.violations(document) {
             let rule = format!("{}#{}", self.file, violation.rule);
@@ -73,7 +74,8 @@ impl Named {
     }
 }
 
-/// Whether a finding and a violation are about the same place: equal pointers, or one inside the other.
+/// Whether a finding and a violation are about the same place: equal pointers, or one inside the
+/// other.
 fn covers(finding: &str, violation: &str) -> bool {
     let inside = |inner: &str, outer: &str| {
         let rest = inner.strip_prefix(outer);
@@ -89,10 +91,9 @@ fn add(report: &mut Report, broken: &Rule, violation: Violation, rule: String, a
     if shown < KEPT {
         let message = format!("{}; correct it", violation.message);
         let pointer = format!("{at}{}", violation.pointer);
-        report.findings.push(Finding {
-            schema_rule: Some(rule),
-            ..Finding::new(broken, pointer, &message)
-        });
+        report
+            .findings
+            .push(Finding { schema_rule: Some(rule), ..Finding::new(broken, pointer, &message) });
     } else if shown == KEPT {
         let message = "more findings are not shown";
         let finding = Finding::new(FINDINGS_TRUNCATED, "", message);
@@ -128,10 +129,7 @@ impl ExtensionSchema {
 
     /// Adds a finding for each rule that the manifest's extension breaks.
     pub(crate) fn hold(&self, manifest: &Value, report: &mut Report) {
-        let Some(extension) = manifest
-            .get("extensions")
-            .and_then(|all| all.get(&self.name))
-        else {
+        let Some(extension) = manifest.get("extensions").and_then(|all| all.get(&self.name)) else {
             return;
         };
         let at = format!("/extensions/{}", htex_finding::escape(&self.name));

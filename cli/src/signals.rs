@@ -1,7 +1,7 @@
 //! Handling of Ctrl-C, of a closed terminal, and of a request to end.
 //!
-//! A signal has one meaning at a time: it ends the program and removes unfinished files, or makes a player ramp to
-//! zero, or is ignored by a guardian.
+//! A signal has one meaning at a time: it ends the program and removes unfinished files, or makes a
+//! player ramp to zero, or is ignored by a guardian.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
@@ -54,8 +54,8 @@ fn install() -> Result<(), String> {
     ctrlc::set_handler(handler).map_err(|error| error.to_string())
 }
 
-/// From now on a signal sets [`interrupted`]. The ramp to zero is never cut short: a second signal prints that the ramp
-/// is running, and each further one which voltage may remain.
+/// From now on a signal sets [`interrupted`]. The ramp to zero is never cut short: a second signal
+/// prints that the ramp is running, and each further one which voltage may remain.
 pub(crate) fn ask() {
     MEANING.store(IS_ASKED_FOR, Ordering::Relaxed);
 }

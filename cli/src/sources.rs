@@ -17,16 +17,14 @@ use crate::adapters;
 use crate::devices::left_out;
 use crate::failure::Failure;
 
-/// The sources of this program, in the order in which they are shown: recordings, and those that are built in.
+/// The sources of this program, in the order in which they are shown: recordings, and those that
+/// are built in.
 fn builtin() -> Vec<Arc<dyn SourceAdapter>> {
     let recordings: Vec<Arc<dyn SourceAdapter>> = vec![
         #[cfg(feature = "lab")]
         Arc::new(htex_lab::record::Replay),
     ];
-    recordings
-        .into_iter()
-        .chain(htex_device_builtin::sources())
-        .collect()
+    recordings.into_iter().chain(htex_device_builtin::sources()).collect()
 }
 
 /// Where sources come from.

@@ -10,14 +10,13 @@ use htex_storage::{Storage, StorageError};
 use crate::failure::Failure;
 use crate::located::{Role, keep, taken};
 
-/// Most bytes of a recording that is downloaded. Those of its numbers that are kept are bounded by `--most-numbers`.
+/// Most bytes of a recording that is downloaded. Those of its numbers that are kept are bounded by
+/// `--most-numbers`.
 const MOST_RECORDING_BYTES: u64 = 16 << 30;
 
-/// Downloads what is read, and checks that what will be written can be, as far as that is known without a request.
-#[allow(
-    clippy::disallowed_methods,
-    reason = "a new temporary folder of this user"
-)]
+/// Downloads what is read, and checks that what will be written can be, as far as that is known
+/// without a request.
+#[allow(clippy::disallowed_methods, reason = "a new temporary folder of this user")]
 pub(crate) fn fetch() -> Result<(), Failure> {
     let files = taken(|_| true);
     if files.is_empty() {
@@ -42,7 +41,8 @@ pub(crate) fn fetch() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes the outputs of a command that has succeeded. What cannot be written stays in its local copy.
+/// Writes the outputs of a command that has succeeded. What cannot be written stays in its local
+/// copy.
 pub(crate) fn put() -> Result<(), Failure> {
     let outputs = taken(|role| role == Role::Output);
     if outputs.is_empty() {

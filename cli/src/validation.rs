@@ -28,11 +28,7 @@ pub(crate) fn report<'a>(
     if is_json {
         print_json(&printed)?;
     }
-    Ok(if all_valid {
-        Exit::SUCCESS
-    } else {
-        Exit::FAILURE
-    })
+    Ok(if all_valid { Exit::SUCCESS } else { Exit::FAILURE })
 }
 
 fn text(path: &Path, report: &Report) -> String {

@@ -1,6 +1,7 @@
 //! What `htex --version` says; `htex -V` says the version alone.
 
-/// Version, and a line each for the commit of the sources, the target and the features of this build.
+/// Version, and a line each for the commit of the sources, the target and the features of this
+/// build.
 pub(crate) const LONG: &str = concat!(
     env!("CARGO_PKG_VERSION"),
     "\ncommit: ",

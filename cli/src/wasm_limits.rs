@@ -22,48 +22,22 @@ type Set = fn(&mut WasmLimits, u64);
 
 /// Name, largest value, and the limit that is set.
 const LIMITS: [(&str, u64, Set); 16] = [
-    ("module-mib", 1024, |l, n| {
-        l.module_bytes = (n as usize) << 20
-    }),
-    ("memory-mib", 4096, |l, n| {
-        l.memory_bytes = (n as usize) << 20
-    }),
-    ("table-elements", 10_000_000, |l, n| {
-        l.table_elements = n as usize
-    }),
+    ("module-mib", 1024, |l, n| l.module_bytes = (n as usize) << 20),
+    ("memory-mib", 4096, |l, n| l.memory_bytes = (n as usize) << 20),
+    ("table-elements", 10_000_000, |l, n| l.table_elements = n as usize),
     ("stack-kib", 1024, |l, n| l.stack_bytes = (n as usize) << 10),
     ("voices", 100_000, |l, n| l.voices = n as usize),
-    ("call-ms", 86_400_000, |l, n| {
-        l.call = Duration::from_millis(n)
-    }),
-    ("render-ms", 86_400_000, |l, n| {
-        l.render = Duration::from_millis(n)
-    }),
+    ("call-ms", 86_400_000, |l, n| l.call = Duration::from_millis(n)),
+    ("render-ms", 86_400_000, |l, n| l.render = Duration::from_millis(n)),
     ("fuel", u64::MAX / 2, |l, n| l.fuel = Some(n)),
-    ("compile-ms", 86_400_000, |l, n| {
-        l.compile = Duration::from_millis(n)
-    }),
-    ("compile-mib", 65_536, |l, n| {
-        l.compile_bytes = (n as usize) << 20
-    }),
-    ("asset-ms", 86_400_000, |l, n| {
-        l.asset.time = Duration::from_millis(n)
-    }),
-    ("asset-mib", 65_536, |l, n| {
-        l.asset.memory_bytes = (n as usize) << 20
-    }),
-    ("asset-instances", 100_000, |l, n| {
-        l.asset.instances = n as usize
-    }),
-    ("all-ms", 86_400_000, |l, n| {
-        l.all.time = Duration::from_millis(n)
-    }),
-    ("all-mib", 65_536, |l, n| {
-        l.all.memory_bytes = (n as usize) << 20
-    }),
-    ("all-instances", 100_000, |l, n| {
-        l.all.instances = n as usize
-    }),
+    ("compile-ms", 86_400_000, |l, n| l.compile = Duration::from_millis(n)),
+    ("compile-mib", 65_536, |l, n| l.compile_bytes = (n as usize) << 20),
+    ("asset-ms", 86_400_000, |l, n| l.asset.time = Duration::from_millis(n)),
+    ("asset-mib", 65_536, |l, n| l.asset.memory_bytes = (n as usize) << 20),
+    ("asset-instances", 100_000, |l, n| l.asset.instances = n as usize),
+    ("all-ms", 86_400_000, |l, n| l.all.time = Duration::from_millis(n)),
+    ("all-mib", 65_536, |l, n| l.all.memory_bytes = (n as usize) << 20),
+    ("all-instances", 100_000, |l, n| l.all.instances = n as usize),
 ];
 
 impl WasmLimit {
@@ -79,10 +53,7 @@ impl WasmLimit {
         let (name, value) = text.split_once('=').unwrap_or((text, ""));
         let Some((_, most, set)) = LIMITS.iter().find(|(known, ..)| *known == name) else {
             let known: Vec<&str> = LIMITS.iter().map(|(name, ..)| *name).collect();
-            return Err(format!(
-                "unknown limit `{name}`; known are {}",
-                known.join(", ")
-            ));
+            return Err(format!("unknown limit `{name}`; known are {}", known.join(", ")));
         };
         match value.parse() {
             Ok(value) if (1..=*most).contains(&value) => Ok(Self { set: *set, value }),
@@ -90,26 +61,23 @@ impl WasmLimit {
         }
     }
 
-    /// The default limits with these changed; modules are compiled by another process of this program.
+    /// The default limits with these changed; modules are compiled by another process of this
+    /// program.
     pub(crate) fn all(given: &[Self]) -> WasmLimits {
         let mut limits = WasmLimits::default();
         if let Some((program, arguments)) = compiler() {
             limits.compiler = WasmCompiler::Program(program, arguments);
         }
-        given
-            .iter()
-            .for_each(|limit| (limit.set)(&mut limits, limit.value));
+        given.iter().for_each(|limit| (limit.set)(&mut limits, limit.value));
         limits
     }
 }
 
-/// The program that compiles modules, and its arguments; `None` if it is not known, or has arguments that are not Unicode.
+/// The program that compiles modules, and its arguments; `None` if it is not known, or has
+/// arguments that are not Unicode.
 fn compiler() -> Option<(PathBuf, Vec<String>)> {
     let program = invocation::program().ok()?;
-    let words = program
-        .arguments
-        .into_iter()
-        .map(|word| word.into_string().ok());
+    let words = program.arguments.into_iter().map(|word| word.into_string().ok());
     let arguments: Option<Vec<String>> = words.chain([Some(COMPILE.to_owned())]).collect();
     Some((program.file.into(), arguments?))
 }

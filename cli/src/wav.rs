@@ -14,7 +14,8 @@ use htex_format::Rights;
 /// Most bytes of samples a WAV file can hold.
 const MAX_FRAMES: u64 = (u32::MAX as u64 - 64) / 4;
 
-/// Writes `frames` samples of one channel with the rights of what is played, which `render` makes block by block. Warns if all are 0.
+/// Writes `frames` samples of one channel with the rights of what is played, which `render` makes
+/// block by block. Warns if all are 0.
 pub(crate) fn write_wav(
     wav: Written<'_>,
     rate_hz: u32,

@@ -43,19 +43,10 @@ impl Golden {
 
     /// All cases of a file.
     pub fn all(file: &str) -> Vec<Self> {
-        let path = workspace()
-            .join("tests/golden")
-            .join(file)
-            .with_extension("json");
+        let path = workspace().join("tests/golden").join(file).with_extension("json");
         let text = std::fs::read_to_string(&path).unwrap();
         let json: Value = serde_json::from_str(&text).unwrap();
-        json["cases"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .cloned()
-            .map(Golden)
-            .collect()
+        json["cases"].as_array().unwrap().iter().cloned().map(Golden).collect()
     }
 
     pub fn name(&self) -> &str {
@@ -90,12 +81,7 @@ impl Golden {
         let expected = self.expected(pointer);
         let tolerance = |key: &str| self.0[key].as_f64().unwrap();
         let (rtol, atol) = (tolerance("rtol"), tolerance("atol"));
-        assert_eq!(
-            got.len(),
-            expected.len(),
-            "{} {pointer}: length",
-            self.name()
-        );
+        assert_eq!(got.len(), expected.len(), "{} {pointer}: length", self.name());
         for (i, (g, e)) in got.iter().zip(&expected).enumerate() {
             assert!(
                 (g - e).abs() <= atol + rtol * e.abs(),

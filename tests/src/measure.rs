@@ -15,10 +15,7 @@ pub fn measured_spectrum(samples: &[f32]) -> Vec<f64> {
     let mut power = vec![0.0; Band::TACTILE.bins()];
     let mut count = 0.0;
     for start in (0..samples.len() - SEGMENT).step_by(SEGMENT / 2) {
-        let segment: Vec<f64> = samples[start..start + SEGMENT]
-            .iter()
-            .map(|&x| x.into())
-            .collect();
+        let segment: Vec<f64> = samples[start..start + SEGMENT].iter().map(|&x| x.into()).collect();
         analyzer.analyze(&segment, &mut bins).unwrap();
         power
             .iter_mut()
@@ -26,10 +23,7 @@ pub fn measured_spectrum(samples: &[f32]) -> Vec<f64> {
             .for_each(|(p, x)| *p += x.norm_sqr());
         count += 1.0;
     }
-    power
-        .iter()
-        .map(|p| (p / count).sqrt() * analyzer.amplitude_scale())
-        .collect()
+    power.iter().map(|p| (p / count).sqrt() * analyzer.amplitude_scale()).collect()
 }
 
 /// RMS of the decibels between two spectra over the reference's strongest bins that hold 99 % of

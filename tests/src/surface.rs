@@ -1,5 +1,5 @@
-//! The frozen surfaces of the ABIs, and of two extensions, as canonical text: a line for each constant, status and
-//! function, read from the Rust side and from the C header.
+//! The frozen surfaces of the ABIs, and of two extensions, as canonical text: a line for each
+//! constant, status and function, read from the Rust side and from the C header.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -107,11 +107,7 @@ impl Surface {
         let text = fs::read_to_string(path).unwrap();
         let mut code = String::new();
         for (i, part) in text.split("/*").enumerate() {
-            let kept = if i == 0 {
-                part
-            } else {
-                part.split_once("*/").unwrap().1
-            };
+            let kept = if i == 0 { part } else { part.split_once("*/").unwrap().1 };
             code.push_str(kept);
         }
         code
@@ -191,33 +187,25 @@ impl Surface {
 
     /// The surface by these constants: a line for each constant and function, in order of name.
     pub fn listing(&self, constants: &Constants) -> String {
-        let constants = constants
-            .iter()
-            .map(|(name, value)| format!("{name} {value}\n"));
+        let constants = constants.iter().map(|(name, value)| format!("{name} {value}\n"));
         let functions = self.rust_prototypes();
         let functions = functions.values().map(|text| format!("{text};\n"));
         constants.chain(functions).collect()
     }
 
-    /// Holds the listing to those that were frozen, the newest being the one in use: each a version,
-    /// and the hash of `spec/abi/KIND-VERSION.txt`, from which lines never go.
+    /// Holds the listing to those that were frozen, the newest being the one in use: each a
+    /// version, and the hash of `spec/abi/KIND-VERSION.txt`, from which lines never go.
     pub fn hold_frozen(&self, kind: &str, frozen: &[(&str, u64)], now: &str, thaw: &str) {
         let (newest, hash) = frozen.last().unwrap();
         let found = fnv1a(now);
-        assert_eq!(
-            found, *hash,
-            "{thaw}\nHash: {found:#018x}. {newest} is now:\n{now}"
-        );
+        assert_eq!(found, *hash, "{thaw}\nHash: {found:#018x}. {newest} is now:\n{now}");
         for (version, hash) in frozen {
             let file = format!("spec/abi/{kind}-{version}.txt");
             let then = fs::read_to_string(workspace().join(&file)).unwrap();
             assert_eq!(fnv1a(&then), *hash, "{file} was edited. {thaw}");
             let versions = format!("{}ABI_M", self.constant);
             for line in then.lines().filter(|l| !l.starts_with(&versions)) {
-                assert!(
-                    now.lines().any(|l| l == line),
-                    "gone since {version}: {line}\n{thaw}"
-                );
+                assert!(now.lines().any(|l| l == line), "gone since {version}: {line}\n{thaw}");
             }
         }
     }
@@ -269,14 +257,7 @@ fn fnv1a(text: &str) -> u64 {
 
 fn compile(compiler: &str, standard: &str, source: &Path) {
     let output = Command::new(compiler)
-        .args([
-            standard,
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-pedantic",
-            "-fsyntax-only",
-        ])
+        .args([standard, "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsyntax-only"])
         .arg("-I")
         .arg(workspace().join("spec/include"))
         .arg(source)
@@ -304,11 +285,7 @@ fn c_prototype(name: &str, text: &str) -> String {
         .filter_map(|p| p.trim().split_once(": "))
         .map(|(name, kind)| c_declaration(kind, name))
         .collect();
-    let parameters = if parameters.is_empty() {
-        "void".to_owned()
-    } else {
-        parameters.join(", ")
-    };
+    let parameters = if parameters.is_empty() { "void".to_owned() } else { parameters.join(", ") };
     let answer = answer.trim().strip_prefix("-> ").unwrap_or("()");
     c_declaration(answer, &format!("{name}({parameters})"))
 }

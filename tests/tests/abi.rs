@@ -61,15 +61,9 @@ fn the_extension_for_voices_is_frozen() {
 #[test]
 fn the_extension_for_motion_is_frozen() {
     let constants = [
-        (
-            "HTEX_MOTION_1_MAX_SPEED_MM_S",
-            format!("{MAX_SPEED_MM_S:?}"),
-        ),
+        ("HTEX_MOTION_1_MAX_SPEED_MM_S", format!("{MAX_SPEED_MM_S:?}")),
         ("HTEX_MOTION_1_MAX_FORCE_N", format!("{MAX_FORCE_N:?}")),
-        (
-            "HTEX_MOTION_1_MAX_POSITION_MM",
-            format!("{MAX_POSITION_MM:?}"),
-        ),
+        ("HTEX_MOTION_1_MAX_POSITION_MM", format!("{MAX_POSITION_MM:?}")),
     ];
     hold_extension(&MOTION, "motion", 0xeb11_2834_3004_91ce, constants);
 }
@@ -81,9 +75,7 @@ fn hold_extension<const N: usize>(
     hash: u64,
     constants: [(&str, String); N],
 ) {
-    let constants = constants
-        .map(|(name, value)| (name.to_owned(), value))
-        .into();
+    let constants = constants.map(|(name, value)| (name.to_owned(), value)).into();
     let now = surface.listing(&constants);
     let thaw = "A revision of an extension never changes: make another, htex.NAME/2.";
     surface.hold_frozen(kind, &[("1", hash)], &now, thaw);

@@ -17,14 +17,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("htex-native", &[]),
     ("htex-storage", &["htex-files"]),
     ("htex-object-server", &[]),
-    (
-        "htex-format",
-        &["htex-files", "htex-finding", "htex-model", "htex-schema"],
-    ),
-    (
-        "htex-library",
-        &["htex-files", "htex-finding", "htex-format", "htex-storage"],
-    ),
+    ("htex-format", &["htex-files", "htex-finding", "htex-model", "htex-schema"]),
+    ("htex-library", &["htex-files", "htex-finding", "htex-format", "htex-storage"]),
     (
         "htex-build",
         &[
@@ -60,28 +54,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("htex-device", &["htex-native", "htex-schema"]),
     ("adapter", &["htex-device", "htex-files", "htex-native"]),
     ("htex-device-motor", &["htex-device", "htex-dsp"]),
-    (
-        "htex-device-channels",
-        &["adapter", "htex-device", "htex-device-motor"],
-    ),
-    (
-        "htex-device-parametric",
-        &[
-            "htex-device",
-            "htex-device-motor",
-            "htex-dsp",
-            "htex-native",
-        ],
-    ),
-    (
-        "htex-device-sdl",
-        &[
-            "htex-device",
-            "htex-device-motor",
-            "htex-dsp",
-            "htex-native",
-        ],
-    ),
+    ("htex-device-channels", &["adapter", "htex-device", "htex-device-motor"]),
+    ("htex-device-parametric", &["htex-device", "htex-device-motor", "htex-dsp", "htex-native"]),
+    ("htex-device-sdl", &["htex-device", "htex-device-motor", "htex-dsp", "htex-native"]),
     (
         "htex-device-builtin",
         &[
@@ -97,54 +72,17 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("htex-device-check", &["htex-check-runner", "htex-device"]),
     ("htex-shaped", &["htex-dsp", "htex-model"]),
     ("plugin", &["htex-dsp", "htex-model", "htex-shaped"]),
-    (
-        "htex-host",
-        &[
-            "htex-dsp",
-            "htex-files",
-            "htex-native",
-            "htex-model",
-            "plugin",
-        ],
-    ),
+    ("htex-host", &["htex-dsp", "htex-files", "htex-native", "htex-model", "plugin"]),
     (
         "htex-author",
-        &[
-            "htex-dsp",
-            "htex-finding",
-            "htex-format",
-            "htex-host",
-            "htex-play",
-            "htex-recording",
-        ],
+        &["htex-dsp", "htex-finding", "htex-format", "htex-host", "htex-play", "htex-recording"],
     ),
-    (
-        "htex-recording",
-        &["htex-dsp", "htex-finding", "htex-format"],
-    ),
-    (
-        "htex-simulate",
-        &["htex-dsp", "htex-format", "htex-recording"],
-    ),
-    (
-        "htex-check",
-        &["htex-check-runner", "htex-dsp", "htex-host", "htex-model"],
-    ),
-    (
-        "htex-play",
-        &[
-            "htex-dsp",
-            "htex-finding",
-            "htex-format",
-            "htex-host",
-            "htex-library",
-        ],
-    ),
+    ("htex-recording", &["htex-dsp", "htex-finding", "htex-format"]),
+    ("htex-simulate", &["htex-dsp", "htex-format", "htex-recording"]),
+    ("htex-check", &["htex-check-runner", "htex-dsp", "htex-host", "htex-model"]),
+    ("htex-play", &["htex-dsp", "htex-finding", "htex-format", "htex-host", "htex-library"]),
     ("htex-player", &[]),
-    (
-        "htex-bake",
-        &["htex-dsp", "htex-host", "htex-play", "htex-player"],
-    ),
+    ("htex-bake", &["htex-dsp", "htex-host", "htex-play", "htex-player"]),
     (
         "htex",
         &[
@@ -242,10 +180,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-scene",
         ],
     ),
-    (
-        "htex-bench",
-        &["htex", "htex-author", "htex-host", "htex-simulate"],
-    ),
+    ("htex-bench", &["htex", "htex-author", "htex-host", "htex-simulate"]),
     (
         "htex-fuzzing",
         &[
@@ -312,9 +247,7 @@ const ARROWS: &[(&str, &[&str])] = &[
 /// The packages of the workspace, without those of others.
 fn metadata() -> Metadata {
     let mut command = MetadataCommand::new();
-    command
-        .manifest_path(workspace().join("Cargo.toml"))
-        .no_deps();
+    command.manifest_path(workspace().join("Cargo.toml")).no_deps();
     command.exec().unwrap()
 }
 
@@ -338,31 +271,17 @@ fn dependencies_follow_the_arrows() {
             name => name.to_owned(),
         }
     };
-    for package in metadata
-        .packages
-        .iter()
-        .filter(|p| p.name.as_str() != "htex-tests")
-    {
+    for package in metadata.packages.iter().filter(|p| p.name.as_str() != "htex-tests") {
         let name = role(package);
         let (_, allowed) = ARROWS
             .iter()
             .find(|(from, _)| *from == name)
             .unwrap_or_else(|| panic!("{name} has no place in the arrows; see ARCHITECTURE.md"));
-        let used = package
-            .dependencies
-            .iter()
-            .filter(|d| d.kind == DependencyKind::Normal);
+        let used = package.dependencies.iter().filter(|d| d.kind == DependencyKind::Normal);
         for used in used.filter(|d| ours.contains(d.name.as_str())) {
-            let target = metadata
-                .packages
-                .iter()
-                .find(|p| *p.name == used.name)
-                .unwrap();
+            let target = metadata.packages.iter().find(|p| *p.name == used.name).unwrap();
             let target = role(target);
-            assert!(
-                allowed.contains(&target.as_str()),
-                "{name} must not point at {target}"
-            );
+            assert!(allowed.contains(&target.as_str()), "{name} must not point at {target}");
         }
     }
 }
@@ -377,9 +296,7 @@ fn compiled(packages: &[&str]) -> BTreeSet<String> {
     assert!(printed.status.success(), "{printed:?}");
     let printed = String::from_utf8(printed.stdout).unwrap();
     let lines = printed.lines().filter(|line| !line.is_empty());
-    lines
-        .map(|line| line.trim_end_matches(" (*)").to_owned())
-        .collect()
+    lines.map(|line| line.trim_end_matches(" (*)").to_owned()).collect()
 }
 
 /// The parser of TOML recurses on what a file holds; `htex_files::toml` bounds it.
@@ -400,30 +317,18 @@ fn only_one_crate_parses_toml() {
 fn what_the_command_compiles_is_not_compiled_again() {
     let command = compiled(&["htex-cli"]);
     // As `cargo xtask dist`, the wheel and `cargo xtask bench` build them.
-    for others in [
-        &["htex-capi", "htex-cli"][..],
-        &["htex-python"],
-        &["htex-bench", "htex-cli"],
-    ] {
+    for others in [&["htex-capi", "htex-cli"][..], &["htex-python"], &["htex-bench", "htex-cli"]] {
         let again: Vec<_> = command.difference(&compiled(others)).cloned().collect();
         assert_eq!(again, [""; 0], "{others:?} have other features");
     }
 }
 
-/// The README's first command takes no default features, and Cargo unites those of all default members for it: none of them turns on what
-/// takes minutes to build.
+/// The README's first command takes no default features, and Cargo unites those of all default
+/// members for it: none of them turns on what takes minutes to build.
 #[test]
 fn the_short_build_stays_short() {
     let metadata = metadata();
-    let large = [
-        "wasm",
-        "cloud",
-        "lab",
-        "lab-files",
-        "schemas",
-        "check",
-        "build",
-    ];
+    let large = ["wasm", "cloud", "lab", "lab-files", "schemas", "check", "build"];
     let mut found = Vec::new();
     for package in metadata.workspace_default_packages() {
         let always = |used: &&cargo_metadata::Dependency| {
@@ -476,7 +381,8 @@ fn only_authoring_reads_other_files_than_text() {
     assert_eq!(holders, BTreeSet::from(["htex-author"]));
 }
 
-/// An application that only opens and plays assets links no network library, and a short build of the command neither.
+/// An application that only opens and plays assets links no network library, and a short build of
+/// the command neither.
 #[test]
 fn only_the_default_command_reaches_the_network() {
     let metadata = metadata();

@@ -1,5 +1,5 @@
-//! Promises of the bands model on recordings: third-octave bands to half a decibel in 24 bytes, through
-//! the file; nine energies to half a step; and more bands for more bytes.
+//! Promises of the bands model on recordings: third-octave bands to half a decibel in 24 bytes,
+//! through the file; nine energies to half a step; and more bands for more bytes.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_author::{
@@ -18,14 +18,8 @@ struct Kept {
 
 fn take(options: &SimulationOptions) -> Take {
     Take {
-        recording: simulate(options)
-            .unwrap()
-            .to_recording("a recording")
-            .unwrap(),
-        given: Exploration {
-            speed_mm_s: Some(options.speed_mm_s),
-            force_n: Some(options.force_n),
-        },
+        recording: simulate(options).unwrap().to_recording("a recording").unwrap(),
+        given: Exploration { speed_mm_s: Some(options.speed_mm_s), force_n: Some(options.force_n) },
     }
 }
 
@@ -35,28 +29,19 @@ fn keep(take: &Take, options: &[(&str, &str)]) -> Kept {
     let request = AssetRequest::new("A surface")
         .with_models([ModelRequest::new(&model).with_options(options)])
         .with_spectrum(SpectrumOptions::default().with_averaging(Averaging::Rms));
-    let asset = fit_asset(std::slice::from_ref(take), &request)
-        .unwrap()
-        .asset;
+    let asset = fit_asset(std::slice::from_ref(take), &request).unwrap().asset;
     let asset = Asset::from_bytes(&asset.to_bytes().unwrap()).unwrap();
     Kept {
         bytes: asset.payload_bytes(0),
         parameters: asset.parameters[0][0].clone(),
-        quality: asset.manifest.representations[0].at[0]
-            .quality
-            .clone()
-            .unwrap(),
+        quality: asset.manifest.representations[0].at[0].quality.clone().unwrap(),
     }
 }
 
-/// Recordings that were not used to choose the model's constants: other pieces of the surfaces, other motions.
+/// Recordings that were not used to choose the model's constants: other pieces of the surfaces,
+/// other motions.
 fn unseen() -> Vec<SimulationOptions> {
-    let motions = [
-        (80.0, 0.4, 31),
-        (40.0, 0.8, 32),
-        (160.0, 0.2, 33),
-        (100.0, 1.0, 34),
-    ];
+    let motions = [(80.0, 0.4, 31), (40.0, 0.8, 32), (160.0, 0.2, 33), (100.0, 1.0, 34)];
     let of = |surface| {
         motions.map(|(speed_mm_s, force_n, seed)| {
             SimulationOptions::new(surface)
@@ -119,11 +104,7 @@ fn nine_bands_are_kept_to_half_a_step() {
         let kept = keep(&take, &[("bands", "9"), ("step_db", "0.5")]);
         let played_db = kept.quality.samples(Measure::NineBand).unwrap();
         // Half a step, and what the window blurs next to steep flanks.
-        assert!(
-            nine_band_db(&kept.quality) <= 0.3,
-            "{surface}: {:?}",
-            kept.quality
-        );
+        assert!(nine_band_db(&kept.quality) <= 0.3, "{surface}: {:?}", kept.quality);
         assert!(played_db <= 0.5, "{surface}: played within {played_db} dB");
         assert!(kept.bytes <= 12, "{surface}: {} bytes", kept.bytes);
     }

@@ -1,6 +1,6 @@
 //! The fuzz targets on all inputs that differ from their seeds in an extreme value, cell or byte.
-//! Modules and signatures are left to the fuzzer: an execution of those takes too long. A test takes a sample of
-//! them, `cargo xtask prove edges` all.
+//! Modules and signatures are left to the fuzzer: an execution of those takes too long. A test
+//! takes a sample of them, `cargo xtask prove edges` all.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 use std::path::Path;

@@ -34,22 +34,10 @@ fn fields_in_another_order_play_by_their_names() {
 #[test]
 fn fields_that_are_not_the_models_are_refused_with_their_names() {
     for (file, words) in [
-        (
-            "field_unknown.htex",
-            ["the model has no field \"alfa\"", "\"alpha\" is not stored"],
-        ),
-        (
-            "field_missing.htex",
-            ["\"beta\" is not stored", "1.0.0 is installed"],
-        ),
-        (
-            "field_kind_wrong.htex",
-            ["\"beta\" is stored as a list", "expects one number"],
-        ),
-        (
-            "field_unit_wrong.htex",
-            ["\"beta\" is stored in \"Hz\"", "fit the recording again"],
-        ),
+        ("field_unknown.htex", ["the model has no field \"alfa\"", "\"alpha\" is not stored"]),
+        ("field_missing.htex", ["\"beta\" is not stored", "1.0.0 is installed"]),
+        ("field_kind_wrong.htex", ["\"beta\" is stored as a list", "expects one number"]),
+        ("field_unit_wrong.htex", ["\"beta\" is stored in \"Hz\"", "fit the recording again"]),
         (
             "valid_field_of_newer_model.htex",
             [

@@ -1,5 +1,6 @@
-//! Models that follow the motion themselves, from their sources to a scene: bursts that come with the way, and a
-//! surface that feels the same at the same place. As native libraries and as WASM modules.
+//! Models that follow the motion themselves, from their sources to a scene: bursts that come with
+//! the way, and a surface that feels the same at the same place. As native libraries and as WASM
+//! modules.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 #![allow(dead_code)] // Not all of `builds` is used here.
 
@@ -50,21 +51,11 @@ fn bursts_follow(file: &Path) {
         let played = played(&mut voice, 10.0, |_| (speed_mm_s, FORCE_N, None));
         let a_second = bursts_a_second(&played);
         println!("{speed_mm_s} mm/s: {a_second} bursts a second");
-        assert!(
-            (a_second / speed_mm_s - 0.2).abs() < 0.02,
-            "{speed_mm_s} mm/s: {a_second}"
-        );
-        assert!(matches!(
-            voice.coverage(htex::Motion::new(100.0, FORCE_N)).speed,
-            Reach::Followed
-        ));
+        assert!((a_second / speed_mm_s - 0.2).abs() < 0.02, "{speed_mm_s} mm/s: {a_second}");
+        assert!(matches!(voice.coverage(htex::Motion::new(100.0, FORCE_N)).speed, Reach::Followed));
     }
     // The force is the level's, as the model has it.
-    let loudness = |force_n| {
-        rms(&played(&mut voice(&asset), 4.0, |_| {
-            (SPEED_MM_S, force_n, None)
-        }))
-    };
+    let loudness = |force_n| rms(&played(&mut voice(&asset), 4.0, |_| (SPEED_MM_S, force_n, None)));
     let gain = loudness(2.0 * FORCE_N) / loudness(FORCE_N);
     assert!((gain - 2.0).abs() < 0.1, "twice the force: {gain}");
 
@@ -90,17 +81,9 @@ fn one_bad_reading_is_not_felt(asset: &Asset) {
         let mut renderer = Renderer::new(&scene, &plan).unwrap();
         let mut out = vec![0.0; 20_000];
         for (i, block) in out.chunks_mut(CONTROL).enumerate() {
-            let reading = if i == 100 {
-                bad
-            } else {
-                Some((SPEED_MM_S, FORCE_N))
-            };
+            let reading = if i == 100 { bad } else { Some((SPEED_MM_S, FORCE_N)) };
             if let Some((speed_mm_s, force_n)) = reading {
-                let finger = Finger {
-                    speed_mm_s,
-                    force_n,
-                    at_mm: None,
-                };
+                let finger = Finger { speed_mm_s, force_n, at_mm: None };
                 let _ = renderer.set_motion(finger);
             }
             renderer.render(block);
@@ -108,11 +91,7 @@ fn one_bad_reading_is_not_felt(asset: &Asset) {
         out
     };
     let plain = felt(None);
-    for bad in [
-        (SPEED_MM_S, 25.0),
-        (SPEED_MM_S, f64::NAN),
-        (5_000.0, FORCE_N),
-    ] {
+    for bad in [(SPEED_MM_S, 25.0), (SPEED_MM_S, f64::NAN), (5_000.0, FORCE_N)] {
         assert!(felt(Some(bad)) == plain, "{bad:?}");
     }
 }
@@ -125,12 +104,10 @@ fn ten_bursts_a_second(file: &Path) -> Vec<f64> {
     out.into_iter().map(f64::from).collect()
 }
 
-/// How often the power over 10 ms rises through a fifth of its largest value, once it was below a twentieth.
+/// How often the power over 10 ms rises through a fifth of its largest value, once it was below a
+/// twentieth.
 fn bursts_a_second(samples: &[f32]) -> f64 {
-    let power: Vec<f64> = samples
-        .chunks_exact(200)
-        .map(|block| rms(block).powi(2))
-        .collect();
+    let power: Vec<f64> = samples.chunks_exact(200).map(|block| rms(block).powi(2)).collect();
     let mut sorted = power.clone();
     sorted.sort_by(f64::total_cmp);
     let high = sorted[sorted.len() * 19 / 20];
@@ -160,19 +137,12 @@ fn place_is_kept(file: &Path) {
     let asset = fitted(file, &comb());
     let (parameters, _) = asset.parameters(None, None).unwrap();
     assert_eq!(&parameters[1..3], [SPEED_MM_S, FORCE_N]);
-    assert!(
-        (parameters[0] - SPEED_MM_S / 65.0).abs() < 0.005,
-        "{parameters:?}"
-    );
+    assert!((parameters[0] - SPEED_MM_S / 65.0).abs() < 0.005, "{parameters:?}");
     let there_and_back = |t: f64| 20.0 * (1.0 - (std::f64::consts::TAU * t / WAY_S).cos());
 
     let by_place = |t: f64| {
         let (before, behind) = (there_and_back(t - 1e-4), there_and_back(t + 1e-4));
-        (
-            (behind - before).abs() / 2e-4,
-            FORCE_N,
-            Some(there_and_back(t)),
-        )
+        ((behind - before).abs() / 2e-4, FORCE_N, Some(there_and_back(t)))
     };
     let through_the_facade = played(&mut voice(&asset), WAY_S, by_place);
     is_the_same_on_the_way_back("facade", &through_the_facade);
@@ -187,8 +157,8 @@ fn place_is_kept(file: &Path) {
     is_the_same_on_the_way_back("scene", &played);
 }
 
-/// The way there and the way back reversed correlate, but for the time by which what stands behind the voice reads ahead;
-/// the way back as it is does not.
+/// The way there and the way back reversed correlate, but for the time by which what stands behind
+/// the voice reads ahead; the way back as it is does not.
 fn is_the_same_on_the_way_back(name: &str, samples: &[f32]) {
     let (there, back) = samples.split_at(samples.len() / 2);
     let reversed: Vec<f32> = back.iter().rev().copied().collect();
@@ -211,10 +181,7 @@ fn best_correlation(a: &[f32], b: &[f32]) -> f64 {
 
 fn correlation(a: &[f32], b: &[f32]) -> f64 {
     let dot = |a: &[f32], b: &[f32]| -> f64 {
-        a.iter()
-            .zip(b)
-            .map(|(x, y)| f64::from(*x) * f64::from(*y))
-            .sum()
+        a.iter().zip(b).map(|(x, y)| f64::from(*x) * f64::from(*y)).sum()
     };
     dot(a, b) / (dot(a, a) * dot(b, b)).sqrt()
 }
@@ -243,10 +210,7 @@ fn fitted(file: &Path, recording: &[f64]) -> Asset {
     let request = AssetRequest::new("followed").with_models([ModelRequest::new(&model)]);
     let take = Take {
         recording: Recording::new("made", RATE_HZ, vec![recording.to_vec()]).unwrap(),
-        given: Exploration {
-            speed_mm_s: Some(SPEED_MM_S),
-            force_n: Some(FORCE_N),
-        },
+        given: Exploration { speed_mm_s: Some(SPEED_MM_S), force_n: Some(FORCE_N) },
     };
     let fitted = fit_asset(&[take], &request).unwrap();
     Asset::with_registry(fitted.asset, registry)
@@ -277,9 +241,7 @@ fn played(
 }
 
 fn trace(seconds: f64, x_mm: impl Fn(f64) -> f64) -> Trace {
-    let t_s: Vec<f64> = (0..=(seconds * 500.0) as usize)
-        .map(|row| row as f64 / 500.0)
-        .collect();
+    let t_s: Vec<f64> = (0..=(seconds * 500.0) as usize).map(|row| row as f64 / 500.0).collect();
     Trace::new(TraceColumns {
         x_mm: t_s.iter().map(|&t| x_mm(t)).collect(),
         y_mm: vec![0.0; t_s.len()],
@@ -321,10 +283,7 @@ fn traced(asset: &Asset, trace: Trace) -> LoadedScene {
 fn planned(scene: &LoadedScene) -> Plan {
     let file = Capabilities {
         quantity: Quantity::LateralForce,
-        rates: Rates::Range {
-            min_hz: 100.0,
-            max_hz: 1e6,
-        },
+        rates: Rates::Range { min_hz: 100.0, max_hz: 1e6 },
         default_rate_hz: RATE_HZ,
         limit: None,
         step: None,

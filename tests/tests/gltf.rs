@@ -1,5 +1,5 @@
-//! glTF files that carry an asset, by the validator of Khronos, and by the schema of the extension with two validators, where Node and the packages
-//! are installed.
+//! glTF files that carry an asset, by the validator of Khronos, and by the schema of the extension
+//! with two validators, where Node and the packages are installed.
 #![allow(clippy::unwrap_used)] // Test code: a failed unwrap is a failed test.
 
 use std::path::{Path, PathBuf};
@@ -37,9 +37,7 @@ fn written(extension: &str) -> Vec<u8> {
     let mut how = Export::new(Format::named("gltf").unwrap());
     how.extension = Some(extension);
     how.file = Some(&file);
-    export(&Asset::from_bytes(&file).unwrap(), &how)
-        .unwrap()
-        .bytes
+    export(&Asset::from_bytes(&file).unwrap(), &how).unwrap().bytes
 }
 
 /// The text of the files is the same but for the place of the buffer.
@@ -57,7 +55,8 @@ fn save(folder: &Path, name: &str, bytes: &[u8]) -> PathBuf {
     path
 }
 
-/// The validator knows no extension of others, and calls unused what only they use; it finds nothing else, and does find what is wrong.
+/// The validator knows no extension of others, and calls unused what only they use; it finds
+/// nothing else, and does find what is wrong.
 #[test]
 fn the_validator_of_khronos_finds_nothing() {
     if !xtask::needs::GLTF_VALIDATOR.met(packages().join("gltf-validator").exists()) {
@@ -79,9 +78,7 @@ fn the_validator_of_khronos_finds_nothing() {
         let codes = issues["messages"].as_array().unwrap().iter();
         let known = ["UNSUPPORTED_EXTENSION", "UNUSED_OBJECT"];
         assert!(
-            codes
-                .into_iter()
-                .all(|m| known.iter().any(|code| m["code"] == *code)),
+            codes.into_iter().all(|m| known.iter().any(|code| m["code"] == *code)),
             "{issues:#}"
         );
         assert_eq!(report["info"]["extensionsUsed"], json!([EXTENSION]));
@@ -134,11 +131,7 @@ fn ajv_says_the_same_of_the_extension() {
     let documents: Vec<Value> = textures().iter().map(ask).collect();
     let questions = json!({"schemas": [schema], "documents": documents});
     let folder = tempfile::tempdir().unwrap();
-    let file = save(
-        folder.path(),
-        "questions.json",
-        questions.to_string().as_bytes(),
-    );
+    let file = save(folder.path(), "questions.json", questions.to_string().as_bytes());
     let wrong = textures().into_iter().filter(|(_, _, is_valid)| !is_valid);
     let names: Vec<String> = wrong.map(|(name, ..)| name).collect();
     assert_eq!(ran("ajv.cjs", &[file]), json!(names));

@@ -29,9 +29,7 @@ fn fit(model: &LoadedModel, magnitude: &[f64], options: &[(&str, &str)]) -> Fit 
 
 fn fitted_magnitude(model: &LoadedModel, fit: &Fit) -> Vec<f64> {
     let band = Band::TACTILE;
-    let shape = model
-        .magnitude(&fit.parameters, band, &band.grid_hz())
-        .unwrap();
+    let shape = model.magnitude(&fit.parameters, band, &band.grid_hz()).unwrap();
     shape.iter().map(|m| m * fit.level_rms).collect()
 }
 
@@ -40,10 +38,7 @@ fn mfcc_of_a_smooth_spectrum() {
     let case = Golden::case("mfcc", "mfcc_smooth");
     let spectrum = smooth_spectrum(&Band::TACTILE.grid_hz());
     let mfcc = model("mfcc");
-    for (inverse, key) in [
-        ("pinv", "/inverse_mag_pinv"),
-        ("interpolate", "/inverse_mag_interp"),
-    ] {
+    for (inverse, key) in [("pinv", "/inverse_mag_pinv"), ("interpolate", "/inverse_mag_interp")] {
         let fit = fit(&mfcc, &spectrum, &[("inverse", inverse)]);
         case.hold("/mfcc", &fit.parameters[1..11]);
         let mut magnitude = fitted_magnitude(&mfcc, &fit);
@@ -81,18 +76,13 @@ fn speak_peaks_and_samples() {
     let count = [f.len() as f64];
     let relative: Vec<f64> = a.iter().map(|a| a / level).collect();
     let parameters = [&count[..], &f, &count, &relative, &[0.0]].concat();
-    let mut voice = speak
-        .voice(&parameters, Band::TACTILE, 20_000.0, 1)
-        .unwrap();
+    let mut voice = speak.voice(&parameters, Band::TACTILE, 20_000.0, 1).unwrap();
     let mut out = vec![0.0f32; 200_000];
     voice.render(&mut out).unwrap();
     for (n, y) in case.input("n").iter().zip(case.expected("/y")) {
         // The sum's rounding to 32-bit float: the tolerance is that of samples near 5 level.
         let got = f64::from(out[*n as usize]) * level;
-        assert!(
-            (got - y).abs() < 5.0 * level * f64::from(f32::EPSILON),
-            "sample {n}: {got} {y}"
-        );
+        assert!((got - y).abs() < 5.0 * level * f64::from(f32::EPSILON), "sample {n}: {got} {y}");
     }
 }
 
@@ -114,10 +104,7 @@ fn spectrum_of_points(f_hz: &[f64], amp: &[f64]) -> Option<Vec<f64>> {
 fn sbeta_fits_of_ten_points() {
     let sbeta = model("sbeta");
     let mut held = 0;
-    for case in Golden::all("sbeta")
-        .iter()
-        .filter(|c| c.name().starts_with("fit_"))
-    {
+    for case in Golden::all("sbeta").iter().filter(|c| c.name().starts_with("fit_")) {
         let Some(spectrum) = spectrum_of_points(&case.input("f_hz"), &case.input("amp")) else {
             continue;
         };
@@ -139,22 +126,10 @@ fn sbeta_fits_of_ten_points() {
 fn sslope_orders_by_each_way_of_measuring() {
     let sslope = model("sslope");
     let grid = Band::TACTILE.grid_hz();
-    for case in Golden::all("sslope")
-        .iter()
-        .filter(|c| c.name().starts_with("powerlaw"))
-    {
-        let (peak, up, down) = (
-            case.input("pk_hz")[0],
-            case.input("up")[0],
-            case.input("dn")[0],
-        );
-        let curve = |f: &f64| {
-            0.01 * if *f < peak {
-                (f / peak).powf(up)
-            } else {
-                (f / peak).powf(-down)
-            }
-        };
+    for case in Golden::all("sslope").iter().filter(|c| c.name().starts_with("powerlaw")) {
+        let (peak, up, down) = (case.input("pk_hz")[0], case.input("up")[0], case.input("dn")[0]);
+        let curve =
+            |f: &f64| 0.01 * if *f < peak { (f / peak).powf(up) } else { (f / peak).powf(-down) };
         let spectrum: Vec<f64> = grid.iter().map(curve).collect();
         let fit = fit(&sslope, &spectrum, &[]);
         case.hold("/peak_hz", &fit.parameters[..1]);
@@ -164,11 +139,7 @@ fn sslope_orders_by_each_way_of_measuring() {
         assert!((fitted_magnitude(&sslope, &fit)[bin] / 0.01 - 1.0).abs() < 1e-12);
     }
     let case = Golden::case("sslope", "conventions_on_smooth");
-    let ways = [
-        ("least-squares", "ols"),
-        ("end-points", "endpoint"),
-        ("anchored", "anchored"),
-    ];
+    let ways = [("least-squares", "ols"), ("end-points", "endpoint"), ("anchored", "anchored")];
     for (way, key) in ways {
         let fit = fit(&sslope, &smooth_spectrum(&grid), &[("slopes", way)]);
         case.hold(&format!("/{key}/peak_hz"), &fit.parameters[..1]);
@@ -182,16 +153,10 @@ fn bands_of_whole_and_narrow_spectra() {
     let bands = model("bands");
     for case in Golden::all("band_energies") {
         let one = |key: &str| case.input(key)[0];
-        let band = Band {
-            low_hz: one("low_hz"),
-            high_hz: one("high_hz"),
-        };
+        let band = Band { low_hz: one("low_hz"), high_hz: one("high_hz") };
         let grid = band.grid_hz();
-        let magnitude = if case.has_input("mag") {
-            case.input("mag")
-        } else {
-            smooth_spectrum(&grid)
-        };
+        let magnitude =
+            if case.has_input("mag") { case.input("mag") } else { smooth_spectrum(&grid) };
         let options = ["bands", "step_db", "layout"].map(|key| (key, case.input_text(key)));
         let options = options.each_ref().map(|(key, value)| (*key, &value[..]));
         let request = FitRequest {
@@ -222,10 +187,7 @@ fn arma_is_the_filter_of_its_lines() {
         let counts = [&poles, &zeros].map(|lines| vec![lines.len() as f64]);
         let rate_hz = case.input("rate_hz");
         let parameters = [&counts[0], &poles, &counts[1], &zeros, &rate_hz].map(|part| &part[..]);
-        let band = Band {
-            low_hz: 20.0,
-            high_hz: 500.0,
-        };
+        let band = Band { low_hz: 20.0, high_hz: 500.0 };
         let grid = band.grid_hz();
         let magnitude = arma.magnitude(&parameters.concat(), band, &grid).unwrap();
         case.hold("/magnitude", &magnitude);
@@ -243,19 +205,12 @@ fn arma_is_the_filter_of_its_lines() {
 #[test]
 fn arma_of_the_spectrum_of_a_known_filter_is_near_it() {
     let arma = model("arma");
-    let band = Band {
-        low_hz: 20.0,
-        high_hz: 500.0,
-    };
+    let band = Band { low_hz: 20.0, high_hz: 500.0 };
     let grid = band.grid_hz();
     for case in Golden::all("arma") {
         let expected = case.expected("/magnitude");
         let [poles, zeros] = ["a", "b"].map(|key| case.input(key).len().to_string());
-        let options = [
-            ("poles", &poles[..]),
-            ("zeros", &zeros[..]),
-            ("rate_hz", "1000"),
-        ];
+        let options = [("poles", &poles[..]), ("zeros", &zeros[..]), ("rate_hz", "1000")];
         let request = FitRequest {
             band,
             frequency_hz: &grid,
@@ -278,10 +233,7 @@ fn arma_of_the_spectrum_of_a_known_filter_is_near_it() {
 #[test]
 fn ar_of_the_spectrum_of_a_known_filter_is_that_filter() {
     // Yule–Walker on the exact one-sided spectrum of an AR(2) process at 2 kHz, whole band.
-    let band = Band {
-        low_hz: 5.0,
-        high_hz: 1000.0,
-    };
+    let band = Band { low_hz: 5.0, high_hz: 1000.0 };
     let truth = [1.2, -0.8];
     let (rate_hz, error): (f64, f64) = (2_000.0, 0.03);
     let gain = (4.0 * error * 7.5 / rate_hz).sqrt();
@@ -301,14 +253,6 @@ fn ar_of_the_spectrum_of_a_known_filter_is_that_filter() {
     };
     let fit = ar.fit(&request).unwrap();
     // The bin at 0 Hz and half of the one at 1 kHz are not the process's: 1 % of the power.
-    assert!(
-        (fit.parameters[1] - truth[0]).abs() < 0.01,
-        "{:?}",
-        fit.parameters
-    );
-    assert!(
-        (fit.parameters[2] - truth[1]).abs() < 0.01,
-        "{:?}",
-        fit.parameters
-    );
+    assert!((fit.parameters[1] - truth[0]).abs() < 0.01, "{:?}", fit.parameters);
+    assert!((fit.parameters[2] - truth[1]).abs() < 0.01, "{:?}", fit.parameters);
 }

@@ -12,20 +12,11 @@ const RATE_HZ: f64 = 20_000.0;
 
 /// Back-and-forth sweeps with four sinusoids, as the case's formula says.
 fn closed_form() -> Recording {
-    let lines = [
-        (50.0, 0.01, 0.3),
-        (137.5, 0.006, 1.1),
-        (400.0, 0.004, 2.0),
-        (905.0, 0.002, 0.7),
-    ];
+    let lines = [(50.0, 0.01, 0.3), (137.5, 0.006, 1.1), (400.0, 0.004, 2.0), (905.0, 0.002, 0.7)];
     let raised_cosine = |t: f64| 0.5 * (1.0 - (std::f64::consts::PI * t).cos());
     let force = |n: usize| {
         let tau = n % 25_000;
-        let sign = if (n / 25_000).is_multiple_of(2) {
-            1.0
-        } else {
-            -1.0
-        };
+        let sign = if (n / 25_000).is_multiple_of(2) { 1.0 } else { -1.0 };
         let envelope = match tau {
             0..2_000 => raised_cosine(tau as f64 / 2_000.0),
             2_000..21_000 => 1.0,
@@ -33,20 +24,13 @@ fn closed_form() -> Recording {
             _ => 0.0,
         };
         let t = n as f64 / RATE_HZ;
-        let texture: f64 = lines
-            .iter()
-            .map(|(f, a, p)| a * (std::f64::consts::TAU * f * t + p).cos())
-            .sum();
+        let texture: f64 =
+            lines.iter().map(|(f, a, p)| a * (std::f64::consts::TAU * f * t + p).cos()).sum();
         sign * 0.2 * envelope + envelope * texture
     };
     let all: Vec<f64> = (0..200_000).map(force).collect();
     let axis = |part: f64| all.iter().map(|f| part * f).collect();
-    Recording::new(
-        "closed form",
-        RATE_HZ,
-        vec![axis(0.05), axis(0.998_749_217_771_909)],
-    )
-    .unwrap()
+    Recording::new("closed form", RATE_HZ, vec![axis(0.05), axis(0.998_749_217_771_909)]).unwrap()
 }
 
 /// Response of a force sensor's mount as a damped resonator, `1 / (1 - (f/f₀)² + 2 i ζ f/f₀)`.
@@ -58,10 +42,7 @@ fn resonator_response(f_hz: f64, resonance_hz: f64, damping_ratio: f64) -> Compl
 /// The case's setup response, on a grid fine enough to be read back at the bins.
 fn response() -> SetupResponse {
     let frequency_hz: Vec<f64> = (0..=200).map(|k| f64::from(k) * 5.0).collect();
-    let values: Vec<_> = frequency_hz
-        .iter()
-        .map(|&f| resonator_response(f, 620.0, 0.06))
-        .collect();
+    let values: Vec<_> = frequency_hz.iter().map(|&f| resonator_response(f, 620.0, 0.06)).collect();
     SetupResponse {
         magnitude: values.iter().map(|h| h.norm()).collect(),
         phase_rad: values.iter().map(|h| h.arg()).collect(),
@@ -90,17 +71,11 @@ fn hold(name: &str, response: Option<SetupResponse>) {
     case.hold("/threshold_n", &[segments.threshold]);
     let near = |got: Vec<usize>, pointer: &str| {
         for (got, expected) in got.iter().zip(case.expected(pointer)) {
-            assert!(
-                (*got as f64 - expected).abs() <= 2.0,
-                "{pointer}: {got} {expected}"
-            );
+            assert!((*got as f64 - expected).abs() <= 2.0, "{pointer}: {got} {expected}");
         }
     };
     near(segments.sweeps.iter().map(|s| s.start).collect(), "/starts");
-    near(
-        segments.sweeps.iter().map(|s| s.end).collect(),
-        "/ends_exclusive",
-    );
+    near(segments.sweeps.iter().map(|s| s.end).collect(), "/ends_exclusive");
     near(segments.starts.clone(), "/segment_starts");
 
     let options = SpectrumOptions::default().with_response(response);
@@ -112,10 +87,7 @@ fn hold(name: &str, response: Option<SetupResponse>) {
     let picked: Vec<f64> = case.expected("/mag_f_hz").iter().map(at).collect();
     case.hold("/mag_n", &picked);
     case.hold("/mag_sum", &[spectrum.magnitude.iter().sum()]);
-    case.hold(
-        "/mag_sum_sq",
-        &[spectrum.magnitude.iter().map(|m| m * m).sum()],
-    );
+    case.hold("/mag_sum_sq", &[spectrum.magnitude.iter().map(|m| m * m).sum()]);
 }
 
 #[test]

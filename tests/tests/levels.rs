@@ -25,9 +25,7 @@ fn spectra() -> impl Strategy<Value = Vec<f64>> {
         let mut state = seed | 1;
         let mut bins = Vec::with_capacity(BAND.bins());
         for bin in 0..BAND.bins() {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             let scatter = 1.0 + noise * ((state >> 40) as f64 / (1u64 << 23) as f64 - 1.0);
             let x = htex_dsp::beta::log_unit(5.0 * (bin + 4) as f64, BAND);
             let place = (4.0 * x).min(3.999);
@@ -60,11 +58,7 @@ fn stored(model: &LoadedModel, options: &[f64], grid: &[f64], magnitude: &[f64])
     };
     let fit = model.fit(&request).ok()?;
     let parameters = round_parameters(&stored_fields(model.descriptor()), &fit.parameters).unwrap();
-    let reference = SpectrumRef {
-        band: BAND,
-        frequency_hz: grid,
-        magnitude,
-    };
+    let reference = SpectrumRef { band: BAND, frequency_hz: grid, magnitude };
     let level = |level| stored_level(model, &fit, &parameters, reference, level).unwrap();
     Some(Stored {
         fitted_n: level(Level::Fitted),
@@ -148,8 +142,9 @@ fn as_high(shape: &[f64], magnitude: &[f64]) -> f64 {
     highest(magnitude) / highest(shape)
 }
 
-/// Least squares at the ten peaks; with bins all over the band as well, where the density would stand
-/// above twice the largest bin or there are too few peaks; or, if it still does, as high as that bin.
+/// Least squares at the ten peaks; with bins all over the band as well, where the density would
+/// stand above twice the largest bin or there are too few peaks; or, if it still does, as high as
+/// that bin.
 fn sbeta_levels(shape: &[f64], grid: &[f64], magnitude: &[f64], peaks: &[usize]) -> Vec<f64> {
     let spread = spread(10, grid, magnitude);
     let all = peaks.iter().chain(&spread).copied();

@@ -33,10 +33,7 @@ fn name(i: u32) -> String {
 }
 
 fn storage(server: &Server) -> Storage {
-    Storage::new(
-        Settings::default(),
-        server.variables().into_iter().collect(),
-    )
+    Storage::new(Settings::default(), server.variables().into_iter().collect())
 }
 
 fn open(server: &Server) -> Result<Library<Located>, LibraryError> {
@@ -55,29 +52,18 @@ fn one_texture_takes_three_requests_whatever_the_size() {
             assert_eq!(library.get(&name(i)).unwrap(), bytes);
             let requests = server.requests().split_off(before);
             assert!(requests.len() <= 3, "{count}: {requests:?}");
-            assert!(
-                requests
-                    .iter()
-                    .all(|r| r.method == "GET" && r.range.is_some())
-            );
+            assert!(requests.iter().all(|r| r.method == "GET" && r.range.is_some()));
             let read: u64 = requests.iter().map(|r| length(r.range.as_deref())).sum();
             let others = read - bytes.len() as u64;
             assert!(others <= MOST_BYTES, "{count}: {others} bytes");
-            println!(
-                "{count} textures: {} requests, {others} bytes besides",
-                requests.len()
-            );
+            println!("{count} textures: {} requests, {others} bytes besides", requests.len());
         }
     }
 }
 
 /// The length that a header `Range: bytes=A-B` asks for.
 fn length(range: Option<&str>) -> u64 {
-    let (first, last) = range
-        .unwrap()
-        .trim_start_matches("bytes=")
-        .split_once('-')
-        .unwrap();
+    let (first, last) = range.unwrap().trim_start_matches("bytes=").split_once('-').unwrap();
     last.parse::<u64>().unwrap() - first.parse::<u64>().unwrap() + 1
 }
 

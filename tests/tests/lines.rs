@@ -55,11 +55,7 @@ fn stored(magnitude: &[f64], options: &[(&str, &str)]) -> Stored {
     };
     let fit = model.fit(&request).unwrap();
     let parameters = round_parameters(&stored_fields(model.descriptor()), &fit.parameters).unwrap();
-    let reference = SpectrumRef {
-        band: BAND,
-        frequency_hz: &grid,
-        magnitude,
-    };
+    let reference = SpectrumRef { band: BAND, frequency_hz: &grid, magnitude };
     let level_n = stored_level(&model, &fit, &parameters, reference, Level::Recording).unwrap();
     let count = parameters[0] as usize;
     let amplitudes = &parameters[count + 2..2 * count + 2];
@@ -74,16 +70,9 @@ fn stored(magnitude: &[f64], options: &[(&str, &str)]) -> Stored {
 fn worst(frequencies_hz: impl Iterator<Item = f64>, options: &[(&str, &str)]) -> (f64, f64) {
     frequencies_hz.fold((0.0, 0.0), |(hz, db), f| {
         let one = [&[("count", "1")], options].concat();
-        let Stored {
-            frequency_hz,
-            amplitude_n,
-            ..
-        } = stored(&tone(f), &one);
+        let Stored { frequency_hz, amplitude_n, .. } = stored(&tone(f), &one);
         let off_db = 20.0 * amplitude_n[0].log10();
-        (
-            f64::max(hz, (frequency_hz[0] - f).abs()),
-            f64::max(db, off_db.abs()),
-        )
+        (f64::max(hz, (frequency_hz[0] - f).abs()), f64::max(db, off_db.abs()))
     })
 }
 

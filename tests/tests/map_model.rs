@@ -1,4 +1,5 @@
-//! A model that is a map of a surface: what it plays depends on the place of the finger, also across the direction of its path.
+//! A model that is a map of a surface: what it plays depends on the place of the finger, also
+//! across the direction of its path.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
 use std::f64::consts::TAU;
@@ -23,7 +24,8 @@ const FORCE_N: f64 = 0.4;
 /// Samples between two motions.
 const CONTROL: usize = 64;
 
-/// A hum over stripes along x: silent at the edges of each stripe, at multiples of `width_mm` across, and of RMS 1 in its middle.
+/// A hum over stripes along x: silent at the edges of each stripe, at multiples of `width_mm`
+/// across, and of RMS 1 in its middle.
 struct Stripes;
 
 struct StripesVoice {
@@ -37,18 +39,9 @@ struct StripesVoice {
 impl Model for Stripes {
     type Voice = StripesVoice;
 
-    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
-        "org.example.stripes",
-        "Stripes",
-        "1.0.0",
-        "A hum over stripes.",
-    )
-    .fields(&[StaticField::scalar(
-        "width_mm",
-        "mm",
-        (0.1, 100.0),
-        "Width of a stripe.",
-    )]);
+    const DESCRIPTOR: StaticDescriptor =
+        StaticDescriptor::new("org.example.stripes", "Stripes", "1.0.0", "A hum over stripes.")
+            .fields(&[StaticField::scalar("width_mm", "mm", (0.1, 100.0), "Width of a stripe.")]);
 
     fn fit(_: &FitInput<'_>) -> Result<Fit, Error> {
         Err(Error::cannot_fit("a spectrum has no places"))
@@ -171,10 +164,7 @@ fn rendered(y_mm: f64) -> Vec<f32> {
     };
     let file = Capabilities {
         quantity: Quantity::LateralForce,
-        rates: Rates::Range {
-            min_hz: 100.0,
-            max_hz: 1e6,
-        },
+        rates: Rates::Range { min_hz: 100.0, max_hz: 1e6 },
         default_rate_hz: RATE_HZ,
         limit: None,
         step: None,
@@ -197,7 +187,8 @@ fn rms(samples: &[f32]) -> f64 {
     (power / middle.len() as f64).sqrt()
 }
 
-/// Paths of the same x: over the middle of a stripe, over the edge of two, a sixth of its width from an edge.
+/// Paths of the same x: over the middle of a stripe, over the edge of two, a sixth of its width
+/// from an edge.
 #[test]
 fn two_paths_beside_each_other_differ() {
     type Path = fn(f64) -> Vec<f32>;

@@ -5,8 +5,8 @@ use htex_host::Registry;
 use htex_tests::deflated_bytes;
 use xtask::plugins;
 
-/// Most deflated bytes of each model's module: the measured size and about 2 % for other compilers. A change that raises
-/// one states the reason in `docs/modules.md`.
+/// Most deflated bytes of each model's module: the measured size and about 2 % for other compilers.
+/// A change that raises one states the reason in `docs/modules.md`.
 const BOUNDS: &[(&str, usize)] = &[
     ("ar", 41_700),
     ("arma", 45_000),
@@ -22,10 +22,7 @@ const BOUNDS: &[(&str, usize)] = &[
 #[test]
 fn models_of_the_fixtures_are_those_that_are_fitted_by_default() {
     let registry = Registry::builtin();
-    let mut fitted: Vec<&str> = registry
-        .by_default()
-        .map(|model| model.short_name())
-        .collect();
+    let mut fitted: Vec<&str> = registry.by_default().map(|model| model.short_name()).collect();
     fitted.sort_unstable();
     assert_eq!(plugins::fitted_by_default().unwrap(), fitted);
 }
@@ -45,10 +42,7 @@ fn modules_stay_small() {
         let module = std::fs::read(folder.join(format!("htex_{model}.wasm"))).unwrap();
         let bytes = deflated_bytes(&module);
         println!("{model:8} {:7} bytes, deflated {bytes:6}", module.len());
-        assert!(
-            bytes <= *bound,
-            "{model}: {bytes} deflated bytes; {bound} are allowed"
-        );
+        assert!(bytes <= *bound, "{model}: {bytes} deflated bytes; {bound} are allowed");
         // No code that formats numbers or JSON, and no text of a panic, is linked in.
         for foreign in ["serde", "core::fmt", "panicked at", "called `Option"] {
             let foreign = foreign.as_bytes();

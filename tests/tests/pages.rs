@@ -45,7 +45,8 @@ fn page(name: &str) -> String {
     std::fs::read_to_string(workspace().join(name)).unwrap()
 }
 
-/// Names of the tests in the workspace's sources: functions after `#[test]`, of Python those that pytest takes.
+/// Names of the tests in the workspace's sources: functions after `#[test]`, of Python those that
+/// pytest takes.
 fn known_tests() -> BTreeSet<String> {
     let mut tests = BTreeSet::new();
     sources(&workspace(), &mut |name, text| {
@@ -77,21 +78,11 @@ fn code(text: &str) -> impl Iterator<Item = &str> {
 fn the_tests_that_the_pages_name_are_there() {
     let root = workspace();
     let mut known = known_functions();
-    known.extend(
-        htex_fuzzing::TARGETS
-            .iter()
-            .map(|target| target.name.to_owned()),
-    );
+    known.extend(htex_fuzzing::TARGETS.iter().map(|target| target.name.to_owned()));
     let mut seen = 0;
-    for name in [
-        "docs/threats.md",
-        "docs/driving-a-display.md",
-        "docs/paper.md",
-    ] {
+    for name in ["docs/threats.md", "docs/driving-a-display.md", "docs/paper.md"] {
         let text = page(name);
-        let rows = text
-            .lines()
-            .filter(|line| line.starts_with("| ") && !line.contains("shown by"));
+        let rows = text.lines().filter(|line| line.starts_with("| ") && !line.contains("shown by"));
         for row in rows {
             let shown = row.trim_end_matches(" |").rsplit(" | ").next().unwrap();
             for test in code(shown) {
@@ -107,16 +98,12 @@ fn the_tests_that_the_pages_name_are_there() {
     assert!(seen > 80, "{seen} tests are named");
 }
 
-/// Each promise links to the tests that check it, each in the file that the link names. What is only said to be trusted, and where the
-/// protection ends, needs none.
+/// Each promise links to the tests that check it, each in the file that the link names. What is
+/// only said to be trusted, and where the protection ends, needs none.
 #[test]
 fn the_promises_of_security_name_their_tests() {
-    const WITHOUT: [&str; 4] = [
-        "The program itself",
-        "**What a person says**",
-        "**Dask**",
-        "A switch on the amplifier",
-    ];
+    const WITHOUT: [&str; 4] =
+        ["The program itself", "**What a person says**", "**Dask**", "A switch on the amplifier"];
     let (root, text) = (workspace(), page("SECURITY.md"));
     let (text, _) = text.split_once("\n## Reporting").unwrap();
     let mut seen = BTreeSet::new();
@@ -143,7 +130,8 @@ fn the_promises_of_security_name_their_tests() {
     assert!(seen.len() > 20, "{} tests", seen.len());
 }
 
-/// Every kind of input has a test that holds what is said of it: a test, a fuzz target, or a file of tests.
+/// Every kind of input has a test that holds what is said of it: a test, a fuzz target, or a file
+/// of tests.
 #[test]
 fn each_threat_has_its_test() {
     let (root, text, tests) = (workspace(), page("docs/threats.md"), known_tests());
@@ -182,10 +170,7 @@ fn the_paths_and_functions_that_the_page_of_the_paper_names_are_there() {
             paths += 1;
         }
     }
-    assert!(
-        paths > 40 && functions > 10,
-        "{paths} paths, {functions} functions"
-    );
+    assert!(paths > 40 && functions > 10, "{paths} paths, {functions} functions");
 }
 
 /// The paths of the workspace that a page names, without those that have a pattern.
@@ -203,9 +188,7 @@ fn the_map_is_short_and_what_it_names_is_there() {
     let lines = text.lines().count();
     assert!(lines <= 150, "ARCHITECTURE.md has {lines} lines");
     let (_, invariants) = text.split_once("## Invariants").unwrap();
-    let rows = invariants
-        .lines()
-        .filter(|line| line.starts_with("| ") && line.contains('`'));
+    let rows = invariants.lines().filter(|line| line.starts_with("| ") && line.contains('`'));
     for row in rows {
         let test = code(row.split(" | ").nth(1).unwrap()).next().unwrap();
         assert!(known.contains(test), "there is no test {test}");

@@ -80,12 +80,8 @@ fn grouped(x: f64) -> String {
         return x.to_string();
     }
     let digits = format!("{:.0}", x.abs());
-    let grouped: Vec<&str> = digits
-        .as_bytes()
-        .rchunks(3)
-        .rev()
-        .map(|part| std::str::from_utf8(part).unwrap())
-        .collect();
+    let grouped: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().map(|part| std::str::from_utf8(part).unwrap()).collect();
     let sign = if x < 0.0 { "-" } else { "" };
     format!("{sign}{}", grouped.join(","))
 }
@@ -103,8 +99,8 @@ fn every_model_has_cases() {
     assert!(counts.values().sum::<i32>() >= 200, "{counts:?}");
 }
 
-/// Valid files that this player does not play: one embeds an empty module, one has a field of a newer version
-/// of the model.
+/// Valid files that this player does not play: one embeds an empty module, one has a field of a
+/// newer version of the model.
 const NOT_PLAYED: [&str; 2] = ["valid_plugin.htex", "valid_field_of_newer_model.htex"];
 
 /// Valid files can be played.
@@ -112,10 +108,7 @@ const NOT_PLAYED: [&str; 2] = ["valid_plugin.htex", "valid_field_of_newer_model.
 fn valid_conformance_files_are_played() {
     let folders = [workspace().join("spec/conformance"), cases_folder()];
     let mut played = 0;
-    for entry in folders
-        .iter()
-        .flat_map(|folder| fs::read_dir(folder).unwrap())
-    {
+    for entry in folders.iter().flat_map(|folder| fs::read_dir(folder).unwrap()) {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         let sound = name.starts_with("valid") || path.starts_with(cases_folder());

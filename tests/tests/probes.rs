@@ -1,8 +1,10 @@
-//! One range for each number: what a schema refuses, reading refuses, and the reverse. Every number of a document that has all keys is
-//! replaced by numbers around and beyond the ranges, texts by others, and every key is left out.
+//! One range for each number: what a schema refuses, reading refuses, and the reverse. Every number
+//! of a document that has all keys is replaced by numbers around and beyond the ranges, texts by
+//! others, and every key is left out.
 //!
-//! With `HTEX_PROBES_OUT` the documents are written to the file of that name, for another reader: lines of JSON with `kind`, `what`, `document`,
-//! `valid` (what reading says) and `schema` (what the schema says). Manifests are read in an archive with an entry `a.bin` of nine zero bytes.
+//! With `HTEX_PROBES_OUT` the documents are written to the file of that name, for another reader:
+//! lines of JSON with `kind`, `what`, `document`, `valid` (what reading says) and `schema` (what
+//! the schema says). Manifests are read in an archive with an entry `a.bin` of nine zero bytes.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "../../sdk/format/tests/common/raw_zip.rs"]
@@ -31,16 +33,7 @@ const PROBES: [f64; 38] = [
 ];
 
 /// Texts that are no names, or of another form.
-const TEXTS: [&str; 8] = [
-    "",
-    " ",
-    "a",
-    "a/b",
-    "\u{7}é",
-    "0123",
-    "\u{85}\u{2003}",
-    "\u{feff}",
-];
+const TEXTS: [&str; 8] = ["", " ", "a", "a/b", "\u{7}é", "0123", "\u{85}\u{2003}", "\u{feff}"];
 
 fn schema(stem: &str) -> Value {
     let path = workspace().join(format!("spec/schemas/{stem}.json"));
@@ -82,14 +75,8 @@ fn changes_of(document: &Value) -> Vec<(String, Value)> {
         for probe in PROBES {
             // Whole numbers are written as such, where they have 64 bits.
             let whole = probe.fract() == 0.0 && probe.abs() < 1e18;
-            let probe = if whole {
-                json!(probe as i64)
-            } else {
-                json!(probe)
-            };
-            change(pointer, &probe, &|all| {
-                *all.pointer_mut(pointer).unwrap() = probe.clone()
-            });
+            let probe = if whole { json!(probe as i64) } else { json!(probe) };
+            change(pointer, &probe, &|all| *all.pointer_mut(pointer).unwrap() = probe.clone());
         }
     }
     let mut texts = Vec::new();
@@ -103,21 +90,10 @@ fn changes_of(document: &Value) -> Vec<(String, Value)> {
     let mut objects = Vec::new();
     pointers(document, "", &Value::is_object, &mut objects);
     for pointer in &objects {
-        let keys = document
-            .pointer(pointer)
-            .unwrap()
-            .as_object()
-            .unwrap()
-            .keys();
+        let keys = document.pointer(pointer).unwrap().as_object().unwrap().keys();
         for key in keys {
             let without = |all: &mut Value| {
-                drop(
-                    all.pointer_mut(pointer)
-                        .unwrap()
-                        .as_object_mut()
-                        .unwrap()
-                        .remove(key),
-                )
+                drop(all.pointer_mut(pointer).unwrap().as_object_mut().unwrap().remove(key))
             };
             change(&format!("{pointer}/{key}"), &"absent", &without);
         }
@@ -135,7 +111,8 @@ struct Change {
     errors: Vec<Finding>,
 }
 
-/// Writes changed documents with the verdicts of reading and of the schema to the file that `HTEX_PROBES_OUT` names, if it is set.
+/// Writes changed documents with the verdicts of reading and of the schema to the file that
+/// `HTEX_PROBES_OUT` names, if it is set.
 fn write_out(stem: &str, changes: &[Change]) {
     static OUT: OnceLock<Option<Mutex<File>>> = OnceLock::new();
     let open =
@@ -158,8 +135,9 @@ fn write_out(stem: &str, changes: &[Change]) {
     out.lock().unwrap().write_all(lines.as_bytes()).unwrap();
 }
 
-/// Compares a schema with the errors of reading, at every number of a document. `depends`: parts of pointers to numbers of which the
-/// range depends on other values, so that reading may refuse more than the schema.
+/// Compares a schema with the errors of reading, at every number of a document. `depends`: parts of
+/// pointers to numbers of which the range depends on other values, so that reading may refuse more
+/// than the schema.
 fn compare(stem: &str, document: &Value, depends: &[&str], read: &dyn Fn(&Value) -> Vec<Finding>) {
     let schema = Schema::new(&schema(stem)).unwrap();
     assert_eq!(schema.violations(document), [], "{stem}");
@@ -189,12 +167,7 @@ fn compare(stem: &str, document: &Value, depends: &[&str], read: &dyn Fn(&Value)
             ));
         }
     }
-    assert!(
-        differ.is_empty(),
-        "{stem}: {} differ\n{}",
-        differ.len(),
-        differ.join("\n")
-    );
+    assert!(differ.is_empty(), "{stem}: {} differ\n{}", differ.len(), differ.join("\n"));
 }
 
 /// A value in TOML.
@@ -229,11 +202,7 @@ fn manifest() -> Value {
         let schema = schema("manifest-1");
         let all = schema["$defs"][name]["properties"].as_object().unwrap();
         let value = |key: &str| {
-            if key == "band_error_db" {
-                json!(vec![0; 9])
-            } else {
-                json!(0.5)
-            }
+            if key == "band_error_db" { json!(vec![0; 9]) } else { json!(0.5) }
         };
         all.keys().map(|key| (key.clone(), value(key))).collect()
     };
@@ -354,19 +323,12 @@ fn studies_have_the_ranges_of_their_schema() {
     let read = |study: &Value| {
         let mut findings = Findings::default();
         let keys = study.as_object().unwrap().iter();
-        let text: String = keys
-            .map(|(key, value)| format!("{key} = {}\n", toml(value)))
-            .collect();
+        let text: String = keys.map(|(key, value)| format!("{key} = {}\n", toml(value))).collect();
         htex_lab::study::read_study(text.as_bytes(), &mut findings);
         findings.into_list()
     };
     // Motion and device are checked as those of a scene.
-    compare(
-        "study-1",
-        &study,
-        &["/scale/", "/repetitions", "/participants", "/asset"],
-        &read,
-    );
+    compare("study-1", &study, &["/scale/", "/repetitions", "/participants", "/asset"], &read);
 }
 
 #[test]
@@ -466,9 +428,7 @@ fn recipes_have_the_ranges_of_their_schema() {
     let recording = npy(&[0.0; 2000]);
     let tried = |recipe: &Value| -> Result<(), Box<dyn std::error::Error>> {
         let keys = recipe.as_object().unwrap().iter();
-        let text: String = keys
-            .map(|(key, value)| format!("{key} = {}\n", toml(value)))
-            .collect();
+        let text: String = keys.map(|(key, value)| format!("{key} = {}\n", toml(value))).collect();
         let recipe = htex_build::Recipe::parse(&text)?;
         for textures in recipe.textures {
             let options = &textures.settings.reading.read_options(1)?[0];
@@ -479,21 +439,12 @@ fn recipes_have_the_ranges_of_their_schema() {
             };
             let at = textures.settings.at;
             let (speed_mm_s, force_n) = (number(at.speed_mm_s), number(at.force_n));
-            htex_author::Exploration {
-                speed_mm_s,
-                force_n,
-            }
-            .check()?;
+            htex_author::Exploration { speed_mm_s, force_n }.check()?;
         }
         Ok(())
     };
     let read = |recipe: &Value| refused(tried(recipe));
-    compare(
-        "recipe-1",
-        &recipe,
-        &["/recordings absent", "/rate_hz absent"],
-        &read,
-    );
+    compare("recipe-1", &recipe, &["/recordings absent", "/rate_hz absent"], &read);
 }
 
 /// The places of a schema that have a default, validated by the rest of the same place.

@@ -57,14 +57,8 @@ fn recorded_at(speeds_mm_s: &[f64]) -> Vec<u8> {
             .with_speed_mm_s(speed_mm_s)
             .with_duration_s(4.0);
         Take {
-            recording: simulate(&options)
-                .unwrap()
-                .to_recording("simulated")
-                .unwrap(),
-            given: Exploration {
-                speed_mm_s: Some(speed_mm_s),
-                force_n: Some(0.4),
-            },
+            recording: simulate(&options).unwrap().to_recording("simulated").unwrap(),
+            given: Exploration { speed_mm_s: Some(speed_mm_s), force_n: Some(0.4) },
         }
     };
     let model = |model: &htex_host::LoadedModel| {
@@ -89,10 +83,7 @@ fn retuning_does_not_allocate() {
     for model in Registry::builtin().models() {
         let band = asset.band();
         let parameters = |speed: f64| {
-            asset
-                .parameters(Some(model.id()), Some(htex::Motion::new(speed, 0.4)))
-                .unwrap()
-                .0
+            asset.parameters(Some(model.id()), Some(htex::Motion::new(speed, 0.4))).unwrap().0
         };
         let (slow, fast) = (parameters(60.0), parameters(120.0));
         let rate_hz = model.voice_rate_hz(&slow, band, 20_000.0).unwrap();
@@ -122,9 +113,7 @@ fn rendering_together_does_not_allocate() {
         let mut out = vec![0.0; 18 * 128];
         for i in 0..40 {
             let calls = count(|| {
-                sources[i % 18]
-                    .set_motion(htex::Motion::new(60.0 + i as f64, 0.4))
-                    .unwrap();
+                sources[i % 18].set_motion(htex::Motion::new(60.0 + i as f64, 0.4)).unwrap();
                 htex::SampleSource::render_together(&mut sources, 128, &mut out).unwrap();
             });
             assert_eq!(calls, 0, "{model}, block {i}");
@@ -136,15 +125,9 @@ fn rendering_together_does_not_allocate() {
 fn follow(voice: &mut htex::Voice, what: &str) {
     let mut block = [0.0f32; 64];
     for i in 0..400 {
-        let force_n = if i % 50 < 40 {
-            0.4 + 0.01 * f64::from(i % 7)
-        } else {
-            0.0
-        };
+        let force_n = if i % 50 < 40 { 0.4 + 0.01 * f64::from(i % 7) } else { 0.0 };
         let calls = count(|| {
-            voice
-                .set_motion(htex::Motion::new(60.0 + f64::from(i % 61), force_n))
-                .unwrap();
+            voice.set_motion(htex::Motion::new(60.0 + f64::from(i % 61), force_n)).unwrap();
             assert!(voice.coverage(htex::Motion::new(80.0, 0.4)).slides);
             voice.render(&mut block).unwrap();
         });
@@ -154,27 +137,15 @@ fn follow(voice: &mut htex::Voice, what: &str) {
 
 #[test]
 fn following_the_finger_does_not_allocate() {
-    assert!(
-        count(|| drop(std::hint::black_box(vec![1u8]))) >= 2,
-        "the counter counts"
-    );
+    assert!(count(|| drop(std::hint::black_box(vec![1u8]))) >= 2, "the counter counts");
     // Interpolated between two speeds, and scaled from one.
     let one = Asset::from_bytes(&recorded_at(&[80.0])).unwrap();
     let assets = [asset(), one];
-    let of_all = |asset| {
-        Registry::builtin_names()
-            .into_iter()
-            .map(move |model| (asset, model))
-    };
+    let of_all = |asset| Registry::builtin_names().into_iter().map(move |model| (asset, model));
     for (asset, model) in assets.iter().flat_map(of_all) {
         for rate_hz in [20_000.0, 44_100.0] {
-            let options = VoiceOptions::default()
-                .with_model(model)
-                .with_rate_hz(rate_hz);
-            follow(
-                &mut asset.voice(&options).unwrap(),
-                &format!("{model} at {rate_hz} Hz"),
-            );
+            let options = VoiceOptions::default().with_model(model).with_rate_hz(rate_hz);
+            follow(&mut asset.voice(&options).unwrap(), &format!("{model} at {rate_hz} Hz"));
         }
     }
 }
@@ -190,20 +161,9 @@ fn following_the_finger_does_not_allocate_in_a_sandbox() {
     let data = htex_format::Asset::from_bytes(&bytes()).unwrap();
     let asset = Asset::with_registry(data, Registry::search(&search).unwrap());
     for model in Registry::builtin_names() {
-        assert!(
-            asset
-                .registry()
-                .find(model)
-                .unwrap()
-                .origin()
-                .to_string()
-                .contains("wasm")
-        );
+        assert!(asset.registry().find(model).unwrap().origin().to_string().contains("wasm"));
         let options = VoiceOptions::default().with_model(model);
-        follow(
-            &mut asset.voice(&options).unwrap(),
-            &format!("{model} as WASM"),
-        );
+        follow(&mut asset.voice(&options).unwrap(), &format!("{model} as WASM"));
     }
 }
 
@@ -245,10 +205,7 @@ fn a_scene_is_rendered_without_allocating() {
 /// Two surfaces side by side, every effect on, and an arbitrary motion.
 fn live_scene(asset: &Asset, model: &str) -> LoadedScene {
     let surface = |from: f64| file::Surface {
-        region: Some(Region {
-            x_mm: [from, from + 20.0],
-            y_mm: [-1.0, 1.0],
-        }),
+        region: Some(Region { x_mm: [from, from + 20.0], y_mm: [-1.0, 1.0] }),
         representation: model.to_owned(),
         ..file::Surface::everywhere("asset.htex".as_ref())
     };
@@ -281,10 +238,8 @@ fn live_scene(asset: &Asset, model: &str) -> LoadedScene {
 fn voices_measure_and_fail_without_allocating() {
     let asset = asset();
     for model in Registry::builtin_names() {
-        let options = VoiceOptions::default()
-            .with_model(model)
-            .with_limit(0.2)
-            .with_envelope_bands(5);
+        let options =
+            VoiceOptions::default().with_model(model).with_limit(0.2).with_envelope_bands(5);
         let mut voice = asset.voice(&options).unwrap();
         let (mut block, mut bands) = ([0.0f32; 200], [0.0; 5]);
         for i in 0..200u32 {

@@ -52,11 +52,7 @@ fn seeds_are_read_and_used() {
         let all = files(&workspace().join("fuzz/seeds").join(target.name));
         let taken = all.iter().filter(|file| takes(target.name, file)).count();
         println!("{}: {taken} of {} seeds are taken", target.name, all.len());
-        assert!(
-            taken > 0,
-            "no seed of {} gets beyond the reader",
-            target.name
-        );
+        assert!(taken > 0, "no seed of {} gets beyond the reader", target.name);
     }
 }
 
@@ -92,9 +88,6 @@ fn targets_programs_and_folders_have_the_same_names() {
     }
     let manifest = std::fs::read_to_string(workspace().join("fuzz/Cargo.toml")).unwrap();
     for name in &targets {
-        assert!(
-            manifest.contains(&format!("name = \"{name}\"")),
-            "{name} is no program"
-        );
+        assert!(manifest.contains(&format!("name = \"{name}\"")), "{name} is no program");
     }
 }

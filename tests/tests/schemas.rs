@@ -96,9 +96,8 @@ fn json_of(path: &Path) -> Value {
 fn stems(folder: &str, end: &str) -> Vec<String> {
     let all = fs::read_dir(spec(folder)).unwrap();
     let names = all.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let mut stems: Vec<String> = names
-        .filter_map(|name| name.strip_suffix(end).map(str::to_owned))
-        .collect();
+    let mut stems: Vec<String> =
+        names.filter_map(|name| name.strip_suffix(end).map(str::to_owned)).collect();
     stems.sort_unstable();
     stems
 }
@@ -113,10 +112,7 @@ fn manifests() -> Documents {
         let report = json_of(&spec(&format!("conformance/{stem}.report.json")));
         Some((stem, (manifest, report["valid"] == true)))
     };
-    stems("conformance", ".htex")
-        .into_iter()
-        .filter_map(read)
-        .collect()
+    stems("conformance", ".htex").into_iter().filter_map(read).collect()
 }
 
 /// Scenes of version 1.0, which the schema describes.
@@ -182,20 +178,15 @@ fn valid_files_pass_and_what_a_schema_can_say_is_refused() {
 fn schemas_name_themselves_and_use_the_standards_words_alone() {
     for stem in stems("schemas", ".json") {
         let schema = published(&format!("{stem}.json"));
-        assert_eq!(
-            schema["$id"],
-            format!("https://htex.org/schemas/{stem}.json")
-        );
-        assert_eq!(
-            schema["$schema"],
-            "https://json-schema.org/draft/2020-12/schema"
-        );
+        assert_eq!(schema["$id"], format!("https://htex.org/schemas/{stem}.json"));
+        assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
         assert!(!has_format(&schema), "{stem}");
         Schema::new(&schema).unwrap_or_else(|error| panic!("{stem}: {error}"));
     }
 }
 
-/// Whether a place of a schema has the keyword `format`, of which validators differ; documents may have a key of this name.
+/// Whether a place of a schema has the keyword `format`, of which validators differ; documents may
+/// have a key of this name.
 fn has_format(schema: &Value) -> bool {
     match schema {
         Value::Object(map) => {
@@ -206,13 +197,11 @@ fn has_format(schema: &Value) -> bool {
     }
 }
 
-/// The input for Ajv: every schema, compiled in its strict mode, and every document with its schema.
+/// The input for Ajv: every schema, compiled in its strict mode, and every document with its
+/// schema.
 fn questions(documents: &[(&str, &Documents)]) -> Value {
     let schemas: BTreeSet<String> = stems("schemas", ".json").into_iter().collect();
-    let schemas: Vec<Value> = schemas
-        .iter()
-        .map(|s| published(&format!("{s}.json")))
-        .collect();
+    let schemas: Vec<Value> = schemas.iter().map(|s| published(&format!("{s}.json"))).collect();
     let id = |schema: &str| published(schema)["$id"].clone();
     let mut all: Vec<Value> = Vec::new();
     for (schema, documents) in documents {
@@ -245,11 +234,7 @@ fn ajv_says_the_same_where_it_is() {
         .env("NODE_PATH", &packages)
         .output()
         .unwrap();
-    assert!(
-        ran.status.success(),
-        "{}",
-        String::from_utf8_lossy(&ran.stderr)
-    );
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
     let mut told: Vec<String> = serde_json::from_slice(&ran.stdout).unwrap();
     told.sort_unstable();
     let mut ours = refused("manifest-1.json", &manifests);
@@ -258,7 +243,8 @@ fn ajv_says_the_same_where_it_is() {
     assert_eq!(told, ours);
 }
 
-/// Documents of a laboratory that other programs read (takes, answers, gains of persons), and extensions of assets.
+/// Documents of a laboratory that other programs read (takes, answers, gains of persons), and
+/// extensions of assets.
 #[test]
 fn generated_schemas_of_the_laboratory_are_fresh() {
     for (name, schema) in [

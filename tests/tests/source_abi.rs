@@ -50,7 +50,8 @@ fn the_header_compiles_as_c11_and_cxx17() {
     SOURCE.compile(&rust_constants());
 }
 
-/// A host must tell the ABIs apart by their markers alone, and the codes that both have are the same.
+/// A host must tell the ABIs apart by their markers alone, and the codes that both have are the
+/// same.
 #[test]
 fn a_source_is_not_taken_for_a_device_or_a_model() {
     for other in [htex_device::abi::ABI_MARKER, htex_model::abi::ABI_MARKER] {

@@ -37,12 +37,7 @@ fn the_template_in_c() {
         let text = fs::read_to_string(templates().join("c").join(file)).unwrap();
         fs::write(project.join(file), filled_in(&text)).unwrap();
     }
-    for header in [
-        "htex_model.h",
-        "htex_model_parts.h",
-        "htex_model_wasm.h",
-        "htex_motion_1.h",
-    ] {
+    for header in ["htex_model.h", "htex_model_parts.h", "htex_model_wasm.h", "htex_motion_1.h"] {
         let from = workspace().join("spec/include").join(header);
         fs::copy(from, project.join(header)).unwrap();
     }
@@ -57,8 +52,7 @@ fn the_template_in_c() {
     let text = fs::read_to_string(&build).unwrap();
     fs::write(
         &build,
-        text.replace("trial.", "moved.")
-            .replace("-std=c11", "-std=c11 -DFOLLOWS_MOTION=1"),
+        text.replace("trial.", "moved.").replace("-std=c11", "-std=c11 -DFOLLOWS_MOTION=1"),
     )
     .unwrap();
     follows_the_speed(&load(&build_c(&project, "native")));
@@ -67,7 +61,8 @@ fn the_template_in_c() {
     }
 }
 
-/// A model or a device may be written in C++: every header compiles without a warning, and its functions are used.
+/// A model or a device may be written in C++: every header compiles without a warning, and its
+/// functions are used.
 #[test]
 fn the_headers_compile_as_cpp() {
     let there = Command::new("c++").arg("--version").output().is_ok();
@@ -97,21 +92,13 @@ fn the_headers_compile_as_cpp() {
         let mut compiler = Command::new("c++");
         compiler.args(["-Wall", "-Wextra", "-pedantic", "-Werror", "-I"]);
         compiler.arg(&include).arg(format!("-std={standard}"));
-        let compiled = compiler
-            .arg("-o")
-            .arg(&program)
-            .arg(&source)
-            .output()
-            .unwrap();
+        let compiled = compiler.arg("-o").arg(&program).arg(&source).output().unwrap();
         assert!(
             compiled.status.success(),
             "{standard}: {}",
             String::from_utf8_lossy(&compiled.stderr)
         );
-        assert!(
-            Command::new(&program).status().unwrap().success(),
-            "{standard}"
-        );
+        assert!(Command::new(&program).status().unwrap().success(), "{standard}");
     }
 }
 
@@ -149,17 +136,13 @@ fn the_template_in_rust() {
         is_the_same(&model, &load(&module));
         let bytes = deflated_bytes(&fs::read(&module).unwrap());
         println!("{:20} {bytes} bytes deflated", model.id());
-        assert!(
-            bytes < TEMPLATE_BYTES,
-            "the template's module: {bytes} bytes"
-        );
+        assert!(bytes < TEMPLATE_BYTES, "the template's module: {bytes} bytes");
     }
     assert!(!model.follows_motion());
     let manifest = fs::read_to_string(project.join("Cargo.toml")).unwrap();
-    let moved = manifest.replace("\"trial\"", "\"moved\"").replace(
-        "default = [\"plugin\"]",
-        "default = [\"plugin\", \"motion\"]",
-    );
+    let moved = manifest
+        .replace("\"trial\"", "\"moved\"")
+        .replace("default = [\"plugin\"]", "default = [\"plugin\", \"motion\"]");
     fs::write(project.join("Cargo.toml"), moved).unwrap();
     follows_the_speed(&load(&build_rust(&project, None)));
     if has_wasm_target() {
@@ -178,13 +161,7 @@ fn follows_the_speed(model: &LoadedModel) {
         if let Some(speed_mm_s) = speed_mm_s {
             let (force_n, position_mm) = (0.4, 0.0);
             voice
-                .set_motion(Motion {
-                    speed_mm_s,
-                    force_n,
-                    position_mm,
-                    x_mm: 0.0,
-                    y_mm: 0.0,
-                })
+                .set_motion(Motion { speed_mm_s, force_n, position_mm, x_mm: 0.0, y_mm: 0.0 })
                 .unwrap();
         }
         let mut out = vec![0.0; 20_000];
@@ -209,14 +186,8 @@ fn spectra() -> [(&'static str, Vec<f64>); 5] {
     [
         ("rippled", smooth.iter().enumerate().map(ripple).collect()),
         ("smooth", smooth),
-        (
-            "falling",
-            curve(&|f| (-f / 90.0).exp() * (1.2 + (f / 25.0).sin())),
-        ),
-        (
-            "resonant",
-            curve(&|f| 0.02 / (1.0 + ((f - 300.0) / 30.0).powi(2))),
-        ),
+        ("falling", curve(&|f| (-f / 90.0).exp() * (1.2 + (f / 25.0).sin()))),
+        ("resonant", curve(&|f| 0.02 / (1.0 + ((f - 300.0) / 30.0).powi(2)))),
         ("comb", comb_spectrum(&grid)),
     ]
 }
@@ -228,33 +199,23 @@ fn comb_spectrum(grid: &[f64]) -> Vec<f64> {
         d if d < 6.0 => 0.5,
         _ => 1e-3,
     };
-    grid.iter()
-        .map(|&f| 0.01 * line(f) * (-f / 300.0).exp())
-        .collect()
+    grid.iter().map(|&f| 0.01 * line(f) * (-f / 300.0).exp()).collect()
 }
 
-/// The requirements of a model: its voice has its magnitude and level, depends on its seed and not on the
-/// block size, and changes without a click; empty spectra and wrong parameters are refused.
+/// The requirements of a model: its voice has its magnitude and level, depends on its seed and not
+/// on the block size, and changes without a click; empty spectra and wrong parameters are refused.
 fn holds(model: &LoadedModel, level_tolerance: f64) {
     for (name, magnitude) in spectra() {
         let fit = fit(model, &magnitude, &[]).unwrap();
         let p = &fit.parameters;
-        let reference = model
-            .magnitude(p, Band::TACTILE, &Band::TACTILE.grid_hz())
-            .unwrap();
+        let reference = model.magnitude(p, Band::TACTILE, &Band::TACTILE.grid_hz()).unwrap();
         let unit = htex_dsp::grid::level_rms(&reference);
         let samples = rendered(model, p, 11, 4_096, 60.0);
-        let (rms, db) = (
-            rms(&samples),
-            distance_db(&measured_spectrum(&samples), &reference),
-        );
+        let (rms, db) = (rms(&samples), distance_db(&measured_spectrum(&samples), &reference));
         let id = model.id();
         println!("{id:20} {name:9} unit {unit:.5}  RMS {rms:.4}  voice within {db:.3} dB RMS");
         assert!((unit - 1.0).abs() < 1e-3, "{id} {name}: unit RMS is {unit}");
-        assert!(
-            (rms - 1.0).abs() < level_tolerance,
-            "{id} {name}: RMS {rms}"
-        );
+        assert!((rms - 1.0).abs() < level_tolerance, "{id} {name}: RMS {rms}");
         assert!(db < 1.0, "{id} {name}: {db} dB");
     }
     samples_follow_the_seed_alone(model);
@@ -266,12 +227,7 @@ fn samples_follow_the_seed_alone(model: &LoadedModel) {
     let p = fit(model, &spectra()[0].1, &[]).unwrap().parameters;
     let whole = rendered(model, &p, 5, usize::MAX, 0.3);
     for block in [1, 7, 64] {
-        assert_eq!(
-            rendered(model, &p, 5, block, 0.3),
-            whole,
-            "{} in {block}",
-            model.id()
-        );
+        assert_eq!(rendered(model, &p, 5, block, 0.3), whole, "{} in {block}", model.id());
     }
     assert_ne!(rendered(model, &p, 6, 64, 0.3), whole, "{}", model.id());
     let subnormal = |x: &f32| x.is_subnormal() || !x.is_finite();
@@ -293,34 +249,20 @@ fn retunes_do_not_click(model: &LoadedModel) {
     let sharpest = |x: &[f32]| x.windows(3).map(bend).fold(0.0, f32::max);
     let steady = [&a, &half, &b].map(|p| sharpest(&rendered(model, p, 3, 500, 2.0)));
     let bound = 2.0 * steady.into_iter().fold(0.0, f32::max);
-    assert!(
-        sharpest(&out) < bound,
-        "{}: {} {bound}",
-        model.id(),
-        sharpest(&out)
-    );
+    assert!(sharpest(&out) < bound, "{}: {} {bound}", model.id(), sharpest(&out));
 }
 
 fn edges_are_answered(model: &LoadedModel) {
     let grid = Band::TACTILE.grid_hz();
     let at = |hz: &[f64]| -> Vec<f64> {
-        grid.iter()
-            .map(|f| f64::from(u8::from(hz.contains(f))))
-            .collect()
+        grid.iter().map(|f| f64::from(u8::from(hz.contains(f)))).collect()
     };
-    let hard = [
-        vec![0.0; grid.len()],
-        vec![1.0; grid.len()],
-        at(&[20.0]),
-        at(&[400.0, 405.0]),
-    ];
+    let hard = [vec![0.0; grid.len()], vec![1.0; grid.len()], at(&[20.0]), at(&[400.0, 405.0])];
     for magnitude in hard {
         match fit(model, &magnitude, &[]) {
-            Ok(fit) => assert!(
-                rendered(model, &fit.parameters, 1, 64, 0.1)
-                    .iter()
-                    .all(|x| x.is_finite())
-            ),
+            Ok(fit) => {
+                assert!(rendered(model, &fit.parameters, 1, 64, 0.1).iter().all(|x| x.is_finite()))
+            }
             Err(error) => assert_eq!(status(&error), Status::CannotFit, "{error}"),
         }
     }
@@ -336,10 +278,7 @@ fn edges_are_answered(model: &LoadedModel) {
     for p in wrong {
         let error = model.magnitude(&p, Band::TACTILE, &grid).unwrap_err();
         assert_eq!(status(&error), Status::InvalidParameters, "{p:?}: {error}");
-        assert_eq!(
-            status(&stream.retune(&p).unwrap_err()),
-            Status::InvalidParameters
-        );
+        assert_eq!(status(&stream.retune(&p).unwrap_err()), Status::InvalidParameters);
         assert!(Stream::new(model, &p, Band::TACTILE, RATE_HZ, 3).is_err());
     }
 }
@@ -361,11 +300,7 @@ fn the_rhythm_is_found(model: &LoadedModel) {
 fn the_pitch_is_found(model: &LoadedModel) {
     let comb = comb_spectrum(&Band::TACTILE.grid_hz());
     let found = fit(model, &comb, &[]).unwrap().parameters;
-    println!(
-        "{:20} 65 Hz: found {:.3} Hz",
-        model.id(),
-        found[1] / found[0]
-    );
+    println!("{:20} 65 Hz: found {:.3} Hz", model.id(), found[1] / found[0]);
     assert!((found[1] / found[0] - 65.0).abs() < 0.1);
 }
 
@@ -398,8 +333,7 @@ fn rendered(model: &LoadedModel, p: &[f64], seed: u64, block: usize, seconds: f6
     let mut stream = Stream::new(model, p, Band::TACTILE, RATE_HZ, seed).unwrap();
     let mut out = vec![0.0f32; (seconds * RATE_HZ) as usize];
     let block = block.min(out.len());
-    out.chunks_mut(block)
-        .for_each(|part| stream.render(part).unwrap());
+    out.chunks_mut(block).for_each(|part| stream.render(part).unwrap());
     out
 }
 

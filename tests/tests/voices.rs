@@ -1,5 +1,5 @@
-//! Requirements of the voice of every model: it matches its magnitude and level, does not depend on block
-//! sizes, follows its seed, and changes without a click.
+//! Requirements of the voice of every model: it matches its magnitude and level, does not depend on
+//! block sizes, follows its seed, and changes without a click.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_dsp::grid::level_rms;
@@ -12,11 +12,7 @@ fn fitted() -> Vec<(LoadedModel, Vec<f64>)> {
     let band = Band::TACTILE;
     let grid = band.grid_hz();
     let ripple = |(i, m): (usize, &f64)| m * (1.0 + 0.3 * (i as f64 * 0.9).sin());
-    let magnitude: Vec<f64> = smooth_spectrum(&grid)
-        .iter()
-        .enumerate()
-        .map(ripple)
-        .collect();
+    let magnitude: Vec<f64> = smooth_spectrum(&grid).iter().enumerate().map(ripple).collect();
     let models = Registry::builtin();
     let fit = |model: &LoadedModel| {
         let request = FitRequest {
@@ -46,10 +42,7 @@ fn a_minute_of_each_voice_has_its_magnitude_and_level() {
         let grid = Band::TACTILE.grid_hz();
         let magnitude = model.magnitude(&parameters, Band::TACTILE, &grid).unwrap();
         let distance = distance_db(&heard, &magnitude);
-        println!(
-            "{:16} RMS {rms:.4}  spectrum within {distance:.3} dB RMS",
-            model.id()
-        );
+        println!("{:16} RMS {rms:.4}  spectrum within {distance:.3} dB RMS", model.id());
         assert!((rms - 1.0).abs() < 0.02, "{}: RMS {rms}", model.id());
         assert!(distance < 1.0, "{}: {distance} dB", model.id());
     }
@@ -61,18 +54,12 @@ fn blocks_and_seeds() {
         let render = |block: usize, seed: u64| {
             let mut stream = stream(&model, &parameters, seed);
             let mut out = vec![0.0f32; 9_000];
-            out.chunks_mut(block)
-                .for_each(|part| stream.render(part).unwrap());
+            out.chunks_mut(block).for_each(|part| stream.render(part).unwrap());
             out
         };
         let whole = render(9_000, 5);
         for block in [1, 7, 64, 1_000] {
-            assert_eq!(
-                render(block, 5),
-                whole,
-                "{} in blocks of {block}",
-                model.id()
-            );
+            assert_eq!(render(block, 5), whole, "{} in blocks of {block}", model.id());
         }
         // sPeak starts all its sinusoids at their crests unless asked otherwise.
         if model.short_name() != "speak" {
@@ -86,9 +73,7 @@ fn retunes_do_not_click() {
     let models = fitted();
     for (model, parameters) in models {
         let other = louder_at_one_end(&model);
-        let half = model
-            .interpolate(&[&parameters, &other], &[0.5, 0.5])
-            .unwrap();
+        let half = model.interpolate(&[&parameters, &other], &[0.5, 0.5]).unwrap();
         let mut stream = stream(&model, &parameters, 3);
         let mut out = vec![0.0f32; 40_000];
         for (i, block) in out.chunks_mut(500).enumerate() {
@@ -99,26 +84,19 @@ fn retunes_do_not_click() {
         let largest = |x: &[f32]| x.windows(3).map(second_difference).fold(0.0, f32::max);
         let steady = |p: &[f64]| {
             let mut out = vec![0.0f32; 40_000];
-            Stream::new(&model, p, Band::TACTILE, RATE_HZ, 3)
-                .unwrap()
-                .render(&mut out)
-                .unwrap();
+            Stream::new(&model, p, Band::TACTILE, RATE_HZ, 3).unwrap().render(&mut out).unwrap();
             largest(&out)
         };
         // A click would show as a bend far sharper than any the steady signals have.
         let bound = 2.0 * steady(&parameters).max(steady(&other)).max(steady(&half));
-        assert!(
-            largest(&out) < bound,
-            "{}: {} {bound}",
-            model.id(),
-            largest(&out)
-        );
+        assert!(largest(&out) < bound, "{}: {} {bound}", model.id(), largest(&out));
     }
 }
 
-/// A voice that has been through a hundred mixes plays each as a voice that was made with it, to a ten-thousandth of
-/// its RMS. Lines are left out: sinusoids of sPeak go on with the phases they had, and a map keeps the correction for the filters of the band's
-/// edges that it was made with (0.4 % between two rows).
+/// A voice that has been through a hundred mixes plays each as a voice that was made with it, to a
+/// ten-thousandth of its RMS. Lines are left out: sinusoids of sPeak go on with the phases they
+/// had, and a map keeps the correction for the filters of the band's edges that it was made with
+/// (0.4 % between two rows).
 #[test]
 fn a_retuned_voice_plays_what_one_made_so_plays() {
     const SEED: u64 = 21;
@@ -127,11 +105,7 @@ fn a_retuned_voice_plays_what_one_made_so_plays() {
     let of_order = |order: usize| {
         let coefficients = (0..order).map(|k| 0.25 * (-0.7f64).powi(k as i32));
         let rate_hz = usual[usual.len() - 1];
-        [order as f64]
-            .into_iter()
-            .chain(coefficients)
-            .chain([rate_hz])
-            .collect()
+        [order as f64].into_iter().chain(coefficients).chain([rate_hz]).collect()
     };
     let pairs = models.iter().filter(|(model, _)| !model.has_lines());
     let pairs =
@@ -139,9 +113,7 @@ fn a_retuned_voice_plays_what_one_made_so_plays() {
     // Orders that rise and fall, with a direct form and as a lattice.
     let orders = [(3, 8), (5, 30)].map(|(low, high)| (ar, of_order(low), of_order(high)));
     for (model, parameters, other) in pairs.chain(orders) {
-        let rate_hz = model
-            .voice_rate_hz(&parameters, Band::TACTILE, RATE_HZ)
-            .unwrap();
+        let rate_hz = model.voice_rate_hz(&parameters, Band::TACTILE, RATE_HZ).unwrap();
         let make = |set: &[f64]| model.voice(set, Band::TACTILE, rate_hz, SEED).unwrap();
         let mut voice = make(&parameters);
         // Long enough for a change and the state of filters before it to have decayed.
@@ -149,9 +121,7 @@ fn a_retuned_voice_plays_what_one_made_so_plays() {
         let (mut retuned, mut worst) = (vec![0.0; frames], 0.0f64);
         for i in 0..100 {
             let part = 0.5 + 0.5 * (1.7 * f64::from(i)).sin();
-            let mixed = model
-                .interpolate(&[&parameters, &other], &[part, 1.0 - part])
-                .unwrap();
+            let mixed = model.interpolate(&[&parameters, &other], &[part, 1.0 - part]).unwrap();
             // Of changes that arrive during another, the last one counts.
             voice.retune(&other).unwrap();
             voice.render(&mut retuned[..5]).unwrap();
@@ -172,8 +142,8 @@ fn a_retuned_voice_plays_what_one_made_so_plays() {
     }
 }
 
-/// Voices that are rendered in one call give the same bits as each alone: with any remainder of their last
-/// blocks, while some of them change, and beside voices of other models.
+/// Voices that are rendered in one call give the same bits as each alone: with any remainder of
+/// their last blocks, while some of them change, and beside voices of other models.
 #[test]
 fn voices_together_are_voices_alone() {
     let models = fitted();
@@ -181,9 +151,7 @@ fn voices_together_are_voices_alone() {
     let mut sets: Vec<(&LoadedModel, Vec<f64>)> =
         models.iter().map(|(m, p)| (m, p.clone())).collect();
     // Orders and rates of filters that run side by side, in other lengths, and as a lattice.
-    let orders = [
-        6, 6, 2, 6, 9, 6, 6, 6, 6, 3, 6, 6, 20, 6, 6, 6, 6, 1, 6, 6, 6,
-    ];
+    let orders = [6, 6, 2, 6, 9, 6, 6, 6, 6, 3, 6, 6, 20, 6, 6, 6, 6, 1, 6, 6, 6];
     let first = sets.len();
     for (i, order) in orders.into_iter().enumerate() {
         let mut set = vec![f64::from(order)];
@@ -201,10 +169,7 @@ fn voices_together_are_voices_alone() {
     let last = sets.len() - 1;
     together[last].render(&mut [0.0]).unwrap();
     alone[last].render(&mut [0.0]).unwrap();
-    for (round, frames) in [1, 256, 64, 3, 67, 200, 0, 1_000, 40, 256]
-        .into_iter()
-        .enumerate()
-    {
+    for (round, frames) in [1, 256, 64, 3, 67, 200, 0, 1_000, 40, 256].into_iter().enumerate() {
         if round == 4 {
             for i in [first, first + 7] {
                 let mut set = sets[i].1.clone();
@@ -218,11 +183,7 @@ fn voices_together_are_voices_alone() {
         for (i, voice) in alone.iter_mut().enumerate() {
             let mut own = vec![0.0; frames];
             voice.render(&mut own).unwrap();
-            assert_eq!(
-                own,
-                out[i * frames..][..frames],
-                "voice {i}, {frames} frames"
-            );
+            assert_eq!(own, out[i * frames..][..frames], "voice {i}, {frames} frames");
         }
         assert!(out[sets.len() * frames..].iter().all(|x| *x == 0.0));
     }
@@ -256,17 +217,15 @@ fn a_rate_that_cannot_be_reached_is_an_error() {
     assert!(refused.contains("from 50 Hz to 1000000 Hz"), "{refused}");
 }
 
-/// White noise over the band, whose upper half bin lies above the Nyquist frequency: the filters at the
-/// band's edges and that half bin take 1.1 % off, which the voice makes up for, and so does it for what the bins of the
-/// band miss at its edges.
+/// White noise over the band, whose upper half bin lies above the Nyquist frequency: the filters at
+/// the band's edges and that half bin take 1.1 % off, which the voice makes up for, and so does it
+/// for what the bins of the band miss at its edges.
 #[test]
 fn the_level_is_that_behind_the_filters_of_the_band() {
     let model = Registry::builtin().find("ar").unwrap().clone();
-    for (rate_hz, band) in [
-        (2_000.0, Band::TACTILE),
-        (4_000.0, Band::TACTILE),
-        (2_000.0, Band::from((150.0, 700.0))),
-    ] {
+    for (rate_hz, band) in
+        [(2_000.0, Band::TACTILE), (4_000.0, Band::TACTILE), (2_000.0, Band::from((150.0, 700.0)))]
+    {
         let mut power = 0.0;
         for seed in 0..8 {
             let stream = Stream::new(&model, &[0.0, rate_hz], band, RATE_HZ, seed);
@@ -277,10 +236,6 @@ fn the_level_is_that_behind_the_filters_of_the_band() {
             power += level_rms(read).powi(2) / 8.0;
         }
         // Noise of so many samples scatters by 0.1 %; from 2 kHz on, the resampler takes 0.3 % off.
-        assert!(
-            (power.sqrt() - 1.0).abs() < 6e-3,
-            "{rate_hz} {band:?}: {}",
-            power.sqrt()
-        );
+        assert!((power.sqrt() - 1.0).abs() < 6e-3, "{rate_hz} {band:?}: {}", power.sqrt());
     }
 }

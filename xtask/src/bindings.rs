@@ -33,97 +33,37 @@ struct Program {
     how: &'static str,
 }
 
-const CC: Program = Program {
-    names: &["cc"],
-    how: "apt-get install gcc",
-};
-const CLANG: Program = Program {
-    names: &["clang"],
-    how: "apt-get install clang lld",
-};
-const PKG_CONFIG: Program = Program {
-    names: &["pkg-config"],
-    how: "apt-get install pkg-config",
-};
-const CMAKE: Program = Program {
-    names: &["cmake"],
-    how: "apt-get install cmake",
-};
-const SDL2: Program = Program {
-    names: &["sdl2-config"],
-    how: "apt-get install libsdl2-dev",
-};
-const MONO: Program = Program {
-    names: &["mono"],
-    how: "apt-get install mono-mcs mono-runtime",
-};
-const NODE: Program = Program {
-    names: &["node"],
-    how: "install Node.js from version 20",
-};
-const NPM: Program = Program {
-    names: &["npm"],
-    how: "apt-get install npm",
-};
-const PYTHON: Program = Program {
-    names: &["python3"],
-    how: "apt-get install python3 python3-venv",
-};
+const CC: Program = Program { names: &["cc"], how: "apt-get install gcc" };
+const CLANG: Program = Program { names: &["clang"], how: "apt-get install clang lld" };
+const PKG_CONFIG: Program = Program { names: &["pkg-config"], how: "apt-get install pkg-config" };
+const CMAKE: Program = Program { names: &["cmake"], how: "apt-get install cmake" };
+const SDL2: Program = Program { names: &["sdl2-config"], how: "apt-get install libsdl2-dev" };
+const MONO: Program = Program { names: &["mono"], how: "apt-get install mono-mcs mono-runtime" };
+const NODE: Program = Program { names: &["node"], how: "install Node.js from version 20" };
+const NPM: Program = Program { names: &["npm"], how: "apt-get install npm" };
+const PYTHON: Program =
+    Program { names: &["python3"], how: "apt-get install python3 python3-venv" };
 const CHROMIUM: Program = Program {
     names: &["chromium", "chromium-browser", "google-chrome"],
     how: "apt-get install chromium",
 };
 const QEMU_USER: [Program; 2] = [
-    Program {
-        names: &["qemu-x86_64"],
-        how: "apt-get install qemu-user",
-    },
-    Program {
-        names: &["qemu-aarch64"],
-        how: "apt-get install qemu-user",
-    },
+    Program { names: &["qemu-x86_64"], how: "apt-get install qemu-user" },
+    Program { names: &["qemu-aarch64"], how: "apt-get install qemu-user" },
 ];
 
 const BINDINGS: [Binding; 5] = [
-    Binding {
-        name: "c",
-        needs: &[CC, PKG_CONFIG, CMAKE, SDL2],
-        test: c::test,
-    },
-    Binding {
-        name: "python",
-        needs: &[PYTHON],
-        test: python::test,
-    },
-    Binding {
-        name: "web",
-        needs: &[NODE, NPM, CHROMIUM, CLANG],
-        test: web::test,
-    },
-    Binding {
-        name: "studio",
-        needs: &[NODE, NPM, CHROMIUM],
-        test: studio::test,
-    },
-    Binding {
-        name: "processors",
-        needs: &QEMU_USER,
-        test: processors::sample,
-    },
+    Binding { name: "c", needs: &[CC, PKG_CONFIG, CMAKE, SDL2], test: c::test },
+    Binding { name: "python", needs: &[PYTHON], test: python::test },
+    Binding { name: "web", needs: &[NODE, NPM, CHROMIUM, CLANG], test: web::test },
+    Binding { name: "studio", needs: &[NODE, NPM, CHROMIUM], test: studio::test },
+    Binding { name: "processors", needs: &QEMU_USER, test: processors::sample },
 ];
 
 /// What takes longer than the tests of continuous integration may.
 const PROOFS: [Binding; 2] = [
-    Binding {
-        name: "processors",
-        needs: &QEMU_USER,
-        test: processors::all,
-    },
-    Binding {
-        name: "costs",
-        needs: &[CC, MONO, NODE, PYTHON],
-        test: costs::test,
-    },
+    Binding { name: "processors", needs: &QEMU_USER, test: processors::all },
+    Binding { name: "costs", needs: &[CC, MONO, NODE, PYTHON], test: costs::test },
 ];
 
 /// Tests the named bindings, or all.
@@ -191,8 +131,7 @@ impl Program {
 fn which(name: &str) -> std::path::PathBuf {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let mut all = std::env::split_paths(&path).map(|folder| folder.join(name));
-    all.find(|file| file.is_file())
-        .unwrap_or_else(|| name.into())
+    all.find(|file| file.is_file()).unwrap_or_else(|| name.into())
 }
 
 /// Copies a file to a folder under a name.

@@ -18,18 +18,11 @@ pub(crate) struct Commit {
 impl Commit {
     /// Of sources that are no clone.
     pub(crate) fn unknown() -> Self {
-        Self {
-            id: "unknown".to_owned(),
-            seconds: "0".to_owned(),
-        }
+        Self { id: "unknown".to_owned(), seconds: "0".to_owned() }
     }
 
     pub(crate) fn of_clone() -> Result<Self> {
-        let modified = if git(&["status", "--porcelain"])?.is_empty() {
-            ""
-        } else {
-            "-modified"
-        };
+        let modified = if git(&["status", "--porcelain"])?.is_empty() { "" } else { "-modified" };
         Ok(Self {
             id: git(&["rev-parse", "--short=12", "HEAD"])? + modified,
             seconds: git(&["log", "-1", "--format=%ct"])?,
@@ -38,24 +31,14 @@ impl Commit {
 
     /// A command that knows the commit and its time.
     pub(crate) fn told_to<'a>(&self, command: &'a mut Command) -> &'a mut Command {
-        command
-            .env("HTEX_COMMIT", &self.id)
-            .env("SOURCE_DATE_EPOCH", &self.seconds)
+        command.env("HTEX_COMMIT", &self.id).env("SOURCE_DATE_EPOCH", &self.seconds)
     }
 }
 
 /// What git prints, without the last line's end.
 fn git(words: &[&str]) -> Result<String> {
-    let output = Command::new("git")
-        .args(words)
-        .current_dir(workspace())
-        .output();
+    let output = Command::new("git").args(words).current_dir(workspace()).output();
     let output = output.context("git, which says what commit is released")?;
-    ensure!(
-        output.status.success(),
-        "git {}: {}",
-        words.join(" "),
-        output.status
-    );
+    ensure!(output.status.success(), "git {}: {}", words.join(" "), output.status);
     Ok(String::from_utf8(output.stdout)?.trim_end().to_owned())
 }

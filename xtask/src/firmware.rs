@@ -22,30 +22,21 @@ const LAYOUTS: [Layout; 3] = [
     (
         "arduino/HtexPlayer",
         &[
-            (
-                ("sdk/player/c/arduino", "library.properties"),
-                "library.properties",
-            ),
+            (("sdk/player/c/arduino", "library.properties"), "library.properties"),
             (SOURCE, "src/htex_player.c"),
             (HEADER, "src/htex_player.h"),
             (
                 ("sdk/player/c/arduino/examples/Texture", "Texture.ino"),
                 "examples/Texture/Texture.ino",
             ),
-            (
-                ("sdk/player/c/examples", "cloth.h"),
-                "examples/Texture/cloth.h",
-            ),
+            (("sdk/player/c/examples", "cloth.h"), "examples/Texture/cloth.h"),
         ],
     ),
     (
         "esp-idf/htex_player",
         &[
             (("sdk/player/c/esp-idf", "CMakeLists.txt"), "CMakeLists.txt"),
-            (
-                ("sdk/player/c/esp-idf", "idf_component.yml"),
-                "idf_component.yml",
-            ),
+            (("sdk/player/c/esp-idf", "idf_component.yml"), "idf_component.yml"),
             (SOURCE, "htex_player.c"),
             (HEADER, "include/htex_player.h"),
         ],
@@ -54,10 +45,7 @@ const LAYOUTS: [Layout; 3] = [
         "zephyr/htex_player",
         &[
             (("sdk/player/c/zephyr", "module.yml"), "zephyr/module.yml"),
-            (
-                ("sdk/player/c/zephyr", "CMakeLists.txt"),
-                "zephyr/CMakeLists.txt",
-            ),
+            (("sdk/player/c/zephyr", "CMakeLists.txt"), "zephyr/CMakeLists.txt"),
             (("sdk/player/c/zephyr", "Kconfig"), "zephyr/Kconfig"),
             (SOURCE, "src/htex_player.c"),
             (HEADER, "include/htex_player.h"),

@@ -1,5 +1,6 @@
-//! Generated files: tests compare them with what the code generates, and write them with `HTEX_GENERATE=1`, which
-//! `cargo xtask generate` sets. The tests that do so are named `generated_…`.
+//! Generated files: tests compare them with what the code generates, and write them with
+//! `HTEX_GENERATE=1`, which `cargo xtask generate` sets. The tests that do so are named
+//! `generated_…`.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -34,7 +35,8 @@ const TESTS: &[&str] = &[
     "unity",
 ];
 
-/// Writes all generated files. The whole workspace is built, with the features that `cargo test` builds it with.
+/// Writes all generated files. The whole workspace is built, with the features that `cargo test`
+/// builds it with.
 ///
 /// # Errors
 /// When a test of a generated file fails.
@@ -74,7 +76,8 @@ pub fn file_with(path: impl AsRef<str>, bytes: &[u8], is_fresh: impl FnOnce(&[u8
     assert!(is_fresh, "{name} is stale: run `cargo xtask generate`");
 }
 
-/// Compares the part of a document between the lines `<!-- NAME, generated -->` and `<!-- end -->` with this text, or writes it.
+/// Compares the part of a document between the lines `<!-- NAME, generated -->` and `<!-- end -->`
+/// with this text, or writes it.
 ///
 /// # Panics
 /// As [`file()`], and when the document has no such part.
@@ -110,7 +113,8 @@ pub fn folder(path: &str, files: &[File]) {
     only(path, files.iter().map(|(path, _)| path.as_str()));
 }
 
-/// Removes all files of a folder but `expected`, paths from the workspace's folder, or fails because of them.
+/// Removes all files of a folder but `expected`, paths from the workspace's folder, or fails
+/// because of them.
 ///
 /// # Panics
 /// When the folder has other files, or cannot be read.
@@ -125,10 +129,7 @@ pub fn only<'a>(path: &str, expected: impl IntoIterator<Item = &'a str>) {
         if expected.contains(name.as_str()) {
             continue;
         }
-        assert!(
-            is_written(),
-            "{name} is not generated any more: run `cargo xtask generate`"
-        );
+        assert!(is_written(), "{name} is not generated any more: run `cargo xtask generate`");
         fs::remove_file(entry.path()).unwrap_or_else(|error| failed(error));
     }
 }

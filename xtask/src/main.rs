@@ -97,9 +97,5 @@ fn build_plugins(options: &[&str]) -> Result<ExitCode> {
 
 /// Installs libhtex.
 fn install(prefix: &str, whole: bool) -> Result<()> {
-    dist(&Dist {
-        prefix: prefix.into(),
-        whole,
-        build: Build::here()?,
-    })
+    dist(&Dist { prefix: prefix.into(), whole, build: Build::here()? })
 }

@@ -51,12 +51,7 @@ fn fence(line: &str) -> Option<&str> {
 fn begun(line: &str, fence: &str, number: usize, at: usize) -> Block {
     let words = line.trim_start().trim_start_matches(fence);
     let language = words.split([',', ' ', '\n']).next().unwrap_or_default();
-    Block {
-        language: language.to_owned(),
-        text: String::new(),
-        line: number,
-        range: at..at,
-    }
+    Block { language: language.to_owned(), text: String::new(), line: number, range: at..at }
 }
 
 /// Where a page's links and pictures lead to, without titles; not those in code.
@@ -126,9 +121,7 @@ pub fn anchors(page: &str) -> Vec<String> {
         let is_code = code.iter().any(|block| block.range.contains(&at));
         if let (false, Some(heading)) = (is_code, heading(line)) {
             let anchor = anchor(&without_links(heading));
-            let same = anchors
-                .iter()
-                .filter(|other| without_number(other) == anchor);
+            let same = anchors.iter().filter(|other| without_number(other) == anchor);
             let anchor = match same.count() {
                 0 => anchor,
                 n => format!("{anchor}-{n}"),

@@ -1,4 +1,5 @@
-//! Software that tests use if it is installed, beyond Rust and a C compiler. No test installs anything: `.ci/run` does.
+//! Software that tests use if it is installed, beyond Rust and a C compiler. No test installs
+//! anything: `.ci/run` does.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -29,39 +30,20 @@ pub const WASM_CLANG: Need = Need {
 };
 
 /// A compiler of C.
-pub const CC: Need = Need {
-    what: "a C compiler",
-    how: "apt-get install gcc",
-    for_wasm: false,
-};
+pub const CC: Need = Need { what: "a C compiler", how: "apt-get install gcc", for_wasm: false };
 
 /// Another compiler of C.
-pub const CLANG: Need = Need {
-    what: "clang",
-    how: "apt-get install clang",
-    for_wasm: false,
-};
+pub const CLANG: Need = Need { what: "clang", how: "apt-get install clang", for_wasm: false };
 
 /// Sanitizers of clang.
-pub const SANITIZERS: Need = Need {
-    what: "clang's sanitizers",
-    how: "apt-get install libclang-rt-dev",
-    for_wasm: false,
-};
+pub const SANITIZERS: Need =
+    Need { what: "clang's sanitizers", how: "apt-get install libclang-rt-dev", for_wasm: false };
 
 /// A compiler of C++17.
-pub const CXX: Need = Need {
-    what: "a C++ compiler",
-    how: "apt-get install g++",
-    for_wasm: false,
-};
+pub const CXX: Need = Need { what: "a C++ compiler", how: "apt-get install g++", for_wasm: false };
 
 /// Builds projects in C.
-pub const CMAKE: Need = Need {
-    what: "CMake",
-    how: "apt-get install cmake",
-    for_wasm: false,
-};
+pub const CMAKE: Need = Need { what: "CMake", how: "apt-get install cmake", for_wasm: false };
 
 /// A compiler of C# and its runtime.
 pub const MONO: Need = Need {
@@ -71,25 +53,15 @@ pub const MONO: Need = Need {
 };
 
 /// A checker of memory accesses.
-pub const VALGRIND: Need = Need {
-    what: "valgrind",
-    how: "apt-get install valgrind",
-    for_wasm: false,
-};
+pub const VALGRIND: Need =
+    Need { what: "valgrind", how: "apt-get install valgrind", for_wasm: false };
 
 /// Sound on Linux.
-pub const ALSA: Need = Need {
-    what: "ALSA",
-    how: "apt-get install libasound2-dev pkg-config",
-    for_wasm: false,
-};
+pub const ALSA: Need =
+    Need { what: "ALSA", how: "apt-get install libasound2-dev pkg-config", for_wasm: false };
 
 /// Gamepads.
-pub const SDL: Need = Need {
-    what: "SDL 2",
-    how: "apt-get install libsdl2-dev",
-    for_wasm: false,
-};
+pub const SDL: Need = Need { what: "SDL 2", how: "apt-get install libsdl2-dev", for_wasm: false };
 
 /// Finds runtimes of OpenXR.
 pub const OPENXR: Need = Need {
@@ -106,11 +78,8 @@ pub const BARE_TARGET: Need = Need {
 };
 
 /// Emulates a board with a Cortex-M4F.
-pub const QEMU_ARM: Need = Need {
-    what: "QEMU for ARM boards",
-    how: "apt-get install qemu-system-arm",
-    for_wasm: false,
-};
+pub const QEMU_ARM: Need =
+    Need { what: "QEMU for ARM boards", how: "apt-get install qemu-system-arm", for_wasm: false };
 
 /// Builds C for boards with a Cortex-M4F.
 pub const ARM_GCC: Need = Need {
@@ -148,18 +117,12 @@ pub const PEERS: Need = Need {
 };
 
 /// A browser without a window.
-pub const CHROMIUM: Need = Need {
-    what: "Chromium",
-    how: "apt-get install chromium",
-    for_wasm: false,
-};
+pub const CHROMIUM: Need =
+    Need { what: "Chromium", how: "apt-get install chromium", for_wasm: false };
 
 /// Another validator of JSON Schemas.
-pub const AJV: Need = Need {
-    what: "Ajv",
-    how: "npm install --prefix target/node ajv@8",
-    for_wasm: false,
-};
+pub const AJV: Need =
+    Need { what: "Ajv", how: "npm install --prefix target/node ajv@8", for_wasm: false };
 
 /// The validator of glTF files of Khronos.
 pub const GLTF_VALIDATOR: Need = Need {
@@ -169,8 +132,8 @@ pub const GLTF_VALIDATOR: Need = Need {
 };
 
 impl Need {
-    /// Returns `there`, whether the software is installed. If it is not, the running test is listed at the end of `cargo test`
-    /// ([`told`]).
+    /// Returns `there`, whether the software is installed. If it is not, the running test is listed
+    /// at the end of `cargo test` ([`told`]).
     ///
     /// # Panics
     /// When software for WASM is absent and the environment has `HTEX_REQUIRE_WASM=1`.
@@ -217,7 +180,8 @@ pub fn told() -> std::io::Result<Vec<String>> {
     Ok(sentences)
 }
 
-/// Writes to standard error directly: the test harness captures the macros' output of a test that passes.
+/// Writes to standard error directly: the test harness captures the macros' output of a test that
+/// passes.
 pub fn say(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }

@@ -1,4 +1,5 @@
-//! The systems that htex is built for, and how cargo, the linkers and the compilers of C are called for each.
+//! The systems that htex is built for, and how cargo, the linkers and the compilers of C are called
+//! for each.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -67,8 +68,9 @@ pub const PLATFORMS: [Platform; 4] = [
     },
 ];
 
-/// How something is built: for this machine by its own tools, or for release by zig, whose headers and libraries of each system are the
-/// same everywhere. Windows has mingw-w64 instead: zig's linker exports all functions of a DLL, of which there may not be more than 65,535.
+/// How something is built: for this machine by its own tools, or for release by zig, whose headers
+/// and libraries of each system are the same everywhere. Windows has mingw-w64 instead: zig's
+/// linker exports all functions of a DLL, of which there may not be more than 65,535.
 #[derive(Debug, Clone)]
 pub struct Build {
     platform: Platform,
@@ -91,8 +93,8 @@ impl Platform {
         }
     }
 
-    /// Whether a wheel is released. What one for macOS needs of Apple's frameworks, for certificates, is not to be had here: pip builds
-    /// it there of the sources.
+    /// Whether a wheel is released. What one for macOS needs of Apple's frameworks, for
+    /// certificates, is not to be had here: pip builds it there of the sources.
     pub(crate) fn has_wheel(&self) -> bool {
         self.system != System::MacOs
     }
@@ -116,18 +118,12 @@ impl Build {
     /// # Errors
     /// As [`Platform::here`].
     pub fn here() -> Result<Self> {
-        Ok(Self {
-            platform: Platform::here()?,
-            commit: None,
-        })
+        Ok(Self { platform: Platform::here()?, commit: None })
     }
 
     /// For release.
     pub(crate) fn release(platform: Platform, commit: &Commit) -> Self {
-        Self {
-            platform,
-            commit: Some(commit.clone()),
-        }
+        Self { platform, commit: Some(commit.clone()) }
     }
 
     pub fn platform(&self) -> Platform {
@@ -164,9 +160,7 @@ impl Build {
     /// Maturin, which builds wheels, with a verb.
     pub fn maturin(&self, verb: &str) -> Command {
         let mut command = Command::new(tools().join("maturin"));
-        command
-            .arg(verb)
-            .current_dir(workspace().join("sdk/python"));
+        command.arg(verb).current_dir(workspace().join("sdk/python"));
         if let Some(commit) = &self.commit {
             self.for_release(&mut command, commit);
         }
@@ -178,16 +172,15 @@ impl Build {
         command.env("PATH", tools_first());
         command.env("MACOSX_DEPLOYMENT_TARGET", MACOS);
         command.env("RUSTFLAGS", self.flags());
-        // cargo-zigbuild, and maturin, which has it inside, name their compilers of C after the program that runs. With one name, and one
-        // version (requirements.txt), the wheel shall take what the archive has compiled.
-        command.env(
-            "CARGO_BIN_EXE_cargo-zigbuild",
-            tools().join("cargo-zigbuild"),
-        );
+        // cargo-zigbuild, and maturin, which has it inside, name their compilers of C after the
+        // program that runs. With one name, and one version (requirements.txt), the wheel shall
+        // take what the archive has compiled.
+        command.env("CARGO_BIN_EXE_cargo-zigbuild", tools().join("cargo-zigbuild"));
     }
 
-    /// Flags of the compiler: no path of this machine and no name of a function is in what is released; and where zig finds the names of
-    /// Apple's functions that it has none of, in files of our own.
+    /// Flags of the compiler: no path of this machine and no name of a function is in what is
+    /// released; and where zig finds the names of Apple's functions that it has none of, in files
+    /// of our own.
     fn flags(&self) -> String {
         let mut flags = vec![without_places()];
         match self.platform.system {
@@ -206,8 +199,9 @@ impl Build {
         flags.join(" ")
     }
 
-    /// Cargo as it builds the command and libhtex, whole: both at once, so that each has the features of the other. By the profile of the
-    /// tests all of the workspace is built, which has the features of the tests.
+    /// Cargo as it builds the command and libhtex, whole: both at once, so that each has the
+    /// features of the other. By the profile of the tests all of the workspace is built, which has
+    /// the features of the tests.
     pub(crate) fn cargo_of_both(&self) -> Command {
         let mut command = self.cargo("build");
         command.arg("--locked").args(self.profile());
@@ -217,8 +211,9 @@ impl Build {
         command
     }
 
-    /// The arguments of cargo that name the profile of what is installed: `release`, or the one of `HTEX_PROFILE` where nothing is
-    /// released, such as that of the tests, which then take what was compiled.
+    /// The arguments of cargo that name the profile of what is installed: `release`, or the one of
+    /// `HTEX_PROFILE` where nothing is released, such as that of the tests, which then take what
+    /// was compiled.
     pub(crate) fn profile(&self) -> [String; 2] {
         ["--profile".to_owned(), self.profile_name()]
     }
@@ -251,13 +246,7 @@ impl Build {
             return Command::new("cc");
         }
         let mut command = Command::new(tools().join("python"));
-        command.args([
-            "-m",
-            "ziglang",
-            "cc",
-            "-target",
-            &zig_target(&self.platform),
-        ]);
+        command.args(["-m", "ziglang", "cc", "-target", &zig_target(&self.platform)]);
         command
     }
 

@@ -10,7 +10,8 @@ use crate::places::{cargo, target, workspace};
 use crate::programs::run;
 use crate::wasm::{PROFILE, TARGET, Toolchain};
 
-/// The models' short names, which are those of the folders of `plugins`, in the order of the alphabet.
+/// The models' short names, which are those of the folders of `plugins`, in the order of the
+/// alphabet.
 ///
 /// # Errors
 /// When the folder cannot be read.
@@ -50,11 +51,7 @@ pub fn wasm() -> Result<PathBuf> {
 /// The toolchain that `HTEX_WASM_TOOLCHAIN` names.
 fn way() -> String {
     let way = std::env::var("HTEX_WASM_TOOLCHAIN").unwrap_or_default();
-    if way.is_empty() {
-        "auto".to_owned()
-    } else {
-        way
-    }
+    if way.is_empty() { "auto".to_owned() } else { way }
 }
 
 /// As [`wasm`], with the toolchain of the name: `installed`, `debian`, or `auto`.
@@ -66,12 +63,7 @@ pub fn wasm_by(way: &str) -> Result<PathBuf> {
     for model in &models()? {
         let (cargo, target) = toolchain.cargo(&target());
         let profile = ["--profile", PROFILE];
-        build(
-            cargo,
-            &target,
-            model,
-            &[&profile, toolchain.arguments()].concat(),
-        )?;
+        build(cargo, &target, model, &[&profile, toolchain.arguments()].concat())?;
         let file = format!("htex_{model}.wasm");
         place(&target.join(TARGET).join(PROFILE).join(&file), &file)?;
     }
@@ -91,8 +83,8 @@ pub fn wasm_is_installed() -> bool {
     Toolchain::find("installed").is_ok()
 }
 
-/// The folder of the models as WASM modules, for a test; `None`, and listed at the end, where no toolchain for them is
-/// installed.
+/// The folder of the models as WASM modules, for a test; `None`, and listed at the end, where no
+/// toolchain for them is installed.
 ///
 /// # Panics
 /// When a model cannot be built, and as [`Need::met`](crate::needs::Need::met).
@@ -105,7 +97,8 @@ pub fn wasm_if_there() -> Option<PathBuf> {
     Some(wasm().unwrap_or_else(|error| panic!("{error:#}")))
 }
 
-/// Models that a program fits only where they are named, as `htex_host` has them; a test holds the two to each other.
+/// Models that a program fits only where they are named, as `htex_host` has them; a test holds the
+/// two to each other.
 const NAMED: [&str; 2] = ["arma", "map"];
 
 /// The short names of the models that are fitted where none is named, in the order of the alphabet.

@@ -46,8 +46,8 @@ fn check(command: &Command, status: ExitStatus) -> Result<()> {
     bail!("{} {}: {status}", name(command), arguments.join(" "))
 }
 
-/// Removes what cargo tells of the package that it runs. Build scripts that watch it (`ring`'s does) would run again, and all that is built
-/// upon them.
+/// Removes what cargo tells of the package that it runs. Build scripts that watch it (`ring`'s
+/// does) would run again, and all that is built upon them.
 fn forget_package(command: &mut Command) {
     for (name, _) in std::env::vars_os() {
         if name.to_string_lossy().starts_with("CARGO_PKG_") {

@@ -1,7 +1,8 @@
-//! Lines of a shell, as far as pages have them: words, quotes, comments, continued lines, pipes, loops.
+//! Lines of a shell, as far as pages have them: words, quotes, comments, continued lines, pipes,
+//! loops.
 
-/// The simple commands of a script, each as its words. What is redirected is left out, and of a loop's variable the first value stands
-/// for all.
+/// The simple commands of a script, each as its words. What is redirected is left out, and of a
+/// loop's variable the first value stands for all.
 ///
 /// ```
 /// let script = "# a loop\nfor s in vinyl sand; do\n  htex fit $s.csv \\\n    --name 'A b' | tail -n 1 >log   # fits\ndone\n";
@@ -61,11 +62,7 @@ impl Reader {
 
     /// A digit before the sign is the number of a stream, as in `2>log`.
     fn redirect(&mut self) {
-        if self
-            .word
-            .as_deref()
-            .is_some_and(|word| word.parse::<u8>().is_ok())
-        {
+        if self.word.as_deref().is_some_and(|word| word.parse::<u8>().is_ok()) {
             self.word = None;
         }
         self.end_word();
@@ -88,10 +85,7 @@ fn substituted(rest: &mut std::iter::Peekable<std::str::Chars>) -> String {
         depth += i32::from(*c == '(') - i32::from(*c == ')');
         depth > 0
     });
-    format!(
-        "${}",
-        inner.filter(|c| c.is_alphanumeric()).collect::<String>()
-    )
+    format!("${}", inner.filter(|c| c.is_alphanumeric()).collect::<String>())
 }
 
 /// The commands without the words of loops, and with a value for their variables.
@@ -134,10 +128,7 @@ mod tests {
 
     #[test]
     fn a_sign_within_a_word_is_no_comment() {
-        assert_eq!(
-            commands("htex fit --map lateral=#2:0.5 -o a")[0][3],
-            "lateral=#2:0.5"
-        );
+        assert_eq!(commands("htex fit --map lateral=#2:0.5 -o a")[0][3], "lateral=#2:0.5");
         assert_eq!(commands("cc $(pkg-config --libs htex) -lm")[0].len(), 3);
     }
 }

@@ -29,9 +29,7 @@ pub fn studio(out: &Path) -> Result<()> {
 /// Builds the page with the npm package that is there.
 pub(crate) fn build(source: &Path, out: &Path) -> Result<()> {
     fs::create_dir_all(out)?;
-    run(program("npm", source)
-        .args(["run", "--silent", "build", "--"])
-        .arg(fs::canonicalize(out)?))
+    run(program("npm", source).args(["run", "--silent", "build", "--"]).arg(fs::canonicalize(out)?))
 }
 
 /// Installs what the lock file names.

@@ -11,9 +11,9 @@ pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 /// The profile of modules in the workspace's manifest, and the name of their build folder.
 pub(crate) const PROFILE: &str = "module";
 
-/// Vectors of 128 bits, which every engine has. Calls of larger functions stay calls, and loops whose number of rounds is
-/// not known stay one loop: without copies for several rounds, for the first one, and for vectors. Loops that are to use
-/// vectors work on arrays.
+/// Vectors of 128 bits, which every engine has. Calls of larger functions stay calls, and loops
+/// whose number of rounds is not known stay one loop: without copies for several rounds, for the
+/// first one, and for vectors. Loops that are to use vectors work on arrays.
 const FLAGS: (&str, &str) = (
     "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
     "-Ctarget-feature=+simd128 -Cno-vectorize-loops -Cllvm-args=-inline-threshold=75 \
@@ -80,13 +80,9 @@ impl Toolchain {
     pub(crate) fn arguments(&self) -> &'static [&'static str] {
         match self {
             Self::Ready => &["--target", TARGET],
-            Self::Debian { .. } => &[
-                "-Z",
-                "build-std=std,panic_abort",
-                "--ignore-rust-version",
-                "--target",
-                TARGET,
-            ],
+            Self::Debian { .. } => {
+                &["-Z", "build-std=std,panic_abort", "--ignore-rust-version", "--target", TARGET]
+            }
         }
     }
 }
@@ -115,13 +111,8 @@ fn is_debian_ready() -> bool {
 fn linker() -> Option<PathBuf> {
     let sysroot = answer("rustc", &["--print", "sysroot"])?;
     let host = answer("rustc", &["--print", "host-tuple"])?;
-    let own = Path::new(&sysroot)
-        .join("lib/rustlib")
-        .join(host)
-        .join("bin/rust-lld");
-    [own, PathBuf::from("/usr/bin/wasm-ld")]
-        .into_iter()
-        .find(|linker| linker.exists())
+    let own = Path::new(&sysroot).join("lib/rustlib").join(host).join("bin/rust-lld");
+    [own, PathBuf::from("/usr/bin/wasm-ld")].into_iter().find(|linker| linker.exists())
 }
 
 /// What a program prints, if it succeeds.

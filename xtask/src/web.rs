@@ -50,7 +50,8 @@ const COPIED: [&str; 34] = [
     "worker.node.js",
 ];
 
-/// What the file of the audio worklet is made of. It has no imports: bundlers copy the file of a worklet alone.
+/// What the file of the audio worklet is made of. It has no imports: bundlers copy the file of a
+/// worklet alone.
 const PROCESSOR: [&str; 9] = [
     "guests.js",
     "core.js",
@@ -76,20 +77,12 @@ const WORKER: [&str; 8] = [
 ];
 
 /// The same of the worker that fits.
-const AUTHOR_WORKER: [&str; 5] = [
-    "guests.js",
-    "core.js",
-    "author-core.js",
-    "author-serve.js",
-    "author-worker.js",
-];
+const AUTHOR_WORKER: [&str; 5] =
+    ["guests.js", "core.js", "author-core.js", "author-serve.js", "author-worker.js"];
 
 /// Features of `sdk/web/author`, and the modules that are built with them.
-const MODULES: [(&str, &str); 3] = [
-    ("make", "htex-author.wasm"),
-    ("import", "htex-import.wasm"),
-    ("scene", "htex-scene.wasm"),
-];
+const MODULES: [(&str, &str); 3] =
+    [("make", "htex-author.wasm"), ("import", "htex-import.wasm"), ("scene", "htex-scene.wasm")];
 
 /// Builds the package into a folder.
 ///
@@ -117,11 +110,7 @@ pub fn web(out: &Path) -> Result<()> {
     copy(player, "htex.wasm")?;
     join(&source.join("src"), &PROCESSOR, &out.join("processor.js"))?;
     join(&source.join("src"), &WORKER, &out.join("worker.js"))?;
-    join(
-        &source.join("src"),
-        &AUTHOR_WORKER,
-        &out.join("author-worker.js"),
-    )
+    join(&source.join("src"), &AUTHOR_WORKER, &out.join("author-worker.js"))
 }
 
 /// Writes a script of the files of a folder.

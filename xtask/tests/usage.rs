@@ -6,14 +6,8 @@ use std::process::Command;
 #[test]
 fn an_unknown_toolchain_is_a_usage_error() {
     let cases: [(&[&str], &str); 3] = [
-        (
-            &["--wasm-toolchain", "moon"],
-            "unknown WASM toolchain `moon`",
-        ),
-        (
-            &["--native-only", "--wasm-toolchain", "debian"],
-            "cargo xtask",
-        ),
+        (&["--wasm-toolchain", "moon"], "unknown WASM toolchain `moon`"),
+        (&["--native-only", "--wasm-toolchain", "debian"], "cargo xtask"),
         (&["--wasm-toolchain"], "cargo xtask"),
     ];
     for (options, words) in cases {

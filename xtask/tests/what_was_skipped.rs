@@ -1,5 +1,5 @@
-//! Lists what the suites before this one skipped. Cargo runs packages in the order of their names, and the suites of a package
-//! likewise: this one is the last.
+//! Lists what the suites before this one skipped. Cargo runs packages in the order of their names,
+//! and the suites of a package likewise: this one is the last.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use xtask::needs;
@@ -20,9 +20,6 @@ fn what_was_skipped() {
 
 fn tell(sentences: &[String]) {
     if !sentences.is_empty() {
-        needs::say(&format!(
-            "\nskipped in part or as a whole:\n{}",
-            sentences.concat()
-        ));
+        needs::say(&format!("\nskipped in part or as a whole:\n{}", sentences.concat()));
     }
 }

@@ -18,10 +18,12 @@ use htex_files::AtFile;
 const FEWEST: i64 = BakeLimits::FEWEST as i64;
 const MOST: i64 = BakeLimits::MOST as i64;
 
-/// Write a texture as a block of bytes for the player on microcontrollers (docs/microcontroller.md).
+/// Write a texture as a block of bytes for the player on microcontrollers
+/// (docs/microcontroller.md).
 ///
-/// The block has a filter or sinusoids for each condition of a grid of speeds and forces; the player interpolates between
-/// them. The command prints the block's size and its error in nine bands, at the conditions and midway between them.
+/// The block has a filter or sinusoids for each condition of a grid of speeds and forces; the
+/// player interpolates between them. The command prints the block's size and its error in nine
+/// bands, at the conditions and midway between them.
 #[derive(Args)]
 pub(crate) struct Bake {
     /// The asset
@@ -31,12 +33,14 @@ pub(crate) struct Bake {
     #[arg(long, value_name = "ID")]
     model: Option<String>,
 
-    /// A condition: speed=80,force=0.4; may be given several times, for all combinations of some speeds and forces
-    /// [default: the asset's first condition, or the strongest if the first is silent]
+    /// A condition: speed=80,force=0.4; may be given several times, for all combinations of some
+    /// speeds and forces [default: the asset's first condition, or the strongest if the first is
+    /// silent]
     #[arg(long, value_name = "CONDITION", conflicts_with = "grid")]
     at: Vec<String>,
 
-    /// A grid of conditions, each axis FIRST:LAST:COUNT or one number: speed=40:160:3,force=0.2:0.6:3
+    /// A grid of conditions, each axis FIRST:LAST:COUNT or one number:
+    /// speed=40:160:3,force=0.2:0.6:3
     #[arg(long, value_name = "GRID")]
     grid: Option<String>,
 
@@ -44,7 +48,8 @@ pub(crate) struct Bake {
     #[arg(long, default_value_t = 8_000.0, value_name = "HZ")]
     rate: f64,
 
-    /// Largest error of nine bands between conditions, dB; conditions are inserted until it is reached, to at most 64
+    /// Largest error of nine bands between conditions, dB; conditions are inserted until it is
+    /// reached, to at most 64
     #[arg(long, default_value_t = 0.3, value_name = "DB")]
     within: f64,
 
@@ -55,8 +60,8 @@ pub(crate) struct Bake {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write: a C array if it ends in .h, a Rust array if it ends in .rs, else (.bin) the bytes. Source states licence and author in
-    /// comments; for bytes, FILE.license states them
+    /// The file to write: a C array if it ends in .h, a Rust array if it ends in .rs, else (.bin)
+    /// the bytes. Source states licence and author in comments; for bytes, FILE.license states them
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
@@ -135,8 +140,8 @@ impl Bake {
     }
 }
 
-/// Warns where the grid is narrower than the recorded speeds, or has one speed, though the law moves frequencies: a filter does not
-/// follow beyond the grid.
+/// Warns where the grid is narrower than the recorded speeds, or has one speed, though the law
+/// moves frequencies: a filter does not follow beyond the grid.
 fn warn_of_frequencies(baked: &Baked) {
     let speeds = baked.grid.speeds_mm_s();
     let (Some(beyond_db), [lowest, .., highest] | [lowest @ highest]) = (baked.beyond_db, speeds)
@@ -176,18 +181,15 @@ enum Format {
     Rust,
 }
 
-/// The name of the array, and the format. A name that is given is checked; else it is that of the file.
+/// The name of the array, and the format. A name that is given is checked; else it is that of the
+/// file.
 fn named(output: &Path, given: Option<&str>) -> Result<(String, Format), Failure> {
     let text = |part: Option<&std::ffi::OsStr>| part.and_then(|p| p.to_str()).map(str::to_owned);
     let stem = text(output.file_stem()).unwrap_or_default();
     let (format, is_name, rule): (_, fn(&str) -> bool, _) = match text(output.extension())
         .as_deref()
     {
-        Some("bin") => (
-            Format::Bytes,
-            |_| false,
-            "bytes in a .bin file have no name",
-        ),
+        Some("bin") => (Format::Bytes, |_| false, "bytes in a .bin file have no name"),
         Some("h") => (
             Format::C,
             htex_bake::is_c_name,
@@ -280,14 +282,7 @@ fn report(baked: &Baked, rate_hz: f64) -> serde_json::Value {
 }
 
 fn text(output: &Path, baked: &Baked, rate_hz: f64) -> String {
-    let Baked {
-        model,
-        quantity,
-        law,
-        at_conditions_db,
-        between_db,
-        ..
-    } = baked;
+    let Baked { model, quantity, law, at_conditions_db, between_db, .. } = baked;
     let content = match (baked.taps, baked.filters) {
         (0, _) => format!("{} sinusoids", baked.tones),
         (taps, 1) => format!("a filter of {taps} coefficients"),

@@ -26,22 +26,26 @@ use crate::wasm_limits::WasmLimit;
 
 /// Build a library of textures from a recipe.
 ///
-/// Fits the recordings that the recipe names, imports the files that `htex import` takes, and writes DIR/NAME.htexlib, DIR/textures, DIR/build-report.json and the
-/// catalogue DIR/index.html. A build that fails writes its error into the report. What has been fitted stays in DIR/.htex-build: a build that was killed goes on where it was, and one
-/// that is run again fits what changed. Recordings and other files of a recipe may be URIs, too.
+/// Fits the recordings that the recipe names, imports the files that `htex import` takes, and
+/// writes DIR/NAME.htexlib, DIR/textures, DIR/build-report.json and the catalogue DIR/index.html. A
+/// build that fails writes its error into the report. What has been fitted stays in
+/// DIR/.htex-build: a build that was killed goes on where it was, and one that is run again fits
+/// what changed. Recordings and other files of a recipe may be URIs, too.
 ///
-/// Exit status: 0 when every texture was made, 1 when none was, 3 when some were made and others left out (they miss a gate, or with
-/// --keep-going cannot be made), 2 for wrong usage.
+/// Exit status: 0 when every texture was made, 1 when none was, 3 when some were made and others
+/// left out (they miss a gate, or with --keep-going cannot be made), 2 for wrong usage.
 #[derive(Args)]
 pub(crate) struct Build {
     /// The recipe: library.toml, a path or URI (its JSON Schema: `htex schema recipe`)
     recipe: Anywhere,
 
-    /// The folder of the results, or the URI of one (s3://, gs://, az://), to which they are copied when they are complete
+    /// The folder of the results, or the URI of one (s3://, gs://, az://), to which they are copied
+    /// when they are complete
     #[arg(short, long, value_name = "DIR|URI")]
     output: OsString,
 
-    /// The folder in which results for a URI are made; it keeps what the next build needs [default: one of the user's cache]
+    /// The folder in which results for a URI are made; it keeps what the next build needs [default:
+    /// one of the user's cache]
     #[arg(long, value_name = "DIR")]
     work: Option<PathBuf>,
 
@@ -53,25 +57,29 @@ pub(crate) struct Build {
     #[arg(long)]
     keep_going: bool,
 
-    /// Exit with 1 and change nothing if the library would lose textures, e.g. because a folder of recordings was moved
+    /// Exit with 1 and change nothing if the library would lose textures, e.g. because a folder of
+    /// recordings was moved
     #[arg(long)]
     no_removals: bool,
 
-    /// Check the recipe, its files, plugins, options and gates, say what would be fitted and why, and fit nothing
+    /// Check the recipe, its files, plugins, options and gates, say what would be fitted and why,
+    /// and fit nothing
     #[arg(long)]
     dry_run: bool,
 
-    /// A plugin to fit with: a WASM module (sandboxed) or a native library (it runs with all your rights: load only what you
-    /// trust); may be given several times. A recipe names WASM modules alone
+    /// A plugin to fit with: a WASM module (sandboxed) or a native library (it runs with all your
+    /// rights: load only what you trust); may be given several times. A recipe names WASM modules
+    /// alone
     #[arg(long, value_name = "FILE")]
     plugin: Vec<PathBuf>,
 
-    /// Remove at once what was fitted and no texture uses any more; otherwise it stays for 30 days, so that a setting that is taken
-    /// back fits nothing again
+    /// Remove at once what was fitted and no texture uses any more; otherwise it stays for 30 days,
+    /// so that a setting that is taken back fits nothing again
     #[arg(long)]
     prune: bool,
 
-    /// Folder of the browser package: the catalogue plays textures with a copy of it instead of short sounds
+    /// Folder of the browser package: the catalogue plays textures with a copy of it instead of
+    /// short sounds
     #[arg(long, value_name = "DIR")]
     browser_package: Option<PathBuf>,
 
@@ -128,13 +136,7 @@ impl Build {
         let lines = failure.to_lines();
         let to = Destination::parse(&self.output, self.work.as_deref());
         let changes_nothing = self.dry_run
-            || matches!(
-                failure,
-                Failure::Build {
-                    error: BuildError::Removes { .. },
-                    ..
-                }
-            );
+            || matches!(failure, Failure::Build { error: BuildError::Removes { .. }, .. });
         if let (Ok(to), false, Exit::FAILURE) = (to, changes_nothing, failure.exit_code()) {
             // A folder in which not even that can be written is what `failure` is about.
             let _ = report_failure(to.folder(), &tool(), &lines);
@@ -215,11 +217,8 @@ impl Build {
     ) -> Result<Exit, Failure> {
         let report = &built.report;
         let results = to.results();
-        let left_out: Vec<&TextureReport> = report
-            .textures
-            .iter()
-            .filter(|texture| texture.status == Status::LeftOut)
-            .collect();
+        let left_out: Vec<&TextureReport> =
+            report.textures.iter().filter(|texture| texture.status == Status::LeftOut).collect();
         let exit = match (report.library.textures, left_out.len()) {
             (_, 0) => Exit::SUCCESS,
             (0, _) => Exit::FAILURE,
@@ -300,16 +299,8 @@ impl Summary<'_> {
         all.retain(|(_, share)| share.severity != Severity::Info);
         all.sort_by_key(|(code, share)| (share.severity, *code));
         let line = |(code, share): &(&String, &FindingShare)| {
-            let more = if share.textures > share.first.len() {
-                ", …"
-            } else {
-                ""
-            };
-            let noun = if share.textures == 1 {
-                "texture"
-            } else {
-                "textures"
-            };
+            let more = if share.textures > share.first.len() { ", …" } else { "" };
+            let noun = if share.textures == 1 { "texture" } else { "textures" };
             format!(
                 "{code} ({}): {} {noun}, {} in the library: {}{more}\n",
                 share.severity,
@@ -360,10 +351,7 @@ impl Summary<'_> {
         }
         text += &removed(self.removed);
         text += &self.findings();
-        text += &format!(
-            "catalogue: {}\n",
-            plain(&results.inside("index.html").to_string())
-        );
+        text += &format!("catalogue: {}\n", plain(&results.inside("index.html").to_string()));
         for texture in &self.left_out {
             for missed in &texture.missed {
                 text += &format!(

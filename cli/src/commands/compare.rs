@@ -24,7 +24,8 @@ use crate::shown::shown;
 /// Measure each representation of an asset, or another recording, against a recording.
 ///
 /// The asset plays at the recording's speed and force where both are known, else at its first
-/// condition. `felt` is the part of the difference that is above the detection threshold of a fingertip, in third octaves.
+/// condition. `felt` is the part of the difference that is above the detection threshold of a
+/// fingertip, in third octaves.
 #[derive(Args)]
 pub(crate) struct Compare {
     #[arg(help = format!("The recording: {}", format_names()))]
@@ -121,10 +122,7 @@ impl Compare {
             }
             _ => return Ok(()),
         };
-        Err(Failure::Usage(format!(
-            "{}: {advice}",
-            shown(&self.recording)
-        )))
+        Err(Failure::Usage(format!("{}: {advice}", shown(&self.recording))))
     }
 
     fn representations(
@@ -219,9 +217,7 @@ impl OtherRecording {
     fn measured(&self, measure: Measure) -> String {
         let (row, value) = (measure.row(), self.difference.quality.get(measure));
         let value = value.map_or("-".to_owned(), |x| format!("{x:.*}", row.decimals));
-        format!("{} {value} {}", row.short, row.unit)
-            .trim_end()
-            .to_owned()
+        format!("{} {value} {}", row.short, row.unit).trim_end().to_owned()
     }
 
     fn to_text(&self) -> String {
@@ -234,11 +230,7 @@ impl OtherRecording {
             felt.error_rms_db,
             felt.largest_error_db,
             felt.total_error_db,
-            if felt.below_difference_threshold {
-                "below"
-            } else {
-                "above"
-            }
+            if felt.below_difference_threshold { "below" } else { "above" }
         );
         if let Some(db) = self.repeatability_rms_db {
             text += &format!("{} repeats within {db:.2} dB\n", plain(&self.recording));

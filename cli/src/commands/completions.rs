@@ -8,8 +8,9 @@ use crate::output::write_bytes;
 
 /// Print what a shell completes the command's words by.
 ///
-/// bash: source it, or keep it as htex in ~/.local/share/bash-completion/completions. zsh: as _htex in a folder of fpath. fish: as
-/// htex.fish in ~/.config/fish/completions. PowerShell: at the end of $PROFILE.
+/// bash: source it, or keep it as htex in ~/.local/share/bash-completion/completions. zsh: as _htex
+/// in a folder of fpath. fish: as htex.fish in ~/.config/fish/completions. PowerShell: at the end
+/// of $PROFILE.
 #[derive(Args)]
 pub(crate) struct Completions {
     /// The shell

@@ -35,16 +35,13 @@ const PICTURED: [&str; 2] = ["bands", "ar"];
 const RIG: &str = "rig.csv";
 const REPORT: &str = "report.html";
 /// The condition the surfaces are explored at (paper, Texture recording).
-const CONDITION: Exploration = Exploration {
-    speed_mm_s: Some(80.0),
-    force_n: Some(0.4),
-};
+const CONDITION: Exploration = Exploration { speed_mm_s: Some(80.0), force_n: Some(0.4) };
 
 /// Run the whole way on five simulated surfaces: recordings, assets, sounds and a report.
 ///
 /// Needs nothing but this program. Writes NAME.csv (the simulated recording), NAME.htex,
-/// NAME-MODEL.wav, rig.csv (the simulated rig's response, by which recordings are divided), report.html and spectra.svg
-/// (all recordings, with Bands and AR over them) into DIR.
+/// NAME-MODEL.wav, rig.csv (the simulated rig's response, by which recordings are divided),
+/// report.html and spectra.svg (all recordings, with Bands and AR over them) into DIR.
 #[derive(Args)]
 pub(crate) struct Demo {
     /// Folder to write to; created if it does not exist
@@ -64,9 +61,7 @@ impl Demo {
         let own = OwnFolder::new(&self.dir);
         own.make_folder(Path::new("")).writing(&self.dir)?;
         let inside = |name: &str, bytes: &[u8]| Written::Inside(&own, name.as_ref()).write(bytes);
-        let rig = SimulationOptions::new(Surface::Sandpaper)
-            .setup_response()
-            .or_fail()?;
+        let rig = SimulationOptions::new(Surface::Sandpaper).setup_response().or_fail()?;
         write_response(&rig, Written::Inside(&own, RIG.as_ref()))?;
         let bar = bar(Surface::ALL.len() as u64);
         let mut done = Vec::new();
@@ -88,10 +83,7 @@ impl Demo {
             print_json(&rows)?;
         } else {
             print(&table(&rows))?;
-            print(&format!(
-                "\nThe report, with the spectra: {}\n",
-                report.display()
-            ))?;
+            print(&format!("\nThe report, with the spectra: {}\n", report.display()))?;
         }
         Ok(Exit::SUCCESS)
     }
@@ -108,10 +100,7 @@ impl Demo {
         self.write_recording(surface, Written::Inside(own, &csv))?;
         let csv = self.dir.join(csv);
         let recording = read_recording(&csv, &ReadOptions::default())?;
-        let take = Take {
-            recording,
-            given: CONDITION,
-        };
+        let take = Take { recording, given: CONDITION };
         let fitted = fit_asset(&[take], &request(&name, rig)?)?;
         let path = PathBuf::from(format!("{name}.htex"));
         let bytes = fitted.asset.to_bytes()?;
@@ -126,12 +115,8 @@ impl Demo {
         let summary =
             AssetSummary::new(&path, bytes.len() as u64, &fitted.asset).with_felt(&fitted.felt);
         let recording_bytes = std::fs::metadata(&csv).map_or(0, |m| m.len());
-        let reported = Reported {
-            fitted: &fitted,
-            asset: &asset,
-            summary: &summary,
-            recording_bytes,
-        };
+        let reported =
+            Reported { fitted: &fitted, asset: &asset, summary: &summary, recording_bytes };
         let texture = reported.texture(0).of(&path)?;
         Ok(DemoTexture { texture, summary })
     }
@@ -220,15 +205,11 @@ fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
 }
 
 fn play(asset: &htex::Asset, model: &str, file: &Path, wav: Written<'_>) -> Result<(), Failure> {
-    let options = VoiceOptions::default()
-        .with_model(model)
-        .with_rate_hz(f64::from(WAV_RATE_HZ));
+    let options = VoiceOptions::default().with_model(model).with_rate_hz(f64::from(WAV_RATE_HZ));
     let mut voice = asset.voice(&options).of(file)?;
     let frames = WAV_SECONDS * u64::from(WAV_RATE_HZ);
     let rights = Rights::of(asset.manifest());
-    write_wav(wav, WAV_RATE_HZ, frames, &rights, |block| {
-        voice.render(block).of(file)
-    })
+    write_wav(wav, WAV_RATE_HZ, frames, &rights, |block| voice.render(block).of(file))
 }
 
 /// The measures of the table.

@@ -1,5 +1,5 @@
-//! Metadata are edited by writing the asset again. An asset with parts that this version would not write again, such as
-//! entries that nothing refers to, is refused.
+//! Metadata are edited by writing the asset again. An asset with parts that this version would not
+//! write again, such as entries that nothing refers to, is refused.
 
 use std::path::PathBuf;
 
@@ -21,8 +21,9 @@ use crate::shown::shown;
 
 /// Change an asset's metadata without a new fit.
 ///
-/// Metadata that is not given is kept; an empty text (--author "") removes the entry, and --tag replaces all tags.
-/// Parameters, recorded spectra and embedded models, with their signatures, are kept byte by byte.
+/// Metadata that is not given is kept; an empty text (--author "") removes the entry, and --tag
+/// replaces all tags. Parameters, recorded spectra and embedded models, with their signatures, are
+/// kept byte by byte.
 #[derive(Args)]
 pub(crate) struct Edit {
     /// The asset

@@ -21,10 +21,12 @@ use crate::plugins::PlayerArgs;
 use crate::scene_sound::{Scene, is_scene};
 use crate::shown::shown;
 
-/// Write a texture at a condition or along a stroke, or what a scene plays, as a file that phones, controllers and engines play.
+/// Write a texture at a condition or along a stroke, or what a scene plays, as a file that phones,
+/// controllers and engines play.
 ///
-/// The profile of an actuator decides what of the spectrum it can do. The file is read again, played through the profile, and
-/// compared with the asset's own samples: that difference is printed.
+/// The profile of an actuator decides what of the spectrum it can do. The file is read again,
+/// played through the profile, and compared with the asset's own samples: that difference is
+/// printed.
 #[derive(Args)]
 pub(crate) struct Export {
     /// The asset, or a scene, which has its own motion and models
@@ -41,8 +43,8 @@ pub(crate) struct Export {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// The file to write; with --to android, Kotlin if it ends in .kt, else JSON; with --to gltf, JSON if it ends in .gltf, else a
-    /// .glb
+    /// The file to write; with --to android, Kotlin if it ends in .kt, else JSON; with --to gltf,
+    /// JSON if it ends in .gltf, else a .glb
     #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
     output: PathBuf,
 
@@ -57,8 +59,8 @@ struct Settings {
     #[command(flatten)]
     choice: ChoiceArgs,
 
-    /// A stroke instead of a condition: a CSV of time, speed and force (t_s, speed_mm_s, force_n), or of time, position
-    /// and force
+    /// A stroke instead of a condition: a CSV of time, speed and force (t_s, speed_mm_s, force_n),
+    /// or of time, position and force
     #[arg(long, value_name = "CSV", value_parser = located::RECORDING, conflicts_with_all = ["speed", "force", "seconds"])]
     stroke: Option<PathBuf>,
 
@@ -136,10 +138,7 @@ impl Export {
     fn of_scene(&self, format: &'static Format) -> Result<Exported, Failure> {
         format.check_export_of_scene(self.given.settings.iter().map(String::as_str))?;
         let scene = Scene::open(&self.asset, &self.player, self.given.values.seconds)?;
-        check_outputs(
-            [self.output.as_path()],
-            scene.inputs.iter().map(PathBuf::as_path),
-        )?;
+        check_outputs([self.output.as_path()], scene.inputs.iter().map(PathBuf::as_path))?;
         let export = self.export(format)?;
         scene
             .with(|sound| htex_exchange::export_scene(sound, &export))
@@ -177,9 +176,7 @@ impl Export {
         }
         let beyond = settings.choice.beyond(asset, htex::Effects::default());
         note(&Vec::from_iter(beyond.of(&self.asset)?));
-        Ok(Path::Condition(
-            settings.choice.motion(asset).of(&self.asset)?,
-        ))
+        Ok(Path::Condition(settings.choice.motion(asset).of(&self.asset)?))
     }
 
     /// An error of playing names the asset.
@@ -217,10 +214,7 @@ fn played(played: &Played) -> String {
 }
 
 fn limited(played: &Played) -> String {
-    format!(
-        "; the actuator is too weak in {:.0} % of the time",
-        100.0 * played.limited
-    )
+    format!("; the actuator is too weak in {:.0} % of the time", 100.0 * played.limited)
 }
 
 /// What is lost, in words.

@@ -50,12 +50,7 @@ pub(crate) struct Fit {
     embed_plugin: Vec<PathBuf>,
 
     /// Sign embedded modules with this ed25519 secret key: a file of 32 bytes
-    #[arg(
-        long,
-        value_name = "FILE",
-        requires = "embed_plugin",
-        display_order = 6
-    )]
+    #[arg(long, value_name = "FILE", requires = "embed_plugin", display_order = 6)]
     sign_with: Option<PathBuf>,
 
     /// Draw the grid: steady windows over speed and force, mesh, repeatability
@@ -82,18 +77,11 @@ pub(crate) struct Fit {
 
 impl Fit {
     pub(crate) fn run(mut self) -> Result<Exit, Failure> {
-        let files = self
-            .recordings
-            .iter()
-            .chain(&self.embed_plugin)
-            .chain(&self.sign_with);
+        let files = self.recordings.iter().chain(&self.embed_plugin).chain(&self.sign_with);
         let files = files.chain(self.plugins.files()).map(PathBuf::as_path);
         let outputs = [&self.output].into_iter().chain(&self.report);
         let outputs = outputs.chain(&self.grid_svg);
-        check_outputs(
-            outputs.map(PathBuf::as_path),
-            files.chain(self.reading.inputs()),
-        )?;
+        check_outputs(outputs.map(PathBuf::as_path), files.chain(self.reading.inputs()))?;
         let registry = self.plugins.registry_with(&self.embed_plugin)?;
         let metadata = std::mem::take(&mut self.metadata);
         checked(&metadata)?;
@@ -117,9 +105,7 @@ impl Fit {
             self.write_report(file, &fitted, &summary, registry)?;
         }
         if self.json {
-            summary
-                .notes
-                .extend(fitted.notes.iter().map(ToString::to_string));
+            summary.notes.extend(fitted.notes.iter().map(ToString::to_string));
             summary.grid = fitted.grid;
             print_json(&summary)?;
         } else {
@@ -156,10 +142,7 @@ impl Fit {
             measures: measures(),
             textures: textures.of(&self.output)?,
             command: command_line(),
-            pictures: grid
-                .map(|grid| grid_plot(&name, grid).to_svg())
-                .into_iter()
-                .collect(),
+            pictures: grid.map(|grid| grid_plot(&name, grid).to_svg()).into_iter().collect(),
             shares: shares([summary]),
             ..TextureReport::default()
         };
@@ -225,8 +208,6 @@ fn secret_key(file: &Path) -> Result<[u8; 32], Failure> {
     let len = bytes.len();
     bytes.try_into().map_err(|_| {
         let file = file.display();
-        Failure::Usage(format!(
-            "--sign-with {file}: {len} bytes; an ed25519 secret key has 32"
-        ))
+        Failure::Usage(format!("--sign-with {file}: {len} bytes; an ed25519 secret key has 32"))
     })
 }

@@ -21,14 +21,17 @@ use crate::signals::{self, interrupted};
 const STEP_DB: f64 = 1.0;
 const LARGE_STEP_DB: f64 = 4.0;
 
-/// Find the gain at which a person wants to feel a surface on a display, by adjustment, and keep it.
+/// Find the gain at which a person wants to feel a surface on a display, by adjustment, and keep
+/// it.
 ///
-/// The surface plays without end; `+` and `-`, each with Enter, make it 1 dB stronger and weaker, `++` and
-/// `--` 4 dB, and Enter alone accepts it. It starts weak, 20 dB below the device's limit, where the paper starts at the limit:
-/// a finger feels nothing stronger than the person asked for. `htex play --person` then uses what was found. Ctrl-C keeps nothing.
+/// The surface plays without end; `+` and `-`, each with Enter, make it 1 dB stronger and weaker,
+/// `++` and `--` 4 dB, and Enter alone accepts it. It starts weak, 20 dB below the device's limit,
+/// where the paper starts at the limit: a finger feels nothing stronger than the person asked for.
+/// `htex play --person` then uses what was found. Ctrl-C keeps nothing.
 ///
-/// A gain is kept for a person, a texture and a device. All representations share it, and so do assets that are fitted again: a
-/// texture is identified by its name and author. The paper finds it with `--model ar` and plays all models with it.
+/// A gain is kept for a person, a texture and a device. All representations share it, and so do
+/// assets that are fitted again: a texture is identified by its name and author. The paper finds it
+/// with `--model ar` and plays all models with it.
 #[derive(Args)]
 pub(crate) struct Gain {
     /// The asset or the scene
@@ -89,9 +92,7 @@ impl Gain {
         let key = key(&self.person, self.texture.as_deref(), &ready);
         let (_, file) = gains()?;
         let Some(found) = adjust(&mut ready, start_v, limit_v)? else {
-            return Err(Failure::Other(
-                "ended without a match; nothing was kept".to_owned(),
-            ));
+            return Err(Failure::Other("ended without a match; nothing was kept".to_owned()));
         };
         let text = format!(
             "kept for {} and `{}`: {} ({})\n",
@@ -140,19 +141,13 @@ fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>
             Some(output) => output,
             none => none.insert(opened(ready, &plan)?),
         };
-        crate::output::tell!(
-            "{}   + stronger, - weaker, Enter: it matches",
-            volts(drive_v)
-        );
+        crate::output::tell!("{}   + stronger, - weaker, Enter: it matches", volts(drive_v));
         let wish = play_until_wish(&mut renderer, output, &wishes)?;
         match wish {
             Some(Wish::Change(db)) => drive_v = (drive_v * factor_of_db(db)).min(limit_v),
             Some(Wish::Keep) => {
                 let reference_rms = plan.reference_rms;
-                kept = Some(Found {
-                    drive_v,
-                    reference_rms,
-                });
+                kept = Some(Found { drive_v, reference_rms });
                 goes_on = false;
             }
             None => goes_on = false,
@@ -223,8 +218,5 @@ fn wish(line: &str) -> Option<Wish> {
 
 /// The drive as text: its largest voltage, and V_g.
 fn volts(drive_v: f64) -> String {
-    format!(
-        "{drive_v:.1} V at most, V_g {:.2} V",
-        drive_v / std::f64::consts::SQRT_2
-    )
+    format!("{drive_v:.1} V at most, V_g {:.2} V", drive_v / std::f64::consts::SQRT_2)
 }

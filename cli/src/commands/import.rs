@@ -22,9 +22,12 @@ use crate::shown::shown;
 
 /// Read a file of another haptic format as a texture.
 ///
-/// A model file of the Penn Haptic Texture Toolkit states units, speeds and forces, and becomes a texture as it is; a glTF file
-/// gives out the texture that its material carries, bit for bit. The others are signals that know none of it, and are fitted as a
-/// recording is: say how strong 1 is (--full-scale), and at which speed and force the file is felt. Licence and author are taken from the file, or from FILE.license beside it, unless they are given. `htex formats` lists what is kept and lost.
+/// A model file of the Penn Haptic Texture Toolkit states units, speeds and forces, and becomes a
+/// texture as it is; a glTF file gives out the texture that its material carries, bit for bit. The
+/// others are signals that know none of it, and are fitted as a recording is: say how strong 1 is
+/// (--full-scale), and at which speed and force the file is felt. Licence and author are taken from
+/// the file, or from FILE.license beside it, unless they are given. `htex formats` lists what is
+/// kept and lost.
 #[derive(Args)]
 pub(crate) struct Import {
     #[arg(help = format!("The file: {}", imported()))]
@@ -87,11 +90,7 @@ impl Import {
         Format::of_file(&name)?.check_import(given)?;
         let bytes = read_regular(&self.file, MOST_BYTES).reading(&self.file)?;
         let registry = self.plugins.registry()?;
-        let stem = self
-            .output
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy();
+        let stem = self.output.file_stem().unwrap_or_default().to_string_lossy();
         let tool = tool();
         let mut how = self.how(&stem, &tool)?;
         let beside = read_license_file(&self.file).reading(license_file(&self.file))?;

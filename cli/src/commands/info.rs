@@ -13,9 +13,9 @@ use crate::output::{print, print_json};
 
 /// Show an asset's contents and each model's distance from the recording.
 ///
-/// Columns: level (RMS, in the asset's unit); Pearson correlation with the recorded spectrum; RMS over nine critical
-/// bands of the energy difference, from the model's magnitudes and from samples it played; bytes of
-/// parameters.
+/// Columns: level (RMS, in the asset's unit); Pearson correlation with the recorded spectrum; RMS
+/// over nine critical bands of the energy difference, from the model's magnitudes and from samples
+/// it played; bytes of parameters.
 #[derive(Args)]
 pub(crate) struct Info {
     /// The asset

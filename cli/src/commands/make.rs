@@ -20,7 +20,8 @@ use crate::recordings::parse_condition;
 
 /// Make a texture of parameters, without a recording.
 ///
-/// The asset states that it was made by hand. `htex plugin info MODEL` lists a model's parameters with their units and ranges.
+/// The asset states that it was made by hand. `htex plugin info MODEL` lists a model's parameters
+/// with their units and ranges.
 #[derive(Args)]
 pub(crate) struct Make {
     /// The model: short name or id
@@ -111,13 +112,9 @@ pub(super) fn write(
 /// Reads `NAME=NUMBER,…`.
 fn parameter(text: &str) -> Result<(String, Vec<f64>), Failure> {
     let wrong = |what: &str| {
-        Failure::Usage(format!(
-            "--set {text}: {what}; it looks like alpha=2 or cepstrum=-12,3.1"
-        ))
+        Failure::Usage(format!("--set {text}: {what}; it looks like alpha=2 or cepstrum=-12,3.1"))
     };
-    let (name, numbers) = text
-        .split_once('=')
-        .ok_or_else(|| wrong("there is no `=`"))?;
+    let (name, numbers) = text.split_once('=').ok_or_else(|| wrong("there is no `=`"))?;
     let numbers = numbers.split(',').map(|number| number.trim().parse().ok());
     let numbers: Option<Vec<f64>> = numbers.collect();
     let numbers = numbers.filter(|all| all.iter().all(|x| x.is_finite()));
@@ -126,14 +123,9 @@ fn parameter(text: &str) -> Result<(String, Vec<f64>), Failure> {
 }
 
 fn quantity(text: &str) -> Result<Quantity, String> {
-    let found = Quantity::ALL
-        .iter()
-        .find(|quantity| quantity.name() == text);
+    let found = Quantity::ALL.iter().find(|quantity| quantity.name() == text);
     found.copied().ok_or_else(|| {
-        let names: Vec<&str> = Quantity::ALL
-            .iter()
-            .map(|quantity| quantity.name())
-            .collect();
+        let names: Vec<&str> = Quantity::ALL.iter().map(|quantity| quantity.name()).collect();
         format!("it is one of {}", names.join(", "))
     })
 }

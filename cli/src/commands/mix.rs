@@ -17,8 +17,8 @@ use crate::plugins::PlayerArgs;
 
 /// Make a texture between two others.
 ///
-/// Each model that describes both interpolates between their parameters, as between the conditions of one texture. The asset states
-/// what it was mixed of.
+/// Each model that describes both interpolates between their parameters, as between the conditions
+/// of one texture. The asset states what it was mixed of.
 #[derive(Args)]
 pub(crate) struct Mix {
     /// A texture
@@ -50,10 +50,7 @@ pub(crate) struct Mix {
 
 impl Mix {
     pub(crate) fn run(mut self) -> Result<Exit, Failure> {
-        check_outputs(
-            [self.output.as_path()],
-            [self.a.as_path(), self.b.as_path()],
-        )?;
+        check_outputs([self.output.as_path()], [self.a.as_path(), self.b.as_path()])?;
         let metadata = std::mem::take(&mut self.metadata);
         checked(&metadata)?;
         let (a, b) = (self.open(&self.a)?, self.open(&self.b)?);

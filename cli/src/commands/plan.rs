@@ -42,21 +42,12 @@ pub(crate) struct Plan {
 
 impl Plan {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let ready = self
-            .with
-            .open(&self.scene, &self.choice.to_override(None, true)?)?;
-        let costs = if self.measure {
-            self.measured()?
-        } else {
-            costs()
-        };
+        let ready = self.with.open(&self.scene, &self.choice.to_override(None, true)?)?;
+        let costs = if self.measure { self.measured()? } else { costs() };
         let plan = ready.plan(&costs)?;
         if let Some(file) = &self.svg {
             ready.check_output(file)?;
-            write_file(
-                file,
-                drawing(&self.scene.display().to_string(), &plan).as_bytes(),
-            )?;
+            write_file(file, drawing(&self.scene.display().to_string(), &plan).as_bytes())?;
         }
         if self.json {
             print_json(&plan)?;

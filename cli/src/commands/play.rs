@@ -21,7 +21,8 @@ use crate::signals::{self, interrupted};
 
 /// Play a scene or an asset on a device, until its end or Ctrl-C.
 ///
-/// An asset is played at the speed and force of its first condition (of the strongest, if the first is silent), as sound when no device is named.
+/// An asset is played at the speed and force of its first condition (of the strongest, if the first
+/// is silent), as sound when no device is named.
 #[derive(Args)]
 #[command(after_help = without_sound())]
 pub(crate) struct Play {
@@ -29,8 +30,8 @@ pub(crate) struct Play {
     #[arg(value_parser = located::ASSET)]
     file: PathBuf,
 
-    /// Read the motion from standard input while it plays: lines `speed_mm_s force_n [x_mm y_mm]`, a
-    /// negative speed on the back stroke; the end of input is the end
+    /// Read the motion from standard input while it plays: lines `speed_mm_s force_n [x_mm y_mm]`,
+    /// a negative speed on the back stroke; the end of input is the end
     #[arg(long, value_name = "-", value_parser = ["-"])]
     motion: Option<String>,
 
@@ -91,10 +92,8 @@ impl Play {
             let sentence = format!("--seconds {seconds}: more than 0, at most 1e9");
             return Err(Failure::Usage(sentence));
         }
-        let device = DeviceOverride {
-            live: self.motion.is_some(),
-            ..self.choice.to_override(None, false)?
-        };
+        let device =
+            DeviceOverride { live: self.motion.is_some(), ..self.choice.to_override(None, false)? };
         let mut ready = open(&self.with, &self.file, self.motion.is_some(), device)?;
         let scene = &mut ready.scene.scene;
         scene.duration_s = self.seconds.or(scene.duration_s);
@@ -122,9 +121,7 @@ pub(crate) fn open(
     mut device: DeviceOverride,
 ) -> Result<Ready, Failure> {
     if is_asset(file) {
-        device
-            .adapter
-            .get_or_insert_with(|| SOUND.short_name().to_owned());
+        device.adapter.get_or_insert_with(|| SOUND.short_name().to_owned());
     }
     if let Some(name) = &device.adapter {
         ChoiceArgs::check_built(name)?;
@@ -132,11 +129,7 @@ pub(crate) fn open(
     if !is_asset(file) {
         return with.open(file, &device);
     }
-    let motion = if live {
-        Motion::Live
-    } else {
-        default_motion(file)?
-    };
+    let motion = if live { Motion::Live } else { default_motion(file)? };
     with.of_asset(file, motion, None, &device)
 }
 
@@ -155,10 +148,7 @@ fn follow(motions: &mut Motions, renderer: &mut Renderer) -> bool {
 
 fn text(ready: &Ready, plan: &Plan, status: &Status, renderer: &Renderer) -> String {
     let seconds = status.frames_written as f64 / plan.rate_hz;
-    let (unit, name) = (
-        ready.capabilities.quantity.unit(),
-        &ready.device.descriptor().name,
-    );
+    let (unit, name) = (ready.capabilities.quantity.unit(), &ready.device.descriptor().name);
     let mut text = format!(
         "{name}: {seconds:.3} s at {} Hz, latency {:.1} ms, {} underruns, peak {:.4} {unit}\n",
         plan.rate_hz,

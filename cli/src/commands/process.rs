@@ -38,9 +38,7 @@ pub(crate) struct Process {
 
 impl Process {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let inputs = [self.recording.as_path()]
-            .into_iter()
-            .chain(self.reading.inputs());
+        let inputs = [self.recording.as_path()].into_iter().chain(self.reading.inputs());
         check_outputs(self.svg.as_deref(), inputs)?;
         let take = self.reading.read_one(&self.recording)?;
         let options = self.reading.spectrum_options()?;
@@ -77,29 +75,20 @@ fn origin(reading: &Reading) -> &'static str {
 /// The segments that are read, seconds in the file.
 fn stretches_s(recording: &Recording, reading: &Reading) -> Vec<[f64; 2]> {
     let stretches = reading.part.segments.stretches().into_iter();
-    stretches
-        .map(|part| [part.start, part.end].map(|at| recording.second(at)))
-        .collect()
+    stretches.map(|part| [part.start, part.end].map(|at| recording.second(at))).collect()
 }
 
 /// Number and place of the segments that are read, and the spread of the motion over them.
 fn seconds_read(recording: &Recording, reading: &Reading) -> String {
     let stretches = stretches_s(recording, reading);
-    let named: Vec<String> = stretches
-        .iter()
-        .map(|[a, b]| format!("{a:.2}-{b:.2}"))
-        .collect();
+    let named: Vec<String> = stretches.iter().map(|[a, b]| format!("{a:.2}-{b:.2}")).collect();
     let count = reading.part.segments.starts.len();
-    let mut text = format!(
-        "{count} segments of 0.2 s from {}, s: {}",
-        origin(reading),
-        named.join(", ")
-    );
+    let mut text =
+        format!("{count} segments of 0.2 s from {}, s: {}", origin(reading), named.join(", "));
     let spread = &reading.spread;
-    for (spread, what, unit) in [
-        (spread.speed_mm_s, "speed", "mm/s"),
-        (spread.force_n, "force", "N"),
-    ] {
+    for (spread, what, unit) in
+        [(spread.speed_mm_s, "speed", "mm/s"), (spread.force_n, "force", "N")]
+    {
         if let Some([low, high]) = spread {
             text += &format!("; {what} {low:.4} to {high:.4} {unit}");
         }

@@ -25,17 +25,19 @@ use crate::wav::silence;
 /// Frames in a block.
 const BLOCK: usize = 4096;
 
-/// Render a scene to a file: exactly the samples that its device would get, faster than real time where possible.
+/// Render a scene to a file: exactly the samples that its device would get, faster than real time
+/// where possible.
 ///
-/// WAV, CSV, NPY or raw samples, by the file's extension, in the unit of the scene's device: newtons,
-/// the volts a display is driven with, or sound.
+/// WAV, CSV, NPY or raw samples, by the file's extension, in the unit of the scene's device:
+/// newtons, the volts a display is driven with, or sound.
 #[derive(Args)]
 pub(crate) struct Render {
     /// The scene
     #[arg(value_parser = located::ASSET)]
     scene: PathBuf,
 
-    /// The file to write, or to replace [default: the scene's name with .wav, if there is no such file]
+    /// The file to write, or to replace [default: the scene's name with .wav, if there is no such
+    /// file]
     #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
     output: Option<PathBuf>,
 
@@ -56,9 +58,7 @@ pub(crate) struct Render {
 
 impl Render {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let mut ready = self
-            .with
-            .open(&self.scene, &self.choice.to_override(None, true)?)?;
+        let mut ready = self.with.open(&self.scene, &self.choice.to_override(None, true)?)?;
         self.check_length(&mut ready)?;
         let plan = ready.plan(&costs())?;
         note(&plan.notes);
@@ -68,18 +68,12 @@ impl Render {
             renderer = renderer.timed();
         }
         signals::ask();
-        let Opened {
-            path,
-            aside,
-            mut output,
-        } = self.open(&ready, plan.rate_hz)?;
+        let Opened { path, aside, mut output } = self.open(&ready, plan.rate_hz)?;
         let length_s = plan.frames.unwrap_or(0) as f64 / plan.rate_hz;
         let bar = bar(length_s.ceil() as u64);
         while output.step(&mut renderer)? {
             if interrupted() {
-                return Err(Failure::Other(
-                    "interrupted; nothing was written".to_owned(),
-                ));
+                return Err(Failure::Other("interrupted; nothing was written".to_owned()));
             }
             bar.set_position((output.frames() as f64 / plan.rate_hz) as u64);
         }
@@ -103,13 +97,7 @@ impl Render {
                 "limited_samples": renderer.limited_samples(),
             }))?;
         } else {
-            print(&text(
-                &shown(&path),
-                frames,
-                plan.rate_hz,
-                &ready,
-                &renderer,
-            ))?;
+            print(&text(&shown(&path), frames, plan.rate_hz, &ready, &renderer))?;
         }
         Ok(Exit::SUCCESS)
     }
@@ -139,11 +127,7 @@ impl Render {
         let known = ready.devices.find("org.htex.file")?;
         let is_file = ready.device.descriptor().id == known.descriptor().id;
         let mut given = match is_file {
-            true => ready
-                .settings()
-                .iter()
-                .map(|(k, v)| (k.to_owned(), v.to_owned()))
-                .collect(),
+            true => ready.settings().iter().map(|(k, v)| (k.to_owned(), v.to_owned())).collect(),
             false => like(&ready.capabilities, &self.scene),
         };
         let aside = match &self.output {
@@ -155,10 +139,7 @@ impl Render {
             given.insert("path".to_owned(), written.display().to_string());
         }
         let settings = Settings::resolve(known.descriptor(), None, &given)?;
-        let format = StreamFormat {
-            rate_hz,
-            block_frames: BLOCK as u32,
-        };
+        let format = StreamFormat { rate_hz, block_frames: BLOCK as u32 };
         let path = match &self.output {
             Some(output) => output.clone(),
             None => settings.text("path").into(),
@@ -175,11 +156,7 @@ impl Render {
             )));
         }
         let device = known.adapter.open(&settings, &format)?;
-        Ok(Opened {
-            path,
-            aside,
-            output: Output::new(device, BLOCK, rate_hz),
-        })
+        Ok(Opened { path, aside, output: Output::new(device, BLOCK, rate_hz) })
     }
 }
 
@@ -198,7 +175,8 @@ struct Aside {
 }
 
 impl Aside {
-    /// A temporary place for a file of this name, if it needs one; it keeps the extension, which determines the format.
+    /// A temporary place for a file of this name, if it needs one; it keeps the extension, which
+    /// determines the format.
     fn of(path: &Path) -> Result<Option<Self>, Failure> {
         if path.to_str().is_some() {
             return Ok(None);
@@ -206,10 +184,7 @@ impl Aside {
         let folder = tempfile::tempdir()
             .map_err(|error| Failure::Other(format!("no temporary folder: {error}")))?;
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("wav");
-        Ok(Some(Self {
-            path: folder.path().join(format!("render.{extension}")),
-            _folder: folder,
-        }))
+        Ok(Some(Self { path: folder.path().join(format!("render.{extension}")), _folder: folder }))
     }
 
     fn move_to(self, path: &Path) -> Result<(), Failure> {

@@ -21,17 +21,18 @@ use crate::outputs::check_outputs;
 
 /// Measure the frequency response of a recording rig or a finger display.
 ///
-/// From recordings of its input and output: hits of an impact hammer (each is one average; double hits, overloads and hits
-/// that are cut off are thrown out and listed), or with --continuous a drive such as noise. Writes the CSV that
-/// --frf of the commands for recordings and the `response` of a scene's device take.
+/// From recordings of its input and output: hits of an impact hammer (each is one average; double
+/// hits, overloads and hits that are cut off are thrown out and listed), or with --continuous a
+/// drive such as noise. Writes the CSV that --frf of the commands for recordings and the `response`
+/// of a scene's device take.
 #[derive(Args)]
 pub(crate) struct Response {
     #[arg(help = format!("The recordings, all of one rate: {}", format_names()))]
     #[arg(value_parser = located::RECORDING, required = true)]
     recordings: Vec<PathBuf>,
 
-    /// The force of the hammer, or the drive of the display: a column by name, number (#1) or path, COLUMN:SCALE, or an
-    /// expression. Without a scale in the unit of the file
+    /// The force of the hammer, or the drive of the display: a column by name, number (#1) or path,
+    /// COLUMN:SCALE, or an expression. Without a scale in the unit of the file
     #[arg(long, value_name = "COLUMN", allow_hyphen_values = true)]
     input: String,
 
@@ -103,11 +104,7 @@ impl Response {
 
     /// The records, and what was noticed while reading them, each once.
     fn read(&self) -> Result<(Vec<Record>, Vec<Notice>), Failure> {
-        let others = self
-            .map
-            .as_deref()
-            .map(str::parse::<ColumnMap>)
-            .transpose()?;
+        let others = self.map.as_deref().map(str::parse::<ColumnMap>).transpose()?;
         let map = column_map(&self.input, &self.output, others.as_ref())?;
         let options = ReadOptions::default()
             .with_rate_hz(self.rate)
@@ -188,10 +185,7 @@ fn line(piece: &Piece) -> String {
         None => "used".to_owned(),
         Some(reason) => format!("thrown out: {reason}"),
     };
-    format!(
-        "{:>10.4} s  peak {:>10.4}  {}  {result}\n",
-        piece.time_s, piece.peak, piece.file
-    )
+    format!("{:>10.4} s  peak {:>10.4}  {}  {result}\n", piece.time_s, piece.peak, piece.file)
 }
 
 fn largest(measured: &MeasuredResponse) -> String {

@@ -16,8 +16,9 @@ use crate::outputs::check_outputs;
 
 /// Write a simulated recording of a finger sliding over a surface.
 ///
-/// A physically motivated signal for experiments: to-and-fro sweeps, friction, a texture read
-/// at the finger's position, setup resonance, sensor noise. It is not a measurement, and is labelled so.
+/// A physically motivated signal for experiments: to-and-fro sweeps, friction, a texture read at
+/// the finger's position, setup resonance, sensor noise. It is not a measurement, and is labelled
+/// so.
 #[derive(Args)]
 pub(crate) struct Simulate {
     /// The surface: sandpaper, fine-fabric, coarse-fabric, corrugated-paper or vinyl
@@ -45,7 +46,8 @@ pub(crate) struct Simulate {
     #[arg(long, default_value_t = 20_000.0, value_name = "HZ")]
     rate: f64,
 
-    /// How the finger moves: to-and-fro sweeps at one speed and force, or freely, in strokes of random speed and force
+    /// How the finger moves: to-and-fro sweeps at one speed and force, or freely, in strokes of
+    /// random speed and force
     #[arg(long, value_enum, default_value = "sweeps")]
     motion: MotionArg,
 
@@ -57,25 +59,21 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "N")]
     force: Option<Range>,
 
-    /// How the texture follows the motion, as exponents relative to 80 mm/s and 0.4 N: frequency-speed=X,level-speed=X,level-force=X;
-    /// those of a relief are 1, 0 and 1
+    /// How the texture follows the motion, as exponents relative to 80 mm/s and 0.4 N:
+    /// frequency-speed=X,level-speed=X,level-force=X; those of a relief are 1, 0 and 1
     #[arg(long, value_name = "LAW")]
     law: Option<GivenLaw>,
 
     /// Change of the texture's level in the course of the recording, dB per minute
-    #[arg(
-        long,
-        value_name = "DB",
-        default_value_t = 0.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "DB", default_value_t = 0.0, allow_negative_numbers = true)]
     drift: f64,
 
     /// Part of the time that the finger is off the surface, for 50 to 250 ms each, 0 to 0.8
     #[arg(long, value_name = "PART", default_value_t = 0.0)]
     lifted: f64,
 
-    /// Where to write the true spectra of a free motion: JSON with the magnitudes at any speed and force
+    /// Where to write the true spectra of a free motion: JSON with the magnitudes at any speed and
+    /// force
     #[arg(long, value_name = "JSON")]
     truth: Option<PathBuf>,
 }
@@ -112,10 +110,8 @@ impl Simulate {
         check_outputs(outputs, [])?;
         let options = self.options()?;
         // Known to be there before anything is written.
-        let truth = self
-            .truth
-            .as_ref()
-            .map(|file| Ok::<_, Failure>((file, options.truth().or_usage()?)));
+        let truth =
+            self.truth.as_ref().map(|file| Ok::<_, Failure>((file, options.truth().or_usage()?)));
         let truth = truth.transpose()?;
         let simulation = simulate(&options).or_usage()?;
         let write = |file: &mut std::fs::File| simulation.write_csv(&mut BufWriter::new(file));

@@ -13,7 +13,8 @@ use crate::plugins::PlayerArgs;
 /// Show the spectrum of one representation of an asset, 20 to 1000 Hz in steps of 5 Hz.
 ///
 /// Magnitudes are in the measure of `htex process`: what a long recording of the voice reads when
-/// segments are averaged by power. Outside the recorded speeds and forces they follow the law of the asset, as a voice does.
+/// segments are averaged by power. Outside the recorded speeds and forces they follow the law of
+/// the asset, as a voice does.
 #[derive(Args)]
 pub(crate) struct Spectrum {
     /// The asset
@@ -52,14 +53,13 @@ pub(crate) struct ChoiceArgs {
 }
 
 impl ChoiceArgs {
-    /// The requested motion; what is missing comes from the asset's default condition, else is the paper's default.
+    /// The requested motion; what is missing comes from the asset's default condition, else is the
+    /// paper's default.
     pub(crate) fn motion(&self, asset: &htex::Asset) -> Result<Option<htex::Motion>, htex::Error> {
         if self.speed.is_none() && self.force.is_none() {
             return Ok(None);
         }
-        asset
-            .motion(self.model.as_deref(), self.speed, self.force)
-            .map(Some)
+        asset.motion(self.model.as_deref(), self.speed, self.force).map(Some)
     }
 }
 
@@ -86,14 +86,8 @@ impl Spectrum {
         let motion = self.choice.motion(&asset).of(&self.asset)?;
         let model = self.choice.model.as_deref();
         let (magnitude, effects) = match self.unscaled {
-            true => (
-                asset.recorded_magnitude(model, motion, &grid),
-                htex::Effects::NONE,
-            ),
-            false => (
-                asset.magnitude(model, motion, &grid),
-                htex::Effects::default(),
-            ),
+            true => (asset.recorded_magnitude(model, motion, &grid), htex::Effects::NONE),
+            false => (asset.magnitude(model, motion, &grid), htex::Effects::default()),
         };
         let magnitude = magnitude.of(&self.asset)?;
         let beyond = self.choice.beyond(&asset, effects);

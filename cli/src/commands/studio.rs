@@ -10,7 +10,8 @@ use crate::failure::Failure;
 use crate::output::{print, warn};
 use crate::signals;
 
-/// Where the page is served unless another port is given. It stays the same, so that the browser finds one's own textures again.
+/// Where the page is served unless another port is given. It stays the same, so that the browser
+/// finds one's own textures again.
 const PORT: u16 = 8420;
 /// How often it is looked whether the command shall end.
 const NOTICED: Duration = Duration::from_millis(100);
@@ -25,17 +26,20 @@ const KEY: &str = "studio.key";
 
 /// Touch, shape, compare and give away textures in the browser.
 ///
-/// Serves the studio on this machine alone, until Ctrl-C, at an address that only you know: `http://NAME.localhost:8420/`, where NAME belongs
-/// to you and to the folder. Chromium, Edge and Firefox find it. For a browser that does not, such as Safari, add the line
-/// `127.0.0.1 NAME.localhost` to /etc/hosts. The page is built by `cargo xtask studio --out DIR`; it asks for nothing beyond
-/// this address.
+/// Serves the studio on this machine alone, until Ctrl-C, at an address that only you know:
+/// `http://NAME.localhost:8420/`, where NAME belongs to you and to the folder. Chromium, Edge and
+/// Firefox find it. For a browser that does not, such as Safari, add the line
+/// `127.0.0.1 NAME.localhost` to /etc/hosts. The page is built by `cargo xtask studio --out DIR`;
+/// it asks for nothing beyond this address.
 #[derive(Args)]
 pub(crate) struct Studio {
-    /// Folder of the page, as `cargo xtask studio` writes it [default: $HTEX_STUDIO, or ../share/htex/studio beside the command]
+    /// Folder of the page, as `cargo xtask studio` writes it [default: $HTEX_STUDIO, or
+    /// ../share/htex/studio beside the command]
     #[arg(long, value_name = "DIR")]
     folder: Option<PathBuf>,
 
-    /// Port of the address; 0 is any that is free, at which the browser does not find textures of another time
+    /// Port of the address; 0 is any that is free, at which the browser does not find textures of
+    /// another time
     #[arg(long, default_value_t = PORT, value_name = "PORT")]
     port: u16,
 }
@@ -45,10 +49,7 @@ impl Studio {
         let folder = self.page()?;
         let served = ServedFolder::open(&folder, self.port, &key()?)
             .map_err(|error| Failure::Other(error.to_string()))?;
-        print(&format!(
-            "the studio is at {}; Ctrl-C ends it\n",
-            served.url()
-        ))?;
+        print(&format!("the studio is at {}; Ctrl-C ends it\n", served.url()))?;
         signals::ask();
         while !signals::interrupted() {
             std::thread::sleep(NOTICED);
@@ -75,7 +76,8 @@ impl Studio {
     }
 }
 
-/// The key that makes the address one that only this user knows. Without a folder for it the address is another one the next time.
+/// The key that makes the address one that only this user knows. Without a folder for it the
+/// address is another one the next time.
 fn key() -> Result<Key, Failure> {
     let config = htex_host::folders::config();
     if let Some(key) = config.and_then(|folder| Key::of(&folder, KEY).ok()) {

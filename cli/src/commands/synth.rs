@@ -28,12 +28,14 @@ pub(crate) struct Synth {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// Play the texture as it was recorded, whatever the speed and force. Without it, frequencies and level follow
-    /// the law of the asset outside the recorded motions, and a resting finger feels nothing
+    /// Play the texture as it was recorded, whatever the speed and force. Without it, frequencies
+    /// and level follow the law of the asset outside the recorded motions, and a resting finger
+    /// feels nothing
     #[arg(long)]
     as_recorded: bool,
 
-    /// Highest level that a motion outside the recorded ones has, over the strongest recorded level: above 0 and finite
+    /// Highest level that a motion outside the recorded ones has, over the strongest recorded
+    /// level: above 0 and finite
     #[arg(long, default_value_t = CEILING, value_name = "TIMES", conflicts_with = "as_recorded")]
     ceiling: f64,
 
@@ -50,9 +52,9 @@ pub(crate) struct Synth {
     #[arg(long, default_value_t = 0)]
     seed: u64,
 
-    /// How samples are made: `streamed` (the model's voice), `loop[:SECONDS]` (a piece of it again and
-    /// again) or `filter[:TAPS]` (white noise through a filter); loop and filter are cheaper and keep
-    /// to one spectrum
+    /// How samples are made: `streamed` (the model's voice), `loop[:SECONDS]` (a piece of it again
+    /// and again) or `filter[:TAPS]` (white noise through a filter); loop and filter are cheaper
+    /// and keep to one spectrum
     #[arg(long, default_value_t = Synthesis::Streamed, value_name = "WAY")]
     quality: Synthesis,
 
@@ -84,18 +86,13 @@ impl Synth {
                 false => Effects::default(),
             });
         options.model = self.choice.model.as_deref();
-        let beyond = self
-            .choice
-            .beyond(&asset, options.effects)
-            .of(&self.asset)?;
+        let beyond = self.choice.beyond(&asset, options.effects).of(&self.asset)?;
         warn(&Vec::from_iter(beyond));
         let mut voice = asset.voice(&options).of(&self.asset)?;
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
         let rights = Rights::of(asset.manifest());
         let wav = Written::Named(&self.output);
-        write_wav(wav, self.rate, frames, &rights, |block| {
-            voice.render(block).of(&self.asset)
-        })?;
+        write_wav(wav, self.rate, frames, &rights, |block| voice.render(block).of(&self.asset))?;
         Ok(Exit::SUCCESS)
     }
 }

@@ -51,8 +51,9 @@ pub(crate) struct Tradeoff {
 
     /// The error that pictures, fronts and knees use
     ///
-    /// held-out: fitted to the odd blocks of a recording, played, and compared with the even ones in third octaves, where 1 is as good
-    /// as a second recording; the others compare with what was fitted to [default: held-out; third-octave if a recording is too short]
+    /// held-out: fitted to the odd blocks of a recording, played, and compared with the even ones
+    /// in third octaves, where 1 is as good as a second recording; the others compare with what was
+    /// fitted to [default: held-out; third-octave if a recording is too short]
     #[arg(long, value_parser = error_axis())]
     error: Option<ErrorAxis>,
 
@@ -89,11 +90,7 @@ impl Tradeoff {
                 format!("-o {output}: points go beside it under that name; name a .html file");
             return Err(Failure::Usage(sentence));
         }
-        let files = self
-            .recordings
-            .iter()
-            .chain(self.plugins.files())
-            .map(PathBuf::as_path);
+        let files = self.recordings.iter().chain(self.plugins.files()).map(PathBuf::as_path);
         check_outputs(
             [&*self.output, &csv_file, &json_file, &part_file],
             files.chain(self.reading.inputs()),
@@ -117,10 +114,7 @@ impl Tradeoff {
         let tradeoff = htex_tradeoff::Tradeoff::new(&tool(), &subjects, swept);
         let json = serde_json::to_vec(&tradeoff)?;
         // Their names are ours: no link is followed.
-        for (file, bytes) in [
-            (&csv_file, csv(&tradeoff).as_bytes()),
-            (&json_file, &json[..]),
-        ] {
+        for (file, bytes) in [(&csv_file, csv(&tradeoff).as_bytes()), (&json_file, &json[..])] {
             let (own, name) = OwnFolder::of_file(file).writing(file)?;
             Written::Inside(&own, &name).write(bytes)?;
         }
@@ -142,9 +136,7 @@ impl Tradeoff {
         for model in self.named(&registry)? {
             let mut found: Vec<&LoadedModel> = registry.all(model.id()).collect();
             found.sort_by_key(|model| way(model.origin()).0);
-            let ways = found
-                .into_iter()
-                .map(|m| (way(m.origin()).1.to_owned(), m.clone()));
+            let ways = found.into_iter().map(|m| (way(m.origin()).1.to_owned(), m.clone()));
             let mut ways: Vec<(String, LoadedModel)> = ways.collect();
             ways.dedup_by(|b, a| a.0 == b.0);
             models.push(Model { ways });
@@ -192,13 +184,9 @@ fn simulated() -> Result<Vec<Take>, Failure> {
     let take = |surface: Surface| {
         let options = SimulationOptions::new(surface);
         let simulation = simulate(&options).or_fail()?;
-        let recording = simulation
-            .to_recording(&surface.to_string())
-            .map_err(AuthorError::from)?;
-        let given = Exploration {
-            speed_mm_s: Some(options.speed_mm_s),
-            force_n: Some(options.force_n),
-        };
+        let recording = simulation.to_recording(&surface.to_string()).map_err(AuthorError::from)?;
+        let given =
+            Exploration { speed_mm_s: Some(options.speed_mm_s), force_n: Some(options.force_n) };
         Ok(Take { recording, given })
     };
     Surface::ALL.into_iter().map(take).collect()
@@ -215,21 +203,10 @@ fn way(origin: &Origin) -> (u8, &'static str) {
 
 /// The command as it was given.
 fn command() -> String {
-    let arguments = invocation::arguments()
-        .into_iter()
-        .map(|argument| argument.to_string_lossy().into_owned());
-    let quoted = arguments.map(|a| {
-        if a.contains([' ', '\'']) {
-            format!("{a:?}")
-        } else {
-            a
-        }
-    });
-    ["htex".to_owned()]
-        .into_iter()
-        .chain(quoted)
-        .collect::<Vec<_>>()
-        .join(" ")
+    let arguments =
+        invocation::arguments().into_iter().map(|argument| argument.to_string_lossy().into_owned());
+    let quoted = arguments.map(|a| if a.contains([' ', '\'']) { format!("{a:?}") } else { a });
+    ["htex".to_owned()].into_iter().chain(quoted).collect::<Vec<_>>().join(" ")
 }
 
 fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
@@ -262,11 +239,7 @@ fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
     }
     for against in ["bytes", "time"] {
         text += &format!("\nknees against {against}\n");
-        for knee in tradeoff
-            .knees
-            .iter()
-            .filter(|k| k.recording == name && k.against == against)
-        {
+        for knee in tradeoff.knees.iter().filter(|k| k.recording == name && k.against == against) {
             text += &format!("  {}: {}\n", knee.of, knee.words);
         }
     }

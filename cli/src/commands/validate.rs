@@ -22,26 +22,28 @@ use crate::schemas::{ABSENT, ExtensionSchema, Named};
 use crate::validation::report;
 use crate::wasm_limits::WasmLimit;
 
-/// Check assets, libraries, scenes (*.json), descriptors of models and devices (*.json), recipes (*.toml) and recordings against
-/// their formats and JSON Schemas; exit status 1 if one is not valid.
+/// Check assets, libraries, scenes (*.json), descriptors of models and devices (*.json), recipes
+/// (*.toml) and recordings against their formats and JSON Schemas; exit status 1 if one is not
+/// valid.
 ///
 /// Each finding has a stable code (`htex explain CODE`), a severity, a JSON pointer into the
-/// document or the recording and, where a JSON Schema says the same, the rule of the schema. Fields of
-/// models that this program has are compared with the models'. Of a recipe its keys, files, plugins, options and gates are checked. A
-/// file that is neither called *.htex, *.htexlib, *.json or *.toml nor begins as a ZIP archive or a library is read as a recording.
+/// document or the recording and, where a JSON Schema says the same, the rule of the schema. Fields
+/// of models that this program has are compared with the models'. Of a recipe its keys, files,
+/// plugins, options and gates are checked. A file that is neither called *.htex, *.htexlib, *.json
+/// or *.toml nor begins as a ZIP archive or a library is read as a recording.
 #[derive(Args)]
 pub(crate) struct Validate {
     /// The files
     #[arg(required = true, value_parser = located::RECORDING)]
     files: Vec<PathBuf>,
 
-    /// Validate the extension of this name against a JSON Schema (draft 2020-12); nothing is fetched. May be
-    /// given several times
+    /// Validate the extension of this name against a JSON Schema (draft 2020-12); nothing is
+    /// fetched. May be given several times
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension_schema: Vec<String>,
 
-    /// Also load the models that assets embed, in their sandbox, and compare them with the asset's fields.
-    /// Without this, nothing embedded in an asset is run
+    /// Also load the models that assets embed, in their sandbox, and compare them with the asset's
+    /// fields. Without this, nothing embedded in an asset is run
     #[arg(long)]
     embedded_plugins: bool,
 
@@ -59,10 +61,7 @@ pub(crate) struct Validate {
 
 impl Validate {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let schemas = self
-            .extension_schema
-            .iter()
-            .map(|a| ExtensionSchema::read(a));
+        let schemas = self.extension_schema.iter().map(|a| ExtensionSchema::read(a));
         let schemas = schemas.collect::<Result<Vec<_>, _>>()?;
         let kinds: Vec<Kind> = self.files.iter().map(|path| kind(path)).collect();
         if self.reading.is_given() && !kinds.contains(&Kind::Recording) {
@@ -112,10 +111,7 @@ pub(crate) enum Kind {
 
 /// The kind of a file, by its name, else by its first bytes.
 pub(crate) fn kind(path: &Path) -> Kind {
-    let called = |name: &str| {
-        path.extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case(name))
-    };
+    let called = |name: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(name));
     let mut first = Vec::new();
     let most = MAGIC.len() as u64;
     // A file that cannot be read is an error where its contents are read.
@@ -259,10 +255,7 @@ fn validate_json(path: &Path) -> Result<Report, Failure> {
         return descriptor(&document, problem, Named::device()?);
     }
     let mut report = SceneArgs::validate(path)?;
-    if document
-        .get("htex_scene")
-        .is_some_and(|v| v == htex_scene::file::VERSION)
-    {
+    if document.get("htex_scene").is_some_and(|v| v == htex_scene::file::VERSION) {
         Named::scene()?.hold(&document, &mut report);
         if let Some(settings) = SceneArgs::settings_schema(&document)? {
             settings.hold(&document, &mut report);

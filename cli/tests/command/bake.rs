@@ -22,10 +22,7 @@ fn listed(source: &str, brackets: [char; 2]) -> Vec<u8> {
     let from = source.rfind(brackets[0]).unwrap() + 1;
     let to = source.rfind(brackets[1]).unwrap();
     let numbers = source[from..to].split(',').map(str::trim);
-    numbers
-        .filter(|x| !x.is_empty())
-        .map(|x| x.parse().unwrap())
-        .collect()
+    numbers.filter(|x| !x.is_empty()).map(|x| x.parse().unwrap()).collect()
 }
 
 #[test]
@@ -35,12 +32,7 @@ fn a_condition_is_written_as_bytes_and_as_source() {
         let at = ["--at", "speed=80,force=0.4", "-o", name];
         let run = place.run(&[&["bake", "t.htex", "--model", "sbeta"][..], &at].concat());
         assert_eq!(run.code(), 0, "{}", run.error());
-        assert!(
-            run.text()
-                .contains("org.htex.sbeta at 8000 Hz, 1 conditions"),
-            "{}",
-            run.text()
-        );
+        assert!(run.text().contains("org.htex.sbeta at 8000 Hz, 1 conditions"), "{}", run.text());
         bytes(&place, name)
     };
     let block = bake("t.bin");
@@ -54,16 +46,8 @@ fn a_condition_is_written_as_bytes_and_as_source() {
     assert_eq!(bake("again.bin"), block);
 
     for (output, name, line) in [
-        (
-            "a.h",
-            "felt2",
-            format!("static const uint8_t felt2[{length}] = {{"),
-        ),
-        (
-            "a.rs",
-            "FELT_2",
-            format!("pub static FELT_2: [u8; {length}] = ["),
-        ),
+        ("a.h", "felt2", format!("static const uint8_t felt2[{length}] = {{")),
+        ("a.rs", "FELT_2", format!("pub static FELT_2: [u8; {length}] = [")),
     ] {
         let at = ["--at", "speed=80,force=0.4", "--name", name, "-o", output];
         let run = place.run(&[&["bake", "t.htex", "--model", "sbeta"][..], &at].concat());
@@ -89,12 +73,7 @@ fn a_grid_gets_the_conditions_its_accuracy_needs() {
     let vinyl = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes/vinyl.htex");
     std::fs::copy(vinyl, place.path("t.htex")).unwrap();
     let bake = |within: &str| {
-        let grid = [
-            "--grid",
-            "speed=40:120:2,force=0.2:0.6:2",
-            "--within",
-            within,
-        ];
+        let grid = ["--grid", "speed=40:120:2,force=0.2:0.6:2", "--within", within];
         let output = ["-o", "t.bin", "--json"];
         place.json(&[&["bake", "t.htex", "--model", "mfcc"][..], &grid, &output].concat())
     };
@@ -103,17 +82,11 @@ fn a_grid_gets_the_conditions_its_accuracy_needs() {
     assert_eq!(numbers(&fine["forces_n"]).first(), Some(&f64::from(0.2f32)));
     assert!(numbers(&fine["speeds_mm_s"]).len() > 2, "{fine}");
     let error = |report: &serde_json::Value| report["error_between_db"].as_f64().unwrap();
-    assert!(
-        error(&fine) <= 0.3 && error(&coarse) > 0.3,
-        "{coarse} and {fine}"
-    );
+    assert!(error(&fine) <= 0.3 && error(&coarse) > 0.3, "{coarse} and {fine}");
     let block = bytes(&place, "t.bin");
     assert_eq!(fine["bytes"], block.len());
     let block = Block::open(&block).unwrap();
-    assert_eq!(
-        block.speeds_mm_s().len(),
-        numbers(&fine["speeds_mm_s"]).len()
-    );
+    assert_eq!(block.speeds_mm_s().len(), numbers(&fine["speeds_mm_s"]).len());
 }
 
 #[test]
@@ -133,14 +106,7 @@ fn sinusoids_and_rates() {
 fn quantity_and_law_are_told_and_a_narrow_grid_is_warned_of() {
     let place = Place::new();
     let csv = place.recording("coarse-fabric");
-    let at = [
-        "--at",
-        "speed=80,force=0.4",
-        "--contact",
-        "finger",
-        "-o",
-        "t.htex",
-    ];
+    let at = ["--at", "speed=80,force=0.4", "--contact", "finger", "-o", "t.htex"];
     assert_eq!(place.run(&[&["fit", &csv][..], &at].concat()).code(), 0);
     let bake = |more: &[&str]| place.run(&[&["bake", "t.htex", "-o", "t.bin"][..], more].concat());
     let one = ["--at", "speed=80,force=0.4", "--model", "sslope"];
@@ -153,56 +119,30 @@ fn quantity_and_law_are_told_and_a_narrow_grid_is_warned_of() {
     ] {
         assert!(run.text().contains(words), "{}", run.text());
     }
-    assert!(
-        run.error().contains("keeps the frequencies"),
-        "{}",
-        run.error()
-    );
+    assert!(run.error().contains("keeps the frequencies"), "{}", run.error());
     let wide = ["--grid", "speed=60:120:2,force=0.4", "--model", "sslope"];
     assert!(!bake(&wide).error().contains("keeps the frequencies"));
     let report = place.json(&[&["bake", "t.htex", "-o", "t.bin", "--json"][..], &one].concat());
-    assert!(
-        report["error_beyond_db"].as_f64().unwrap() > 1.0,
-        "{report}"
-    );
-    assert_eq!(
-        (&report["unit"], &report["quantity"]),
-        (&"N".into(), &"lateral_force".into())
-    );
+    assert!(report["error_beyond_db"].as_f64().unwrap() > 1.0, "{report}");
+    assert_eq!((&report["unit"], &report["quantity"]), (&"N".into(), &"lateral_force".into()));
     assert_eq!(report["law"]["frequency_speed"], 1.0);
     let block = bytes(&place, "t.bin");
     let block = Block::open(&block).unwrap();
-    assert_eq!(
-        report["full_scale"].as_f64().unwrap() as f32,
-        block.full_scale()
-    );
+    assert_eq!(report["full_scale"].as_f64().unwrap() as f32, block.full_scale());
     // Sinusoids follow.
     let tones = ["--at", "speed=80,force=0.4", "--model", "speak"];
     let run = bake(&tones);
-    assert!(
-        !run.error().contains("keeps the frequencies"),
-        "{}",
-        run.error()
-    );
+    assert!(!run.error().contains("keeps the frequencies"), "{}", run.error());
 }
 
 #[test]
 fn wrong_conditions_rates_and_names_are_explained() {
     let (place, _) = fitted();
     for (arguments, words) in [
-        (
-            &["--at", "speed=80", "-o", "t.bin"][..],
-            "a speed and a force",
-        ),
-        (
-            &["--at", "speed=fast,force=1", "-o", "t.bin"],
-            "a speed and a force",
-        ),
+        (&["--at", "speed=80", "-o", "t.bin"][..], "a speed and a force"),
+        (&["--at", "speed=fast,force=1", "-o", "t.bin"], "a speed and a force"),
         (&["--at", "speed=0,force=0.4", "-o", "t.bin"], "from 0.5 to"),
-        (
-            &["--grid", "speed=40:80:1,force=0.4", "-o", "t.bin"],
-            "count from 2 to 32",
-        ),
+        (&["--grid", "speed=40:80:1,force=0.4", "-o", "t.bin"], "count from 2 to 32"),
         (&["--rate", "1500", "-o", "t.bin"], "the rate is from 2050"),
         (&["--within", "0", "-o", "t.bin"], "above 0"),
         (&["--longest", "64", "-o", "t.bin"], "65..=641"),
@@ -213,31 +153,16 @@ fn wrong_conditions_rates_and_names_are_explained() {
         (&["--name", "felt", "-o", "t.rs"], "capital letters"),
         (&["-o", "t.htex"], "it is read here"),
         (
-            &[
-                "--at",
-                "speed=40,force=0.2",
-                "--at",
-                "speed=80,force=0.4",
-                "-o",
-                "t.bin",
-            ],
+            &["--at", "speed=40,force=0.2", "--at", "speed=80,force=0.4", "-o", "t.bin"],
             "all combinations",
         ),
     ] {
         let run = place.run(&[&["bake", "t.htex"][..], arguments].concat());
         assert_eq!(run.code(), 2, "{arguments:?}: {}", run.error());
-        assert!(
-            run.error().contains(words),
-            "{arguments:?}: {}",
-            run.error()
-        );
+        assert!(run.error().contains(words), "{arguments:?}: {}", run.error());
         assert!(!place.path("t.bin").exists());
     }
     let run = place.run(&["bake", "t.htex", "--model", "none", "-o", "t.bin"]);
     assert_eq!(run.code(), 1);
-    assert!(
-        run.error().contains("no representation `none`"),
-        "{}",
-        run.error()
-    );
+    assert!(run.error().contains("no representation `none`"), "{}", run.error());
 }

@@ -59,12 +59,7 @@ fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     while let Some(inside) = folders.pop() {
         for entry in fs::read_dir(inside).unwrap() {
             let path = entry.unwrap().path();
-            let name = path
-                .strip_prefix(folder)
-                .unwrap()
-                .to_str()
-                .unwrap()
-                .to_owned();
+            let name = path.strip_prefix(folder).unwrap().to_str().unwrap().to_owned();
             match path.is_dir() {
                 true if name == ".htex-build" => {}
                 true => folders.push(path),
@@ -77,12 +72,7 @@ fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 
 /// The same files with the same bytes, without printing these.
 fn assert_same(left: &BTreeMap<String, Vec<u8>>, right: &BTreeMap<String, Vec<u8>>) {
-    assert!(
-        left.keys().eq(right.keys()),
-        "{:?}, {:?}",
-        left.keys(),
-        right.keys()
-    );
+    assert!(left.keys().eq(right.keys()), "{:?}, {:?}", left.keys(), right.keys());
     for (name, bytes) in left {
         assert!(right[name] == *bytes, "{name}");
     }
@@ -102,11 +92,9 @@ fn build(place: &Place, output: &str, more: &[&str]) -> Value {
 fn what_changed_is_built_and_nothing_else() {
     let place = place();
     let first = build(&place, "dist", &[]);
-    assert_eq!(
-        (&first["fitted"], &first["textures"]),
-        (&6.into(), &6.into())
-    );
-    // `bands` keeps more surfaces below the threshold than two numbers do; what repeats is counted apart.
+    assert_eq!((&first["fitted"], &first["textures"]), (&6.into(), &6.into()));
+    // `bands` keeps more surfaces below the threshold than two numbers do; what repeats is counted
+    // apart.
     let shares = |model: &str| first["felt_shares"][format!("org.htex.{model}")].clone();
     let below = |model: &str| shares(model)["below_difference_threshold"].as_u64();
     assert!(below("bands") > below("sbeta"), "{}", first["felt_shares"]);
@@ -157,11 +145,7 @@ fn what_changed_is_built_and_nothing_else() {
         RECIPE.to_owned() + "\n[[overrides]]\ntextures = \"vinyl/*\"\nlevel = \"fitted\"\n",
     );
     assert_eq!(build(&place, "dist", &[])["fitted"], 2);
-    fs::copy(
-        place.path("rec/sandpaper_2.csv"),
-        place.path("rec/sandpaper_1.csv"),
-    )
-    .unwrap();
+    fs::copy(place.path("rec/sandpaper_2.csv"), place.path("rec/sandpaper_1.csv")).unwrap();
     assert_eq!(build(&place, "dist", &[])["fitted"], 1);
 
     // A gate concerns no fit; a texture that is gone takes its files along.
@@ -191,29 +175,17 @@ fn metadata_fit_nothing_again() {
         .replace("tags = ", "author = \"A. N. Other\"\ntags = ");
     place.write("library.toml", &other);
     let dry = build(&place, "dist", &["--dry-run"]);
-    assert_eq!(
-        (&dry["to_fit"], &dry["as_they_were"]),
-        (&serde_json::json!([]), &6.into())
-    );
+    assert_eq!((&dry["to_fit"], &dry["as_they_were"]), (&serde_json::json!([]), &6.into()));
     assert_eq!(build(&place, "dist", &[])["fitted"], 0);
     let info = place.json(&["info", "dist/textures/new/vinyl/1.htex", "--json"]);
-    assert_eq!(
-        (&info["license"], &info["name"]),
-        (&"CC-BY-4.0".into(), &"new/vinyl/1".into())
-    );
+    assert_eq!((&info["license"], &info["name"]), (&"CC-BY-4.0".into(), &"new/vinyl/1".into()));
     assert!(!place.path("dist/textures/vinyl").exists());
     // As if nothing else had ever been built, once the names that are gone were told.
     assert_eq!(build(&place, "dist", &[])["removed"], serde_json::json!([]));
     build(&place, "alone", &[]);
-    assert_same(
-        &results(&place.path("dist")),
-        &results(&place.path("alone")),
-    );
+    assert_same(&results(&place.path("dist")), &results(&place.path("alone")));
     // Metadata that are left out leave nothing behind.
-    place.write(
-        "library.toml",
-        other.replace("author = \"A. N. Other\"\n", ""),
-    );
+    place.write("library.toml", other.replace("author = \"A. N. Other\"\n", ""));
     assert_eq!(build(&place, "dist", &[])["fitted"], 0);
     assert!(place.json(&["info", "dist/textures/new/vinyl/1.htex", "--json"])["author"].is_null());
     // An option that is taken back, before and after pruning.
@@ -231,7 +203,8 @@ fn metadata_fit_nothing_again() {
     assert_eq!(made.count(), 12);
 }
 
-/// A dry run checks what a build would, says why each texture would be fitted, and writes no result.
+/// A dry run checks what a build would, says why each texture would be fitted, and writes no
+/// result.
 #[test]
 fn a_dry_run_checks_and_says_why() {
     let place = place();
@@ -239,61 +212,35 @@ fn a_dry_run_checks_and_says_why() {
         let dry = build(&place, output, &["--dry-run"]);
         let text = |value: &Value| value.as_str().unwrap().to_owned();
         let listed = dry["to_fit"].as_array().unwrap().iter();
-        listed
-            .map(|one| (text(&one["texture"]), text(&one["why"])))
-            .collect()
+        listed.map(|one| (text(&one["texture"]), text(&one["why"]))).collect()
     };
     let new = why("dist");
-    assert!(
-        new.len() == 6 && new.values().all(|why| why == "new"),
-        "{new:?}"
-    );
+    assert!(new.len() == 6 && new.values().all(|why| why == "new"), "{new:?}");
     assert!(!place.path("dist/surfaces.htexlib").exists());
     let run = place.run(&["build", "library.toml", "-o", "dist", "--dry-run"]);
-    assert!(
-        run.text()
-            .contains("6 textures: 6 to fit from 6 recordings"),
-        "{}",
-        run.text()
-    );
+    assert!(run.text().contains("6 textures: 6 to fit from 6 recordings"), "{}", run.text());
     build(&place, "dist", &[]);
     assert_eq!(why("dist"), BTreeMap::new());
     place.write(
         "library.toml",
         RECIPE.to_owned() + "[[overrides]]\ntextures = \"vinyl/1\"\nlevel = \"fitted\"\n",
     );
-    fs::copy(
-        place.path("rec/sandpaper_2.csv"),
-        place.path("rec/sandpaper_1.csv"),
-    )
-    .unwrap();
+    fs::copy(place.path("rec/sandpaper_2.csv"), place.path("rec/sandpaper_1.csv")).unwrap();
     let changed = why("dist");
     assert_eq!(changed["vinyl/1"], "changed: options");
     // The same contents under another name are another recording.
     assert_eq!(changed["sandpaper/1"], "changed: recordings");
     assert_eq!(changed.len(), 2);
     for (from, to, said) in [
-        (
-            "models = [\"bands\"",
-            "options.bands.order = 3\nmodels = [\"bands\"",
-            "order",
-        ),
+        ("models = [\"bands\"", "options.bands.order = 3\nmodels = [\"bands\"", "order"),
         ("models = [\"bands\"", "models = [\"spline\"", "spline"),
         (
             "min_segments = 1",
             "max_band_error_db = { ar = 1 }",
             "gates.max_band_error_db: ar is not fitted",
         ),
-        (
-            "min_segments = 1",
-            "max_band_error_db = -1",
-            "which no texture meets",
-        ),
-        (
-            "name = \"surfaces\"",
-            "name = \"surfaces\"\nplugins = [\"none.wasm\"]",
-            "none.wasm",
-        ),
+        ("min_segments = 1", "max_band_error_db = -1", "which no texture meets"),
+        ("name = \"surfaces\"", "name = \"surfaces\"\nplugins = [\"none.wasm\"]", "none.wasm"),
     ] {
         place.write("library.toml", RECIPE.replace(from, to));
         for arguments in [
@@ -302,28 +249,16 @@ fn a_dry_run_checks_and_says_why() {
         ] {
             let run = place.run(arguments);
             let all = run.text() + &run.error();
-            assert!(
-                run.code() == 1 && all.contains(said),
-                "{arguments:?} {to}: {all}"
-            );
+            assert!(run.code() == 1 && all.contains(said), "{arguments:?} {to}: {all}");
         }
         // A failure is JSON, too, where that is asked for.
         let run = place.run(&["build", "library.toml", "-o", "dist", "--dry-run", "--json"]);
         let error: Value = serde_json::from_str(&run.text()).unwrap();
-        assert!(
-            error["error"]
-                .to_string()
-                .contains(said.split('"').next().unwrap()),
-            "{error}"
-        );
+        assert!(error["error"].to_string().contains(said.split('"').next().unwrap()), "{error}");
     }
     place.write("library.toml", RECIPE);
     let run = place.run(&["validate", "library.toml"]);
-    assert!(
-        run.code() == 0 && run.text().contains("library.toml: valid"),
-        "{}",
-        run.text()
-    );
+    assert!(run.code() == 0 && run.text().contains("library.toml: valid"), "{}", run.text());
 }
 
 /// Globs lead out of the recipe's folder, and links that lead nowhere stop nothing.
@@ -333,19 +268,11 @@ fn globs_find_what_they_say_wherever_it_is() {
     use std::os::unix::fs::symlink;
     let place = place();
     fs::create_dir_all(place.path("recipes/rec")).unwrap();
-    for link in [
-        "recipes/nowhere",
-        "recipes/rec/nowhere.csv",
-        "rec/nowhere.csv",
-    ] {
+    for link in ["recipes/nowhere", "recipes/rec/nowhere.csv", "rec/nowhere.csv"] {
         symlink("/nowhere", place.path(link)).unwrap();
     }
     symlink("..", place.path("recipes/loop")).unwrap();
-    fs::copy(
-        place.path("rec/vinyl_1.csv"),
-        place.path("recipes/rec/vinyl_1.csv"),
-    )
-    .unwrap();
+    fs::copy(place.path("rec/vinyl_1.csv"), place.path("recipes/rec/vinyl_1.csv")).unwrap();
     let absolute = place.path("rec").canonicalize().unwrap();
     let absolute = absolute.display();
     for (glob, textures) in [
@@ -359,36 +286,23 @@ fn globs_find_what_they_say_wherever_it_is() {
         ("rec/*.csv".to_owned(), 1),
     ] {
         place.write("recipes/library.toml", RECIPE.replace("rec/*.csv", &glob));
-        let run = place.run(&[
-            "build",
-            "recipes/library.toml",
-            "-o",
-            "dist",
-            "--dry-run",
-            "--json",
-        ]);
+        let run =
+            place.run(&["build", "recipes/library.toml", "-o", "dist", "--dry-run", "--json"]);
         assert_eq!(run.code(), 0, "{glob}: {}", run.error());
         let dry: Value = serde_json::from_str(&run.text()).unwrap();
         assert_eq!(dry["textures"], textures, "{glob}");
     }
 }
 
-/// Recordings of one texture with one file name are told apart, in reports by their folders and in the asset by their hashes.
+/// Recordings of one texture with one file name are told apart, in reports by their folders and in
+/// the asset by their hashes.
 #[test]
 fn an_asset_has_the_name_and_the_hash_of_each_recording() {
     let place = place();
     for day in ["monday", "tuesday"] {
         fs::create_dir_all(place.path(&format!("days/{day}/take"))).unwrap();
-        let from = if day == "monday" {
-            "rec/vinyl_1.csv"
-        } else {
-            "rec/vinyl_2.csv"
-        };
-        fs::copy(
-            place.path(from),
-            place.path(&format!("days/{day}/take/a.csv")),
-        )
-        .unwrap();
+        let from = if day == "monday" { "rec/vinyl_1.csv" } else { "rec/vinyl_2.csv" };
+        fs::copy(place.path(from), place.path(&format!("days/{day}/take/a.csv"))).unwrap();
     }
     let recipe = "[library]\nname = \"days\"\n[[textures]]\nrecordings = \"days/**/*.csv\"\nname = \"one\"\nmodels = [\"bands\"]\n\
                   at = { speed_mm_s = 80, force_n = 0.4 }\n";
@@ -404,10 +318,7 @@ fn an_asset_has_the_name_and_the_hash_of_each_recording() {
     }
     let report: Value =
         serde_json::from_slice(&fs::read(place.path("dist/build-report.json")).unwrap()).unwrap();
-    assert_eq!(
-        report["textures"][0]["recordings"][1]["file"],
-        "tuesday/take/a.csv"
-    );
+    assert_eq!(report["textures"][0]["recordings"][1]["file"], "tuesday/take/a.csv");
 }
 
 /// The same bytes with one job and with three, in another folder, and after a result was damaged.
@@ -429,14 +340,8 @@ fn the_bytes_do_not_depend_on_jobs_folder_or_order() {
     assert_same(&results(&place.path("one")), &expected);
     let entries = entries(&place.path("one/surfaces.htexlib"));
     let names: Vec<&str> = entries.iter().map(|entry| &entry.name[..]).collect();
-    let sorted = [
-        "fine-fabric/1",
-        "fine-fabric/2",
-        "sandpaper/1",
-        "sandpaper/2",
-        "vinyl/1",
-        "vinyl/2",
-    ];
+    let sorted =
+        ["fine-fabric/1", "fine-fabric/2", "sandpaper/1", "sandpaper/2", "vinyl/1", "vinyl/2"];
     assert_eq!(names, sorted);
 }
 
@@ -450,12 +355,8 @@ fn a_killed_build_goes_on_to_the_same_bytes() {
     let whole = start.elapsed();
     for kill in 1..=20 {
         let build = ["build", "library.toml", "-o", "killed", "--jobs", "2"];
-        let mut child = place
-            .command(&build)
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut child =
+            place.command(&build).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         // Moments that are spread over the build by a number that has no period with it.
         let part = (f64::from(kill) * 0.618).fract();
         std::thread::sleep(whole.mul_f64(part));
@@ -466,13 +367,11 @@ fn a_killed_build_goes_on_to_the_same_bytes() {
         }
     }
     build(&place, "killed", &[]);
-    assert_same(
-        &results(&place.path("killed")),
-        &results(&place.path("whole")),
-    );
+    assert_same(&results(&place.path("killed")), &results(&place.path("whole")));
 }
 
-/// What misses a gate is left out with a reason, what cannot be fitted stops the build or is left out; the others stand.
+/// What misses a gate is left out with a reason, what cannot be fitted stops the build or is left
+/// out; the others stand.
 #[test]
 fn what_fails_is_reported_and_the_others_stand() {
     let place = place();
@@ -484,33 +383,19 @@ fn what_fails_is_reported_and_the_others_stand() {
     assert_eq!(run.code(), 1, "{}", run.error());
     let summary: Value = serde_json::from_str(&run.text()).unwrap();
     assert_eq!(
-        (
-            &summary["textures"],
-            summary["left_out"].as_array().unwrap().len()
-        ),
+        (&summary["textures"], summary["left_out"].as_array().unwrap().len()),
         (&0.into(), 6)
     );
-    assert_eq!(
-        summary["left_out"][0]["missed"][0]["gate"],
-        "max_band_error_db"
-    );
+    assert_eq!(summary["left_out"][0]["missed"][0]["gate"], "max_band_error_db");
 
     place.write("library.toml", RECIPE);
     place.write("rec/broken_1.csv", "t_s,lateral_n\n0,1\n0.1,zero\n");
     let run = place.run(&["build", "library.toml", "-o", "dist"]);
     assert_eq!(run.code(), 1);
-    assert!(
-        run.error().contains("broken/1") && run.error().contains("zero"),
-        "{}",
-        run.error()
-    );
+    assert!(run.error().contains("broken/1") && run.error().contains("zero"), "{}", run.error());
     let run = place.run(&["build", "library.toml", "-o", "dist", "--keep-going"]);
     assert_eq!(run.code(), 3, "{}", run.error());
-    assert!(
-        run.text().contains("left out: broken/1: fit: broken_1.csv"),
-        "{}",
-        run.text()
-    );
+    assert!(run.text().contains("left out: broken/1: fit: broken_1.csv"), "{}", run.text());
     assert_eq!(entries(&place.path("dist/surfaces.htexlib")).len(), 6);
     let report: Value =
         serde_json::from_slice(&fs::read(place.path("dist/build-report.json")).unwrap()).unwrap();
@@ -520,38 +405,29 @@ fn what_fails_is_reported_and_the_others_stand() {
         .iter()
         .filter(|t| t["status"] == "left_out")
         .collect();
-    assert_eq!(
-        (left_out.len(), &left_out[0]["name"]),
-        (1, &"broken/1".into())
-    );
+    assert_eq!((left_out.len(), &left_out[0]["name"]), (1, &"broken/1".into()));
 }
 
 /// Cuts the lateral force of a recording off at 60 % of its largest value.
 fn clip(file: &Path) {
     let text = fs::read_to_string(file).unwrap();
-    let (head, rows): (Vec<&str>, Vec<&str>) = text
-        .lines()
-        .partition(|line| !line.starts_with(|c: char| c.is_ascii_digit()));
-    let cells: Vec<Vec<f64>> = rows
-        .iter()
-        .map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect())
-        .collect();
+    let (head, rows): (Vec<&str>, Vec<&str>) =
+        text.lines().partition(|line| !line.starts_with(|c: char| c.is_ascii_digit()));
+    let cells: Vec<Vec<f64>> =
+        rows.iter().map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
     let most = cells.iter().map(|row| row[1].abs()).fold(0.0, f64::max);
     let clipped = cells.iter().map(|row| {
         let mut row = row.clone();
         row[1] = row[1].clamp(-0.6 * most, 0.6 * most);
         row.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
     });
-    let lines: Vec<String> = head
-        .iter()
-        .map(ToString::to_string)
-        .chain(clipped)
-        .collect();
+    let lines: Vec<String> = head.iter().map(ToString::to_string).chain(clipped).collect();
     fs::write(file, lines.join("\n")).unwrap();
     age(file, 60);
 }
 
-/// Recordings that clip are counted by the code of their finding wherever a build is told of, and gates leave them out.
+/// Recordings that clip are counted by the code of their finding wherever a build is told of, and
+/// gates leave them out.
 #[test]
 fn findings_are_counted_by_code_and_denied_by_gates() {
     let place = place();
@@ -578,16 +454,9 @@ fn findings_are_counted_by_code_and_denied_by_gates() {
     assert_eq!(report_of_first["findings"], again["findings"]);
     let own = &report_of_first["textures"][3]["asset"]["findings"];
     assert_eq!(report_of_first["textures"][3]["name"], "sandpaper/2");
-    assert!(
-        own.to_string()
-            .contains("\"recordings\":[\"sandpaper_2.csv\"]"),
-        "{own}"
-    );
+    assert!(own.to_string().contains("\"recordings\":[\"sandpaper_2.csv\"]"), "{own}");
     let page = fs::read_to_string(place.path("dist/index.html")).unwrap();
-    assert!(
-        page.contains("\"code\":\"RECORDING_CLIPPED\""),
-        "the catalogue has it"
-    );
+    assert!(page.contains("\"code\":\"RECORDING_CLIPPED\""), "the catalogue has it");
     // Another gate fits nothing again.
     let gated = |gate: &str| {
         place.write("library.toml", RECIPE.replace("min_segments = 1", gate));
@@ -608,10 +477,7 @@ fn findings_are_counted_by_code_and_denied_by_gates() {
             && reason.starts_with("RECORDING_CLIPPED (sandpaper_2.csv): "),
         "{reason}"
     );
-    assert_eq!(
-        report("dist")["findings"]["RECORDING_CLIPPED"]["in_library"],
-        0
-    );
+    assert_eq!(report("dist")["findings"]["RECORDING_CLIPPED"]["in_library"], 0);
     for (gate, value) in [
         ("max_repeatability_db", "0.001"),
         ("max_felt_error_db", "0.001"),
@@ -623,7 +489,8 @@ fn findings_are_counted_by_code_and_denied_by_gates() {
     }
 }
 
-/// An error that ends a build is in the report, beside what an earlier build left; the next build is as if it had not been.
+/// An error that ends a build is in the report, beside what an earlier build left; the next build
+/// is as if it had not been.
 #[test]
 fn an_error_that_ends_a_build_is_in_its_report() {
     let place = place();
@@ -690,11 +557,7 @@ fn wrong_recipes_say_where() {
             "{surfce}",
             "nothing is called `surfce`; there are file, folder, stem, surface, take",
         ),
-        (
-            "{surface}/{take}",
-            "../{stem}",
-            "textures[0].name: a part of it is empty, `.` or `..`",
-        ),
+        ("{surface}/{take}", "../{stem}", "textures[0].name: a part of it is empty, `.` or `..`"),
         ("(?<take>", "(?<take", "textures[0].pattern"),
         ("(?<surface>[a-z-]+)", "(?<surface>x)", "does not match"),
         ("CC0-1.0", "free for all", "license"),
@@ -734,21 +597,15 @@ fn a_table_says_what_files_do_not() {
     let recipe = "[library]\nname = \"t\"\n[[textures]]\ntable = \"recordings.csv\"\nmodels = [\"bands\"]\ntags = [\"{price}\"]\n";
     place.write("library.toml", recipe);
     let run = place.run(&["build", "library.toml", "-o", "dist"]);
-    // The simulated finger moves at 80 mm/s: a recording that is said to be at 160 has no segment there.
+    // The simulated finger moves at 80 mm/s: a recording that is said to be at 160 has no segment
+    // there.
     assert_eq!(run.code(), 1);
-    assert!(
-        run.error().contains("vinyl_2.csv") && run.error().contains("160"),
-        "{}",
-        run.error()
-    );
+    assert!(run.error().contains("vinyl_2.csv") && run.error().contains("160"), "{}", run.error());
     place.write("recordings.csv", table.replace("160", "80"));
     build(&place, "dist", &[]);
     let entries_of = entries;
     let entries = entries_of(&place.path("dist/t.htexlib"));
-    assert_eq!(
-        (&entries[0].name[..], &entries[1].tags[0][..]),
-        ("A", "dear")
-    );
+    assert_eq!((&entries[0].name[..], &entries[1].tags[0][..]), ("A", "dear"));
     let recordings = place.json(&["info", "dist/textures/A.htex", "--json"]);
     assert_eq!(recordings["conditions"].as_array().unwrap().len(), 1);
 
@@ -761,15 +618,13 @@ fn a_table_says_what_files_do_not() {
     let run = place.run(&["build", "library.toml", "-o", "dist", "--keep-going"]);
     assert_eq!(run.code(), 3, "{}", run.error());
     let text = run.text();
-    assert!(
-        text.contains("left out: C: fit: cannot read ./rec/none.csv"),
-        "{text}"
-    );
+    assert!(text.contains("left out: C: fit: cannot read ./rec/none.csv"), "{text}");
     assert!(text.contains("0 fitted, 2 as they were"), "{text}");
     assert_eq!(entries_of(&place.path("dist/t.htexlib")).len(), 2);
 }
 
-/// A folder that was moved takes its textures out of the library: that is said, and refused where nothing may be removed.
+/// A folder that was moved takes its textures out of the library: that is said, and refused where
+/// nothing may be removed.
 #[test]
 fn textures_whose_recordings_are_gone_are_named() {
     let place = place();
@@ -805,23 +660,13 @@ fn textures_whose_recordings_are_gone_are_named() {
     assert_eq!(report["removed"], names);
     let page = String::from_utf8_lossy(&after["index.html"]).into_owned();
     assert!(page.contains("2 removed (vinyl/…)"));
-    assert_eq!(
-        build(&place, "dist", &["--no-removals"])["removed"],
-        serde_json::json!([])
-    );
+    assert_eq!(build(&place, "dist", &["--no-removals"])["removed"], serde_json::json!([]));
 
     // A texture that misses a gate is also lost.
     let before = results(&place.path("dist"));
-    place.write(
-        "library.toml",
-        RECIPE.replace("min_segments = 1", "min_segments = 900"),
-    );
+    place.write("library.toml", RECIPE.replace("min_segments = 1", "min_segments = 900"));
     let run = place.run(&[&line[..], &["--no-removals"]].concat());
     assert_eq!(run.code(), 1, "{}", run.text());
-    assert!(
-        run.error().contains("would lose 4 textures"),
-        "{}",
-        run.error()
-    );
+    assert!(run.error().contains("would lose 4 textures"), "{}", run.error());
     assert_same(&results(&place.path("dist")), &before);
 }

@@ -40,14 +40,10 @@ impl Bench {
             assert_eq!(run.code(), 0, "{}", run.error());
             let name = format!("lab/{file}");
             server.put(&name, fs::read(place.path(&file)).unwrap());
-            // This server has no entity tags in lists; a time that has just been set may stay after another change.
-            let there = fs::File::options()
-                .write(true)
-                .open(server.path(&name))
-                .unwrap();
-            there
-                .set_modified(SystemTime::now() - Duration::from_secs(60))
-                .unwrap();
+            // This server has no entity tags in lists; a time that has just been set may stay after
+            // another change.
+            let there = fs::File::options().write(true).open(server.path(&name)).unwrap();
+            there.set_modified(SystemTime::now() - Duration::from_secs(60)).unwrap();
         }
         let relative = format!("{LIBRARY}recordings = \"rec/*.csv\"{SETTINGS}");
         server.put("lab/library.toml", &relative);
@@ -139,18 +135,12 @@ fn where_files_are_changes_no_byte() {
     assert!(bench.server.get("shop/one.htex").unwrap() == one);
 }
 
-/// What has not changed is neither read nor written again: a list of the recordings, and two of the results.
+/// What has not changed is neither read nor written again: a list of the recordings, and two of the
+/// results.
 #[test]
 fn a_second_build_reads_and_writes_what_changed() {
     let bench = Bench::new();
-    let build = [
-        "build",
-        "away.toml",
-        "-o",
-        "s3://shop/vinyls",
-        "--work",
-        "w",
-    ];
+    let build = ["build", "away.toml", "-o", "s3://shop/vinyls", "--work", "w"];
     let first = bench.requests(&build);
     let gets = first.iter().filter(|line| line.contains("GET /lab/rec/"));
     assert_eq!(gets.count(), 3, "each recording once: {first:#?}");
@@ -164,15 +154,9 @@ fn a_second_build_reads_and_writes_what_changed() {
     bench.server.put("lab/rec/vinyl_2.csv", other);
     fs::remove_file(bench.server.path("lab/rec/sandpaper_1.csv")).unwrap();
     let changed = bench.json(&build);
-    assert_eq!(
-        (&changed["fitted"], &changed["textures"]),
-        (&1.into(), &2.into())
-    );
+    assert_eq!((&changed["fitted"], &changed["textures"]), (&1.into(), &2.into()));
     let files = bench.server.files();
-    assert!(
-        !files.contains("shop/vinyls/textures/sandpaper/1.htex"),
-        "{files:?}"
-    );
+    assert!(!files.contains("shop/vinyls/textures/sandpaper/1.htex"), "{files:?}");
     assert!(files.contains("shop/vinyls/textures/vinyl/2.htex"));
 }
 
@@ -180,18 +164,13 @@ fn a_second_build_reads_and_writes_what_changed() {
 #[test]
 fn errors_name_uris() {
     let bench = Bench::new();
-    bench
-        .server
-        .put("lab/rec/vinyl_2.csv", "time,lateral\n0,x\n");
+    bench.server.put("lab/rec/vinyl_2.csv", "time,lateral\n0,x\n");
     let damaged = bench.run(&["build", "away.toml", "-o", "dist"]);
     let text = said(&damaged);
     assert_eq!(damaged.status.code(), Some(1), "{text}");
     assert!(text.contains("vinyl/2: vinyl_2.csv, line 2"), "{text}");
     for (recordings, words) in [
-        (
-            "s3://lab/none/*.csv",
-            "no file matches *.csv in s3://lab/none",
-        ),
+        ("s3://lab/none/*.csv", "no file matches *.csv in s3://lab/none"),
         ("s3://lab/none.csv", "s3://lab/none.csv"),
         ("https://host/*.csv", "list"),
         ("ftp://host/a.csv", "its scheme"),
@@ -207,18 +186,13 @@ fn errors_name_uris() {
         "PUT" if seen.path.contains("htexlib") => Fault::Status(403, "AccessDenied"),
         _ => Fault::None,
     });
-    bench.place.write(
-        "one.toml",
-        format!("{LIBRARY}recordings = \"s3://lab/rec/vinyl_1.csv\"{SETTINGS}"),
-    );
+    bench
+        .place
+        .write("one.toml", format!("{LIBRARY}recordings = \"s3://lab/rec/vinyl_1.csv\"{SETTINGS}"));
     let build = ["build", "one.toml", "-o", "s3://shop/one", "--work", "w"];
     let refused = bench.run(&build);
     assert_eq!(refused.status.code(), Some(1));
-    assert!(
-        said(&refused).contains("s3://shop/one/surfaces.htexlib"),
-        "{}",
-        said(&refused)
-    );
+    assert!(said(&refused).contains("s3://shop/one/surfaces.htexlib"), "{}", said(&refused));
     assert!(bench.server.get("shop/one/index.html").is_none());
     bench.server.fail(|_, _| Fault::None);
     assert_eq!(bench.json(&build)["fitted"], 0);
@@ -253,7 +227,8 @@ fn a_bucket_is_tried_before_anything_is_fitted() {
     assert!(bench.server.get("shop/vinyls/.htex-build-tries").is_none());
 }
 
-/// What the catalogue in a store shows, links to and plays is there, under the media type that it was stored with.
+/// What the catalogue in a store shows, links to and plays is there, under the media type that it
+/// was stored with.
 #[test]
 fn a_catalogue_opens_from_a_store() {
     let installed = crate::browser::installed();
@@ -271,23 +246,14 @@ fn a_catalogue_opens_from_a_store() {
     let linked = "Promise.all([...document.querySelectorAll('td a')].map(async (link) => { const got = await fetch(link.href); \
         return [got.status, got.headers.get('content-type'), (await got.arrayBuffer()).byteLength > 0]; }))";
     let texture = json!([200, "application/vnd.htex+zip", true]);
-    assert_eq!(
-        browser.promised(&tab, linked),
-        json!([texture, texture, texture])
-    );
+    assert_eq!(browser.promised(&tab, linked), json!([texture, texture, texture]));
     browser.click(&tab, "button.play");
     let played = "new Promise((done) => setInterval(() => performance.getEntriesByType('resource').some((e) => e.name.endsWith('.wav')) \
         && done(document.querySelector('button.play').textContent), 20))";
     assert_eq!(browser.promised(&tab, played), "▶");
     let answers = bench.server.answers();
     let has = |end: &str| answers.iter().any(|(path, _)| path.ends_with(end));
-    assert!(
-        has("/index.html") && has(".htex") && has(".wav"),
-        "{answers:?}"
-    );
-    let failed: Vec<_> = answers
-        .iter()
-        .filter(|(_, status)| *status >= 400)
-        .collect();
+    assert!(has("/index.html") && has(".htex") && has(".wav"), "{answers:?}");
+    let failed: Vec<_> = answers.iter().filter(|(_, status)| *status >= 400).collect();
     assert!(failed.is_empty(), "{failed:?}");
 }

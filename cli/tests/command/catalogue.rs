@@ -48,25 +48,11 @@ fn textures_are_found_sorted_and_heard() {
     assert!(page.contains("<h1>Surfaces &amp; sounds</h1>"));
     let script = format!("<script type=\"module\">\n{STEPS}</script></body>");
     place.write("dist/steps.html", page.replace("</body>", &script));
-    let steps = shown(
-        browser.unwrap(),
-        &place.path("dist/steps.html"),
-        &place.path("profile"),
-    );
+    let steps = shown(browser.unwrap(), &place.path("dist/steps.html"), &place.path("profile"));
     let expected = serde_json::json!([
-        [
-            "opened",
-            ["fine-fabric", "sandpaper", "vinyl"],
-            "3 of 3",
-            ""
-        ],
+        ["opened", ["fine-fabric", "sandpaper", "vinyl"], "3 of 3", ""],
         ["SMOOTH mit", ["vinyl"], "1 of 3", "#q=SMOOTH+mit"],
-        [
-            "cc0 sbeta",
-            ["fine-fabric", "sandpaper"],
-            "2 of 3",
-            "#q=cc0+sbeta"
-        ],
+        ["cc0 sbeta", ["fine-fabric", "sandpaper"], "2 of 3", "#q=cc0+sbeta"],
         ["</script>", ["vinyl"], "1 of 3", "#q=%3C%2Fscript%3E"],
         ["no such thing", [], "0 of 3", "#q=no+such+thing"],
         ["", ["fine-fabric", "sandpaper", "vinyl"], "3 of 3", ""],
@@ -91,12 +77,7 @@ fn sorted(place: &Place) -> Vec<String> {
     let report: Value = serde_json::from_slice(&report).unwrap();
     let textures = report["textures"].as_array().unwrap().iter();
     let mut sizes: Vec<(u64, String)> = textures
-        .map(|t| {
-            (
-                t["asset"]["bytes"].as_u64().unwrap(),
-                t["name"].as_str().unwrap().to_owned(),
-            )
-        })
+        .map(|t| (t["asset"]["bytes"].as_u64().unwrap(), t["name"].as_str().unwrap().to_owned()))
         .collect();
     sizes.sort();
     sizes.into_iter().map(|(_, name)| name).collect()

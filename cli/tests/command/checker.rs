@@ -1,5 +1,5 @@
-//! The checker of models: valid models pass, and each faulty one fails the right check; with more seeds and all
-//! checks by `cargo xtask prove models`.
+//! The checker of models: valid models pass, and each faulty one fails the right check; with more
+//! seeds and all checks by `cargo xtask prove models`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -119,15 +119,7 @@ fn library(model: &str) -> PathBuf {
 fn bad(folder: &Path, good: &Path, fault: &str) -> PathBuf {
     let out = folder.join(format!("bad-{fault}{}", std::env::consts::DLL_SUFFIX));
     let status = Command::new("cc")
-        .args([
-            "-std=gnu11",
-            "-O1",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-shared",
-            "-fPIC",
-        ])
+        .args(["-std=gnu11", "-O1", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC"])
         .args(["-Wno-unused-parameter", "-Wno-unused-variable"])
         .arg(format!("-DFAULT_{fault}"))
         .arg(format!("-DGOOD_LIBRARY=\"{}\"", good.display()))
@@ -213,11 +205,7 @@ fn each_fault_is_found_by_its_own_check() {
     assert!(sound.ok, "without a fault: {}", sound);
     for (fault, name, outcome) in FAULTS {
         let file = bad(folder.path(), &good, fault);
-        let timeout_s = if *outcome == Outcome::TimedOut {
-            5
-        } else {
-            120
-        };
+        let timeout_s = if *outcome == Outcome::TimedOut { 5 } else { 120 };
         // That no other check fails, too, is proved by all of them.
         let only = (!xtask::prove::whole()).then(|| vec![(*name).to_owned()]);
         let report = check_some(&file, timeout_s, 3, only);
@@ -244,11 +232,7 @@ fn growing_module(folder: &Path) -> Option<PathBuf> {
     let out = folder.join("grows.wasm");
     let status = Command::new("clang")
         .args(["--target=wasm32", "-std=c11", "-O2", "-Wall", "-Werror"])
-        .args([
-            "-ffp-contract=off",
-            "-fno-math-errno",
-            "-fvisibility=hidden",
-        ])
+        .args(["-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden"])
         .args(["-ffreestanding", "-nostdlib", "-Wl,--no-entry"])
         .arg("-I")
         .arg(workspace().join("spec/include"))
@@ -293,17 +277,10 @@ fn twins_must_agree() {
     let good = library("sbeta");
     let seeded = bad(folder.path(), &good, "SEED_IGNORED");
     let twin = |other: &Path| {
-        let settings = Settings {
-            seed: 3,
-            against: Some(other),
-            fuzz: None,
-        };
+        let settings = Settings { seed: 3, against: Some(other), fuzz: None };
         run_one(&good, "twin", settings).unwrap()
     };
-    assert_eq!(
-        twin(&bad(folder.path(), &good, "NONE")).outcome,
-        Outcome::Passed
-    );
+    assert_eq!(twin(&bad(folder.path(), &good, "NONE")).outcome, Outcome::Passed);
     assert_eq!(twin(&seeded).outcome, Outcome::Failed);
     assert_eq!(twin(Path::new("no-such-file.so")).outcome, Outcome::Failed);
 }

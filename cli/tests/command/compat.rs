@@ -24,8 +24,7 @@ fn folder() -> PathBuf {
 }
 
 fn lines(text: &str) -> impl Iterator<Item = &str> {
-    text.lines()
-        .filter(|line| !line.is_empty() && !line.starts_with('#'))
+    text.lines().filter(|line| !line.is_empty() && !line.starts_with('#'))
 }
 
 /// A place with copies of a folder's files.
@@ -33,10 +32,7 @@ fn copy_of(folder: &Path) -> Place {
     let place = Place::new();
     for entry in fs::read_dir(folder).unwrap() {
         let entry = entry.unwrap();
-        place.write(
-            &entry.file_name().to_string_lossy(),
-            fs::read(entry.path()).unwrap(),
-        );
+        place.write(&entry.file_name().to_string_lossy(), fs::read(entry.path()).unwrap());
     }
     place
 }

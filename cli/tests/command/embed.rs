@@ -36,29 +36,14 @@ fn a_third_party_model_travels_with_its_asset() {
     let validated = place.json(&["validate", "b.htex", "--json"]);
     assert_eq!(validated[0]["valid"], true);
 
-    let synth = [
-        "synth",
-        "b.htex",
-        "--model",
-        "bursts",
-        "--seconds",
-        "2",
-        "-o",
-        "b.wav",
-    ];
+    let synth = ["synth", "b.htex", "--model", "bursts", "--seconds", "2", "-o", "b.wav"];
     let run = place.run(&synth);
     assert_eq!(run.code(), 0, "{}", run.error());
     let mut wav = hound::WavReader::open(place.path("b.wav")).unwrap();
-    let power: f64 = wav
-        .samples::<f32>()
-        .map(|x| f64::from(x.unwrap()).powi(2))
-        .sum();
+    let power: f64 = wav.samples::<f32>().map(|x| f64::from(x.unwrap()).powi(2)).sum();
     let level = fitted["representations"][0]["level_rms"].as_f64().unwrap();
     let ratio = (power / 40_000.0).sqrt() / level;
-    assert!(
-        (0.8..1.2).contains(&ratio),
-        "two seconds of bursts: {ratio}"
-    );
+    assert!((0.8..1.2).contains(&ratio), "two seconds of bursts: {ratio}");
 
     let forbidden = place.run(&[&synth[..], &["--no-embedded-plugins"]].concat());
     assert_eq!(forbidden.code(), 2);

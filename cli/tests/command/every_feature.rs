@@ -1,5 +1,6 @@
-//! A file of every feature of the format through every command that takes an asset: an exit status that is expected, no number that is
-//! infinite or none, and one choice of the model in all commands.
+//! A file of every feature of the format through every command that takes an asset: an exit status
+//! that is expected, no number that is infinite or none, and one choice of the model in all
+//! commands.
 
 use crate::common::Place;
 use htex_format::Asset;
@@ -7,8 +8,8 @@ use serde_json::json;
 
 const COMPAT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/compat/0.2.0");
 
-/// One condition, four, a filter with zeros, a friction map, an embedded module, a mixture; three speeds with computed conditions, the same
-/// without measures, and with a silent first condition.
+/// One condition, four, a filter with zeros, a friction map, an embedded module, a mixture; three
+/// speeds with computed conditions, the same without measures, and with a silent first condition.
 const FILES: [&str; 9] = [
     "one.htex",
     "grid.htex",
@@ -26,16 +27,8 @@ const REFUSED: [(&str, &str, &str); 8] = [
     ("arma.htex", "mix", "no model describes both"),
     ("map.htex", "mix", "no model describes both"),
     ("embedded.htex", "mix", "no model describes both"),
-    (
-        "map.htex",
-        "bake",
-        "follows the position of the finger itself",
-    ),
-    (
-        "embedded.htex",
-        "bake",
-        "follows the position of the finger itself",
-    ),
+    ("map.htex", "bake", "follows the position of the finger itself"),
+    ("embedded.htex", "bake", "follows the position of the finger itself"),
     ("mixed.htex", "lib", "states no licence"),
     ("silent.htex", "bake", "the speeds of the grid: [0.0]"),
     ("silent.htex", "export", "silent"),
@@ -54,23 +47,13 @@ fn place() -> Place {
         name
     });
     let fit = ["fit", &speeds[0], &speeds[1], &speeds[2]];
-    let to = [
-        "--name",
-        "Three",
-        "--license",
-        "CC0-1.0",
-        "-o",
-        "three.htex",
-    ];
+    let to = ["--name", "Three", "--license", "CC0-1.0", "-o", "three.htex"];
     let run = place.run(&[&fit[..], &to].concat());
     assert_eq!(run.code(), 0, "{}", run.error());
     let three = Asset::open(&place.path("three.htex")).unwrap();
     let mut unmeasured = three.clone();
     for representation in &mut unmeasured.manifest.representations {
-        representation
-            .at
-            .iter_mut()
-            .for_each(|at| at.quality = None);
+        representation.at.iter_mut().for_each(|at| at.quality = None);
     }
     place.write("unmeasured.htex", unmeasured.to_bytes().unwrap());
     let mut silent = three;
@@ -101,42 +84,13 @@ const COMMANDS: &[&[&str]] = &[
     &["spectrum", "FILE", "--json"],
     &["spectrum", "FILE", "--speed", "500", "--force", "3"],
     &["synth", "FILE", "--seconds", "0.2", "-o", "out.wav"],
-    &[
-        "synth",
-        "FILE",
-        "--seconds",
-        "0.2",
-        "--quality",
-        "loop",
-        "-o",
-        "out.wav",
-    ],
-    &[
-        "synth",
-        "FILE",
-        "--seconds",
-        "0.2",
-        "--rate",
-        "2000",
-        "-o",
-        "out.wav",
-    ],
+    &["synth", "FILE", "--seconds", "0.2", "--quality", "loop", "-o", "out.wav"],
+    &["synth", "FILE", "--seconds", "0.2", "--rate", "2000", "-o", "out.wav"],
     &["edit", "FILE", "--name", "Other", "-o", "out.htex"],
     &["compare", "at-80.csv", "FILE", "--json"],
     &["bake", "FILE", "-o", "out.bin", "--json"],
-    &[
-        "mix", "FILE", "one.htex", "--weight", "0.5", "-o", "out.htex",
-    ],
-    &[
-        "play",
-        "FILE",
-        "--device",
-        "file",
-        "--set",
-        "path=out.wav",
-        "--seconds",
-        "0.1",
-    ],
+    &["mix", "FILE", "one.htex", "--weight", "0.5", "-o", "out.htex"],
+    &["play", "FILE", "--device", "file", "--set", "path=out.wav", "--seconds", "0.1"],
     &["plan", "FILE.scene.json"],
     &["plan", "FILE.scene.json", "--json"],
     &["plan", "FILE.scene.json", "--measure"],
@@ -158,9 +112,7 @@ fn every_command_takes_a_file_of_every_feature() {
             let arguments: Vec<String> = command.iter().map(|a| a.replace("FILE", name)).collect();
             let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
             let run = place.run(&arguments);
-            let reason = REFUSED
-                .iter()
-                .find(|(file, of, _)| *file == name && of == &command[0]);
+            let reason = REFUSED.iter().find(|(file, of, _)| *file == name && of == &command[0]);
             let refused = reason.is_some_and(|(.., words)| {
                 [1, 2].contains(&run.code()) && run.error().contains(words)
             });
@@ -191,10 +143,7 @@ fn all_commands_choose_one_model() {
     let place = place();
     for name in FILES {
         let plan = place.json(&["plan", &format!("{name}.scene.json"), "--json"]);
-        let in_scene = plan["representation"][0]["model"]
-            .as_str()
-            .unwrap()
-            .to_owned();
+        let in_scene = plan["representation"][0]["model"].as_str().unwrap().to_owned();
         let wav = |arguments: &[&str]| {
             assert_eq!(place.run(arguments).code(), 0, "{arguments:?}");
             std::fs::read(place.path("out.wav")).unwrap()

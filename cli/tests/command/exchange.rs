@@ -48,38 +48,20 @@ fn a_signal_is_imported_with_what_it_does_not_say() {
         "import hum.haptic {GIVEN} --model bands --option bands.bands=12 --license CC0-1.0 -o hum.htex"
     );
     let (text, error) = run(&place, &line, 0);
-    assert!(
-        text.starts_with("imported hum.haptic\nhum.htex: "),
-        "{text}"
-    );
-    assert!(
-        error.contains("Its 0.500 s are repeated 8 times."),
-        "{error}"
-    );
+    assert!(text.starts_with("imported hum.haptic\nhum.htex: "), "{text}");
+    assert!(error.contains("Its 0.500 s are repeated 8 times."), "{error}");
     let made = place.json(&words(&format!("{line} --json")));
     assert_eq!(made["license"], "CC0-1.0");
-    assert_eq!(
-        made["conditions"],
-        json!([{"speed_mm_s": 80.0, "force_n": 0.4}])
-    );
+    assert_eq!(made["conditions"], json!([{"speed_mm_s": 80.0, "force_n": 0.4}]));
     assert_eq!(made["representations"].as_array().unwrap().len(), 1);
-    assert!(
-        made["warnings"].to_string().contains("repeated 8 times"),
-        "{made}"
-    );
+    assert!(made["warnings"].to_string().contains("repeated 8 times"), "{made}");
     run(&place, "validate hum.htex", 0);
 
     // A licence is asked for.
     assert!(!error.contains("no licence"), "{error}");
-    let (_, error) = run(
-        &place,
-        &format!("import hum.haptic {GIVEN} --model bands -o bare.htex"),
-        0,
-    );
-    assert!(
-        error.contains("It states no licence") && error.contains("--license"),
-        "{error}"
-    );
+    let (_, error) =
+        run(&place, &format!("import hum.haptic {GIVEN} --model bands -o bare.htex"), 0);
+    assert!(error.contains("It states no licence") && error.contains("--license"), "{error}");
 
     // What the file does not say is asked for, by flags.
     let (_, error) = run(&place, "import hum.haptic --speed 80 -o other.htex", 2);
@@ -89,19 +71,14 @@ fn a_signal_is_imported_with_what_it_does_not_say() {
         ),
         "{error}"
     );
-    let (_, error) = run(
-        &place,
-        "import hum.haptic --full-scale 0 --speed 80 --force 1 -o other.htex",
-        2,
-    );
-    assert!(
-        error.contains("--full-scale 0: more than 0, at most 1e6"),
-        "{error}"
-    );
+    let (_, error) =
+        run(&place, "import hum.haptic --full-scale 0 --speed 80 --force 1 -o other.htex", 2);
+    assert!(error.contains("--full-scale 0: more than 0, at most 1e6"), "{error}");
     assert!(!place.path("other.htex").exists());
 }
 
-/// A file of the toolkit begins at rest. What is not told a motion plays the strongest condition: 240 mm/s and 3 N.
+/// A file of the toolkit begins at rest. What is not told a motion plays the strongest condition:
+/// 240 mm/s and 3 N.
 #[test]
 fn a_silent_first_condition_gives_way_to_the_strongest() {
     let place = Place::new();
@@ -113,18 +90,13 @@ fn a_silent_first_condition_gives_way_to_the_strongest() {
     assert_eq!(spectrum("--force 2"), spectrum("--speed 240 --force 2"));
     let largest = |file: &str| {
         let mut wav = hound::WavReader::open(place.path(file)).unwrap();
-        wav.samples::<f32>()
-            .fold(0.0f32, |most, x| most.max(x.unwrap().abs()))
+        wav.samples::<f32>().fold(0.0f32, |most, x| most.max(x.unwrap().abs()))
     };
     let (_, error) = run(&place, "synth felt.htex --seconds 0.5 -o felt.wav", 0);
     assert!(!error.contains("all samples are 0"), "{error}");
     assert!(largest("felt.wav") > 0.3);
     for format in ["ahap", "haptic", "hjif", "android", "wav", "png"] {
-        run(
-            &place,
-            &format!("export felt.htex --to {format} -o out.{format}"),
-            0,
-        );
+        run(&place, &format!("export felt.htex --to {format} -o out.{format}"), 0);
     }
     let baked = place.json(&words("bake felt.htex -o felt.bin --json"));
     assert_eq!(baked["speeds_mm_s"][0], 240.0);
@@ -137,17 +109,9 @@ fn a_silent_first_condition_gives_way_to_the_strongest() {
     assert!(largest("played.wav") > 0.0);
 
     // Nothing to feel is said.
-    let (_, error) = run(
-        &place,
-        "synth felt.htex --speed 0 --seconds 0.1 -o rest.wav",
-        0,
-    );
+    let (_, error) = run(&place, "synth felt.htex --speed 0 --seconds 0.1 -o rest.wav", 0);
     assert!(error.contains("rest.wav: all samples are 0"), "{error}");
-    run(
-        &place,
-        "export felt.htex --speed 0 --to ahap -o rest.ahap",
-        1,
-    );
+    run(&place, "export felt.htex --speed 0 --to ahap -o rest.ahap", 1);
     assert!(!place.path("rest.ahap").exists());
 }
 
@@ -157,17 +121,10 @@ fn an_effect_below_the_detection_threshold_is_not_exported() {
     let place = Place::new();
     place.write("hum.haptic", haptic());
     let import = "import hum.haptic --speed 80 --force 0.5 --model bands --license CC0-1.0";
-    run(
-        &place,
-        &format!("{import} --full-scale 1e-7 -o faint.htex"),
-        0,
-    );
+    run(&place, &format!("{import} --full-scale 1e-7 -o faint.htex"), 0);
     for format in ["ahap", "haptic", "hjif", "android", "wav"] {
-        let (_, error) = run(
-            &place,
-            &format!("export faint.htex --to {format} -o faint.{format}"),
-            1,
-        );
+        let (_, error) =
+            run(&place, &format!("export faint.htex --to {format} -o faint.{format}"), 1);
         assert!(error.contains("below the detection threshold"), "{error}");
         assert!(!place.path(&format!("faint.{format}")).exists());
     }
@@ -177,9 +134,7 @@ fn an_effect_below_the_detection_threshold_is_not_exported() {
 fn a_model_file_states_all_and_takes_no_flag_of_a_signal() {
     let place = Place::new();
     place.write("felt.xml", HATT);
-    let made = place.json(&words(
-        "import felt.xml --license CC-BY-4.0 -o felt.htex --json",
-    ));
+    let made = place.json(&words("import felt.xml --license CC-BY-4.0 -o felt.htex --json"));
     assert_eq!(made["license"], "CC-BY-4.0");
     assert_eq!(made["quantity"], "acceleration");
     assert_eq!(made["conditions"].as_array().unwrap().len(), 4);
@@ -199,10 +154,7 @@ fn a_model_file_states_all_and_takes_no_flag_of_a_signal() {
     ] {
         let (_, error) = run(&place, &format!("import felt.xml {flag} -o other.htex"), 2);
         let name = flag.split(' ').next().unwrap();
-        assert!(
-            error.contains(&format!("its import takes no {name}; leave it out")),
-            "{error}"
-        );
+        assert!(error.contains(&format!("its import takes no {name}; leave it out")), "{error}");
     }
     assert!(!place.path("other.htex").exists());
 
@@ -219,21 +171,14 @@ fn a_model_file_states_all_and_takes_no_flag_of_a_signal() {
 fn an_import_takes_no_flag_that_the_format_has_no_use_for() {
     let place = Place::new();
     place.write("hum.haptic", haptic());
-    let (_, error) = run(
-        &place,
-        &format!("import hum.haptic {GIVEN} --grid auto -o hum.htex"),
-        2,
-    );
+    let (_, error) = run(&place, &format!("import hum.haptic {GIVEN} --grid auto -o hum.htex"), 2);
     assert!(
         error.contains("takes no --grid; leave it out (it takes --full-scale, --quantity"),
         "{error}"
     );
     place.write("hum.hjif", "{}");
-    let (_, error) = run(
-        &place,
-        &format!("import hum.hjif {GIVEN} --profile quest -o hum.htex"),
-        2,
-    );
+    let (_, error) =
+        run(&place, &format!("import hum.hjif {GIVEN} --profile quest -o hum.htex"), 2);
     assert!(error.contains("its import takes no --profile"), "{error}");
 }
 
@@ -259,11 +204,7 @@ fn files_that_are_none_are_refused_with_their_place() {
     assert!(error.contains("set.xml: line "), "{error}");
     let (_, error) = run(&place, "import hum.mp3 -o out.htex", 2);
     assert!(error.contains("hum.mp3: no format that is read has this extension; there are .xml, .haptic, .ahap, .hjif, .png, .glb and .gltf"), "{error}");
-    let (_, error) = run(
-        &place,
-        &format!("import loud.haptic {GIVEN} -o loud.haptic"),
-        2,
-    );
+    let (_, error) = run(&place, &format!("import loud.haptic {GIVEN} -o loud.haptic"), 2);
     assert!(error.contains("loud.haptic"), "{error}");
     assert!(!place.path("out.htex").exists());
 }
@@ -303,29 +244,20 @@ fn an_export_says_what_is_lost() {
     );
     // What was written comes in again.
     for file in ["out.haptic", "out.ahap", "out.hjif"] {
-        run(
-            &place,
-            &format!("import {file} {GIVEN} --model bands -o again.htex"),
-            0,
-        );
+        run(&place, &format!("import {file} {GIVEN} --model bands -o again.htex"), 0);
     }
 }
 
-/// The file comes back bit for bit, unless metadata is given; what is wrong is named by its pointer.
+/// The file comes back bit for bit, unless metadata is given; what is wrong is named by its
+/// pointer.
 #[test]
 fn a_mesh_carries_the_file_there_and_back() {
     let place = imported();
     let file = std::fs::read(place.path("hum.htex")).unwrap();
     for mesh in ["hum.glb", "hum.gltf"] {
         let (text, error) = run(&place, &format!("export hum.htex --to gltf -o {mesh}"), 0);
-        assert!(
-            text.contains("the format loses nothing of a texture"),
-            "{text}"
-        );
-        assert!(
-            !text.contains("lost: felt") && error.is_empty(),
-            "{text}{error}"
-        );
+        assert!(text.contains("the format loses nothing of a texture"), "{text}");
+        assert!(!text.contains("lost: felt") && error.is_empty(), "{text}{error}");
         let told = place.json(&words(&format!("import {mesh} -o again.htex --json")));
         assert_eq!(told["license"], "CC0-1.0");
         assert_eq!(std::fs::read(place.path("again.htex")).unwrap(), file);
@@ -334,31 +266,17 @@ fn a_mesh_carries_the_file_there_and_back() {
     assert_eq!(told["format"], "gltf");
     let text = std::fs::read_to_string(place.path("hum.gltf")).unwrap();
     let mut mesh: Value = serde_json::from_str(&text).unwrap();
-    run(
-        &place,
-        "import hum.glb --license CC-BY-4.0 -o other.htex",
-        0,
-    );
+    run(&place, "import hum.glb --license CC-BY-4.0 -o other.htex", 0);
     assert_ne!(std::fs::read(place.path("other.htex")).unwrap(), file);
 
     mesh["bufferViews"][4]["byteLength"] = json!(1 << 30);
     place.write("wrong.gltf", mesh.to_string());
     let (_, error) = run(&place, "import wrong.gltf -o none.htex", 1);
-    assert!(
-        error.contains("wrong.gltf: /bufferViews/4/byteLength: "),
-        "{error}"
-    );
+    assert!(error.contains("wrong.gltf: /bufferViews/4/byteLength: "), "{error}");
     for flag in ["--speed 80 --force 0.4", "--profile quest", "--seed 1"] {
-        let (_, error) = run(
-            &place,
-            &format!("export hum.htex --to gltf {flag} -o none.glb"),
-            2,
-        );
+        let (_, error) = run(&place, &format!("export hum.htex --to gltf {flag} -o none.glb"), 2);
         let name = flag.split(' ').next().unwrap();
-        assert!(
-            error.contains(&format!("its export takes no {name}; leave it out")),
-            "{error}"
-        );
+        assert!(error.contains(&format!("its export takes no {name}; leave it out")), "{error}");
     }
     let (_, error) = run(&place, "import hum.glb --speed 80 -o none.htex", 2);
     assert!(error.contains("its import takes no --speed"), "{error}");
@@ -374,9 +292,8 @@ fn an_export_follows_condition_stroke_and_profile() {
     }
     place.write("stroke.csv", stroke);
     let bytes = |rest: &str| {
-        let told = place.json(&words(&format!(
-            "export hum.htex --to haptic {rest} -o out.haptic --json"
-        )));
+        let told =
+            place.json(&words(&format!("export hum.htex --to haptic {rest} -o out.haptic --json")));
         let file: Value =
             serde_json::from_slice(&std::fs::read(place.path("out.haptic")).unwrap()).unwrap();
         (told, file)
@@ -390,16 +307,13 @@ fn an_export_follows_condition_stroke_and_profile() {
     assert_ne!(plain, along);
     let (told, _) = bytes("--profile erm --model bands");
     assert_eq!(told["profile"], "erm");
-    let (_, error) = run(
-        &place,
-        "export hum.htex --to haptic --stroke stroke.csv --speed 80 -o out.haptic",
-        2,
-    );
+    let (_, error) =
+        run(&place, "export hum.htex --to haptic --stroke stroke.csv --speed 80 -o out.haptic", 2);
     assert!(error.contains("cannot be used with"), "{error}");
 }
 
-/// A scene is exported as what it plays, for as long as it lasts: one with the texture alone as the texture, others with what their own
-/// render plays.
+/// A scene is exported as what it plays, for as long as it lasts: one with the texture alone as the
+/// texture, others with what their own render plays.
 #[test]
 fn a_scene_goes_out_as_it_plays() {
     let place = imported();
@@ -422,20 +336,11 @@ fn a_scene_goes_out_as_it_plays() {
         assert!((a - b).abs() < 0.5, "{name}: {a} dB and {b} dB");
     }
     for to in ["haptic", "ahap", "android", "hjif", "wav"] {
-        let several = told(format!(
-            "{} --to {to} -o out.bin",
-            scene("two-swatches.scene.json")
-        ));
+        let several = told(format!("{} --to {to} -o out.bin", scene("two-swatches.scene.json")));
         assert!(several["lost"]["level_db"].is_f64(), "{to}: {several}");
-        assert!(
-            several["seconds"].as_f64().unwrap() > 1.0,
-            "{to}: {several}"
-        );
+        assert!(several["seconds"].as_f64().unwrap() > 1.0, "{to}: {several}");
     }
-    let short = told(format!(
-        "{} --to hjif --seconds 1 -o out.hjif",
-        scene("constant.scene.json")
-    ));
+    let short = told(format!("{} --to hjif --seconds 1 -o out.hjif", scene("constant.scene.json")));
     assert_eq!(short["seconds"], 1.0);
     for (name, rest, part) in [
         (
@@ -443,23 +348,12 @@ fn a_scene_goes_out_as_it_plays() {
             "--to wav --speed 40 --force 0.4",
             "its export of a scene takes no --speed",
         ),
-        (
-            "constant.scene.json",
-            "--to wav --seed 0",
-            "its export of a scene takes no --seed",
-        ),
-        (
-            "constant.scene.json",
-            "--to gltf",
-            "export the scene's assets",
-        ),
+        ("constant.scene.json", "--to wav --seed 0", "its export of a scene takes no --seed"),
+        ("constant.scene.json", "--to gltf", "export the scene's assets"),
         ("live.scene.json", "--to wav", "its motion is live"),
         ("no.scene.json", "--to wav", "no.scene.json"),
     ] {
-        let run = place.run(&words(&format!(
-            "export {} {rest} -o none.bin",
-            scene(name)
-        )));
+        let run = place.run(&words(&format!("export {} {rest} -o none.bin", scene(name))));
         assert_ne!(run.code(), 0, "{name} {rest}");
         assert!(run.error().contains(part), "{name} {rest}: {}", run.error());
     }
@@ -470,15 +364,9 @@ fn a_scene_goes_out_as_it_plays() {
 #[test]
 fn a_map_goes_out_and_comes_in() {
     let place = imported();
-    let (text, error) = run(
-        &place,
-        "export hum.htex --to png --speed 80 --force 0.4 -o row.png",
-        0,
-    );
-    assert!(
-        text.contains("lost: felt ") && text.contains("level +0.0 dB"),
-        "{text}"
-    );
+    let (text, error) =
+        run(&place, "export hum.htex --to png --speed 80 --force 0.4 -o row.png", 0);
+    assert!(text.contains("lost: felt ") && text.contains("level +0.0 dB"), "{text}");
     let (_, white) = error.split_once("White is ").unwrap();
     let (white, _) = white.split_once(' ').unwrap();
     let given = format!("--full-scale {white} --speed 80 --force 0.4");
@@ -487,35 +375,19 @@ fn a_map_goes_out_and_comes_in() {
     let read = |name: &str| std::fs::read(place.path(name)).unwrap();
     assert_eq!(read("row.png"), read("again.png"));
     let level = |name: &str| {
-        let told = place.json(&words(&format!(
-            "spectrum {name} --speed 80 --force 0.4 --json"
-        )));
+        let told = place.json(&words(&format!("spectrum {name} --speed 80 --force 0.4 --json")));
         let magnitude = told["magnitude"].as_array().unwrap();
         let power: f64 = magnitude.iter().map(|m| m.as_f64().unwrap().powi(2)).sum();
         power.sqrt()
     };
     let level_db = 20.0 * (level("map.htex") / level("hum.htex")).log10();
     assert!(level_db.abs() < 0.1, "{level_db} dB");
-    run(
-        &place,
-        "synth map.htex --speed 160 --force 0.4 --seconds 1 -o map.wav",
-        0,
-    );
+    run(&place, "synth map.htex --speed 160 --force 0.4 --seconds 1 -o map.wav", 0);
     let (_, error) = run(&place, "export map.htex --to png --speed 80 -o none.png", 1);
-    assert!(
-        error.contains("the same at every motion; leave out speed and force"),
-        "{error}"
-    );
+    assert!(error.contains("the same at every motion; leave out speed and force"), "{error}");
     let (_, error) = run(&place, "import row.png -o none.htex", 2);
-    assert!(
-        error.contains("give --full-scale, --speed and --force"),
-        "{error}"
-    );
-    let (_, error) = run(
-        &place,
-        &format!("import row.png {given} --pitch 0 -o none.htex"),
-        2,
-    );
+    assert!(error.contains("give --full-scale, --speed and --force"), "{error}");
+    let (_, error) = run(&place, &format!("import row.png {given} --pitch 0 -o none.htex"), 2);
     assert!(error.contains("--pitch 0: more than 0 mm"), "{error}");
 }
 
@@ -531,16 +403,9 @@ fn an_export_takes_no_flag_that_the_format_has_no_use_for() {
         ("png", "--seconds 3"),
         ("png", "--profile quest"),
     ] {
-        let (_, error) = run(
-            &place,
-            &format!("export hum.htex --to {to} {flag} -o out.bin"),
-            2,
-        );
+        let (_, error) = run(&place, &format!("export hum.htex --to {to} {flag} -o out.bin"), 2);
         let name = flag.split(' ').next().unwrap();
-        assert!(
-            error.contains(&format!("its export takes no {name}; leave it out")),
-            "{error}"
-        );
+        assert!(error.contains(&format!("its export takes no {name}; leave it out")), "{error}");
     }
     for (rest, expected) in [
         ("--to hatt", "invalid value 'hatt'"),
@@ -548,19 +413,12 @@ fn an_export_takes_no_flag_that_the_format_has_no_use_for() {
         ("--to wav --profile phone", "invalid value 'phone'"),
         ("--to wav --profile erm", "choose haptic, ahap or android"),
         ("--to wav --seconds 0.1", "--seconds 0.1: 0.5 to 600 s"),
-        (
-            "--to wav --rate 1000",
-            "--rate 1000: twice the texture's highest frequency",
-        ),
+        ("--to wav --rate 1000", "--rate 1000: twice the texture's highest frequency"),
     ] {
         let (_, error) = run(&place, &format!("export hum.htex {rest} -o out.bin"), 2);
         assert!(error.contains(expected), "{rest}: {error}");
     }
-    let (_, error) = run(
-        &place,
-        "export hum.htex --to wav --model nothing -o out.bin",
-        1,
-    );
+    let (_, error) = run(&place, "export hum.htex --to wav --model nothing -o out.bin", 1);
     assert!(error.contains("no representation `nothing`"), "{error}");
     run(&place, "export hum.htex --to wav -o hum.htex", 2);
     assert!(!place.path("out.bin").exists());
@@ -581,50 +439,27 @@ fn formats_lists_what_is_kept_and_lost() {
     }
     let told = place.json(&["formats", "--json"]);
     let formats = told["formats"].as_array().unwrap();
-    let names: Vec<&str> = formats
-        .iter()
-        .map(|f| f["name"].as_str().unwrap())
-        .collect();
-    assert_eq!(
-        names,
-        [
-            "hatt", "haptic", "ahap", "android", "hjif", "wav", "png", "gltf"
-        ]
-    );
+    let names: Vec<&str> = formats.iter().map(|f| f["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["hatt", "haptic", "ahap", "android", "hjif", "wav", "png", "gltf"]);
     assert_eq!(formats[7]["export"], "asset");
     assert_eq!(formats[7]["export_settings"], json!([]));
     assert_eq!(formats[0]["import"], "asset");
     assert_eq!(formats[0]["import_settings"], json!([]));
     assert_eq!(formats[0]["export"], Value::Null);
-    assert_eq!(
-        formats[4]["export_settings"]
-            .as_array()
-            .unwrap()
-            .last()
-            .unwrap(),
-        "coding"
-    );
+    assert_eq!(formats[4]["export_settings"].as_array().unwrap().last().unwrap(), "coding");
     let profile = &told["profiles"][0];
     assert_eq!(profile["name"], "quest");
-    assert!(
-        profile["low_hz"]["source"]
-            .as_str()
-            .unwrap()
-            .contains("MetaQuest.acf")
-    );
+    assert!(profile["low_hz"]["source"].as_str().unwrap().contains("MetaQuest.acf"));
 }
 
-/// What is written of a texture states its licence and its author: in the file, or beside it. An import reads them again.
+/// What is written of a texture states its licence and its author: in the file, or beside it. An
+/// import reads them again.
 #[test]
 fn every_way_out_carries_the_licence() {
     let place = Place::new();
     place.write("hum.haptic", haptic());
     let stated = "--license CC-BY-4.0 --author Ada";
-    run(
-        &place,
-        &format!("import hum.haptic {GIVEN} --model bands {stated} -o hum.htex"),
-        0,
-    );
+    run(&place, &format!("import hum.haptic {GIVEN} --model bands {stated} -o hum.htex"), 0);
     let has_both = |file: &str| {
         let bytes = std::fs::read(place.path(file)).unwrap();
         let text = String::from_utf8_lossy(&bytes).into_owned();
@@ -642,11 +477,7 @@ fn every_way_out_carries_the_licence() {
         ("android", "a.kt", None),
         ("wav", "a.wav", None),
     ] {
-        run(
-            &place,
-            &format!("export hum.htex --to {format} -o {file}"),
-            0,
-        );
+        run(&place, &format!("export hum.htex --to {format} -o {file}"), 0);
         has_both(file);
         let Some(given) = back else { continue };
         let import = |more: &str| format!("import {file} {given} {more} -o again.htex --json");
@@ -680,9 +511,7 @@ fn every_way_out_carries_the_licence() {
     run(&place, "bake hum.htex -o hum.h", 0);
     run(&place, "bake hum.htex -o hum.rs", 0);
     run(&place, "bake hum.htex -o hum.bin", 0);
-    ["hum.h", "hum.rs", "hum.bin.license"]
-        .iter()
-        .for_each(|file| has_both(file));
+    ["hum.h", "hum.rs", "hum.bin.license"].iter().for_each(|file| has_both(file));
     assert!(!place.path("hum.h.license").exists());
     std::fs::copy(place.path("hum.htex"), place.path("x.bin.license")).unwrap();
     let (_, error) = run(&place, "bake x.bin.license -o x.bin", 2);
@@ -695,9 +524,7 @@ fn every_way_out_carries_the_licence() {
     place.write("hum.scene.json", scene.to_string());
     run(&place, "render hum.scene.json --seconds 1 -o hum.csv", 0);
     run(&place, "render hum.scene.json --seconds 1 -o scene.wav", 0);
-    ["hum.csv.license", "scene.wav"]
-        .iter()
-        .for_each(|file| has_both(file));
+    ["hum.csv.license", "scene.wav"].iter().for_each(|file| has_both(file));
 
     // A model file has no place either.
     place.write("felt.xml", HATT);
@@ -706,19 +533,8 @@ fn every_way_out_carries_the_licence() {
         "SPDX-FileCopyrightText: Ada\nSPDX-License-Identifier: CC-BY-4.0\n",
     );
     let felt = place.json(&words("import felt.xml -o felt.htex --json"));
-    assert_eq!(
-        (&felt["license"], &felt["author"]),
-        (&json!("CC-BY-4.0"), &json!("Ada"))
-    );
+    assert_eq!((&felt["license"], &felt["author"]), (&json!("CC-BY-4.0"), &json!("Ada")));
     let all = place.json(&["formats", "--json"]);
-    let places = all["formats"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|f| f["rights"].as_str());
-    assert!(
-        places
-            .into_iter()
-            .all(|place| place.is_some_and(|place| !place.is_empty()))
-    );
+    let places = all["formats"].as_array().unwrap().iter().map(|f| f["rights"].as_str());
+    assert!(places.into_iter().all(|place| place.is_some_and(|place| !place.is_empty())));
 }

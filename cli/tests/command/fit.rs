@@ -15,22 +15,15 @@ fn fit_info_and_the_file_agree_and_are_the_same_twice() {
     let fit = ["fit", &csv, "--model", "all", "-o", "a.htex", "--json"];
     let fit = place.json(&[&fit[..], &windows].concat());
     let info = place.json(&["info", "a.htex", "--json"]);
-    assert_eq!(
-        fit["bytes"],
-        std::fs::metadata(place.path("a.htex")).unwrap().len()
-    );
+    assert_eq!(fit["bytes"], std::fs::metadata(place.path("a.htex")).unwrap().len());
     assert!(fit["repeatability_rms_db"].as_f64().unwrap() > 0.0);
     for (i, loaded) in Registry::builtin().by_default().enumerate() {
         let model = loaded.id();
         let (fitted, read) = (&fit["representations"][i], &info["representations"][i]);
         assert_eq!(fitted["model"], model);
         assert!(fitted["fit_ms"].as_f64().unwrap() > 0.0);
-        let mut parameters: Vec<&str> = fitted["parameters"]
-            .as_object()
-            .unwrap()
-            .keys()
-            .map(String::as_str)
-            .collect();
+        let mut parameters: Vec<&str> =
+            fitted["parameters"].as_object().unwrap().keys().map(String::as_str).collect();
         parameters.sort_unstable();
         let fields = loaded.descriptor().fields.iter();
         let mut fields: Vec<&str> = fields.map(|field| &field.name[..]).collect();
@@ -44,33 +37,21 @@ fn fit_info_and_the_file_agree_and_are_the_same_twice() {
         for key in keys.chain(["level_rms"]) {
             let (a, b) = (fitted[key].as_f64().unwrap(), read[key].as_f64().unwrap());
             // The file keeps levels to nine digits and agreement to four decimals.
-            assert!(
-                (a - b).abs() <= 5.1e-5 * a.abs().max(1.0),
-                "{model} {key}: {a} {b}"
-            );
+            assert!((a - b).abs() <= 5.1e-5 * a.abs().max(1.0), "{model} {key}: {a} {b}");
         }
     }
     let again = ["fit", &csv, "-o", "b.htex", "--name", "a", "--json"];
     place.json(&[&again[..], &windows].concat());
     let read = |name: &str| std::fs::read(place.path(name)).unwrap();
     assert_eq!(read("a.htex"), read("b.htex"));
-    assert_eq!(
-        entries(&place.path("")),
-        ["a.htex", "b.htex", "sandpaper.csv"]
-    );
+    assert_eq!(entries(&place.path("")), ["a.htex", "b.htex", "sandpaper.csv"]);
 }
 
 #[test]
 fn assets_are_small() {
     let place = Place::new();
     let csv = place.recording("vinyl");
-    let about = [
-        "--name",
-        "Vinyl floor, worn",
-        "--author",
-        "A Lab, A University",
-        "--license",
-    ];
+    let about = ["--name", "Vinyl floor, worn", "--author", "A Lab, A University", "--license"];
     let fit = |model: &str, file: &str| {
         let arguments = ["fit", &csv, "--model", model, "-o", file, "--json"];
         let tags = ["CC-BY-4.0", "--tags", "vinyl,floor,smooth"];
@@ -86,18 +67,13 @@ fn db(ratio: f64) -> f64 {
     20.0 * ratio.log10()
 }
 
-/// Three generations of every model of noise, 300 s each, since the level of a minute of such noise scatters by 0.07 dB: on vinyl and corrugated paper a third of the energy lies in the lowest
-/// bin, where a copy would lose what the window misses at the band's edge.
+/// Three generations of every model of noise, 300 s each, since the level of a minute of such noise
+/// scatters by 0.07 dB: on vinyl and corrugated paper a third of the energy lies in the lowest bin,
+/// where a copy would lose what the window misses at the band's edge.
 #[test]
 fn a_copy_of_a_copy_plays_as_strong_as_the_recording() {
     let place = Place::new();
-    let all = [
-        "vinyl",
-        "corrugated-paper",
-        "sandpaper",
-        "fine-fabric",
-        "coarse-fabric",
-    ];
+    let all = ["vinyl", "corrugated-paper", "sandpaper", "fine-fabric", "coarse-fabric"];
     // The first two have most energy in the lowest bin.
     let tried = if xtask::prove::whole() { 5 } else { 2 };
     for surface in &all[..tried] {
@@ -119,8 +95,8 @@ fn a_copy_of_a_copy_plays_as_strong_as_the_recording() {
             }
             let off_db: Vec<f64> = levels.iter().map(|level| db(level / recorded)).collect();
             println!("{surface:16} {model:6} {off_db:+.3?} dB over the recording");
-            // Bands keeps the energies of its bands, which are rounded to steps of 1 dB. The level of AR makes up for what a
-            // conversion takes near its Nyquist frequency.
+            // Bands keeps the energies of its bands, which are rounded to steps of 1 dB. The level
+            // of AR makes up for what a conversion takes near its Nyquist frequency.
             let first_db = match model {
                 "bands" => 0.25,
                 "ar" => 0.02,
@@ -142,9 +118,7 @@ fn a_fit_that_misses_its_bands_is_told_with_what_does_better() {
     let run = place.run(&[&simulate[..], &["-o", "cp.csv", "--frf", "rig.csv"]].concat());
     assert_eq!(run.code(), 0, "{}", run.error());
     let fit = |options: &[&str]| {
-        let fit = [
-            "fit", "cp.csv", "--frf", "rig.csv", "--model", "sbeta", "-o", "s.htex",
-        ];
+        let fit = ["fit", "cp.csv", "--frf", "rig.csv", "--model", "sbeta", "-o", "s.htex"];
         let fitted = place.json(&[&fit[..], &["--json"], options].concat());
         let error = &fitted["representations"][0]["band_error_rms_db"];
         (error.as_f64().unwrap(), fitted["warnings"].to_string())
@@ -192,19 +166,10 @@ fn a_fit_that_misses_its_bands_is_told_with_what_does_better() {
     println!("{representation}");
     let rms_db = representation["band_error_rms_db"].as_f64().unwrap();
     let bands = representation["band_error_db"].as_array().unwrap().iter();
-    let worst_db = bands.fold(0.0, |worst: f64, error| {
-        worst.max(error.as_f64().unwrap().abs())
-    });
-    assert!(
-        rms_db < 12.0 && worst_db > 24.0,
-        "{rms_db} dB, {worst_db} dB"
-    );
+    let worst_db = bands.fold(0.0, |worst: f64, error| worst.max(error.as_f64().unwrap().abs()));
+    assert!(rms_db < 12.0 && worst_db > 24.0, "{rms_db} dB, {worst_db} dB");
     let warned = format!("{worst_db:.1} dB in the worst band");
-    assert!(
-        fitted["warnings"].to_string().contains(&warned),
-        "{}",
-        fitted["warnings"]
-    );
+    assert!(fitted["warnings"].to_string().contains(&warned), "{}", fitted["warnings"]);
 }
 
 #[test]
@@ -213,9 +178,7 @@ fn knobs_change_the_fit() {
     let csv = place.recording("fine-fabric");
     let parameters = |model: &str, options: &[&str]| {
         let mut arguments = vec!["fit", &csv, "--model", model, "-o", "k.htex", "--json"];
-        options
-            .iter()
-            .for_each(|option| arguments.extend(["--option", option]));
+        options.iter().for_each(|option| arguments.extend(["--option", option]));
         place.json(&arguments)["representations"][0]["parameters"].clone()
     };
     let count = |model: &str, option: &str, list: &str| {
@@ -227,33 +190,12 @@ fn knobs_change_the_fit() {
     let speak = |jnd: &str| count("speak", &format!("speak.jnd={jnd}"), "frequency_hz");
     assert!(speak("0.9") < speak("0.12"));
     for (model, options) in [
-        (
-            "ar",
-            &["ar.method=burg", "ar.method=covariance", "ar.rate_hz=4000"][..],
-        ),
-        (
-            "mfcc",
-            &[
-                "mfcc.inverse=nnls",
-                "mfcc.inverse=interpolate",
-                "mfcc.bands=20",
-            ],
-        ),
+        ("ar", &["ar.method=burg", "ar.method=covariance", "ar.rate_hz=4000"][..]),
+        ("mfcc", &["mfcc.inverse=nnls", "mfcc.inverse=interpolate", "mfcc.bands=20"]),
         ("speak", &["speak.phase=zero", "speak.frequency=bin"]),
-        (
-            "sbeta",
-            &[
-                "sbeta.points=20",
-                "sbeta.jnd=0.4",
-                "sbeta.error=magnitude",
-                "sbeta.bins=0",
-            ],
-        ),
+        ("sbeta", &["sbeta.points=20", "sbeta.jnd=0.4", "sbeta.error=magnitude", "sbeta.bins=0"]),
         ("sslope", &["sslope.rounding_db_per_decade=5"]),
-        (
-            "bands",
-            &["bands.bands=19", "bands.step_db=0.5", "bands.layout=within"],
-        ),
+        ("bands", &["bands.bands=19", "bands.step_db=0.5", "bands.layout=within"]),
     ] {
         let default = parameters(model, &[]);
         for option in options {
@@ -286,35 +228,23 @@ fn several_conditions_of_one_texture() {
         names.push(name);
     }
     arguments.extend(names.iter().map(String::as_str));
-    let given: Vec<String> = [
-        "60,force=0.3",
-        "120,force=0.3",
-        "60,force=0.7",
-        "120,force=0.7",
-    ]
-    .iter()
-    .map(|at| format!("--at=speed={at}"))
-    .collect();
+    let given: Vec<String> = ["60,force=0.3", "120,force=0.3", "60,force=0.7", "120,force=0.7"]
+        .iter()
+        .map(|at| format!("--at=speed={at}"))
+        .collect();
     arguments.extend(given.iter().map(String::as_str));
     arguments.extend(["-o", "grid.htex", "--json"]);
     let fit = place.json(&arguments);
     assert_eq!(fit["conditions"].as_array().unwrap().len(), 4);
     assert_eq!(fit["representations"][0]["at"].as_array().unwrap().len(), 4);
     let level = |speed: &str, force: &str| {
-        let motion = [
-            "--model", "sbeta", "--speed", speed, "--force", force, "--json",
-        ];
+        let motion = ["--model", "sbeta", "--speed", speed, "--force", force, "--json"];
         let spectrum = place.json(&[&["spectrum", "grid.htex"][..], &motion].concat());
-        let sum: f64 = numbers(&spectrum["magnitude"])
-            .iter()
-            .map(|m| m * m / 3.0)
-            .sum();
+        let sum: f64 = numbers(&spectrum["magnitude"]).iter().map(|m| m * m / 3.0).sum();
         sum.sqrt()
     };
     // At a known condition, its level; between, between; outside, that of the law.
-    let known = fit["representations"][3]["at"][3]["level_rms"]
-        .as_f64()
-        .unwrap();
+    let known = fit["representations"][3]["at"][3]["level_rms"].as_f64().unwrap();
     assert!((level("120", "0.7") / known - 1.0).abs() < 1e-6);
     assert!(level("60", "0.3") < level("60", "0.5") && level("60", "0.5") < level("60", "0.7"));
     assert!(level("500", "9") > level("120", "0.7"));
@@ -336,10 +266,7 @@ fn killed_at_any_moment_the_old_or_the_new_file_is_there() {
     assert_ne!(old, new);
     for i in 0..24 {
         std::fs::write(place.path("t.htex"), &old).unwrap();
-        let mut child = run("new")
-            .stdout(std::process::Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut child = run("new").stdout(std::process::Stdio::null()).spawn().unwrap();
         std::thread::sleep(Duration::from_millis(5 * i));
         child.kill().unwrap();
         child.wait().unwrap();
@@ -353,29 +280,14 @@ fn wrong_usage_is_told_apart_from_failure() {
     let place = Place::new();
     let csv = place.recording("vinyl");
     for (arguments, word) in [
-        (
-            &["fit", &csv, "-o", "x.htex", "--model", "wavelet"][..],
-            "wavelet",
-        ),
-        (
-            &["fit", &csv, "-o", "x.htex", "--option", "ar.order=99"],
-            "order",
-        ),
-        (
-            &["fit", &csv, "-o", "x.htex", "--option", "ar.colour=1"],
-            "colour",
-        ),
+        (&["fit", &csv, "-o", "x.htex", "--model", "wavelet"][..], "wavelet"),
+        (&["fit", &csv, "-o", "x.htex", "--option", "ar.order=99"], "order"),
+        (&["fit", &csv, "-o", "x.htex", "--option", "ar.colour=1"], "colour"),
         (&["fit", &csv, "-o", "x.htex", "--at", "speed:80"], "--at"),
-        (
-            &["fit", &csv, "-o", "x.htex", "--map", "middle=fx_n"],
-            "middle",
-        ),
+        (&["fit", &csv, "-o", "x.htex", "--map", "middle=fx_n"], "middle"),
         (&["explain", "NO_SUCH_CODE"], "NO_SUCH_CODE"),
         (&["synth", "a.htex", "-o", "x.wav", "--rate", "7"], "7"),
-        (
-            &["simulate", "--surface", "gravel", "-o", "g.csv"],
-            "gravel",
-        ),
+        (&["simulate", "--surface", "gravel", "-o", "g.csv"], "gravel"),
     ] {
         let run = place.run(arguments);
         assert_eq!(run.code(), 2, "{arguments:?}: {}", run.error());
@@ -391,8 +303,8 @@ fn wrong_usage_is_told_apart_from_failure() {
     assert!(run.error().contains("10 %"), "{}", run.error());
 }
 
-/// The asset holds the hash of each recording, by which recordings of one name are told apart, also of one whose part is read; a pipe,
-/// which is read once, has none.
+/// The asset holds the hash of each recording, by which recordings of one name are told apart, also
+/// of one whose part is read; a pipe, which is read once, has none.
 #[test]
 fn an_asset_has_the_hash_of_each_recording() {
     let place = Place::new();

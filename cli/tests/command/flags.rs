@@ -2,18 +2,8 @@
 
 use crate::common::Place;
 
-const EDGES: &[&str] = &[
-    "0",
-    "-1",
-    "5e-324",
-    "1e19",
-    "1e300",
-    "18446744073709551616",
-    "nan",
-    "-inf",
-    "",
-    "\u{1b}[2J",
-];
+const EDGES: &[&str] =
+    &["0", "-1", "5e-324", "1e19", "1e300", "18446744073709551616", "nan", "-inf", "", "\u{1b}[2J"];
 
 /// Commands with their numeric arguments: `@` stands for the number.
 const FLAGS: &[(&str, &str)] = &[
@@ -49,18 +39,9 @@ const FLAGS: &[(&str, &str)] = &[
         "--rate=@ --within=@ --at=speed=@,force=0.4 --grid=speed=@:80:2,force=0.4 --grid=speed=80,force=0.2:@:3 \
          --grid=speed=40:80:@,force=0.4",
     ),
-    (
-        "spectrum cloth.htex",
-        "--speed=@ --force=@ --wasm-limit=memory-mib=@ --wasm-limit=fuel=@",
-    ),
-    (
-        "render scene.json -o scene.wav",
-        "--seconds=@ --set=encoding=@",
-    ),
-    (
-        "import hum.haptic --model bands -o hum.htex",
-        "--full-scale=@ --speed=@ --force=@",
-    ),
+    ("spectrum cloth.htex", "--speed=@ --force=@ --wasm-limit=memory-mib=@ --wasm-limit=fuel=@"),
+    ("render scene.json -o scene.wav", "--seconds=@ --set=encoding=@"),
+    ("import hum.haptic --model bands -o hum.htex", "--full-scale=@ --speed=@ --force=@"),
     (
         "import hum.haptic --model bands --speed 80 --force 0.4 -o hum.htex",
         "--full-scale=@ --option=bands.bands=@",
@@ -69,10 +50,7 @@ const FLAGS: &[(&str, &str)] = &[
         "export cloth.htex --to wav -o cloth.wav",
         "--speed=@ --force=@ --seconds=@ --rate=@ --seed=@",
     ),
-    (
-        "play cloth.htex --device file --set path=played.wav",
-        "--seconds=@",
-    ),
+    ("play cloth.htex --device file --set path=played.wav", "--seconds=@"),
 ];
 
 #[test]
@@ -97,10 +75,7 @@ fn flags_at_edges_end_well_or_in_a_sentence() {
                 let given = flag.replace('@', edge);
                 let run = place.run(&[words(command), vec![&given]].concat());
                 let (code, error) = (run.code(), run.error());
-                assert!(
-                    (0..=2).contains(&code),
-                    "{command} {given:?}: {code}: {error}"
-                );
+                assert!((0..=2).contains(&code), "{command} {given:?}: {code}: {error}");
                 let steers = error.contains(|c: char| c.is_control() && c != '\n');
                 assert!(!steers, "{command} {given:?}: {error:?}");
                 assert!(code == 0 || error.contains("htex: ") || error.contains("error: "));

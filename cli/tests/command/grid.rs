@@ -14,27 +14,10 @@ fn a_free_recording_becomes_a_grid_that_is_shown_and_played() {
     assert_eq!(run.code(), 0, "{}", run.error());
     let first = std::fs::read_to_string(place.path("free.csv")).unwrap();
     let title = first.lines().next().unwrap();
-    assert!(
-        title.contains("free motion, 36 to 280 mm/s, 0.15 to 3.8 N"),
-        "{title}"
-    );
+    assert!(title.contains("free motion, 36 to 280 mm/s, 0.15 to 3.8 N"), "{title}");
 
-    let fit = [
-        "fit",
-        "free.csv",
-        "--model",
-        "bands",
-        "--license",
-        "CC0-1.0",
-    ];
-    let grid = [
-        "--grid",
-        "auto",
-        "--grid-svg",
-        "grid.svg",
-        "--report",
-        "page.html",
-    ];
+    let fit = ["fit", "free.csv", "--model", "bands", "--license", "CC0-1.0"];
+    let grid = ["--grid", "auto", "--grid-svg", "grid.svg", "--report", "page.html"];
     let fitted = place.json(&[&fit[..], &grid, &["-o", "a.htex", "--json"]].concat());
     let cells = fitted["grid"]["cells"].as_array().unwrap();
     let named = cells.iter().filter(|c| c["condition"].is_u64()).count();
@@ -45,19 +28,10 @@ fn a_free_recording_becomes_a_grid_that_is_shown_and_played() {
             .all(|c| ["fitted", "widened", "thin"].contains(&c["status"].as_str().unwrap()))
     );
     let picture = std::fs::read_to_string(place.path("grid.svg")).unwrap();
-    for word in [
-        "speed / mm/s",
-        "normal force / N",
-        "steady windows",
-        "repeats within",
-    ] {
+    for word in ["speed / mm/s", "normal force / N", "steady windows", "repeats within"] {
         assert!(picture.contains(word), "{word}");
     }
-    assert!(
-        std::fs::read_to_string(place.path("page.html"))
-            .unwrap()
-            .contains("Conditions")
-    );
+    assert!(std::fs::read_to_string(place.path("page.html")).unwrap().contains("Conditions"));
 
     let info = place.json(&["info", "a.htex", "--json"]);
     assert_eq!(info["htex"], "1.0");
@@ -65,49 +39,25 @@ fn a_free_recording_becomes_a_grid_that_is_shown_and_played() {
     let place_of = |json: &serde_json::Value| -> Vec<[f64; 3]> {
         let conditions = json["conditions"].as_array().unwrap().iter();
         let keys = ["speed_mm_s", "force_n", "segments"];
-        conditions
-            .map(|c| keys.map(|key| c[key].as_f64().unwrap()))
-            .collect()
+        conditions.map(|c| keys.map(|key| c[key].as_f64().unwrap())).collect()
     };
     assert_eq!(place_of(&info), place_of(&fitted));
     let grid = &fitted["grid"];
     assert!(grid["left_out_rms_db"].is_f64() && grid["one_condition_rms_db"].is_f64());
     let at = info["representations"][0]["at"].as_array().unwrap();
-    assert!(
-        at.iter()
-            .any(|at| at["left_out"]["third_octave_error_rms_db"].is_f64())
-    );
+    assert!(at.iter().any(|at| at["left_out"]["third_octave_error_rms_db"].is_f64()));
     let text = place.run(&["info", "a.htex"]).text();
-    assert!(
-        text.contains("left out") && text.contains("segments"),
-        "{text}"
-    );
+    assert!(text.contains("left out") && text.contains("segments"), "{text}");
     assert_eq!(place.run(&["validate", "a.htex"]).code(), 0);
-    let played = [
-        "spectrum", "a.htex", "--speed", "100", "--force", "1", "--json",
-    ];
+    let played = ["spectrum", "a.htex", "--speed", "100", "--force", "1", "--json"];
     assert!(place.json(&played)["magnitude"].is_array());
 
     let text = place.run(
-        &[
-            &fit[..],
-            &[
-                "--grid",
-                "speed=60,120",
-                "--grid",
-                "force=0.5,1.5",
-                "-o",
-                "b.htex",
-            ],
-        ]
-        .concat(),
+        &[&fit[..], &["--grid", "speed=60,120", "--grid", "force=0.5,1.5", "-o", "b.htex"]]
+            .concat(),
     );
     assert_eq!(text.code(), 0, "{}", text.error());
-    assert!(
-        text.text().contains("windows of 0.2 s are steady"),
-        "{}",
-        text.text()
-    );
+    assert!(text.text().contains("windows of 0.2 s are steady"), "{}", text.text());
 }
 
 #[test]
@@ -119,24 +69,15 @@ fn grids_and_motions_that_do_not_fit_are_refused() {
         (run.code(), run.error())
     };
     let (code, error) = refused(&["fit", &sweeps, "--grid", "auto", "-o", "a.htex"]);
-    assert!(
-        code == 1 && error.contains("the motion is constant"),
-        "{code} {error}"
-    );
+    assert!(code == 1 && error.contains("the motion is constant"), "{code} {error}");
     let (code, error) = refused(&["fit", &sweeps, "--grid", "speed=80,x", "-o", "a.htex"]);
-    assert!(
-        code == 2 && error.contains("--grid speed=80,x"),
-        "{code} {error}"
-    );
+    assert!(code == 2 && error.contains("--grid speed=80,x"), "{code} {error}");
     assert!(!place.path("a.htex").exists());
     let simulate = ["simulate", "--surface", "vinyl", "-o", "b.csv"];
     for (more, why) in [
         (&["--truth", "t.json"][..], "--motion free"),
         (&["--speed", "36:280"], "--motion free"),
-        (
-            &["--motion", "free", "--speed", "280:36"],
-            "highest speed_mm_s",
-        ),
+        (&["--motion", "free", "--speed", "280:36"], "highest speed_mm_s"),
         (&["--motion", "free", "--force", "a"], "not a number"),
     ] {
         let (code, error) = refused(&[&simulate[..], more].concat());

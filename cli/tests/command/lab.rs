@@ -1,10 +1,12 @@
-//! Recordings as laboratories keep them: sensors that are added up, a tracker in a second file, other formats.
+//! Recordings as laboratories keep them: sensors that are added up, a tracker in a second file,
+//! other formats.
 
 use std::path::Path;
 
 use crate::common::{Place, numbers};
 
-/// Writes `name` with columns of a simulated recording: each is computed of the row's values, in the order of `t_s,fx_n,fy_n,fz_n,x_mm,y_mm`.
+/// Writes `name` with columns of a simulated recording: each is computed of the row's values, in
+/// the order of `t_s,fx_n,fy_n,fz_n,x_mm,y_mm`.
 fn rewritten(
     place: &Place,
     csv: &str,
@@ -30,71 +32,35 @@ fn two_sensors_and_a_tracker_give_the_spectrum_of_the_recording() {
     let place = Place::new();
     let csv = place.recording("sandpaper");
     let whole = place.json(&["process", &csv, "--json"]);
-    // Sensors of half the force with opposite offsets in millinewtons, a normal force of the other sign, and a tracker of 60 Hz.
-    rewritten(
-        &place,
-        &csv,
-        "force.csv",
-        "t_s,left-mN,right,y,fz",
-        1,
-        |row| {
-            vec![
-                row[0] + 7.0,
-                500.0 * row[1] + 3.0,
-                500.0 * row[1] - 3.0,
-                row[2],
-                -row[3] / 0.31,
-            ]
-        },
-    );
+    // Sensors of half the force with opposite offsets in millinewtons, a normal force of the other
+    // sign, and a tracker of 60 Hz.
+    rewritten(&place, &csv, "force.csv", "t_s,left-mN,right,y,fz", 1, |row| {
+        vec![row[0] + 7.0, 500.0 * row[1] + 3.0, 500.0 * row[1] - 3.0, row[2], -row[3] / 0.31]
+    });
     let rate_hz = whole["rate_hz"].as_f64().unwrap();
-    rewritten(
-        &place,
-        &csv,
-        "tracker.csv",
-        "stamp,px,py",
-        (rate_hz / 60.0) as usize,
-        |row| vec![1000.0 * (row[0] + 7.0), row[4] / 0.26, row[5] / 0.26],
-    );
+    rewritten(&place, &csv, "tracker.csv", "stamp,px,py", (rate_hz / 60.0) as usize, |row| {
+        vec![1000.0 * (row[0] + 7.0), row[4] / 0.26, row[5] / 0.26]
+    });
     let map = "lateral_x=(\"left-mN\"+right)*1e-3,lateral_y=y:1,normal=-fz*0.31";
     let tracker_map = "time=stamp:0.001,x=px:0.26,y=py:0.26";
-    let reading = [
-        "--map",
-        map,
-        "--tracker",
-        "tracker.csv",
-        "--tracker-map",
-        tracker_map,
-    ];
+    let reading = ["--map", map, "--tracker", "tracker.csv", "--tracker-map", tracker_map];
     let arguments = [&["process", "force.csv", "--json"], &reading[..]].concat();
     let tracked = place.json(&arguments);
 
     let (a, b) = (numbers(&whole["magnitude"]), numbers(&tracked["magnitude"]));
     let power = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
     let difference: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a - b).collect();
-    assert!(
-        power(&difference) < 1e-3 * power(&a),
-        "{} of {}",
-        power(&difference),
-        power(&a)
-    );
+    assert!(power(&difference) < 1e-3 * power(&a), "{} of {}", power(&difference), power(&a));
     let speed = |json: &serde_json::Value| json["speed_mm_s"].as_f64().unwrap();
     assert!((speed(&whole) / speed(&tracked) - 1.0).abs() < 0.01);
 
     // The asset keeps how it was read, with the names of files alone.
-    let fit = [
-        &["fit", "force.csv", "--model", "bands", "-o", "a.htex"],
-        &reading[..],
-    ]
-    .concat();
+    let fit = [&["fit", "force.csv", "--model", "bands", "-o", "a.htex"], &reading[..]].concat();
     assert_eq!(place.run(&fit).code(), 0);
     let asset = htex_format::Asset::open(&place.path("a.htex")).unwrap();
     let options = &asset.manifest.provenance.options;
     assert_eq!(options["tracker"], "tracker.csv");
-    assert_eq!(
-        (&options["map"][..], &options["tracker-map"][..]),
-        (map, tracker_map)
-    );
+    assert_eq!((&options["map"][..], &options["tracker-map"][..]), (map, tracker_map));
 }
 
 #[test]
@@ -114,10 +80,7 @@ fn files_of_a_tracker_are_never_overwritten_and_must_fit() {
     );
     let two = place.run(&["process", &csv, "--tracker", "t.csv", "--tracker", "t.csv"]);
     assert!(
-        two.code() == 2
-            && two
-                .error()
-                .contains("--tracker: 2 trackers for 1 recordings"),
+        two.code() == 2 && two.error().contains("--tracker: 2 trackers for 1 recordings"),
         "{}",
         two.error()
     );
@@ -134,16 +97,14 @@ fn a_file_of_another_format_is_validated_and_processed() {
     let lab = Path::new(env!("CARGO_MANIFEST_DIR")).join("../sdk/recording/tests/lab");
     let place = Place::new();
     for (file, map) in [
-        (
-            "compressed.mat",
-            "lateral=run.forces#1:1,normal=run.forces#3:1",
-        ),
+        ("compressed.mat", "lateral=run.forces#1:1,normal=run.forces#3:1"),
         ("segments.tdms", "lateral=Run 1/fx_n,normal=Run 1/fz:1"),
         ("pcm16.flac", "lateral=ch1:1,normal=ch3:1"),
     ] {
         let path = lab.join(file);
         let path = path.to_str().unwrap();
-        // 96 rows are too short for a segment: the file is read, and the recording is what is refused.
+        // 96 rows are too short for a segment: the file is read, and the recording is what is
+        // refused.
         let run = place.run(&["process", path, "--map", map, "--rate", "2000"]);
         assert!(
             run.code() == 1 && run.error().contains("96 samples are less than one segment"),

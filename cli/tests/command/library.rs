@@ -19,14 +19,7 @@ fn place() -> Place {
     place.write("all/vinyl.htex", example("vinyl.htex"));
     place.write("all/cloth/coarse.htex", example("coarse-fabric.htex"));
     place.write("all/cloth/notes.txt", "no texture");
-    let edit = [
-        "edit",
-        "all/vinyl.htex",
-        "-o",
-        "all/cloth/red vinyl.htex",
-        "--tag",
-        "Red",
-    ];
+    let edit = ["edit", "all/vinyl.htex", "-o", "all/cloth/red vinyl.htex", "--tag", "Red"];
     assert_eq!(place.run(&edit).code(), 0);
     place
 }
@@ -35,21 +28,12 @@ fn packed() -> Place {
     let place = place();
     let run = place.run(&["lib", "pack", "all.htexlib", "all"]);
     assert_eq!(run.code(), 0, "{}", run.error());
-    assert!(
-        run.text().starts_with("all.htexlib: 3 textures in "),
-        "{}",
-        run.text()
-    );
+    assert!(run.text().starts_with("all.htexlib: 3 textures in "), "{}", run.text());
     place
 }
 
 fn names(listed: &Value) -> Vec<&str> {
-    listed
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|entry| entry["name"].as_str().unwrap())
-        .collect()
+    listed.as_array().unwrap().iter().map(|entry| entry["name"].as_str().unwrap()).collect()
 }
 
 #[test]
@@ -73,16 +57,10 @@ fn a_folder_is_packed_listed_and_unpacked_byte_for_byte() {
         }
     }
     let speed = &info["conditions"][0]["speed_mm_s"];
-    assert_eq!(
-        vinyl["conditions"]["speed_mm_s"],
-        json!({ "min": speed, "max": speed })
-    );
+    assert_eq!(vinyl["conditions"]["speed_mm_s"], json!({ "min": speed, "max": speed }));
     let text = place.run(&["lib", "ls", "all.htexlib"]).text();
     assert_eq!(text.lines().count(), 3);
-    assert!(
-        text.contains("red vinyl") && text.contains("speak"),
-        "{text}"
-    );
+    assert!(text.contains("red vinyl") && text.contains("speak"), "{text}");
     // Frequencies over the speed, level over speed and force, up to three decimals.
     let exponent =
         |key: &str| (vinyl["law"][key]["exponent"].as_f64().unwrap() * 1e3).round() / 1e3;
@@ -99,20 +77,8 @@ fn a_folder_is_packed_listed_and_unpacked_byte_for_byte() {
     }
     let again = place.run(&["lib", "unpack", "all.htexlib", "-o", "out/here", "vinyl"]);
     assert_eq!(again.code(), 1);
-    assert!(
-        again.error().contains("it is there already"),
-        "{}",
-        again.error()
-    );
-    let forced = place.run(&[
-        "lib",
-        "unpack",
-        "all.htexlib",
-        "-o",
-        "out/here",
-        "vinyl",
-        "--force",
-    ]);
+    assert!(again.error().contains("it is there already"), "{}", again.error());
+    let forced = place.run(&["lib", "unpack", "all.htexlib", "-o", "out/here", "vinyl", "--force"]);
     assert_eq!(forced.code(), 0, "{}", forced.error());
 }
 
@@ -133,10 +99,7 @@ fn the_order_of_inputs_does_not_change_the_file_and_the_name_does() {
     let listed = place.json(&["lib", "ls", "a.htexlib", "--json"]);
     assert_eq!(names(&listed), ["coarse", "vinyl"]);
     let same = place.json(&["lib", "diff", "a.htexlib", "c.htexlib", "--json"]);
-    assert_eq!(
-        same,
-        json!({ "only_in_a": [], "only_in_b": [], "changed": [] })
-    );
+    assert_eq!(same, json!({ "only_in_a": [], "only_in_b": [], "changed": [] }));
 }
 
 #[test]
@@ -144,22 +107,12 @@ fn one_texture_is_taken_out_and_opened() {
     let place = packed();
     let run = place.run(&["lib", "cat", "all.htexlib", "vinyl", "-o", "taken.htex"]);
     assert_eq!(run.code(), 0, "{}", run.error());
-    assert_eq!(
-        std::fs::read(place.path("taken.htex")).unwrap(),
-        example("vinyl.htex")
-    );
+    assert_eq!(std::fs::read(place.path("taken.htex")).unwrap(), example("vinyl.htex"));
     let mut piped = place.command(&["lib", "cat", "all.htexlib", "cloth/coarse"]);
-    assert_eq!(
-        piped.output().unwrap().stdout,
-        example("coarse-fabric.htex")
-    );
+    assert_eq!(piped.output().unwrap().stdout, example("coarse-fabric.htex"));
     let absent = place.run(&["lib", "cat", "all.htexlib", "velvet"]);
     assert_eq!(absent.code(), 1);
-    assert!(
-        absent.error().contains("there is no texture velvet"),
-        "{}",
-        absent.error()
-    );
+    assert!(absent.error().contains("there is no texture velvet"), "{}", absent.error());
     let over = place.run(&["lib", "cat", "all.htexlib", "vinyl", "-o", "all.htexlib"]);
     assert_eq!(over.code(), 2, "{}", over.error());
 }
@@ -192,22 +145,11 @@ fn differences_are_named_and_exit_with_1() {
     std::fs::create_dir(place.path("other")).unwrap();
     place.write("other/vinyl.htex", example("coarse-fabric.htex"));
     place.write("other/wood.htex", example("vinyl.htex"));
-    assert_eq!(
-        place.run(&["lib", "pack", "other.htexlib", "other"]).code(),
-        0
-    );
+    assert_eq!(place.run(&["lib", "pack", "other.htexlib", "other"]).code(), 0);
     let run = place.run(&["lib", "diff", "all.htexlib", "other.htexlib"]);
     assert_eq!(run.code(), 1);
-    assert_eq!(
-        run.text(),
-        "- cloth/coarse\n- cloth/red vinyl\n+ wood\n~ vinyl\n"
-    );
-    assert_eq!(
-        place
-            .run(&["lib", "diff", "all.htexlib", "all.htexlib"])
-            .code(),
-        0
-    );
+    assert_eq!(run.text(), "- cloth/coarse\n- cloth/red vinyl\n+ wood\n~ vinyl\n");
+    assert_eq!(place.run(&["lib", "diff", "all.htexlib", "all.htexlib"]).code(), 0);
 }
 
 /// `verify` and `validate` give the reports of the specification's conformance files.
@@ -256,23 +198,11 @@ fn what_cannot_be_packed_is_refused_and_nothing_is_left() {
     std::fs::create_dir(place.path("empty")).unwrap();
     let before = entries(&place.path(""));
     for (inputs, code, words) in [
-        (
-            &["all", "broken.htex"][..],
-            1,
-            "broken.htex: not a valid asset",
-        ),
-        (
-            &["big.htex"],
-            1,
-            "big.htex: not a valid asset: FILE_TOO_LARGE",
-        ),
+        (&["all", "broken.htex"][..], 1, "broken.htex: not a valid asset"),
+        (&["big.htex"], 1, "big.htex: not a valid asset: FILE_TOO_LARGE"),
         (&["nowhere.htex"], 1, "nowhere.htex"),
         (&["empty"], 1, "no .htex file"),
-        (
-            &["all", "all/vinyl.htex"],
-            2,
-            "would both be called \"vinyl\"",
-        ),
+        (&["all", "all/vinyl.htex"], 2, "would both be called \"vinyl\""),
     ] {
         let run = place.run(&[&["lib", "pack", "all.htexlib"], inputs].concat());
         assert_eq!(run.code(), code, "{inputs:?}: {}", run.error());
@@ -285,7 +215,8 @@ fn what_cannot_be_packed_is_refused_and_nothing_is_left() {
     assert_eq!(std::fs::read(place.path("all.htexlib")).unwrap(), kept);
 }
 
-/// A texture that states no licence is packed where a person says so, and the message names it and what to do.
+/// A texture that states no licence is packed where a person says so, and the message names it and
+/// what to do.
 #[test]
 fn textures_without_a_licence_are_not_packed() {
     let place = packed();
@@ -298,10 +229,7 @@ fn textures_without_a_licence_are_not_packed() {
     let run = place.run(&pack);
     assert_eq!(run.code(), 1);
     let error = run.error();
-    assert!(
-        error.contains("bare and another texture state no licence"),
-        "{error}"
-    );
+    assert!(error.contains("bare and another texture state no licence"), "{error}");
     assert!(error.contains("htex edit all/bare.htex --license SPDX, or --unlicensed"));
     let one = ["lib", "pack", "one.htexlib", "all/bare.htex"];
     let error = place.run(&one).error();
@@ -315,7 +243,8 @@ fn textures_without_a_licence_are_not_packed() {
     assert_eq!(place.run(&one).code(), 0);
 }
 
-/// What `lib unpack` refuses of a file (sizes, names, hashes), `htex validate` and `lib verify` refuse, too: a valid file unpacks whole.
+/// What `lib unpack` refuses of a file (sizes, names, hashes), `htex validate` and `lib verify`
+/// refuse, too: a valid file unpacks whole.
 #[test]
 fn what_is_valid_unpacks() {
     let place = Place::new();

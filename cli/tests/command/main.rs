@@ -1,4 +1,5 @@
-//! The command as a user runs it, on files. One program, in which tests that wait leave room to others.
+//! The command as a user runs it, on files. One program, in which tests that wait leave room to
+//! others.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "../common/browser.rs"]

@@ -30,8 +30,5 @@ fn an_hour_takes_no_more_memory_than_a_second() {
     };
     let (second, hour) = (memory_kib(1), memory_kib(3_600));
     println!("1 s: {second} KiB, 1 h: {hour} KiB");
-    assert!(
-        hour <= second + MOST_MORE_KIB,
-        "1 s: {second} KiB, 1 h: {hour} KiB"
-    );
+    assert!(hour <= second + MOST_MORE_KIB, "1 s: {second} KiB, 1 h: {hour} KiB");
 }

@@ -1,4 +1,5 @@
-//! Metadata in `fit` and `edit`: it is stored, shown and checked, and nothing else of an asset changes.
+//! Metadata in `fit` and `edit`: it is stored, shown and checked, and nothing else of an asset
+//! changes.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -111,31 +112,19 @@ fn metadata_is_fitted_shown_removed_and_checked() {
     place.json(&[&fit[..], &METADATA, &finger].concat());
     let info = place.json(&["info", "v.htex", "--json"]);
     assert_eq!(info["finger"], "bare index finger");
-    assert_eq!(
-        (&info["name"], &info["htex"]),
-        (&"Coarse cloth".into(), &"1.0".into())
-    );
+    assert_eq!((&info["name"], &info["htex"]), (&"Coarse cloth".into(), &"1.0".into()));
     let text = place.run(&["info", "v.htex"]).text();
     for line in METADATA.chunks(2).chain([&finger[..]]).map(|pair| pair[1]) {
-        assert!(
-            text.contains(&line.replace(',', ", ")) || text.contains(line),
-            "{line}: {text}"
-        );
+        assert!(text.contains(&line.replace(',', ", ")) || text.contains(line), "{line}: {text}");
     }
     // In place; an empty text removes an entry.
     let run = place.run(&["edit", "v.htex", "--doi", "", "--author", "B. Uthor"]);
     assert_eq!(run.code(), 0, "{}", run.error());
     let info = place.json(&["info", "v.htex", "--json"]);
-    assert_eq!(
-        (&info["doi"], &info["author"]),
-        (&Value::Null, &"B. Uthor".into())
-    );
+    assert_eq!((&info["doi"], &info["author"]), (&Value::Null, &"B. Uthor".into()));
     let kept = std::fs::read(place.path("v.htex")).unwrap();
     for (wrong, words) in [
-        (
-            &["--doi", "https://doi.org/10.1/x"][..],
-            "without https://doi.org/",
-        ),
+        (&["--doi", "https://doi.org/10.1/x"][..], "without https://doi.org/"),
         (&["--license", "CC BY"], "--license"),
         (&["--name", " "], "--name"),
         (&[], "nothing to change"),
@@ -153,34 +142,14 @@ fn metadata_is_fitted_shown_removed_and_checked() {
 fn a_fit_draws_its_report() {
     let place = Place::new();
     let csv = place.recording("vinyl");
-    let simulate = [
-        "simulate",
-        "--surface",
-        "vinyl",
-        "--seconds",
-        "4",
-        "--speed",
-        "40",
-    ];
-    assert_eq!(
-        place
-            .run(&[&simulate[..], &["-o", "slow.csv"]].concat())
-            .code(),
-        0
-    );
-    let two = [
-        "fit", &csv, "slow.csv", "-o", "v.htex", "--report", "v.html",
-    ];
+    let simulate = ["simulate", "--surface", "vinyl", "--seconds", "4", "--speed", "40"];
+    assert_eq!(place.run(&[&simulate[..], &["-o", "slow.csv"]].concat()).code(), 0);
+    let two = ["fit", &csv, "slow.csv", "-o", "v.htex", "--report", "v.html"];
     let run = place.run(&two);
     assert_eq!(run.code(), 0, "{}", run.error());
     let page = std::fs::read_to_string(place.path("v.html")).unwrap();
     assert_eq!(page.matches("class=\"row\"").count(), 2);
-    for words in [
-        "v, 40.",
-        "magnitude / mN",
-        "sBeta",
-        "htex fit vinyl.csv slow.csv",
-    ] {
+    for words in ["v, 40.", "magnitude / mN", "sBeta", "htex fit vinyl.csv slow.csv"] {
         assert!(page.contains(words), "{words}");
     }
     let over = place.run(&["fit", &csv, "-o", "v.htex", "--report", &csv]);
@@ -190,14 +159,7 @@ fn a_fit_draws_its_report() {
     let tone = |n: u32| (f64::from(n) * 0.07).sin() + (f64::from(n) * 0.031).cos();
     (0..20_000).for_each(|n| rows += &format!("{:.5}\n", tone(n)));
     place.write("tool.csv", rows);
-    let tool = [
-        "fit",
-        "tool.csv",
-        "--quantity",
-        "acceleration",
-        "--rate",
-        "5000",
-    ];
+    let tool = ["fit", "tool.csv", "--quantity", "acceleration", "--rate", "5000"];
     let run = place.run(&[&tool[..], &["-o", "t.htex", "--report", "t.html"]].concat());
     assert_eq!(run.code(), 0, "{}", run.error());
     let page = std::fs::read_to_string(place.path("t.html")).unwrap();

@@ -15,18 +15,12 @@ use htex_format::{Asset, Plugin};
 /// Allowed beside the limits: reading, checking, and writing the module.
 const BESIDE: (Duration, i64) = (Duration::from_secs(2), 128 << 10);
 
-/// An asset of so many representations, each of an embedded model, which was valid when it was fitted.
+/// An asset of so many representations, each of an embedded model, which was valid when it was
+/// fitted.
 fn asset(place: &Place, models: usize, hostile: &str) {
     let csv = place.recording("sandpaper");
-    let ids: Vec<String> = (0..models)
-        .map(|i| format!("org.example.hosti{i:02}"))
-        .collect();
-    let mut fit = vec![
-        "fit".to_owned(),
-        csv,
-        "-o".to_owned(),
-        "sound.htex".to_owned(),
-    ];
+    let ids: Vec<String> = (0..models).map(|i| format!("org.example.hosti{i:02}")).collect();
+    let mut fit = vec!["fit".to_owned(), csv, "-o".to_owned(), "sound.htex".to_owned()];
     let mut names = Vec::new();
     for id in &ids {
         let wat = model::text("1.0.0", &[], "").replace(model::ID, id);
@@ -71,53 +65,24 @@ fn any_module_is_compiled_or_refused_within_its_limits() {
     let cases = [
         ("nested conditions", of(100, (2000, 1), &[2], &[0], &[])),
         ("nested loops", of(1000, (1000, 1), &[1], &[0], &[4])),
-        (
-            "jumps to the head of a loop",
-            of(1000, (1, 1), &[1], &[0, 3].repeat(2000), &[]),
-        ),
+        ("jumps to the head of a loop", of(1000, (1, 1), &[1], &[0, 3].repeat(2000), &[])),
         ("nested blocks", of(1000, (2000, 4), &[0], &[], &[2, 0])),
-        (
-            "calls through a table",
-            of(10, (1, 50_000), &[0], &[7], &[]),
-        ),
+        ("calls through a table", of(10, (1, 50_000), &[0], &[7], &[])),
         ("copies of tables", of(10, (1, 50_000), &[0], &[13], &[])),
         ("wide jumps", of(200, (1000, 1), &[0], &[5], &[])),
-        (
-            "functions",
-            Heavy {
-                copies: 150_000,
-                ..of(1, (1, 1), &[0], &[], &[])
-            },
-        ),
+        ("functions", Heavy { copies: 150_000, ..of(1, (1, 1), &[0], &[], &[]) }),
     ];
     let place = Place::new();
     for (name, heavy) in cases {
         let wat = model::text("1.0.0", &[], &heavy.text());
         place.write("heavy.wasm", wat::parse_str(wat).unwrap());
-        let arguments = [
-            "plugin",
-            "info",
-            "heavy.wasm",
-            "--wasm-limit",
-            "module-mib=16",
-        ];
+        let arguments = ["plugin", "info", "heavy.wasm", "--wasm-limit", "module-mib=16"];
         let end = measured(&place, &arguments);
-        println!(
-            "{name}: status {}, {:?}, {} KiB",
-            end.code, end.cpu, end.memory_kib
-        );
+        println!("{name}: status {}, {:?}, {} KiB", end.code, end.cpu, end.memory_kib);
         let (time, memory_kib) = (Duration::from_secs(5) + BESIDE.0, (512 << 10) + BESIDE.1);
         assert!([0, 1, 2].contains(&end.code), "{name}: {}", end.error);
-        assert!(
-            end.cpu < time && end.memory_kib < memory_kib,
-            "{name}: {:?}",
-            end.cpu
-        );
-        assert!(
-            end.code == 0 || end.error.contains("compile"),
-            "{name}: {}",
-            end.error
-        );
+        assert!(end.cpu < time && end.memory_kib < memory_kib, "{name}: {:?}", end.cpu);
+        assert!(end.code == 0 || end.error.contains("compile"), "{name}: {}", end.error);
     }
 }
 
@@ -139,37 +104,22 @@ fn a_compiler_that_takes_more_is_stopped() {
     let info = |limits: &[&str]| {
         let limits: Vec<String> = limits.iter().map(|l| format!("--wasm-limit={l}")).collect();
         let limits: Vec<&str> = limits.iter().map(String::as_str).collect();
-        measured(
-            &place,
-            &[&["plugin", "info", "heavy.wasm"][..], &limits].concat(),
-        )
+        measured(&place, &[&["plugin", "info", "heavy.wasm"][..], &limits].concat())
     };
     for (limits, said) in [
-        (
-            ["compile-ms=600000", "compile-mib=1"],
-            "more than 1048576 bytes to compile",
-        ),
-        (
-            ["compile-ms=600000", "all-ms=20"],
-            "to compile, and compilation was stopped",
-        ),
-        (
-            ["compile-ms=1", "all-ms=30000"],
-            "ms to compile, and 1 ms are allowed",
-        ),
+        (["compile-ms=600000", "compile-mib=1"], "more than 1048576 bytes to compile"),
+        (["compile-ms=600000", "all-ms=20"], "to compile, and compilation was stopped"),
+        (["compile-ms=1", "all-ms=30000"], "ms to compile, and 1 ms are allowed"),
     ] {
         let end = info(&limits);
-        assert!(
-            end.code != 0 && end.error.contains(said),
-            "{limits:?}: {}",
-            end.error
-        );
+        assert!(end.code != 0 && end.error.contains(said), "{limits:?}: {}", end.error);
     }
     let end = info(&["compile-ms=600000"]);
     assert_eq!(end.code, 0, "{}", end.error);
 }
 
-/// Modules that never return, and an asset full of them: nothing runs before it is needed, and then within one budget.
+/// Modules that never return, and an asset full of them: nothing runs before it is needed, and then
+/// within one budget.
 #[test]
 fn modules_share_a_budget_of_time() {
     let place = Place::new();
@@ -177,35 +127,18 @@ fn modules_share_a_budget_of_time() {
     asset(&place, 12, &model::text("1.0.0", &endless, ""));
     for file in ["hostile.htex", "scene.json"] {
         let end = measured(&place, &["validate", file]);
-        assert!(
-            end.code < 2 && end.cpu < BESIDE.0,
-            "{file}: {:?} {}",
-            end.cpu,
-            end.error
-        );
+        assert!(end.code < 2 && end.cpu < BESIDE.0, "{file}: {:?} {}", end.cpu, end.error);
     }
-    let all = [
-        "validate",
-        "--embedded-plugins",
-        "hostile.htex",
-        "--wasm-limit",
-    ];
+    let all = ["validate", "--embedded-plugins", "hostile.htex", "--wasm-limit"];
     let end = measured(&place, &[&all[..], &["asset-ms=1000"]].concat());
     assert_eq!(end.code, 1, "{}", end.error);
     assert!(end.cpu < Duration::from_secs(1) + BESIDE.0, "{:?}", end.cpu);
     let said = place.run(&[&all[..], &["asset-ms=1000"]].concat()).text();
     let used_up = "used up the 1000 ms that they have together";
     assert!(said.contains(used_up), "{said}");
-    let end = measured(
-        &place,
-        &["plan", "scene.json", "--wasm-limit", "all-ms=500"],
-    );
+    let end = measured(&place, &["plan", "scene.json", "--wasm-limit", "all-ms=500"]);
     assert_eq!(end.code, 1, "{}", end.error);
-    assert!(
-        end.cpu < Duration::from_millis(500) + BESIDE.0,
-        "{:?}",
-        end.cpu
-    );
+    assert!(end.cpu < Duration::from_millis(500) + BESIDE.0, "{:?}", end.cpu);
 }
 
 /// Modules that each take all the memory of an instance.
@@ -219,16 +152,9 @@ fn modules_share_a_budget_of_memory() {
          (i32.const 0x48540100)",
     )];
     asset(&place, 20, &model::text("1.0.0", &grows, ""));
-    let end = measured(
-        &place,
-        &["plan", "scene.json", "--wasm-limit", "asset-mib=256"],
-    );
+    let end = measured(&place, &["plan", "scene.json", "--wasm-limit", "asset-mib=256"]);
     assert_eq!(end.code, 1, "{}", end.error);
     let sentence = "the modules of this asset may have 268435456 bytes of memory together";
     assert!(end.error.contains(sentence), "{}", end.error);
-    assert!(
-        end.memory_kib < (256 << 10) + BESIDE.1,
-        "{} KiB",
-        end.memory_kib
-    );
+    assert!(end.memory_kib < (256 << 10) + BESIDE.1, "{} KiB", end.memory_kib);
 }

@@ -11,11 +11,7 @@ fn htex(arguments: &[&str]) -> Output {
 fn written(lang: &str, dir: &Path) -> String {
     let dir = dir.to_str().unwrap().to_owned();
     let new = htex(&["plugin", "new", "my-model", "--lang", lang, "--dir", &dir]);
-    assert!(
-        new.status.success(),
-        "{}",
-        String::from_utf8_lossy(&new.stderr)
-    );
+    assert!(new.status.success(), "{}", String::from_utf8_lossy(&new.stderr));
     dir
 }
 
@@ -35,13 +31,7 @@ fn a_new_model_has_names_of_its_own() {
         let readme = std::fs::read_to_string(format!("{dir}/README.md")).unwrap();
         assert!(readme.starts_with("# My model\n"), "{readme}");
         let mut all = String::new();
-        for file in [
-            "README.md",
-            "Cargo.toml",
-            "src/lib.rs",
-            "model.c",
-            "build.sh",
-        ] {
+        for file in ["README.md", "Cargo.toml", "src/lib.rs", "model.c", "build.sh"] {
             all += &std::fs::read_to_string(format!("{dir}/{file}")).unwrap_or_default();
         }
         for names in ["{{", "Resonance", "\"/", "resonance.so"] {
@@ -76,28 +66,19 @@ fn a_new_model_in_rust() {
         assert!(built.unwrap().success());
     };
     build(&[]);
-    passes(&format!(
-        "{dir}/target/release/libmy_model{}",
-        std::env::consts::DLL_SUFFIX
-    ));
+    passes(&format!("{dir}/target/release/libmy_model{}", std::env::consts::DLL_SUFFIX));
     if !xtask::needs::WASM_TARGET.met(xtask::plugins::wasm_is_installed()) {
         return;
     }
     build(&["--target", "wasm32-unknown-unknown"]);
-    passes(&format!(
-        "{dir}/target/wasm32-unknown-unknown/release/my_model.wasm"
-    ));
+    passes(&format!("{dir}/target/wasm32-unknown-unknown/release/my_model.wasm"));
 }
 
 #[test]
 fn a_folder_that_is_there_is_left_alone() {
     let folder = tempfile::tempdir().unwrap();
     let dir = folder.path().to_str().unwrap();
-    for (name, dir) in [
-        ("my-model", dir),
-        ("My Model", "/nowhere"),
-        ("1st", "/nowhere"),
-    ] {
+    for (name, dir) in [("my-model", dir), ("My Model", "/nowhere"), ("1st", "/nowhere")] {
         let new = htex(&["plugin", "new", name, "--lang", "c", "--dir", dir]);
         assert_eq!(new.status.code(), Some(2));
     }

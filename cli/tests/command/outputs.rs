@@ -12,10 +12,7 @@ const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes"
 fn place() -> Place {
     let place = Place::new();
     place.recording("vinyl");
-    place.write(
-        "cloth.htex",
-        std::fs::read(format!("{EXAMPLES}/vinyl.htex")).unwrap(),
-    );
+    place.write("cloth.htex", std::fs::read(format!("{EXAMPLES}/vinyl.htex")).unwrap());
     place.write("rig.csv", "frequency_hz,magnitude\n20,1\n1000,1\n");
     let scene = json!({
         "htex_scene": "1.0",
@@ -29,16 +26,11 @@ fn place() -> Place {
 }
 
 fn entries(place: &Place) -> Vec<(String, Vec<u8>)> {
-    let all = std::fs::read_dir(place.path(""))
-        .unwrap()
-        .map(Result::unwrap);
+    let all = std::fs::read_dir(place.path("")).unwrap().map(Result::unwrap);
     let mut all: Vec<_> = all
         .filter(|entry| entry.path().is_file())
         .map(|entry| {
-            (
-                entry.file_name().into_string().unwrap(),
-                std::fs::read(entry.path()).unwrap(),
-            )
+            (entry.file_name().into_string().unwrap(), std::fs::read(entry.path()).unwrap())
         })
         .collect();
     all.sort();
@@ -51,11 +43,7 @@ fn entries(place: &Place) -> Vec<(String, Vec<u8>)> {
 fn no_command_writes_over_what_it_reads() {
     let place = place();
     // Second names have no extension, since the extension of another format would be refused first.
-    for (file, second) in [
-        ("vinyl.csv", "second"),
-        ("rig.csv", "rig"),
-        ("s.scene.json", "scene"),
-    ] {
+    for (file, second) in [("vinyl.csv", "second"), ("rig.csv", "rig"), ("s.scene.json", "scene")] {
         std::fs::hard_link(place.path(file), place.path(second)).unwrap();
     }
     std::os::unix::fs::symlink("cloth.htex", place.path("link.wav")).unwrap();
@@ -71,59 +59,21 @@ fn no_command_writes_over_what_it_reads() {
         &["process", "vinyl.csv", "--frf", "rig.csv", "--svg", "rig"],
         &["synth", "link.wav", "-o", "link.wav"],
         &["synth", "cloth.htex", "-o", "link.wav"],
-        &[
-            "mix",
-            "link.htex",
-            "cloth.htex",
-            "--weight",
-            "0.5",
-            "-o",
-            "cloth.htex",
-        ],
+        &["mix", "link.htex", "cloth.htex", "--weight", "0.5", "-o", "cloth.htex"],
         &["tradeoff", "vinyl.csv", "-o", "vinyl.html", "--quick"],
-        &[
-            "tradeoff",
-            "vinyl.csv",
-            "--frf",
-            "rig.csv",
-            "-o",
-            "rig.html",
-            "--quick",
-        ],
+        &["tradeoff", "vinyl.csv", "--frf", "rig.csv", "-o", "rig.html", "--quick"],
         &["plan", "s.scene.json", "--svg", "scene"],
         &["plan", "s.scene.json", "--svg", "rig"],
         &["render", "s.scene.json", "-o", "rig.csv"],
         &["render", "s.scene.json", "-o", "link.wav"],
         &["play", "s.scene.json", "--set", "path=link.wav"],
-        &[
-            "play",
-            "cloth.htex",
-            "--device",
-            "file",
-            "--set",
-            "path=link.wav",
-        ],
-        &[
-            "simulate",
-            "--surface",
-            "vinyl",
-            "-o",
-            "new.csv",
-            "--frf",
-            "new.csv",
-        ],
+        &["play", "cloth.htex", "--device", "file", "--set", "path=link.wav"],
+        &["simulate", "--surface", "vinyl", "-o", "new.csv", "--frf", "new.csv"],
     ] {
         let run = place.run(arguments);
         assert_eq!(run.code(), 2, "{arguments:?}: {}", run.error());
-        let words = [
-            "it is read here, and would be lost",
-            "two outputs would be written to it",
-        ];
-        assert!(
-            words.iter().any(|w| run.error().contains(w)),
-            "{arguments:?}: {}",
-            run.error()
-        );
+        let words = ["it is read here, and would be lost", "two outputs would be written to it"];
+        assert!(words.iter().any(|w| run.error().contains(w)), "{arguments:?}: {}", run.error());
         assert!(entries(&place) == before, "{arguments:?}");
     }
 }
@@ -134,11 +84,7 @@ fn an_unnamed_file_is_called_as_its_scene_and_format() {
     let place = place();
     let display = json!({ "adapter": "daq", "profile": "pcie-6321_tabor-9200a_sct3250" });
     for (scene, device, file) in [
-        (
-            "one.two.scene.json",
-            json!({ "settings": { "format": "csv" } }),
-            "one.two.csv",
-        ),
+        ("one.two.scene.json", json!({ "settings": { "format": "csv" } }), "one.two.csv"),
         (".cloth.scene.json", json!({}), "cloth.wav"),
         (".display.v2.scene.json", display, "display.v2.wav"),
     ] {
@@ -152,10 +98,7 @@ fn an_unnamed_file_is_called_as_its_scene_and_format() {
         place.write(scene, text.to_string());
         let run = place.run(&["render", scene]);
         assert_eq!(run.code(), 0, "{}", run.error());
-        assert!(
-            entries(&place).iter().any(|(name, _)| name == file),
-            "{file}"
-        );
+        assert!(entries(&place).iter().any(|(name, _)| name == file), "{file}");
     }
 }
 
@@ -166,52 +109,30 @@ fn a_file_that_is_no_journal_is_left_alone() {
     place.write("vinyl-2.part", "my notes\n");
     let run = place.run(&["tradeoff", "vinyl.csv", "-o", "vinyl-2.html", "--quick"]);
     assert_eq!(run.code(), 1);
-    assert!(
-        run.error()
-            .contains("not the journal of an interrupted sweep"),
-        "{}",
-        run.error()
-    );
-    assert_eq!(
-        std::fs::read(place.path("vinyl-2.part")).unwrap(),
-        b"my notes\n"
-    );
+    assert!(run.error().contains("not the journal of an interrupted sweep"), "{}", run.error());
+    assert_eq!(std::fs::read(place.path("vinyl-2.part")).unwrap(), b"my notes\n");
 }
 
-/// A scene names no file; what is written without a person's word is new, has the ending of its format, and is not hidden.
+/// A scene names no file; what is written without a person's word is new, has the ending of its
+/// format, and is not hidden.
 #[test]
 fn a_scene_names_no_output() {
     let place = place();
     let text = std::fs::read_to_string(place.path("s.scene.json")).unwrap();
     let mut scene: serde_json::Value = serde_json::from_str(&text).unwrap();
     std::fs::create_dir(place.path("deep")).unwrap();
-    for path in [
-        ".bashrc",
-        "deep/.git-config",
-        "../out.wav",
-        "/tmp/out.wav",
-        "link",
-    ] {
+    for path in [".bashrc", "deep/.git-config", "../out.wav", "/tmp/out.wav", "link"] {
         scene["device"]["settings"] = json!({ "path": path, "format": "raw" });
         place.write(".s.scene.json", scene.to_string());
         let before = entries(&place);
         let run = place.run(&["play", ".s.scene.json"]);
         assert_eq!(run.code(), 0, "{path}: {}", run.error());
-        assert!(
-            run.error().contains("DEVICE_PATH_UNUSED"),
-            "{path}: {}",
-            run.error()
-        );
+        assert!(run.error().contains("DEVICE_PATH_UNUSED"), "{path}: {}", run.error());
         let mut after = entries(&place);
         after.retain(|entry| !before.contains(entry));
         let names: Vec<&str> = after.iter().map(|(name, _)| &name[..]).collect();
         assert_eq!(names, ["s.raw"], "{path}");
-        assert!(
-            std::fs::read_dir(place.path("deep"))
-                .unwrap()
-                .next()
-                .is_none()
-        );
+        assert!(std::fs::read_dir(place.path("deep")).unwrap().next().is_none());
         // The second time it exists.
         let again = place.run(&["play", ".s.scene.json"]);
         assert_eq!(again.code(), 2, "{}", again.error());
@@ -221,12 +142,7 @@ fn a_scene_names_no_output() {
     let rendered = ["render", "s.scene.json"];
     assert_eq!(place.run(&rendered).code(), 0);
     assert_eq!(place.run(&rendered).code(), 2);
-    assert_eq!(
-        place
-            .run(&[&rendered[..], &["-o", "s.wav"]].concat())
-            .code(),
-        0
-    );
+    assert_eq!(place.run(&[&rendered[..], &["-o", "s.wav"]].concat()).code(), 0);
 }
 
 /// A program that is asked to end, by any signal, leaves no unfinished file.
@@ -236,41 +152,22 @@ fn an_ended_program_leaves_no_part() {
     for signal in ["-TERM", "-HUP", "-INT"] {
         let place = place();
         let before = entries(&place);
-        let arguments = [
-            "synth",
-            "cloth.htex",
-            "--seconds",
-            "20000",
-            "-o",
-            "long.wav",
-        ];
-        let mut child = place
-            .command(&arguments)
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let arguments = ["synth", "cloth.htex", "--seconds", "20000", "-o", "long.wav"];
+        let mut child = place.command(&arguments).stderr(Stdio::piped()).spawn().unwrap();
         let start = Instant::now();
         while entries(&place).len() == before.len() {
-            assert!(
-                start.elapsed() < Duration::from_secs(60),
-                "nothing is written"
-            );
+            assert!(start.elapsed() < Duration::from_secs(60), "nothing is written");
             std::thread::sleep(Duration::from_millis(5));
         }
         let id = child.id().to_string();
-        assert!(
-            std::process::Command::new("kill")
-                .args([signal, &id])
-                .status()
-                .unwrap()
-                .success()
-        );
+        assert!(std::process::Command::new("kill").args([signal, &id]).status().unwrap().success());
         assert_eq!(child.wait().unwrap().code(), Some(130), "{signal}");
         assert!(entries(&place) == before, "{signal}");
     }
 }
 
-/// An argument that is a path of this machine takes no URI, and an output no extension of another format: nothing is written.
+/// An argument that is a path of this machine takes no URI, and an output no extension of another
+/// format: nothing is written.
 #[test]
 fn no_output_is_another_place_or_format_than_its_name_says() {
     let place = place();
@@ -281,34 +178,10 @@ fn no_output_is_another_place_or_format_than_its_name_says() {
         &["man", "gs://bucket/key"],
         &["tradeoff", "vinyl.csv", "-o", "s3://bucket/t.html"],
         &["study", "export", "s3://bucket/answers", "-o", "a.csv"],
-        &[
-            "study",
-            "run",
-            "s.toml",
-            "--participant",
-            "P01",
-            "-o",
-            "az://container/answers",
-        ],
+        &["study", "run", "s.toml", "--participant", "P01", "-o", "az://container/answers"],
         &["study", "plan", "https://example.org/study.toml"],
-        &[
-            "plugin",
-            "new",
-            "felt",
-            "--lang",
-            "rust",
-            "--dir",
-            "s3://bucket/key",
-        ],
-        &[
-            "record",
-            "--source",
-            "file:vinyl.csv",
-            "--take",
-            "x",
-            "-o",
-            "ftp://host/d",
-        ],
+        &["plugin", "new", "felt", "--lang", "rust", "--dir", "s3://bucket/key"],
+        &["record", "--source", "file:vinyl.csv", "--take", "x", "-o", "ftp://host/d"],
     ];
     for arguments in uris {
         let run = place.run(arguments);
@@ -320,22 +193,10 @@ fn no_output_is_another_place_or_format_than_its_name_says() {
     }
     let formats: [(&[&str], &str); 8] = [
         (&["tradeoff", "vinyl.csv", "-o", "t.json"], "ends in .html"),
-        (
-            &["study", "export", "answers", "-o", "a.parquet"],
-            "ends in .csv",
-        ),
-        (
-            &["study", "export", "answers", "-o", "a.jsonl"],
-            "ends in .csv",
-        ),
-        (
-            &["study", "plan", "s.toml", "-o", "plan.csv"],
-            "ends in .json",
-        ),
-        (
-            &["simulate", "--surface", "vinyl", "-o", "v.json"],
-            "ends in .csv",
-        ),
+        (&["study", "export", "answers", "-o", "a.parquet"], "ends in .csv"),
+        (&["study", "export", "answers", "-o", "a.jsonl"], "ends in .csv"),
+        (&["study", "plan", "s.toml", "-o", "plan.csv"], "ends in .json"),
+        (&["simulate", "--surface", "vinyl", "-o", "v.json"], "ends in .csv"),
         (&["synth", "cloth.htex", "-o", "v.FLAC"], "ends in .wav"),
         (&["fit", "vinyl.csv", "-o", "v.htexlib"], "ends in .htex"),
         (&["lib", "pack", "v.htex", "cloth.htex"], "ends in .htexlib"),
@@ -355,7 +216,8 @@ fn no_output_is_another_place_or_format_than_its_name_says() {
     assert_eq!(run.code(), 0, "{}", run.error());
 }
 
-/// A relative folder in a variable of htex is an error; one in a variable of all programs is ignored, and said.
+/// A relative folder in a variable of htex is an error; one in a variable of all programs is
+/// ignored, and said.
 #[test]
 fn a_relative_folder_of_the_environment_is_not_ignored_in_silence() {
     let place = place();
@@ -383,18 +245,11 @@ fn devices_stay_devices_and_a_closed_standard_error_is_no_panic() {
     let place = place();
     let run = place.run(&["fit", "vinyl.csv", "--model", "sslope", "-o", "/dev/null"]);
     assert_eq!(run.code(), 0, "{}", run.error());
-    assert!(
-        std::fs::metadata("/dev/null")
-            .unwrap()
-            .file_type()
-            .is_char_device()
-    );
+    assert!(std::fs::metadata("/dev/null").unwrap().file_type().is_char_device());
     let htex = env!("CARGO_BIN_EXE_htex");
-    for (words, code) in [
-        ("fit vinyl.csv -o x.htex", 0),
-        ("info nothing.htex", 1),
-        ("validate vinyl.csv", 0),
-    ] {
+    for (words, code) in
+        [("fit vinyl.csv -o x.htex", 0), ("info nothing.htex", 1), ("validate vinyl.csv", 0)]
+    {
         let shell = format!("'{htex}' {words} 2>&-");
         let done = std::process::Command::new("sh")
             .args(["-c", &shell])
@@ -414,9 +269,7 @@ fn names_that_are_no_unicode_are_kept() {
     use std::os::unix::ffi::OsStrExt;
     let place = place();
     let named = |ending: &str| -> OsString {
-        [OsStr::from_bytes(b"caf\xe9"), OsStr::new(ending)]
-            .into_iter()
-            .collect()
+        [OsStr::from_bytes(b"caf\xe9"), OsStr::new(ending)].into_iter().collect()
     };
     let before = std::fs::read_dir(place.path(".")).unwrap().count();
     std::fs::copy(place.path("vinyl.csv"), place.path(".").join(named(".csv"))).unwrap();
@@ -441,10 +294,7 @@ fn names_that_are_no_unicode_are_kept() {
         let run = run.output().unwrap();
         let error = String::from_utf8_lossy(&run.stderr);
         assert_eq!(run.status.code(), Some(0), "{command}: {error}");
-        assert!(
-            output.is_empty() || place.path(".").join(&output).is_file(),
-            "{command}"
-        );
+        assert!(output.is_empty() || place.path(".").join(&output).is_file(), "{command}");
     }
     // The four, the scene, and the licence beside what has no place for it.
     let after = std::fs::read_dir(place.path(".")).unwrap().count();

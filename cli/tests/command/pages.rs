@@ -1,4 +1,5 @@
-//! What the pages say of the command is so: each line of it parses, and links lead to files and headings.
+//! What the pages say of the command is so: each line of it parses, and links lead to files and
+//! headings.
 
 use std::path::{Path, PathBuf};
 
@@ -33,9 +34,7 @@ fn pages() -> Vec<PathBuf> {
 fn script(language: &str, text: &str) -> String {
     match language {
         "console" => {
-            let lines = text
-                .lines()
-                .map(|line| line.strip_prefix("$ ").unwrap_or(line));
+            let lines = text.lines().map(|line| line.strip_prefix("$ ").unwrap_or(line));
             lines.map(|line| format!("{line}\n")).collect()
         }
         _ => text.to_owned(),
@@ -56,11 +55,7 @@ fn the_lines_of_the_command_on_pages_parse() {
                 }
                 seen += 1;
                 if let Err(error) = htex_cli::check_usage(words.iter().map(Into::into)) {
-                    wrong.push(format!(
-                        "{shown}:{}: {}: {error}",
-                        block.line,
-                        words.join(" ")
-                    ));
+                    wrong.push(format!("{shown}:{}: {}: {error}", block.line, words.join(" ")));
                 }
             }
         }
@@ -86,10 +81,8 @@ fn links_lead_to_files_and_headings() {
         let text = std::fs::read_to_string(&page).unwrap();
         for link in links(&text).into_iter().map(|range| &text[range]) {
             if !is_address(link) && !leads(&page, link) {
-                wrong.push(format!(
-                    "{}: {link}",
-                    page.strip_prefix(workspace()).unwrap().display()
-                ));
+                wrong
+                    .push(format!("{}: {link}", page.strip_prefix(workspace()).unwrap().display()));
             }
         }
     }
@@ -106,18 +99,14 @@ fn leads(page: &Path, link: &str) -> bool {
     if heading.is_empty() || !file.is_file() || file.extension() != Some("md".as_ref()) {
         return file.exists();
     }
-    anchors(&std::fs::read_to_string(file).unwrap())
-        .iter()
-        .any(|anchor| anchor == heading)
+    anchors(&std::fs::read_to_string(file).unwrap()).iter().any(|anchor| anchor == heading)
 }
 
 /// The blocks of a language on a page.
 fn texts(page: &str, language: &str) -> Vec<String> {
     let page = std::fs::read_to_string(workspace().join(page)).unwrap();
     let all = blocks(&page).into_iter();
-    all.filter(|block| block.language == language)
-        .map(|block| block.text)
-        .collect()
+    all.filter(|block| block.language == language).map(|block| block.text).collect()
 }
 
 /// Each block is a recipe, or goes into one.
@@ -145,14 +134,9 @@ fn recipes_on_pages_are_read() {
 #[test]
 fn studies_on_pages_are_read() {
     let studies = texts("docs/studies.md", "toml");
-    let [short, more] = &studies[..] else {
-        panic!("{studies:?}")
-    };
+    let [short, more] = &studies[..] else { panic!("{studies:?}") };
     let (keys, textures) = short.split_once("[[textures]]").unwrap();
-    for study in [
-        short.clone(),
-        format!("{keys}{more}\n[[textures]]{textures}"),
-    ] {
+    for study in [short.clone(), format!("{keys}{more}\n[[textures]]{textures}")] {
         let mut findings = htex_finding::Findings::default();
         let read = htex_lab::study::read_study(study.as_bytes(), &mut findings);
         assert!(read.is_some(), "{study}\n{findings:?}");

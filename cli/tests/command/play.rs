@@ -11,16 +11,7 @@ fn a_minute_of_each_model_has_its_spectrum_and_its_level() {
     let fit = ["fit", &csv, "--model", &models.join(","), "-o", "t.htex"];
     let fit = place.json(&[&fit[..], &["--json"]].concat());
     for (i, model) in models.into_iter().enumerate() {
-        let synth = [
-            "synth",
-            "t.htex",
-            "--model",
-            model,
-            "--seconds",
-            "60",
-            "--rate",
-            "20000",
-        ];
+        let synth = ["synth", "t.htex", "--model", model, "--seconds", "60", "--rate", "20000"];
         let run = place.run(&[&synth[..], &["--seed", "9", "-o", "t.wav"]].concat());
         assert_eq!(run.code(), 0, "{}", run.error());
         let mut wav = hound::WavReader::open(place.path("t.wav")).unwrap();
@@ -30,29 +21,17 @@ fn a_minute_of_each_model_has_its_spectrum_and_its_level() {
         let level = fit["representations"][i]["level_rms"].as_f64().unwrap();
 
         let stated = place.json(&["spectrum", "t.htex", "--model", model, "--json"]);
-        let process = [
-            "process",
-            "t.wav",
-            "--segments",
-            "windows",
-            "--averaging",
-            "rms",
-        ];
+        let process = ["process", "t.wav", "--segments", "windows", "--averaging", "rms"];
         let measured = place.json(&[&process[..], &["--scale", "1", "--json"]].concat());
-        let (stated, measured) = (
-            numbers(&stated["magnitude"]),
-            numbers(&measured["magnitude"]),
-        );
-        // In the band's bins; in all it may be more at the band's edges, and lines are in all what they are.
+        let (stated, measured) = (numbers(&stated["magnitude"]), numbers(&measured["magnitude"]));
+        // In the band's bins; in all it may be more at the band's edges, and lines are in all what
+        // they are.
         let read = (measured.iter().map(|m| m * m).sum::<f64>() / 3.0).sqrt() / level;
         let in_all = power.sqrt() / level;
         let ratio = if model == "speak" { in_all } else { read };
         let distance = if model == "speak" {
             let lines = &fit["representations"][i]["parameters"]["frequency_hz"];
-            let bins = numbers(lines)
-                .iter()
-                .map(|f| (f / 5.0) as usize - 4)
-                .collect();
+            let bins = numbers(lines).iter().map(|f| (f / 5.0) as usize - 4).collect();
             distance_db(&stated, &measured, bins)
         } else {
             let bins = strongest_bins(&stated);
@@ -64,10 +43,7 @@ fn a_minute_of_each_model_has_its_spectrum_and_its_level() {
         let tolerance = if model == "arma" { 0.03 } else { 0.02 };
         let allowed = 1.0 - tolerance..1.1;
         assert!(allowed.contains(&in_all), "{model}: {in_all}");
-        assert!(
-            (ratio - 1.0).abs() < tolerance,
-            "{model}: RMS over level {ratio}"
-        );
+        assert!((ratio - 1.0).abs() < tolerance, "{model}: RMS over level {ratio}");
         assert!(distance < 1.0, "{model}: {distance} dB");
     }
 }
@@ -86,8 +62,8 @@ fn strongest_bins(magnitude: &[f64]) -> Vec<usize> {
     bins
 }
 
-/// What noise of this density reads through the window: two thirds of the power in its own bin, a sixth in each
-/// neighbour. At steep flanks that differs from the magnitude.
+/// What noise of this density reads through the window: two thirds of the power in its own bin, a
+/// sixth in each neighbour. At steep flanks that differs from the magnitude.
 fn read_as_noise(magnitude: &[f64]) -> Vec<f64> {
     let power = |i: usize| magnitude.get(i).map_or(0.0, |m| m * m);
     let read = |i: usize| (power(i.wrapping_sub(1)) + 4.0 * power(i) + power(i + 1)) / 6.0;
@@ -95,9 +71,7 @@ fn read_as_noise(magnitude: &[f64]) -> Vec<f64> {
 }
 
 fn distance_db(stated: &[f64], measured: &[f64], bins: Vec<usize>) -> f64 {
-    let squares = bins
-        .iter()
-        .map(|&i| (20.0 * (measured[i] / stated[i]).log10()).powi(2));
+    let squares = bins.iter().map(|&i| (20.0 * (measured[i] / stated[i]).log10()).powi(2));
     (squares.sum::<f64>() / bins.len() as f64).sqrt()
 }
 
@@ -106,19 +80,9 @@ fn the_demo_goes_the_whole_way() {
     let place = Place::new();
     let run = place.run(&["demo", "out"]);
     assert_eq!(run.code(), 0, "{}", run.error());
-    let rows = run
-        .text()
-        .lines()
-        .filter(|line| line.split_whitespace().count() == 13)
-        .count();
+    let rows = run.text().lines().filter(|line| line.split_whitespace().count() == 13).count();
     assert_eq!(rows, 31, "a header and 30 rows:\n{}", run.text());
-    let surfaces = [
-        "sandpaper",
-        "fine-fabric",
-        "coarse-fabric",
-        "corrugated-paper",
-        "vinyl",
-    ];
+    let surfaces = ["sandpaper", "fine-fabric", "coarse-fabric", "corrugated-paper", "vinyl"];
     let files = surfaces.map(|surface| format!("out/{surface}.htex"));
     let mut validate = vec!["validate", "--json"];
     validate.extend(files.iter().map(String::as_str));

@@ -5,19 +5,11 @@ use std::process::{Command, Output};
 
 fn htex(arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_htex"));
-    command
-        .args(arguments)
-        .env_remove("HTEX_PLUGIN_PATH")
-        .output()
-        .unwrap()
+    command.args(arguments).env_remove("HTEX_PLUGIN_PATH").output().unwrap()
 }
 
 fn text(output: &Output) -> String {
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
@@ -25,15 +17,7 @@ fn text(output: &Output) -> String {
 fn resonance(folder: &Path) -> String {
     let dir = folder.join("resonance");
     let dir = dir.to_str().unwrap();
-    text(&htex(&[
-        "plugin",
-        "new",
-        "resonance",
-        "--lang",
-        "c",
-        "--dir",
-        dir,
-    ]));
+    text(&htex(&["plugin", "new", "resonance", "--lang", "c", "--dir", dir]));
     let built = Command::new("sh").arg(format!("{dir}/build.sh")).status();
     assert!(built.unwrap().success());
     format!("{dir}/resonance{}", std::env::consts::DLL_SUFFIX)
@@ -55,14 +39,7 @@ fn a_plugin_is_fitted_shown_and_played() {
     std::fs::write(&recording, csv).unwrap();
 
     let with = |arguments: &[&str]| htex(&[arguments, &["--plugin", &plugin]].concat());
-    text(&with(&[
-        "fit",
-        &recording,
-        "-o",
-        &asset,
-        "--model",
-        "resonance",
-    ]));
+    text(&with(&["fit", &recording, "-o", &asset, "--model", "resonance"]));
     let spectrum = text(&with(&["spectrum", &asset]));
     assert_eq!(spectrum.lines().count(), 198);
     text(&with(&["synth", &asset, "-o", &wav, "--seconds", "0.5"]));

@@ -11,9 +11,7 @@ fn is_tame(what: &str, bytes: &[u8]) {
     let steers = |c: &char| (c.is_control() && *c != '\n') || ('\u{200b}'..='\u{206f}').contains(c);
     assert_eq!(text.chars().find(steers), None, "{what}: {text:?}");
     let forged = ["brings along forged", "htex: all is well"];
-    let found = text
-        .lines()
-        .find(|line| forged.iter().any(|f| line.starts_with(f)));
+    let found = text.lines().find(|line| forged.iter().any(|f| line.starts_with(f)));
     assert_eq!(found, None, "{what}: {text}");
 }
 
@@ -54,42 +52,16 @@ fn text_of_files_is_printed_as_text() {
     let runs: Vec<Vec<&str>> = vec![
         vec!["info", "evil.htex"],
         vec!["info", &name],
-        vec![
-            "validate",
-            "evil.htex",
-            &name,
-            "evil.scene.json",
-            "evil.csv",
-        ],
+        vec!["validate", "evil.htex", &name, "evil.scene.json", "evil.csv"],
         vec!["spectrum", "evil.htex", "--model", EVIL],
         vec!["spectrum", &name, "--speed", "10"],
-        vec![
-            "synth",
-            "evil.htex",
-            "--seconds",
-            "0.1",
-            "-o",
-            "x.wav",
-            "--speed",
-            "10",
-        ],
+        vec!["synth", "evil.htex", "--seconds", "0.1", "-o", "x.wav", "--speed", "10"],
         vec!["compare", &csv, "evil.htex"],
-        vec![
-            "play",
-            "evil.htex",
-            "--device",
-            "file",
-            "--set",
-            "path=y.wav",
-            "--seconds",
-            "0.1",
-        ],
+        vec!["play", "evil.htex", "--device", "file", "--set", "path=y.wav", "--seconds", "0.1"],
         vec!["play", "evil.htex", "--device", EVIL],
         vec!["plan", "evil.scene.json"],
         vec!["fit", "evil.csv", "-o", "z.htex"],
-        vec![
-            "fit", &csv, "--name", EVIL, "--author", EVIL, "-o", "z.htex", "--model", "sslope",
-        ],
+        vec!["fit", &csv, "--name", EVIL, "--author", EVIL, "-o", "z.htex", "--model", "sslope"],
         vec!["process", "evil.csv"],
         vec!["explain", EVIL],
     ];

@@ -1,4 +1,5 @@
-//! The settings of the command as keywords of the Python package: types and descriptions are those of the flags.
+//! The settings of the command as keywords of the Python package: types and descriptions are those
+//! of the flags.
 
 use std::any::TypeId;
 use std::path::PathBuf;
@@ -22,19 +23,14 @@ fn generated_settings_of_python_are_fresh() {
         class::<Metadata>("Metadata", "What a texture is, who made it, and how it was recorded.", &[]),
         class::<ResponseSettings>("ResponseSettings", "How a response is measured.", &[]),
     ];
-    file(
-        "sdk/python/python/htex/_settings.py",
-        module.join("\n\n").as_bytes(),
-    );
+    file("sdk/python/python/htex/_settings.py", module.join("\n\n").as_bytes());
 }
 
 /// A class of keywords, without those that the package defines by itself.
 fn class<T: Args>(name: &str, about: &str, own: &[&str]) -> String {
     let command = T::augment_args(Command::new("settings"));
     let flags: Vec<&Arg> = command.get_arguments().collect();
-    let shared = flags
-        .iter()
-        .filter(|flag| !own.contains(&flag.get_id().as_str()));
+    let shared = flags.iter().filter(|flag| !own.contains(&flag.get_id().as_str()));
     let fields = shared.map(|flag| {
         let (id, kind) = (flag.get_id(), python_type(flag));
         let text = description(flag, &flags);
@@ -50,9 +46,8 @@ fn python_type(flag: &Arg) -> String {
     let one = if matches!(flag.get_action(), ArgAction::SetTrue) {
         "bool".to_owned()
     } else if !choices.is_empty() {
-        let names = choices
-            .iter()
-            .map(|choice| format!("\"{}\"", choice.get_name().replace('-', "_")));
+        let names =
+            choices.iter().map(|choice| format!("\"{}\"", choice.get_name().replace('-', "_")));
         format!("Literal[{}]", names.collect::<Vec<_>>().join(", "))
     } else if kind == TypeId::of::<f64>() {
         "float".to_owned()
@@ -63,10 +58,7 @@ fn python_type(flag: &Arg) -> String {
     } else if kind == TypeId::of::<PathBuf>() {
         "str | os.PathLike[str]".to_owned()
     } else {
-        assert!(
-            kind == TypeId::of::<String>(),
-            "{flag}: a type without a counterpart"
-        );
+        assert!(kind == TypeId::of::<String>(), "{flag}: a type without a counterpart");
         "str".to_owned()
     };
     match flag.get_action() {
@@ -83,9 +75,8 @@ fn description(flag: &Arg, flags: &[&Arg]) -> String {
         text = text.replace(&long, &format!("`{}`", other.get_id()));
     }
     let defaults = flag.get_default_values().iter();
-    let defaults: Vec<_> = defaults
-        .map(|value| value.to_string_lossy().replace('-', "_"))
-        .collect();
+    let defaults: Vec<_> =
+        defaults.map(|value| value.to_string_lossy().replace('-', "_")).collect();
     if !defaults.is_empty() && !matches!(flag.get_action(), ArgAction::SetTrue) {
         text += &format!(" [default: {}]", defaults.join(", "));
     }

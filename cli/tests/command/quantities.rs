@@ -5,7 +5,8 @@ use crate::common::{Place, numbers};
 const RATE_HZ: usize = 5_000;
 const G_M_S2: f64 = 9.806_65;
 
-/// Four seconds of a tool tip in g: tones of 0.3 and 0.4 g at 100 Hz on two axes, gravity on the third.
+/// Four seconds of a tool tip in g: tones of 0.3 and 0.4 g at 100 Hz on two axes, gravity on the
+/// third.
 fn tool_csv() -> String {
     let row = |n: usize| {
         let t = n as f64 / RATE_HZ as f64;
@@ -37,10 +38,7 @@ fn an_acceleration_keeps_its_unit_from_the_recording_to_the_device() {
     place.write("tool.csv", tool_csv());
     let refused = place.run(&["process", "tool.csv"]);
     assert_ne!(refused.code(), 0);
-    for words in [
-        "choose the quantity acceleration",
-        "(see --map, --quantity)",
-    ] {
+    for words in ["choose the quantity acceleration", "(see --map, --quantity)"] {
         assert!(refused.error().contains(words), "{}", refused.error());
     }
 
@@ -53,85 +51,33 @@ fn an_acceleration_keeps_its_unit_from_the_recording_to_the_device() {
     );
     // Axes are folded into one; gravity is no texture.
     let at_100_hz = numbers(&spectrum["magnitude"])[16];
-    assert!(
-        (at_100_hz / (0.5 * G_M_S2) - 1.0).abs() < 0.02,
-        "{at_100_hz}"
-    );
+    assert!((at_100_hz / (0.5 * G_M_S2) - 1.0).abs() < 0.02, "{at_100_hz}");
     let csv = place.run(&[&["process", "tool.csv"][..], &quantity].concat());
-    assert!(
-        csv.text().starts_with("frequency_hz,magnitude_m_s2\n"),
-        "{}",
-        csv.text()
-    );
+    assert!(csv.text().starts_with("frequency_hz,magnitude_m_s2\n"), "{}", csv.text());
 
-    let fit = [
-        "fit",
-        "tool.csv",
-        "--at",
-        "speed=100,force=1",
-        "-o",
-        "tool.htex",
-        "--json",
-    ];
+    let fit = ["fit", "tool.csv", "--at", "speed=100,force=1", "-o", "tool.htex", "--json"];
     let fitted = place.json(&[&fit[..], &quantity, &["--model", "speak"]].concat());
     let level = fitted["representations"][0]["level_rms"].as_f64().unwrap();
     let info = place.run(&["info", "tool.htex"]);
-    assert!(
-        info.text().contains("acceleration in m/s2, 20 to 1000 Hz"),
-        "{}",
-        info.text()
-    );
-    assert!(
-        info.text().contains(&format!("{level:.3} m/s2")),
-        "{}",
-        info.text()
-    );
+    assert!(info.text().contains("acceleration in m/s2, 20 to 1000 Hz"), "{}", info.text());
+    assert!(info.text().contains(&format!("{level:.3} m/s2")), "{}", info.text());
     let spectrum = place.run(&["spectrum", "tool.htex"]);
     assert!(spectrum.text().starts_with("frequency_hz,magnitude_m_s2\n"));
-    let compare = place.run(&[
-        "compare",
-        "tool.csv",
-        "tool.htex",
-        "--map",
-        "lateral=ax_g:1",
-    ]);
-    assert!(
-        compare.error().contains("--quantity acceleration"),
-        "{}",
-        compare.error()
-    );
+    let compare = place.run(&["compare", "tool.csv", "tool.htex", "--map", "lateral=ax_g:1"]);
+    assert!(compare.error().contains("--quantity acceleration"), "{}", compare.error());
 
     let play = |more: &[&str]| {
         let played = ["play", "tool.htex", "--seconds", "4"];
-        place.run(
-            &[
-                &played[..],
-                &["--device", "file", "--set", "path=out.csv"],
-                more,
-            ]
-            .concat(),
-        )
+        place.run(&[&played[..], &["--device", "file", "--set", "path=out.csv"], more].concat())
     };
     let refused = play(&[]);
     assert_eq!(refused.code(), 1);
-    assert!(
-        refused.error().contains("quantity=acceleration"),
-        "{}",
-        refused.error()
-    );
+    assert!(refused.error().contains("quantity=acceleration"), "{}", refused.error());
     assert!(!place.path("out.csv").exists());
     for (more, column, factor) in [
-        (
-            &["--set", "quantity=acceleration"][..],
-            "acceleration_m_s2",
-            1.0,
-        ),
+        (&["--set", "quantity=acceleration"][..], "acceleration_m_s2", 1.0),
         (&["--quantity-gain", "0.25"], "lateral_force_n", 0.25),
-        (
-            &["--quantity-gain", "2", "--set", "quantity=displacement"],
-            "displacement_m",
-            2.0,
-        ),
+        (&["--quantity-gain", "2", "--set", "quantity=displacement"], "displacement_m", 2.0),
     ] {
         let played = play(more);
         assert_eq!(played.code(), 0, "{}", played.error());
@@ -141,11 +87,7 @@ fn an_acceleration_keeps_its_unit_from_the_recording_to_the_device() {
         assert!((ratio - 1.0).abs() < 0.03, "{column}: {ratio}");
     }
     let twice = play(&["--quantity-gain", "1", "--set", "quantity=acceleration"]);
-    assert!(
-        twice.error().contains("DEVICE_QUANTITY"),
-        "{}",
-        twice.error()
-    );
+    assert!(twice.error().contains("DEVICE_QUANTITY"), "{}", twice.error());
 }
 
 /// Units in names, scales on the command line, and every quantity.
@@ -162,8 +104,7 @@ fn every_quantity_is_read_in_its_unit() {
         sample_format: hound::SampleFormat::Float,
     };
     let mut wav = hound::WavWriter::create(place.path("tone.wav"), spec).unwrap();
-    rows.iter()
-        .for_each(|x| wav.write_sample(*x as f32).unwrap());
+    rows.iter().for_each(|x| wav.write_sample(*x as f32).unwrap());
     wav.finalize().unwrap();
     for (quantity, header, unit, amplitude) in [
         ("normal-force", "fz_mn", "N", 1e-3),
@@ -181,10 +122,7 @@ fn every_quantity_is_read_in_its_unit() {
             let spectrum = place.json(&[&process[..], &source].concat());
             assert_eq!(spectrum["unit"], unit);
             let read = numbers(&spectrum["magnitude"])[36];
-            assert!(
-                (read / amplitude - 1.0).abs() < 1e-3,
-                "{quantity} of {source:?}: {read}"
-            );
+            assert!((read / amplitude - 1.0).abs() < 1e-3, "{quantity} of {source:?}: {read}");
         }
     }
 }

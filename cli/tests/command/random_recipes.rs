@@ -1,4 +1,5 @@
-//! Random recipes and tables in a folder with traps: links, pipes, devices, servers of this machine.
+//! Random recipes and tables in a folder with traps: links, pipes, devices, servers of this
+//! machine.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -62,24 +63,11 @@ impl Traps {
         }
         for (surface, file) in [("vinyl", "a"), ("sandpaper", "b")] {
             let file = format!("work/rec/{file}.csv");
-            let simulate = [
-                "simulate",
-                "--surface",
-                surface,
-                "--seconds",
-                "1",
-                "-o",
-                &file,
-            ];
+            let simulate = ["simulate", "--surface", surface, "--seconds", "1", "-o", &file];
             assert_eq!(place.run(&simulate).code(), 0);
         }
         fs::copy(place.path("work/rec/a.csv"), place.path("outside/a.csv")).unwrap();
-        for victim in [
-            "victim",
-            "victim.part",
-            "folder/victim.htex",
-            "folder/victim.part",
-        ] {
+        for victim in ["victim", "victim.part", "folder/victim.htex", "folder/victim.part"] {
             fs::write(place.path("outside").join(victim), "precious").unwrap();
         }
         let traps = place.path("work/traps");
@@ -95,9 +83,7 @@ impl Traps {
             symlink(to, traps.join(link)).unwrap();
         }
         for pipe in ["pipe", "pipe.csv", "pipe.toml", "pipe.wasm"] {
-            let made = std::process::Command::new("mkfifo")
-                .arg(traps.join(pipe))
-                .status();
+            let made = std::process::Command::new("mkfifo").arg(traps.join(pipe)).status();
             assert!(made.unwrap().success());
         }
         // A terabyte of nothing.
@@ -125,19 +111,10 @@ impl Traps {
             });
         }
         addresses.extend(
-            [
-                "http://169.254.169.254",
-                "http://10.0.0.1",
-                "http://0",
-                "http://2130706433",
-            ]
-            .map(str::to_owned),
+            ["http://169.254.169.254", "http://10.0.0.1", "http://0", "http://2130706433"]
+                .map(str::to_owned),
         );
-        Self {
-            place,
-            addresses,
-            requests,
-        }
+        Self { place, addresses, requests }
     }
 
     fn path(&self, random: &mut Random) -> String {
@@ -147,10 +124,7 @@ impl Traps {
         }
         if random.one_in(6) {
             let address = &self.addresses[random.below(self.addresses.len())];
-            return format!(
-                "{address}/{}",
-                random.of(&["a.csv", "m.so", "t.csv?x=1", ""])
-            );
+            return format!("{address}/{}", random.of(&["a.csv", "m.so", "t.csv?x=1", ""]));
         }
         random
             .of(&[
@@ -197,13 +171,7 @@ impl Traps {
             4.. => random.of(&["rec/*.csv", "rec/a.csv"]).to_owned(),
             0 => self.path(random),
             1 => random
-                .of(&[
-                    "rec/*.csv",
-                    "**/*.csv",
-                    "rec/{a,b}.csv",
-                    "../outside/*.csv",
-                    "traps/*",
-                ])
+                .of(&["rec/*.csv", "**/*.csv", "rec/{a,b}.csv", "../outside/*.csv", "traps/*"])
                 .to_owned(),
             2 => random
                 .of(&[
@@ -291,12 +259,7 @@ impl Traps {
                 ("description", "{a}".repeat(random.below(2000))),
                 ("tags", Self::name(random).to_owned()),
                 ("grid", random.of(&["auto", "speed=1", "speed="]).to_owned()),
-                (
-                    "map",
-                    random
-                        .of(&["lateral=#2", "lateral=((((", "lateral=a+b"])
-                        .to_owned(),
-                ),
+                ("map", random.of(&["lateral=#2", "lateral=((((", "lateral=a+b"]).to_owned()),
             ];
             for (key, value) in optional {
                 if random.one_in(12) {
@@ -448,14 +411,9 @@ fn build(traps: &Traps, arguments: &[&str]) -> (crate::common::measured::End, Du
         .env("HTEX_STORAGE_TIMEOUT_S", "5")
         .env("HTEX_CONFIG_DIR", traps.place.path("config"))
         .env("HTEX_CACHE_DIR", traps.place.path("cache"));
-    for proxy in [
-        "HTTP_PROXY",
-        "HTTPS_PROXY",
-        "ALL_PROXY",
-        "http_proxy",
-        "https_proxy",
-        "all_proxy",
-    ] {
+    for proxy in
+        ["HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY", "http_proxy", "https_proxy", "all_proxy"]
+    {
         command.env_remove(proxy);
     }
     let start = Instant::now();
@@ -505,12 +463,7 @@ fn any_recipe_stays_in_its_folder() {
         assert!((0..=3).contains(&end.code), "{}: {}", end.code, shown());
         assert!(!end.error.contains("panicked"), "{}", shown());
         assert!(took < LONGEST, "{took:?}: {}", shown());
-        assert!(
-            end.memory_kib < MOST_KIB,
-            "{} KiB: {}",
-            end.memory_kib,
-            shown()
-        );
+        assert!(end.memory_kib < MOST_KIB, "{} KiB: {}", end.memory_kib, shown());
         let after = traps.untouched();
         let differs = |path: &&PathBuf| before.get(*path) != after.get(*path);
         let all = before.keys().chain(after.keys());

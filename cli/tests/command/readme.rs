@@ -1,5 +1,5 @@
-//! The README is true: its table and picture are the demonstration's, and its test command is the one that continuous
-//! integration runs.
+//! The README is true: its table and picture are the demonstration's, and its test command is the
+//! one that continuous integration runs.
 
 use std::path::{Path, PathBuf};
 
@@ -17,9 +17,7 @@ fn text(file: &str) -> String {
 fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     let begin = format!("```{language}\n");
     let blocks = page.split(&begin).skip(1);
-    blocks
-        .map(|rest| rest.split("```").next().unwrap())
-        .collect()
+    blocks.map(|rest| rest.split("```").next().unwrap()).collect()
 }
 
 #[test]
@@ -28,15 +26,10 @@ fn the_table_and_the_picture_are_the_demonstrations() {
     let run = place.run(&["demo", "out"]);
     assert_eq!(run.code(), 0, "{}", run.error());
     let readme = text("README.md");
-    let [table] = blocks(&readme, "text")[..] else {
-        unreachable!("the README has one table")
-    };
+    let [table] = blocks(&readme, "text")[..] else { unreachable!("the README has one table") };
     let printed = run.text();
     for line in table.lines() {
-        assert!(
-            printed.lines().any(|p| p == line),
-            "README.md: {line}\n{printed}"
-        );
+        assert!(printed.lines().any(|p| p == line), "README.md: {line}\n{printed}");
     }
     // The header, and two models of five surfaces.
     assert_eq!(table.lines().count(), 11);
@@ -52,8 +45,5 @@ fn continuous_integration_runs_the_test_command() {
     let readme = text("README.md");
     let tests = readme.split("## Tests").nth(1).unwrap();
     let command = blocks(tests, "sh")[0];
-    assert!(
-        text(".ci/run").ends_with(&format!("\n{command}")),
-        "{command}"
-    );
+    assert!(text(".ci/run").ends_with(&format!("\n{command}")), "{command}");
 }

@@ -10,9 +10,7 @@ fn friction(rate_hz: f64, seconds: f64) -> Vec<f64> {
     (0..(rate_hz * seconds) as usize)
         .map(|n| {
             let t = n as f64 / rate_hz;
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             let noise = (state >> 40) as f64 / (1u64 << 24) as f64 - 0.5;
             let stroke = (std::f64::consts::TAU * 0.4 * t).sin();
             let texture = 0.02 * (std::f64::consts::TAU * 110.0 * t).sin() + 0.02 * noise;
@@ -23,9 +21,7 @@ fn friction(rate_hz: f64, seconds: f64) -> Vec<f64> {
 
 fn strongest_hz(spectrum: &serde_json::Value) -> f64 {
     let magnitude = numbers(&spectrum["magnitude"]);
-    let top = (0..magnitude.len())
-        .max_by(|&a, &b| magnitude[a].total_cmp(&magnitude[b]))
-        .unwrap();
+    let top = (0..magnitude.len()).max_by(|&a, &b| magnitude[a].total_cmp(&magnitude[b])).unwrap();
     spectrum["frequency_hz"][top].as_f64().unwrap()
 }
 
@@ -42,38 +38,15 @@ fn bare_finger_csv_in_volts_at_10_khz() {
     assert_eq!(run.code(), 1);
     assert!(run.error().contains("--map"), "{}", run.error());
     let map = "lateral=lateral_V:0.4444,normal=normal_V:0.31";
-    let process = place.json(&[
-        "process",
-        "finger.csv",
-        "--rate",
-        "10000",
-        "--map",
-        map,
-        "--json",
-    ]);
+    let process = place.json(&["process", "finger.csv", "--rate", "10000", "--map", map, "--json"]);
     assert_eq!(process["rate_hz"], 10_000.0);
     assert!((process["force_n"].as_f64().unwrap() - 0.4).abs() < 1e-4);
     assert_eq!(strongest_hz(&process), 110.0);
     let magnitude = numbers(&process["magnitude"]);
     assert!((magnitude[18] - 0.02).abs() < 0.005, "{}", magnitude[18]);
-    let arguments = [
-        "fit",
-        "finger.csv",
-        "--rate",
-        "10000",
-        "--map",
-        map,
-        "-o",
-        "finger.htex",
-        "--json",
-    ];
-    assert_eq!(
-        place.json(&arguments)["representations"]
-            .as_array()
-            .unwrap()
-            .len(),
-        6
-    );
+    let arguments =
+        ["fit", "finger.csv", "--rate", "10000", "--map", map, "-o", "finger.htex", "--json"];
+    assert_eq!(place.json(&arguments)["representations"].as_array().unwrap().len(), 6);
 }
 
 #[test]
@@ -84,38 +57,18 @@ fn csv_at_1_khz_with_speed_force_accel_friction() {
         writeln!(csv, "80,0.5,0.01,{f:.6}").unwrap();
     }
     place.write("tribometer.csv", csv);
-    let arguments = [
-        "fit",
-        "tribometer.csv",
-        "--rate",
-        "1000",
-        "-o",
-        "t.htex",
-        "--json",
-    ];
+    let arguments = ["fit", "tribometer.csv", "--rate", "1000", "-o", "t.htex", "--json"];
     let fit = place.json(&arguments);
     assert_eq!(fit["band_hz"][1], 500.0);
     let warnings = fit["warnings"].to_string();
-    assert!(
-        warnings.contains("500 Hz") && warnings.contains("accel"),
-        "{warnings}"
-    );
+    assert!(warnings.contains("500 Hz") && warnings.contains("accel"), "{warnings}");
     assert_eq!(fit["conditions"][0]["speed_mm_s"], 80.0);
     assert_eq!(fit["conditions"][0]["force_n"], 0.5);
     let spectrum = place.json(&["spectrum", "t.htex", "--model", "speak", "--json"]);
     assert_eq!(strongest_hz(&spectrum), 110.0);
     // Above the band there is nothing, and the asset plays at any rate all the same.
     assert_eq!(numbers(&spectrum["magnitude"])[150], 0.0);
-    let run = place.run(&[
-        "synth",
-        "t.htex",
-        "--seconds",
-        "1",
-        "--rate",
-        "48000",
-        "-o",
-        "t.wav",
-    ]);
+    let run = place.run(&["synth", "t.htex", "--seconds", "1", "--rate", "48000", "-o", "t.wav"]);
     assert_eq!(run.code(), 0, "{}", run.error());
 }
 
@@ -135,16 +88,10 @@ fn warnings_of_several_recordings_are_one() {
     arguments.extend(names);
     let run = place.run(&arguments);
     let warnings: Vec<String> = run.error().lines().map(str::to_owned).collect();
-    let of_all = warnings
-        .iter()
-        .filter(|line| line.contains("Columns not used: temperature"));
+    let of_all = warnings.iter().filter(|line| line.contains("Columns not used: temperature"));
     let of_all: Vec<&String> = of_all.collect();
     assert_eq!(of_all.len(), 1, "{warnings:?}");
-    assert!(
-        of_all[0].contains("3 recordings (a.csv, b.csv, c.csv): "),
-        "{}",
-        of_all[0]
-    );
+    assert!(of_all[0].contains("3 recordings (a.csv, b.csv, c.csv): "), "{}", of_all[0]);
 }
 
 #[test]
@@ -165,51 +112,29 @@ fn wav_at_44_100_hz() {
     let arguments = ["fit", "stroke.wav", "-o", "w.htex", "--json"];
     let fit = place.json(&[&arguments[..], &condition].concat());
     assert_eq!(fit["conditions"][0]["speed_mm_s"], 80.0);
-    let compared = place.json(&[
-        "compare",
-        "stroke.wav",
-        "w.htex",
-        "--json",
-        condition[0],
-        "2",
-    ]);
+    let compared = place.json(&["compare", "stroke.wav", "w.htex", "--json", condition[0], "2"]);
     // The default model of the asset against its own recording: what fit said.
     for i in 0..5 {
         let key = "band_error_rms_db";
-        let (a, b) = (
-            &fit["representations"][i][key],
-            &compared["representations"][i][key],
-        );
-        assert!(
-            (a.as_f64().unwrap() - b.as_f64().unwrap()).abs() < 1e-6,
-            "{i}: {a} {b}"
-        );
+        let (a, b) = (&fit["representations"][i][key], &compared["representations"][i][key]);
+        assert!((a.as_f64().unwrap() - b.as_f64().unwrap()).abs() < 1e-6, "{i}: {a} {b}");
         let felt = |of: &serde_json::Value| of["representations"][i]["felt"].clone();
-        for key in [
-            "below_difference_threshold",
-            "below_if_sensitive",
-            "within_repeatability",
-        ] {
+        for key in ["below_difference_threshold", "below_if_sensitive", "within_repeatability"] {
             assert!(felt(&fit)[key].is_boolean() && felt(&fit)[key] == felt(&compared)[key]);
         }
         let error_db = |of: &serde_json::Value| felt(of)["error_rms_db"].as_f64().unwrap();
         assert!((error_db(&fit) - error_db(&compared)).abs() < 1e-6, "{i}");
     }
-    assert_eq!(
-        strongest_hz(&place.json(&["process", "stroke.wav", "--json"])),
-        110.0
-    );
+    assert_eq!(strongest_hz(&place.json(&["process", "stroke.wav", "--json"])), 110.0);
 }
 
 /// Two strokes over one kind of surface are nearer than those over two, and a recording is itself.
 #[test]
 fn recordings_are_compared_with_each_other() {
     let place = Place::new();
-    for (file, surface, seed) in [
-        ("a.csv", "vinyl", "1"),
-        ("b.csv", "vinyl", "2"),
-        ("c.csv", "sandpaper", "1"),
-    ] {
+    for (file, surface, seed) in
+        [("a.csv", "vinyl", "1"), ("b.csv", "vinyl", "2"), ("c.csv", "sandpaper", "1")]
+    {
         let simulate = ["simulate", "--surface", surface, "--seed", seed, "-o", file];
         assert_eq!(place.run(&simulate).code(), 0);
     }
@@ -238,53 +163,24 @@ fn recordings_are_compared_with_each_other() {
 fn what_is_no_recording_is_refused_with_file_and_line() {
     let place = Place::new();
     let good = "t_s,fx_n,fz_n\n0.0000,0.1,0.4\n0.0005,0.2,0.4\n0.0010,0.1,0.4\n";
-    let slow: String = (0..400)
-        .map(|n| format!("{},{}\n", f64::from(n) / 36.0, n % 7))
-        .collect();
+    let slow: String = (0..400).map(|n| format!("{},{}\n", f64::from(n) / 36.0, n % 7)).collect();
     let cases: [(&str, Vec<u8>, &[&str]); 7] = [
         ("empty.csv", vec![], &["empty.csv"]),
-        (
-            "one-row.csv",
-            b"t_s,fx_n\n0.0,0.1\n".to_vec(),
-            &["one-row.csv"],
-        ),
-        (
-            "nan.csv",
-            good.replace("0.2", "NaN").into(),
-            &["nan.csv", "line 3", "fx_n"],
-        ),
-        (
-            "cut.csv",
-            good[..good.len() - 5].into(),
-            &["cut.csv", "line 4"],
-        ),
-        (
-            "binary.csv",
-            vec![0, 159, 146, 150, 0, 1, 2, 255],
-            &["binary.csv"],
-        ),
+        ("one-row.csv", b"t_s,fx_n\n0.0,0.1\n".to_vec(), &["one-row.csv"]),
+        ("nan.csv", good.replace("0.2", "NaN").into(), &["nan.csv", "line 3", "fx_n"]),
+        ("cut.csv", good[..good.len() - 5].into(), &["cut.csv", "line 4"]),
+        ("binary.csv", vec![0, 159, 146, 150, 0, 1, 2, 255], &["binary.csv"]),
         ("short.csv", good.into(), &["short.csv", "0.2 s"]),
-        (
-            "slow.csv",
-            format!("t_s,friction_n\n{slow}").into(),
-            &["slow.csv", "36", "20"],
-        ),
+        ("slow.csv", format!("t_s,friction_n\n{slow}").into(), &["slow.csv", "36", "20"]),
     ];
     for (name, bytes, words) in cases {
         place.write(name, bytes);
         let run = place.run(&["fit", name, "-o", "out.htex"]);
         assert_eq!(run.code(), 1, "{name}: {}", run.error());
         for word in words {
-            assert!(
-                run.error().contains(word),
-                "{name} lacks {word}: {}",
-                run.error()
-            );
+            assert!(run.error().contains(word), "{name} lacks {word}: {}", run.error());
         }
-        assert!(
-            !entries(&place.path("")).iter().any(|e| e.contains("htex")),
-            "{name}"
-        );
+        assert!(!entries(&place.path("")).iter().any(|e| e.contains("htex")), "{name}");
     }
 }
 
@@ -293,16 +189,10 @@ fn a_setup_response_is_divided_out() {
     let place = Place::new();
     let csv = place.recording("sandpaper");
     place.write("flat2.csv", "frequency_hz,magnitude\n0,2\n10000,2\n");
-    place.write(
-        "notch.csv",
-        "frequency_hz,magnitude\n0,1\n400,1\n500,0\n600,1\n10000,1\n",
-    );
+    place.write("notch.csv", "frequency_hz,magnitude\n0,1\n400,1\n500,0\n600,1\n10000,1\n");
     let magnitude = |frf: &[&str]| {
         let process = place.json(&[&["process", &csv, "--json"][..], frf].concat());
-        (
-            numbers(&process["magnitude"]),
-            process["warnings"].to_string(),
-        )
+        (numbers(&process["magnitude"]), process["warnings"].to_string())
     };
     let (plain, _) = magnitude(&[]);
     let (halved, _) = magnitude(&["--frf", "flat2.csv"]);

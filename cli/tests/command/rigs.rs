@@ -16,29 +16,15 @@ fn cards_are_listed_whether_or_not_their_driver_is_there() {
     assert_eq!(sound, cfg!(feature = "audio"));
 }
 
-/// All that a file may ask of the devices of the command, by what it may do with it; everything else is a person's. Settings of files that
-/// are written describe the file. A new setting belongs into this list, or is `never`.
+/// All that a file may ask of the devices of the command, by what it may do with it; everything
+/// else is a person's. Settings of files that are written describe the file. A new setting belongs
+/// into this list, or is `never`.
 #[test]
 fn what_a_file_may_ask_of_devices() {
-    let any = [
-        "encoding",
-        "format",
-        "full_scale",
-        "path",
-        "quantity",
-        "limit_v",
-        "carrier_hz",
-    ];
-    let mut allowed: Vec<String> = any
-        .iter()
-        .map(|name| format!("org.htex.file {name} any"))
-        .collect();
-    for setting in [
-        "limit_v less",
-        "dc_limit_v less",
-        "buffer_ms less",
-        "ramp_ms more",
-    ] {
+    let any = ["encoding", "format", "full_scale", "path", "quantity", "limit_v", "carrier_hz"];
+    let mut allowed: Vec<String> =
+        any.iter().map(|name| format!("org.htex.file {name} any")).collect();
+    for setting in ["limit_v less", "dc_limit_v less", "buffer_ms less", "ramp_ms more"] {
         allowed.push(format!("org.htex.daq {setting}"));
     }
     for device in ["channels", "parametric", "sdl"] {
@@ -77,9 +63,5 @@ fn a_command_without_sound_says_how_to_get_it() {
 #[test]
 fn a_check_names_the_flag_of_a_missing_setting() {
     let run = Place::new().run(&["device", "check", "daq"]);
-    assert!(
-        run.text().contains("give `--set amplifier_gain=…`"),
-        "{}",
-        run.text()
-    );
+    assert!(run.text().contains("give `--set amplifier_gain=…`"), "{}", run.text());
 }

@@ -15,12 +15,7 @@ const CONFORMANCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/scene-co
 /// A place with the assets of the examples.
 fn place() -> Place {
     let place = Place::new();
-    for name in [
-        "coarse-fabric.htex",
-        "vinyl.htex",
-        "hand.csv",
-        "display.csv",
-    ] {
+    for name in ["coarse-fabric.htex", "vinyl.htex", "hand.csv", "display.csv"] {
         place.write(name, std::fs::read(format!("{EXAMPLES}/{name}")).unwrap());
     }
     place
@@ -40,12 +35,7 @@ fn scene(place: &Place, more: Value) -> PathBuf {
 }
 
 fn keys(value: &Value) -> BTreeSet<&str> {
-    value
-        .as_object()
-        .unwrap()
-        .keys()
-        .map(String::as_str)
-        .collect()
+    value.as_object().unwrap().keys().map(String::as_str).collect()
 }
 
 fn names(list: &Value) -> Vec<&str> {
@@ -56,24 +46,15 @@ fn names(list: &Value) -> Vec<&str> {
 /// Starts `htex` with a pipe to its standard input.
 fn start(place: &Place, arguments: &[&str]) -> Child {
     let mut command = place.command(arguments);
-    command
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     command.spawn().unwrap()
 }
 
 /// Waits until a file is being written in the place.
 fn wait_for_part(place: &Place) {
     let start = Instant::now();
-    while !entries(&place.path(""))
-        .iter()
-        .any(|name| name.ends_with(".part"))
-    {
-        assert!(
-            start.elapsed() < Duration::from_secs(60),
-            "nothing is written"
-        );
+    while !entries(&place.path("")).iter().any(|name| name.ends_with(".part")) {
+        assert!(start.elapsed() < Duration::from_secs(60), "nothing is written");
         std::thread::sleep(Duration::from_millis(5));
     }
 }
@@ -89,12 +70,7 @@ fn the_examples_are_planned_and_rendered_and_what_is_planned_runs() {
     for name in ["constant", "two-swatches", "electrovibration"] {
         let file = format!("{EXAMPLES}/{name}.scene.json");
         let plan = place.json(&["plan", &file, "--json"]);
-        for key in [
-            "stages",
-            "left_out",
-            "representation",
-            "ns_per_sample_total",
-        ] {
+        for key in ["stages", "left_out", "representation", "ns_per_sample_total"] {
             assert!(keys(&plan).contains(key), "{name}: no {key}");
         }
         for stage in plan["stages"].as_array().unwrap() {
@@ -103,20 +79,9 @@ fn the_examples_are_planned_and_rendered_and_what_is_planned_runs() {
             }
         }
         let reasons = plan["left_out"].as_array().unwrap().iter();
-        assert!(
-            reasons
-                .clone()
-                .all(|out| !out["reason"].as_str().unwrap().is_empty())
-        );
+        assert!(reasons.clone().all(|out| !out["reason"].as_str().unwrap().is_empty()));
         let run = place.json(&["render", &file, "-o", "o.wav", "--json"]);
-        for key in [
-            "file",
-            "frames",
-            "rate_hz",
-            "stages_run",
-            "peak",
-            "limited_samples",
-        ] {
+        for key in ["file", "frames", "rate_hz", "stages_run", "peak", "limited_samples"] {
             assert!(keys(&run).contains(key), "{name}: no {key}");
         }
         assert_eq!(names(&run["stages_run"]), names(&plan["stages"]), "{name}");
@@ -132,10 +97,7 @@ fn the_examples_are_planned_and_rendered_and_what_is_planned_runs() {
     assert_eq!(names(&plan["stages"]), ["synthesis", "level", "resampling"]);
     let text = place.run(&["plan", &constant, "--svg", "c.svg"]).text();
     let svg = std::fs::read_to_string(place.path("c.svg")).unwrap();
-    for name in names(&plan["stages"])
-        .iter()
-        .chain(&names(&plan["left_out"]))
-    {
+    for name in names(&plan["stages"]).iter().chain(&names(&plan["left_out"])) {
         assert!(text.contains(name) && svg.contains(name), "{name}");
     }
     assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>"));
@@ -152,10 +114,7 @@ fn the_drive_of_a_card_that_is_not_there_is_rendered_as_its_volts() {
     });
     scene(&place, json!({ "device": device, "duration_s": 1 }));
     let run = place.json(&["render", "s.scene.json", "-o", "v.wav", "--json"]);
-    assert_eq!(
-        (&run["unit"], &run["limited_samples"]),
-        (&json!("V"), &json!(0))
-    );
+    assert_eq!((&run["unit"], &run["limited_samples"]), (&json!("V"), &json!(0)));
     let peak = run["peak"].as_f64().unwrap();
     assert!((40.0..66.0).contains(&peak), "{peak} V");
     assert!(names(&run["stages_run"]).contains(&"carrier"), "{run}");
@@ -164,27 +123,17 @@ fn the_drive_of_a_card_that_is_not_there_is_rendered_as_its_volts() {
     device["settings"]["driver"] = json!("libother.so");
     scene(&place, json!({ "device": device }));
     let plan = place.run(&["plan", "s.scene.json"]);
-    assert!(
-        plan.error().contains("DEVICE_PATH_UNSAFE"),
-        "{}",
-        plan.error()
-    );
+    assert!(plan.error().contains("DEVICE_PATH_UNSAFE"), "{}", plan.error());
 }
 
 #[test]
 fn what_is_wrong_is_told_with_code_and_pointer_and_nothing_is_written() {
     let place = place();
-    scene(
-        &place,
-        json!({ "duration_s": -1, "effects": {}, "loudness": 3 }),
-    );
+    scene(&place, json!({ "duration_s": -1, "effects": {}, "loudness": 3 }));
     for command in ["plan", "render", "play"] {
         let run = place.run(&[command, "s.scene.json"]);
         assert_eq!(run.code(), 1, "{command}");
-        for finding in [
-            "SCENE_UNKNOWN_KEY at /loudness",
-            "DURATION_INVALID at /duration_s",
-        ] {
+        for finding in ["SCENE_UNKNOWN_KEY at /loudness", "DURATION_INVALID at /duration_s"] {
             assert!(run.error().contains(finding), "{command}: {}", run.error());
         }
     }
@@ -193,11 +142,7 @@ fn what_is_wrong_is_told_with_code_and_pointer_and_nothing_is_written() {
     assert_eq!(endless.code(), 1);
     assert!(endless.error().contains("--seconds"), "{}", endless.error());
     assert_eq!(place.run(&["render", "gone.scene.json"]).code(), 1);
-    assert!(
-        !entries(&place.path(""))
-            .iter()
-            .any(|name| name.ends_with(".wav"))
-    );
+    assert!(!entries(&place.path("")).iter().any(|name| name.ends_with(".wav")));
 }
 
 #[test]
@@ -209,8 +154,7 @@ fn the_conformance_scenes_validate_as_their_reports_say() {
     // The list of devices in a message is this program's.
     let brief = |findings: &Value| -> Vec<Value> {
         let all = findings.as_array().unwrap().iter();
-        all.map(|f| json!([f["code"], f["severity"], f["pointer"]]))
-            .collect()
+        all.map(|f| json!([f["code"], f["severity"], f["pointer"]])).collect()
     };
     for name in files {
         let path = format!("{CONFORMANCE}/{name}");
@@ -219,11 +163,7 @@ fn the_conformance_scenes_validate_as_their_reports_say() {
         let run = place.run(&["validate", &path, "--json"]);
         let got: Value = serde_json::from_str(&run.text()).unwrap();
         assert_eq!(got[0]["valid"], golden["valid"], "{name}");
-        assert_eq!(
-            brief(&got[0]["findings"]),
-            brief(&golden["findings"]),
-            "{name}"
-        );
+        assert_eq!(brief(&got[0]["findings"]), brief(&golden["findings"]), "{name}");
         assert_eq!(run.code(), i32::from(golden["valid"] != true), "{name}");
         for finding in golden["findings"].as_array().unwrap() {
             let explained = place.run(&["explain", finding["code"].as_str().unwrap()]);
@@ -237,17 +177,8 @@ fn the_conformance_scenes_validate_as_their_reports_say() {
 fn a_live_motion_comes_through_standard_input() {
     let place = place();
     scene(&place, json!({ "motion": "live" }));
-    let mut child = start(
-        &place,
-        &[
-            "play",
-            "s.scene.json",
-            "--motion",
-            "-",
-            "--set",
-            "path=l.wav",
-        ],
-    );
+    let mut child =
+        start(&place, &["play", "s.scene.json", "--motion", "-", "--set", "path=l.wav"]);
     let mut input = child.stdin.take().unwrap();
     for line in ["80 0.4\n", "faster\n", "-80 0.4\n"] {
         input.write_all(line.as_bytes()).unwrap();
@@ -268,9 +199,7 @@ fn a_live_motion_comes_through_standard_input() {
 #[cfg(unix)]
 fn interrupt(child: &Child) {
     let id = child.id().to_string();
-    let sent = std::process::Command::new("kill")
-        .args(["-INT", &id])
-        .status();
+    let sent = std::process::Command::new("kill").args(["-INT", &id]).status();
     assert!(sent.unwrap().success());
 }
 
@@ -285,18 +214,11 @@ fn an_interrupted_play_ends_at_zero_and_an_interrupted_render_leaves_nothing() {
     std::thread::sleep(Duration::from_millis(300));
     interrupt(&child);
     let done = child.wait_with_output().unwrap();
-    assert!(
-        done.status.success(),
-        "{}",
-        String::from_utf8_lossy(&done.stderr)
-    );
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let played = samples(&place, "p.wav");
     let peak = played.iter().fold(0.0f32, |peak, x| peak.max(x.abs()));
     let last = played.last().unwrap();
-    assert!(
-        last.abs() < 0.02 * peak,
-        "it ends at {last} V, and its peak is {peak} V"
-    );
+    assert!(last.abs() < 0.02 * peak, "it ends at {last} V, and its peak is {peak} V");
 
     scene(&place, json!({ "duration_s": 1e6 }));
     let before = entries(&place.path(""));

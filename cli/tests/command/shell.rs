@@ -1,4 +1,5 @@
-//! What a package installs beside the command: completions, manual pages; and what `--version` says.
+//! What a package installs beside the command: completions, manual pages; and what `--version`
+//! says.
 
 use std::fs;
 

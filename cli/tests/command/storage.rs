@@ -31,9 +31,7 @@ impl Bench {
             command.env_remove(name);
         }
         command.envs(self.server.variables());
-        command
-            .env("TMPDIR", self.place.path("tmp"))
-            .env("NO_PROXY", "127.0.0.1");
+        command.env("TMPDIR", self.place.path("tmp")).env("NO_PROXY", "127.0.0.1");
         command
     }
 
@@ -92,14 +90,7 @@ fn asset() -> Vec<u8> {
 fn files_elsewhere_are_those_here() {
     let bench = Bench::new();
     let (place, server) = (&bench.place, &bench.server);
-    let here = bench.run(&[
-        "fit",
-        "vinyl.csv",
-        "--model",
-        "bands,ar",
-        "-o",
-        "vinyl.htex",
-    ]);
+    let here = bench.run(&["fit", "vinyl.csv", "--model", "bands,ar", "-o", "vinyl.htex"]);
     assert_eq!(here.code(), 0, "{}", here.error());
     server.fail(|n, _| match n {
         0 | 3 => Fault::Status(503, "SlowDown"),
@@ -130,19 +121,12 @@ fn files_elsewhere_are_those_here() {
     );
     assert_eq!(
         there.text().lines().next().unwrap(),
-        here.text()
-            .lines()
-            .next()
-            .unwrap()
-            .replace("vinyl.htex", "s3://surfaces/new/vinyl.htex")
+        here.text().lines().next().unwrap().replace("vinyl.htex", "s3://surfaces/new/vinyl.htex")
     );
     assert_eq!(there.text().lines().nth(1), here.text().lines().nth(1));
 
     let one = bench.run(&["process", "vinyl.csv"]).text();
-    assert_eq!(
-        bench.run(&["process", "s3://surfaces/vinyl.csv"]).text(),
-        one
-    );
+    assert_eq!(bench.run(&["process", "s3://surfaces/vinyl.csv"]).text(), one);
     let web = format!("{}/web/vinyl.csv?sig=S3CR3T", server.url());
     assert_eq!(bench.run(&["process", &web]).text(), one);
 
@@ -151,11 +135,7 @@ fn files_elsewhere_are_those_here() {
         serde_json::from_str(&bench.run(&["info", uri, "--json"]).text()).unwrap();
     assert_eq!(info["asset"], uri);
     let valid = bench.run(&["validate", uri, "s3://surfaces/vinyl.csv"]);
-    assert!(
-        valid.text().starts_with(&format!("{uri}: valid\n")),
-        "{}",
-        valid.text()
-    );
+    assert!(valid.text().starts_with(&format!("{uri}: valid\n")), "{}", valid.text());
     let synth = |asset: &str, output: &str| {
         let done = bench.run(&["synth", asset, "--seconds", "1", "-o", output]);
         assert_eq!(done.code(), 0, "{}", done.error());
@@ -175,36 +155,23 @@ fn a_scene_is_rendered_to_a_file_elsewhere() {
     let bench = Bench::new();
     scene(&bench, "cloth.htex");
     bench.place.write("cloth.htex", asset());
-    let done = bench.run(&[
-        "render",
-        "s.scene.json",
-        "-o",
-        "s3://surfaces/s.wav",
-        "--json",
-    ]);
+    let done = bench.run(&["render", "s.scene.json", "-o", "s3://surfaces/s.wav", "--json"]);
     assert_eq!(done.code(), 0, "{}", done.error());
     let said: serde_json::Value = serde_json::from_str(&done.text()).unwrap();
     assert_eq!(said["file"], "s3://surfaces/s.wav");
-    assert_eq!(
-        bench.run(&["render", "s.scene.json", "-o", "s.wav"]).code(),
-        0
-    );
+    assert_eq!(bench.run(&["render", "s.scene.json", "-o", "s.wav"]).code(), 0);
     assert_eq!(
         bench.server.get("surfaces/s.wav").unwrap(),
         std::fs::read(bench.place.path("s.wav")).unwrap()
     );
     assert!(bench.copies().is_empty());
+    bench.run(&["render", "s3://surfaces/s.scene.json"]).failed(1, &["no such file"]);
+    bench
+        .server
+        .put("surfaces/s.scene.json", std::fs::read(bench.place.path("s.scene.json")).unwrap());
     bench
         .run(&["render", "s3://surfaces/s.scene.json"])
-        .failed(1, &["no such file"]);
-    bench.server.put(
-        "surfaces/s.scene.json",
-        std::fs::read(bench.place.path("s.scene.json")).unwrap(),
-    );
-    bench.run(&["render", "s3://surfaces/s.scene.json"]).failed(
-        2,
-        &["s3://surfaces/s.scene.json: a scene names files beside it"],
-    );
+        .failed(2, &["s3://surfaces/s.scene.json: a scene names files beside it"]);
 }
 
 /// One sentence each, with the URI, and nothing is written.
@@ -212,14 +179,8 @@ fn a_scene_is_rendered_to_a_file_elsewhere() {
 fn what_fails_is_said_and_leaves_nothing() {
     let bench = Bench::new();
     let before = bench.server.files();
-    let fit = [
-        "fit",
-        "s3://surfaces/vinyl.csv",
-        "--model",
-        "bands",
-        "-o",
-        "s3://surfaces/new.htex",
-    ];
+    let fit =
+        ["fit", "s3://surfaces/vinyl.csv", "--model", "bands", "-o", "s3://surfaces/new.htex"];
     let with = |name: &str, value: &str| {
         let mut command = bench.command(&fit);
         command.env(name, value);
@@ -232,20 +193,14 @@ fn what_fails_is_said_and_leaves_nothing() {
     bench
         .run(&["info", "s3://surfaces/none.htex"])
         .failed(1, &["s3://surfaces/none.htex: there is no such file"]);
-    bench
-        .run(&["info", "s3://surfaces/vinyl.csv"])
-        .failed(1, &[uri]);
+    bench.run(&["info", "s3://surfaces/vinyl.csv"]).failed(1, &[uri]);
     bench.server.put("surfaces/large.htex", vec![0; 17 << 20]);
-    bench
-        .run(&["info", "s3://surfaces/large.htex"])
-        .failed(1, &["more than"]);
+    bench.run(&["info", "s3://surfaces/large.htex"]).failed(1, &["more than"]);
     std::fs::remove_file(bench.server.path("surfaces/large.htex")).unwrap();
-    bench
-        .server
-        .fail(|_, request| match request.method == "GET" {
-            true => Fault::Stall(1_000),
-            false => Fault::None,
-        });
+    bench.server.fail(|_, request| match request.method == "GET" {
+        true => Fault::Stall(1_000),
+        false => Fault::None,
+    });
     with("HTEX_STORAGE_TIMEOUT_S", "0.5").failed(1, &[uri, "not done within 0.5 s"]);
     assert_eq!(bench.server.files(), before);
     assert!(bench.copies().is_empty());
@@ -255,12 +210,10 @@ fn what_fails_is_said_and_leaves_nothing() {
 #[test]
 fn a_result_that_cannot_be_written_is_kept() {
     let bench = Bench::new();
-    bench
-        .server
-        .fail(|_, request| match request.method == "PUT" {
-            true => Fault::Status(403, "AccessDenied"),
-            false => Fault::None,
-        });
+    bench.server.fail(|_, request| match request.method == "PUT" {
+        true => Fault::Status(403, "AccessDenied"),
+        false => Fault::None,
+    });
     let done = bench.run(&[
         "fit",
         "s3://surfaces/vinyl.csv",
@@ -271,18 +224,12 @@ fn a_result_that_cannot_be_written_is_kept() {
     ]);
     done.failed(
         1,
-        &[
-            "s3://surfaces/new.htex: the server refuses access",
-            "the result is kept in ",
-        ],
+        &["s3://surfaces/new.htex: the server refuses access", "the result is kept in "],
     );
     assert!(bench.server.get("surfaces/new.htex").is_none());
     let error = done.error();
     let kept = error.trim().rsplit("kept in ").next().unwrap();
-    assert!(
-        kept.starts_with(bench.place.path("tmp").to_str().unwrap()),
-        "{error}"
-    );
+    assert!(kept.starts_with(bench.place.path("tmp").to_str().unwrap()), "{error}");
     assert_eq!(bench.run(&["info", kept]).code(), 0);
 }
 
@@ -294,26 +241,10 @@ fn wrong_usage_is_refused_before_any_request() {
     // Without an extension, since the extension of another format would be refused first.
     let file = "s3://surfaces/cloth";
     for (arguments, code, words) in [
-        (
-            &["fit", file, "-o", file][..],
-            2,
-            "it is read here, and would be lost",
-        ),
-        (
-            &["fit", csv, "-o", file, "--report", file],
-            2,
-            "two outputs would be written to it",
-        ),
-        (
-            &["fit", csv, "-o", "https://example.org/a.htex"],
-            2,
-            "only read",
-        ),
-        (
-            &["info", "ftp://example.org/a.htex"],
-            2,
-            "its scheme is none of",
-        ),
+        (&["fit", file, "-o", file][..], 2, "it is read here, and would be lost"),
+        (&["fit", csv, "-o", file, "--report", file], 2, "two outputs would be written to it"),
+        (&["fit", csv, "-o", "https://example.org/a.htex"], 2, "only read"),
+        (&["info", "ftp://example.org/a.htex"], 2, "its scheme is none of"),
         (
             &["info", "https://a:S3CR3T@example.org/a.htex"],
             2,
@@ -324,20 +255,9 @@ fn wrong_usage_is_refused_before_any_request() {
         bench.run(arguments).failed(code, &[words]);
         assert!(bench.server.requests().is_empty(), "{arguments:?}");
     }
-    bench
-        .run(&["edit", htex, "--author", "A"])
-        .failed(2, &[htex, "name another file"]);
+    bench.run(&["edit", htex, "--author", "A"]).failed(2, &[htex, "name another file"]);
     assert_eq!(
-        bench
-            .run(&[
-                "edit",
-                htex,
-                "--author",
-                "A",
-                "-o",
-                "s3://surfaces/edited.htex"
-            ])
-            .code(),
+        bench.run(&["edit", htex, "--author", "A", "-o", "s3://surfaces/edited.htex"]).code(),
         0
     );
     assert!(bench.server.get("surfaces/edited.htex").is_some());
@@ -351,12 +271,9 @@ fn a_scene_and_an_asset_name_no_uri() {
     bench.server.put("web/cloth.htex", asset());
     bench.server.fail(|_, _| Fault::None);
     let web = format!("{}/web/cloth.htex", bench.server.url());
-    for asset in [
-        &web,
-        "s3://surfaces/cloth.htex",
-        "http://169.254.169.254/a.htex",
-        "file:///etc/passwd",
-    ] {
+    for asset in
+        [&web, "s3://surfaces/cloth.htex", "http://169.254.169.254/a.htex", "file:///etc/passwd"]
+    {
         scene(&bench, asset);
         for arguments in [
             &["render", "s.scene.json", "-o", "s.wav"][..],
@@ -380,12 +297,7 @@ fn a_scene_and_an_asset_name_no_uri() {
     ];
     assert_eq!(bench.run(&arguments).code(), 0);
     bench.server.fail(|_, _| Fault::None);
-    assert_eq!(
-        bench
-            .run(&["synth", "cloth.htex", "--seconds", "1", "-o", "cloth.wav"])
-            .code(),
-        0
-    );
+    assert_eq!(bench.run(&["synth", "cloth.htex", "--seconds", "1", "-o", "cloth.wav"]).code(), 0);
     assert!(bench.run(&["info", "cloth.htex"]).text().contains(&web));
     assert!(bench.server.requests().is_empty());
 }
@@ -396,27 +308,13 @@ fn a_signed_link_is_shown_without_its_query() {
     let bench = Bench::new();
     let link = format!("{}/web/vinyl.csv?sig=S3CR3T", bench.server.url());
     let frf = format!("--frf={}/web/rig.csv?sig=S3CR3T", bench.server.url());
-    bench
-        .server
-        .put("web/rig.csv", "frequency_hz,magnitude\n20,1\n1000,1\n");
-    let arguments = [
-        "fit",
-        &link,
-        &frf,
-        "--model",
-        "bands",
-        "-o",
-        "vinyl.htex",
-        "--report",
-        "vinyl.html",
-    ];
+    bench.server.put("web/rig.csv", "frequency_hz,magnitude\n20,1\n1000,1\n");
+    let arguments =
+        ["fit", &link, &frf, "--model", "bands", "-o", "vinyl.htex", "--report", "vinyl.html"];
     assert_eq!(bench.run(&arguments).code(), 0);
     for file in ["vinyl.html", "vinyl.htex"] {
         let bytes = std::fs::read(bench.place.path(file)).unwrap();
-        assert!(
-            !String::from_utf8_lossy(&bytes).contains("S3CR3T"),
-            "{file}"
-        );
+        assert!(!String::from_utf8_lossy(&bytes).contains("S3CR3T"), "{file}");
     }
     let manifest = bench.run(&["info", "vinyl.htex", "--json"]).text();
     assert!(!manifest.contains("S3CR3T"));
@@ -429,22 +327,14 @@ fn a_signed_link_is_shown_without_its_query() {
 fn an_ended_program_leaves_no_copy() {
     let bench = Bench::new();
     bench.server.fail(|_, _| Fault::Stall(300_000));
-    let mut child = bench
-        .command(&["process", "s3://surfaces/vinyl.csv"])
-        .spawn()
-        .unwrap();
+    let mut child = bench.command(&["process", "s3://surfaces/vinyl.csv"]).spawn().unwrap();
     let begun = Instant::now();
     while bench.server.requests().is_empty() {
-        assert!(
-            begun.elapsed() < Duration::from_secs(60),
-            "nothing is asked for"
-        );
+        assert!(begun.elapsed() < Duration::from_secs(60), "nothing is asked for");
         std::thread::sleep(Duration::from_millis(20));
     }
     assert!(!bench.copies().is_empty());
-    let sent = Command::new("kill")
-        .args(["-TERM", &child.id().to_string()])
-        .status();
+    let sent = Command::new("kill").args(["-TERM", &child.id().to_string()]).status();
     assert!(sent.unwrap().success());
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert!(bench.copies().is_empty());

@@ -28,15 +28,7 @@ const SOON: Duration = Duration::from_secs(20);
 fn place() -> Place {
     let place = Place::new();
     fs::create_dir(place.path("rec")).unwrap();
-    let simulate = [
-        "simulate",
-        "--surface",
-        "vinyl",
-        "--seconds",
-        "2",
-        "-o",
-        "rec/a.csv",
-    ];
+    let simulate = ["simulate", "--surface", "vinyl", "--seconds", "2", "-o", "rec/a.csv"];
     assert_eq!(place.run(&simulate).code(), 0);
     place.write("library.toml", RECIPE);
     place
@@ -58,11 +50,7 @@ fn bounded(place: &Place, arguments: &[&str]) -> Run {
         .args(program.get_args())
         .current_dir(program.get_current_dir().unwrap());
     let run = Run::of(limited.output().unwrap());
-    assert!(
-        start.elapsed() < SOON,
-        "{arguments:?}: {:?}",
-        start.elapsed()
-    );
+    assert!(start.elapsed() < SOON, "{arguments:?}: {:?}", start.elapsed());
     run
 }
 
@@ -70,7 +58,8 @@ fn pipe(path: &Path) {
     assert!(Command::new("mkfifo").arg(path).status().unwrap().success());
 }
 
-/// A server of this machine that counts its requests; the first line of each is answered by `answer`.
+/// A server of this machine that counts its requests; the first line of each is answered by
+/// `answer`.
 fn server(answer: impl Fn(&str) -> String + Send + 'static) -> (String, Arc<AtomicUsize>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let url = format!("http://{}", listener.local_addr().unwrap());
@@ -117,7 +106,8 @@ fn native(place: &Place) -> bool {
     is_compiled
 }
 
-/// A recipe, here or elsewhere, names no code that runs outside the sandbox, by no key and under no name; a person does.
+/// A recipe, here or elsewhere, names no code that runs outside the sandbox, by no key and under no
+/// name; a person does.
 #[test]
 fn a_recipe_runs_no_native_code() {
     let place = place();
@@ -129,14 +119,10 @@ fn a_recipe_runs_no_native_code() {
     let library = fs::read(place.path("m.so")).unwrap();
     assert!(!library.is_empty());
     for file in ["m.so", "m.wasm"] {
-        let in_library = RECIPE.replace(
-            "\"surfaces\"",
-            &format!("\"surfaces\"\nplugins = [\"{file}\"]"),
-        );
-        let embedded = RECIPE.replace(
-            "models =",
-            &format!("embed_plugins = [\"{file}\"]\nmodels ="),
-        );
+        let in_library =
+            RECIPE.replace("\"surfaces\"", &format!("\"surfaces\"\nplugins = [\"{file}\"]"));
+        let embedded =
+            RECIPE.replace("models =", &format!("embed_plugins = [\"{file}\"]\nmodels ="));
         for recipe in [in_library, embedded] {
             place.write("library.toml", &recipe);
             for more in [&[][..], &["--keep-going"], &["--dry-run"]] {
@@ -144,17 +130,10 @@ fn a_recipe_runs_no_native_code() {
                 assert_eq!(run.code(), 1, "{recipe}");
                 assert!(!place.path("loaded").exists(), "{recipe}");
                 let said = run.error() + &run.text();
-                assert!(
-                    said.contains("no WASM module") && said.contains("--plugin"),
-                    "{said}"
-                );
+                assert!(said.contains("no WASM module") && said.contains("--plugin"), "{said}");
             }
             let run = place.run(&["validate", "library.toml"]);
-            assert!(
-                run.code() == 1 && run.text().contains("RECIPE_INVALID"),
-                "{}",
-                run.text()
-            );
+            assert!(run.code() == 1 && run.text().contains("RECIPE_INVALID"), "{}", run.text());
             assert!(!place.path("loaded").exists());
         }
     }
@@ -165,25 +144,14 @@ fn a_recipe_runs_no_native_code() {
         false => ok("\u{7f}ELF"),
     });
     let run = place.run(&["build", &format!("{url}/library.toml"), "-o", "dist"]);
-    assert!(
-        run.code() == 1 && !place.path("loaded").exists(),
-        "{}",
-        run.error()
-    );
+    assert!(run.code() == 1 && !place.path("loaded").exists(), "{}", run.error());
     // A person's word loads it; it is no model, which is said.
     place.write("library.toml", RECIPE);
     let run = build(&place, &["--plugin", "m.so"]);
-    assert!(
-        run.code() == 1 && place.path("loaded").exists(),
-        "{}",
-        run.error()
-    );
+    assert!(run.code() == 1 && place.path("loaded").exists(), "{}", run.error());
     let run = build(&place, &["--plugin", "https://example.org/m.so"]);
     assert!(
-        run.code() == 2
-            && run
-                .error()
-                .contains("takes a path of this machine, not a URI"),
+        run.code() == 2 && run.error().contains("takes a path of this machine, not a URI"),
         "{}",
         run.error()
     );
@@ -215,9 +183,7 @@ fn a_build_follows_no_link_in_the_folder_of_its_results() {
         ("sounds/a.wav", "victim.part"),
     ];
     let inside = links.map(|(name, to)| (format!(".htex-build/{name}"), to));
-    let all = inside
-        .into_iter()
-        .chain(in_dist.map(|(name, to)| (name.to_owned(), to)));
+    let all = inside.into_iter().chain(in_dist.map(|(name, to)| (name.to_owned(), to)));
     let key = "0".repeat(64);
     for (name, to) in all {
         let _ = fs::remove_dir_all(place.path("dist"));
@@ -258,11 +224,7 @@ fn what_another_user_kept_is_made_again() {
         let mut command = place.command(&["build", "library.toml", "-o", output, "--json"]);
         command.env("HTEX_CONFIG_DIR", place.path(name));
         let output = command.output().unwrap();
-        assert!(
-            output.status.success(),
-            "{}",
-            String::from_utf8_lossy(&output.stderr)
-        );
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         serde_json::from_slice(&output.stdout).unwrap()
     };
     assert_eq!(as_user("eve", "dist")["fitted"], 1);
@@ -270,10 +232,7 @@ fn what_another_user_kept_is_made_again() {
     let honest = fs::read(place.path("dist/textures/a.htex")).unwrap();
     assert_eq!(as_user("adam", "dist")["fitted"], 1);
     assert_eq!(as_user("adam", "dist")["fitted"], 0);
-    assert_eq!(
-        fs::read(place.path("dist/textures/a.htex")).unwrap(),
-        honest
-    );
+    assert_eq!(fs::read(place.path("dist/textures/a.htex")).unwrap(), honest);
     // Nor is one under another name of the same user.
     place.write("library.toml", RECIPE.to_owned() + "level = \"fitted\"\n");
     let made = place.path("dist/.htex-build/made");
@@ -308,13 +267,11 @@ fn only_own_entries_are_removed() {
     ] {
         assert!(place.path("dist").join(file).exists(), "{file}");
     }
-    assert_eq!(
-        crate::common::entries(&place.path("dist/.htex-build/made")).len(),
-        3
-    );
+    assert_eq!(crate::common::entries(&place.path("dist/.htex-build/made")).len(), 3);
 }
 
-/// A recipe requests nothing of this machine or network; its own server, which a person named, it may.
+/// A recipe requests nothing of this machine or network; its own server, which a person named, it
+/// may.
 #[cfg(feature = "cloud")]
 #[test]
 fn a_recipe_names_no_inner_address() {
@@ -331,35 +288,23 @@ fn a_recipe_names_no_inner_address() {
         "[64:ff9b::7f00:1]",
         "100.64.0.1",
     ] {
-        for key in [
-            "recordings",
-            "table",
-            "tracker",
-            "response",
-            "plugins",
-            "embed_plugins",
-        ] {
+        for key in ["recordings", "table", "tracker", "response", "plugins", "embed_plugins"] {
             let uri = format!("http://{host}:{port}/a.csv");
             let recipe = match key {
                 "recordings" => RECIPE.replace("rec/*.csv", &uri),
                 "table" => {
                     RECIPE.replace("recordings = \"rec/*.csv\"", &format!("table = \"{uri}\""))
                 }
-                "plugins" => RECIPE.replace(
-                    "\"surfaces\"",
-                    &format!("\"surfaces\"\nplugins = [\"{uri}\"]"),
-                ),
+                "plugins" => {
+                    RECIPE.replace("\"surfaces\"", &format!("\"surfaces\"\nplugins = [\"{uri}\"]"))
+                }
                 "embed_plugins" => format!("{RECIPE}{key} = [\"{uri}\"]\n"),
                 key => format!("{RECIPE}{key} = \"{uri}\"\n"),
             };
             place.write("library.toml", recipe);
             let run = build(&place, &[]);
             assert_eq!(run.code(), 1, "{key} {uri}");
-            assert!(
-                run.error().contains("machine or network"),
-                "{key} {uri}: {}",
-                run.error()
-            );
+            assert!(run.error().contains("machine or network"), "{key} {uri}: {}", run.error());
         }
     }
     assert_eq!(requests.load(Ordering::SeqCst), 0);
@@ -373,7 +318,8 @@ fn a_recipe_names_no_inner_address() {
     assert_eq!(run.code(), 0, "{}", run.error());
 }
 
-/// A redirect to a name that resolves to this machine is not followed, and no request says where it comes from.
+/// A redirect to a name that resolves to this machine is not followed, and no request says where it
+/// comes from.
 #[cfg(feature = "cloud")]
 #[test]
 fn a_redirect_by_name_leads_nowhere_inside() {
@@ -388,11 +334,7 @@ fn a_redirect_by_name_leads_nowhere_inside() {
     });
     let run = place.run(&["process", &format!("{url}/a.csv?sig=S3CR3T")]);
     assert_eq!(run.code(), 1);
-    assert!(
-        run.error().contains("machine or network"),
-        "{}",
-        run.error()
-    );
+    assert!(run.error().contains("machine or network"), "{}", run.error());
     assert_eq!(requests.load(Ordering::SeqCst), 0);
 }
 
@@ -426,19 +368,13 @@ fn what_a_file_names_is_regular_and_bounded() {
         let run = bounded(&place, &["build", "library.toml", "-o", "dist"]);
         let shown: String = recipe.chars().take(300).collect();
         assert_eq!(run.code(), 1, "{shown}: {}", run.error());
-        assert!(
-            !run.error().is_empty() && !run.error().contains("panicked"),
-            "{}",
-            run.error()
-        );
+        assert!(!run.error().is_empty() && !run.error().contains("panicked"), "{}", run.error());
     }
     // A pipe among recordings is none of them.
     place.write("library.toml", RECIPE);
-    assert_eq!(
-        bounded(&place, &["build", "library.toml", "-o", "dist"]).code(),
-        0
-    );
-    // Nor does one beside a recording say how it is read, or one in the folder of results what was made.
+    assert_eq!(bounded(&place, &["build", "library.toml", "-o", "dist"]).code(), 0);
+    // Nor does one beside a recording say how it is read, or one in the folder of results what was
+    // made.
     pipe(&place.path("rec/a.json"));
     let run = bounded(&place, &["process", "rec/a.csv"]);
     assert_eq!(run.code(), 0, "{}", run.error());
@@ -460,11 +396,7 @@ fn many_recordings_of_one_texture_are_planned_soon() {
     fs::create_dir(place.path("many")).unwrap();
     let mut table = "recording,name,speed_mm_s,force_n\n".to_owned();
     for i in 0..20_000 {
-        fs::hard_link(
-            place.path("rec/a.csv"),
-            place.path(&format!("many/{i}.csv")),
-        )
-        .unwrap();
+        fs::hard_link(place.path("rec/a.csv"), place.path(&format!("many/{i}.csv"))).unwrap();
         table += &format!("many/{i}.csv,one,80,0.4\n");
     }
     // The last row is wrong, so that nothing is read.
@@ -475,11 +407,7 @@ fn many_recordings_of_one_texture_are_planned_soon() {
         RECIPE.replace("recordings = \"rec/*.csv\"", "table = \"table.csv\""),
     );
     let run = bounded(&place, &["build", "library.toml", "-o", "dist"]);
-    assert!(
-        run.code() == 1 && run.error().contains("twice"),
-        "{}",
-        run.error()
-    );
+    assert!(run.code() == 1 && run.error().contains("twice"), "{}", run.error());
 }
 
 /// A million rows are refused; fifty thousand with long names are planned in less than 512 MiB.
@@ -498,11 +426,7 @@ fn many_textures_take_little_memory() {
         let end = crate::common::measured::run(&mut command, &place.path("errors"));
         assert_eq!(end.code, code, "{}", end.error);
         println!("{rows} rows: {} KiB", end.memory_kib);
-        assert!(
-            end.memory_kib < 512 << 10,
-            "{rows} rows: {} KiB",
-            end.memory_kib
-        );
+        assert!(end.memory_kib < 512 << 10, "{rows} rows: {} KiB", end.memory_kib);
     }
 }
 
@@ -562,16 +486,11 @@ fn a_line_break_in_a_variable_is_an_error() {
         for other in ["AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY"] {
             command.env(other, "x");
         }
-        command
-            .env(name, "a\r\nHost: b")
-            .env("HTEX_STORAGE_TIMEOUT_S", "5");
+        command.env(name, "a\r\nHost: b").env("HTEX_STORAGE_TIMEOUT_S", "5");
         let run = Run::of(command.output().unwrap());
         assert_eq!(run.code(), 1);
         let said = run.error();
-        assert!(
-            said.contains(name) && said.contains("control character"),
-            "{said}"
-        );
+        assert!(said.contains(name) && said.contains("control character"), "{said}");
     }
 }
 
@@ -640,10 +559,7 @@ fn a_library_in_place_of_an_asset_says_what_to_do() {
     let (asset, library) = ("dist/textures/a.htex", "dist/surfaces.htexlib");
     for (arguments, said) in [
         (&["info", library][..], "htex lib ls"),
-        (
-            &["edit", library, "--author", "A", "-o", "b.htex"],
-            "htex lib unpack",
-        ),
+        (&["edit", library, "--author", "A", "-o", "b.htex"], "htex lib unpack"),
         (&["compare", "rec/a.csv", library], "htex lib unpack"),
         (&["compare", library, library], "htex lib diff"),
         (&["compare", asset, asset], "give the recording first"),
@@ -651,15 +567,12 @@ fn a_library_in_place_of_an_asset_says_what_to_do() {
         (&["edit", asset, asset, "--author", "A"], "run it for each"),
     ] {
         let run = place.run(arguments);
-        assert!(
-            run.code() == 2 && run.error().contains(said),
-            "{arguments:?}: {}",
-            run.error()
-        );
+        assert!(run.code() == 2 && run.error().contains(said), "{arguments:?}: {}", run.error());
     }
 }
 
-/// A folder of results may have links in it, whoever filled it: no command writes through one, neither to a file nor into a folder.
+/// A folder of results may have links in it, whoever filled it: no command writes through one,
+/// neither to a file nor into a folder.
 #[test]
 #[cfg(feature = "lab")]
 fn no_command_follows_a_link_in_the_folder_of_its_results() {
@@ -677,11 +590,7 @@ fn no_command_follows_a_link_in_the_folder_of_its_results() {
         ("demo DIR".to_owned(), demo, ""),
         ("man DIR".to_owned(), "htex.1 htex-fit.1", ""),
         (record.to_owned(), "x-001.part x-001.json", "tracker"),
-        (
-            format!("{record} --target-force 5 --attempts 1"),
-            "",
-            "rejected incomplete",
-        ),
+        (format!("{record} --target-force 5 --attempts 1"), "", "rejected incomplete"),
         (format!("{study} Ann"), "Ann.jsonl", ""),
         (format!("{study} Ann"), "Ann/trial-0001.wav", ""),
         (format!("{study} Bob"), "", "Bob"),
@@ -708,10 +617,6 @@ fn no_command_follows_a_link_in_the_folder_of_its_results() {
             run.error()
         );
         assert_eq!(crate::common::entries(&outside), ["victim"], "{command}");
-        assert_eq!(
-            fs::read(outside.join("victim")).unwrap(),
-            b"precious",
-            "{command}"
-        );
+        assert_eq!(fs::read(outside.join("victim")).unwrap(), b"precious", "{command}");
     }
 }

@@ -13,11 +13,7 @@ fn a_folder_without_the_page_is_refused_with_how_to_build_it() {
     let place = Place::new();
     let run = place.run(&["studio", "--folder", "."]);
     assert_eq!(run.code(), 1, "{}", run.error());
-    for words in [
-        "is not in .;",
-        "cargo xtask studio --out DIR",
-        "HTEX_STUDIO=DIR",
-    ] {
+    for words in ["is not in .;", "cargo xtask studio --out DIR", "HTEX_STUDIO=DIR"] {
         assert!(run.error().contains(words), "{}", run.error());
     }
 }
@@ -33,8 +29,8 @@ fn a_page_that_is_too_large_names_the_file() {
     assert!(run.error().contains("large.wasm"), "{}", run.error());
 }
 
-/// The scripts of a page that somebody else made: whatever they do, the tab stays at its address, and nothing of them stays in the
-/// browser for what is served there later.
+/// The scripts of a page that somebody else made: whatever they do, the tab stays at its address,
+/// and nothing of them stays in the browser for what is served there later.
 #[test]
 fn a_page_leads_nowhere_else_and_leaves_no_service_worker() {
     let installed = crate::browser::installed();
@@ -62,10 +58,7 @@ fn a_page_leads_nowhere_else_and_leaves_no_service_worker() {
     let url = url.unwrap().to_owned();
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     listener.set_nonblocking(true).unwrap();
-    let elsewhere = format!(
-        "http://127.0.0.1:{}/",
-        listener.local_addr().unwrap().port()
-    );
+    let elsewhere = format!("http://127.0.0.1:{}/", listener.local_addr().unwrap().port());
     let mut browser = Browser::start(installed.unwrap(), &place.path("browser"));
     let tab = browser.open(&url);
     std::thread::sleep(Duration::from_secs(1));
@@ -86,10 +79,7 @@ fn a_page_leads_nowhere_else_and_leaves_no_service_worker() {
         exchanged,
     ];
     for way in ways {
-        browser.value(
-            &tab,
-            &format!("(() => {{ {} }})()", way.replace("TO", &elsewhere)),
-        );
+        browser.value(&tab, &format!("(() => {{ {} }})()", way.replace("TO", &elsewhere)));
         std::thread::sleep(Duration::from_millis(700));
         assert!(listener.accept().is_err(), "{way}");
         assert_eq!(browser.value(&tab, "document.title"), "page", "{way}");
@@ -101,11 +91,7 @@ fn a_page_leads_nowhere_else_and_leaves_no_service_worker() {
     assert_eq!(browser.promised(&tab, worker), "refused");
     browser.value(&tab, "location.href = 'next.html'");
     std::thread::sleep(Duration::from_secs(1));
-    assert_eq!(
-        browser.value(&tab, "document.title"),
-        "next",
-        "its own pages"
-    );
+    assert_eq!(browser.value(&tab, "document.title"), "next", "its own pages");
     child.kill().unwrap();
     child.wait().unwrap();
 }

@@ -7,9 +7,7 @@ use crate::common::{Place, entries};
 use serde_json::Value;
 
 fn quick<'a>(csv: &'a str, only: &'a str, output: &'a str) -> [&'a str; 8] {
-    [
-        "tradeoff", csv, "--quick", "--only", only, "-o", output, "--json",
-    ]
+    ["tradeoff", csv, "--quick", "--only", only, "-o", output, "--json"]
 }
 
 fn points(tradeoff: &Value) -> &Vec<Value> {
@@ -28,10 +26,7 @@ fn a_sweep_writes_a_page_and_its_points() {
         ["report.csv", "report.html", "report.json", "sandpaper.csv"]
     );
     let read = |name: &str| std::fs::read_to_string(place.path(name)).unwrap();
-    assert_eq!(
-        serde_json::from_str::<Value>(&read("report.json")).unwrap(),
-        told
-    );
+    assert_eq!(serde_json::from_str::<Value>(&read("report.json")).unwrap(), told);
     assert_eq!(read("report.csv").lines().count(), 1 + points(&told).len());
     let page = read("report.html");
     assert!(page.starts_with("<!DOCTYPE html>") && page.contains("ar order=64"));
@@ -43,12 +38,7 @@ fn a_sweep_writes_a_page_and_its_points() {
     for point in points(&told) {
         assert_eq!(point["recording"], "sandpaper.csv");
         assert!(point["model"].is_string() && point["knobs"]["synthesis"].is_string());
-        for key in [
-            "ns_per_sample",
-            "first_sample_us",
-            "bytes",
-            "band_error_rms_db",
-        ] {
+        for key in ["ns_per_sample", "first_sample_us", "bytes", "band_error_rms_db"] {
             assert!(number(point, key) > 0.0, "{key} of {point}");
         }
         for key in [
@@ -65,7 +55,8 @@ fn a_sweep_writes_a_page_and_its_points() {
         }
         assert!(point["on_front"].is_boolean() && point["on_time_front"].is_boolean());
     }
-    // Graded by what is held out, where the spectrum at a byte a bin is no better than a second recording, whatever it is to itself.
+    // Graded by what is held out, where the spectrum at a byte a bin is no better than a second
+    // recording, whatever it is to itself.
     assert_eq!(told["error"], "held_out");
     let default = |tradeoff: &Value, model: &str| {
         let own = |p: &&Value| p["model"] == model && p["setting"] == "default";
@@ -77,20 +68,15 @@ fn a_sweep_writes_a_page_and_its_points() {
     let floor_db = number(&told["recordings"][0], "floor_db");
     assert_eq!(number(&recording, "held_out_error_db"), floor_db);
     let quantised = default(&told, "quantised-spectrum");
-    assert!(
-        (0.7..1.3).contains(&number(&quantised, "held_out_error")),
-        "{quantised}"
-    );
+    assert!((0.7..1.3).contains(&number(&quantised, "held_out_error")), "{quantised}");
     assert!(number(&quantised, "third_octave_error_rms_db") < 0.1 * floor_db);
     assert!(number(&default(&told, "sslope"), "held_out_error") > 1.3);
     assert!(number(&told["recordings"][0], "blocks") >= 4.0);
     assert!(page.contains("held-out error / of a second recording"));
     assert!(page.contains("floor: a second recording"));
     // Of times within their spreads, the best alone is on the front.
-    let mut on_time: Vec<&Value> = points(&told)
-        .iter()
-        .filter(|p| p["on_time_front"] == true)
-        .collect();
+    let mut on_time: Vec<&Value> =
+        points(&told).iter().filter(|p| p["on_time_front"] == true).collect();
     on_time.sort_by(|a, b| number(a, "ns_per_sample").total_cmp(&number(b, "ns_per_sample")));
     let falls =
         |pair: &[&Value]| number(pair[1], "held_out_error") < number(pair[0], "held_out_error");
@@ -103,45 +89,25 @@ fn a_sweep_writes_a_page_and_its_points() {
     assert_eq!(ar("store=f32")["bytes"], 29);
     assert_eq!(ar("store=f64")["bytes"], 57);
     // The same sweep by another error: fronts and knees go by it, and points stay as they were.
-    let arguments = [
-        &quick(&csv, "ar,sslope", "third.html")[..],
-        &windows,
-        &["--error", "third-octave"],
-    ]
-    .concat();
+    let arguments =
+        [&quick(&csv, "ar,sslope", "third.html")[..], &windows, &["--error", "third-octave"]]
+            .concat();
     let third = place.json(&arguments);
     assert_eq!(third["error"], "third_octave");
     assert!(read("third.html").contains("third-octave error / dB"));
-    let mut front: Vec<&Value> = points(&third)
-        .iter()
-        .filter(|p| p["on_front"] == true)
-        .collect();
+    let mut front: Vec<&Value> = points(&third).iter().filter(|p| p["on_front"] == true).collect();
     front.sort_by_key(|p| p["bytes"].as_u64());
-    let falls = |key: &str| {
-        front
-            .windows(2)
-            .all(|w| number(w[1], key) <= number(w[0], key))
-    };
+    let falls = |key: &str| front.windows(2).all(|w| number(w[1], key) <= number(w[0], key));
     assert!(falls("third_octave_error_rms_db"));
     // The spectrum at a byte a bin ends that front.
     let last = front.last().unwrap();
-    assert_eq!(
-        (&last["model"], &last["bytes"]),
-        (&"quantised-spectrum".into(), &205.into())
-    );
+    assert_eq!((&last["model"], &last["bytes"]), (&"quantised-spectrum".into(), &205.into()));
     let error = |t: &Value| {
-        points(t)
-            .iter()
-            .map(|p| number(p, "third_octave_error_rms_db"))
-            .collect::<Vec<_>>()
+        points(t).iter().map(|p| number(p, "third_octave_error_rms_db")).collect::<Vec<_>>()
     };
     assert_eq!(error(&third), error(&told));
     let knees = told["knees"].as_array().unwrap();
-    assert!(
-        knees
-            .iter()
-            .any(|k| k["of"] == "all models" && k["against"] == "bytes")
-    );
+    assert!(knees.iter().any(|k| k["of"] == "all models" && k["against"] == "bytes"));
 }
 
 #[test]
@@ -150,11 +116,7 @@ fn an_interrupted_sweep_goes_on_where_it_stopped() {
     let csv = place.recording("vinyl");
     let arguments = quick(&csv, "ar,sbeta", "report.html");
     let mut command = place.command(&arguments);
-    let mut child = command
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let part = place.path("report.part");
     let begun = Instant::now();
     let lines = || std::fs::read_to_string(&part).map_or(0, |text| text.lines().count());
@@ -178,12 +140,7 @@ fn an_interrupted_sweep_goes_on_where_it_stopped() {
     let whole = place.json(&arguments);
     assert_eq!(points(&whole).iter().filter(is_marked).count(), 0);
     let same = |tradeoff: &Value| {
-        let what = [
-            "model",
-            "setting",
-            "band_error_rms_db",
-            "samples_band_error_rms_db",
-        ];
+        let what = ["model", "setting", "band_error_rms_db", "samples_band_error_rms_db"];
         let of = |p: &Value| what.map(|key| p[key].clone());
         points(tradeoff).iter().map(of).collect::<Vec<_>>()
     };
@@ -220,25 +177,9 @@ fn wrong_usage_writes_nothing() {
         (&held_out, 1, "fewer than four blocks"),
         (&["tradeoff", "-o", "r.html"], 2, "required"),
         (&["tradeoff", &csv, "-o", "r.json"], 2, "r.json"),
-        (
-            &["tradeoff", &csv, "--only", "nobody", "-o", "r.html"],
-            2,
-            "nobody",
-        ),
+        (&["tradeoff", &csv, "--only", "nobody", "-o", "r.html"], 2, "nobody"),
         (&["tradeoff", "text.csv", "-o", "r.html"], 1, "text.csv"),
-        (
-            &[
-                "tradeoff",
-                &csv,
-                "--quick",
-                "--only",
-                "ar",
-                "-o",
-                "no/r.html",
-            ],
-            1,
-            "no/r.part",
-        ),
+        (&["tradeoff", &csv, "--quick", "--only", "ar", "-o", "no/r.html"], 1, "no/r.part"),
     ];
     for (arguments, code, said) in cases {
         let run = place.run(arguments);
@@ -262,21 +203,11 @@ fn a_loop_repeats_in_a_file_and_a_filter_plays_the_level() {
     place.json(&["fit", &csv, "--model", "ar", "-o", "a.htex", "--json"]);
     let synth = |quality: &str| {
         let out = format!("{}.wav", quality.replace(':', "-"));
-        let run = place.run(&[
-            "synth",
-            "a.htex",
-            "--seconds",
-            "4",
-            "--quality",
-            quality,
-            "-o",
-            &out,
-        ]);
+        let run =
+            place.run(&["synth", "a.htex", "--seconds", "4", "--quality", quality, "-o", &out]);
         assert_eq!(run.code(), 0, "{}", run.error());
         let wav = hound::WavReader::open(place.path(&out)).unwrap();
-        wav.into_samples::<f32>()
-            .map(Result::unwrap)
-            .collect::<Vec<_>>()
+        wav.into_samples::<f32>().map(Result::unwrap).collect::<Vec<_>>()
     };
     let rms = |x: &[f32]| (x.iter().map(|x| x * x).sum::<f32>() / x.len() as f32).sqrt();
     let (streamed, looped, filtered) = (synth("streamed"), synth("loop:1.5"), synth("filter"));

@@ -1,14 +1,12 @@
-//! Textures that store their triangles, and voices at motions beyond the recorded ones, as a user has them.
+//! Textures that store their triangles, and voices at motions beyond the recorded ones, as a user
+//! has them.
 
 use crate::common::Place;
 use htex::{Asset, Motion, Triangle};
 
 /// The asset of `spec/playing-conformance` that stores triangles.
 fn stored() -> Asset {
-    let folder = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../spec/playing-conformance/triangles.htex"
-    );
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/playing-conformance/triangles.htex");
     Asset::open(folder).unwrap()
 }
 
@@ -26,19 +24,14 @@ fn level(asset: &Asset) -> f64 {
 fn stored_triangles_are_shown_and_kept_as_long_as_the_conditions_stay() {
     let place = Place::new();
     let asset = stored();
-    // Levels of 0.08 to 0.12 N, in the order of the conditions: the stored diagonal joins the second and the fourth.
+    // Levels of 0.08 to 0.12 N, in the order of the conditions: the stored diagonal joins the
+    // second and the fourth.
     assert!((level(&asset) - 0.1).abs() < 1e-12, "{}", level(&asset));
     asset.data().write(&place.path("a.htex")).unwrap();
     let text = place.run(&["info", "a.htex"]).text();
-    assert!(
-        text.contains("bands: interpolated in 4 stored triangles"),
-        "{text}"
-    );
+    assert!(text.contains("bands: interpolated in 4 stored triangles"), "{text}");
     let info = place.json(&["info", "a.htex", "--json"]);
-    assert_eq!(
-        info["representations"][0]["triangles"],
-        serde_json::json!(triangles(&asset))
-    );
+    assert_eq!(info["representations"][0]["triangles"], serde_json::json!(triangles(&asset)));
 
     let mut plain = asset.data().clone();
     for representation in &mut plain.manifest.representations {
@@ -46,11 +39,7 @@ fn stored_triangles_are_shown_and_kept_as_long_as_the_conditions_stay() {
     }
     // Without them three are mixed, one of them the condition on the lower edge.
     let found = Asset::new(plain.clone());
-    assert!(
-        (level(&found) - level(&asset)).abs() > 0.005,
-        "{}",
-        level(&found)
-    );
+    assert!((level(&found) - level(&asset)).abs() > 0.005, "{}", level(&found));
     plain.write(&place.path("plain.htex")).unwrap();
     plain.manifest.conditions[0].speed_mm_s = Some(20.0);
     plain.write(&place.path("other.htex")).unwrap();
@@ -69,10 +58,7 @@ fn stored_triangles_are_shown_and_kept_as_long_as_the_conditions_stay() {
     assert!(!said.contains("are left out"), "{said}");
     let (dropped, said) = mix("other.htex", "dropped.htex");
     assert!(dropped.is_empty());
-    assert!(
-        said.contains("the stored triangles of org.htex.bands are left out"),
-        "{said}"
-    );
+    assert!(said.contains("the stored triangles of org.htex.bands are left out"), "{said}");
 }
 
 /// A force far above the recorded ones: as loud as the law says, up to the ceiling.
@@ -81,31 +67,20 @@ fn a_voice_is_as_loud_as_its_ceiling() {
     let place = Place::new();
     stored().data().write(&place.path("a.htex")).unwrap();
     let synth = |more: &[&str]| {
-        let words = [
-            "synth",
-            "a.htex",
-            "--model",
-            "bands",
-            "--seconds",
-            "4",
-            "-o",
-            "a.wav",
-        ];
+        let words = ["synth", "a.htex", "--model", "bands", "--seconds", "4", "-o", "a.wav"];
         place.run(&[&words[..], &["--speed", "900", "--force", "19"], more].concat())
     };
     let rms = |more: &[&str]| {
         let run = synth(more);
         assert_eq!(run.code(), 0, "{}", run.error());
         let mut wav = hound::WavReader::open(place.path("a.wav")).unwrap();
-        let samples: Vec<f64> = wav
-            .samples::<f32>()
-            .map(|x| f64::from(x.unwrap()))
-            .collect();
+        let samples: Vec<f64> = wav.samples::<f32>().map(|x| f64::from(x.unwrap())).collect();
         (samples.iter().map(|x| x * x).sum::<f64>() / samples.len() as f64).sqrt()
     };
     let free = rms(&[]);
     let bound = rms(&["--ceiling", "1.5"]) / free;
-    // The strongest recorded level is that of 0.12 N, and the law raises that of the strongest motion by 5.6^0.43 15.8^0.07.
+    // The strongest recorded level is that of 0.12 N, and the law raises that of the strongest
+    // motion by 5.6^0.43 15.8^0.07.
     let law = 5.625f64.powf(0.43) * (19.0f64 / 1.2).powf(0.07) * 0.10 / 0.12;
     assert!((bound * law / 1.5 - 1.0).abs() < 0.02, "{bound} {law}");
     for wrong in ["0", "-1", "inf", "nan"] {

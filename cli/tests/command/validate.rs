@@ -80,18 +80,10 @@ fn descriptors_are_held_to_their_schemas() {
     assert_eq!(code, 1);
     let codes: Vec<&Value> = broken["findings"].as_array().unwrap().iter().collect();
     let found = |code: &str, pointer: &str| {
-        codes
-            .iter()
-            .any(|f| f["code"] == code && f["pointer"] == pointer)
+        codes.iter().any(|f| f["code"] == code && f["pointer"] == pointer)
     };
-    assert!(
-        found("DESCRIPTOR_INVALID", "") && found("SCHEMA_BROKEN", "/id"),
-        "{broken}"
-    );
-    assert!(
-        codes.iter().any(|f| f["pointer"] == "/fields/0/store"),
-        "{broken}"
-    );
+    assert!(found("DESCRIPTOR_INVALID", "") && found("SCHEMA_BROKEN", "/id"), "{broken}");
+    assert!(codes.iter().any(|f| f["pointer"] == "/fields/0/store"), "{broken}");
 
     let device = |limit: f64| {
         json!({
@@ -104,21 +96,13 @@ fn descriptors_are_held_to_their_schemas() {
     assert_eq!(report(&place, &["device.json"]).0, 0);
     place.write("device.json", device(-10.0).to_string());
     let (code, broken) = report(&place, &["device.json"]);
-    assert_eq!(
-        (code, &broken["findings"][0]["code"]),
-        (1, &json!("DESCRIPTOR_INVALID"))
-    );
+    assert_eq!((code, &broken["findings"][0]["code"]), (1, &json!("DESCRIPTOR_INVALID")));
     let mut device = device(10.0);
     device["settings"][0]["kind"] = json!({ "type": "numbr" });
     place.write("device.json", device.to_string());
     let (code, broken) = report(&place, &["device.json"]);
-    let rule = broken["findings"][1]["schema_rule"]
-        .as_str()
-        .unwrap_or_default();
-    assert!(
-        code == 1 && rule.starts_with("device-descriptor-1.json#/"),
-        "{broken}"
-    );
+    let rule = broken["findings"][1]["schema_rule"].as_str().unwrap_or_default();
+    assert!(code == 1 && rule.starts_with("device-descriptor-1.json#/"), "{broken}");
 }
 
 #[test]
@@ -133,9 +117,7 @@ fn a_scene_is_held_to_its_schema_and_to_its_devices() {
     assert_eq!(gain["findings"][0]["schema_rule"], rule, "{gain}");
     let file = file.replace("surface_gain_invalid", "device_setting");
     let (_, setting) = report(&place, &[&file]);
-    let rule = setting["findings"][0]["schema_rule"]
-        .as_str()
-        .unwrap_or_default();
+    let rule = setting["findings"][0]["schema_rule"].as_str().unwrap_or_default();
     assert!(rule.starts_with("settings of org.htex.file#/"), "{setting}");
 }
 
@@ -144,31 +126,14 @@ fn a_licence_is_checked_before_a_fit_begins() {
     let place = Place::new();
     let csv = place.recording("vinyl");
     let fit = |license: &str| {
-        place.run(&[
-            "fit",
-            &csv,
-            "--model",
-            "sbeta",
-            "--license",
-            license,
-            "-o",
-            "a.htex",
-        ])
+        place.run(&["fit", &csv, "--model", "sbeta", "--license", license, "-o", "a.htex"])
     };
     let refused = fit("CC BY 4.0");
     assert_eq!(refused.code(), 2, "{}", refused.error());
-    assert!(
-        refused
-            .error()
-            .contains("--license: \"CC BY 4.0\" is not an SPDX expression")
-    );
+    assert!(refused.error().contains("--license: \"CC BY 4.0\" is not an SPDX expression"));
     let doubtful = fit("CC-BY-9.0");
     assert_eq!(doubtful.code(), 0);
-    assert!(
-        doubtful.error().contains("LicenseRef-NAME"),
-        "{}",
-        doubtful.error()
-    );
+    assert!(doubtful.error().contains("LicenseRef-NAME"), "{}", doubtful.error());
     assert!(!fit("LicenseRef-Ours").error().contains("--license"));
 }
 
@@ -182,8 +147,5 @@ fn info_says_of_fields_that_are_not_the_models() {
     let reordered = shown("valid_field_order.htex");
     assert!(reordered.contains("alpha=2.5 beta=1.5"), "{reordered}");
     let newer = shown("valid_field_of_newer_model.htex");
-    assert!(
-        newer.contains("the model has no field \"gamma\""),
-        "{newer}"
-    );
+    assert!(newer.contains("the model has no field \"gamma\""), "{newer}");
 }

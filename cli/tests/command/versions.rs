@@ -1,5 +1,6 @@
-//! Models of third parties: an asset that a newer version fitted, where older versions are installed, and a model that fails. Version
-//! 1.1.0 has a field more, which is fitted at its bound, 0.2.
+//! Models of third parties: an asset that a newer version fitted, where older versions are
+//! installed, and a model that fails. Version 1.1.0 has a field more, which is fitted at its bound,
+//! 0.2.
 
 use std::path::Path;
 
@@ -60,12 +61,7 @@ fn module(version: &str, has_tilt: bool) -> Vec<u8> {
         ),
     ];
     let random = "(global $r (mut i32) (i32.const 1))";
-    wat::parse_str(with_descriptor(
-        &descriptor(version, has_tilt),
-        &changed,
-        random,
-    ))
-    .unwrap()
+    wat::parse_str(with_descriptor(&descriptor(version, has_tilt), &changed, random)).unwrap()
 }
 
 /// A resonance, as a library: the template of `htex plugin new`, in its own folder.
@@ -79,10 +75,7 @@ fn library(place: &Place, version: &str, has_tilt: bool) -> std::path::PathBuf {
     let start = text.find("static const char DESCRIPTOR[]").unwrap();
     let end = start + text[start..].find(";\n").unwrap();
     let json = descriptor(version, has_tilt).replace('"', "\\\"");
-    text.replace_range(
-        start..end,
-        &format!("static const char DESCRIPTOR[] = \"{json}\""),
-    );
+    text.replace_range(start..end, &format!("static const char DESCRIPTOR[] = \"{json}\""));
     if has_tilt {
         text = text
             .replace("BANDWIDTH, PARAMETERS", "BANDWIDTH, TILT, PARAMETERS")
@@ -99,18 +92,10 @@ fn library(place: &Place, version: &str, has_tilt: bool) -> std::path::PathBuf {
             );
     }
     std::fs::write(&file, text).unwrap();
-    let built = std::process::Command::new("sh")
-        .arg(place.path(&name).join("build.sh"))
-        .output()
-        .unwrap();
-    assert!(
-        built.status.success(),
-        "{}",
-        String::from_utf8_lossy(&built.stderr)
-    );
-    place
-        .path(&name)
-        .join(format!("resonance{}", std::env::consts::DLL_SUFFIX))
+    let built =
+        std::process::Command::new("sh").arg(place.path(&name).join("build.sh")).output().unwrap();
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    place.path(&name).join(format!("resonance{}", std::env::consts::DLL_SUFFIX))
 }
 
 /// A folder of plugins by their file names.
@@ -136,21 +121,10 @@ fn all_commands<'a>(recording: &'a str, asset: &'a str) -> Vec<Vec<&'a str>> {
         vec!["info", asset],
         vec!["validate", asset],
         vec!["validate", "--embedded-plugins", asset],
-        vec![
-            "synth",
-            asset,
-            "--model",
-            "hostile",
-            "--seconds",
-            "0.2",
-            "-o",
-            "a.wav",
-        ],
+        vec!["synth", asset, "--model", "hostile", "--seconds", "0.2", "-o", "a.wav"],
         vec!["spectrum", asset, "--model", "hostile"],
         vec!["edit", asset, "--name", "Other", "-o", "edited.htex"],
-        vec![
-            "export", asset, "--model", "hostile", "--to", "wav", "-o", "b.wav",
-        ],
+        vec!["export", asset, "--model", "hostile", "--to", "wav", "-o", "b.wav"],
         vec!["bake", asset, "--model", "hostile", "-o", "c.bin"],
         vec!["compare", recording, asset],
         vec!["plan", "scene.json"],
@@ -197,23 +171,13 @@ fn an_older_installed_model_does_not_break_an_asset() {
         }
         let needed = format!("install version 1.1.0 or newer of {ID}");
         let synth = ["synth", "plain.htex", "--seconds", "0.2", "-o", "a.wav"];
-        let run = run_with(
-            &place,
-            &installed,
-            &[&synth[..], &["--model", "hostile"]].concat(),
-        );
+        let run = run_with(&place, &installed, &[&synth[..], &["--model", "hostile"]].concat());
         assert_eq!(run.code(), 1, "{}", run.error());
         assert!(run.error().contains(&needed), "{}", run.error());
         // Another representation is played where none is named.
         let run = run_with(&place, &installed, &synth);
         assert_eq!(run.code(), 0, "{}", run.error());
-        let off = [
-            "spectrum",
-            "embedded.htex",
-            "--model",
-            "hostile",
-            "--no-embedded-plugins",
-        ];
+        let off = ["spectrum", "embedded.htex", "--model", "hostile", "--no-embedded-plugins"];
         let run = run_with(&place, &installed, &off);
         assert_eq!(run.code(), 2, "{}", run.error());
         for words in [&needed[..], "--no-embedded-plugins"] {
@@ -245,10 +209,7 @@ fn an_older_installed_model_does_not_break_an_asset() {
     let options = VoiceOptions::default().with_model(ID);
     let asset = Asset::with_registry(data, registry);
     let refused = asset.voice(&options).unwrap_err().to_string();
-    assert!(
-        refused.contains("install version 1.1.0 or newer"),
-        "{refused}"
-    );
+    assert!(refused.contains("install version 1.1.0 or newer"), "{refused}");
     assert!(asset.with_embedded().voice(&options).is_ok());
 }
 
@@ -260,25 +221,14 @@ fn a_named_model_that_cannot_be_fitted_is_a_failure() {
     let module = wat::parse_str(with_descriptor(&descriptor("1.0.0", false), &failing, ""));
     place.write("failing.wasm", module.unwrap());
     let recording = place.recording("sandpaper");
-    let fit = [
-        "fit",
-        &recording,
-        "--plugin",
-        "failing.wasm",
-        "-o",
-        "a.htex",
-    ];
+    let fit = ["fit", &recording, "--plugin", "failing.wasm", "-o", "a.htex"];
     let run = place.run(&[&fit[..], &["--model", "hostile,sbeta"]].concat());
     assert_eq!(run.code(), 1, "{}", run.error());
     for words in ["named by `--model`", ID] {
         assert!(run.error().contains(words), "{}", run.error());
     }
     let made = htex_format::Asset::open(&place.path("a.htex")).unwrap();
-    assert_eq!(
-        made.manifest.representations.len(),
-        1,
-        "what could be made was written"
-    );
+    assert_eq!(made.manifest.representations.len(), 1, "what could be made was written");
     let run = place.run(&[&fit[..], &["--model", "all"]].concat());
     assert_eq!(run.code(), 0, "{}", run.error());
 }

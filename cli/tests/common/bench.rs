@@ -41,12 +41,12 @@ impl Bench {
         Self(place)
     }
 
-    /// A command with the simulated driver, whose clock advances by calls, so that tests do not depend on time.
+    /// A command with the simulated driver, whose clock advances by calls, so that tests do not
+    /// depend on time.
     pub fn command(&self, arguments: &[&str]) -> Command {
         let driver = format!("driver={}", simulated::built().display());
-        let mut command = self
-            .0
-            .command(&[arguments, &[SCENE, "--profile", PAPER, "--set", &driver]].concat());
+        let mut command =
+            self.0.command(&[arguments, &[SCENE, "--profile", PAPER, "--set", &driver]].concat());
         command
             .env("NIDAQMX_SIM_RECORD", self.0.path(""))
             .env("NIDAQMX_SIM_CLOCK", "calls")
@@ -65,10 +65,7 @@ impl Bench {
         let child = command.env("NIDAQMX_SIM_CLOCK", "wall").spawn().unwrap();
         let start = Instant::now();
         while self.card_v().iter().all(|v| *v == 0.0) {
-            assert!(
-                start.elapsed() < Duration::from_secs(60),
-                "nothing comes out"
-            );
+            assert!(start.elapsed() < Duration::from_secs(60), "nothing comes out");
             std::thread::sleep(Duration::from_millis(20));
         }
         child
@@ -119,7 +116,8 @@ pub fn check_failed(done: &Output, words: &[&str]) {
     let error = String::from_utf8_lossy(&done.stderr);
     assert_eq!(done.status.code(), Some(1), "{error}");
     let mut sentences: Vec<&str> = error.lines().filter(|l| l.starts_with("htex: ")).collect();
-    // The process that holds the output warns at once of a remaining voltage; the player repeats it.
+    // The process that holds the output warns at once of a remaining voltage; the player repeats
+    // it.
     sentences.dedup();
     assert_eq!(sentences.len(), 1, "{error}");
     for word in words {

@@ -56,10 +56,7 @@ impl Browser {
         let child = Command::new("sh")
             .args(["-c", script, name])
             .args(flags)
-            .arg(format!(
-                "--user-data-dir={}",
-                folder.join("profile").display()
-            ))
+            .arg(format!("--user-data-dir={}", folder.join("profile").display()))
             .env("HTEX_TO", &to)
             .env("HTEX_FROM", &from)
             .stdout(Stdio::null())
@@ -69,12 +66,7 @@ impl Browser {
         let to = File::options().write(true).open(to).unwrap();
         let from = BufReader::new(File::open(from).unwrap());
         let calls = 0;
-        Self {
-            child,
-            to,
-            from,
-            calls,
-        }
+        Self { child, to, from, calls }
     }
 
     /// Calls a method, in a tab or in the browser.
@@ -189,10 +181,7 @@ impl Browser {
         };
         mouse("mousePressed", 300.0);
         for i in 0..50 {
-            mouse(
-                "mouseMoved",
-                300.0 + 8.0 * f64::from(if i < 25 { i } else { 50 - i }),
-            );
+            mouse("mouseMoved", 300.0 + 8.0 * f64::from(if i < 25 { i } else { 50 - i }));
             std::thread::sleep(Duration::from_millis(10));
         }
         mouse("mouseReleased", 300.0);
@@ -226,7 +215,8 @@ pub fn address(child: &mut Child) -> String {
     url.unwrap().trim().to_owned()
 }
 
-/// The same address by the number of this machine, for programs: the system need not know names under `localhost`, as browsers do.
+/// The same address by the number of this machine, for programs: the system need not know names
+/// under `localhost`, as browsers do.
 pub fn by_number(url: &str) -> String {
     let rest = url.strip_prefix("http://").unwrap();
     let (name, rest) = rest.split_once(".localhost:").unwrap();
@@ -234,7 +224,8 @@ pub fn by_number(url: &str) -> String {
     format!("http://127.0.0.1:{rest}")
 }
 
-/// Nothing is scrolled or cut on a tablet, upright or on its side, of which it keeps pictures; the tab is left on its side.
+/// Nothing is scrolled or cut on a tablet, upright or on its side, of which it keeps pictures; the
+/// tab is left on its side.
 pub fn fits_tablets(browser: &mut Browser, tab: &Tab, name: &str) {
     let all = "[innerWidth >= document.documentElement.scrollWidth, innerHeight >= document.documentElement.scrollHeight, \
         [...document.querySelectorAll('body *:not(svg *)')].every((e) => { const r = e.getBoundingClientRect(); \

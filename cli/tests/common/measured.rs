@@ -40,11 +40,7 @@ pub fn run(command: &mut Command, errors: &Path) -> End {
         Duration::from_secs(t.tv_sec as u64) + Duration::from_micros(t.tv_usec as u64)
     };
     End {
-        code: if libc::WIFEXITED(status) {
-            libc::WEXITSTATUS(status)
-        } else {
-            -1
-        },
+        code: if libc::WIFEXITED(status) { libc::WEXITSTATUS(status) } else { -1 },
         error: std::fs::read_to_string(errors).unwrap(),
         cpu: time(usage.ru_utime) + time(usage.ru_stime),
         memory_kib: usage.ru_maxrss,

@@ -52,15 +52,7 @@ impl Place {
     /// A simulated recording of 4 s.
     pub fn recording(&self, surface: &str) -> String {
         let name = format!("{surface}.csv");
-        let run = self.run(&[
-            "simulate",
-            "--surface",
-            surface,
-            "--seconds",
-            "4",
-            "-o",
-            &name,
-        ]);
+        let run = self.run(&["simulate", "--surface", surface, "--seconds", "4", "-o", &name]);
         assert_eq!(run.code(), 0, "{}", run.error());
         name
     }
@@ -86,20 +78,14 @@ impl Run {
 
 /// The numbers of a JSON array.
 pub fn numbers(value: &Value) -> Vec<f64> {
-    value
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|x| x.as_f64().unwrap())
-        .collect()
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
 /// The only other entries of a folder than those expected (leftovers of an interrupted write).
 pub fn entries(dir: &Path) -> Vec<String> {
     let names = std::fs::read_dir(dir).unwrap();
-    let mut names: Vec<String> = names
-        .map(|e| e.unwrap().file_name().into_string().unwrap())
-        .collect();
+    let mut names: Vec<String> =
+        names.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
 }

@@ -9,8 +9,8 @@ pub fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Asserts that the last table of a specification lists the checks, in their order and in their words: name, guarantee, and the checks
-/// that it needs, which are earlier ones.
+/// Asserts that the last table of a specification lists the checks, in their order and in their
+/// words: name, guarantee, and the checks that it needs, which are earlier ones.
 pub fn guarantees_are_checked<'a>(
     file: &str,
     checks: impl Iterator<Item = (&'a str, &'a str, &'a [&'a str])>,
@@ -20,10 +20,7 @@ pub fn guarantees_are_checked<'a>(
     let heading = rows.iter().position(|row| row.contains("| guarantee |"));
     let (mut earlier, mut expected) = (Vec::new(), Vec::new());
     for (name, guarantee, needs) in checks {
-        assert!(
-            needs.iter().all(|need| earlier.contains(need)),
-            "{name} needs {needs:?}"
-        );
+        assert!(needs.iter().all(|need| earlier.contains(need)), "{name} needs {needs:?}");
         earlier.push(name);
         expected.push(format!("| {} | `{name}` | {guarantee} |", earlier.len()));
     }
@@ -36,15 +33,9 @@ pub fn example(place: &Place, folder: &str, source: &str) -> PathBuf {
         let from = workspace().join("examples").join(folder).join(file);
         let text = std::fs::read_to_string(from).unwrap();
         let include = workspace().join("spec/include").canonicalize().unwrap();
-        place.write(
-            file,
-            text.replace("../../spec/include", include.to_str().unwrap()),
-        );
+        place.write(file, text.replace("../../spec/include", include.to_str().unwrap()));
     }
-    let built = Command::new("sh")
-        .arg(place.path("build.sh"))
-        .output()
-        .unwrap();
+    let built = Command::new("sh").arg(place.path("build.sh")).output().unwrap();
     let errors = String::from_utf8_lossy(&built.stderr);
     assert!(built.status.success() && errors.is_empty(), "{errors}");
     place.path(String::from_utf8(built.stdout).unwrap().trim())
@@ -54,15 +45,7 @@ pub fn example(place: &Place, folder: &str, source: &str) -> PathBuf {
 pub fn bad(place: &Place, source: &str, good: &Path, fault: &str) -> String {
     let out = place.path(&format!("bad-{fault}{}", std::env::consts::DLL_SUFFIX));
     let status = Command::new("cc")
-        .args([
-            "-std=gnu11",
-            "-O1",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-shared",
-            "-fPIC",
-        ])
+        .args(["-std=gnu11", "-O1", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC"])
         .args([
             "-Wno-unused-parameter",
             "-Wno-unused-variable",
@@ -86,8 +69,7 @@ pub fn complaints(report: &serde_json::Value) -> Vec<(String, String)> {
     let checks = report["checks"].as_array().unwrap().iter();
     let text = |check: &serde_json::Value, key: &str| check[key].as_str().unwrap().to_owned();
     let all = checks.map(|check| (text(check, "check"), text(check, "outcome")));
-    all.filter(|(_, outcome)| outcome != "passed" && outcome != "skipped")
-        .collect()
+    all.filter(|(_, outcome)| outcome != "passed" && outcome != "skipped").collect()
 }
 
 /// The report of `htex device check` or `htex source check`, whose exit status says the same.
@@ -97,11 +79,7 @@ pub fn checked(place: &Place, kind: &str, arguments: &[&str]) -> serde_json::Val
     let report: serde_json::Value = serde_json::from_str(&run.text()).unwrap_or_else(|_| {
         unreachable!("{}", run.error());
     });
-    assert_eq!(
-        run.code() == 0,
-        report["ok"].as_bool().unwrap(),
-        "{report:#}"
-    );
+    assert_eq!(run.code() == 0, report["ok"].as_bool().unwrap(), "{report:#}");
     report
 }
 

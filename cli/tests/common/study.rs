@@ -19,25 +19,9 @@ pub fn on_card(place: &Place, folder: &str, more: &[&str]) -> Command {
     let wire = place.path(&format!("wire-{}", RUNS.fetch_add(1, Ordering::Relaxed)));
     fs::create_dir(&wire).unwrap();
     let driver = format!("driver={}", simulated::built().display());
-    let run = [
-        "study",
-        "run",
-        "study.toml",
-        "--simulated",
-        "11",
-        "--fast",
-        "-o",
-        folder,
-    ];
+    let run = ["study", "run", "study.toml", "--simulated", "11", "--fast", "-o", folder];
     let card = ["--profile", PAPER, "--set", &driver];
-    let felt = [
-        "--source",
-        "daq:Dev1/ai0",
-        "--source-set",
-        &driver,
-        "--map",
-        "lateral=ai0:0.1",
-    ];
+    let felt = ["--source", "daq:Dev1/ai0", "--source-set", &driver, "--map", "lateral=ai0:0.1"];
     let mut command = place.command(&[&run, &card[..], &felt, more].concat());
     command
         .env("NIDAQMX_SIM_CLOCK", "calls")
@@ -49,10 +33,7 @@ pub fn on_card(place: &Place, folder: &str, more: &[&str]) -> Command {
 
 /// The answers of a folder by file name.
 pub fn answers(folder: &Path) -> BTreeMap<String, String> {
-    let files = fs::read_dir(folder)
-        .into_iter()
-        .flatten()
-        .map(Result::unwrap);
+    let files = fs::read_dir(folder).into_iter().flatten().map(Result::unwrap);
     let files = files.filter(|file| file.file_name().to_string_lossy().ends_with(".jsonl"));
     let read = |file: fs::DirEntry| {
         let name = file.file_name().to_string_lossy().into_owned();
@@ -61,7 +42,8 @@ pub fn answers(folder: &Path) -> BTreeMap<String, String> {
     files.map(read).collect()
 }
 
-/// The answers of a folder as if nothing had been stopped: without the lines of stops, and without their number in other lines.
+/// The answers of a folder as if nothing had been stopped: without the lines of stops, and without
+/// their number in other lines.
 pub fn unstopped(folder: &Path) -> BTreeMap<String, String> {
     let unstopped = |text: String| {
         let lines = text.lines();
@@ -89,10 +71,7 @@ pub fn felt(folder: &Path, participant: &str) -> BTreeMap<String, Vec<u8>> {
 }
 
 pub fn lines(folder: &Path) -> usize {
-    answers(folder)
-        .values()
-        .map(|text| text.lines().count())
-        .sum()
+    answers(folder).values().map(|text| text.lines().count()).sum()
 }
 
 /// The arguments of an export with the spectra of the demonstration's recordings.
@@ -104,15 +83,7 @@ pub fn exported<'a>(folder: &'a str, spectra: &'a str, more: &[&'a str]) -> Vec<
         "sandpaper=sandpaper.csv",
         "vinyl=vinyl.csv",
     ];
-    let mut run = vec![
-        "study",
-        "export",
-        folder,
-        "--spectra",
-        spectra,
-        "--frf",
-        "rig.csv",
-    ];
+    let mut run = vec!["study", "export", folder, "--spectra", spectra, "--frf", "rig.csv"];
     for text in recorded {
         run.extend(["--recorded", text]);
     }
@@ -147,10 +118,7 @@ pub type Edits<'a> = &'a [(&'a str, &'a str)];
 /// A study of one texture; `more` replaces texts of it.
 pub fn short(more: Edits<'_>) -> Place {
     let place = Place::new();
-    place.write(
-        "vinyl.htex",
-        fs::read(format!("{EXAMPLES}/vinyl.htex")).unwrap(),
-    );
+    place.write("vinyl.htex", fs::read(format!("{EXAMPLES}/vinyl.htex")).unwrap());
     let replaced = |text: String, (from, to): &(&str, &str)| {
         assert!(text.contains(from), "{from}");
         text.replacen(from, to, 1)

@@ -71,10 +71,9 @@ fn a_device_is_found_by_its_bare_name() {
     let file = strip(&place);
     let name = file.file_name().unwrap().to_str().unwrap();
     assert_eq!(checked(&place, &[name])["ok"], true);
-    for arguments in [
-        ["device", "info", name].as_slice(),
-        &["device", "list", "--device-file", name],
-    ] {
+    for arguments in
+        [["device", "info", name].as_slice(), &["device", "list", "--device-file", name]]
+    {
         let run = place.run(arguments);
         assert_eq!(run.code(), 0, "{}", run.error());
         assert!(run.text().contains("strip"), "{}", run.text());
@@ -82,19 +81,13 @@ fn a_device_is_found_by_its_bare_name() {
     std::fs::write(&file, "no library").unwrap();
     let wrong = place.run(&["device", "info", name]);
     let reason = format!("{}: ", file.display());
-    assert!(
-        wrong.code() == 1 && wrong.error().contains(&reason),
-        "{}",
-        wrong.error()
-    );
+    assert!(wrong.code() == 1 && wrong.error().contains(&reason), "{}", wrong.error());
 }
 
 /// The table of the specification lists the checks.
 #[test]
 fn the_guarantees_of_the_specification_are_those_that_are_checked() {
-    let checks = CHECKS
-        .iter()
-        .map(|check| (check.name, check.summary, check.needs));
+    let checks = CHECKS.iter().map(|check| (check.name, check.summary, check.needs));
     native::guarantees_are_checked("spec/device-abi-1.md", checks);
 }
 
@@ -108,11 +101,7 @@ fn sound_devices_pass() {
     let file = checked(&place, &["file", "--set", "encoding=i16"]);
     assert_eq!(complaints(&file), []);
     assert_eq!(count(&file, "passed"), CHECKS.len() - 7, "{file:#}");
-    let drive = [
-        "quantity=display_voltage",
-        "limit_v=100",
-        "carrier_hz=10000",
-    ];
+    let drive = ["quantity=display_voltage", "limit_v=100", "carrier_hz=10000"];
     let drive = drive.map(|pair| ["--set", pair]).concat();
     let drive = checked(&place, &[&["org.htex.file"], &drive[..]].concat());
     assert_eq!(complaints(&drive), []);
@@ -126,10 +115,7 @@ fn each_fault_is_found_by_its_own_check() {
     assert_eq!(count(&sound, "passed"), CHECKS.len(), "{sound:#}");
     for (fault, name, outcome) in FAULTS {
         let timeout_s = if *outcome == "timed-out" { "3" } else { "60" };
-        let report = checked(
-            &place,
-            &[&bad(&place, &good, fault), "--timeout", timeout_s],
-        );
+        let report = checked(&place, &[&bad(&place, &good, fault), "--timeout", timeout_s]);
         let expected = [(name.to_string(), outcome.to_string())];
         assert_eq!(complaints(&report), expected, "{fault}: {report:#}");
     }
@@ -159,10 +145,7 @@ fn the_strip_chart_draws() {
     let given = given.map(|(k, v)| (k.to_owned(), v.to_owned())).into();
     let settings = Settings::resolve(adapter.descriptor(), Some("day"), &given).unwrap();
     assert_eq!(adapter.capabilities(&settings).unwrap().limit, Some(2.0));
-    let format = StreamFormat {
-        rate_hz: 1_000.0,
-        block_frames: 1_000,
-    };
+    let format = StreamFormat { rate_hz: 1_000.0, block_frames: 1_000 };
     let mut device = adapter.open(&settings, &format).unwrap();
     for second in 0..3_600 {
         let peak = if second == 1_800 { 1.0 } else { 0.5 };
@@ -187,10 +170,7 @@ fn errors_keep_their_kind() {
     let open = |path: &Path, rate_hz: f64| {
         let given = [("path".to_owned(), path.to_str().unwrap().to_owned())].into();
         let settings = Settings::resolve(adapter.descriptor(), None, &given)?;
-        let format = StreamFormat {
-            rate_hz,
-            block_frames: 64,
-        };
+        let format = StreamFormat { rate_hz, block_frames: 64 };
         adapter.open(&settings, &format)
     };
     let chart = place.path("a.svg");
@@ -200,19 +180,11 @@ fn errors_keep_their_kind() {
     let nowhere = place.path("no/such/a.svg");
     let file = open(&nowhere, 1e4).err().unwrap();
     let is_named = |p: &str| p == nowhere.to_str().unwrap();
-    assert!(
-        matches!(&file, DeviceError::File { path, .. } if is_named(path)),
-        "{file}"
-    );
+    assert!(matches!(&file, DeviceError::File { path, .. } if is_named(path)), "{file}");
     let mut device = open(&chart, 1e4).unwrap();
     device.write(&[0.0; 10], Duration::ZERO).unwrap();
     let over = device.write(&[0.5, -1.5], Duration::ZERO);
-    let expected = DeviceError::OverLimit {
-        frame: 11,
-        value: -1.5,
-        limit: 1.0,
-        unit: "N",
-    };
+    let expected = DeviceError::OverLimit { frame: 11, value: -1.5, limit: 1.0, unit: "N" };
     assert_eq!(over, Err(expected));
     let closed = DeviceError::Closed("Strip chart".to_owned());
     assert_eq!(device.finish(), Err(closed));
@@ -228,9 +200,7 @@ fn devices_are_listed_and_shown() {
     let folder = library.parent().unwrap().to_str().unwrap();
     let ids = |list: &Value| -> Vec<String> {
         let devices = list["devices"].as_array().unwrap().iter();
-        devices
-            .map(|d| d["id"].as_str().unwrap().to_owned())
-            .collect()
+        devices.map(|d| d["id"].as_str().unwrap().to_owned()).collect()
     };
     let builtin = ids(&place.json(&["device", "list", "--json"]));
     assert!(builtin.contains(&"org.htex.file".to_owned()));
@@ -246,9 +216,7 @@ fn devices_are_listed_and_shown() {
 
     let info = place.json(&["device", "info", "--json", named, "--set", "path=a.svg"]);
     assert_eq!(info["capabilities"]["limit"], 1.0);
-    let text = place
-        .run(&["device", "info", "file", "--set", "path=a.wav"])
-        .text();
+    let text = place.run(&["device", "info", "file", "--set", "path=a.wav"]).text();
     assert!(text.contains("quantity: lateral_force, N"), "{text}");
     for (arguments, code) in [
         (&["device", "info", "no-such-device"][..], 2),

@@ -67,37 +67,24 @@ fn what_cannot_be_played_never_touches_the_card() {
     let high = device(("drive_v", 151.0));
     let words = ["DEVICE_DRIVE_TOO_HIGH", "151 V", "150 V"];
     high.fails(&mut high.command(&["play"]), &words);
-    // Nor does a scene without what makes its newtons volts, brings these from zero and back, and holds them at the drive.
+    // Nor does a scene without what makes its newtons volts, brings these from zero and back, and
+    // holds them at the drive.
     for effect in ["square_root", "contact", "limiter"] {
         let raw = Bench::new(json!({ "duration_s": 1, "effects": { effect: "off" } }));
-        raw.fails(
-            &mut raw.command(&["play"]),
-            &[&format!("`{effect}` is off")],
-        );
+        raw.fails(&mut raw.command(&["play"]), &[&format!("`{effect}` is off")]);
         assert!(!raw.0.path(RECORD).exists());
     }
     let none = Bench::new(json!({ "duration_s": 1 }));
-    let mut play = none.0.command(&[
-        "play",
-        SCENE,
-        "--profile",
-        PAPER,
-        "--set",
-        "driver=/no/such.so",
-    ]);
-    none.fails(
-        &mut play,
-        &[
-            "`driver`",
-            "`/no/such.so` cannot be loaded as the NI-DAQmx library",
-        ],
-    );
+    let mut play =
+        none.0.command(&["play", SCENE, "--profile", PAPER, "--set", "driver=/no/such.so"]);
+    none.fails(&mut play, &["`driver`", "`/no/such.so` cannot be loaded as the NI-DAQmx library"]);
     for bench in [fast, high, none] {
         assert!(!bench.0.path(RECORD).exists());
     }
 }
 
-/// What a scene says of the hardware is not used: gain, limit, channel, the ramp, the driver, the rig itself.
+/// What a scene says of the hardware is not used: gain, limit, channel, the ramp, the driver, the
+/// rig itself.
 #[test]
 fn a_scene_never_overrides_the_rig() {
     let settings = json!({ "amplifier_gain": 15, "limit_v": 500, "ramp_ms": 1, "device": "Dev1/ao1", "dac_bits": 4 });
@@ -107,44 +94,23 @@ fn a_scene_never_overrides_the_rig() {
     let done = bench.command(&["play"]).output().unwrap();
     let error = String::from_utf8_lossy(&done.stderr);
     assert!(done.status.success(), "{error}");
-    for word in [
-        "amplifier_gain",
-        "limit_v",
-        "ramp_ms",
-        "device",
-        "dac_bits",
-        "150 holds",
-    ] {
+    for word in ["amplifier_gain", "limit_v", "ramp_ms", "device", "dac_bits", "150 holds"] {
         assert!(error.contains(word), "{word}: {error}");
     }
     assert_eq!(error.matches("DEVICE_HARDWARE").count(), 5, "{error}");
-    let most = bench
-        .card_v()
-        .iter()
-        .fold(0.0, |most: f64, v| most.max(v.abs()));
+    let most = bench.card_v().iter().fold(0.0, |most: f64, v| most.max(v.abs()));
     assert!(most > 1.0 && most <= 150.0 / GAIN, "{most} V of the card");
     // Without settings from a person there is no rig, and nothing is played.
     let driver = format!("driver={}", crate::simulated::built().display());
     let alone = Bench::new(json!({ "duration_s": 1 }));
     let mut play = alone.0.command(&["play", SCENE, "--set", &driver]);
-    play.env("NIDAQMX_SIM_RECORD", alone.0.path(""))
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
-    alone.fails(
-        &mut play,
-        &[
-            "DEVICE_HARDWARE",
-            &format!("--profile {PAPER}"),
-            "amplifier_gain",
-        ],
-    );
+    play.env("NIDAQMX_SIM_RECORD", alone.0.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
+    alone.fails(&mut play, &["DEVICE_HARDWARE", &format!("--profile {PAPER}"), "amplifier_gain"]);
     assert!(!alone.0.path(RECORD).exists());
     // Anyone may lower the limit; the smallest holds.
-    for (asked, given, holds) in [
-        (Some(40.0), None, 40.0),
-        (Some(400.0), Some("60"), 60.0),
-        (None, Some("400"), 150.0),
-    ] {
+    for (asked, given, holds) in
+        [(Some(40.0), None, 40.0), (Some(400.0), Some("60"), 60.0), (None, Some("400"), 150.0)]
+    {
         let mut device = json!({ "adapter": "daq", "drive_v": 150 });
         if let Some(limit_v) = asked {
             device["settings"] = json!({ "limit_v": limit_v });
@@ -153,27 +119,15 @@ fn a_scene_never_overrides_the_rig() {
         let bench = Bench::new(json!({ "device": device, "duration_s": 2 }));
         let given = given.map(|limit_v| format!("limit_v={limit_v}"));
         let set: Vec<&str> = given.iter().flat_map(|set| ["--set", set]).collect();
-        let done = bench
-            .command(&[&["play"], &set[..]].concat())
-            .output()
-            .unwrap();
-        assert!(
-            done.status.success(),
-            "{}",
-            String::from_utf8_lossy(&done.stderr)
-        );
-        let most = bench
-            .card_v()
-            .iter()
-            .fold(0.0, |most: f64, v| most.max(v.abs()));
-        assert!(
-            most > 0.6 * holds / GAIN && most <= holds / GAIN,
-            "{holds}: {most} V of the card"
-        );
+        let done = bench.command(&[&["play"], &set[..]].concat()).output().unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let most = bench.card_v().iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        assert!(most > 0.6 * holds / GAIN && most <= holds / GAIN, "{holds}: {most} V of the card");
     }
 }
 
-/// Whatever a model renders, the output stays within the drive, and a texture far beyond it is refused.
+/// Whatever a model renders, the output stays within the drive, and a texture far beyond it is
+/// refused.
 #[test]
 fn the_drive_is_a_cap_and_what_is_far_beyond_it_is_refused() {
     let loud = |gain: f64| {
@@ -183,12 +137,7 @@ fn the_drive_is_a_cap_and_what_is_far_beyond_it_is_refused() {
             "duration_s": 5,
         }))
     };
-    let most_v = |bench: &Bench| {
-        bench
-            .card_v()
-            .iter()
-            .fold(0.0, |most: f64, v| most.max(v.abs()))
-    };
+    let most_v = |bench: &Bench| bench.card_v().iter().fold(0.0, |most: f64, v| most.max(v.abs()));
     let bench = loud(1000.0);
     let words = [
         "dB above the reference level of the drive",
@@ -200,11 +149,7 @@ fn the_drive_is_a_cap_and_what_is_far_beyond_it_is_refused() {
     // Some of it is beyond the drive, and is held there.
     let bench = loud(3.0);
     let done = bench.command(&["play"]).output().unwrap();
-    assert!(
-        done.status.success(),
-        "{}",
-        String::from_utf8_lossy(&done.stderr)
-    );
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     assert!(
         String::from_utf8_lossy(&done.stdout)
             .contains("samples were held at the drive or the device's limit")
@@ -218,10 +163,7 @@ fn the_drive_is_a_cap_and_what_is_far_beyond_it_is_refused() {
 fn a_card_pulled_out_is_told() {
     let bench = Bench::new(json!({ "duration_s": 5 }));
     let mut play = bench.command(&["play"]);
-    let words = [
-        "-88705",
-        "could not be set to zero: switch the amplifier off",
-    ];
+    let words = ["-88705", "could not be set to zero: switch the amplifier off"];
     bench.fails(play.env("NIDAQMX_SIM_UNPLUG_AFTER", "9000"), &words);
     assert_eq!(bench.card_v().len(), 9_000, "nothing more comes out");
 }
@@ -265,11 +207,7 @@ fn an_interrupted_play_goes_down_to_zero() {
 #[cfg(unix)]
 #[test]
 fn further_signals_do_not_cut_the_way_to_zero_short() {
-    for signals in [
-        &["-INT", "-INT"][..],
-        &["-INT", "-HUP"],
-        &["-TERM", "-INT", "-HUP", "-TERM"],
-    ] {
+    for signals in [&["-INT", "-INT"][..], &["-INT", "-HUP"], &["-TERM", "-INT", "-HUP", "-TERM"]] {
         let bench = Bench::new(json!({}));
         let child = bench.start();
         for name in signals {
@@ -280,15 +218,9 @@ fn further_signals_do_not_cut_the_way_to_zero_short() {
         let done = child.wait_with_output().unwrap();
         let error = String::from_utf8_lossy(&done.stderr);
         assert!(done.status.success(), "{signals:?}: {error}");
-        assert!(
-            error.contains("going to zero; please wait"),
-            "{signals:?}: {error}"
-        );
+        assert!(error.contains("going to zero; please wait"), "{signals:?}: {error}");
         if signals.len() > 2 {
-            assert!(
-                error.contains("switch the amplifier off before"),
-                "{signals:?}: {error}"
-            );
+            assert!(error.contains("switch the amplifier off before"), "{signals:?}: {error}");
         }
         bench.is_at_zero();
     }
@@ -318,15 +250,12 @@ fn a_player_that_is_killed_leaves_zero() {
 /// The process that holds the output.
 #[cfg(target_os = "linux")]
 fn guardian(player: &Child) -> String {
-    let list = Command::new("pgrep")
-        .args(["-P", &player.id().to_string()])
-        .output()
-        .unwrap();
+    let list = Command::new("pgrep").args(["-P", &player.id().to_string()]).output().unwrap();
     String::from_utf8_lossy(&list.stdout).trim().to_owned()
 }
 
-/// Exit status 1, these words, and the output at zero. On a busy machine the second helper process may take so long that a sentence comes
-/// before zero, and then zero is told by itself.
+/// Exit status 1, these words, and the output at zero. On a busy machine the second helper process
+/// may take so long that a sentence comes before zero, and then zero is told by itself.
 #[cfg(target_os = "linux")]
 fn ended_at_zero(bench: &Bench, done: &Output, words: &[&str]) {
     let error = String::from_utf8_lossy(&done.stderr);
@@ -337,8 +266,8 @@ fn ended_at_zero(bench: &Bench, done: &Output, words: &[&str]) {
     bench.is_at_zero();
 }
 
-/// If the process that holds the output is killed or stopped, the player has a second one set it to zero, and says so; also while Ctrl-C asks
-/// for the end.
+/// If the process that holds the output is killed or stopped, the player has a second one set it to
+/// zero, and says so; also while Ctrl-C asks for the end.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_guardian_that_is_killed_or_stopped_is_replaced_by_zero() {
@@ -363,16 +292,14 @@ fn a_guardian_that_is_killed_or_stopped_is_replaced_by_zero() {
     }
 }
 
-/// A call of the driver that does not return: the guardian's watchdog writes zero, and if that hangs as well, the second helper process.
+/// A call of the driver that does not return: the guardian's watchdog writes zero, and if that
+/// hangs as well, the second helper process.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_call_of_the_driver_that_does_not_return_ends_at_zero() {
     let hangs = |calls: &str| format!("DAQmxWriteAnalogF64:{calls}:hang=600000");
     for (fault, words) in [
-        (
-            hangs("100"),
-            "has not returned for 0.3 s; the output was set to zero",
-        ),
+        (hangs("100"), "has not returned for 0.3 s; the output was set to zero"),
         (hangs("100+"), "did not answer within 0.82 s"),
     ] {
         let bench = Bench::new(json!({}));
@@ -383,7 +310,8 @@ fn a_call_of_the_driver_that_does_not_return_ends_at_zero() {
     }
 }
 
-/// No process can reach the output: the player says so every second, until zero is confirmed or a signal ends it.
+/// No process can reach the output: the player says so every second, until zero is confirmed or a
+/// signal ends it.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_output_that_nothing_brings_to_zero_is_told_every_second() {
@@ -402,10 +330,8 @@ fn an_output_that_nothing_brings_to_zero_is_told_every_second() {
             let line = lines.next().expect("it ended").unwrap();
             said.extend((line == SENTENCE).then(Instant::now));
         }
-        let gaps: Vec<f64> = said
-            .windows(2)
-            .map(|pair| (pair[1] - pair[0]).as_secs_f64())
-            .collect();
+        let gaps: Vec<f64> =
+            said.windows(2).map(|pair| (pair[1] - pair[0]).as_secs_f64()).collect();
         println!("seconds between the sentences: {gaps:?}");
         assert!(gaps.iter().all(|gap| (0.5..3.0).contains(gap)), "{gaps:?}");
         if ends_by_signal {
@@ -424,17 +350,13 @@ fn an_output_that_nothing_brings_to_zero_is_told_every_second() {
     }
 }
 
-/// A bare name is a file of the current folder; if there is none, the system's loader searches for it, and the error
-/// says so.
+/// A bare name is a file of the current folder; if there is none, the system's loader searches for
+/// it, and the error says so.
 #[test]
 fn a_driver_is_found_by_its_bare_name() {
     let place = Place::new();
     let name = crate::simulated::built().file_name().unwrap();
-    std::fs::copy(
-        crate::simulated::built(),
-        place.path(name.to_str().unwrap()),
-    )
-    .unwrap();
+    std::fs::copy(crate::simulated::built(), place.path(name.to_str().unwrap())).unwrap();
     let driver = format!("driver={}", name.display());
     let problem = |driver: &str| {
         let device = ["device", "info", "daq", "--json", "--profile", PAPER];
@@ -447,10 +369,8 @@ fn a_driver_is_found_by_its_bare_name() {
         assert!(absent.contains(words), "{absent}");
     }
     let file = place.write("text.so", "no library");
-    let (problem, reason) = (
-        problem("driver=text.so").to_string(),
-        format!("{}: ", file.display()),
-    );
+    let (problem, reason) =
+        (problem("driver=text.so").to_string(), format!("{}: ", file.display()));
     assert!(problem.contains(&reason), "{problem}");
 }
 

@@ -1,5 +1,5 @@
-//! Attacks on a finger by scenes and studies of strangers, on the simulated card: direct voltage, a carrier that is taken away, a zero
-//! that is late.
+//! Attacks on a finger by scenes and studies of strangers, on the simulated card: direct voltage, a
+//! carrier that is taken away, a zero that is late.
 
 #[path = "finger/random.rs"]
 mod random;
@@ -50,11 +50,9 @@ fn an_effect_takes_no_carrier_away() {
 /// A file's settings of carrier and direct voltage are not used, whatever they say.
 #[test]
 fn a_setting_takes_no_carrier_away() {
-    for (name, value) in [
-        ("carrier_hz", json!(0)),
-        ("carrier_hz", json!(20)),
-        ("dc_limit_v", json!(150)),
-    ] {
+    for (name, value) in
+        [("carrier_hz", json!(0)), ("carrier_hz", json!(20)), ("dc_limit_v", json!(150))]
+    {
         let bench = scene(json!({ "settings": { name: value } }));
         let done = bench.command(&["play"]).output().unwrap();
         let error = text(&done);
@@ -104,18 +102,15 @@ fn recorded<'a>(command: &'a mut Command, place: &Place) -> &'a mut Command {
         .stderr(Stdio::piped())
 }
 
-/// Clipping at the drive makes direct voltage where the rate is three times the carrier: whatever produces it, the output goes to zero.
+/// Clipping at the drive makes direct voltage where the rate is three times the carrier: whatever
+/// produces it, the output goes to zero.
 #[test]
 fn direct_voltage_goes_to_zero_whatever_produced_it() {
-    // A person who says that the rig has no carrier, and does not say that it may have direct voltage.
+    // A person who says that the rig has no carrier, and does not say that it may have direct
+    // voltage.
     let bench = scene(json!({}));
     let mut play = bench.command(&["play"]);
-    let words = [
-        "direct voltage",
-        "100 ms",
-        "dc_limit_v",
-        "the output is at zero",
-    ];
+    let words = ["direct voltage", "100 ms", "dc_limit_v", "the output is at zero"];
     bench.fails(play.args(["--set", "carrier_hz=0"]), &words);
     let Volts { dc_v, .. } = volts(&bench.card_v(), RATE_HZ);
     println!("{dc_v:.3} V direct voltage");
@@ -130,7 +125,8 @@ fn direct_voltage_goes_to_zero_whatever_produced_it() {
     assert!(volts(&bench.card_v(), RATE_HZ).dc_v > 10.0);
 }
 
-/// A card without an amplifier has no carrier, and says that its direct voltage is not limited below its range.
+/// A card without an amplifier has no carrier, and says that its direct voltage is not limited
+/// below its range.
 #[test]
 fn the_generic_profile_states_its_direct_voltage() {
     let bench = Bench::new(json!({ "device": { "adapter": "daq" }, "duration_s": 1 }));
@@ -186,7 +182,8 @@ fn started(bench: &Bench, play: &mut Command) -> Option<Child> {
     None
 }
 
-/// What a person gives is a limit for a file and for the person: buffer and ramp together have at most 0.4 s.
+/// What a person gives is a limit for a file and for the person: buffer and ramp together have at
+/// most 0.4 s.
 #[test]
 fn buffer_and_ramp_are_bounded_together() {
     let bench = scene(json!({}));

@@ -31,54 +31,29 @@ impl Bench {
         let what = format!("{arguments:?}: {words:?}");
         self.0.write("harm.wasm", wat::parse_str(wat).unwrap());
         let deadline = DEADLINE.as_millis();
-        let (call, render) = (
-            format!("call-ms={deadline}"),
-            format!("render-ms={deadline}"),
-        );
+        let (call, render) = (format!("call-ms={deadline}"), format!("render-ms={deadline}"));
         let limits = ["--wasm-limit", &call, "--wasm-limit", &render];
         let mut command = self.0.command(&[arguments, &limits[..]].concat());
         command.env("HTEX_CACHE_DIR", self.0.path("cache"));
         let end = run(&mut command, &self.0.path("errors"));
-        println!(
-            "{what}: {:?} of processor time, {} KiB",
-            end.cpu, end.memory_kib
-        );
+        println!("{what}: {:?} of processor time, {} KiB", end.cpu, end.memory_kib);
         assert_eq!(end.code, 1, "{what}: {}", end.error);
         let error = end.error.lines().last().unwrap_or_default();
         let named = error.contains("harm.wasm") || error.contains(ID);
-        assert!(
-            named && words.iter().all(|word| error.contains(word)),
-            "{what}: {error}"
-        );
+        assert!(named && words.iter().all(|word| error.contains(word)), "{what}: {error}");
         assert!(
             end.error.lines().filter(|l| l.contains("error")).count() <= 1,
             "{what}: {}",
             end.error
         );
         assert!(end.cpu < DEADLINE + BESIDES, "{what}: {:?}", end.cpu);
-        assert!(
-            end.memory_kib < MOST_MEMORY_KIB,
-            "{what}: {} KiB",
-            end.memory_kib
-        );
+        assert!(end.memory_kib < MOST_MEMORY_KIB, "{what}: {} KiB", end.memory_kib);
     }
 
     fn fit_refuses(&self, changed: &[(&str, &str)], words: &[&str]) {
-        let fit = [
-            "fit",
-            "sandpaper.csv",
-            "--plugin",
-            "harm.wasm",
-            "--model",
-            ID,
-            "-o",
-            "x.htex",
-        ];
+        let fit = ["fit", "sandpaper.csv", "--plugin", "harm.wasm", "--model", ID, "-o", "x.htex"];
         self.refuses(&fit, &text("1.0.0", changed, ""), words);
-        assert!(
-            !self.0.path("x.htex").exists(),
-            "nothing is left of a fit that failed"
-        );
+        assert!(!self.0.path("x.htex").exists(), "nothing is left of a fit that failed");
     }
 
     fn info_refuses(&self, wat: &str, words: &[&str]) {
@@ -90,18 +65,9 @@ impl Bench {
 const HARM: [(&str, &str); 5] = [
     ("(loop $l (br $l)) unreachable", "ran longer than 500 ms"),
     ("unreachable", "panicked"),
-    (
-        "(drop (i32.load (i32.const -4))) unreachable",
-        "out of bounds memory access",
-    ),
-    (
-        "(loop $l (drop (memory.grow (i32.const 16))) (br $l)) unreachable",
-        "67108864 bytes",
-    ),
-    (
-        "(drop (call $deep (i32.const -1))) unreachable",
-        "bytes of stack",
-    ),
+    ("(drop (i32.load (i32.const -4))) unreachable", "out of bounds memory access"),
+    ("(loop $l (drop (memory.grow (i32.const 16))) (br $l)) unreachable", "67108864 bytes"),
+    ("(drop (call $deep (i32.const -1))) unreachable", "bytes of stack"),
 ];
 
 /// A magnitude that is the same everywhere: the bytes 3f3f3f3f3f3f3f3f.
@@ -112,13 +78,7 @@ const FLAT: &str =
 #[test]
 fn harm_in_a_call_of_the_pipeline() {
     let bench = Bench::new();
-    for call in [
-        "fit",
-        "magnitude",
-        "voice_rate",
-        "voice_new",
-        "voice_render",
-    ] {
+    for call in ["fit", "magnitude", "voice_rate", "voice_new", "voice_render"] {
         for (body, reason) in HARM {
             // A magnitude of zero everywhere ends a fit before there is a voice.
 
@@ -156,23 +116,14 @@ fn answers_that_no_model_may_give() {
     let nan = samples("0xff");
     let infinite = "(f32.store (local.get 1) (f32.const inf)) (i64.const 0)";
     bench.fit_refuses(&[ones, ("voice_render", &nan)], &["voice_render", "NaN"]);
-    bench.fit_refuses(
-        &[ones, ("voice_render", infinite)],
-        &["voice_render", "inf"],
-    );
+    bench.fit_refuses(&[ones, ("voice_render", infinite)], &["voice_render", "inf"]);
     let more = "(i64.add (i64.extend_i32_u (local.get 11)) (i64.const 44))";
     bench.fit_refuses(&[("fit", more)], &["fit", "parameters"]);
-    bench.fit_refuses(
-        &[("fit", "(i64.const 0x7fffffffffffffff)")],
-        &["fit", "parameters"],
-    );
+    bench.fit_refuses(&[("fit", "(i64.const 0x7fffffffffffffff)")], &["fit", "parameters"]);
     let negative = "(f64.store (local.get 5) (f64.const -1)) (i64.const 0)";
     bench.fit_refuses(&[("magnitude", negative)], &["magnitude", "-1"]);
     for room in ["(i32.const -16)", "(i32.const 524272)", "(i32.const 12)"] {
-        bench.info_refuses(
-            &text("1.0.0", &[("alloc", room)], ""),
-            &["htex_model_alloc"],
-        );
+        bench.info_refuses(&text("1.0.0", &[("alloc", room)], ""), &["htex_model_alloc"]);
     }
 }
 
@@ -198,11 +149,9 @@ fn modules_that_are_no_models() {
 #[test]
 fn limits_are_named_when_they_cannot_be_set() {
     let place = Place::new();
-    for (limit, word) in [
-        ("time=1", "memory-mib"),
-        ("call-ms=0", "from 1"),
-        ("fuel", "whole number"),
-    ] {
+    for (limit, word) in
+        [("time=1", "memory-mib"), ("call-ms=0", "from 1"), ("fuel", "whole number")]
+    {
         let run = place.run(&["plugin", "list", "--wasm-limit", limit]);
         assert_eq!(run.code(), 2, "{limit}");
         assert!(run.error().contains(word), "{limit}: {}", run.error());

@@ -10,7 +10,8 @@ use serde_json::json;
 
 /// The promised latency from a motion to the display, milliseconds.
 const PROMISED_MS: f64 = 30.0;
-/// The longest block of a live motion, milliseconds: a motion that comes while it is made waits for its end.
+/// The longest block of a live motion, milliseconds: a motion that comes while it is made waits for
+/// its end.
 const BLOCK_MS: f64 = 5.0;
 
 /// Starts playback in real time; the motion follows.
@@ -41,8 +42,8 @@ fn latency_ms(done: &Output) -> f64 {
     rest.split(' ').next().unwrap().parse().unwrap()
 }
 
-/// On a busy machine so short a buffer may run dry: then the output is zero, and the error names the setting. The test
-/// tries again.
+/// On a busy machine so short a buffer may run dry: then the output is zero, and the error names
+/// the setting. The test tries again.
 #[test]
 fn a_live_motion_waits_no_longer_than_is_promised() {
     for _ in 0..20 {
@@ -51,10 +52,7 @@ fn a_live_motion_waits_no_longer_than_is_promised() {
         if done.status.success() {
             let latency_ms = latency_ms(&done);
             assert!(latency_ms > 0.0, "{latency_ms} ms");
-            assert!(
-                latency_ms + 2.0 * BLOCK_MS <= PROMISED_MS,
-                "{latency_ms} ms"
-            );
+            assert!(latency_ms + 2.0 * BLOCK_MS <= PROMISED_MS, "{latency_ms} ms");
             bench.is_at_zero();
             return;
         }
@@ -68,11 +66,7 @@ fn a_live_motion_waits_no_longer_than_is_promised() {
 fn a_longer_buffer_is_a_persons_to_ask_for() {
     let bench = Bench::new(json!({ "motion": "live" }));
     let done = played(&bench, &["--set", "buffer_ms=300"]);
-    assert!(
-        done.status.success(),
-        "{}",
-        String::from_utf8_lossy(&done.stderr)
-    );
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     assert!(latency_ms(&done) > 100.0, "{}", latency_ms(&done));
 }
 

@@ -1,5 +1,6 @@
-//! Devices that are told strengths and points: gamepads through SDL's own virtual joystick, controllers through a runtime of OpenXR that holds
-//! calls to the rules, chosen channels of a file. Their own crates test what they do; here the command plays a texture on them.
+//! Devices that are told strengths and points: gamepads through SDL's own virtual joystick,
+//! controllers through a runtime of OpenXR that holds calls to the rules, chosen channels of a
+//! file. Their own crates test what they do; here the command plays a texture on them.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,18 +9,16 @@ use crate::common::native::{self, complaints, count};
 use crate::common::{Place, Run};
 use htex_device_check::CHECKS;
 
-/// Checks that are of libraries: marker, exports, extensions, settings as lines, blocks, handles, arrays.
+/// Checks that are of libraries: marker, exports, extensions, settings as lines, blocks, handles,
+/// arrays.
 const OF_LIBRARIES: usize = 7;
 
 /// A library of C of the tests of an adapter; `None` without what it is linked with.
 fn built(place: &Place, source: &str, links: &[&str]) -> Option<PathBuf> {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../renderer-adapters")
-        .join(source);
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../renderer-adapters").join(source);
     let out = place.path("driver.so");
     let mut cc = Command::new("cc");
-    cc.args(["-std=gnu11", "-O1", "-shared", "-fPIC"])
-        .arg(source);
+    cc.args(["-std=gnu11", "-O1", "-shared", "-fPIC"]).arg(source);
     let run = cc.arg("-o").arg(&out).args(links).output().unwrap();
     run.status.success().then_some(out)
 }
@@ -27,9 +26,7 @@ fn built(place: &Place, source: &str, links: &[&str]) -> Option<PathBuf> {
 /// A gamepad of SDL, as the setting `driver`.
 fn pad(place: &Place) -> Option<String> {
     let library = built(place, "sdl/tests/pad.c", &["-lSDL2", "-ldl"]);
-    let library = xtask::needs::SDL
-        .met(library.is_some())
-        .then_some(library)?;
+    let library = xtask::needs::SDL.met(library.is_some()).then_some(library)?;
     library.map(|library| format!("driver={}", library.display()))
 }
 
@@ -45,7 +42,8 @@ fn texture(place: &Place) {
     assert_eq!(fit.code(), 0, "{}", fit.error());
 }
 
-/// A loader of OpenXR on a machine without a runtime prints what is wrong, unless its environment says that it prints nothing.
+/// A loader of OpenXR on a machine without a runtime prints what is wrong, unless its environment
+/// says that it prints nothing.
 #[cfg(target_os = "linux")]
 #[test]
 fn the_list_of_devices_has_no_line_of_the_openxr_loader() {
@@ -71,9 +69,7 @@ int xrGetInstanceProcAddr(void *instance, const char *name, void **function)
     );
     let mut cc = Command::new("cc");
     cc.args(["-shared", "-fPIC", "-o"]);
-    let built = cc
-        .arg(place.path("libopenxr_loader.so.1"))
-        .arg(place.path("loader.c"));
+    let built = cc.arg(place.path("libopenxr_loader.so.1")).arg(place.path("loader.c"));
     assert!(built.status().unwrap().success());
     let list = |variable: Option<&str>| {
         let mut command = place.command(&["device", "list", "--json"]);
@@ -92,11 +88,7 @@ int xrGetInstanceProcAddr(void *instance, const char *name, void **function)
 
 fn recorded(place: &Place, variable: &str, arguments: &[&str]) -> (String, String) {
     let record = place.path("record.txt");
-    let run = place
-        .command(arguments)
-        .env(variable, &record)
-        .output()
-        .unwrap();
+    let run = place.command(arguments).env(variable, &record).output().unwrap();
     let run = Run::of(run);
     assert_eq!(run.code(), 0, "{}", run.error());
     (std::fs::read_to_string(record).unwrap(), run.text())
@@ -107,16 +99,7 @@ fn a_texture_is_played_on_a_gamepad() {
     let place = Place::new();
     let Some(driver) = pad(&place) else { return };
     texture(&place);
-    let play = [
-        "play",
-        "t.htex",
-        "--device",
-        "sdl",
-        "--set",
-        &driver,
-        "--seconds",
-        "1",
-    ];
+    let play = ["play", "t.htex", "--device", "sdl", "--set", &driver, "--seconds", "1"];
     let (told, text) = recorded(&place, "PAD_RECORD", &play);
     let strengths: Vec<(u32, u32)> = told
         .lines()
@@ -127,10 +110,7 @@ fn a_texture_is_played_on_a_gamepad() {
         .collect();
     assert!(strengths.len() > 50, "{told}");
     assert_eq!(strengths.last(), Some(&(0, 0)));
-    assert!(
-        strengths.iter().any(|(large, small)| large + small > 6_000),
-        "{told}"
-    );
+    assert!(strengths.iter().any(|(large, small)| large + small > 6_000), "{told}");
     assert!(text.starts_with("Gamepad: 1.000 s at 8000 Hz"), "{text}");
     assert!(text.contains("0 underruns"), "{text}");
 }
@@ -140,22 +120,13 @@ fn a_texture_is_played_on_a_controller() {
     let place = Place::new();
     let runtime = runtime(&place);
     texture(&place);
-    for (form, kind) in [
-        ("form=points", "points right"),
-        ("form=pcm", "samples right rate 2000"),
-    ] {
+    for (form, kind) in [("form=points", "points right"), ("form=pcm", "samples right rate 2000")] {
         let play = ["play", "t.htex", "--device", "parametric", "--seconds", "1"];
         let play = [&play[..], &["--set", &runtime, "--set", form]].concat();
         let (told, text) = recorded(&place, "MOCK_XR_RECORD", &play);
         assert!(!told.contains("broken"), "{told}");
-        assert!(
-            told.lines().filter(|line| line.starts_with(kind)).count() > 50,
-            "{told}"
-        );
-        assert!(
-            told.contains("\nstop right") && told.ends_with("end\n"),
-            "{told}"
-        );
+        assert!(told.lines().filter(|line| line.starts_with(kind)).count() > 50, "{told}");
+        assert!(told.contains("\nstop right") && told.ends_with("end\n"), "{told}");
         assert!(text.contains("OpenXR controller: 1.000 s"), "{text}");
         std::fs::remove_file(place.path("record.txt")).unwrap();
     }
@@ -169,10 +140,7 @@ fn a_texture_is_played_on_the_actuators_of_a_dualsense() {
     let run = place.run(&[&play[..], &["--set", "to=file", "--set", "path=pad.wav"]].concat());
     assert_eq!(run.code(), 0, "{}", run.error());
     let mut wav = hound::WavReader::open(place.path("pad.wav")).unwrap();
-    assert_eq!(
-        (wav.spec().channels, wav.spec().sample_rate, wav.duration()),
-        (4, 48_000, 48_000)
-    );
+    assert_eq!((wav.spec().channels, wav.spec().sample_rate, wav.duration()), (4, 48_000, 48_000));
     let samples: Vec<f32> = wav.samples::<f32>().map(Result::unwrap).collect();
     let is_alike = |frame: &[f32]| frame[..2] == [0.0, 0.0] && frame[2] == frame[3];
     assert!(samples.chunks(4).all(is_alike));
@@ -188,11 +156,7 @@ fn they_keep_what_devices_promise() {
     for (device, setting) in devices {
         let report = native::checked(&place, "device", &[device, "--set", &setting]);
         assert_eq!(complaints(&report), [], "{device}: {report:#}");
-        assert_eq!(
-            count(&report, "passed"),
-            CHECKS.len() - OF_LIBRARIES,
-            "{device}: {report:#}"
-        );
+        assert_eq!(count(&report, "passed"), CHECKS.len() - OF_LIBRARIES, "{device}: {report:#}");
     }
     let runtime = runtime(&place);
     for form in ["form=points", "form=pcm"] {
@@ -204,10 +168,7 @@ fn they_keep_what_devices_promise() {
             .retain(|(check, outcome)| (&check[..], &outcome[..]) != ("endpoints", "warning"));
         assert_eq!(complaints, [], "{form}: {report:#}");
         let passed = count(&report, "passed");
-        assert!(
-            passed >= CHECKS.len() - OF_LIBRARIES - 1,
-            "{form}: {report:#}"
-        );
+        assert!(passed >= CHECKS.len() - OF_LIBRARIES - 1, "{form}: {report:#}");
     }
 }
 
@@ -221,13 +182,8 @@ fn they_say_what_they_make_of_samples_and_what_is_lost() {
             text.to_owned()
         });
         let text = place.run(&["device", "info", device]).text();
-        assert!(
-            text.contains(&format!("  plays: {plays}\n  lost: {loses}\n")),
-            "{text}"
-        );
+        assert!(text.contains(&format!("  plays: {plays}\n  lost: {loses}\n")), "{text}");
     }
-    let text = place
-        .run(&["device", "info", "file", "--set", "path=a.wav"])
-        .text();
+    let text = place.run(&["device", "info", "file", "--set", "path=a.wav"]).text();
     assert!(text.contains("mapping\n  plays: the samples\n"), "{text}");
 }

@@ -1,4 +1,5 @@
-//! Guidance on a page in a browser: what it shows of a replayed recording, and that it cannot harm a take.
+//! Guidance on a page in a browser: what it shows of a replayed recording, and that it cannot harm
+//! a take.
 
 use std::f64::consts::TAU;
 use std::process::{Child, Stdio};
@@ -47,31 +48,20 @@ fn sweeps(place: &Place, force_n: &str) -> Vec<String> {
     csv.lines().skip(2).map(row).collect()
 }
 
-/// The source of a session: a second without a finger, three of a light one, a take that presses too much, three seconds of a
-/// light finger, and a take that does not. The sensor has an offset of 0.05 N.
+/// The source of a session: a second without a finger, three of a light one, a take that presses
+/// too much, three seconds of a light finger, and a take that does not. The sensor has an offset of
+/// 0.05 N.
 fn session(place: &Place) {
     let with_offset = |row: &String| {
         let mut cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
         cells[2] += 0.05;
-        cells
-            .iter()
-            .map(f64::to_string)
-            .collect::<Vec<_>>()
-            .join(",")
+        cells.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
     };
     let still = |seconds: usize, force_n: f64| vec![format!("0,0,{force_n},0,0"); seconds * RATE];
-    let rows = [
-        still(1, 0.0),
-        still(3, 0.2),
-        sweeps(place, "0.6"),
-        still(3, 0.2),
-        sweeps(place, "0.4"),
-    ];
+    let rows =
+        [still(1, 0.0), still(3, 0.2), sweeps(place, "0.6"), still(3, 0.2), sweeps(place, "0.4")];
     let rows: Vec<String> = rows.concat().iter().map(with_offset).collect();
-    place.write(
-        "source.csv",
-        format!("fx_n,fy_n,fz_n,x_mm,y_mm\n{}\n", rows.join("\n")),
-    );
+    place.write("source.csv", format!("fx_n,fy_n,fz_n,x_mm,y_mm\n{}\n", rows.join("\n")));
 }
 
 fn text(browser: &mut Browser, tab: &Tab, id: &str) -> String {
@@ -126,10 +116,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     // Neither the second tab nor time starts the session.
     browser.press(&second, " ", 0);
     std::thread::sleep(Duration::from_millis(500));
-    assert_eq!(
-        text(&mut browser, &tab, "what"),
-        "Lift the finger, then start"
-    );
+    assert_eq!(text(&mut browser, &tab, "what"), "Lift the finger, then start");
     browser.close(&second);
     browser.press(&tab, " ", 0);
     browser.shows(&tab, "Leave the surface alone");
@@ -137,29 +124,15 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     let is_judged = "state.now.phase === 'tare' && state.now.force !== 'unknown'";
     assert_eq!(browser.value(&tab, is_judged), false, "no finger");
     browser.shows(&tab, "Take 1 is about to begin");
-    becomes(
-        &mut browser,
-        &tab,
-        "Math.abs(state.now.force_n - 0.2) < 0.0005",
-    );
+    becomes(&mut browser, &tab, "Math.abs(state.now.force_n - 0.2) < 0.0005");
     assert_eq!(text(&mut browser, &tab, "judged"), "too light");
-    assert!(
-        (number(&mut browser, &tab, "newtons") - 0.2).abs() < 0.001,
-        "without the offset"
-    );
+    assert!((number(&mut browser, &tab, "newtons") - 0.2).abs() < 0.001, "without the offset");
     fits_tablets(&mut browser, &tab, "record-countdown");
     browser.shows(&tab, "Take 1 is being recorded");
-    becomes(
-        &mut browser,
-        &tab,
-        "document.getElementById('judged').textContent === 'too strong'",
-    );
+    becomes(&mut browser, &tab, "document.getElementById('judged').textContent === 'too strong'");
     becomes(&mut browser, &tab, "state.now.level_db.length === 197");
     fits_tablets(&mut browser, &tab, "record-above");
-    assert_eq!(
-        browser.value(&tab, "document.getElementById('finger').className"),
-        "square above"
-    );
+    assert_eq!(browser.value(&tab, "document.getElementById('finger').className"), "square above");
     // The target comes from its beginning, by 80 mm/s; the finger moves, too.
     becomes(&mut browser, &tab, "state.now.motion_s > 1.2");
     let places = "['target', 'finger'].map((id) => Number(document.getElementById(id).dataset.mm)).concat(state.now.motion_s)";
@@ -183,40 +156,22 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     let reason = rejected["verdict"]["reasons"][0].as_str().unwrap();
     assert!(reason.starts_with("force: mean 0."), "{reason}");
     let takes = text(&mut browser, &tab, "takes");
-    assert!(
-        takes.contains(&format!("Take 1 rejected{reason}")),
-        "{takes}"
-    );
+    assert!(takes.contains(&format!("Take 1 rejected{reason}")), "{takes}");
     // What is said of its signals is shown, too.
     let findings = rejected["verdict"]["findings"].as_array().unwrap();
     assert!(!findings.is_empty(), "{rejected}");
-    assert!(
-        findings
-            .iter()
-            .all(|finding| takes.contains(finding.as_str().unwrap())),
-        "{takes}"
-    );
+    assert!(findings.iter().all(|finding| takes.contains(finding.as_str().unwrap())), "{takes}");
     let hint = text(&mut browser, &tab, "hint");
     assert!(
         hint.contains("The take needs: on target 50 % or more, complete sweeps 3 or more."),
         "{hint}"
     );
-    assert_eq!(
-        text(&mut browser, &tab, "attempt"),
-        "attempt 2 of at most 3"
-    );
+    assert_eq!(text(&mut browser, &tab, "attempt"), "attempt 2 of at most 3");
     // Turns at 0 s, 1 s, 2 s and so on of the first take.
-    let beats = browser.value(
-        &tab,
-        "Number(document.getElementById('lamp').dataset.beats)",
-    );
+    let beats = browser.value(&tab, "Number(document.getElementById('lamp').dataset.beats)");
     assert!((6.0..=14.0).contains(&beats.as_f64().unwrap()), "{beats}");
     browser.shows(&tab, "Take 2 is being recorded");
-    becomes(
-        &mut browser,
-        &tab,
-        "document.getElementById('judged').textContent === 'in range'",
-    );
+    becomes(&mut browser, &tab, "document.getElementById('judged').textContent === 'in range'");
     fits_tablets(&mut browser, &tab, "record-take");
     // A page that is closed ends nothing; one that is opened again goes on.
     browser.close(&tab);
@@ -229,10 +184,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     assert!(output.status.success());
     let said: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(said["kept"]["number"], 2);
-    assert_eq!(
-        entries(&place.path("takes")),
-        ["rejected", "vinyl-002.csv", "vinyl-002.json"]
-    );
+    assert_eq!(entries(&place.path("takes")), ["rejected", "vinyl-002.csv", "vinyl-002.json"]);
     // What the page says of the take, and its spectrum, are those of the files.
     let force = &beside("vinyl-002.json")["verdict"]["force_n"];
     let [mean, min, max] =
@@ -245,15 +197,10 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     let expected = crate::common::numbers(&read["magnitude"]);
     assert_eq!((shown.len(), expected.len()), (197, 197));
     for (shown_db, magnitude) in shown.iter().zip(expected) {
-        assert!(
-            (shown_db - 20.0 * magnitude.log10()).abs() < 0.0051,
-            "{shown_db} {magnitude}"
-        );
+        assert!((shown_db - 20.0 * magnitude.log10()).abs() < 0.0051, "{shown_db} {magnitude}");
     }
-    let points = browser.value(
-        &tab,
-        "document.getElementById('kept').getAttribute('d').split(/[ML]/).length - 1",
-    );
+    let points = browser
+        .value(&tab, "document.getElementById('kept').getAttribute('d').split(/[ML]/).length - 1");
     assert_eq!(points, 197);
 }
 
@@ -264,12 +211,7 @@ fn a_sinusoid_appears_at_its_height_and_q_keeps_what_was_recorded() {
         return;
     }
     let place = Place::new();
-    let row = |i: usize| {
-        format!(
-            "{}\n",
-            0.3 + 0.02 * (TAU * 250.0 * i as f64 / RATE as f64).sin()
-        )
-    };
+    let row = |i: usize| format!("{}\n", 0.3 + 0.02 * (TAU * 250.0 * i as f64 / RATE as f64).sin());
     let rows: String = (0..30 * RATE).map(row).collect();
     place.write("source.csv", format!("lateral_n\n{rows}"));
     let (child, url) = command(&place, &["--seconds", "20", "--countdown", "0"]);
@@ -284,13 +226,8 @@ fn a_sinusoid_appears_at_its_height_and_q_keeps_what_was_recorded() {
         const peak = d.reduce((best, p) => (p[1] < best[1] ? p : best)); \
         const { clientWidth: w, clientHeight: h } = document.getElementById('plot'); \
         return [20 * 50 ** ((peak[0] - 44) / (w - 56)), state.top_db - 70 * (peak[1] - 10) / (h - 32)]; })()";
-    let [hz, db] = crate::common::numbers(&browser.value(&tab, height))
-        .try_into()
-        .unwrap();
-    assert!(
-        (hz - 250.0).abs() < 2.0 && (db + 33.98).abs() < 0.5,
-        "drawn at {hz} Hz, {db} dB"
-    );
+    let [hz, db] = crate::common::numbers(&browser.value(&tab, height)).try_into().unwrap();
+    assert!((hz - 250.0).abs() < 2.0 && (db + 33.98).abs() < 0.5, "drawn at {hz} Hz, {db} dB");
     fits_tablets(&mut browser, &tab, "record-no-target");
     std::thread::sleep(Duration::from_millis(1_200));
     browser.press(&tab, "q", 0);
@@ -306,10 +243,7 @@ fn a_sinusoid_appears_at_its_height_and_q_keeps_what_was_recorded() {
 #[test]
 fn other_pages_and_programs_neither_start_nor_stop_a_session() {
     let place = Place::new();
-    place.write(
-        "source.csv",
-        format!("lateral_n\n{}", "0.1\n0.2\n".repeat(RATE)),
-    );
+    place.write("source.csv", format!("lateral_n\n{}", "0.1\n0.2\n".repeat(RATE)));
     let (mut child, url) = command(&place, &["--seconds", "1", "--countdown", "0"]);
     let url = crate::browser::by_number(&url);
     let rest = url.strip_prefix("http://127.0.0.1:").unwrap();
@@ -330,41 +264,21 @@ fn other_pages_and_programs_neither_start_nor_stop_a_session() {
         assert_eq!(post(request, &host, own), "404", "without the token");
         let other = format!("{}{last}/{request}", &path[..path.len() - 2]);
         assert_eq!(post(&other, &host, own), "404", "with another token");
-        assert_eq!(
-            post(&format!("{path}{request}"), "evil.example", own),
-            "403"
-        );
+        assert_eq!(post(&format!("{path}{request}"), "evil.example", own), "403");
         let long = "x".repeat(100_000);
         assert_eq!(post(&format!("{path}{request}"), &host, &long), "413");
         // Whoever has the address may stop, whatever the body.
-        for body in ["", "{", "[1]", "{\"tab\":3}"]
-            .iter()
-            .filter(|_| request != "stop")
-        {
+        for body in ["", "{", "[1]", "{\"tab\":3}"].iter().filter(|_| request != "stop") {
             assert_eq!(post(&format!("{path}{request}"), &host, body), "409");
         }
     }
-    assert_eq!(
-        post(&format!("{path}key"), &host, own),
-        "404",
-        "a request of another page"
-    );
+    assert_eq!(post(&format!("{path}key"), &host, own), "404", "a request of another page");
     assert_eq!(post(&format!("{path}state"), &host, own), "200");
-    assert_eq!(
-        post(&format!("{path}start"), &host, "{\"tab\":\"b\"}"),
-        "409"
-    );
+    assert_eq!(post(&format!("{path}start"), &host, "{\"tab\":\"b\"}"), "409");
     std::thread::sleep(Duration::from_millis(300));
     assert!(child.try_wait().unwrap().is_none());
-    assert_eq!(
-        entries(&place.path("takes")),
-        [""; 0],
-        "nothing was recorded"
-    );
+    assert_eq!(entries(&place.path("takes")), [""; 0], "nothing was recorded");
     assert_eq!(post(&format!("{path}start"), &host, own), "200");
     assert!(child.wait().unwrap().success());
-    assert_eq!(
-        entries(&place.path("takes")),
-        ["vinyl-001.csv", "vinyl-001.json"]
-    );
+    assert_eq!(entries(&place.path("takes")), ["vinyl-001.csv", "vinyl-001.json"]);
 }

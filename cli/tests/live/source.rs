@@ -1,5 +1,5 @@
-//! Sources of third parties on the command line, recorded as a user does it, and the checker of sources: a valid one passes, and
-//! each faulty one fails the right check.
+//! Sources of third parties on the command line, recorded as a user does it, and the checker of
+//! sources: a valid one passes, and each faulty one fails the right check.
 
 use std::path::{Path, PathBuf};
 
@@ -75,7 +75,8 @@ fn each_fault_is_found_by_its_own_check() {
     let good = ridges(&place);
     let sound = checked(&place, &[&bad(&place, &good, "NONE")]);
     assert_eq!(count(&sound, "passed"), CHECKS.len(), "{sound:#}");
-    // Most of the time is spent waiting for a source that keeps to the clock, or for one that has stopped.
+    // Most of the time is spent waiting for a source that keeps to the clock, or for one that has
+    // stopped.
     for faults in FAULTS.chunks(8) {
         std::thread::scope(|scope| {
             for fault in faults {
@@ -109,13 +110,12 @@ fn is_found_by_its_own_check(
 /// The table of the specification lists the checks, in their order and in their words.
 #[test]
 fn the_guarantees_of_the_specification_are_those_that_are_checked() {
-    let checks = CHECKS
-        .iter()
-        .map(|check| (check.name, check.summary, check.needs));
+    let checks = CHECKS.iter().map(|check| (check.name, check.summary, check.needs));
     native::guarantees_are_checked("spec/source-abi-1.md", checks);
 }
 
-/// A third party's source is recorded, every sample as the library made it, and the recording is fitted.
+/// A third party's source is recorded, every sample as the library made it, and the recording is
+/// fitted.
 #[cfg(feature = "lab")]
 #[test]
 fn the_ridges_are_recorded_and_fitted() {
@@ -159,18 +159,11 @@ fn the_ridges_are_recorded_and_fitted() {
     for (frame, line) in lines.enumerate() {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
         let way_mm = 80.0 * frame as f64 / 5000.0 % 120.0;
-        let x_mm = if way_mm >= 60.0 {
-            120.0 - way_mm
-        } else {
-            way_mm
-        };
+        let x_mm = if way_mm >= 60.0 { 120.0 - way_mm } else { way_mm };
         let side = if way_mm >= 60.0 { 1.0 } else { -1.0 };
         let ripple = 0.2 * (std::f64::consts::TAU * x_mm / 0.8).sin();
         let expected = 0.5 * 0.4 * (ripple + side);
-        assert!(
-            (cells[force] - expected).abs() < 1e-9,
-            "frame {frame}: {line}"
-        );
+        assert!((cells[force] - expected).abs() < 1e-9, "frame {frame}: {line}");
         assert!((cells[normal] - 0.4).abs() < 1e-12 && cells[speed] == 80.0);
         rows += 1;
     }
@@ -201,20 +194,10 @@ fn what_is_no_source_is_refused_with_its_reason() {
     let rate = bad(&place, &good, "RATE_NAN");
     let good = good.to_str().unwrap();
     let cases = [
-        (
-            strip.to_str().unwrap(),
-            "ridges",
-            1,
-            "it is not an htex source",
-        ),
+        (strip.to_str().unwrap(), "ridges", 1, "it is not an htex source"),
         ("no-such.so", "ridges", 1, "no-such.so"),
         (good, "ridges:0", 2, "`0` is not a number from 0.01 to 10"),
-        (
-            good,
-            "rigdes:1",
-            2,
-            "no source `rigdes`; there are ridges, file, daq",
-        ),
+        (good, "rigdes:1", 2, "no source `rigdes`; there are ridges, file, daq"),
         (&nan, "ridges:1", 1, "of channel `speed` is NaN"),
         (&many, "ridges:1", 1, "it delivered"),
         (&rate, "ridges:1", 1, "stream: "),
@@ -236,10 +219,7 @@ fn what_is_no_source_is_refused_with_its_reason() {
             "takes",
         ]);
         let error = run.error();
-        assert!(
-            run.code() == code && error.contains(words),
-            "{words}: {error}"
-        );
+        assert!(run.code() == code && error.contains(words), "{words}: {error}");
     }
 }
 
@@ -258,22 +238,10 @@ fn sources_are_listed_and_shown() {
     );
     assert_eq!(first["endpoints"][0]["setting"], "spacing_mm");
     assert_eq!(first["settings"][3]["name"], "rate_hz");
-    assert!(
-        list["notes"][0]
-            .as_str()
-            .unwrap()
-            .starts_with("source org.example.ridges (")
-    );
-    let ids: Vec<&Value> = list["devices"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|d| &d["id"])
-        .collect();
+    assert!(list["notes"][0].as_str().unwrap().starts_with("source org.example.ridges ("));
+    let ids: Vec<&Value> = list["devices"].as_array().unwrap().iter().map(|d| &d["id"]).collect();
     assert!(ids.contains(&&"org.htex.file".into()));
-    let text = place
-        .run(&[&["device", "list"], &twice[..]].concat())
-        .text();
+    let text = place.run(&[&["device", "list"], &twice[..]].concat()).text();
     for words in [
         "devices\n  file ",
         "sources\n  ridges ",

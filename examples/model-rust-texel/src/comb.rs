@@ -7,8 +7,8 @@ use crate::{AMPLITUDE, JITTER, PITCH, SPEED};
 
 /// Most harmonics.
 pub(crate) const HARMONICS: usize = 48;
-/// Lines of one harmonic, at the 10, 30, 50, 70 and 90 % quantiles of the normal distribution: unequal distances, so
-/// that their sum is not periodic.
+/// Lines of one harmonic, at the 10, 30, 50, 70 and 90 % quantiles of the normal distribution:
+/// unequal distances, so that their sum is not periodic.
 const QUANTILES: [f64; 5] = [
     -1.281_551_565_544_6,
     -0.524_400_512_708_04,
@@ -18,11 +18,12 @@ const QUANTILES: [f64; 5] = [
 ];
 /// Most lines in total.
 pub(crate) const LINES: usize = HARMONICS * QUANTILES.len();
-/// Least spread, hertz: closer lines would beat so slowly that the level of a minute is not constant.
+/// Least spread, hertz: closer lines would beat so slowly that the level of a minute is not
+/// constant.
 const LEAST_SPREAD_HZ: f64 = 1.0;
 
-/// The comb in a band, at the speed of the recording. Lines closer than a bin to an edge are silent, because the window
-/// would spread them outside the band.
+/// The comb in a band, at the speed of the recording. Lines closer than a bin to an edge are
+/// silent, because the window would spread them outside the band.
 pub(crate) struct Comb<'a> {
     fundamental_hz: f64,
     jitter: f64,
@@ -61,7 +62,8 @@ impl<'a> Comb<'a> {
         ]))
     }
 
-    /// Calls `line(index, frequency_hz, amplitude)` for each line, including those outside the band.
+    /// Calls `line(index, frequency_hz, amplitude)` for each line, including those outside the
+    /// band.
     fn for_each_line(&self, mut line: impl FnMut(usize, f64, f64)) {
         let share = 1.0 / libm::sqrt(QUANTILES.len() as f64);
         for (i, &amplitude) in self.amplitude.iter().take(HARMONICS).enumerate() {
@@ -90,8 +92,8 @@ impl<'a> Comb<'a> {
     }
 }
 
-/// Gain of a line at this frequency: 0 within a bin of the band's edges, and 1 from two bins on, so that lines enter and
-/// leave the band without a step when the speed changes.
+/// Gain of a line at this frequency: 0 within a bin of the band's edges, and 1 from two bins on, so
+/// that lines enter and leave the band without a step when the speed changes.
 pub(crate) fn heard(frequency_hz: f64, band: Band) -> f64 {
     let inside_hz = (frequency_hz - band.low_hz).min(band.high_hz - frequency_hz);
     (inside_hz / GRID_HZ - 1.0).clamp(0.0, 1.0)

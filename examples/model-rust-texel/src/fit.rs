@@ -19,8 +19,8 @@ const STEP_HZ: f64 = 0.25;
 const NEARLY: f64 = 0.85;
 /// Largest spread that can be distinguished from noise around the lines.
 const MOST_JITTER: f64 = 0.05;
-/// Variance of the power of a single line over the bins around it, Hz²: of three bins, two have half the
-/// amplitude at a distance of 5 Hz.
+/// Variance of the power of a single line over the bins around it, Hz²: of three bins, two have
+/// half the amplitude at a distance of 5 Hz.
 const WINDOW_VARIANCE: f64 = 2.0 * 0.25 * 25.0 / 1.5;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -114,8 +114,8 @@ impl Power<'_> {
         p + (q - p) * (frequency_hz - f) / (g - f)
     }
 
-    /// Power at the multiples of a frequency minus power between them. For half of the true fundamental, or its double,
-    /// both are equal.
+    /// Power at the multiples of a frequency minus power between them. For half of the true
+    /// fundamental, or its double, both are equal.
     fn comb_sum(&self, fundamental_hz: f64) -> f64 {
         (1..=HARMONICS)
             .map(|k| k as f64 * fundamental_hz)
@@ -178,7 +178,8 @@ fn higher(best: (f64, Option<f64>), (sum, f): (f64, f64)) -> (f64, Option<f64>) 
     if sum > best.0 { (sum, Some(f)) } else { best }
 }
 
-/// The relative spread that explains the distance of the power from the harmonics, without the window's part.
+/// The relative spread that explains the distance of the power from the harmonics, without the
+/// window's part.
 fn jitter(harmonics: &[Harmonic], fundamental_hz: f64) -> f64 {
     let (mut variance, mut weight) = (0.0, 0.0);
     for (i, h) in harmonics.iter().enumerate() {

@@ -1,10 +1,10 @@
-//! Single-pitch texel: a surface of one repeating element, such as a grating or a weave. A finger that slides over
-//! a pitch of `pitch_mm` at a speed vibrates at the fundamental `speed/pitch` and its
-//! multiples.
+//! Single-pitch texel: a surface of one repeating element, such as a grating or a weave. A finger
+//! that slides over a pitch of `pitch_mm` at a speed vibrates at the fundamental `speed/pitch` and
+//! its multiples.
 //!
-//! Real pitches are not exactly constant: each harmonic is a small cluster of sinusoids over the path, whose width is
-//! `jitter`. The voice receives the finger's position (`htex.motion/1`), so that the signal is a function of the position
-//! in both directions.
+//! Real pitches are not exactly constant: each harmonic is a small cluster of sinusoids over the
+//! path, whose width is `jitter`. The voice receives the finger's position (`htex.motion/1`), so
+//! that the signal is a function of the position in both directions.
 #![no_std]
 
 extern crate alloc;
@@ -88,8 +88,8 @@ impl Model for Texel {
         Ok(())
     }
 
-    /// Interpolates pitch, speed, force and harmonics linearly; a harmonic that a set lacks has amplitude 0
-    /// there.
+    /// Interpolates pitch, speed, force and harmonics linearly; a harmonic that a set lacks has
+    /// amplitude 0 there.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -112,7 +112,8 @@ impl Model for Texel {
                 .for_each(|(sum, a)| *sum += weight * a);
         }
         mixed[AMPLITUDE] = longest.unwrap_or(0) as f64;
-        // The sum of weights has a rounding error, which must not move parameters out of their ranges.
+        // The sum of weights has a rounding error, which must not move parameters out of their
+        // ranges.
         let amplitudes = mixed[AMPLITUDE + 1..].iter_mut();
         amplitudes.for_each(|a| *a = a.min(1.0));
         mixed[PITCH] = mixed[PITCH].clamp(PITCH_MM.0, PITCH_MM.1);

@@ -95,8 +95,9 @@ impl Path {
         step_mm
     }
 
-    /// Position after a number of samples, mm: the initial differences in position and speed decrease to 0 along a
-    /// cubic Hermite curve. A jump is not part of the path, which continues unchanged.
+    /// Position after a number of samples, mm: the initial differences in position and speed
+    /// decrease to 0 along a cubic Hermite curve. A jump is not part of the path, which continues
+    /// unchanged.
     fn at_mm(&self, samples: f64) -> f64 {
         let n = self.age + samples;
         let told_mm = self.told_mm + n * self.told_step_mm;

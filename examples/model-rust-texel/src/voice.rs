@@ -65,8 +65,8 @@ struct Ridge {
     wanted: (f64, f64),
 }
 
-/// The surface and the finger on it. Phases are proportional to the position, so that samples are a function of the
-/// position in both directions, until a retune changes the surface.
+/// The surface and the finger on it. Phases are proportional to the position, so that samples are a
+/// function of the position in both directions, until a retune changes the surface.
 pub struct TexelVoice {
     band: Band,
     rate_hz: f64,
@@ -231,7 +231,8 @@ impl MotionVoice for TexelVoice {
     }
 }
 
-/// Sine of an angle of 0 to 1 cycle, by its series: within 1e-7, and bit-identical on every machine.
+/// Sine of an angle of 0 to 1 cycle, by its series: within 1e-7, and bit-identical on every
+/// machine.
 fn sine(cycles: f64) -> f64 {
     let centred = if cycles < 0.5 { cycles } else { cycles - 1.0 };
     let folded = if centred > 0.25 {

@@ -66,10 +66,7 @@ impl Card {
     pub fn create(&mut self) -> Answer<usize> {
         self.plugged()?;
         self.made += 1;
-        let task = Task {
-            regenerates: true,
-            ..Task::default()
-        };
+        let task = Task { regenerates: true, ..Task::default() };
         self.tasks.insert(self.made, task);
         Ok(self.made)
     }
@@ -158,11 +155,7 @@ impl Card {
         if clocked && !running && samples.len() > space {
             return Err(codes::NO_MORE_SPACE);
         }
-        let taken = if clocked {
-            samples.len().min(space)
-        } else {
-            samples.len()
-        };
+        let taken = if clocked { samples.len().min(space) } else { samples.len() };
         task.buffer.extend(&samples[..taken]);
         if start && !running {
             self.start(id)?;
@@ -199,8 +192,8 @@ impl Card {
         self.tasks.get_mut(&id).ok_or(codes::INVALID_TASK)
     }
 
-    /// Lets the clock take the samples that are due; `step_s` is the step of a clock that advances by
-    /// calls.
+    /// Lets the clock take the samples that are due; `step_s` is the step of a clock that advances
+    /// by calls.
     fn advance(&mut self, id: usize, step_s: f64) -> Answer<()> {
         self.plugged()?;
         let (by_calls, stands, left) = (self.by_calls, self.stands, self.left());
@@ -251,10 +244,7 @@ impl Card {
         let Some(folder) = &self.record else { return };
         let lines: String = volts.iter().map(|v| format!("{v}\n")).collect();
         let name = format!("{}.txt", CHANNELS[channel].replace('/', "_"));
-        let file = File::options()
-            .create(true)
-            .append(true)
-            .open(folder.join(name));
+        let file = File::options().create(true).append(true).open(folder.join(name));
         let written = file.and_then(|mut file| file.write_all(lines.as_bytes()));
         if let Err(error) = written {
             eprintln!("nidaqmx-simulated: {}: {error}", folder.display());

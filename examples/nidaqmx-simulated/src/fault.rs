@@ -44,7 +44,8 @@ fn state<T>(run: impl FnOnce(&mut State) -> T) -> T {
     run(state.get_or_insert_with(State::default))
 }
 
-/// Reads `FUNCTION:CALL:KIND`, such as `DAQmxStartTask:2:error=-200077`; `CALL+` also means the calls after it.
+/// Reads `FUNCTION:CALL:KIND`, such as `DAQmxStartTask:2:error=-200077`; `CALL+` also means the
+/// calls after it.
 pub fn plan(text: &str) {
     match parse(text) {
         Some(plan) => state(|s| {
@@ -56,7 +57,8 @@ pub fn plan(text: &str) {
     }
 }
 
-/// Faults act, and their calls are counted, only while there is such a file: processes that share a plan begin and end it together.
+/// Faults act, and their calls are counted, only while there is such a file: processes that share a
+/// plan begin and end it together.
 pub fn only_while(file: &str) {
     state(|s| s.while_there = Some(file.into()));
 }
@@ -113,7 +115,9 @@ pub fn short_write() -> Option<i32> {
         let count = *s.calls.get("DAQmxWriteAnalogF64")?;
         let is_due = count == plan.call || (plan.lasts && count > plan.call);
         match plan.kind {
-            FaultKind::Short(code) if plan.function == "DAQmxWriteAnalogF64" && is_due => Some(code),
+            FaultKind::Short(code) if plan.function == "DAQmxWriteAnalogF64" && is_due => {
+                Some(code)
+            }
             _ => None,
         }
     })

@@ -57,9 +57,7 @@ pub unsafe extern "system" fn DAQmxCreateAIVoltageChan(
         return code;
     }
     let channels = unsafe { text(channels) };
-    status(with(|c| {
-        c.add_inputs(task as usize, &channels, min_v, max_v)
-    }))
+    status(with(|c| c.add_inputs(task as usize, &channels, min_v, max_v)))
 }
 
 #[unsafe(no_mangle)]
@@ -98,11 +96,7 @@ pub unsafe extern "system" fn DAQmxReadAnalogF64(
     }
     let (since, mut samples, mut all) = (Instant::now(), Vec::new(), 0);
     let answer = loop {
-        let wanted = if frames < 0 {
-            frames
-        } else {
-            frames - all as i32
-        };
+        let wanted = if frames < 0 { frames } else { frames - all as i32 };
         match with(|c| c.read(task as usize, wanted, &mut samples)) {
             Ok(got) => all += got,
             Err(code) => break Err(code),

@@ -1,10 +1,10 @@
 //! The C functions of NI-DAQmx that analog output and input need, over a simulated PCIe-6321.
 //!
-//! Each function has the arguments and results that National Instruments' `NIDAQmx.h` states. The card's
-//! output is recorded; see README.md.
+//! Each function has the arguments and results that National Instruments' `NIDAQmx.h` states. The
+//! card's output is recorded; see README.md.
 //!
-//! It is a real library, loaded as NI's is: symbols, types and error codes are tested, and people without the card can
-//! play to it.
+//! It is a real library, loaded as NI's is: symbols, types and error codes are tested, and people
+//! without the card can play to it.
 #![allow(clippy::missing_safety_doc, clippy::too_many_arguments)] // The header states both.
 
 mod card;
@@ -67,9 +67,7 @@ unsafe fn store<T>(answer: Result<T, i32>, to: *mut T) -> i32 {
 }
 
 unsafe fn text(from: *const c_char) -> String {
-    unsafe { CStr::from_ptr(from) }
-        .to_string_lossy()
-        .into_owned()
+    unsafe { CStr::from_ptr(from) }.to_string_lossy().into_owned()
 }
 
 /// Copies a string; for a buffer of size 0, returns the size needed, as the driver does.
@@ -99,15 +97,12 @@ fn rows(path: &str) -> Vec<Vec<f64>> {
         eprintln!("nidaqmx-simulated: {path}: {error}");
         String::new()
     });
-    let row = |line: &str| {
-        line.split(',')
-            .map(|cell| cell.trim().parse().unwrap_or(0.0))
-            .collect()
-    };
+    let row = |line: &str| line.split(',').map(|cell| cell.trim().parse().unwrap_or(0.0)).collect();
     text.lines().map(row).collect()
 }
 
-/// Changes a setting of the simulation: `record`, `input`, `loopback`, `late_s`, `clock`, `unplug_after`, `fault`, `fault_while`. Not part of NI-DAQmx.
+/// Changes a setting of the simulation: `record`, `input`, `loopback`, `late_s`, `clock`,
+/// `unplug_after`, `fault`, `fault_while`. Not part of NI-DAQmx.
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn nidaqmx_simulated_set(name: *const c_char, value: *const c_char) {
     let (name, value) = unsafe { (text(name), text(value)) };
@@ -191,9 +186,7 @@ pub unsafe extern "system" fn DAQmxCreateAOVoltageChan(
         return code;
     }
     let channel = unsafe { text(channel) };
-    status(with(|c| {
-        c.add_channel(task as usize, &channel, min_v, max_v)
-    }))
+    status(with(|c| c.add_channel(task as usize, &channel, min_v, max_v)))
 }
 
 #[unsafe(no_mangle)]
@@ -224,9 +217,7 @@ pub extern "system" fn DAQmxSetWriteRegenMode(task: *mut c_void, mode: i32) -> i
     if let Some(code) = fault::injected("DAQmxSetWriteRegenMode") {
         return code;
     }
-    status(with(|c| {
-        c.set_regenerates(task as usize, mode != DO_NOT_ALLOW_REGEN)
-    }))
+    status(with(|c| c.set_regenerates(task as usize, mode != DO_NOT_ALLOW_REGEN)))
 }
 
 #[unsafe(no_mangle)]

@@ -1,7 +1,8 @@
 //! Estimation of the filter coefficients.
 //!
-//! No resonance is narrower than a bin: the spectrum cannot show one, and such a resonance, which Yule–Walker finds for
-//! a tone, takes hours to reach its level and is misread by the bins by tens of decibels.
+//! No resonance is narrower than a bin: the spectrum cannot show one, and such a resonance, which
+//! Yule–Walker finds for a tone, takes hours to reach its level and is misread by the bins by tens
+//! of decibels.
 
 use alloc::vec::Vec;
 
@@ -18,15 +19,13 @@ const RATE: usize = 1;
 const METHOD: usize = 2;
 /// Equivalent noise bandwidth of a bin, hertz: magnitude² = 2 · P · this.
 const BIN_ENBW_HZ: f64 = 1.5 * GRID_HZ;
-/// Half-power width of the narrowest resonance of a fit, hertz. A spectrum in bins cannot resolve narrower
-/// ones, and their level cannot be measured from bins.
+/// Half-power width of the narrowest resonance of a fit, hertz. A spectrum in bins cannot resolve
+/// narrower ones, and their level cannot be measured from bins.
 const NARROWEST_HZ: f64 = GRID_HZ;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     if input.magnitude.iter().all(|&m| m == 0.0) {
-        return Err(Error::cannot_fit(
-            "the spectrum is silent: there is no filter to find",
-        ));
+        return Err(Error::cannot_fit("the spectrum is silent: there is no filter to find"));
     }
     let order = input.options[ORDER] as usize;
     // A band that ends below the tactile one was recorded at twice its upper edge.
@@ -51,10 +50,7 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
         .collect();
     let model = levinson_durbin(&lags, order);
     let coefficients = resolved(&model.coefficients, rate_hz);
-    let filter = Filter {
-        coefficients: &coefficients,
-        rate_hz,
-    };
+    let filter = Filter { coefficients: &coefficients, rate_hz };
     let level = filter.level(input.band)?;
     if coefficients != model.coefficients {
         // The error belongs to the filter before it was changed.
@@ -65,10 +61,7 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
     }
     // One-sided P = 2 E |H|² / rate, magnitude² = 2 P ENBW.
     let gain = htex_dsp::root::sqrt(4.0 * model.error * BIN_ENBW_HZ / rate_hz);
-    Ok(Fit {
-        parameters: flat(&coefficients, rate_hz),
-        level_rms: largest * gain * level,
-    })
+    Ok(Fit { parameters: flat(&coefficients, rate_hz), level_rms: largest * gain * level })
 }
 
 /// Autocorrelation at `lag_s` seconds, from the power in the bins below the Nyquist frequency.
@@ -82,8 +75,8 @@ fn autocorrelation(input: &FitInput<'_>, largest: f64, lag_s: f64, rate_hz: f64)
         .sum()
 }
 
-/// Estimates from the signal at the model rate. Overlap-adding windowed segments changes their power, so the
-/// level is that of the recording in the band.
+/// Estimates from the signal at the model rate. Overlap-adding windowed segments changes their
+/// power, so the level is that of the recording in the band.
 fn from_signal(
     input: &FitInput<'_>,
     rate_hz: f64,
@@ -100,15 +93,9 @@ fn from_signal(
     }
     let model = estimate(&resampled(input, rate_hz, scale)?);
     let coefficients = resolved(&model.coefficients, rate_hz);
-    let filter = Filter {
-        coefficients: &coefficients,
-        rate_hz,
-    };
+    let filter = Filter { coefficients: &coefficients, rate_hz };
     filter.level(input.band)?;
-    Ok(Fit {
-        parameters: flat(&coefficients, rate_hz),
-        level_rms: recorded_level(input),
-    })
+    Ok(Fit { parameters: flat(&coefficients, rate_hz), level_rms: recorded_level(input) })
 }
 
 /// RMS of the recording in the band.

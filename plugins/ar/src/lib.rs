@@ -56,20 +56,10 @@ impl Model for Autoregression {
             "A_1 to A_p of x[t] = sum A_i x[t-i] + e[t], at the model rate.",
         )
         .stored(Store::F64),
-        StaticField::scalar(
-            "model_rate_hz",
-            "Hz",
-            (50.0, 1e6),
-            "Rate at which the filter runs.",
-        ),
+        StaticField::scalar("model_rate_hz", "Hz", (50.0, 1e6), "Rate at which the filter runs."),
     ])
     .options(&[
-        StaticOption::integer(
-            "order",
-            (1, MAX_ORDER as u32),
-            6,
-            "Filter order p (paper: six).",
-        ),
+        StaticOption::integer("order", (1, MAX_ORDER as u32), 6, "Filter order p (paper: six)."),
         StaticOption::number(
             "rate_hz",
             "Hz",
@@ -97,11 +87,7 @@ impl Model for Autoregression {
         let filter = Filter::new(parameters)?;
         let level = filter.level(band)?;
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-            *m = if band.contains(f) {
-                filter.at(f) / level
-            } else {
-                0.0
-            };
+            *m = if band.contains(f) { filter.at(f) / level } else { 0.0 };
         }
         Ok(())
     }
@@ -118,15 +104,9 @@ impl Model for Autoregression {
         }
         let rate_hz = sets[0].scalar(MODEL_RATE);
         if sets.iter().any(|set| set.scalar(MODEL_RATE) != rate_hz) {
-            return Err(Error::argument(
-                "filters of different model rates cannot be mixed",
-            ));
+            return Err(Error::argument("filters of different model rates cannot be mixed"));
         }
-        let order = sets
-            .iter()
-            .map(|s| s.list(COEFFICIENTS).len())
-            .max()
-            .unwrap_or(0);
+        let order = sets.iter().map(|s| s.list(COEFFICIENTS).len()).max().unwrap_or(0);
         let mut all = [[0.0; MAX_ORDER]; 4];
         let [mixed, padded, lines, coefficients] = all.each_mut().map(|all| &mut all[..order]);
         for (set, &weight) in sets.iter().zip(weights) {
@@ -184,11 +164,7 @@ impl<'a> Filter<'a> {
             coefficients: parameters.list(COEFFICIENTS),
             rate_hz: parameters.scalar(MODEL_RATE),
         };
-        if is_stable(filter.coefficients) {
-            Ok(filter)
-        } else {
-            Err(unstable())
-        }
+        if is_stable(filter.coefficients) { Ok(filter) } else { Err(unstable()) }
     }
 
     /// Magnitude `|H|`; zero above the Nyquist frequency of the model rate.
@@ -209,7 +185,5 @@ fn finite_level(level: f64) -> Result<f64, Error> {
     if level > 0.0 && level.is_finite() {
         return Ok(level);
     }
-    Err(Error::parameters(
-        "the filter has no finite energy in the band",
-    ))
+    Err(Error::parameters("the filter has no finite energy in the band"))
 }

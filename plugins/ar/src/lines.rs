@@ -1,7 +1,7 @@
 //! A cache of line spectral frequencies of filters.
 //!
-//! Computing them takes about ten times as long as the rest of a parameter change, and a motion between
-//! conditions mixes the same few filters repeatedly.
+//! Computing them takes about ten times as long as the rest of a parameter change, and a motion
+//! between conditions mixes the same few filters repeatedly.
 
 use htex_dsp::line_spectrum::lines_of_reflection;
 use htex_dsp::linear_prediction::step_down_in_place;
@@ -32,20 +32,14 @@ struct Filter {
 
 impl Kept {
     const NONE: Self = {
-        let none = Filter {
-            order: 0,
-            coefficients: [0.0; KEPT_ORDER],
-            lines: [0.0; KEPT_ORDER],
-        };
-        Self {
-            filters: [[none; PLACES]; HASHES],
-            oldest: [0; HASHES],
-        }
+        let none = Filter { order: 0, coefficients: [0.0; KEPT_ORDER], lines: [0.0; KEPT_ORDER] };
+        Self { filters: [[none; PLACES]; HASHES], oldest: [0; HASHES] }
     };
 }
 
-/// Writes the line spectral frequencies of a filter, radians, as many as it has coefficients; false if it is
-/// not stable. The result does not depend on whether they are cached. Does not allocate or wait.
+/// Writes the line spectral frequencies of a filter, radians, as many as it has coefficients; false
+/// if it is not stable. The result does not depend on whether they are cached. Does not allocate or
+/// wait.
 pub(crate) fn write_lines(coefficients: &[f64], lines: &mut [f64]) -> bool {
     let order = coefficients.len();
     let kept = match (1..=KEPT_ORDER).contains(&order) {

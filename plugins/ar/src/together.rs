@@ -47,7 +47,8 @@ fn alone(voices: &mut [&mut AutoregressionVoice; VOICES], rows: [&mut [f32]; VOI
     }
 }
 
-/// Renders whole groups of each voice; returns false without effect if the filters cannot run side by side.
+/// Renders whole groups of each voice; returns false without effect if the filters cannot run side
+/// by side.
 fn groups(
     voices: &mut [&mut AutoregressionVoice; VOICES],
     rows: &mut [&mut [f32]; VOICES],
@@ -68,9 +69,7 @@ fn groups(
     let mut room = [Quad([0.0; VOICES]); BLOCK * GROUP];
     for start in (0..frames).step_by(room.len()) {
         let block = &mut room[..(frames - start).min(BLOCK * GROUP)];
-        let [a, b, c, d] = rows
-            .each_mut()
-            .map(|row| &mut row[start..start + block.len()]);
+        let [a, b, c, d] = rows.each_mut().map(|row| &mut row[start..start + block.len()]);
         Quad::gather([a, b, c, d], gains, block);
         filters.process(block.as_chunks_mut().0);
         edges.process(block.as_chunks_mut().0);

@@ -14,8 +14,8 @@ use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, finite_level, together,
 
 /// Duration of a change of parameters, seconds.
 const RAMP_S: f64 = 0.010;
-/// Duration rendered before the first sample, seconds, with a limit in samples: the filter's transient has
-/// decayed by then.
+/// Duration rendered before the first sample, seconds, with a limit in samples: the filter's
+/// transient has decayed by then.
 const SETTLE_S: f64 = 0.5;
 const SETTLE_SAMPLES: f64 = 4096.0;
 /// Groups of samples per step.
@@ -124,8 +124,7 @@ impl AutoregressionVoice {
 
     /// Limits the filter's output to the band.
     fn finish(&mut self, block: &mut [Group], out: &mut [[f32; GROUP]]) {
-        self.edges
-            .process(block.as_flattened_mut().as_chunks_mut().0);
+        self.edges.process(block.as_flattened_mut().as_chunks_mut().0);
         let out = out.as_flattened_mut().iter_mut();
         for (sample, x) in out.zip(block.as_flattened()) {
             *sample = *x as f32;
@@ -137,17 +136,9 @@ impl AutoregressionVoice {
         self.ramp_left -= 1;
         let done = self.ramp_left == 0;
         for (i, k) in self.filter.reflection_mut().iter_mut().enumerate() {
-            *k = if done {
-                self.target.reflection[i]
-            } else {
-                *k + self.step.reflection[i]
-            };
+            *k = if done { self.target.reflection[i] } else { *k + self.step.reflection[i] };
         }
-        self.gain = if done {
-            self.target.gain
-        } else {
-            self.gain + self.step.gain
-        };
+        self.gain = if done { self.target.gain } else { self.gain + self.step.gain };
     }
 }
 

@@ -28,11 +28,7 @@ struct Polynomial {
 }
 
 impl Polynomial {
-    const ONE: Self = Self {
-        coefficients: [0.0; MAX_ORDER],
-        cosines: [0.0; MAX_ORDER],
-        order: 0,
-    };
+    const ONE: Self = Self { coefficients: [0.0; MAX_ORDER], cosines: [0.0; MAX_ORDER], order: 0 };
 
     /// Becomes that of some lines; false if there are too many.
     fn set(&mut self, lines: &[f64]) -> bool {
@@ -79,8 +75,8 @@ impl Filter {
         Ok(filter)
     }
 
-    /// Becomes the filter of some parameters, of the same rate. Copies no filter: voices do this for each motion. After an error it is
-    /// none.
+    /// Becomes the filter of some parameters, of the same rate. Copies no filter: voices do this
+    /// for each motion. After an error it is none.
     pub(crate) fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         self.set_lines(parameters.list(POLE_LINES), parameters.list(ZERO_LINES))
     }
@@ -152,9 +148,7 @@ fn finite_level(level: f64) -> Result<f64, Error> {
     if level > 0.0 && level.is_finite() {
         return Ok(level);
     }
-    Err(Error::parameters(
-        "the filter has no finite energy in the band",
-    ))
+    Err(Error::parameters("the filter has no finite energy in the band"))
 }
 
 pub(crate) fn unstable() -> Error {

@@ -1,9 +1,10 @@
 //! Estimation of poles and zeros from a power spectrum.
 //!
-//! The poles of a spectrum that is divided by that of the zeros are found by Yule–Walker, and the zeros as the poles of the inverse
-//! spectrum, multiplied by that of the poles; in turns, since each depends on the other. Of all rounds the one is kept under which the
-//! spectrum is likeliest as that of Gaussian noise (the Itakura–Saito distance, whatever the level). No resonance is narrower than a
-//! bin, as in AR: the spectrum cannot show one.
+//! The poles of a spectrum that is divided by that of the zeros are found by Yule–Walker, and the
+//! zeros as the poles of the inverse spectrum, multiplied by that of the poles; in turns, since
+//! each depends on the other. Of all rounds the one is kept under which the spectrum is likeliest
+//! as that of Gaussian noise (the Itakura–Saito distance, whatever the level). No resonance is
+//! narrower than a bin, as in AR: the spectrum cannot show one.
 
 use alloc::vec::Vec;
 
@@ -23,15 +24,14 @@ const RATE: usize = 2;
 const NARROWEST_HZ: f64 = GRID_HZ;
 /// Rounds in which poles and zeros are estimated.
 const ROUNDS: usize = 12;
-/// Least power of a bin, relative to the largest: the inverse of an empty bin would be all there is.
+/// Least power of a bin, relative to the largest: the inverse of an empty bin would be all there
+/// is.
 const FLOOR: f64 = 1e-8;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     let largest = input.magnitude.iter().fold(0.0f64, |a, &m| a.max(m));
     if largest == 0.0 {
-        return Err(Error::cannot_fit(
-            "the spectrum is silent: there is no filter to find",
-        ));
+        return Err(Error::cannot_fit("the spectrum is silent: there is no filter to find"));
     }
     // A band that ends below the tactile one was recorded at twice its upper edge.
     let rate_hz = if input.band.high_hz < Band::TACTILE.high_hz {
@@ -43,22 +43,13 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     let orders = [POLES, ZEROS].map(|option| input.options[option] as usize);
     let (poles, zeros) = spectrum.likeliest(orders);
     let (poles, zeros) = (stored_lines(&poles)?, stored_lines(&zeros)?);
-    let parameters = [
-        &[poles.len() as f64],
-        &poles[..],
-        &[zeros.len() as f64],
-        &zeros,
-        &[rate_hz],
-    ]
-    .concat();
+    let parameters =
+        [&[poles.len() as f64], &poles[..], &[zeros.len() as f64], &zeros, &[rate_hz]].concat();
     let filter = Filter::of_lines(&poles, &zeros, rate_hz).map_err(|_| too_close())?;
     filter.level(input.band)?;
     // Relative to the largest bin, so that no power over- or underflows.
     let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
-    Ok(Fit {
-        parameters,
-        level_rms: largest * level_rms(&relative),
-    })
+    Ok(Fit { parameters, level_rms: largest * level_rms(&relative) })
 }
 
 /// The lines of a stable polynomial as a file holds them.
@@ -77,12 +68,13 @@ fn too_close() -> Error {
     )
 }
 
-/// The power of the bins up to the Nyquist frequency, relative to the largest. Bins below the band have that of its first bin: as
-/// empty ones they would draw zeros.
+/// The power of the bins up to the Nyquist frequency, relative to the largest. Bins below the band
+/// have that of its first bin: as empty ones they would draw zeros.
 struct Spectrum {
     frequency_hz: Vec<f64>,
     power: Vec<f64>,
-    /// Part of each bin in correlations: half at 0 Hz and at the Nyquist frequency, whose mirror images are themselves.
+    /// Part of each bin in correlations: half at 0 Hz and at the Nyquist frequency, whose mirror
+    /// images are themselves.
     part: Vec<f64>,
     rate_hz: f64,
 }
@@ -100,12 +92,7 @@ impl Spectrum {
         let (frequency_hz, power): (Vec<f64>, _) = all.map(|(hz, m)| (hz, power(m))).unzip();
         let is_mirrored = |hz: &f64| *hz > 0.0 && *hz < 0.5 * rate_hz;
         let part = |hz: &f64| if is_mirrored(hz) { 1.0 } else { 0.5 };
-        Self {
-            part: frequency_hz.iter().map(part).collect(),
-            frequency_hz,
-            power,
-            rate_hz,
-        }
+        Self { part: frequency_hz.iter().map(part).collect(), frequency_hz, power, rate_hz }
     }
 
     /// The likeliest poles and zeros of these orders.
@@ -149,8 +136,9 @@ impl Spectrum {
         within_radius(&levinson_durbin(&lags, order).coefficients, radius)
     }
 
-    /// The Itakura–Saito distance of the spectrum from a filter's at its best level, up to a constant: of the ratios of their powers, the
-    /// logarithm of the mean less the mean of the logarithms.
+    /// The Itakura–Saito distance of the spectrum from a filter's at its best level, up to a
+    /// constant: of the ratios of their powers, the logarithm of the mean less the mean of the
+    /// logarithms.
     fn distance(&self, denominator: &[f64], numerator: &[f64]) -> f64 {
         let filter = denominator.iter().zip(numerator).map(|(d, n)| d / n);
         let ratios: Vec<f64> = self.power.iter().zip(filter).map(|(p, h)| p / h).collect();

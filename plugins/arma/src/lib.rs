@@ -1,8 +1,9 @@
-//! Poles and zeros: the spectrum is that of white noise through a filter with poles and zeros (ARMA; the models of the Penn
-//! Haptic Texture Toolkit, Culbertson et al. 2014).
+//! Poles and zeros: the spectrum is that of white noise through a filter with poles and zeros
+//! (ARMA; the models of the Penn Haptic Texture Toolkit, Culbertson et al. 2014).
 //!
-//! Both polynomials are stored as line spectral frequencies, of which every weighted mean is again a stable filter. Zeros outside
-//! the unit circle are none of the parameters: noise through them has the spectrum of noise through their mirror images inside.
+//! Both polynomials are stored as line spectral frequencies, of which every weighted mean is again
+//! a stable filter. Zeros outside the unit circle are none of the parameters: noise through them
+//! has the spectrum of noise through their mirror images inside.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -96,11 +97,7 @@ impl Model for PolesAndZeros {
         let filter = Filter::new(parameters)?;
         let level = filter.level(band)?;
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-            *m = if band.contains(f) {
-                filter.at(f) / level
-            } else {
-                0.0
-            };
+            *m = if band.contains(f) { filter.at(f) / level } else { 0.0 };
         }
         Ok(())
     }

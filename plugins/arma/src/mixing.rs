@@ -17,9 +17,7 @@ pub(crate) fn mix(
     }
     let rate_hz = sets.first().map_or(f64::NAN, |set| set.scalar(MODEL_RATE));
     if sets.iter().any(|set| set.scalar(MODEL_RATE) != rate_hz) {
-        return Err(Error::argument(
-            "filters of different model rates cannot be mixed",
-        ));
+        return Err(Error::argument("filters of different model rates cannot be mixed"));
     }
     for field in [POLE_LINES, ZERO_LINES] {
         let order = sets.iter().map(|set| set.list(field).len()).max();
@@ -33,7 +31,8 @@ pub(crate) fn mix(
     Ok(())
 }
 
-/// Writes the weighted mean of the lines of a field. It stays between the sets, whatever rounding errors the weights have.
+/// Writes the weighted mean of the lines of a field. It stays between the sets, whatever rounding
+/// errors the weights have.
 fn mean(
     sets: &[Values<'_>],
     weights: &[f64],

@@ -1,7 +1,7 @@
 //! The voice: white noise through the zeros, then through the poles.
 //!
-//! A change of parameters moves the coefficients of the zeros and the reflection coefficients of the poles in a straight line, so that
-//! each filter on the way is stable.
+//! A change of parameters moves the coefficients of the zeros and the reflection coefficients of
+//! the poles in a straight line, so that each filter on the way is stable.
 
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -19,8 +19,8 @@ use crate::{MAX_ORDER, MODEL_RATE};
 
 /// Duration of a change of parameters, seconds.
 const RAMP_S: f64 = 0.010;
-/// Duration rendered before the first sample, seconds, with a limit in samples: the filter's transient has
-/// decayed by then.
+/// Duration rendered before the first sample, seconds, with a limit in samples: the filter's
+/// transient has decayed by then.
 const SETTLE_S: f64 = 0.5;
 const SETTLE_SAMPLES: f64 = 4096.0;
 /// Groups of samples per step.
@@ -53,7 +53,8 @@ struct Target {
     gain: f64,
 }
 
-/// What is added for each sample of a change to the coefficients of the zeros, the reflection coefficients of the poles, and the gain.
+/// What is added for each sample of a change to the coefficients of the zeros, the reflection
+/// coefficients of the poles, and the gain.
 struct Step {
     zeros: [f64; MAX_ORDER],
     reflection: [f64; MAX_ORDER],
@@ -90,15 +91,8 @@ impl ArmaVoice {
             edges: band_limit(band, rate_hz),
             gain,
             target: Box::new(Target { filter, gain }),
-            spare: Box::new(Target {
-                filter: Filter::one(rate_hz),
-                gain,
-            }),
-            step: Step {
-                zeros: [0.0; MAX_ORDER],
-                reflection: [0.0; MAX_ORDER],
-                gain: 0.0,
-            },
+            spare: Box::new(Target { filter: Filter::one(rate_hz), gain }),
+            step: Step { zeros: [0.0; MAX_ORDER], reflection: [0.0; MAX_ORDER], gain: 0.0 },
             ramp_len: libm::ceil(RAMP_S * rate_hz).max(1.0) as u32,
             ramp_left: 0,
             ready: [0.0; GROUP],
@@ -149,8 +143,7 @@ impl ArmaVoice {
 
     /// Limits the filter's output to the band.
     fn finish(&mut self, block: &mut [Group], out: &mut [Sounded]) {
-        self.edges
-            .process(block.as_flattened_mut().as_chunks_mut().0);
+        self.edges.process(block.as_flattened_mut().as_chunks_mut().0);
         let out = out.as_flattened_mut().iter_mut();
         for (sample, x) in out.zip(block.as_flattened()) {
             *sample = *x as f32;

@@ -6,9 +6,10 @@ use htex_dsp::beta::log_unit;
 use htex_dsp::grid::Band;
 use htex_dsp::shared::Shared;
 
-/// Added to frequencies on the axis of [`Layout::Edges`], hertz. Knots are nearly equally spaced in hertz
-/// below it and in octaves above it: 30 knots over 20 to 1000 Hz are 4.9 Hz apart at 20 Hz, where the bin
-/// spacing is 5 Hz. Of values from 0 to 60 Hz, those around 20 Hz gave the smallest third-octave error.
+/// Added to frequencies on the axis of [`Layout::Edges`], hertz. Knots are nearly equally spaced in
+/// hertz below it and in octaves above it: 30 knots over 20 to 1000 Hz are 4.9 Hz apart at 20 Hz,
+/// where the bin spacing is 5 Hz. Of values from 0 to 60 Hz, those around 20 Hz gave the smallest
+/// third-octave error.
 const CORNER_HZ: f64 = 20.0;
 /// Number of bands from which the default layout is [`Layout::Edges`].
 const EDGES_FROM: usize = 20;
@@ -16,8 +17,9 @@ const EDGES_FROM: usize = 20;
 /// Distribution of the knots over the band.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Layout {
-    /// Equally spaced in the logarithm of frequency, within the band: at the apexes of half-overlapping
-    /// triangles whose outermost feet are the band's edges (paper, Linear regression).
+    /// Equally spaced in the logarithm of frequency, within the band: at the apexes of
+    /// half-overlapping triangles whose outermost feet are the band's edges (paper, Linear
+    /// regression).
     Within,
     /// From edge to edge, equally spaced in `ln(f + 20 Hz)`.
     Edges,
@@ -26,11 +28,7 @@ pub(crate) enum Layout {
 impl Layout {
     /// The default layout for this number of bands.
     pub(crate) fn of(bands: usize) -> Self {
-        if bands < EDGES_FROM {
-            Self::Within
-        } else {
-            Self::Edges
-        }
+        if bands < EDGES_FROM { Self::Within } else { Self::Edges }
     }
 
     /// The value of the layout's parameter.
@@ -41,14 +39,10 @@ impl Layout {
         }
     }
 
-    /// The layout of a parameter value. Interpolation between conditions gives values in between; the nearer
-    /// layout is used.
+    /// The layout of a parameter value. Interpolation between conditions gives values in between;
+    /// the nearer layout is used.
     pub(crate) fn from_number(number: f64) -> Self {
-        if number < 0.5 {
-            Self::Within
-        } else {
-            Self::Edges
-        }
+        if number < 0.5 { Self::Within } else { Self::Edges }
     }
 }
 
@@ -102,8 +96,8 @@ pub(crate) struct Point {
     pub(crate) knot: usize,
     pub(crate) next: usize,
     pub(crate) share: f64,
-    /// Sum of the triangles' weights: below 1 outside the outermost knots, and 0 at the edges of a band with
-    /// [`Layout::Within`].
+    /// Sum of the triangles' weights: below 1 outside the outermost knots, and 0 at the edges of a
+    /// band with [`Layout::Within`].
     pub(crate) weight: f64,
 }
 

@@ -1,19 +1,21 @@
 //! Fit of the knots to a recording's band energies.
 //!
-//! The cost is the sum over the bands of the squared logarithm of the ratio of fitted to wanted energy, plus
-//! 1e-4 times the squared distance of each knot from its band's mean level, in the logarithm of power.
-//! Energies of noise are met to a hundredth of a decibel. The second term determines the solution where no
-//! spectrum has the wanted energies, or only one whose knots differ by hundreds of decibels, as next to a
-//! line.
+//! The cost is the sum over the bands of the squared logarithm of the ratio of fitted to wanted
+//! energy, plus 1e-4 times the squared distance of each knot from its band's mean level, in the
+//! logarithm of power. Energies of noise are met to a hundredth of a decibel. The second term
+//! determines the solution where no spectrum has the wanted energies, or only one whose knots
+//! differ by hundreds of decibels, as next to a line.
 //!
-//! The solution is the spectrum of largest entropy with the recording's energies, found by Levenberg and Marquardt's
-//! method. Stored is the curve and not the energies: a player solves no equations, and energies that no spectrum has
-//! (rounding causes them where bands share bins) are the fit's problem. The voice's spectrum is sharpened against the
-//! window's blur, so that it measures as stated.
+//! The solution is the spectrum of largest entropy with the recording's energies, found by
+//! Levenberg and Marquardt's method. Stored is the curve and not the energies: a player solves no
+//! equations, and energies that no spectrum has (rounding causes them where bands share bins) are
+//! the fit's problem. The voice's spectrum is sharpened against the window's blur, so that it
+//! measures as stated.
 //!
-//! A fit of maximum likelihood to the bins (Whittle: the sum of `ln S + P / S` is least) was compared, computed in Python,
-//! on spectra that were not fitted: fitted to every other 0.2 s of 32 recordings by others, measured on the rest, both
-//! ways, knots in steps of 1 dB. Roughness is a penalty on second differences of the logarithm of power.
+//! A fit of maximum likelihood to the bins (Whittle: the sum of `ln S + P / S` is least) was
+//! compared, computed in Python, on spectra that were not fitted: fitted to every other 0.2 s of 32
+//! recordings by others, measured on the rest, both ways, knots in steps of 1 dB. Roughness is a
+//! penalty on second differences of the logarithm of power.
 //!
 //! | fit, knots | third octaves, dB | log-spectral distance, dB |
 //! |---|---|---|
@@ -23,8 +25,8 @@
 //! | likelihood, 40 | 2.24 | 2.93 |
 //! | likelihood, 40, roughness 0.1 | 2.20 | 2.88 |
 //!
-//! The gain is at most 4 %, for a third more knots; on 15 simulated recordings it is at most 2 %. The spectra of the two
-//! halves themselves differ by 2.23 dB and 3.22 dB.
+//! The gain is at most 4 %, for a third more knots; on 15 simulated recordings it is at most 2 %.
+//! The spectra of the two halves themselves differ by 2.23 dB and 3.22 dB.
 
 use alloc::vec::Vec;
 
@@ -47,7 +49,8 @@ pub(crate) struct Fitter {
     points: Vec<Point>,
     /// Logarithms of the wanted energies; `None` for a band without bins.
     wanted: Vec<Option<f64>>,
-    /// Logarithms of the mean power in each band; a band without bins has the value of the band before.
+    /// Logarithms of the mean power in each band; a band without bins has the value of the band
+    /// before.
     mean: Vec<f64>,
 }
 
@@ -61,8 +64,8 @@ struct Trial {
 }
 
 impl Fitter {
-    /// Makes the problem from the bands of `axis` and the power on the band's grid; `None` if no band has
-    /// energy.
+    /// Makes the problem from the bands of `axis` and the power on the band's grid; `None` if no
+    /// band has energy.
     pub(crate) fn new(axis: &Axis, grid_hz: &[f64], power: &[f64]) -> Option<Self> {
         let points: Vec<Point> = grid_hz.iter().map(|&f| axis.point(f)).collect();
         let energy = energies(&points, power, axis.knots);
@@ -75,11 +78,7 @@ impl Fitter {
             return None;
         }
         let wanted: Vec<Option<f64>> = energy.iter().zip(&weight).map(wanted).collect();
-        Some(Self {
-            mean: mean_levels(&wanted, &weight),
-            wanted,
-            points,
-        })
+        Some(Self { mean: mean_levels(&wanted, &weight), wanted, points })
     }
 
     /// Returns the logarithms of power at the knots.
@@ -106,32 +105,21 @@ impl Fitter {
     }
 
     fn trial(&self, knots: Vec<f64>) -> Trial {
-        let power: Vec<f64> = self
-            .points
-            .iter()
-            .map(|point| libm::exp(point.between(&knots)))
-            .collect();
+        let power: Vec<f64> =
+            self.points.iter().map(|point| libm::exp(point.between(&knots))).collect();
         let energy = energies(&self.points, &power, knots.len());
         let lack: Vec<f64> = self
             .wanted
             .iter()
             .zip(&energy)
             .map(|(wanted, energy)| {
-                wanted.map_or(0.0, |wanted| {
-                    libm::log(energy.max(f64::MIN_POSITIVE)) - wanted
-                })
+                wanted.map_or(0.0, |wanted| libm::log(energy.max(f64::MIN_POSITIVE)) - wanted)
             })
             .collect();
         let square = |(knot, mean): (&f64, &f64)| (knot - mean) * (knot - mean);
         let strain: f64 = knots.iter().zip(&self.mean).map(square).sum();
         let sum = lack.iter().map(|r| r * r).sum::<f64>() + STIFFNESS * strain;
-        Trial {
-            knots,
-            power,
-            energy,
-            lack,
-            sum,
-        }
+        Trial { knots, power, energy, lack, sum }
     }
 
     /// The Gauss–Newton matrix and half the gradient of the sum.
@@ -203,11 +191,7 @@ fn step(knots: &[f64], system: &Pentadiagonal, slope: &[f64], damping: f64) -> V
     let step = system.damped_solution(damping, slope);
     let largest = step.iter().fold(0.0_f64, |largest, s| largest.max(s.abs()));
     let part = (STRIDE / largest).min(1.0);
-    knots
-        .iter()
-        .zip(&step)
-        .map(|(knot, step)| knot - part * step)
-        .collect()
+    knots.iter().zip(&step).map(|(knot, step)| knot - part * step).collect()
 }
 
 /// A symmetric pentadiagonal matrix: its diagonal and the two diagonals above.
@@ -285,17 +269,10 @@ mod tests {
     #[test]
     fn system_and_gradient_match_finite_differences() {
         let band = Band::TACTILE;
-        for (knots, layout) in [
-            (1, Layout::Within),
-            (2, Layout::Edges),
-            (9, Layout::Within),
-            (30, Layout::Edges),
-        ] {
-            let axis = Axis {
-                knots,
-                layout,
-                band,
-            };
+        for (knots, layout) in
+            [(1, Layout::Within), (2, Layout::Edges), (9, Layout::Within), (30, Layout::Edges)]
+        {
+            let axis = Axis { knots, layout, band };
             let grid = band.grid_hz();
             let power: Vec<f64> = grid.iter().map(|f| 1.0 + (f * 0.7).sin() * 0.9).collect();
             let fitter = Fitter::new(&axis, &grid, &power).unwrap();
@@ -308,11 +285,7 @@ mod tests {
                     fitter.trial(knots).sum
                 };
                 let expected = (moved(1e-5) - moved(-1e-5)) / 4e-5;
-                assert!(
-                    (slope[i] - expected).abs() < 1e-6,
-                    "{knots} {i}: {} {expected}",
-                    slope[i]
-                );
+                assert!((slope[i] - expected).abs() < 1e-6, "{knots} {i}: {} {expected}", slope[i]);
             }
             let x = system.damped_solution(0.5, &slope);
             for i in 0..knots {

@@ -1,16 +1,17 @@
 //! Band energies: the energy of a spectrum in log-spaced bands, in three to six bits per band.
 //!
-//! Not a model of the paper, and not evaluated in perception experiments. In the paper's regression of
-//! ratings on energy differences, r², which the paper calls low, levels off at nine such bands (Linear
-//! regression); thirty bands keep a spectrum within about 0.3 dB of the recording in third-octave bands.
-//! Stored is the piecewise linear curve with these energies: in decibels, with knots at the bands' apexes,
-//! over the axis on which the bands are equally spaced.
+//! Not a model of the paper, and not evaluated in perception experiments. In the paper's regression
+//! of ratings on energy differences, r², which the paper calls low, levels off at nine such bands
+//! (Linear regression); thirty bands keep a spectrum within about 0.3 dB of the recording in
+//! third-octave bands. Stored is the piecewise linear curve with these energies: in decibels, with
+//! knots at the bands' apexes, over the axis on which the bands are equally spaced.
 //!
-//! The default is thirty knots from edge to edge in steps of 1 dB, packed. Medians of the third-octave error over 15
-//! simulated recordings: 9 bands in 11 bytes 3.7 dB, 19 in 21 bytes 1.4 dB, 22 from edge to edge 0.8 dB, and on the
-//! axis ln(f + 20 Hz), which spaces low knots at least one bin apart, 0.5 dB, all with one byte per band. Differences
-//! in a Rice code take two thirds of a byte, and 30 bands have 0.3 dB in 21 bytes. Entropy codes with longer tails take
-//! a byte more, steps of 0.5 dB two or three more.
+//! The default is thirty knots from edge to edge in steps of 1 dB, packed. Medians of the
+//! third-octave error over 15 simulated recordings: 9 bands in 11 bytes 3.7 dB, 19 in 21 bytes 1.4
+//! dB, 22 from edge to edge 0.8 dB, and on the axis ln(f + 20 Hz), which spaces low knots at least
+//! one bin apart, 0.5 dB, all with one byte per band. Differences in a Rice code take two thirds of
+//! a byte, and 30 bands have 0.3 dB in 21 bytes. Entropy codes with longer tails take a byte more,
+//! steps of 0.5 dB two or three more.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -50,8 +51,9 @@ const BANDS_OPTION: usize = 0;
 const STEP_OPTION: usize = 1;
 const LAYOUT_OPTION: usize = 2;
 
-/// Thirty bands in steps of 1 dB took 21 bytes, 23 at most, for 15 simulated recordings, with a median
-/// third-octave error of 0.33 dB; 9 bands have an error of 3.7 dB, 64 bands 0.18 dB in 35 bytes.
+/// Thirty bands in steps of 1 dB took 21 bytes, 23 at most, for 15 simulated recordings, with a
+/// median third-octave error of 0.33 dB; 9 bands have an error of 3.7 dB, 64 bands 0.18 dB in 35
+/// bytes.
 const DEFAULT_BANDS: u32 = 30;
 const DEFAULT_STEP_DB: f64 = 1.0;
 const MAX_BANDS: u32 = 64;
@@ -60,16 +62,13 @@ const MAX_STEPS: f64 = 255.0;
 /// Resolution of the step in a file, dB.
 const STEP_UNIT_DB: f64 = 0.05;
 const STEP_RANGE_DB: (f64, f64) = (STEP_UNIT_DB, 6.0);
-/// Largest distance of a band from the loudest one and of a knot from the highest one, dB. A band without
-/// energy is 120 dB below, as in the band-error measure, which adds 1e-12 of the largest energy.
+/// Largest distance of a band from the loudest one and of a knot from the highest one, dB. A band
+/// without energy is 120 dB below, as in the band-error measure, which adds 1e-12 of the largest
+/// energy.
 pub const FLOOR_DB: f64 = 120.0;
 
 const fn steps(scale: f64) -> Store {
-    Store::U8 {
-        scale,
-        offset: 0.0,
-        log: false,
-    }
+    Store::U8 { scale, offset: 0.0, log: false }
 }
 
 pub struct BandEnergies;
@@ -143,11 +142,7 @@ impl Model for BandEnergies {
             },
             band: input.band,
         };
-        let power: Vec<f64> = input
-            .magnitude
-            .iter()
-            .map(|m| (m / top) * (m / top))
-            .collect();
+        let power: Vec<f64> = input.magnitude.iter().map(|m| (m / top) * (m / top)).collect();
         let fitter = Fitter::new(&axis, input.frequency_hz, &power).ok_or_else(|| {
             Error::cannot_fit(
                 "the spectrum is silent, at least between its edges: all band energies are zero",
@@ -216,7 +211,8 @@ impl Model for BandEnergies {
     }
 }
 
-/// The wanted step rounded to the file's resolution, or the smallest step that reaches the quietest band.
+/// The wanted step rounded to the file's resolution, or the smallest step that reaches the quietest
+/// band.
 fn step_db(wanted_db: f64, below_db: &[f64]) -> f64 {
     let reach_db = below_db.iter().copied().fold(0.0, f64::max);
     let least = libm::ceil(reach_db / (MAX_STEPS * STEP_UNIT_DB) - 1e-9);
@@ -234,8 +230,8 @@ pub struct Spectrum {
     knots: Vec<f64>,
     magnitude: Vec<f64>,
     power: Vec<f64>,
-    /// Power spectrum of the voice, sharpened so that measured through the window, as recordings are, it
-    /// equals `magnitude`.
+    /// Power spectrum of the voice, sharpened so that measured through the window, as recordings
+    /// are, it equals `magnitude`.
     played: Vec<f64>,
     /// `played` before a round of sharpening.
     before: Vec<f64>,
@@ -250,9 +246,7 @@ impl Spectrum {
     fn of(below: &[f64], step_db: f64, axis: Axis) -> Result<Self, Error> {
         let band = axis.band;
         if below.is_empty() {
-            return Err(Error::parameters(
-                "`below_highest` is empty; it needs at least one knot",
-            ));
+            return Err(Error::parameters("`below_highest` is empty; it needs at least one knot"));
         }
         if band.bins() == 0 {
             return Err(Error::parameters(text![
@@ -312,11 +306,7 @@ impl Spectrum {
 impl Curve for Spectrum {
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
         let below = parameters.list(BELOW);
-        let axis = Axis {
-            knots: below.len(),
-            layout: Self::layout(parameters),
-            band,
-        };
+        let axis = Axis { knots: below.len(), layout: Self::layout(parameters), band };
         Self::of(below, parameters.scalar(STEP), axis)
     }
 

@@ -1,5 +1,6 @@
-//! The usual ranges of the parameters: nine tenths of the knots of 15 simulated recordings of five surfaces lie 42 dB below the highest or
-//! less, and all but a few 60. The steps are those of the sweep (`knobs`).
+//! The usual ranges of the parameters: nine tenths of the knots of 15 simulated recordings of five
+//! surfaces lie 42 dB below the highest or less, and all but a few 60. The steps are those of the
+//! sweep (`knobs`).
 
 use htex_model::Usual;
 

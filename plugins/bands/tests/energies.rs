@@ -1,4 +1,5 @@
-//! Properties of the model: bands keep their energies, and the curve adds no structure between knots.
+//! Properties of the model: bands keep their energies, and the curve adds no structure between
+//! knots.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_bands::{BandEnergies, FLOOR_DB, Spectrum};
@@ -42,10 +43,7 @@ fn played(fit: &Fit, band: Band) -> Vec<f64> {
 /// Errors of the energies in log-spaced triangles within the band, dB.
 fn errors_db(magnitude: &[f64], fit: &Fit, band: Band, bands: usize) -> Vec<f64> {
     let bank = BandBank::new(bands, band, &band.grid_hz());
-    band_error_db(
-        &bank.energies(magnitude),
-        &bank.energies(&played(fit, band)),
-    )
+    band_error_db(&bank.energies(magnitude), &bank.energies(&played(fit, band)))
 }
 
 /// Magnitudes of averaged noise with a piecewise linear envelope, as in recordings.
@@ -54,18 +52,15 @@ fn noisy(band: Band) -> impl Strategy<Value = Vec<f64>> {
     (bins, -2.0..2.0).prop_map(move |(bins, slope): (Vec<f64>, f64)| {
         let grid = band.grid_hz();
         let envelope = grid.iter().map(|f| (f / 150.0).powf(slope));
-        bins.iter()
-            .zip(envelope)
-            .map(|(b, e)| 1e-3 * b * e)
-            .collect()
+        bins.iter().zip(envelope).map(|(b, e)| 1e-3 * b * e).collect()
     })
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..Default::default() })]
 
-    /// Rounding moves a knot by up to half a step; the gain that restores the total energy adds up to half a
-    /// step.
+    /// Rounding moves a knot by up to half a step; the gain that restores the total energy adds up
+    /// to half a step.
     #[test]
     fn few_bands_keep_their_energies_to_a_step(
         magnitude in noisy(Band::TACTILE), bands in 1usize..=19, step_db in 0.05..2.0,
@@ -78,8 +73,8 @@ proptest! {
         }
     }
 
-    /// In the two lowest of nine bands, below 45 Hz, a band has few bins. If these differ by 16 dB, a curve
-    /// that is linear in decibels cannot match all energies.
+    /// In the two lowest of nine bands, below 45 Hz, a band has few bins. If these differ by 16 dB,
+    /// a curve that is linear in decibels cannot match all energies.
     #[test]
     fn many_bands_keep_nine_energies_and_the_level(magnitude in noisy(Band::TACTILE), bands in 20usize..=64) {
         let fit = fit(&magnitude, Band::TACTILE, [bands as f64, 0.5, 0.0]).unwrap();
@@ -123,12 +118,7 @@ proptest! {
 #[test]
 fn knots_are_at_the_positions_of_the_layout() {
     let band = Band::TACTILE;
-    let within = shape(
-        &[
-            9.0, 0.0, 8.0, 16.0, 24.0, 32.0, 40.0, 48.0, 56.0, 64.0, 0.5, 0.0,
-        ],
-        band,
-    );
+    let within = shape(&[9.0, 0.0, 8.0, 16.0, 24.0, 32.0, 40.0, 48.0, 56.0, 64.0, 0.5, 0.0], band);
     let edges = shape(&[3.0, 0.0, 20.0, 40.0, 0.5, 1.0], band);
     for ((f, within_m), edges_m) in band.grid_hz().iter().zip(&within).zip(&edges) {
         let x = (10.0 * (f / 20.0).ln() / 50f64.ln()).clamp(1.0, 9.0) - 1.0;
@@ -181,15 +171,10 @@ fn lines_over_noise_nearly_keep_the_energies_of_nine_bands() {
 #[test]
 fn the_voice_measures_as_the_stated_magnitude() {
     let (band, descriptor) = (Band::TACTILE, BandEnergies::DESCRIPTOR);
-    let parameters = [
-        9.0, 0.0, 10.0, 20.0, 12.0, 24.0, 36.0, 30.0, 40.0, 60.0, 0.5, 0.0,
-    ];
+    let parameters = [9.0, 0.0, 10.0, 20.0, 12.0, 24.0, 36.0, 30.0, 40.0, 60.0, 0.5, 0.0];
     let curve = Spectrum::new(&Values::read(&descriptor, &parameters).unwrap(), band).unwrap();
     let stated = shape(&parameters, band);
-    let played = band
-        .grid_hz()
-        .into_iter()
-        .map(|f| curve.at(f) / curve.level());
+    let played = band.grid_hz().into_iter().map(|f| curve.at(f) / curve.level());
     let power: Vec<f64> = played.map(|m| m * m).collect();
     for (read, stated) in power.windows(3).zip(&stated[1..]) {
         let read = (read[0] + 4.0 * read[1] + read[2]) / 6.0;
@@ -250,10 +235,7 @@ fn interpolation_is_in_decibels_between_equal_bands() {
     };
     let loud_low: &[f64] = &[3.0, 0.0, 20.0, 40.0, 0.5, 1.0];
     let loud_high: &[f64] = &[3.0, 60.0, 40.0, 0.0, 0.5, 1.0];
-    assert_eq!(
-        mix(loud_low, loud_high).unwrap(),
-        [3.0, 45.0, 35.0, 10.0, 0.5, 1.0]
-    );
+    assert_eq!(mix(loud_low, loud_high).unwrap(), [3.0, 45.0, 35.0, 10.0, 0.5, 1.0]);
     let others: [&[f64]; 3] = [
         &[2.0, 0.0, 20.0, 0.5, 1.0],
         &[3.0, 0.0, 20.0, 40.0, 1.0, 1.0],

@@ -16,30 +16,18 @@ const FINEST: f64 = 4.0;
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     let largest = input.magnitude.iter().copied().fold(0.0, f64::max);
     if largest <= 0.0 {
-        return Err(Error::cannot_fit(
-            "the spectrum is silent: there is nothing to fit",
-        ));
+        return Err(Error::cannot_fit("the spectrum is silent: there is nothing to fit"));
     }
     let known = input.condition.speed_mm_s.filter(|speed| *speed > 0.0);
     // 32 bits, as assets store it: a line may lie on an edge of the band.
-    let speed_mm_s = known
-        .unwrap_or(USUAL_SPEED_MM_S)
-        .clamp(SPEED_MM_S.0, SPEED_MM_S.1);
+    let speed_mm_s = known.unwrap_or(USUAL_SPEED_MM_S).clamp(SPEED_MM_S.0, SPEED_MM_S.1);
     let speed_mm_s = f64::from(speed_mm_s as f32);
-    let force_n = input
-        .condition
-        .force_n
-        .unwrap_or(0.0)
-        .clamp(FORCE_N.0, FORCE_N.1);
+    let force_n = input.condition.force_n.unwrap_or(0.0).clamp(FORCE_N.0, FORCE_N.1);
     let pitch_mm = f64::from((speed_mm_s / (FINEST * input.band.high_hz)) as f32);
     let heights = heights(input, largest, speed_mm_s / (MOST_SIDE as f64 * pitch_mm));
-    let most = heights
-        .iter()
-        .fold(0.0, |most: f64, height| most.max(height.abs()));
+    let most = heights.iter().fold(0.0, |most: f64, height| most.max(height.abs()));
     if most <= 0.0 {
-        return Err(Error::cannot_fit(
-            "the spectrum has nothing that 255 pixels can hold",
-        ));
+        return Err(Error::cannot_fit("the spectrum has nothing that 255 pixels can hold"));
     }
     let grey = |height: &f64| libm::round(0.5 * MOST_GREY * (1.0 + height / most));
     let grey: Vec<f64> = heights.iter().map(grey).collect();
@@ -53,13 +41,11 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         MOST_SIDE as f64,
     ];
     parameters.extend(grey);
-    Ok(Fit {
-        parameters,
-        level_rms: level_rms(input.magnitude),
-    })
+    Ok(Fit { parameters, level_rms: level_rms(input.magnitude) })
 }
 
-/// Waves of the band of a spectrum, each with the powers of the bins that are nearest to it, and with phases that are the same each time.
+/// Waves of the band of a spectrum, each with the powers of the bins that are nearest to it, and
+/// with phases that are the same each time.
 fn heights(input: &FitInput<'_>, largest: f64, fundamental_hz: f64) -> Vec<f64> {
     let mut phases = Uniform::new(1);
     let mut heights = vec![0.0; MOST_SIDE];
@@ -74,7 +60,8 @@ fn heights(input: &FitInput<'_>, largest: f64, fundamental_hz: f64) -> Vec<f64> 
     heights
 }
 
-/// Powers of no wave in the row, one, and so on, of magnitudes over the largest; a bin goes to the nearest wave in the band.
+/// Powers of no wave in the row, one, and so on, of magnitudes over the largest; a bin goes to the
+/// nearest wave in the band.
 fn powers(input: &FitInput<'_>, largest: f64, fundamental_hz: f64) -> Vec<f64> {
     let first = libm::ceil(input.band.low_hz / fundamental_hz).max(1.0);
     let last = libm::floor(input.band.high_hz / fundamental_hz).min((MOST_SIDE / 2) as f64);
@@ -102,19 +89,14 @@ mod tests {
     #[test]
     fn a_fitted_map_has_the_spectrum() {
         let frequency_hz = Band::TACTILE.grid_hz();
-        let magnitude: Vec<f64> = frequency_hz
-            .iter()
-            .map(|f| 1.0 / (1.0 + (f / 150.0).powi(2)))
-            .collect();
+        let magnitude: Vec<f64> =
+            frequency_hz.iter().map(|f| 1.0 / (1.0 + (f / 150.0).powi(2))).collect();
         let options = [];
         let input = FitInput {
             frequency_hz: &frequency_hz,
             magnitude: &magnitude,
             band: Band::TACTILE,
-            condition: FitCondition {
-                speed_mm_s: Some(80.0),
-                force_n: Some(0.4),
-            },
+            condition: FitCondition { speed_mm_s: Some(80.0), force_n: Some(0.4) },
             signal: &[],
             signal_rate_hz: 0.0,
             options: &options,
@@ -127,14 +109,9 @@ mod tests {
         let mut low = 100.0;
         while low < 900.0 {
             let level = |all: &[f64], scale: f64| -> f64 {
-                let inside = frequency_hz
-                    .iter()
-                    .zip(all)
-                    .filter(|(f, _)| (low..1.26 * low).contains(*f));
-                10.0 * inside
-                    .map(|(_, m)| scale * scale * m * m)
-                    .sum::<f64>()
-                    .log10()
+                let inside =
+                    frequency_hz.iter().zip(all).filter(|(f, _)| (low..1.26 * low).contains(*f));
+                10.0 * inside.map(|(_, m)| scale * scale * m * m).sum::<f64>().log10()
             };
             let difference = level(&seen, fit.level_rms) - level(&magnitude, 1.0);
             assert!(difference.abs() < 2.0, "{low} Hz: {difference} dB");

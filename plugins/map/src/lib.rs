@@ -1,10 +1,12 @@
-//! Friction map: grey values over a surface, 0 for the least friction and 255 for the most, as displays by electroadhesion take them
-//! (TanvasTouch: 8-bit PNG).
+//! Friction map: grey values over a surface, 0 for the least friction and 255 for the most, as
+//! displays by electroadhesion take them (TanvasTouch: 8-bit PNG).
 //!
-//! Pixels lie `pitch_mm` apart, in rows from above, and the map repeats beyond its edges. Between pixels the friction is a cubic (Catmull and
-//! Rom), so that a finger crosses them without a step. The voice follows the finger's place (`htex.motion/1`); what it renders is the
-//! friction there without its mean, between the edges of the band. A voice that is told no motion reads row after row at the speed of
-//! the parameters, which is also the way along which spectra and levels are stated.
+//! Pixels lie `pitch_mm` apart, in rows from above, and the map repeats beyond its edges. Between
+//! pixels the friction is a cubic (Catmull and Rom), so that a finger crosses them without a step.
+//! The voice follows the finger's place (`htex.motion/1`); what it renders is the friction there
+//! without its mean, between the edges of the band. A voice that is told no motion reads row after
+//! row at the speed of the parameters, which is also the way along which spectra and levels are
+//! stated.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -52,7 +54,8 @@ pub struct FrictionMap;
 
 htex_model::export_model!(FrictionMap, symbols: "plugin", extensions: [motion]);
 
-/// Returns the parameter `rms` of a map: RMS of the grey values along the rows at a speed, between the edges of a band.
+/// Returns the parameter `rms` of a map: RMS of the grey values along the rows at a speed, between
+/// the edges of a band.
 ///
 /// # Errors
 /// When the grey values are no rows of a width, or nothing lies in the band.
@@ -63,24 +66,11 @@ pub fn rms(
     grey: &[f64],
     band: Band,
 ) -> Result<f64, Error> {
-    let map = Map {
-        width,
-        pitch_mm,
-        speed_mm_s,
-        force_n: 0.0,
-        rms: 0.0,
-        grey,
-    };
-    map.checked()
-        .and_then(|map| Lines::of(&map, band))
-        .map(|lines| lines.rms)
+    let map = Map { width, pitch_mm, speed_mm_s, force_n: 0.0, rms: 0.0, grey };
+    map.checked().and_then(|map| Lines::of(&map, band)).map(|lines| lines.rms)
 }
 
-const GREYS: Store = Store::U8 {
-    scale: 1.0,
-    offset: 0.0,
-    log: false,
-};
+const GREYS: Store = Store::U8 { scale: 1.0, offset: 0.0, log: false };
 
 impl Model for FrictionMap {
     type Voice = MapVoice;
@@ -136,11 +126,7 @@ impl Model for FrictionMap {
         let map = Map::new(parameters)?;
         let lines = Lines::stated(&map, band)?;
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-            *m = if band.contains(f) {
-                lines.seen_at(f)
-            } else {
-                0.0
-            };
+            *m = if band.contains(f) { lines.seen_at(f) } else { 0.0 };
         }
         Ok(())
     }

@@ -8,9 +8,11 @@ use htex_model::{Error, text};
 
 use crate::map::Map;
 
-/// Smallest RMS, in grey values: rounding of a map without differences is below, and a pixel that differs by one is above.
+/// Smallest RMS, in grey values: rounding of a map without differences is below, and a pixel that
+/// differs by one is above.
 const LEAST: f64 = 1e-9;
-/// Largest difference of the stated RMS from that of the grey values, in the latter: assets store 32-bit floats.
+/// Largest difference of the stated RMS from that of the grey values, in the latter: assets store
+/// 32-bit floats.
 const TOLERANCE: f64 = 1e-6;
 /// Half of the width of the window's main lobe, hertz.
 const LOBE_HZ: f64 = 2.0 * GRID_HZ;
@@ -58,11 +60,7 @@ impl Lines {
                 false => 0.0,
             })
             .collect();
-        let mut lines = Self {
-            fundamental_hz,
-            power,
-            rms: 1.0,
-        };
+        let mut lines = Self { fundamental_hz, power, rms: 1.0 };
         lines.rms = curve_level_rms(band, |hz| lines.seen_at(hz));
         if lines.rms > LEAST {
             return Ok(lines);
@@ -126,7 +124,8 @@ fn mean_square(map: &Map<'_>, turns: &[(f64, f64)], waves: usize) -> f64 {
     sides * power / (count * (width * width) as f64)
 }
 
-/// Part of the power of waves, in cycles a pixel, that the cubic between pixels passes (Keys 1981, equation 18 with a = -1/2).
+/// Part of the power of waves, in cycles a pixel, that the cubic between pixels passes (Keys 1981,
+/// equation 18 with a = -1/2).
 fn passed(cycles: f64) -> f64 {
     let sinc = |x: f64| {
         let a = core::f64::consts::PI * x;

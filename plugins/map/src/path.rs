@@ -58,14 +58,12 @@ impl Path {
         self.blend
     }
 
-    /// Sets the place `ahead` samples before the next one, and the speed from there on: in the direction in which the place moved, else
-    /// along x.
+    /// Sets the place `ahead` samples before the next one, and the speed from there on: in the
+    /// direction in which the place moved, else along x.
     pub(crate) fn tell(&mut self, motion: Motion, ahead: f64) -> Way {
         let place = [motion.x_mm, motion.y_mm];
         let per_sample = motion.speed_mm_s.abs() / self.rate_hz;
-        let moved = self
-            .told
-            .map(|told| [place[0] - told[0], place[1] - told[1]]);
+        let moved = self.told.map(|told| [place[0] - told[0], place[1] - told[1]]);
         let length = moved.map_or(0.0, |[x, y]| libm::sqrt(x * x + y * y));
         let is_known = length > 0.0 && self.age <= FORGOTTEN * self.blend;
         self.step = match moved {

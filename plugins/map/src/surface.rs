@@ -40,13 +40,10 @@ impl Surface {
     /// When the map states no RMS.
     pub(crate) fn take(&mut self, map: &Map<'_>, passed: f64) -> Result<(), Error> {
         if map.rms <= 0.0 {
-            return Err(Error::parameters(
-                "`rms` is 0, and a map is felt by its differences",
-            ));
+            return Err(Error::parameters("`rms` is 0, and a map is felt by its differences"));
         }
         self.grey.clear();
-        self.grey
-            .extend(map.grey.iter().map(|grey| libm::round(*grey) as u8));
+        self.grey.extend(map.grey.iter().map(|grey| libm::round(*grey) as u8));
         self.width = map.width;
         self.pitch_mm = map.pitch_mm;
         self.speed_mm_s = map.speed_mm_s;
@@ -75,7 +72,8 @@ impl Surface {
     }
 }
 
-/// The part of the way from a pixel to the next one, and the four pixels around, of `count` that repeat.
+/// The part of the way from a pixel to the next one, and the four pixels around, of `count` that
+/// repeat.
 fn around(at: f64, count: usize) -> (f64, [usize; 4]) {
     let whole = libm::floor(at);
     let count = count as f64;

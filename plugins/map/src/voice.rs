@@ -17,8 +17,8 @@ const MOST_GAIN: f64 = 16.0;
 const TURN: f64 = 0.1;
 /// Samples that are filtered at a time: a motion holds from the next two on.
 const BLOCK: usize = 2;
-/// Places on the surface for each sample: what a fast finger crosses, and the images of pixels, lie above the band, and are filtered
-/// before they could be heard as lower frequencies.
+/// Places on the surface for each sample: what a fast finger crosses, and the images of pixels, lie
+/// above the band, and are filtered before they could be heard as lower frequencies.
 const OVERSAMPLING: usize = 4;
 
 /// A surface and a finger on it.
@@ -55,11 +55,7 @@ struct Ramp {
 
 impl Ramp {
     const fn at(value: f64) -> Self {
-        Self {
-            value,
-            target: value,
-            step: 0.0,
-        }
+        Self { value, target: value, step: 0.0 }
     }
 
     fn set(&mut self, target: f64, samples: f64) {
@@ -73,11 +69,7 @@ impl Ramp {
     fn next(&mut self) -> f64 {
         let value = self.value;
         let left = self.target - value;
-        self.value = if left.abs() <= self.step.abs() {
-            self.target
-        } else {
-            value + self.step
-        };
+        self.value = if left.abs() <= self.step.abs() { self.target } else { value + self.step };
         value
     }
 }
@@ -150,11 +142,7 @@ impl MapVoice {
         for (ready, sample) in self.ready.iter_mut().zip(kept) {
             // Subnormal numbers are slow on some processors.
             let sample = *sample as f32;
-            *ready = if sample.abs() < f32::MIN_POSITIVE {
-                0.0
-            } else {
-                sample
-            };
+            *ready = if sample.abs() < f32::MIN_POSITIVE { 0.0 } else { sample };
         }
         self.taken = 0;
     }
@@ -214,7 +202,8 @@ impl Voice for MapVoice {
         }
     }
 
-    /// Another map begins after a fade; the level is corrected for the filters as the first one's was.
+    /// Another map begins after a fade; the level is corrected for the filters as the first one's
+    /// was.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         self.next.take(&Map::new(parameters)?, self.passed)?;
         self.is_changing = self.next != self.surface;
@@ -267,13 +256,7 @@ mod tests {
     }
 
     fn motion(speed_mm_s: f64, x_mm: f64, y_mm: f64) -> Motion {
-        Motion {
-            speed_mm_s,
-            force_n: 0.5,
-            position_mm: 0.0,
-            x_mm,
-            y_mm,
-        }
+        Motion { speed_mm_s, force_n: 0.5, position_mm: 0.0, x_mm, y_mm }
     }
 
     /// Samples of a straight stroke, told every 5 ms.
@@ -304,12 +287,9 @@ mod tests {
     fn a_line_is_as_fast_as_the_finger_crosses_it() {
         // Ten waves in 10 mm: one in a millimetre.
         let all = parameters(100, 3, waves(10.0));
-        for (speed, hz) in [
-            ([80.0, 0.0], 80.0),
-            ([160.0, 0.0], 160.0),
-            ([48.0, 36.0], 48.0),
-            ([-80.0, 0.0], 80.0),
-        ] {
+        for (speed, hz) in
+            [([80.0, 0.0], 80.0), ([160.0, 0.0], 160.0), ([48.0, 36.0], 48.0), ([-80.0, 0.0], 80.0)]
+        {
             let mut voice = voice(&all);
             let samples = stroke(&mut voice, speed, 1.5);
             let there = amplitude_at(&samples[2_000..], hz);
@@ -318,9 +298,7 @@ mod tests {
         // Along the lines nothing is felt.
         let mut voice = voice(&all);
         let samples = stroke(&mut voice, [0.0, 80.0], 1.5);
-        let rest = samples[2_000..]
-            .iter()
-            .fold(0.0f32, |most, x| most.max(x.abs()));
+        let rest = samples[2_000..].iter().fold(0.0f32, |most, x| most.max(x.abs()));
         assert!(rest < 1e-3, "{rest}");
     }
 
@@ -351,8 +329,7 @@ mod tests {
         one.render(&mut after);
         samples.extend_from_slice(&after);
         let most = |part: &[f32]| {
-            part.windows(2)
-                .fold(0.0f32, |most, pair| most.max((pair[1] - pair[0]).abs()))
+            part.windows(2).fold(0.0f32, |most, pair| most.max((pair[1] - pair[0]).abs()))
         };
         assert!(most(&samples[1_900..]) < 1.5 * most(&samples[1_000..1_900]));
     }
@@ -362,15 +339,12 @@ mod tests {
         let [one, other] = [20.0, 21.0].map(|waves_of| parameters(100, 3, waves(waves_of)));
         let mut voice = voice(&one);
         let mut samples = stroke(&mut voice, [80.0, 0.0], 0.5);
-        voice
-            .retune(&Values::read(&FrictionMap::DESCRIPTOR, &other).unwrap())
-            .unwrap();
+        voice.retune(&Values::read(&FrictionMap::DESCRIPTOR, &other).unwrap()).unwrap();
         let mut after = [0.0; 2_000];
         voice.render(&mut after);
         samples.extend_from_slice(&after);
         let most = |part: &[f32]| {
-            part.windows(2)
-                .fold(0.0f32, |most, pair| most.max((pair[1] - pair[0]).abs()))
+            part.windows(2).fold(0.0f32, |most, pair| most.max((pair[1] - pair[0]).abs()))
         };
         assert!(most(&samples[1_900..]) < 1.2 * most(&samples[1_000..1_900]));
         assert!(amplitude_at(&after[1_000..], 168.0) > 1.0);

@@ -60,13 +60,7 @@ impl Inverse {
             NNLS => Way::NonNegative(NonNegative::new(bank.filters())),
             _ => Way::Matrix(Self::matrix(&bank, kind, bands, grid.len())),
         };
-        Self {
-            bands,
-            kind,
-            band,
-            cosines: InverseDct::new(bands),
-            way,
-        }
+        Self { bands, kind, band, cosines: InverseDct::new(bands), way }
     }
 
     /// Power in all bins of one unit of energy in each band, row by row.
@@ -113,14 +107,10 @@ impl Inverse {
                         *power += part * energy;
                     }
                 }
-                magnitude
-                    .iter_mut()
-                    .for_each(|power| *power = power.max(0.0));
+                magnitude.iter_mut().for_each(|power| *power = power.max(0.0));
             }
             Way::NonNegative(solver) => solver.solve(energy, magnitude, scratch),
         }
-        magnitude
-            .iter_mut()
-            .for_each(|m| *m = htex_dsp::root::sqrt(*m));
+        magnitude.iter_mut().for_each(|m| *m = htex_dsp::root::sqrt(*m));
     }
 }

@@ -4,10 +4,7 @@ use htex_model::{Knob, Knobs};
 
 pub const KNOBS: Knobs = Knobs {
     together: &[
-        Knob::new(
-            "coefficients",
-            &["4", "5", "6", "8", "10", "13", "16", "20", "26", "32", "40"],
-        ),
+        Knob::new("coefficients", &["4", "5", "6", "8", "10", "13", "16", "20", "26", "32", "40"]),
         Knob::new("bands", &["26", "40"]),
         Knob::new("inverse", &["pinv", "nnls", "interpolate"]),
     ],

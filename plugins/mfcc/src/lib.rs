@@ -1,5 +1,5 @@
-//! Mel-frequency cepstral coefficients: the logarithm of the energies in mel bands, smoothed by truncating
-//! its cosine transform (paper, Mel Frequency Cepstral Coefficients).
+//! Mel-frequency cepstral coefficients: the logarithm of the energies in mel bands, smoothed by
+//! truncating its cosine transform (paper, Mel Frequency Cepstral Coefficients).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -40,11 +40,7 @@ const MAX_BANDS: u32 = 128;
 /// Lower limit of band energies, the asset's unit squared (numeric definitions: MFCC).
 const FLOOR: f64 = 1e-20;
 
-const WHOLE: Store = Store::U8 {
-    scale: 1.0,
-    offset: 0.0,
-    log: false,
-};
+const WHOLE: Store = Store::U8 { scale: 1.0, offset: 0.0, log: false };
 
 pub struct MelCepstrum;
 
@@ -67,13 +63,8 @@ impl Model for MelCepstrum {
             MAX_BANDS,
             "c_0 to c_(n-1) of the orthonormal DCT-II of the natural log energies.",
         ),
-        StaticField::scalar(
-            "bands",
-            "1",
-            (2.0, MAX_BANDS as f64),
-            "Number of mel bands.",
-        )
-        .stored(WHOLE),
+        StaticField::scalar("bands", "1", (2.0, MAX_BANDS as f64), "Number of mel bands.")
+            .stored(WHOLE),
         StaticField::scalar(
             "inverse",
             "1",
@@ -105,9 +96,7 @@ impl Model for MelCepstrum {
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         if input.magnitude.iter().all(|&m| m == 0.0) {
-            return Err(Error::cannot_fit(
-                "the spectrum is silent: all band energies are zero",
-            ));
+            return Err(Error::cannot_fit("the spectrum is silent: all band energies are zero"));
         }
         let band: Band = input.band;
         let bands = input.options[BANDS_OPTION] as usize;
@@ -116,18 +105,13 @@ impl Model for MelCepstrum {
         let power: Vec<f64> = input.magnitude.iter().map(|m| m * m).collect();
         let bank = MelBank::new(bands, band, input.frequency_hz);
         let mut log_energy = bank.energies(&power);
-        log_energy
-            .iter_mut()
-            .for_each(|e| *e = libm::log(e.max(FLOOR)));
+        log_energy.iter_mut().for_each(|e| *e = libm::log(e.max(FLOOR)));
         let mut cepstrum = vec![0.0; kept];
         dct_ii(&log_energy, &mut cepstrum);
         let spectrum = Spectrum::of(inverse, band, &cepstrum)?;
         let count = [cepstrum.len() as f64];
         let rest = [bands as f64, input.options[INVERSE_OPTION]];
-        Ok(Fit {
-            parameters: [&count[..], &cepstrum, &rest].concat(),
-            level_rms: spectrum.level,
-        })
+        Ok(Fit { parameters: [&count[..], &cepstrum, &rest].concat(), level_rms: spectrum.level })
     }
 
     fn magnitude(
@@ -204,9 +188,7 @@ impl Spectrum {
         if spectrum.level > 0.0 && spectrum.level.is_finite() {
             return Ok(spectrum);
         }
-        Err(Error::parameters(
-            "the cepstrum's band energies are not finite, or all zero",
-        ))
+        Err(Error::parameters("the cepstrum's band energies are not finite, or all zero"))
     }
 
     /// Computes the magnitudes from the cepstrum. Does not allocate.
@@ -229,9 +211,7 @@ impl Curve for Spectrum {
 
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         if !self.inverse.is(parameters) {
-            return Err(Error::argument(
-                "a voice cannot change its mel bank or its inverse",
-            ));
+            return Err(Error::argument("a voice cannot change its mel bank or its inverse"));
         }
         let cepstrum = parameters.list(CEPSTRUM);
         if cepstrum.len() > self.energy.len() {

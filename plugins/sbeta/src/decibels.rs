@@ -1,7 +1,8 @@
 //! Distances of a density in decibels, and the density that is nearest to points, in closed form.
 //!
-//! `ln(density) = (α - 1) ln u + (β - 1) ln(1 - u) + scale` is linear in its three unknowns: least squares with two bounded unknowns. Where
-//! a density is so faint at a point that its decibels are cut off, the distance is another one, and a search takes over.
+//! `ln(density) = (α - 1) ln u + (β - 1) ln(1 - u) + scale` is linear in its three unknowns: least
+//! squares with two bounded unknowns. Where a density is so faint at a point that its decibels are
+//! cut off, the distance is another one, and a search takes over.
 
 use htex_dsp::beta::log_unit;
 use htex_dsp::grid::Band;
@@ -14,8 +15,8 @@ const FAINTEST: f64 = 1e-6;
 /// Part of the squares below which the two axes are the same.
 const SAME: f64 = 1e-9;
 
-/// Returns alpha and beta between the bounds with the least squared difference of decibels; `None` where the points do not determine
-/// them, or the difference of some point is cut off.
+/// Returns alpha and beta between the bounds with the least squared difference of decibels; `None`
+/// where the points do not determine them, or the difference of some point is cut off.
 pub(crate) fn nearest(points: &[Peak], band: Band, [low, high]: [f64; 2]) -> Option<(f64, f64)> {
     let squares = Squares::of(points, band)?;
     let [low, high] = [low - 1.0, high - 1.0];
@@ -40,31 +41,16 @@ struct Squares {
 impl Squares {
     /// `None` if there are fewer points than unknowns, or they are in too few places.
     fn of(points: &[Peak], band: Band) -> Option<Self> {
-        let faintest = FAINTEST
-            * inside(points, band)
-                .map(|p| p.magnitude)
-                .fold(0.0, f64::max);
+        let faintest = FAINTEST * inside(points, band).map(|p| p.magnitude).fold(0.0, f64::max);
         let row = |point: &Peak| {
             let u = log_unit(point.frequency_hz, band);
-            [
-                libm::log(u),
-                libm::log1p(-u),
-                libm::log(point.magnitude.max(faintest)),
-            ]
+            [libm::log(u), libm::log1p(-u), libm::log(point.magnitude.max(faintest))]
         };
         let rows = || inside(points, band).map(row);
         let count = rows().count() as f64;
-        let sum = rows().fold([0.0; 3], |sum, row| {
-            core::array::from_fn(|i| sum[i] + row[i])
-        });
+        let sum = rows().fold([0.0; 3], |sum, row| core::array::from_fn(|i| sum[i] + row[i]));
         let mean = sum.map(|sum| sum / count);
-        let zero = Self {
-            xx: 0.0,
-            xy: 0.0,
-            yy: 0.0,
-            xz: 0.0,
-            yz: 0.0,
-        };
+        let zero = Self { xx: 0.0, xy: 0.0, yy: 0.0, xz: 0.0, yz: 0.0 };
         let all = rows().fold(zero, |all, row| {
             let [x, y, z] = core::array::from_fn(|i| row[i] - mean[i]);
             Self {
@@ -79,8 +65,8 @@ impl Squares {
         (count >= 3.0 && determined && (all.xz + all.yz).is_finite()).then_some(all)
     }
 
-    /// Returns the two factors, each between the bounds, with the least squares: the least of all if it is between them, else the
-    /// best of the four sides.
+    /// Returns the two factors, each between the bounds, with the least squares: the least of all
+    /// if it is between them, else the best of the four sides.
     fn least(&self, [low, high]: [f64; 2]) -> [f64; 2] {
         let determinant = self.xx * self.yy - self.xy * self.xy;
         let free = [

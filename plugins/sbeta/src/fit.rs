@@ -1,10 +1,12 @@
-//! Fit of the density to the spectrum's peaks (paper: fminsearch on ten peaks, cost function not stated), and to bins
-//! spread over the band, by the squared differences of decibels or of magnitudes.
+//! Fit of the density to the spectrum's peaks (paper: fminsearch on ten peaks, cost function not
+//! stated), and to bins spread over the band, by the squared differences of decibels or of
+//! magnitudes.
 //!
-//! The paper's reading is `error=magnitude`, `lower_bound=1`, `bins=0`. Squared magnitudes follow the strongest peaks
-//! alone, and peaks say nothing of the frequencies between them. Nine-band and third-octave errors in dB as median, mean
-//! and worst of 32 recordings by others (20 to 1000 Hz, at most half the rate; eight of them 60 to 1000 Hz), and of 15
-//! simulated ones (five surfaces, three seeds):
+//! The paper's reading is `error=magnitude`, `lower_bound=1`, `bins=0`. Squared magnitudes follow
+//! the strongest peaks alone, and peaks say nothing of the frequencies between them. Nine-band and
+//! third-octave errors in dB as median, mean and worst of 32 recordings by others (20 to 1000 Hz,
+//! at most half the rate; eight of them 60 to 1000 Hz), and of 15 simulated ones (five surfaces,
+//! three seeds):
 //!
 //! | options | recordings, nine bands | third octaves | simulated, nine bands | third octaves |
 //! |---|---|---|---|---|
@@ -16,12 +18,14 @@
 //! | `decibel`, bound 0.2, 20 bins | 2.3, 3.0, 10.6 | 4.1, 9.6, 48.4 | 2.8, 2.8, 5.7 | 4.6, 4.9, 8.3 |
 //! | the default: `decibel`, bound 0.5, 20 bins | 2.3, 2.8, 7.9 | 4.1, 9.4, 48.4 | 2.8, 2.8, 5.7 | 4.6, 4.9, 8.3 |
 //!
-//! With all peaks on one side a density fits them best with a spike where there is no peak, many decibels too high. A
-//! fit to peaks alone that is higher than twice the largest bin is therefore tried again with bins beside the peaks. Of
-//! both fits the one is kept that is nearer to peaks and bins in decibels, each at its own best scale.
+//! With all peaks on one side a density fits them best with a spike where there is no peak, many
+//! decibels too high. A fit to peaks alone that is higher than twice the largest bin is therefore
+//! tried again with bins beside the peaks. Of both fits the one is kept that is nearer to peaks and
+//! bins in decibels, each at its own best scale.
 //!
-//! With `decibel` the fit has a closed form ([`crate::decibels`]), and the level is that of the points' energy. A density that is still higher than twice the largest bin has
-//! the level at which it is as high as that bin.
+//! With `decibel` the fit has a closed form ([`crate::decibels`]), and the level is that of the
+//! points' energy. A density that is still higher than twice the largest bin has the level at which
+//! it is as high as that bin.
 
 use alloc::vec::Vec;
 
@@ -47,11 +51,11 @@ const SMALLEST: f64 = 1e-3;
 const LARGEST: f64 = 1e4;
 /// The fit has three unknowns, two shapes and a scale: fewer peaks leave it undetermined.
 const FEWEST_PEAKS: usize = 3;
-/// Limit for a fit's maximum, relative to the spectrum's largest bin. A fit above it has its energy where
-/// there is no point to constrain it.
+/// Limit for a fit's maximum, relative to the spectrum's largest bin. A fit above it has its energy
+/// where there is no point to constrain it.
 const HIGHEST: f64 = 2.0;
-/// Residual, as part of the points' squared magnitude, from which a density counts as not matching the
-/// points.
+/// Residual, as part of the points' squared magnitude, from which a density counts as not matching
+/// the points.
 const NOTHING_EXPLAINED: f64 = 0.99;
 
 /// Measure minimised at the points, relative to their own size.
@@ -66,9 +70,7 @@ enum Distance {
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     let largest = input.magnitude.iter().copied().fold(0.0, f64::max);
     if largest <= 0.0 {
-        return Err(Error::cannot_fit(
-            "the spectrum is silent: there is no profile to fit",
-        ));
+        return Err(Error::cannot_fit("the spectrum is silent: there is no profile to fit"));
     }
     // Relative magnitudes, so that the tolerances mean the same for a whisper and a blow.
     let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
@@ -83,10 +85,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         true => fitted.level / fitted.highest,
         false => fitted.level,
     };
-    Ok(Fit {
-        parameters: vec![fitted.alpha, fitted.beta],
-        level_rms: largest * level,
-    })
+    Ok(Fit { parameters: vec![fitted.alpha, fitted.beta], level_rms: largest * level })
 }
 
 fn to_peaks_and_bins(
@@ -118,7 +117,8 @@ fn to_peaks(peaks: Vec<Peak>, input: &FitInput<'_>, relative: &[f64]) -> Fitted 
     }
 }
 
-/// A density, the RMS of its magnitude, and its maximum over the bins, relative to the spectrum's largest.
+/// A density, the RMS of its magnitude, and its maximum over the bins, relative to the spectrum's
+/// largest.
 struct Fitted {
     alpha: f64,
     beta: f64,
@@ -134,9 +134,9 @@ impl Fitted {
             0 => Distance::Decibel,
             _ => Distance::Magnitude,
         };
-        // The scale belongs to the parameters as files store them, in single precision: near 1 rounding
-        // changes the density at an edge completely, as it is zero there for 1 + 1e-16 and may have its
-        // maximum there for 1.
+        // The scale belongs to the parameters as files store them, in single precision: near 1
+        // rounding changes the density at an edge completely, as it is zero there for 1 + 1e-16 and
+        // may have its maximum there for 1.
         let (alpha, beta) = fit_points(points, band, bound, distance);
         let [alpha, beta] = [alpha, beta].map(|parameter| f64::from(parameter as f32));
         let profile = Profile::new(alpha, beta, band);
@@ -156,8 +156,8 @@ impl Fitted {
     }
 }
 
-/// `count` bins evenly spaced in log frequency, of which neighbours may be the same, and the largest bin, which may be
-/// the only nonzero one.
+/// `count` bins evenly spaced in log frequency, of which neighbours may be the same, and the
+/// largest bin, which may be the only nonzero one.
 fn spread_bins(count: usize, input: &FitInput<'_>, magnitude: &[f64]) -> Vec<Peak> {
     let band: Band = input.band;
     let ratio = band.high_hz / band.low_hz;
@@ -173,10 +173,8 @@ fn spread_bins(count: usize, input: &FitInput<'_>, magnitude: &[f64]) -> Vec<Pea
     if !bins.contains(&largest) {
         bins.push(largest);
     }
-    let point = |bin: usize| Peak {
-        frequency_hz: input.frequency_hz[bin],
-        magnitude: magnitude[bin],
-    };
+    let point =
+        |bin: usize| Peak { frequency_hz: input.frequency_hz[bin], magnitude: magnitude[bin] };
     bins.into_iter().map(point).collect()
 }
 
@@ -213,8 +211,8 @@ fn search_points(points: &[Peak], band: Band, bound: f64, distance: Distance) ->
 }
 
 impl Distance {
-    /// The optimal scale in closed form, and its distance; NaN, which the search rejects, if the density is
-    /// not finite or is zero at all points.
+    /// The optimal scale in closed form, and its distance; NaN, which the search rejects, if the
+    /// density is not finite or is zero at all points.
     fn best_scale(self, points: &[Peak], profile: &Profile) -> (f64, f64) {
         match self {
             Self::Magnitude => least_squares(points, profile),
@@ -222,8 +220,8 @@ impl Distance {
         }
     }
 
-    /// The scale that the level has. Next to a line the one that is best in decibels is that of the faint points; the
-    /// points' energy is that of the line.
+    /// The scale that the level has. Next to a line the one that is best in decibels is that of the
+    /// faint points; the points' energy is that of the line.
     fn level_scale(self, points: &[Peak], profile: &Profile) -> f64 {
         match self {
             Self::Magnitude => least_squares(points, profile).0,
@@ -262,7 +260,8 @@ fn least_squares(points: &[Peak], profile: &Profile) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// Points whose levels wander by up to 60 dB over the band, some of them falling towards an edge.
+    /// Points whose levels wander by up to 60 dB over the band, some of them falling towards an
+    /// edge.
     fn points(seed: u32) -> Vec<Peak> {
         let mut state = seed;
         let mut next = || {
@@ -298,10 +297,7 @@ mod tests {
             assert!(found.0 >= bound && found.1 >= bound, "{found:?}");
             let searched = search_points(&points, band, bound, Distance::Decibel);
             let [own, other] = [distance(found), distance(searched)];
-            assert!(
-                own <= other + 1e-9,
-                "{seed}: {own} at {found:?}, {other} at {searched:?}"
-            );
+            assert!(own <= other + 1e-9, "{seed}: {own} at {found:?}, {other} at {searched:?}");
         }
         assert!(closed > 290, "{closed}");
     }

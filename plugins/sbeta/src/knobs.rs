@@ -4,10 +4,7 @@ use htex_model::{Knob, Knobs};
 
 pub const KNOBS: Knobs = Knobs {
     together: &[
-        Knob::new(
-            "points",
-            &["3", "4", "5", "6", "8", "10", "15", "20", "30", "50"],
-        ),
+        Knob::new("points", &["3", "4", "5", "6", "8", "10", "15", "20", "30", "50"]),
         Knob::new("lower_bound", &["1", "0"]),
         Knob::new("error", &["magnitude", "decibel"]),
     ],

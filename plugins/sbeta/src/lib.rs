@@ -1,5 +1,5 @@
-//! Spectral beta: the envelope of the spectrum as a beta density on the normalised logarithmic frequency
-//! axis, two parameters (paper, Spectral beta).
+//! Spectral beta: the envelope of the spectrum as a beta density on the normalised logarithmic
+//! frequency axis, two parameters (paper, Spectral beta).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -134,8 +134,8 @@ struct Logs {
     log_rest: Vec<f64>,
 }
 
-/// Finite substitute for the logarithm of 0: multiplied by any exponent but 0 it is outside the range of
-/// exponentials.
+/// Finite substitute for the logarithm of 0: multiplied by any exponent but 0 it is outside the
+/// range of exponentials.
 const LOG_ZERO: f64 = -1e300;
 
 impl Curve for Shape {
@@ -144,11 +144,7 @@ impl Curve for Shape {
         let profile = Profile::new(alpha, beta, band);
         let level = curve_level_rms(band, |f| profile.at(f));
         if level > 0.0 && level.is_finite() {
-            return Ok(Self {
-                profile,
-                level,
-                logs: None,
-            });
+            return Ok(Self { profile, level, logs: None });
         }
         Err(Error::parameters(text![
             "alpha ",
@@ -203,8 +199,9 @@ impl Curve for Shape {
     }
 }
 
-/// The beta density at the frequencies of a band. Where it is infinite, at an edge with a parameter below 1,
-/// it is replaced by its value a quarter of a bin inside, close to what a bin of that width measures.
+/// The beta density at the frequencies of a band. Where it is infinite, at an edge with a parameter
+/// below 1, it is replaced by its value a quarter of a bin inside, close to what a bin of that
+/// width measures.
 #[derive(Clone, Copy)]
 pub(crate) struct Profile {
     density: BetaDensity,

@@ -1,9 +1,7 @@
-//! The usual ranges of the parameters: the fits to 15 simulated recordings of five surfaces have 0.8 to 2.3 for alpha and 2.1 to 3.4 for beta.
-//! Below 1 the density rises without bound to its edge; at 20 it is a peak of half an octave.
+//! The usual ranges of the parameters: the fits to 15 simulated recordings of five surfaces have
+//! 0.8 to 2.3 for alpha and 2.1 to 3.4 for beta. Below 1 the density rises without bound to its
+//! edge; at 20 it is a peak of half an octave.
 
 use htex_model::Usual;
 
-pub const USUAL: &[Usual] = &[
-    Usual::log("alpha", (0.5, 20.0)),
-    Usual::log("beta", (0.5, 20.0)),
-];
+pub const USUAL: &[Usual] = &[Usual::log("alpha", (0.5, 20.0)), Usual::log("beta", (0.5, 20.0))];

@@ -1,9 +1,10 @@
-//! Spectral peaks: the spectrum as a few sinusoids, at least a just-noticeable difference apart (paper,
-//! Spectral peak, eq. for y_sp).
+//! Spectral peaks: the spectrum as a few sinusoids, at least a just-noticeable difference apart
+//! (paper, Spectral peak, eq. for y_sp).
 //!
-//! A sinusoid stands between the bins ([`htex_dsp::interpolated_peaks`]). Stored so, a tone at any multiple of 0.5 Hz
-//! from 60 to 900 Hz is off by less than 0.001 Hz and 0.001 dB (between them files round to 1/32 Hz); at its bin
-//! (`frequency=bin`, as in the paper) by up to 2.5 Hz and 1.4 dB, and lines on the grid of 5 Hz repeat every 0.2 s.
+//! A sinusoid stands between the bins ([`htex_dsp::interpolated_peaks`]). Stored so, a tone at any
+//! multiple of 0.5 Hz from 60 to 900 Hz is off by less than 0.001 Hz and 0.001 dB (between them
+//! files round to 1/32 Hz); at its bin (`frequency=bin`, as in the paper) by up to 2.5 Hz and 1.4
+//! dB, and lines on the grid of 5 Hz repeat every 0.2 s.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -38,22 +39,14 @@ const FREQUENCY_OPTION: usize = 3;
 
 /// Maximum number of sinusoids in one set of parameters.
 const MAX_PEAKS: usize = 64;
-/// Peaks below this, relative to the largest bin, are ignored: they are imperceptible, cannot be stored, and
-/// may be rounding errors next to a tone at the band's edge.
+/// Peaks below this, relative to the largest bin, are ignored: they are imperceptible, cannot be
+/// stored, and may be rounding errors next to a tone at the band's edge.
 const FAINTEST: f64 = 1e-7;
 
 /// Frequencies in 1/32 Hz, which represents the 5 Hz grid exactly.
-const HERTZ: Store = Store::U16 {
-    scale: 0.03125,
-    offset: 0.0,
-    log: false,
-};
+const HERTZ: Store = Store::U16 { scale: 0.03125, offset: 0.0, log: false };
 /// Amplitudes in steps of 0.003 dB.
-const RATIO: Store = Store::U16 {
-    scale: 0.0003,
-    offset: -18.0,
-    log: true,
-};
+const RATIO: Store = Store::U16 { scale: 0.0003, offset: -18.0, log: true };
 
 pub struct SpectralPeak;
 
@@ -159,8 +152,8 @@ impl Model for SpectralPeak {
         Ok(())
     }
 
-    /// Sets with the same number of lines glide line by line; others cross-fade line by line at constant
-    /// power.
+    /// Sets with the same number of lines glide line by line; others cross-fade line by line at
+    /// constant power.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -228,11 +221,7 @@ fn random_phase(input: &FitInput<'_>) -> f64 {
     }
 }
 
-const SILENT: Sine = Sine {
-    frequency_hz: 0.0,
-    amplitude: 0.0,
-    phase_cycles: 0.0,
-};
+const SILENT: Sine = Sine { frequency_hz: 0.0, amplitude: 0.0, phase_cycles: 0.0 };
 
 fn start_phases(random: f64, seed: u64) -> [f64; MAX_PEAKS] {
     let mut phases = [0.0; MAX_PEAKS];
@@ -326,8 +315,8 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Unit-level magnitude at `frequency_hz` as measured through the Hann window: A on a line, A/2 a bin
-    /// beside it; lines add in power.
+    /// Unit-level magnitude at `frequency_hz` as measured through the Hann window: A on a line, A/2
+    /// a bin beside it; lines add in power.
     fn seen_at(&self, frequency_hz: f64) -> f64 {
         let lines = self.frequency_hz.iter().enumerate();
         let power: f64 = lines

@@ -1,5 +1,5 @@
-//! The usual ranges of the parameters: frequencies of the band of textures, and amplitudes up to that of a single sinusoid, the square root of
-//! 2, since half their squares sum to one.
+//! The usual ranges of the parameters: frequencies of the band of textures, and amplitudes up to
+//! that of a single sinusoid, the square root of 2, since half their squares sum to one.
 
 use htex_model::Usual;
 

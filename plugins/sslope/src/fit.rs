@@ -1,5 +1,5 @@
-//! Slopes on either side of the dominant peak (paper: from 20 Hz to the peak, from the peak to 1 kHz), in
-//! decibels per decade.
+//! Slopes on either side of the dominant peak (paper: from 20 Hz to the peak, from the peak to 1
+//! kHz), in decibels per decade.
 
 use alloc::vec::Vec;
 
@@ -35,10 +35,8 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         1 => end_points(points),
         _ => anchored(points, peak),
     };
-    let orders = (
-        order(slope(&points[..=peak], peak)),
-        order(slope(&points[peak..], 0).map(|s| -s)),
-    );
+    let orders =
+        (order(slope(&points[..=peak], peak)), order(slope(&points[peak..], 0).map(|s| -s)));
     let peak_hz = input.frequency_hz[peak];
     let shape = Shape::of(peak_hz, orders, input.band)?;
     Ok(Fit {
@@ -49,15 +47,11 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
 }
 
 fn decibels(ratio: f64) -> f64 {
-    if ratio > 0.0 {
-        (20.0 * libm::log10(ratio)).max(FLOOR_DB)
-    } else {
-        FLOOR_DB
-    }
+    if ratio > 0.0 { (20.0 * libm::log10(ratio)).max(FLOOR_DB) } else { FLOOR_DB }
 }
 
-/// The order of a slope, rounded half away from zero to whole steps, at least one, and to the resolution of
-/// files.
+/// The order of a slope, rounded half away from zero to whole steps, at least one, and to the
+/// resolution of files.
 fn round_order(slope_db_per_decade: f64, step_db_per_decade: f64) -> f64 {
     let steps = libm::round(slope_db_per_decade / step_db_per_decade).max(1.0);
     let order = (steps * step_db_per_decade / DB_PER_ORDER).min(MAX_ORDER);

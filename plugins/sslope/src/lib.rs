@@ -1,9 +1,9 @@
-//! Spectral slope: an asymmetric band-pass around the dominant peak, three parameters (paper, Spectral
-//! slope).
+//! Spectral slope: an asymmetric band-pass around the dominant peak, three parameters (paper,
+//! Spectral slope).
 //!
-//! The orders are integers with the paper's rounding to 20 dB per decade, and may be fractional with finer
-//! rounding or between two conditions. White noise is therefore shaped in the frequency domain by the
-//! Butterworth magnitude, which is defined for both, and not by a recursive filter.
+//! The orders are integers with the paper's rounding to 20 dB per decade, and may be fractional
+//! with finer rounding or between two conditions. White noise is therefore shaped in the frequency
+//! domain by the Butterworth magnitude, which is defined for both, and not by a recursive filter.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
@@ -40,11 +40,7 @@ const ORDER_STEP: f64 = 0.05;
 pub const MAX_ORDER: f64 = 20.0;
 
 const fn steps(scale: f64) -> Store {
-    Store::U16 {
-        scale,
-        offset: 0.0,
-        log: false,
-    }
+    Store::U16 { scale, offset: 0.0, log: false }
 }
 
 pub struct SpectralSlope;
@@ -150,14 +146,8 @@ const AT_ONCE: usize = 64;
 
 impl Shape {
     fn of(peak_hz: f64, orders: (f64, f64), band: Band) -> Result<Self, Error> {
-        let mut shape = Self {
-            peak_hz,
-            high_pass: orders.0,
-            low_pass: orders.1,
-            band,
-            level: 1.0,
-            logs: None,
-        };
+        let mut shape =
+            Self { peak_hz, high_pass: orders.0, low_pass: orders.1, band, level: 1.0, logs: None };
         shape.measure()?;
         Ok(shape)
     }

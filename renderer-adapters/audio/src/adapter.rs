@@ -16,9 +16,7 @@ pub struct Audio {
 impl Audio {
     /// The adapter. Opens nothing.
     pub fn new() -> Self {
-        Self {
-            descriptor: descriptor(),
-        }
+        Self { descriptor: descriptor() }
     }
 }
 
@@ -48,12 +46,7 @@ impl Adapter for Audio {
     ) -> Result<Box<dyn Device>, DeviceError> {
         let card = Card::find(settings.text("device"), Side::Output)?;
         let buffer_s = settings.number("buffer_ms") / 1e3;
-        Ok(Box::new(Sound::open(
-            &card,
-            buffer_s,
-            format,
-            Channels::All,
-        )?))
+        Ok(Box::new(Sound::open(&card, buffer_s, format, Channels::All)?))
     }
 }
 
@@ -68,10 +61,7 @@ fn descriptor() -> Descriptor {
     };
     let buffer = Setting {
         name: "buffer_ms".to_owned(),
-        kind: SettingKind::Number {
-            min: 5.0,
-            max: 10_000.0,
-        },
+        kind: SettingKind::Number { min: 5.0, max: 10_000.0 },
         default: Some("60".to_owned()),
         live_default: None,
         from_scene: FromScene::Less,

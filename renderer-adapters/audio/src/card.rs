@@ -5,12 +5,8 @@ use cpal::{SampleFormat, StreamConfig, SupportedStreamConfigRange};
 use htex_device::{Capabilities, DeviceError, Endpoint, Quantity, Rates};
 
 /// Formats a stream may have, the best first.
-const FORMATS: [SampleFormat; 4] = [
-    SampleFormat::F32,
-    SampleFormat::I32,
-    SampleFormat::I16,
-    SampleFormat::U8,
-];
+const FORMATS: [SampleFormat; 4] =
+    [SampleFormat::F32, SampleFormat::I32, SampleFormat::I16, SampleFormat::U8];
 /// Rate that is preferred where the card's own one is not there, hertz.
 const USUAL_RATE_HZ: f64 = 48_000.0;
 /// Preferred frames in a block.
@@ -48,12 +44,7 @@ impl Card {
         let configs = configs(&device, side).map_err(|error| missing(&error.to_string()))?;
         match configs.is_empty() {
             true => Err(missing("it has no supported sample format")),
-            false => Ok(Self {
-                name: name.to_owned(),
-                device,
-                side,
-                configs,
-            }),
+            false => Ok(Self { name: name.to_owned(), device, side, configs }),
         }
     }
 
@@ -93,7 +84,8 @@ impl Card {
         })
     }
 
-    /// The rate that the card prefers; without it, as with so many channels, the highest up to 48 kHz.
+    /// The rate that the card prefers; without it, as with so many channels, the highest up to 48
+    /// kHz.
     fn usual_rate_hz(&self) -> Result<f64, DeviceError> {
         let (preferred_hz, rates) = (self.preferred()?.0, self.rates());
         Ok(match &rates {
@@ -108,10 +100,7 @@ impl Card {
 
     fn rates(&self) -> Rates {
         let ends = |c: &SupportedStreamConfigRange| {
-            (
-                f64::from(c.min_sample_rate()),
-                f64::from(c.max_sample_rate()),
-            )
+            (f64::from(c.min_sample_rate()), f64::from(c.max_sample_rate()))
         };
         let mut all: Vec<(f64, f64)> = self.configs.iter().map(ends).collect();
         if all.iter().any(|(min, max)| min < max) {
@@ -174,19 +163,13 @@ fn cards(side: Side) -> Result<Vec<cpal::Device>, DeviceError> {
 
 /// All connected cards with this side, and the one that the system prefers.
 pub(crate) fn endpoints(side: Side) -> Result<Vec<Endpoint>, DeviceError> {
-    let endpoint = |name: String, summary: String| Endpoint {
-        name,
-        setting: "device".to_owned(),
-        summary,
-    };
+    let endpoint =
+        |name: String, summary: String| Endpoint { name, setting: "device".to_owned(), summary };
     let default = Card::find(DEFAULT, side).ok();
     let default = default.map(|_| endpoint(DEFAULT.to_owned(), "what the system prefers".into()));
     let named = cards(side)?.into_iter().map(|device| {
         let description = device.description().map(|d| d.to_string());
-        endpoint(
-            id(&device),
-            description.unwrap_or_default().replace('\n', ", "),
-        )
+        endpoint(id(&device), description.unwrap_or_default().replace('\n', ", "))
     });
     Ok(default.into_iter().chain(named).collect())
 }

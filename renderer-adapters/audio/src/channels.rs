@@ -18,9 +18,7 @@ pub fn outputs() -> Result<Vec<Endpoint>, DeviceError> {
 /// # Errors
 /// When it is not connected, or does not take so many.
 pub fn capabilities_of_channels(device: &str, channels: u16) -> Result<Capabilities, DeviceError> {
-    Card::find(device, Side::Output)?
-        .with_channels(channels)?
-        .capabilities()
+    Card::find(device, Side::Output)?.with_channels(channels)?.capabilities()
 }
 
 /// Opens an output with a channel for each factor: what the channel plays of each sample.

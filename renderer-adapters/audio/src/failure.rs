@@ -12,10 +12,7 @@ pub(crate) struct Failure(Arc<Mutex<Option<String>>>);
 impl Failure {
     /// The error.
     pub(crate) fn peek(&self) -> Option<String> {
-        self.0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clone()
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// The error, once.
@@ -24,8 +21,8 @@ impl Failure {
     }
 }
 
-/// Handles errors of the card's thread: buffers that ran dry or over go to `xrun`, errors after which the card continues are
-/// ignored, and others are stored.
+/// Handles errors of the card's thread: buffers that ran dry or over go to `xrun`, errors after
+/// which the card continues are ignored, and others are stored.
 pub(crate) fn reporter(
     failure: Failure,
     mut xrun: impl FnMut() + Send + 'static,
@@ -41,8 +38,5 @@ pub(crate) fn reporter(
 }
 
 pub(crate) fn failed(name: &str, what: String) -> DeviceError {
-    DeviceError::Failed {
-        device: name.to_owned(),
-        what,
-    }
+    DeviceError::Failed { device: name.to_owned(), what }
 }

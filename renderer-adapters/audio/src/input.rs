@@ -21,9 +21,7 @@ pub struct AudioInput {
 impl AudioInput {
     /// The adapter. Opens nothing.
     pub fn new() -> Self {
-        Self {
-            descriptor: descriptor(),
-        }
+        Self { descriptor: descriptor() }
     }
 }
 
@@ -51,10 +49,7 @@ impl SourceAdapter for AudioInput {
         let preferred = card.preferred()?;
         let rate_hz = Some(settings.number("rate_hz")).filter(|rate_hz| *rate_hz > 0.0);
         let channels = Some(settings.number("channels") as u16).filter(|channels| *channels > 0);
-        let (rate_hz, wanted) = (
-            rate_hz.unwrap_or(preferred.0),
-            channels.unwrap_or(preferred.1),
-        );
+        let (rate_hz, wanted) = (rate_hz.unwrap_or(preferred.0), channels.unwrap_or(preferred.1));
         let (config, format) = card.config(rate_hz, wanted)?;
         if channels.is_some_and(|channels| channels != config.channels) {
             return Err(refuse(
@@ -71,20 +66,12 @@ impl SourceAdapter for AudioInput {
             let what = format!("{most_s:.1} s of so many samples are the most");
             return Err(refuse("buffer_s", what));
         }
-        Ok(Box::new(Recorder::open(
-            &card,
-            config,
-            format,
-            buffered as usize,
-        )?))
+        Ok(Box::new(Recorder::open(&card, config, format, buffered as usize)?))
     }
 }
 
 fn refuse(name: &str, what: String) -> DeviceError {
-    DeviceError::Setting {
-        name: name.to_owned(),
-        what,
-    }
+    DeviceError::Setting { name: name.to_owned(), what }
 }
 
 fn descriptor() -> Descriptor {

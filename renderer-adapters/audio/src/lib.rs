@@ -7,8 +7,8 @@
 //! (`player.rs`): it takes no lock, does not allocate and does not wait. An empty ring is
 //! counted as an underrun and fades to silence; playback continues with the next samples.
 //!
-//! An input is the reverse (`listener.rs`): the card's thread puts samples into a ring of `buffer_s`. A full ring is an overrun, after
-//! which nothing is delivered.
+//! An input is the reverse (`listener.rs`): the card's thread puts samples into a ring of
+//! `buffer_s`. A full ring is an overrun, after which nothing is delivered.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "cpal")]

@@ -145,14 +145,9 @@ mod tests {
         let faded = [0.5, 1.0, 0.8, 0.6, 0.4, 0.2, 0.0, 0.0];
         near(&played(&mut player, 8, 0), &faded);
         writer.push_entire_slice(&[1.0; 7]).unwrap();
-        near(
-            &played(&mut player, 7, 0),
-            &[0.2, 0.4, 0.6, 0.8, 1.0, 1.0, 1.0],
-        );
-        let counts = (
-            shared.underruns.load(Ordering::Relaxed),
-            shared.taken.load(Ordering::Relaxed),
-        );
+        near(&played(&mut player, 7, 0), &[0.2, 0.4, 0.6, 0.8, 1.0, 1.0, 1.0]);
+        let counts =
+            (shared.underruns.load(Ordering::Relaxed), shared.taken.load(Ordering::Relaxed));
         assert_eq!(counts, (1, 9));
     }
 
@@ -164,10 +159,7 @@ mod tests {
         near(&played(&mut player, 11, 3), &[0.25, 0.0, 0.0]);
         assert!(!shared.silent.load(Ordering::Relaxed));
         played(&mut player, 1, 9);
-        assert!(
-            !shared.silent.load(Ordering::Relaxed),
-            "nine frames are under way"
-        );
+        assert!(!shared.silent.load(Ordering::Relaxed), "nine frames are under way");
         played(&mut player, 1, 3);
         assert!(shared.silent.load(Ordering::Relaxed));
         assert_eq!(shared.underruns.load(Ordering::Relaxed), 0);
@@ -179,10 +171,7 @@ mod tests {
         writer.push_entire_slice(&[1.0; 40]).unwrap();
         near(&played(&mut player, 1, 0), &[1.0]);
         shared.wish(Wish::Stop);
-        near(
-            &played(&mut player, 7, 0),
-            &[0.8, 0.6, 0.4, 0.2, 0.0, 0.0, 0.0],
-        );
+        near(&played(&mut player, 7, 0), &[0.8, 0.6, 0.4, 0.2, 0.0, 0.0, 0.0]);
         assert_eq!(shared.taken.load(Ordering::Relaxed), 1);
     }
 }

@@ -25,10 +25,7 @@ fn what_is_recorded_is_what_was_written() {
         assert!((device.status().latency_s - 4_000.0 / RATE_HZ).abs() < 1e-9);
         device.finish().unwrap();
         let status = device.status();
-        assert_eq!(
-            (status.frames_written, status.frames_played),
-            (4_000, 4_000)
-        );
+        assert_eq!((status.frames_written, status.frames_played), (4_000, 4_000));
         assert_eq!((status.underruns, status.latency_s), (0, 0.0));
         let closed = device.write(&[0.0], LONG).unwrap_err();
         assert!(matches!(closed, DeviceError::Closed(_)), "{closed}");
@@ -54,15 +51,9 @@ fn a_ring_that_runs_dry_is_counted_and_goes_on() {
     device.finish().unwrap();
     assert_eq!(device.status().frames_played, 7_200);
     let [left, _] = recorded("gap");
-    let steepest = left
-        .windows(2)
-        .map(|x| (x[1] - x[0]).abs())
-        .fold(0.0, f32::max);
+    let steepest = left.windows(2).map(|x| (x[1] - x[0]).abs()).fold(0.0, f32::max);
     let full = left.iter().filter(|x| **x == 0.5).count();
-    assert!(
-        full >= 4_800 && left.contains(&0.0) && steepest < 0.01,
-        "{full} {steepest}"
-    );
+    assert!(full >= 4_800 && left.contains(&0.0) && steepest < 0.01, "{full} {steepest}");
 }
 
 #[test]
@@ -72,10 +63,7 @@ fn a_dropped_device_fades_out() {
     drop(device);
     let [left, _] = recorded("drop");
     assert!(left.ends_with(&[0.0]));
-    let steepest = left
-        .windows(2)
-        .map(|x| (x[1] - x[0]).abs())
-        .fold(0.0, f32::max);
+    let steepest = left.windows(2).map(|x| (x[1] - x[0]).abs()).fold(0.0, f32::max);
     assert!(steepest < 0.01, "{steepest}");
 }
 
@@ -83,14 +71,8 @@ fn a_dropped_device_fades_out() {
 fn what_is_beyond_full_scale_is_refused() {
     let mut device = open("loud", "1000").unwrap();
     let error = device.write(&[0.0, 1.0, 1.5], LONG).unwrap_err();
-    assert!(
-        matches!(error, DeviceError::OverLimit { frame: 2, .. }),
-        "{error}"
-    );
-    assert!(matches!(
-        device.write(&[0.0], LONG),
-        Err(DeviceError::Closed(_))
-    ));
+    assert!(matches!(error, DeviceError::OverLimit { frame: 2, .. }), "{error}");
+    assert!(matches!(device.write(&[0.0], LONG), Err(DeviceError::Closed(_))));
 }
 
 #[test]
@@ -98,9 +80,7 @@ fn a_card_says_what_it_can_do() {
     let (audio, _) = (Audio::new(), folder());
     let there = audio.endpoints().unwrap();
     assert!(
-        there
-            .iter()
-            .any(|e| e.name == "alsa:float" && e.summary.contains("records")),
+        there.iter().any(|e| e.name == "alsa:float" && e.summary.contains("records")),
         "{there:?}"
     );
     let card: Capabilities = audio.capabilities(&settings("alsa:float", "60")).unwrap();
@@ -123,18 +103,13 @@ fn a_machine_without_a_card_says_what_to_check() {
 fn settings(device: &str, buffer_ms: &str) -> Settings {
     folder();
     let given = [("device", device), ("buffer_ms", buffer_ms)];
-    let given: BTreeMap<String, String> = given
-        .iter()
-        .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
-        .collect();
+    let given: BTreeMap<String, String> =
+        given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
     Settings::resolve(Audio::new().descriptor(), None, &given).unwrap()
 }
 
 fn open(name: &str, buffer_ms: &str) -> Result<Box<dyn Device>, DeviceError> {
-    let format = StreamFormat {
-        rate_hz: RATE_HZ,
-        block_frames: 512,
-    };
+    let format = StreamFormat { rate_hz: RATE_HZ, block_frames: 512 };
     Audio::new().open(&settings(&format!("alsa:{name}"), buffer_ms), &format)
 }
 
@@ -146,10 +121,7 @@ fn recorded(name: &str) -> [Vec<f32>; 2] {
             .chunks_exact(2)
             .map(|b| f32::from(i16::from_le_bytes([b[0], b[1]])) / 32_768.0)
             .collect(),
-        _ => bytes
-            .chunks_exact(4)
-            .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-            .collect(),
+        _ => bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect(),
     };
     [0, 1].map(|channel| samples.iter().skip(channel).step_by(2).copied().collect())
 }
@@ -175,9 +147,7 @@ fn folder() -> &'static PathBuf {
                 file.display()
             )
         };
-        let devices: String = ["float", "short", "gap", "drop", "loud"]
-            .map(device)
-            .concat();
+        let devices: String = ["float", "short", "gap", "drop", "loud"].map(device).concat();
         fs::write(folder.join("asound.conf"), devices).unwrap();
         // SAFETY: every test comes here first, so nobody reads the environment meanwhile.
         unsafe { std::env::set_var("ALSA_CONFIG_PATH", folder.join("asound.conf")) };

@@ -57,10 +57,7 @@ fn an_overrun_ends_the_source_behind_what_came_before_it() {
     };
     let frames = read.len() / 2;
     let is_lost = |e: &DeviceError| matches!(e, DeviceError::Overrun { frames: f, .. } if *f == frames as u64);
-    assert!(
-        is_lost(&error) && error.to_string().contains("raise `buffer_s`"),
-        "{error}"
-    );
+    assert!(is_lost(&error) && error.to_string().contains("raise `buffer_s`"), "{error}");
     // As many as the buffer has, less what the card delivers at once.
     assert!((1_000..=4_800).contains(&frames), "{frames}");
     let same = |(i, x): (usize, &f64)| *x == f64::from(sample(i));
@@ -110,10 +107,8 @@ fn open(name: &str, given: &[(&str, &str)]) -> Result<Box<dyn Source>, DeviceErr
 
 fn named(device: &str, given: &[(&str, &str)]) -> Result<Box<dyn Source>, DeviceError> {
     folder();
-    let given: BTreeMap<String, String> = given
-        .iter()
-        .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
-        .collect();
+    let given: BTreeMap<String, String> =
+        given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
     Sources::new(vec![Arc::new(AudioInput::new())]).open(&format!("audio:{device}"), None, &given)
 }
 

@@ -8,9 +8,7 @@ use std::process::Command;
 
 #[test]
 fn playback_and_recording_through_alsa() {
-    let alsa = Command::new("pkg-config")
-        .args(["--exists", "alsa"])
-        .status();
+    let alsa = Command::new("pkg-config").args(["--exists", "alsa"]).status();
     if !xtask::needs::ALSA.met(alsa.is_ok_and(|status| status.success())) {
         return;
     }

@@ -1,4 +1,5 @@
-//! The devices and sources that programs have without loading a library. One that is added here is in the command, in Python and in C.
+//! The devices and sources that programs have without loading a library. One that is added here is
+//! in the command, in Python and in C.
 //!
 //! ```
 //! use htex_device::Devices;
@@ -62,7 +63,8 @@ pub const SOUND: Optional = Optional {
 };
 
 impl Optional {
-    /// Returns the one called `name`, by its short name or its id, if this program does not have it.
+    /// Returns the one called `name`, by its short name or its id, if this program does not have
+    /// it.
     pub fn left_out(name: &str) -> Option<Self> {
         let named = |one: &Self| [one.id, one.short_name()].contains(&name);
         [SOUND].into_iter().find(|one| !one.is_built && named(one))

@@ -1,7 +1,9 @@
-//! Outputs with several channels, of which chosen ones play the texture: the interleaved frames of a sound card, of a WAV file, or of nothing.
+//! Outputs with several channels, of which chosen ones play the texture: the interleaved frames of
+//! a sound card, of a WAV file, or of nothing.
 //!
-//! A DualSense that is connected by a cable is a sound card of four channels. The first two are its loudspeaker and headset, the
-//! others its left and right actuator; they play samples, so that nothing of a texture is reduced.
+//! A DualSense that is connected by a cable is a sound card of four channels. The first two are its
+//! loudspeaker and headset, the others its left and right actuator; they play samples, so that
+//! nothing of a texture is reduced.
 #![forbid(unsafe_code)]
 
 mod nowhere;
@@ -24,9 +26,7 @@ pub struct Channels {
 impl Channels {
     /// The adapter. Opens nothing.
     pub fn new() -> Self {
-        Self {
-            descriptor: descriptor(),
-        }
+        Self { descriptor: descriptor() }
     }
 }
 
@@ -41,7 +41,8 @@ impl Adapter for Channels {
         &self.descriptor
     }
 
-    /// Where it can play; of sound cards those that the system names, whose numbers of channels are seen when one is chosen.
+    /// Where it can play; of sound cards those that the system names, whose numbers of channels are
+    /// seen when one is chosen.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
         let nothing = Endpoint {
             name: "null".to_owned(),
@@ -67,9 +68,7 @@ impl Adapter for Channels {
 }
 
 fn descriptor() -> Descriptor {
-    let to = SettingKind::Choice {
-        values: to::NAMES.map(str::to_owned).to_vec(),
-    };
+    let to = SettingKind::Choice { values: to::NAMES.map(str::to_owned).to_vec() };
     let settings = vec![
         Setting {
             default: None,

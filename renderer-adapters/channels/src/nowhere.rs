@@ -27,11 +27,7 @@ pub(crate) fn open(
     can: Capabilities,
     format: &StreamFormat,
 ) -> Result<Box<dyn Device>, DeviceError> {
-    let plan = Plan {
-        gain: 1.0,
-        block_s: BLOCK_S,
-        buffer_s,
-    };
+    let plan = Plan { gain: 1.0, block_s: BLOCK_S, buffer_s };
     let paced = Paced::open("Channels", Box::new(Nowhere), &plan, can, format)?;
     Ok(Box::new(paced))
 }

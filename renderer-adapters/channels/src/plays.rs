@@ -2,22 +2,21 @@
 
 use htex_device::DeviceError;
 
-/// What a DualSense takes as sound: two channels for its loudspeaker and headset, and one for each of its two actuators.
+/// What a DualSense takes as sound: two channels for its loudspeaker and headset, and one for each
+/// of its two actuators.
 pub(crate) const DUALSENSE: &str = "off,off,texture,texture";
 /// Most channels.
 const MOST: usize = 32;
 
-/// Reads a list such as `off,off,texture,-0.5`, an item for each channel; returns what each plays of a sample, as a factor.
+/// Reads a list such as `off,off,texture,-0.5`, an item for each channel; returns what each plays
+/// of a sample, as a factor.
 ///
 /// # Errors
 /// When an item is none, or no channel plays.
 pub(crate) fn factors(list: &str) -> Result<Vec<f32>, DeviceError> {
     let factors: Vec<f32> = list.split(',').map(factor).collect::<Result<_, _>>()?;
     if factors.len() > MOST {
-        return Err(refused(format!(
-            "it has {} channels, and {MOST} are the most",
-            factors.len()
-        )));
+        return Err(refused(format!("it has {} channels, and {MOST} are the most", factors.len())));
     }
     match factors.iter().all(|factor| *factor == 0.0) {
         true => Err(refused("no channel plays the texture".to_owned())),
@@ -39,10 +38,7 @@ fn factor(item: &str) -> Result<f32, DeviceError> {
 }
 
 fn refused(what: String) -> DeviceError {
-    DeviceError::Setting {
-        name: "plays".to_owned(),
-        what,
-    }
+    DeviceError::Setting { name: "plays".to_owned(), what }
 }
 
 #[cfg(test)]
@@ -63,10 +59,7 @@ mod tests {
             (&["texture"; 33].join(","), "33 channels"),
         ] {
             let error = factors(list).unwrap_err().to_string();
-            assert!(
-                error.starts_with("setting `plays`") && error.contains(says),
-                "{error}"
-            );
+            assert!(error.starts_with("setting `plays`") && error.contains(says), "{error}");
         }
     }
 }

@@ -40,17 +40,11 @@ impl To {
             return refuse("path", format!("it is for to=file, and to={to}"));
         }
         if to == "file" && !has_usual_buffer(settings) {
-            return refuse(
-                "buffer_ms",
-                "a file has no buffer that keeps samples ready".to_owned(),
-            );
+            return refuse("buffer_ms", "a file has no buffer that keeps samples ready".to_owned());
         }
         let buffer_s = settings.number("buffer_ms") / 1e3;
         match to {
-            "sound" => Ok(Self::Sound {
-                card: card.to_owned(),
-                buffer_s,
-            }),
+            "sound" => Ok(Self::Sound { card: card.to_owned(), buffer_s }),
             "file" if path.is_empty() => {
                 refuse("path", "to=file writes a file; name it".to_owned())
             }
@@ -106,10 +100,7 @@ pub(crate) fn cards() -> Vec<Endpoint> {
 }
 
 fn refuse<T>(name: &str, what: String) -> Result<T, DeviceError> {
-    Err(DeviceError::Setting {
-        name: name.to_owned(),
-        what,
-    })
+    Err(DeviceError::Setting { name: name.to_owned(), what })
 }
 
 #[cfg(feature = "audio")]

@@ -39,20 +39,12 @@ fn a_card_of_four_channels_plays_on_the_chosen_ones() {
     unsafe { std::env::set_var("ALSA_CONFIG_PATH", folder.join("asound.conf")) };
     let channels = Channels::new();
     let listed = channels.endpoints().unwrap();
-    assert!(
-        listed
-            .iter()
-            .any(|e| e.name == "alsa:pad" && e.setting == "device"),
-        "{listed:?}"
-    );
+    assert!(listed.iter().any(|e| e.name == "alsa:pad" && e.setting == "device"), "{listed:?}");
     let settings = settings(&[("device", "alsa:pad")]);
     let can = channels.capabilities(&settings).unwrap();
     can.check().unwrap();
     assert!(can.has_rate(RATE_HZ), "{can:?}");
-    let format = StreamFormat {
-        rate_hz: RATE_HZ,
-        block_frames: 480,
-    };
+    let format = StreamFormat { rate_hz: RATE_HZ, block_frames: 480 };
     let mut device = channels.open(&settings, &format).unwrap();
     let samples: Vec<f32> = (0..4_000).map(|i| (i as f32 * 0.05).sin() * 0.8).collect();
     for block in samples.chunks(512) {
@@ -68,10 +60,7 @@ fn a_card_of_four_channels_plays_on_the_chosen_ones() {
     assert!(all.len() > 16_000, "{}", all.len());
     for (n, frame) in all.chunks_exact(4).take(4_000).enumerate() {
         assert_eq!(frame[..2], [0.0, 0.0], "{n}");
-        assert!(
-            frame[2] == frame[3] && (frame[2] - samples[n]).abs() < 1e-4,
-            "{n} {frame:?}"
-        );
+        assert!(frame[2] == frame[3] && (frame[2] - samples[n]).abs() < 1e-4, "{n} {frame:?}");
     }
     assert!(all.ends_with(&[0.0; 4]));
 

@@ -1,4 +1,5 @@
-//! Chosen channels of a file, of nothing, and of a sound card (`with_alsa.rs` runs that part where ALSA is installed).
+//! Chosen channels of a file, of nothing, and of a sound card (`with_alsa.rs` runs that part where
+//! ALSA is installed).
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::collections::BTreeMap;
@@ -11,18 +12,13 @@ const RATE_HZ: f64 = 48_000.0;
 const LONG: Duration = Duration::from_secs(5);
 
 fn settings(given: &[(&str, &str)]) -> Result<Settings, DeviceError> {
-    let given: BTreeMap<String, String> = given
-        .iter()
-        .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
-        .collect();
+    let given: BTreeMap<String, String> =
+        given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
     Settings::resolve(Channels::new().descriptor(), None, &given)
 }
 
 fn open(given: &[(&str, &str)]) -> Result<Box<dyn Device>, DeviceError> {
-    let format = StreamFormat {
-        rate_hz: RATE_HZ,
-        block_frames: 480,
-    };
+    let format = StreamFormat { rate_hz: RATE_HZ, block_frames: 480 };
     Channels::new().open(&settings(given)?, &format)
 }
 
@@ -34,10 +30,7 @@ fn a_file_has_the_samples_on_the_channels_that_play_them() {
         (None, &[0.0, 0.0, 1.0, 1.0][..]),
         (Some("texture,-0.5"), &[1.0, -0.5]),
         (Some("texture"), &[1.0]),
-        (
-            Some("off,0.25,off,texture,off,1"),
-            &[0.0, 0.25, 0.0, 1.0, 0.0, 1.0],
-        ),
+        (Some("off,0.25,off,texture,off,1"), &[0.0, 0.25, 0.0, 1.0, 0.0, 1.0]),
     ] {
         let path = folder.path().join("pad.wav");
         let mut given = vec![("to", "file"), ("path", path.to_str().unwrap())];
@@ -51,14 +44,9 @@ fn a_file_has_the_samples_on_the_channels_that_play_them() {
         assert_eq!(device.status().frames_played, 1_000);
         let mut wav = hound::WavReader::open(&path).unwrap();
         let spec = wav.spec();
-        assert_eq!(
-            (usize::from(spec.channels), spec.sample_rate),
-            (factors.len(), 48_000)
-        );
+        assert_eq!((usize::from(spec.channels), spec.sample_rate), (factors.len(), 48_000));
         let played: Vec<f32> = wav.samples::<f32>().map(Result::unwrap).collect();
-        let expected = samples
-            .iter()
-            .flat_map(|x| factors.iter().map(move |f| x * f));
+        let expected = samples.iter().flat_map(|x| factors.iter().map(move |f| x * f));
         assert!(played.iter().copied().eq(expected), "{plays:?}");
         std::fs::remove_file(&path).unwrap();
     }
@@ -72,10 +60,7 @@ fn a_file_that_is_not_finished_is_none() {
     let mut device = open(&given).unwrap();
     device.write(&[0.5; 100], LONG).unwrap();
     let error = device.write(&[1.01], LONG).unwrap_err();
-    assert!(
-        matches!(error, DeviceError::OverLimit { frame: 100, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, DeviceError::OverLimit { frame: 100, .. }), "{error}");
     drop(device);
     drop(open(&given).unwrap());
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
@@ -87,11 +72,7 @@ fn nothing_takes_the_samples_at_the_pace_of_the_clock() {
     let since = Instant::now();
     assert_eq!(device.write(&[0.5; 14_400], LONG), Ok(14_400));
     device.finish().unwrap();
-    assert!(
-        since.elapsed() >= Duration::from_millis(280),
-        "{:?}",
-        since.elapsed()
-    );
+    assert!(since.elapsed() >= Duration::from_millis(280), "{:?}", since.elapsed());
     assert_eq!(device.status().frames_played, 14_400);
 }
 
@@ -102,14 +83,8 @@ fn what_cannot_take_effect_is_refused() {
     for (given, name) in [
         (&[("to", "null"), ("path", "a.wav")][..], "path"),
         (&[("to", "null"), ("device", "card")], "device"),
-        (
-            &[("to", "file"), ("path", "a.wav"), ("device", "card")],
-            "device",
-        ),
-        (
-            &[("to", "file"), ("path", "a.wav"), ("buffer_ms", "50")],
-            "buffer_ms",
-        ),
+        (&[("to", "file"), ("path", "a.wav"), ("device", "card")], "device"),
+        (&[("to", "file"), ("path", "a.wav"), ("buffer_ms", "50")], "buffer_ms"),
         (&[("to", "file")], "path"),
         (&[("to", "sound"), ("path", "a.wav")], "path"),
         (&[("to", "null"), ("plays", "off,off")], "plays"),
@@ -122,18 +97,13 @@ fn what_cannot_take_effect_is_refused() {
             other => unreachable!("{given:?}: {other:?}"),
         }
     }
-    let can = channels
-        .capabilities(&settings(&[("to", "null")]).unwrap())
-        .unwrap();
+    let can = channels.capabilities(&settings(&[("to", "null")]).unwrap()).unwrap();
     can.check().unwrap();
     assert_eq!(
         (can.quantity, can.limit, can.default_rate_hz),
         (Quantity::Sound, Some(1.0), RATE_HZ)
     );
-    let rate = StreamFormat {
-        rate_hz: 48_001.0,
-        block_frames: 480,
-    };
+    let rate = StreamFormat { rate_hz: 48_001.0, block_frames: 480 };
     let refused = channels.open(&settings(&[("to", "null")]).unwrap(), &rate);
     assert!(matches!(refused.err().unwrap(), DeviceError::Rate { .. }));
     assert_eq!(channels.endpoints().unwrap()[0].name, "null");

@@ -8,24 +8,14 @@ use std::process::Command;
 
 #[test]
 fn four_channels_through_alsa() {
-    let alsa = Command::new("pkg-config")
-        .args(["--exists", "alsa"])
-        .status();
+    let alsa = Command::new("pkg-config").args(["--exists", "alsa"]).status();
     if !xtask::needs::ALSA.met(alsa.is_ok_and(|status| status.success())) {
         return;
     }
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let tests = Command::new(cargo)
-        .args([
-            "test",
-            "--locked",
-            "--features",
-            "audio",
-            "--test",
-            "alsa",
-            "--manifest-path",
-        ])
+        .args(["test", "--locked", "--features", "audio", "--test", "alsa", "--manifest-path"])
         .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))
         .arg("--target-dir")
         .arg(target)
@@ -33,8 +23,5 @@ fn four_channels_through_alsa() {
         .unwrap();
     let said = String::from_utf8_lossy(&tests.stdout);
     let errors = String::from_utf8_lossy(&tests.stderr);
-    assert!(
-        tests.status.success() && said.contains("1 passed"),
-        "{said}{errors}"
-    );
+    assert!(tests.status.success() && said.contains("1 passed"), "{said}{errors}");
 }

@@ -46,16 +46,14 @@ pub struct Case<A: CaseKind + ?Sized> {
     pub(crate) files: A::Files,
 }
 
-/// Runs all checks of the adapter of this file or id, each in a process of its own. `runner` is a program that calls
-/// [`run_one`]; it gets its own arguments, which name the adapter and its settings, then the check's name.
+/// Runs all checks of the adapter of this file or id, each in a process of its own. `runner` is a
+/// program that calls [`run_one`]; it gets its own arguments, which name the adapter and its
+/// settings, then the check's name.
 pub fn check<A: CheckedKind + ?Sized>(adapter: &str, runner: &Runner) -> Report {
     let checks = run_all(A::CHECKS, runner, |command, name| {
         command.arg(name);
     });
-    let subject = AdapterName {
-        kind: A::WORD,
-        name: adapter.to_owned(),
-    };
+    let subject = AdapterName { kind: A::WORD, name: adapter.to_owned() };
     Report::new(subject, checks)
 }
 
@@ -130,10 +128,7 @@ impl<A: CaseKind + ?Sized> Case<A> {
     ) -> Result<Settings, Finding> {
         let descriptor = self.adapter.about();
         let mut given = self.given.clone();
-        let fixed = descriptor
-            .profiles
-            .iter()
-            .find(|p| Some(&p.name[..]) == profile);
+        let fixed = descriptor.profiles.iter().find(|p| Some(&p.name[..]) == profile);
         for setting in descriptor.settings.iter().filter(|s| s.default.is_none()) {
             let name = &setting.name;
             if given.contains_key(name) || fixed.is_some_and(|p| p.settings.contains_key(name)) {

@@ -82,10 +82,7 @@ impl Case {
         rate_hz: f64,
     ) -> Result<Box<dyn Device>, DeviceError> {
         let block_frames = self.adapter.capabilities(settings)?.block_frames;
-        let format = StreamFormat {
-            rate_hz,
-            block_frames,
-        };
+        let format = StreamFormat { rate_hz, block_frames };
         self.adapter.open(settings, &format)
     }
 
@@ -107,9 +104,7 @@ pub(crate) fn write_all(device: &mut dyn Device, samples: &[f32]) -> Result<(), 
         empty = if taken == 0 { empty + 1 } else { 0 };
         if empty == EMPTY_WRITES {
             let seconds = PATIENCE.as_secs() * u64::from(EMPTY_WRITES);
-            return Err(Finding::failed(format!(
-                "it takes no samples for {seconds} s"
-            )));
+            return Err(Finding::failed(format!("it takes no samples for {seconds} s")));
         }
         let Some(rest) = left.get(taken..) else {
             return Err(Finding::failed("it takes more samples than it was offered"));

@@ -1,5 +1,5 @@
-//! Reservation of outputs: each belongs to one open device. The driver reserves an output only while a task runs, and a
-//! device is open before that.
+//! Reservation of outputs: each belongs to one open device. The driver reserves an output only
+//! while a task runs, and a device is open before that.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};

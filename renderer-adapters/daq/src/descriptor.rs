@@ -139,12 +139,7 @@ fn generic() -> Profile {
         "generic",
         "A card without an amplifier: volts of its output, -10 to 10 V, no carrier asked for, and so direct voltage up to the \
          whole 10 V (dc_limit_v): not for a display that a finger touches.",
-        &[
-            ("dc_limit_v", "10"),
-            ("amplifier_gain", "1"),
-            ("limit_v", "10"),
-            ("carrier_hz", "0"),
-        ],
+        &[("dc_limit_v", "10"), ("amplifier_gain", "1"), ("limit_v", "10"), ("carrier_hz", "0")],
     )
 }
 

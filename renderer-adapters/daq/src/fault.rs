@@ -2,16 +2,16 @@
 
 use htex_device::DeviceError;
 
-/// The device is not or no longer available: not present (-88705), removed, absent, powered off, not accessible.
-const GONE: [i32; 8] = [
-    -88705, -200045, -200170, -200194, -200220, -200324, -200175, -201003,
-];
+/// The device is not or no longer available: not present (-88705), removed, absent, powered off,
+/// not accessible.
+const GONE: [i32; 8] = [-88705, -200045, -200170, -200194, -200220, -200324, -200175, -201003];
 /// Another task, or another program, has the output.
 const RESERVED: i32 = -50103;
 /// Samples came too late: the buffer, or the memory on the card, became empty.
 const DRY: [i32; 5] = [-200290, -200291, -200016, -200018, -200621];
 
-/// Samples were read too late: the buffer was overwritten (-200279), or the memory on the card was full (-200361).
+/// Samples were read too late: the buffer was overwritten (-200279), or the memory on the card was
+/// full (-200361).
 const OVERRUN: [i32; 2] = [-200279, -200361];
 
 /// The warning about a voltage that may remain at the display.

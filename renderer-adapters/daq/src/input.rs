@@ -9,16 +9,15 @@ use crate::driver::Driver;
 use crate::input_stream::InputStream;
 use crate::inputs::Inputs;
 
-/// Analog inputs of National Instruments cards as a source: volts of the card. The driver is loaded at the first use.
+/// Analog inputs of National Instruments cards as a source: volts of the card. The driver is loaded
+/// at the first use.
 pub struct DaqInput {
     descriptor: Descriptor,
 }
 
 impl DaqInput {
     pub fn new() -> Self {
-        Self {
-            descriptor: descriptor(),
-        }
+        Self { descriptor: descriptor() }
     }
 }
 
@@ -31,9 +30,7 @@ impl Default for DaqInput {
 fn descriptor() -> Descriptor {
     let number = |min, max| SettingKind::Number { min, max };
     let terminals = ["default", "rse", "nrse", "diff", "pseudodiff"];
-    let terminals = SettingKind::Choice {
-        values: terminals.map(str::to_owned).to_vec(),
-    };
+    let terminals = SettingKind::Choice { values: terminals.map(str::to_owned).to_vec() };
     Descriptor {
         id: "org.htex.daq".to_owned(),
         name: "NI-DAQmx".to_owned(),

@@ -26,10 +26,7 @@ impl InputStream {
     pub(crate) fn open(inputs: Inputs, driver: &'static Driver) -> Result<Self, DeviceError> {
         let task = Self::task(&inputs, driver).map_err(|fault| fault.missing(&inputs.given))?;
         let name = |full: &String| full.rsplit('/').next().unwrap_or(full).to_owned();
-        let channels = inputs
-            .channels
-            .iter()
-            .map(|full| Channel::new(name(full), "V"));
+        let channels = inputs.channels.iter().map(|full| Channel::new(name(full), "V"));
         Ok(Self {
             channels: channels.collect(),
             inputs,
@@ -64,9 +61,7 @@ impl InputStream {
     /// Ends the task and returns the error of a fault.
     fn fail(&mut self, fault: &Fault) -> DeviceError {
         self.task = None;
-        let Inputs {
-            given, buffer_s, ..
-        } = &self.inputs;
+        let Inputs { given, buffer_s, .. } = &self.inputs;
         match fault.is_overrun() {
             true => DeviceError::Overrun {
                 source_name: given.clone(),
@@ -95,8 +90,7 @@ impl Source for InputStream {
             return Err(DeviceError::Closed(self.inputs.given.clone()));
         };
         if !self.is_running {
-            task.start()
-                .map_err(|fault| fault.missing(&self.inputs.given))?;
+            task.start().map_err(|fault| fault.missing(&self.inputs.given))?;
             self.is_running = true;
         }
         Ok(())
@@ -120,7 +114,6 @@ impl Source for InputStream {
         let Some(task) = self.task.take().filter(|_| self.is_running) else {
             return Ok(());
         };
-        task.stop()
-            .map_err(|fault| fault.failed(&self.inputs.given))
+        task.stop().map_err(|fault| fault.failed(&self.inputs.given))
     }
 }

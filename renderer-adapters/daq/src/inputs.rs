@@ -42,9 +42,7 @@ impl Inputs {
     }
 
     pub(crate) fn buffer_frames(&self) -> u32 {
-        (self.buffer_s * self.rate_hz)
-            .ceil()
-            .clamp(2.0, f64::from(u32::MAX)) as u32
+        (self.buffer_s * self.rate_hz).ceil().clamp(2.0, f64::from(u32::MAX)) as u32
     }
 
     pub(crate) fn check_connected(&self, driver: &Driver) -> Result<(), DeviceError> {
@@ -61,19 +59,14 @@ impl Inputs {
             )));
         }
         let card = self.channels[0].split('/').next().unwrap_or_default();
-        let rates = driver
-            .input_rates(card)
-            .map_err(|fault| fault.missing(&self.given))?;
+        let rates = driver.input_rates(card).map_err(|fault| fault.missing(&self.given))?;
         let (min_hz, max_hz) = (rates.0, rates.1 / self.channels.len() as f64);
         match (min_hz..=max_hz).contains(&self.rate_hz) {
             true => Ok(()),
             false => Err(DeviceError::Rate {
                 device: self.given.clone(),
                 rate_hz: self.rate_hz,
-                rates: format!(
-                    "{min_hz} to {max_hz} Hz with {} channels",
-                    self.channels.len()
-                ),
+                rates: format!("{min_hz} to {max_hz} Hz with {} channels", self.channels.len()),
             }),
         }
     }
@@ -105,15 +98,10 @@ fn expanded(text: &str) -> Result<Vec<String>, DeviceError> {
     let other = |(i, name): (usize, &String)| {
         card(name) != card(&channels[0]) || channels[..i].contains(name)
     };
-    match channels
-        .iter()
-        .enumerate()
-        .any(|(i, name)| other((i, name)))
+    match channels.iter().enumerate().any(|(i, name)| other((i, name)))
         || channels.len() > MOST_CHANNELS
     {
-        true => Err(refuse(format!(
-            "`{text}` names inputs twice or of several cards"
-        ))),
+        true => Err(refuse(format!("`{text}` names inputs twice or of several cards"))),
         false => Ok(channels),
     }
 }
@@ -125,10 +113,7 @@ mod tests {
     #[test]
     fn ranges_and_lists_are_expanded() {
         let names = |text| expanded(text).unwrap_or_default().join(" ");
-        assert_eq!(
-            names("Dev1/ai0:2, Dev1/ai5"),
-            "Dev1/ai0 Dev1/ai1 Dev1/ai2 Dev1/ai5"
-        );
+        assert_eq!(names("Dev1/ai0:2, Dev1/ai5"), "Dev1/ai0 Dev1/ai1 Dev1/ai2 Dev1/ai5");
         assert_eq!(names("cDAQ1Mod1/ai3"), "cDAQ1Mod1/ai3");
         for wrong in [
             "",

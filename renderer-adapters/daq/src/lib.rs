@@ -1,17 +1,19 @@
-//! The analog output of a National Instruments card, and the amplifier behind it: electrovibration; and its analog inputs.
+//! The analog output of a National Instruments card, and the amplifier behind it: electrovibration;
+//! and its analog inputs.
 //!
-//! Samples are volts *at the display*, the carrier included; this adapter divides by the amplifier's
-//! gain and streams through NI-DAQmx, which is loaded at run time and not linked.
+//! Samples are volts *at the display*, the carrier included; this adapter divides by the
+//! amplifier's gain and streams through NI-DAQmx, which is loaded at run time and not linked.
 //!
 //! The voltage is limited by:
-//! - a sample beyond `limit_v` is never output, and the driver's own channel limits are set to the same;
+//! - a sample beyond `limit_v` is never output, and the driver's own channel limits are set to the
+//!   same;
 //! - the output goes to zero before a stream, after it, on every error, and when the device is
 //!   dropped; a thread of the device detects an empty buffer even if no more samples are
 //!   written, and sets the output to zero if a call of the driver does not return for 0.3 s;
 //! - a mean over 100 ms beyond `dc_limit_v` is never output, whatever produced it;
-//! - a stream that does not begin or end at zero gets a ramp of `ramp_ms` *before its
-//!   first and after its last* sample: the mirror image of what is there, under a falling weight, so that a carrier stays one.
-//!   Samples themselves are never changed;
+//! - a stream that does not begin or end at zero gets a ramp of `ramp_ms` *before its first and
+//!   after its last* sample: the mirror image of what is there, under a falling weight, so that a
+//!   carrier stays one. Samples themselves are never changed;
 //! - buffer and ramp together have at most 400 ms.
 //!
 //! [`DaqInput`] is the reverse: the analog inputs of a card as a source, in volts.
@@ -47,9 +49,7 @@ pub struct Daq {
 impl Daq {
     /// The adapter. The driver is loaded at the first use.
     pub fn new() -> Self {
-        Self {
-            descriptor: descriptor::descriptor(),
-        }
+        Self { descriptor: descriptor::descriptor() }
     }
 }
 

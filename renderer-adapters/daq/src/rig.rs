@@ -8,9 +8,11 @@ use crate::driver::Driver;
 
 /// The rate at which the paper records forces, hertz; it states no output rate.
 const DEFAULT_RATE_HZ: f64 = 20_000.0;
-/// Lowest rate, hertz: textures reach 1000 Hz, and a control block of eight frames takes 8 ms here, seconds far below.
+/// Lowest rate, hertz: textures reach 1000 Hz, and a control block of eight frames takes 8 ms here,
+/// seconds far below.
 const LOWEST_RATE_HZ: f64 = 1_000.0;
-/// Longest buffer and ramp together, milliseconds: the output of a player that is killed is then at zero within half a second.
+/// Longest buffer and ramp together, milliseconds: the output of a player that is killed is then at
+/// zero within half a second.
 pub(crate) const MOST_TO_ZERO_MS: f64 = 400.0;
 /// Preferred frames in a block.
 const BLOCK_FRAMES: u32 = 256;
@@ -60,10 +62,9 @@ impl Rig {
                      zero within half a second"
                 ),
             )),
-            _ if !rig.device.contains('/') => Err(refuse(
-                "device",
-                "it must name an analog output, such as `Dev1/ao0`",
-            )),
+            _ if !rig.device.contains('/') => {
+                Err(refuse("device", "it must name an analog output, such as `Dev1/ao0`"))
+            }
             false => Err(refuse("limit_v", "it must be above zero")),
             true => Ok(rig),
         }
@@ -123,16 +124,10 @@ fn not_there(device: &str, there: &[&str]) -> String {
         true => {
             format!("`{device}` is not connected: NI-DAQmx knows no card; see NI MAX or `nilsdev`")
         }
-        false => format!(
-            "`{device}` is not connected; connected is {}",
-            there.join(", ")
-        ),
+        false => format!("`{device}` is not connected; connected is {}", there.join(", ")),
     }
 }
 
 fn refuse(name: &str, what: &str) -> DeviceError {
-    DeviceError::Setting {
-        name: name.to_owned(),
-        what: what.to_owned(),
-    }
+    DeviceError::Setting { name: name.to_owned(), what: what.to_owned() }
 }

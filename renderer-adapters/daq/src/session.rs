@@ -1,8 +1,10 @@
-//! The state that writer and watchdog of an open device share: the running task, and the return to zero.
+//! The state that writer and watchdog of an open device share: the running task, and the return to
+//! zero.
 //!
-//! The adapter refuses a sample over the limit and a mean over that of direct voltage, the driver's own channel limits repeat the first, and the watchdog
-//! detects an underflow: a writer that hangs would leave the last voltage at the output. Every exit ends with an
-//! unclocked write of zero, which is repeated if it fails, and finally after a reset of the card.
+//! The adapter refuses a sample over the limit and a mean over that of direct voltage, the driver's
+//! own channel limits repeat the first, and the watchdog detects an underflow: a writer that hangs
+//! would leave the last voltage at the output. Every exit ends with an unclocked write of zero,
+//! which is repeated if it fails, and finally after a reset of the card.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -27,7 +29,8 @@ pub(crate) struct Session {
     rate_hz: f64,
     /// Most frames of the stream that wait in the driver's buffer and on the card.
     ahead: usize,
-    /// Capacity of the driver's buffer, frames: a ramp before the stream may be longer than `ahead`.
+    /// Capacity of the driver's buffer, frames: a ramp before the stream may be longer than
+    /// `ahead`.
     capacity: usize,
     /// `None` before the first sample and after the end.
     task: Option<Task>,
@@ -61,9 +64,8 @@ impl Session {
         let frames = |seconds: f64| (seconds * format.rate_hz).ceil() as usize;
         // A large block at a low rate must not delay the zero.
         let most = frames(MOST_TO_ZERO_MS / 1e3 - rig.ramp_s);
-        let ahead = frames(rig.buffer_s)
-            .max(2 * format.block_frames as usize)
-            .clamp(2, most.max(2));
+        let ahead =
+            frames(rig.buffer_s).max(2 * format.block_frames as usize).clamp(2, most.max(2));
         let session = Self {
             claim: Some(Claim::take(&rig)?),
             capacity: ahead.max(frames(rig.ramp_s)),
@@ -121,8 +123,9 @@ impl Session {
         Ok(taken)
     }
 
-    /// Frames of the stream that may be given now, counted by the frames output so far: the driver reports space in its
-    /// buffer as soon as samples have moved to the card's own memory, which may hold a second of them.
+    /// Frames of the stream that may be given now, counted by the frames output so far: the driver
+    /// reports space in its buffer as soon as samples have moved to the card's own memory, which
+    /// may hold a second of them.
     fn space(&mut self) -> Result<usize, DeviceError> {
         let generated = self.task.as_ref().map(Task::generated).transpose();
         let generated = generated.map_err(|fault| self.fail(&fault))?;
@@ -131,8 +134,8 @@ impl Session {
         Ok(self.ahead.saturating_sub(waiting as usize))
     }
 
-    /// What leads from the stream's last sample to zero, volts: the mirror image of its end under a falling weight, or zero at once
-    /// where that would be a direct voltage.
+    /// What leads from the stream's last sample to zero, volts: the mirror image of its end under a
+    /// falling weight, or zero at once where that would be a direct voltage.
     pub(crate) fn tail(&self) -> Vec<f64> {
         let mut tail = self.ramp(self.last_v, self.direct.mirrored());
         tail.push(0.0);
@@ -170,10 +173,7 @@ impl Session {
     /// Reads the driver's state; an error, or a clock that stands still, sets the output to zero.
     pub(crate) fn watch(&mut self) {
         let Some(task) = &self.task else { return };
-        match task
-            .is_done()
-            .and_then(|done| Ok((done, task.generated()?)))
-        {
+        match task.is_done().and_then(|done| Ok((done, task.generated()?))) {
             Ok((false, generated)) => {
                 self.came_out(generated);
                 if self.moved_at.elapsed() > STILL {
@@ -253,8 +253,9 @@ impl Session {
         }
     }
 
-    /// Starts the clock with zeros (half of the frames kept ahead, so that the first write is not late) that end in
-    /// a ramp to the first sample if that is not zero: the mirror image of the first ones.
+    /// Starts the clock with zeros (half of the frames kept ahead, so that the first write is not
+    /// late) that end in a ramp to the first sample if that is not zero: the mirror image of the
+    /// first ones.
     fn start(&mut self, volts: &[f64]) -> Result<(), DeviceError> {
         let (first, rest) = (volts[0], volts.get(1..).unwrap_or_default());
         let there = if rest.is_empty() { volts } else { rest };
@@ -288,8 +289,8 @@ impl Session {
         started.map(|()| task)
     }
 
-    /// A ramp from `from_v` to zero without its ends, of samples under a falling weight; empty if `from_v` is zero within the card's
-    /// step.
+    /// A ramp from `from_v` to zero without its ends, of samples under a falling weight; empty if
+    /// `from_v` is zero within the card's step.
     fn ramp(&self, from_v: f64, samples: impl Iterator<Item = f64>) -> Vec<f64> {
         if from_v.abs() * self.rig.gain < self.rig.step_v {
             return Vec::new();
@@ -354,12 +355,7 @@ impl Session {
     fn refuse(&mut self, frame: u64, value: f64) -> DeviceError {
         match self.end() {
             Err(fault) => fault.failed_and_not_zero(&self.rig.device),
-            Ok(()) => DeviceError::OverLimit {
-                frame,
-                value,
-                limit: self.rig.limit_v,
-                unit: "V",
-            },
+            Ok(()) => DeviceError::OverLimit { frame, value, limit: self.rig.limit_v, unit: "V" },
         }
     }
 

@@ -1,8 +1,8 @@
 //! An open device: waits for space in the buffer, and at the end until all samples are output.
 //!
-//! Samples in the buffer are counted from those that were played, since the driver reports space as soon as samples
-//! have moved to the card's memory. The ramp before a stream is not counted. A live motion has 20 ms in the buffer
-//! (`live_default` of `buffer_ms`).
+//! Samples in the buffer are counted from those that were played, since the driver reports space as
+//! soon as samples have moved to the card's memory. The ramp before a stream is not counted. A live
+//! motion has 20 ms in the buffer (`live_default` of `buffer_ms`).
 
 use std::sync::{Arc, MutexGuard};
 use std::thread::sleep;
@@ -43,18 +43,15 @@ impl Stream {
             })
         };
         let watchdogs = [start(Watches::Output)?, start(Watches::Calls)?];
-        Ok(Self {
-            shared,
-            _watchdogs: watchdogs,
-        })
+        Ok(Self { shared, _watchdogs: watchdogs })
     }
 
     fn session(&self) -> Result<MutexGuard<'_, Session>, DeviceError> {
         Ok(self.shared.lock()?)
     }
 
-    /// Gives the tail, and then zeros until the tail has been output, so that the buffer is never empty while the
-    /// clock runs.
+    /// Gives the tail, and then zeros until the tail has been output, so that the buffer is never
+    /// empty while the clock runs.
     fn drain(&self) -> Result<(), DeviceError> {
         let mut tail = self.session()?.tail();
         let end = self.session()?.progress().0 + tail.len() as u64;

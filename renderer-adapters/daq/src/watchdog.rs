@@ -23,7 +23,8 @@ pub(crate) fn say(error: &DeviceError) {
 pub(crate) enum Watches {
     /// Asks the driver whether the output still runs.
     Output,
-    /// Sees that the session is free from time to time, without a call of the driver that may hang as well.
+    /// Sees that the session is free from time to time, without a call of the driver that may hang
+    /// as well.
     Calls,
 }
 
@@ -34,7 +35,8 @@ pub(crate) struct Watchdog {
 }
 
 impl Watchdog {
-    /// Watches a session every `period`. If another thread has it for too long, zero is set without it.
+    /// Watches a session every `period`. If another thread has it for too long, zero is set without
+    /// it.
     pub(crate) fn start(
         shared: &Arc<Shared>,
         period: Duration,
@@ -53,13 +55,8 @@ impl Watchdog {
                 }
             }
         };
-        let thread = Builder::new()
-            .name("htex-daq-watchdog".to_owned())
-            .spawn(watch)?;
-        Ok(Self {
-            end: Some(end),
-            thread: Some(thread),
-        })
+        let thread = Builder::new().name("htex-daq-watchdog".to_owned()).spawn(watch)?;
+        Ok(Self { end: Some(end), thread: Some(thread) })
     }
 }
 

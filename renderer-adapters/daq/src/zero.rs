@@ -1,7 +1,8 @@
 //! The written zero, and the way to it when a call of the driver does not return.
 //!
-//! A call may hang while it holds the session. Nothing here needs the session: whoever waits for it for [`HANG`] sets the output to zero
-//! by a task of its own, the watchdog or a caller. The session sees that as soon as its call returns, and ends.
+//! A call may hang while it holds the session. Nothing here needs the session: whoever waits for it
+//! for [`HANG`] sets the output to zero by a task of its own, the watchdog or a caller. The session
+//! sees that as soon as its call returns, and ends.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
@@ -18,7 +19,8 @@ use crate::session::Session;
 const ATTEMPTS: usize = 5;
 /// Pause between two attempts, for transient faults.
 const PAUSE: Duration = Duration::from_millis(10);
-/// Time that one use of the session may take. With the watchdog's period, at most 0.1 s, zero is written within half a second.
+/// Time that one use of the session may take. With the watchdog's period, at most 0.1 s, zero is
+/// written within half a second.
 pub(crate) const HANG: Duration = Duration::from_millis(300);
 /// Time between two looks at whether the session is free.
 const LOOK: Duration = Duration::from_millis(1);
@@ -33,7 +35,8 @@ pub(crate) struct Zero {
 }
 
 impl Zero {
-    /// Outputs zero by a separate task without a clock; retries on failure, at last after a reset of the card.
+    /// Outputs zero by a separate task without a clock; retries on failure, at last after a reset
+    /// of the card.
     pub(crate) fn put(&self) -> Result<(), Fault> {
         let mut zero = self.once();
         for _ in 1..ATTEMPTS {
@@ -43,8 +46,8 @@ impl Zero {
             sleep(PAUSE);
             zero = self.once();
         }
-        // A reset ends all tasks of the card and sets its outputs to their power-on state, which need not be
-        // zero: so zero is written again.
+        // A reset ends all tasks of the card and sets its outputs to their power-on state, which
+        // need not be zero: so zero is written again.
         zero.or_else(|fault| {
             self.driver.reset(&self.device).map_err(|_| fault)?;
             self.once()
@@ -55,10 +58,9 @@ impl Zero {
         let task = Task::new(self.driver, &self.device, self.limit_v)?;
         match task.write(&[0.0], true)? {
             1 => task.stop(),
-            written => Err(Fault {
-                code: 0,
-                words: format!("{written} of 1 samples were written"),
-            }),
+            written => {
+                Err(Fault { code: 0, words: format!("{written} of 1 samples were written") })
+            }
         }
     }
 }
@@ -166,7 +168,8 @@ impl Shared {
     /// The session, as soon as it is free.
     ///
     /// # Errors
-    /// When another thread has had it for [`HANG`]: the output was then set to zero, or the error says that it could not be.
+    /// When another thread has had it for [`HANG`]: the output was then set to zero, or the error
+    /// says that it could not be.
     pub(crate) fn lock(&self) -> Result<MutexGuard<'_, Session>, Hung> {
         let mut turn = self.turn.load(Ordering::SeqCst);
         let mut since = Instant::now();

@@ -26,14 +26,8 @@ fn what_comes_out_is_what_was_written() {
     }
     device.finish().unwrap();
     let status = device.status();
-    assert_eq!(
-        (status.frames_written, status.frames_played),
-        (9_000, 9_000)
-    );
-    assert_eq!(
-        (status.underruns, status.peak),
-        (0, f64::from(peak(&samples)))
-    );
+    assert_eq!((status.frames_written, status.frames_played), (9_000, 9_000));
+    assert_eq!((status.underruns, status.peak), (0, f64::from(peak(&samples))));
     drop(device);
     // One zero when it was opened, half a buffer (200 ms) of zeros, the samples, zeros.
     let recorded = card.recorded();
@@ -51,10 +45,7 @@ fn a_wall_clock_takes_samples_at_its_pace() {
     let samples = burst(2_000);
     let mut device = card.open(&[("buffer_ms", "380")]).unwrap();
     assert_eq!(device.write(&samples, LONG).unwrap(), samples.len());
-    assert!(
-        device.status().frames_played == 0,
-        "the zeros before are 190 ms long"
-    );
+    assert!(device.status().frames_played == 0, "the zeros before are 190 ms long");
     device.finish().unwrap();
     let volts: Vec<f64> = samples.iter().map(|v| f64::from(*v) / GAIN).collect();
     assert!(card.recorded()[1 + 3_800..].starts_with(&volts));
@@ -68,23 +59,14 @@ fn a_stream_that_is_not_zero_at_its_ends_is_led_there() {
     device.finish().unwrap();
     let recorded = card.recorded();
     let high = recorded.iter().filter(|v| **v == 2.0).count();
-    assert_eq!(
-        high, 2_000,
-        "samples are as they were, and none is held longer"
-    );
-    let steepest = recorded
-        .windows(2)
-        .map(|v| (v[1] - v[0]).abs())
-        .fold(0.0, f64::max);
-    assert!(
-        steepest <= 2.0 / 1_000.0 + 1e-12,
-        "2 V in 50 ms: {steepest} V a sample"
-    );
+    assert_eq!(high, 2_000, "samples are as they were, and none is held longer");
+    let steepest = recorded.windows(2).map(|v| (v[1] - v[0]).abs()).fold(0.0, f64::max);
+    assert!(steepest <= 2.0 / 1_000.0 + 1e-12, "2 V in 50 ms: {steepest} V a sample");
     assert_eq!((recorded[0], recorded[recorded.len() - 1]), (0.0, 0.0));
 }
 
-/// What is written waits no longer than `buffer_ms`, also behind a ramp that is longer. A machine that is busy for 20 ms lets the
-/// stream run dry, which is tried again.
+/// What is written waits no longer than `buffer_ms`, also behind a ramp that is longer. A machine
+/// that is busy for 20 ms lets the stream run dry, which is tried again.
 #[test]
 fn a_short_buffer_is_a_short_wait() {
     let played = (0..10).find_map(|_| short_buffer().ok());
@@ -118,9 +100,7 @@ fn no_sample_beyond_the_limit_comes_out() {
         let mut device = card.open(&[]).unwrap();
         device.write(&[150.0; 3_000], LONG).unwrap();
         let error = device.write(&[1.0, wrong, 1.0], LONG).unwrap_err();
-        let DeviceError::OverLimit { frame, limit, .. } = error else {
-            unreachable!("{error}")
-        };
+        let DeviceError::OverLimit { frame, limit, .. } = error else { unreachable!("{error}") };
         assert_eq!((frame, limit), (3_001, 150.0));
         goes_to_zero(&card);
         is_closed(&mut *device);
@@ -134,30 +114,24 @@ fn direct_v(card: &Card) -> f64 {
     let window = (0.1 * RATE_HZ) as usize;
     let zeros = vec![0.0; window];
     let all = [&zeros[..], &recorded, &zeros].concat();
-    let means = all
-        .windows(window)
-        .map(|part| part.iter().sum::<f64>() / window as f64);
+    let means = all.windows(window).map(|part| part.iter().sum::<f64>() / window as f64);
     GAIN * means.fold(0.0, |most, mean| mean.abs().max(most))
 }
 
-/// A mean over 100 ms beyond the limit is not put out, whatever the blocks: the output goes to zero with an error.
+/// A mean over 100 ms beyond the limit is not put out, whatever the blocks: the output goes to zero
+/// with an error.
 #[test]
 fn no_direct_voltage_beyond_the_limit_comes_out() {
-    for (volts, limit_v, block) in [
-        (100.0, "1", 256),
-        (-100.0, "1", 300),
-        (20.0, "5", 4_000),
-        (1.2, "1", 500),
-    ] {
+    for (volts, limit_v, block) in
+        [(100.0, "1", 256), (-100.0, "1", 300), (20.0, "5", 4_000), (1.2, "1", 500)]
+    {
         let card = Card::new();
         // A tone that has no mean, and then one that has.
         let tone = |i: usize| (40.0 * (TAU * i as f64 / 8.0).sin()) as f32;
         let mut samples: Vec<f32> = (0..8_000).map(tone).collect();
         samples.extend((8_000..20_000).map(|i| tone(i) + volts));
         let mut device = card.open(&[("dc_limit_v", limit_v)]).unwrap();
-        let error = samples
-            .chunks(block)
-            .find_map(|part| device.write(part, LONG).err());
+        let error = samples.chunks(block).find_map(|part| device.write(part, LONG).err());
         let Some(DeviceError::DirectVoltage { frame, mean_v, .. }) = error else {
             unreachable!("{error:?}")
         };
@@ -176,7 +150,8 @@ fn no_direct_voltage_beyond_the_limit_comes_out() {
     device.finish().unwrap();
 }
 
-/// A player that ends in the middle of a carrier leaves no direct voltage on the way to zero, and neither does one that begins there.
+/// A player that ends in the middle of a carrier leaves no direct voltage on the way to zero, and
+/// neither does one that begins there.
 #[test]
 fn a_carrier_that_is_cut_is_led_to_zero_as_a_carrier() {
     for phase in [0.0, 0.7, 2.0] {
@@ -201,25 +176,14 @@ fn what_endangers_a_finger_is_refused() {
     for rate_hz in [7_000.0, 3_500.0, 14_000.0, 17_499.0] {
         let card = Card::new();
         let error = card.open_at(rate_hz, &[]).err().unwrap().to_string();
-        assert!(
-            error.contains("2.5 times its carrier of 7000 Hz"),
-            "{error}"
-        );
+        assert!(error.contains("2.5 times its carrier of 7000 Hz"), "{error}");
         assert!(card.recorded().is_empty());
     }
     let card = Card::new();
     let error = card.open(&[("buffer_ms", "390"), ("ramp_ms", "20")]);
-    assert!(
-        error
-            .err()
-            .unwrap()
-            .to_string()
-            .contains("at most 400 ms together")
-    );
+    assert!(error.err().unwrap().to_string().contains("at most 400 ms together"));
     let fast = Daq::new().capabilities(&card.settings(&[("carrier_hz", "100000")]));
-    let Rates::Range { min_hz, .. } = fast.unwrap().rates else {
-        unreachable!()
-    };
+    let Rates::Range { min_hz, .. } = fast.unwrap().rates else { unreachable!() };
     assert_eq!(min_hz, 250_000.0);
 }
 
@@ -235,22 +199,15 @@ fn a_hung_writer_ends_at_zero() {
     });
     assert!(waited);
     let error = device.write(&[100.0], LONG).unwrap_err();
-    let DeviceError::Underflow {
-        frames, ref advice, ..
-    } = error
-    else {
-        unreachable!("{error}")
-    };
-    assert!(
-        advice.contains("`setting buffer_ms=100` (now 50 ms)"),
-        "{advice}"
-    );
+    let DeviceError::Underflow { frames, ref advice, .. } = error else { unreachable!("{error}") };
+    assert!(advice.contains("`setting buffer_ms=100` (now 50 ms)"), "{advice}");
     assert_eq!((frames, device.status().underruns), (800, 1));
     is_closed(&mut *device);
     assert!(device.finish().is_err());
 }
 
-/// A clock that stands still would leave the last voltage: the device's own thread writes zero, whether or not samples are written.
+/// A clock that stands still would leave the last voltage: the device's own thread writes zero,
+/// whether or not samples are written.
 #[test]
 fn a_clock_that_stands_still_ends_at_zero() {
     let card = Card::new();
@@ -276,10 +233,7 @@ fn a_device_dropped_in_the_middle_goes_to_zero() {
     device.write(&[100.0; 9_000], LONG).unwrap();
     drop(device);
     let recorded = card.recorded();
-    assert!(
-        recorded.ends_with(&[2.0, 0.0]),
-        "at once, without what was buffered"
-    );
+    assert!(recorded.ends_with(&[2.0, 0.0]), "at once, without what was buffered");
     assert!(recorded.len() < 9_000 + 2_000);
 }
 
@@ -303,10 +257,7 @@ fn a_card_pulled_out_is_an_error_that_says_so() {
     let mut device = card.open(&[]).unwrap();
     let error = (0..100).find_map(|_| device.write(&[100.0; 500], LONG).err());
     let error = error.unwrap().to_string();
-    assert!(
-        error.contains("-88705") && error.contains("could not be set to zero"),
-        "{error}"
-    );
+    assert!(error.contains("-88705") && error.contains("could not be set to zero"), "{error}");
     is_closed(&mut *device);
     assert_eq!(card.recorded().len(), 4_000);
     let gone = card.open(&[]).err().unwrap();
@@ -320,21 +271,12 @@ fn what_the_rig_can_do() {
     let paper = can(&[]).unwrap();
     paper.check().unwrap();
     assert_eq!(paper.quantity, Quantity::DisplayVoltage);
-    assert_eq!(
-        (paper.limit, paper.carrier_hz, paper.paced),
-        (Some(150.0), Some(7_000.0), true)
-    );
+    assert_eq!((paper.limit, paper.carrier_hz, paper.paced), (Some(150.0), Some(7_000.0), true));
     assert_eq!(paper.step, Some(20.0 / 65_536.0 * GAIN));
-    let Rates::Range { max_hz, .. } = paper.rates else {
-        unreachable!()
-    };
+    let Rates::Range { max_hz, .. } = paper.rates else { unreachable!() };
     assert_eq!((max_hz, paper.default_rate_hz), (900_000.0, RATE_HZ));
     let weak = can(&[("amplifier_gain", "10"), ("carrier_hz", "0")]).unwrap();
-    assert_eq!(
-        (weak.limit, weak.carrier_hz),
-        (Some(100.0), None),
-        "what the card can reach"
-    );
+    assert_eq!((weak.limit, weak.carrier_hz), (Some(100.0), None), "what the card can reach");
 }
 
 #[test]
@@ -342,20 +284,12 @@ fn what_is_missing_is_named() {
     let card = Card::new();
     let fast = card.open_at(1e6, &[]).err().unwrap();
     assert!(matches!(fast, DeviceError::Rate { .. }) && fast.to_string().contains("900000"));
-    let other = card
-        .open(&[("device", "Dev2/ao0")])
-        .err()
-        .unwrap()
-        .to_string();
+    let other = card.open(&[("device", "Dev2/ao0")]).err().unwrap().to_string();
     assert!(
         other.contains("`Dev2/ao0` is not connected; connected is Dev1/ao0, Dev1/ao1"),
         "{other}"
     );
-    let none = card
-        .open(&[("driver", "/no/such/library")])
-        .err()
-        .unwrap()
-        .to_string();
+    let none = card.open(&[("driver", "/no/such/library")]).err().unwrap().to_string();
     assert!(
         none.starts_with(
             "setting `driver`: `/no/such/library` cannot be loaded as the NI-DAQmx library: "

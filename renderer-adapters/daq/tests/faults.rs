@@ -1,4 +1,5 @@
-//! Every fault at every call of the driver: the output ends at zero, or an error says that it may not.
+//! Every fault at every call of the driver: the output ends at zero, or an error says that it may
+//! not.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod simulated;
@@ -56,9 +57,7 @@ fn calls(run: impl Fn(&Card)) -> Vec<(&'static str, u64)> {
     let card = Card::new();
     card.set("fault", "none:1:error=0");
     run(&card);
-    FUNCTIONS
-        .map(|function| (function, card.calls(function)))
-        .to_vec()
+    FUNCTIONS.map(|function| (function, card.calls(function))).to_vec()
 }
 
 /// The first calls, some in the middle, and the last ones.
@@ -80,18 +79,14 @@ fn every_fault_at_every_call_ends_at_zero_or_says_so() {
                 let card = Card::new();
                 card.set("fault", &fault);
                 let played = play(&card);
-                let told = played
-                    .as_ref()
-                    .is_err_and(|error| error.to_string().contains(NOT_ZERO));
+                let told = played.as_ref().is_err_and(|error| error.to_string().contains(NOT_ZERO));
                 assert!(ends_at_zero(&card) || told, "{fault}: {played:?}");
-                // A warning without cause is wrong, except where the last write of zero failed to report success.
+                // A warning without cause is wrong, except where the last write of zero failed to
+                // report success.
                 tried += 1;
                 said += usize::from(told);
                 // A single fault never leaves a voltage, except on a card that was removed.
-                assert!(
-                    !lasts.is_empty() || *kind == "unplug" || ends_at_zero(&card),
-                    "{fault}"
-                );
+                assert!(!lasts.is_empty() || *kind == "unplug" || ends_at_zero(&card), "{fault}");
             }
         }
     }
@@ -125,8 +120,9 @@ fn a_driver_that_hangs_in_a_call_comes_to_zero_late() {
     }
 }
 
-/// A call of a running stream that does not return: the output is at zero long before it does, without the session that the call
-/// holds; when it returns, the stream ends and puts out nothing more.
+/// A call of a running stream that does not return: the output is at zero long before it does,
+/// without the session that the call holds; when it returns, the stream ends and puts out nothing
+/// more.
 #[test]
 fn a_call_that_does_not_return_is_overtaken_by_zero() {
     let begins = std::time::Instant::now;
@@ -148,10 +144,7 @@ fn a_call_that_does_not_return_is_overtaken_by_zero() {
                 assert!(!play.is_finished(), "{function}: it returned first");
                 std::thread::sleep(Duration::from_millis(10));
             }
-            println!(
-                "{function}: zero after {:.2} s",
-                begun.elapsed().as_secs_f64()
-            );
+            println!("{function}: zero after {:.2} s", begun.elapsed().as_secs_f64());
             let error = play.join().unwrap().unwrap_err().to_string();
             assert!(error.contains("has not returned"), "{function}: {error}");
             assert!(ends_at_zero(&card), "{function}");

@@ -25,9 +25,7 @@ const FUNCTIONS: [&str; 9] = [
 /// Rows of six inputs that tell their place, within ±5 V.
 fn rows(count: usize) -> Vec<Vec<f64>> {
     let at = |row: usize, input: usize| ((row * 7 + input) % 1_000) as f64 / 200.0;
-    (0..count)
-        .map(|row| (0..6).map(|input| at(row, input)).collect())
-        .collect()
+    (0..count).map(|row| (0..6).map(|input| at(row, input)).collect()).collect()
 }
 
 /// Reads so many frames in uneven pieces.
@@ -53,24 +51,13 @@ fn every_sample_is_read_once_and_in_order() {
     let card = Card::new();
     let rows = rows(5_000);
     card.put_in(&rows);
-    let mut source = card
-        .open_input(&[("channels", "Dev1/ai0:1,Dev1/ai4")])
-        .unwrap();
+    let mut source = card.open_input(&[("channels", "Dev1/ai0:1,Dev1/ai4")]).unwrap();
     let names = ["ai0", "ai1", "ai4"].map(|name| Channel::new(name, "V"));
-    assert_eq!(
-        (source.channels(), source.rate_hz()),
-        (&names[..], 20_000.0)
-    );
+    assert_eq!((source.channels(), source.rate_hz()), (&names[..], 20_000.0));
     let closed = source.read(&mut [0.0; 3], LONG).unwrap_err();
-    assert!(
-        matches!(closed, DeviceError::Closed(_)),
-        "before the start: {closed}"
-    );
+    assert!(matches!(closed, DeviceError::Closed(_)), "before the start: {closed}");
     source.start().unwrap();
-    let expected: Vec<f64> = rows
-        .iter()
-        .flat_map(|row| [row[0], row[1], row[4]])
-        .collect();
+    let expected: Vec<f64> = rows.iter().flat_map(|row| [row[0], row[1], row[4]]).collect();
     assert!(read(&mut *source, 5_000).unwrap() == expected);
     source.stop().unwrap();
     let closed = source.read(&mut [0.0; 3], LONG).unwrap_err();
@@ -81,16 +68,10 @@ fn every_sample_is_read_once_and_in_order() {
 fn a_range_that_is_too_small_clips_as_the_card_does() {
     let card = Card::new();
     card.put_in(&vec![vec![4.0, -4.0]; 100]);
-    let mut source = card
-        .open_input(&[("channels", "Dev1/ai0:1"), ("range_v", "1")])
-        .unwrap();
+    let mut source = card.open_input(&[("channels", "Dev1/ai0:1"), ("range_v", "1")]).unwrap();
     source.start().unwrap();
     assert_eq!(read(&mut *source, 2).unwrap(), [1.0, -1.0, 1.0, -1.0]);
-    let error = card
-        .open_input(&[("range_v", "20")])
-        .err()
-        .unwrap()
-        .to_string();
+    let error = card.open_input(&[("range_v", "20")]).err().unwrap().to_string();
     assert!(error.contains("-200077"), "{error}");
 }
 
@@ -101,19 +82,10 @@ fn samples_that_are_read_too_late_are_an_overrun() {
     source.start().unwrap();
     assert_eq!(read(&mut *source, 1_000).unwrap().len(), 6_000);
     card.set("late_s", "0.4");
-    assert_eq!(
-        read(&mut *source, 8_000).unwrap().len(),
-        48_000,
-        "the buffer holds half a second"
-    );
+    assert_eq!(read(&mut *source, 8_000).unwrap().len(), 48_000, "the buffer holds half a second");
     card.set("late_s", "0.6");
     let error = read(&mut *source, 1).unwrap_err();
-    let DeviceError::Overrun {
-        frames, ref advice, ..
-    } = error
-    else {
-        unreachable!("{error}")
-    };
+    let DeviceError::Overrun { frames, ref advice, .. } = error else { unreachable!("{error}") };
     assert!(
         frames == 9_000 && advice.contains("-200279") && advice.contains("`buffer_s` (now 0.5 s)"),
         "{error}"
@@ -145,9 +117,7 @@ fn inputs_that_are_not_there_in_use_or_too_fast_are_named() {
     let missing = error(&[("channels", "Dev2/ai0")]);
     assert!(
         matches!(missing, DeviceError::Missing(_))
-            && missing
-                .to_string()
-                .contains("`Dev2/ai0` is not connected; Dev1/ai0, "),
+            && missing.to_string().contains("`Dev2/ai0` is not connected; Dev1/ai0, "),
         "{missing}"
     );
     let fast = error(&[("rate_hz", "50000")]);
@@ -155,24 +125,14 @@ fn inputs_that_are_not_there_in_use_or_too_fast_are_named() {
         matches!(fast, DeviceError::Rate { .. }) && fast.to_string().contains("6 channels"),
         "{fast}"
     );
-    assert!(matches!(
-        error(&[("channels", "Dev1/ao0")]),
-        DeviceError::Setting { .. }
-    ));
-    assert!(matches!(
-        error(&[("driver", "/no/such/library")]),
-        DeviceError::Setting { .. }
-    ));
+    assert!(matches!(error(&[("channels", "Dev1/ao0")]), DeviceError::Setting { .. }));
+    assert!(matches!(error(&[("driver", "/no/such/library")]), DeviceError::Setting { .. }));
     let mut first = card.open_input(&[]).unwrap();
     first.start().unwrap();
     let mut second = card.open_input(&[]).unwrap();
     let busy = second.start().unwrap_err();
     assert!(matches!(busy, DeviceError::Busy(_)), "{busy}");
-    assert_eq!(
-        read(&mut *first, 100).unwrap().len(),
-        600,
-        "the first goes on"
-    );
+    assert_eq!(read(&mut *first, 100).unwrap().len(), 600, "the first goes on");
 }
 
 #[test]

@@ -99,8 +99,8 @@ pub type LastError = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
 /// Writes the devices that are connected now, a JSON array; returns its length, which may change.
 /// `[any thread; may wait]`
 pub type EndpointsJson = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
-/// Writes the capabilities of a device with these settings, as JSON; returns its length. Opens nothing.
-/// `[any thread; may wait]`
+/// Writes the capabilities of a device with these settings, as JSON; returns its length. Opens
+/// nothing. `[any thread; may wait]`
 pub type CapabilitiesJson = unsafe extern "C" fn(
     settings: *const u8,
     settings_len: usize,
@@ -126,7 +126,8 @@ pub type StatusFn = unsafe extern "C" fn(device: i64, out: *mut f64, capacity: u
 /// `[one thread at a time for one device; may wait]`
 pub type FinishFn = extern "C" fn(device: i64) -> i64;
 /// Closes a device; without [`FinishFn`] before, it aborts: the output goes to zero at once, and a
-/// file that was being written is not left behind. Returns 0. `[one thread at a time for one device]`
+/// file that was being written is not left behind. Returns 0.
+/// `[one thread at a time for one device]`
 pub type CloseFn = extern "C" fn(device: i64) -> i64;
 /// Returns 1 if the extension named by UTF-8 `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`) is
 /// present, else 0. `[any thread]`

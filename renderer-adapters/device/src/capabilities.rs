@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use crate::DeviceError;
 use crate::abi::{MAX_BLOCK_FRAMES, MAX_RATE_HZ, MIN_RATE_HZ};
 
-/// Lowest rate of a display, as a multiple of its carrier: at a lower one the carrier is a slow or direct voltage.
+/// Lowest rate of a display, as a multiple of its carrier: at a lower one the carrier is a slow or
+/// direct voltage.
 pub const RATE_PER_CARRIER: f64 = 2.5;
 
 /// Capabilities of a device; they cross the ABI as JSON.
@@ -75,11 +76,7 @@ impl Capabilities {
         if self.quantity == Quantity::DisplayVoltage && self.limit.is_none() {
             return Err(CapabilitiesError::NoLimit);
         }
-        let numbers = [
-            ("limit", self.limit),
-            ("step", self.step),
-            ("carrier_hz", self.carrier_hz),
-        ];
+        let numbers = [("limit", self.limit), ("step", self.step), ("carrier_hz", self.carrier_hz)];
         for (name, number) in numbers {
             if number.is_some_and(|x| !(x.is_finite() && x > 0.0)) {
                 return Err(CapabilitiesError::Number { name });
@@ -180,7 +177,8 @@ impl Quantity {
         }
     }
 
-    /// Whether samples are a mechanical quantity in an SI unit: levels are then those of the textures.
+    /// Whether samples are a mechanical quantity in an SI unit: levels are then those of the
+    /// textures.
     pub fn is_physical(self) -> bool {
         !matches!(self, Self::DisplayVoltage | Self::Sound)
     }
@@ -280,12 +278,7 @@ mod tests {
             |c| c.default_rate_hz = 9000.0,
             |c| c.rates = Rates::List(vec![]),
             |c| c.rates = Rates::List(vec![8000.0, 8000.0]),
-            |c| {
-                c.rates = Rates::Range {
-                    min_hz: f64::NAN,
-                    max_hz: 1e4,
-                }
-            },
+            |c| c.rates = Rates::Range { min_hz: f64::NAN, max_hz: 1e4 },
             |c| (c.quantity, c.limit) = (Quantity::DisplayVoltage, None),
             |c| c.limit = Some(f64::INFINITY),
             |c| c.step = Some(0.0),
@@ -304,15 +297,9 @@ mod tests {
         assert_eq!(sane().check_samples(&[0.1, -0.1], 7), Ok(()));
         for bad in [0.1001, -0.2, f32::NAN, f32::INFINITY] {
             let error = sane().check_samples(&[0.0, bad, bad], 7);
-            assert!(matches!(
-                error,
-                Err(DeviceError::OverLimit { frame: 8, .. })
-            ));
+            assert!(matches!(error, Err(DeviceError::OverLimit { frame: 8, .. })));
         }
-        let unlimited = Capabilities {
-            limit: None,
-            ..sane()
-        };
+        let unlimited = Capabilities { limit: None, ..sane() };
         assert_eq!(unlimited.check_samples(&[1e30], 0), Ok(()));
         assert!(unlimited.check_samples(&[f32::NAN], 0).is_err());
     }

@@ -37,8 +37,8 @@ pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
     (code, text)
 }
 
-/// The error of a code and a text. `OverLimit`, `Underflow` and `InvalidRate`, whose details only the caller
-/// knows, become failures.
+/// The error of a code and a text. `OverLimit`, `Underflow` and `InvalidRate`, whose details only
+/// the caller knows, become failures.
 pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) -> DeviceError {
     match code {
         Code::InvalidSetting => {
@@ -52,18 +52,15 @@ pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) ->
         Code::Missing => DeviceError::Missing(text),
         Code::Busy => DeviceError::Busy(text),
         Code::Closed | Code::BadHandle => DeviceError::Closed(device.to_owned()),
-        Code::InvalidArgument => DeviceError::Abi {
-            library: library.to_owned(),
-            fault: AbiFault::Call(text),
-        },
-        _ => DeviceError::Failed {
-            device: device.to_owned(),
-            what: text,
-        },
+        Code::InvalidArgument => {
+            DeviceError::Abi { library: library.to_owned(), fault: AbiFault::Call(text) }
+        }
+        _ => DeviceError::Failed { device: device.to_owned(), what: text },
     }
 }
 
-/// A timeout as it crosses: whole milliseconds, a day at most. A wait shorter than a millisecond is still a wait.
+/// A timeout as it crosses: whole milliseconds, a day at most. A wait shorter than a millisecond is
+/// still a wait.
 pub(crate) fn wait_ms(timeout: Duration) -> u32 {
     let wait_ms = timeout.as_micros().div_ceil(1000);
     wait_ms.min(u128::from(MAX_WAIT_MS)) as u32
@@ -85,10 +82,7 @@ mod tests {
     fn errors_come_out_as_they_went_in() {
         let text = || "it is so".to_owned();
         let errors = [
-            DeviceError::Setting {
-                name: "limit_v".to_owned(),
-                what: text(),
-            },
+            DeviceError::Setting { name: "limit_v".to_owned(), what: text() },
             DeviceError::Missing(text()),
             DeviceError::Busy(text()),
             DeviceError::Closed("Rig".to_owned()),
@@ -96,10 +90,7 @@ mod tests {
                 path: "a/b.wav".to_owned(),
                 what: "disk full: 3 bytes left".to_owned(),
             },
-            DeviceError::Failed {
-                device: "Rig".to_owned(),
-                what: text(),
-            },
+            DeviceError::Failed { device: "Rig".to_owned(), what: text() },
         ];
         for error in errors {
             let (code, text) = outgoing(&error);

@@ -66,8 +66,8 @@ pub struct Setting {
     pub description: String,
 }
 
-/// What a scene may do with a setting. Settings that describe the hardware are given by the user, one by one or by the
-/// choice of a profile.
+/// What a scene may do with a setting. Settings that describe the hardware are given by the user,
+/// one by one or by the choice of a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -75,7 +75,8 @@ pub enum FromScene {
     /// Set it, unless the user does.
     #[default]
     Any,
-    /// Lower the number given by the user or the default: a limit, a buffer. The smallest number given applies.
+    /// Lower the number given by the user or the default: a limit, a buffer. The smallest number
+    /// given applies.
     Less,
     /// Raise the number given by the user or the default: a ramp.
     More,
@@ -206,9 +207,8 @@ impl Descriptor {
     pub fn check(&self) -> Result<(), DescriptorError> {
         check_id(&self.id)?;
         let version = &self.version;
-        semver::Version::parse(version).map_err(|_| DescriptorError::Version {
-            version: version.clone(),
-        })?;
+        semver::Version::parse(version)
+            .map_err(|_| DescriptorError::Version { version: version.clone() })?;
         if self.name.trim().is_empty() || self.summary.trim().is_empty() {
             return Err(DescriptorError::Empty);
         }
@@ -224,10 +224,7 @@ impl Descriptor {
 
     /// Checks that the values a profile fixes are allowed.
     fn check_profile(&self, profile: &Profile) -> Result<(), DescriptorError> {
-        let wrong = |error| DescriptorError::Profile {
-            profile: profile.name.clone(),
-            error,
-        };
+        let wrong = |error| DescriptorError::Profile { profile: profile.name.clone(), error };
         for (name, value) in &profile.settings {
             let setting = crate::settings::known(self, name).map_err(wrong)?;
             crate::settings::check(setting, value).map_err(wrong)?;
@@ -256,10 +253,7 @@ impl Setting {
             SettingKind::Number { min, max }
                 if !(min.is_finite() && max.is_finite() && min <= max) =>
             {
-                return wrong(SettingFault::Range {
-                    min: *min,
-                    max: *max,
-                });
+                return wrong(SettingFault::Range { min: *min, max: *max });
             }
             SettingKind::Choice { values } if values.is_empty() => {
                 return wrong(SettingFault::NoChoice);
@@ -295,10 +289,7 @@ fn no_two_alike<'a>(
     let mut names: Vec<&str> = names.collect();
     names.sort_unstable();
     match names.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(DescriptorError::Twice {
-            kind,
-            name: pair[0].to_owned(),
-        }),
+        Some(pair) => Err(DescriptorError::Twice { kind, name: pair[0].to_owned() }),
         None => Ok(()),
     }
 }

@@ -1,9 +1,10 @@
 //! Direct voltage at a display: the mean of any 100 ms of what is written.
 //!
-//! A carrier keeps charge and direct voltage from a finger. Whatever takes it away (a rate, an effect, a clipped sample, a fault of the
-//! program), the mean shows it, so the last place before a device holds it: NI cards in their session, native libraries in their host.
-//! Samples over the limit are refused and the output goes to zero; they are not reduced, since a filter that takes the mean away would
-//! hide the fault and change every sample.
+//! A carrier keeps charge and direct voltage from a finger. Whatever takes it away (a rate, an
+//! effect, a clipped sample, a fault of the program), the mean shows it, so the last place before a
+//! device holds it: NI cards in their session, native libraries in their host. Samples over the
+//! limit are refused and the output goes to zero; they are not reduced, since a filter that takes
+//! the mean away would hide the fault and change every sample.
 
 use crate::Settings;
 
@@ -40,11 +41,7 @@ impl DirectVoltage {
     pub fn new(limit_v: f64, rate_hz: f64) -> Self {
         let frames = (DIRECT_WINDOW_S * rate_hz).round().max(1.0) as usize;
         Self {
-            limit_v: if limit_v.is_nan() {
-                DIRECT_LIMIT_V
-            } else {
-                limit_v
-            },
+            limit_v: if limit_v.is_nan() { DIRECT_LIMIT_V } else { limit_v },
             last_v: vec![0.0; frames],
             oldest: 0,
             sum_v: 0.0,
@@ -94,7 +91,8 @@ impl DirectVoltage {
         self.sum_v / self.last_v.len() as f64
     }
 
-    /// The sample before the last one, the one before that, and so on, back and forth within the last 100 ms.
+    /// The sample before the last one, the one before that, and so on, back and forth within the
+    /// last 100 ms.
     pub fn mirrored(&self) -> impl Iterator<Item = f64> {
         let frames = self.last_v.len();
         let newest = self.oldest + frames - 1;
@@ -129,11 +127,7 @@ mod tests {
     fn the_mean_of_any_window_is_found_whatever_the_blocks() {
         let rate_hz = 1_000.0;
         let wave = |i: usize| {
-            let slow = if i > 700 {
-                0.02 * (i - 700) as f64
-            } else {
-                0.0
-            };
+            let slow = if i > 700 { 0.02 * (i - 700) as f64 } else { 0.0 };
             20.0 * (0.9 * i as f64).sin() + slow
         };
         let samples: Vec<f64> = (0..2_000).map(wave).collect();

@@ -14,11 +14,7 @@ pub enum DeviceError {
     },
     /// The device does not run at this rate.
     #[error("{device} does not run at {rate_hz} Hz; it runs at {rates}")]
-    Rate {
-        device: String,
-        rate_hz: f64,
-        rates: String,
-    },
+    Rate { device: String, rate_hz: f64, rates: String },
     /// A driver is not installed, or no such device is connected.
     #[error("{0}")]
     Missing(String),

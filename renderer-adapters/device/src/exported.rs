@@ -31,8 +31,7 @@ impl<'a, T> Input<'a, T> {
     }
 
     pub(crate) fn get(self, name: &str) -> Result<&'a [T], Refusal> {
-        self.0
-            .ok_or_else(|| argument(format!("`{name}` is not a usable array")))
+        self.0.ok_or_else(|| argument(format!("`{name}` is not a usable array")))
     }
 }
 
@@ -54,8 +53,7 @@ impl<'a, T> Output<'a, T> {
     }
 
     pub(crate) fn get(self, name: &str) -> Result<&'a mut [T], Refusal> {
-        self.0
-            .ok_or_else(|| argument(format!("`{name}` is not a usable buffer")))
+        self.0.ok_or_else(|| argument(format!("`{name}` is not a usable buffer")))
     }
 }
 
@@ -82,9 +80,7 @@ pub(crate) fn argument(text: String) -> Refusal {
 pub(crate) fn settings(descriptor: &Descriptor, lines: Input<'_, u8>) -> Result<Settings, Refusal> {
     let lines = lines.get("settings")?;
     if lines.len() > MAX_TEXT_BYTES {
-        return Err(argument(format!(
-            "settings have at most {MAX_TEXT_BYTES} bytes"
-        )));
+        return Err(argument(format!("settings have at most {MAX_TEXT_BYTES} bytes")));
     }
     let lines = std::str::from_utf8(lines).map_err(|e| argument(format!("settings: {e}")))?;
     Ok(Settings::from_lines(descriptor, lines)?)
@@ -93,8 +89,7 @@ pub(crate) fn settings(descriptor: &Descriptor, lines: Input<'_, u8>) -> Result<
 /// See [`crate::abi::LastError`].
 pub fn last_error(out: Output<'_, u8>) -> i64 {
     let text = LAST_ERROR.with(|last| last.try_borrow().map(|t| t.clone()).unwrap_or_default());
-    out.0
-        .map_or(Code::InvalidArgument as i64, |out| copy_text(&text, out))
+    out.0.map_or(Code::InvalidArgument as i64, |out| copy_text(&text, out))
 }
 
 /// See [`crate::abi::ExtensionFn`]. No extension is defined yet.
@@ -112,11 +107,7 @@ pub(crate) struct Exported<A, T: ?Sized> {
 impl<A: Default, T: ?Sized> Exported<A, T> {
     /// No adapter yet, nothing open.
     pub(crate) const fn new(kind: &'static str) -> Self {
-        Self {
-            kind,
-            adapter: OnceLock::new(),
-            open: Handles::new(),
-        }
+        Self { kind, adapter: OnceLock::new(), open: Handles::new() }
     }
 
     pub(crate) fn adapter(&self) -> &A {
@@ -171,7 +162,8 @@ impl<A: Default, T: ?Sized> Exported<A, T> {
     }
 }
 
-/// Runs a call of a device or source, the `kind`; an error or a panic becomes a code and the last-error text.
+/// Runs a call of a device or source, the `kind`; an error or a panic becomes a code and the
+/// last-error text.
 fn answer(kind: &str, call: impl FnOnce() -> Result<i64, Refusal>) -> i64 {
     let result = catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
         let text = panic
@@ -179,10 +171,7 @@ fn answer(kind: &str, call: impl FnOnce() -> Result<i64, Refusal>) -> i64 {
             .map(ToString::to_string)
             .or_else(|| panic.downcast_ref::<String>().cloned())
             .unwrap_or_default();
-        Err(Refusal(
-            Code::Panicked as i64,
-            format!("the {kind} panicked: {text}"),
-        ))
+        Err(Refusal(Code::Panicked as i64, format!("the {kind} panicked: {text}")))
     });
     result.unwrap_or_else(|Refusal(code, text)| {
         LAST_ERROR.with(|last| {

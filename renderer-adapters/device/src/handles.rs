@@ -1,7 +1,7 @@
 //! Open devices or sources behind handles, which are never used twice.
 //!
-//! A lock protects each, since opening and writing may block. The voices of a model, which may not block, have slots
-//! and generations (`sdk/model/src/voices.rs`).
+//! A lock protects each, since opening and writing may block. The voices of a model, which may not
+//! block, have slots and generations (`sdk/model/src/voices.rs`).
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,10 +19,7 @@ struct Open<T: ?Sized> {
 impl<T: ?Sized> Handles<T> {
     /// With nothing open.
     pub(crate) const fn new() -> Self {
-        Self(Mutex::new(Open {
-            last: 0,
-            shared: BTreeMap::new(),
-        }))
+        Self(Mutex::new(Open { last: 0, shared: BTreeMap::new() }))
     }
 
     /// Adds one; returns its handle.

@@ -83,19 +83,15 @@ impl<T: Table> Library<T> {
     /// Loads a library and fills a table from its symbols.
     pub(crate) fn load(path: &Path) -> Result<Self, DeviceError> {
         let name = path.display().to_string();
-        let error = |fault: AbiFault| DeviceError::Abi {
-            library: name.clone(),
-            fault,
-        };
+        let error = |fault: AbiFault| DeviceError::Abi { library: name.clone(), fault };
         // SAFETY: running a library's initialisers is what the user asked for by naming it.
         let library = unsafe { htex_native::Library::from_file(path) };
         let library = library.map_err(|e| error(AbiFault::NotLoaded(e.to_string())))?;
         let kind = T::KIND;
-        let symbols = Symbols {
-            library,
-            missing: &|symbol| error(AbiFault::Symbol { symbol, kind }),
-        };
-        // SAFETY: the marker comes first, and says that the other symbols have the types of the ABI.
+        let symbols =
+            Symbols { library, missing: &|symbol| error(AbiFault::Symbol { symbol, kind }) };
+        // SAFETY: the marker comes first, and says that the other symbols have the types of the
+        // ABI.
         let abi_version: AbiVersion = unsafe { symbols.get(T::ABI_VERSION)? };
         check_marker::<T>(abi_version()).map_err(&error)?;
         // SAFETY: a library with this marker exports these names with these types.
@@ -106,10 +102,7 @@ impl<T: Table> Library<T> {
 
     /// Uses a table of this program.
     pub(crate) fn of_table(name: &str, table: &'static T) -> Result<Self, DeviceError> {
-        let library = Self {
-            name: name.to_owned(),
-            table,
-        };
+        let library = Self { name: name.to_owned(), table };
         let marker = (table.common().abi_version)();
         check_marker::<T>(marker).map_err(|fault| library.error(fault))?;
         Ok(library)
@@ -227,20 +220,13 @@ impl<T: Table> Library<T> {
     }
 
     fn error(&self, fault: AbiFault) -> DeviceError {
-        DeviceError::Abi {
-            library: self.name.clone(),
-            fault,
-        }
+        DeviceError::Abi { library: self.name.clone(), fault }
     }
 }
 
 fn check_marker<T: Table>(marker: u32) -> Result<(), AbiFault> {
     match marker >> 8 == T::MARKER >> 8 {
         true => Ok(()),
-        false => Err(AbiFault::Marker {
-            marker,
-            kind: T::KIND,
-            major: (T::MARKER >> 8) & 0xff,
-        }),
+        false => Err(AbiFault::Marker { marker, kind: T::KIND, major: (T::MARKER >> 8) & 0xff }),
     }
 }

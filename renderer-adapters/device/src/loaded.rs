@@ -75,11 +75,7 @@ impl<T: Table> Native<T> {
     pub(crate) fn opened(&self, answer: i64) -> Result<Opened<T>, Trouble<T::Code>> {
         match self.library.count(answer)? {
             0 => Err(Trouble::Broken("the handle is 0".to_owned())),
-            _ => Ok(Opened {
-                adapter: self.clone(),
-                handle: answer,
-                closed: false,
-            }),
+            _ => Ok(Opened { adapter: self.clone(), handle: answer, closed: false }),
         }
     }
 }

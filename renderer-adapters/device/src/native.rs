@@ -111,12 +111,7 @@ impl NativeAdapter {
             },
             trouble => self.error("open", trouble),
         })?;
-        Ok(NativeDevice {
-            opened,
-            capabilities,
-            direct,
-            written: 0,
-        })
+        Ok(NativeDevice { opened, capabilities, direct, written: 0 })
     }
 }
 
@@ -182,7 +177,8 @@ impl NativeDevice {
         self.opened.close()
     }
 
-    /// Closes the device, whose output is then at zero, if these samples would make a direct voltage.
+    /// Closes the device, whose output is then at zero, if these samples would make a direct
+    /// voltage.
     fn check_direct(&mut self, samples: &[f32]) -> Result<(), DeviceError> {
         let Some(direct) = &self.direct else {
             return Ok(());
@@ -243,10 +239,8 @@ impl Device for NativeDevice {
 
     fn status(&self) -> Status {
         // A device that cannot tell has still taken what it took.
-        self.checked_status().unwrap_or(Status {
-            frames_written: self.written,
-            ..Status::default()
-        })
+        self.checked_status()
+            .unwrap_or(Status { frames_written: self.written, ..Status::default() })
     }
 
     fn finish(&mut self) -> Result<(), DeviceError> {

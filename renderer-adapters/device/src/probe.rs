@@ -24,7 +24,8 @@ impl<T: Copy + PartialEq> Guarded<T> {
         Self::before(len, GUARDS, guard)
     }
 
-    /// A buffer with at least so many guard values, which take what a call writes that ignores its length.
+    /// A buffer with at least so many guard values, which take what a call writes that ignores its
+    /// length.
     fn before(len: usize, guards: usize, guard: T) -> Self {
         let all = vec![guard; len + guards.max(GUARDS)];
         Self { all, len, guard }
@@ -44,10 +45,7 @@ impl<T: Copy + PartialEq> Guarded<T> {
         let behind = self.all[self.len..].iter();
         match behind.filter(|x| **x != self.guard).count() {
             0 => Ok(()),
-            _ => Err(format!(
-                "`{call}` wrote beyond `{bound}`, which was {}",
-                self.len
-            )),
+            _ => Err(format!("`{call}` wrote beyond `{bound}`, which was {}", self.len)),
         }
     }
 }
@@ -62,7 +60,8 @@ fn refused(call: &str, array: &str, answer: i64) -> Result<(), String> {
     ))
 }
 
-/// Calls a function that writes a text, with buffers of every kind; `call` gets a pointer and a capacity.
+/// Calls a function that writes a text, with buffers of every kind; `call` gets a pointer and a
+/// capacity.
 fn check_text(name: &str, call: impl Fn(*mut u8, usize) -> i64) -> Result<(), String> {
     let len = call(std::ptr::null_mut(), 0);
     refused(name, "a null `out`", call(std::ptr::null_mut(), 16))?;
@@ -79,22 +78,17 @@ impl<T: Table> Library<T> {
     fn check_texts(&self) -> Result<(), String> {
         let common = self.table.common();
         // SAFETY: a null pointer, or a live buffer of more than this length, by `check_text`.
-        check_text("descriptor", |out, len| unsafe {
-            (common.descriptor)(out, len)
-        })?;
+        check_text("descriptor", |out, len| unsafe { (common.descriptor)(out, len) })?;
         // SAFETY: as above.
-        check_text("endpoints", |out, len| unsafe {
-            (common.endpoints)(out, len)
-        })?;
+        check_text("endpoints", |out, len| unsafe { (common.endpoints)(out, len) })?;
         // SAFETY: as above.
-        check_text("last_error", |out, len| unsafe {
-            (common.last_error)(out, len)
-        })
+        check_text("last_error", |out, len| unsafe { (common.last_error)(out, len) })
     }
 }
 
 impl Native<DeviceTable> {
-    /// The status and the text with which `open` refuses these lines, rate and block; `None` if it opens a device, which is closed.
+    /// The status and the text with which `open` refuses these lines, rate and block; `None` if it
+    /// opens a device, which is closed.
     pub fn refusal_of_open(
         &self,
         lines: &str,
@@ -107,7 +101,8 @@ impl Native<DeviceTable> {
         self.refusal(answer)
     }
 
-    /// Fails unless every call refuses null and misaligned arrays, and writes no further than it may.
+    /// Fails unless every call refuses null and misaligned arrays, and writes no further than it
+    /// may.
     ///
     /// # Errors
     /// The call that is at fault, and how.
@@ -135,8 +130,7 @@ impl Native<DeviceTable> {
         let (rate_hz, block) = (format.rate_hz, format.block_frames);
         // SAFETY: a live text.
         let handle = unsafe { (table.open)(text.as_ptr(), text.len(), rate_hz, block) };
-        self.opened(handle)
-            .map_err(|trouble| self.error("open", trouble).to_string())
+        self.opened(handle).map_err(|trouble| self.error("open", trouble).to_string())
     }
 
     /// A refusal may close a device: each has one of its own.
@@ -147,7 +141,8 @@ impl Native<DeviceTable> {
             ("misaligned `samples`", samples.misaligned()),
         ] {
             let device = self.opened_by(lines, format)?;
-            // SAFETY: a pointer that must be refused; the misaligned one has a live buffer behind it.
+            // SAFETY: a pointer that must be refused; the misaligned one has a live buffer behind
+            // it.
             let answer = unsafe { write(device.handle, pointer, SAMPLES, 0) };
             refused("write", array, answer)?;
         }
@@ -195,9 +190,7 @@ impl Native<SourceTable> {
         let source = self.open_native(settings).map_err(told)?;
         let handle = source.handle();
         // SAFETY: a buffer by `check_text`.
-        check_text("stream", |out, len| unsafe {
-            (table.stream)(handle, out, len)
-        })?;
+        check_text("stream", |out, len| unsafe { (table.stream)(handle, out, len) })?;
         source.begin().map_err(told)?;
         let width = source.width();
         let mut samples = Guarded::new(width, -1234.5f64);
@@ -208,10 +201,9 @@ impl Native<SourceTable> {
             ("null `samples`", std::ptr::null_mut()),
             ("misaligned `samples`", samples.misaligned()),
         ] {
-            // SAFETY: a pointer that must be refused; the misaligned one has a live buffer behind it.
-            refused("read", array, unsafe {
-                (table.read)(handle, pointer, width, 0)
-            })?;
+            // SAFETY: a pointer that must be refused; the misaligned one has a live buffer behind
+            // it.
+            refused("read", array, unsafe { (table.read)(handle, pointer, width, 0) })?;
         }
         Ok(())
     }

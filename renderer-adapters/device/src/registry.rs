@@ -9,8 +9,9 @@ use crate::library::Table;
 use crate::loaded::Native;
 use crate::{Descriptor, DeviceError, Endpoint};
 
-/// Where native libraries of devices or of sources are searched. Earlier places take precedence over later ones:
-/// `files`, `dirs`, the environment variable (`HTEX_DEVICE_PATH`, `HTEX_SOURCE_PATH`), the user's folder, built in.
+/// Where native libraries of devices or of sources are searched. Earlier places take precedence
+/// over later ones: `files`, `dirs`, the environment variable (`HTEX_DEVICE_PATH`,
+/// `HTEX_SOURCE_PATH`), the user's folder, built in.
 #[derive(Debug, Clone)]
 pub struct Search {
     /// Libraries by their files; one that cannot be loaded is an error.
@@ -20,20 +21,15 @@ pub struct Search {
     pub dirs: Vec<PathBuf>,
     /// Whether to look into the folders that the environment variable names.
     pub env: bool,
-    /// Whether to look into `htex/devices` or `htex/sources` in the user's data folder (`$XDG_DATA_HOME`, else
-    /// `~/.local/share`).
+    /// Whether to look into `htex/devices` or `htex/sources` in the user's data folder
+    /// (`$XDG_DATA_HOME`, else `~/.local/share`).
     pub user_dir: bool,
 }
 
 impl Default for Search {
     /// All places except `files` and `dirs`.
     fn default() -> Self {
-        Self {
-            files: Vec::new(),
-            dirs: Vec::new(),
-            env: true,
-            user_dir: true,
-        }
+        Self { files: Vec::new(), dirs: Vec::new(), env: true, user_dir: true }
     }
 }
 
@@ -126,10 +122,7 @@ impl<A: AdapterKind + ?Sized> Known<A> {
 
 impl<A: ?Sized> Clone for Known<A> {
     fn clone(&self) -> Self {
-        Self {
-            adapter: Arc::clone(&self.adapter),
-            origin: self.origin.clone(),
-        }
+        Self { adapter: Arc::clone(&self.adapter), origin: self.origin.clone() }
     }
 }
 
@@ -146,12 +139,7 @@ impl<A: AdapterKind + ?Sized> std::fmt::Debug for Known<A> {
 #[non_exhaustive]
 pub enum Note {
     /// Two adapters have the same id; the one found first is used.
-    Shadowed {
-        kind: &'static str,
-        id: String,
-        used: Origin,
-        shadowed: Origin,
-    },
+    Shadowed { kind: &'static str, id: String, used: Origin, shadowed: Origin },
     /// Two adapters of different ids have the same short name, which means the one found first.
     SameName {
         kind: &'static str,
@@ -162,29 +150,16 @@ pub enum Note {
         other: String,
     },
     /// A file or folder that was not named could not be loaded or read.
-    LeftOut {
-        kind: &'static str,
-        error: DeviceError,
-    },
+    LeftOut { kind: &'static str, error: DeviceError },
 }
 
 impl std::fmt::Display for Note {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Shadowed {
-                kind,
-                id,
-                used,
-                shadowed,
-            } => {
+            Self::Shadowed { kind, id, used, shadowed } => {
                 write!(f, "{kind} {id} ({used}) is used in place of ({shadowed})")
             }
-            Self::SameName {
-                kind,
-                name,
-                means,
-                other,
-            } => write!(
+            Self::SameName { kind, name, means, other } => write!(
                 f,
                 "{kind} `{name}` means {means}; write `{other}` in full for the other one"
             ),
@@ -201,19 +176,13 @@ pub struct Registry<A: ?Sized> {
 
 impl<A: ?Sized> Default for Registry<A> {
     fn default() -> Self {
-        Self {
-            known: Vec::new(),
-            notes: Vec::new(),
-        }
+        Self { known: Vec::new(), notes: Vec::new() }
     }
 }
 
 impl<A: ?Sized> Clone for Registry<A> {
     fn clone(&self) -> Self {
-        Self {
-            known: self.known.clone(),
-            notes: self.notes.clone(),
-        }
+        Self { known: self.known.clone(), notes: self.notes.clone() }
     }
 }
 
@@ -245,10 +214,7 @@ impl<A: AdapterKind + ?Sized> Registry<A> {
         }
         for dir in unnamed_folders::<A>(search) {
             if let Err(error) = found.add_folder(&dir) {
-                found.notes.push(Note::LeftOut {
-                    kind: A::WORD,
-                    error,
-                });
+                found.notes.push(Note::LeftOut { kind: A::WORD, error });
             }
         }
         found.add_builtin(builtin);
@@ -297,10 +263,7 @@ impl<A: AdapterKind + ?Sized> Registry<A> {
         })?;
         for file in files {
             if let Err(error) = self.add_file(&file) {
-                self.notes.push(Note::LeftOut {
-                    kind: A::WORD,
-                    error,
-                });
+                self.notes.push(Note::LeftOut { kind: A::WORD, error });
             }
         }
         Ok(())

@@ -7,21 +7,12 @@ use crate::{Capabilities, Descriptor, Endpoint, SourceDescriptor, SourceStream};
 
 /// The files of `spec/schemas` that this crate generates, and their schemas.
 pub fn schemas() -> [(&'static str, Value); 3] {
-    let [descriptor, capabilities, endpoints] = [
-        "device-descriptor-1.json",
-        "device-capabilities-1.json",
-        "device-endpoints-1.json",
-    ];
+    let [descriptor, capabilities, endpoints] =
+        ["device-descriptor-1.json", "device-capabilities-1.json", "device-endpoints-1.json"];
     let connected = "devices that are connected, ABI 1";
     [
-        (
-            descriptor,
-            crossing::<Descriptor>(descriptor, "descriptor of a device, ABI 1"),
-        ),
-        (
-            capabilities,
-            crossing::<Capabilities>(capabilities, "capabilities of a device, ABI 1"),
-        ),
+        (descriptor, crossing::<Descriptor>(descriptor, "descriptor of a device, ABI 1")),
+        (capabilities, crossing::<Capabilities>(capabilities, "capabilities of a device, ABI 1")),
         (endpoints, crossing::<Vec<Endpoint>>(endpoints, connected)),
     ]
 }
@@ -30,13 +21,7 @@ pub fn schemas() -> [(&'static str, Value); 3] {
 pub fn source_schemas() -> [(&'static str, Value); 2] {
     let [descriptor, stream] = ["source-descriptor-1.json", "source-stream-1.json"];
     [
-        (
-            descriptor,
-            crossing::<SourceDescriptor>(descriptor, "descriptor of a source, ABI 1"),
-        ),
-        (
-            stream,
-            crossing::<SourceStream>(stream, "rate and channels of an open source, ABI 1"),
-        ),
+        (descriptor, crossing::<SourceDescriptor>(descriptor, "descriptor of a source, ABI 1")),
+        (stream, crossing::<SourceStream>(stream, "rate and channels of an open source, ABI 1")),
     ]
 }

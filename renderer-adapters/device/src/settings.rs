@@ -2,7 +2,8 @@
 //!
 //! [`Settings::settle`] is the one place where what a file asks for meets what a person says.
 //!
-//! They cross the ABI as lines of text, all of them, with defaults applied: an author in C needs no parser of JSON.
+//! They cross the ABI as lines of text, all of them, with defaults applied: an author in C needs no
+//! parser of JSON.
 
 use std::collections::BTreeMap;
 
@@ -45,12 +46,7 @@ impl Settings {
         profile: Option<&str>,
         given: &BTreeMap<String, String>,
     ) -> Result<Self, DeviceError> {
-        let stated = Stated {
-            profile,
-            given,
-            asked: &BTreeMap::new(),
-            live: false,
-        };
+        let stated = Stated { profile, given, asked: &BTreeMap::new(), live: false };
         Ok(Self::settle(descriptor, &stated)?.0)
     }
 
@@ -70,9 +66,7 @@ impl Settings {
             let setting = known(descriptor, name)?;
             check(setting, value)?;
             let holds = setting.from_scene == FromScene::Less
-                && values
-                    .get(name)
-                    .is_some_and(|held| number(held) < number(value));
+                && values.get(name).is_some_and(|held| number(held) < number(value));
             if !holds {
                 values.insert(name.clone(), value.clone());
             }
@@ -94,10 +88,7 @@ impl Settings {
                     values.insert(name.clone(), value.clone());
                 }
                 Asked::Given => {}
-                Asked::Ignored(what) => ignored.push(Ignored {
-                    name: name.clone(),
-                    what,
-                }),
+                Asked::Ignored(what) => ignored.push(Ignored { name: name.clone(), what }),
             }
         }
         for setting in &descriptor.settings {
@@ -245,10 +236,7 @@ pub(crate) fn check(setting: &Setting, value: &str) -> Result<(), DeviceError> {
 }
 
 fn error(name: &str, what: String) -> DeviceError {
-    DeviceError::Setting {
-        name: name.to_owned(),
-        what,
-    }
+    DeviceError::Setting { name: name.to_owned(), what }
 }
 
 #[cfg(test)]
@@ -268,10 +256,7 @@ mod tests {
     }
 
     fn descriptor() -> Descriptor {
-        let number = SettingKind::Number {
-            min: 0.0,
-            max: 150.0,
-        };
+        let number = SettingKind::Number { min: 0.0, max: 150.0 };
         Descriptor {
             id: "org.example.rig".to_owned(),
             name: "Rig".to_owned(),
@@ -304,18 +289,15 @@ mod tests {
         assert_eq!(limit(None, &given("limit_v", "120"))?, 120.0);
         assert_eq!(limit(Some("small"), &given("limit_v", "30"))?, 20.0);
         assert_eq!(limit(Some("small"), &given("limit_v", "10"))?, 10.0);
-        for refused in [
-            given("limit_v", "151"),
-            given("limit_v", "NaN"),
-            given("x", "1"),
-        ] {
+        for refused in [given("limit_v", "151"), given("limit_v", "NaN"), given("x", "1")] {
             assert!(limit(None, &refused).is_err(), "{refused:?}");
         }
         assert!(limit(Some("large"), &none).is_err());
         Ok(())
     }
 
-    /// Whatever a scene asks for, settings of the hardware stay, the limit is not raised and the ramp not shortened.
+    /// Whatever a scene asks for, settings of the hardware stay, the limit is not raised and the
+    /// ramp not shortened.
     #[test]
     fn a_scene_asks_for_less_and_never_gets_more() -> Result<(), DeviceError> {
         let map = |name: &str, value: &str| BTreeMap::from([(name.to_owned(), value.to_owned())]);
@@ -333,20 +315,11 @@ mod tests {
             ("tone_hz", "15", &map("tone_hz", "50"), 50.0),
         ] {
             let asked = map(name, value);
-            let stated = Stated {
-                profile: None,
-                given,
-                asked: &asked,
-                live: false,
-            };
+            let stated = Stated { profile: None, given, asked: &asked, live: false };
             let (settings, ignored) = Settings::settle(&descriptor(), &stated)?;
             assert_eq!(settings.number(name), holds, "{name} {value}");
             let gets = holds == value.parse().unwrap_or(f64::NAN);
-            assert_eq!(
-                ignored.is_empty(),
-                gets || name == "tone_hz",
-                "{name} {value}"
-            );
+            assert_eq!(ignored.is_empty(), gets || name == "tone_hz", "{name} {value}");
         }
         Ok(())
     }
@@ -355,15 +328,9 @@ mod tests {
     fn lines_are_read_as_they_were_written() -> Result<(), DeviceError> {
         let settings = Settings::from_lines(&descriptor(), "limit_v=12.5\n")?;
         let rest = "ramp_ms=100\ngain=100\ntone_hz=100\n";
-        assert_eq!(
-            settings.to_lines(&descriptor()),
-            format!("limit_v=12.5\n{rest}")
-        );
+        assert_eq!(settings.to_lines(&descriptor()), format!("limit_v=12.5\n{rest}"));
         let defaults = Settings::from_lines(&descriptor(), "")?;
-        assert_eq!(
-            defaults.to_lines(&descriptor()),
-            format!("limit_v=100\n{rest}")
-        );
+        assert_eq!(defaults.to_lines(&descriptor()), format!("limit_v=100\n{rest}"));
         for refused in ["limit_v", "limit_v=1\nlimit_v=1\n", "x=1\n", "limit_v=\n"] {
             assert!(Settings::from_lines(&descriptor(), refused).is_err());
         }

@@ -43,14 +43,12 @@ impl<A: Adapter + Default> State<A> {
 
     /// See [`crate::abi::DescriptorJson`].
     pub fn descriptor(&self, out: Output<'_, u8>) -> i64 {
-        self.0
-            .answer(|| copy_json(self.adapter().descriptor(), out))
+        self.0.answer(|| copy_json(self.adapter().descriptor(), out))
     }
 
     /// See [`crate::abi::EndpointsJson`].
     pub fn endpoints(&self, out: Output<'_, u8>) -> i64 {
-        self.0
-            .answer(|| copy_json(&self.adapter().endpoints()?, out))
+        self.0.answer(|| copy_json(&self.adapter().endpoints()?, out))
     }
 
     /// See [`crate::abi::CapabilitiesJson`].
@@ -74,10 +72,7 @@ impl<A: Adapter + Default> State<A> {
                 let text = format!("blocks of {block_frames}; 1 to {MAX_BLOCK_FRAMES} are allowed");
                 return Err(argument(text));
             }
-            let format = StreamFormat {
-                rate_hz,
-                block_frames,
-            };
+            let format = StreamFormat { rate_hz, block_frames };
             let device = self.adapter().open(&settings, &format)?;
             Ok(self.0.insert(device))
         })

@@ -70,11 +70,7 @@ impl Device for Open {
     }
 
     fn status(&self) -> Status {
-        Status {
-            frames_written: self.0,
-            frames_played: self.0,
-            ..Status::default()
-        }
+        Status { frames_written: self.0, frames_played: self.0, ..Status::default() }
     }
 
     fn finish(&mut self) -> Result<(), DeviceError> {
@@ -87,10 +83,7 @@ htex_device::export_device!(Bad, symbols: "never");
 fn open() -> Box<dyn Device> {
     let adapter = NativeAdapter::from_table("bad", &TABLE).unwrap();
     let settings = Settings::resolve(&DESCRIPTOR, None, &BTreeMap::new()).unwrap();
-    let format = StreamFormat {
-        rate_hz: 1e4,
-        block_frames: 16,
-    };
+    let format = StreamFormat { rate_hz: 1e4, block_frames: 16 };
     adapter.open(&settings, &format).unwrap()
 }
 
@@ -119,7 +112,8 @@ fn running_dry_keeps_its_kind() {
     assert_eq!(device.write(&[0.25], Duration::ZERO), Err(dry));
 }
 
-/// A display of a library has no setting of direct voltage: its host holds it to a mean of 1 V over 100 ms, 1,000 frames here.
+/// A display of a library has no setting of direct voltage: its host holds it to a mean of 1 V over
+/// 100 ms, 1,000 frames here.
 #[test]
 fn a_host_holds_direct_voltage_of_a_display() {
     let mut device = open();
@@ -127,12 +121,7 @@ fn a_host_holds_direct_voltage_of_a_display() {
     assert_eq!(device.write(&[-9.0; 200], Duration::ZERO), Ok(200));
     assert_eq!(device.write(&[9.0; 210], Duration::ZERO), Ok(210));
     let error = device.write(&[0.0, 9.0, 9.0, 9.0], Duration::ZERO);
-    let Err(DeviceError::DirectVoltage {
-        frame,
-        mean_v,
-        limit_v,
-    }) = error
-    else {
+    let Err(DeviceError::DirectVoltage { frame, mean_v, limit_v }) = error else {
         panic!("{error:?}")
     };
     assert_eq!((frame, limit_v), (512, 1.0));

@@ -68,11 +68,7 @@ impl SourceAdapter for Counter {
             _ => &["a", "b"],
         };
         let channels = names.iter().map(|name| Channel::new(*name, "N")).collect();
-        Ok(Box::new(Open {
-            fault,
-            channels,
-            next: 0,
-        }))
+        Ok(Box::new(Open { fault, channels, next: 0 }))
     }
 }
 
@@ -151,10 +147,7 @@ fn samples_come_as_they_are() {
     let delivered = source.read(&mut samples, Duration::ZERO);
     assert_eq!(delivered, Ok(Delivered::Frames(2)));
     assert_eq!(samples, [0.0, 1.0, 2.0, 3.0, -1.0]);
-    assert_eq!(
-        source.read(&mut [], Duration::ZERO),
-        Ok(Delivered::Frames(0))
-    );
+    assert_eq!(source.read(&mut [], Duration::ZERO), Ok(Delivered::Frames(0)));
     source.stop().unwrap();
 }
 
@@ -167,14 +160,9 @@ fn an_invalid_stream_is_refused_when_the_source_is_opened() {
         ("nan rate", "stream: invalid type: null"),
         ("zero rate", "a rate of 0 Hz"),
     ] {
-        let Err(error) = open(fault) else {
-            panic!("{fault} is opened")
-        };
+        let Err(error) = open(fault) else { panic!("{fault} is opened") };
         let is_abi = matches!(&error, DeviceError::Abi { library, .. } if library == "counter");
-        assert!(
-            is_abi && error.to_string().contains(words),
-            "{fault}: {error}"
-        );
+        assert!(is_abi && error.to_string().contains(words), "{fault}: {error}");
     }
     let error = open("rate refused").err().unwrap();
     let sentence = "Counter does not run at 5 Hz; it runs at 1 Hz";
@@ -242,22 +230,13 @@ fn refused(table: SourceTable) -> AbiFault {
 
 #[test]
 fn another_version_and_a_text_that_is_none_are_refused() {
-    let marker = refused(SourceTable {
-        abi_version: next_major,
-        ..SOURCE_TABLE
-    });
+    let marker = refused(SourceTable { abi_version: next_major, ..SOURCE_TABLE });
     let sentence = "the marker 0x48530200 is not of source ABI 1.x, which this host loads";
     assert_eq!(marker.to_string(), sentence);
     for descriptor in [no_text, endless as htex_device::abi::DescriptorJson] {
-        let fault = refused(SourceTable {
-            descriptor,
-            ..SOURCE_TABLE
-        });
+        let fault = refused(SourceTable { descriptor, ..SOURCE_TABLE });
         assert!(matches!(fault, AbiFault::Descriptor(_)), "{fault}");
     }
-    let newer = SourceTable {
-        abi_version: newer_minor,
-        ..SOURCE_TABLE
-    };
+    let newer = SourceTable { abi_version: newer_minor, ..SOURCE_TABLE };
     NativeSourceAdapter::from_table("counter", Box::leak(Box::new(newer))).unwrap();
 }

@@ -31,13 +31,7 @@ impl FileDevice {
             Ok((Sink::new(writer, plan, rate_hz)?, file))
         });
         let open = created.map_err(|error| file_error(&path, &error))?;
-        Ok(Self {
-            capabilities: plan.capabilities(),
-            path,
-            open: Some(open),
-            frames: 0,
-            peak: 0.0,
-        })
+        Ok(Self { capabilities: plan.capabilities(), path, open: Some(open), frames: 0, peak: 0.0 })
     }
 
     /// After an error no file is left: the temporary file is removed.
@@ -85,8 +79,5 @@ impl Device for FileDevice {
 }
 
 fn file_error(path: &str, error: &std::io::Error) -> DeviceError {
-    DeviceError::File {
-        path: path.to_owned(),
-        what: error.to_string(),
-    }
+    DeviceError::File { path: path.to_owned(), what: error.to_string() }
 }

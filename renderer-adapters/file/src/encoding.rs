@@ -18,10 +18,7 @@ impl Encoding {
     /// Integers of `bits` bits; `full_scale` is 2^(bits-1) steps.
     pub(crate) fn integer(bits: u16, full_scale: f64) -> Self {
         let steps = f64::from(1_i32 << (bits - 1));
-        Self::Integer {
-            bits,
-            step: full_scale / steps,
-        }
+        Self::Integer { bits, step: full_scale / steps }
     }
 
     /// Bytes per sample.
@@ -44,8 +41,8 @@ impl Encoding {
     }
 }
 
-/// The nearest whole number of steps; ties go to the even one. The caller has checked that it is within the range of the
-/// encoding.
+/// The nearest whole number of steps; ties go to the even one. The caller has checked that it is
+/// within the range of the encoding.
 pub(crate) fn code(sample: f32, step: f64) -> i32 {
     (f64::from(sample) / step).round_ties_even() as i32
 }

@@ -1,9 +1,9 @@
 //! A device that is a file: the mechanical quantity at the finger, or the drive of a display, as
 //! WAV, CSV, NPY or raw samples.
 //!
-//! Samples are written as fast as they are made, through a buffer of fixed size, into a temporary file beside the
-//! named one, which is renamed when the device is finished. A device that is dropped before
-//! leaves no file.
+//! Samples are written as fast as they are made, through a buffer of fixed size, into a temporary
+//! file beside the named one, which is renamed when the device is finished. A device that is
+//! dropped before leaves no file.
 //!
 //! A WAV file is limited to 4 GiB, with an error: few programs read RF64.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
@@ -49,7 +49,8 @@ impl Adapter for FileAdapter {
     }
 }
 
-/// Opens a WAV file of sound, of 32-bit floats, with a channel for each factor: what the channel plays of each sample.
+/// Opens a WAV file of sound, of 32-bit floats, with a channel for each factor: what the channel
+/// plays of each sample.
 ///
 /// # Errors
 /// When the rate is none of a WAV file, or the file cannot be made.

@@ -43,9 +43,8 @@ impl Plan {
         let form = form(settings.text("format"), &path)?;
         let named = settings.text("quantity");
         let mut all = Quantity::ALL.into_iter();
-        let quantity = all
-            .find(|quantity| quantity.name() == named)
-            .unwrap_or(Quantity::LateralForce);
+        let quantity =
+            all.find(|quantity| quantity.name() == named).unwrap_or(Quantity::LateralForce);
         let plan = Self {
             encoding: encoding(settings, form)?,
             path,
@@ -80,10 +79,7 @@ impl Plan {
         let carried = self.carrier_hz.map_or(0.0, |hz| PER_PERIOD * hz);
         Capabilities {
             quantity: self.quantity,
-            rates: Rates::Range {
-                min_hz: RATES_HZ.0,
-                max_hz: RATES_HZ.1,
-            },
+            rates: Rates::Range { min_hz: RATES_HZ.0, max_hz: RATES_HZ.1 },
             default_rate_hz: carried.clamp(USUAL_RATE_HZ, RATES_HZ.1),
             limit: limits.into_iter().flatten().reduce(f64::min),
             step: integer.map(|(step, _)| step),
@@ -112,10 +108,7 @@ impl Plan {
 }
 
 fn form(format: &str, path: &Path) -> Result<Form, DeviceError> {
-    let extension = path
-        .extension()
-        .and_then(|e| e.to_str())
-        .unwrap_or_default();
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     let extension = extension.to_ascii_lowercase();
     let wanted = if format == "auto" { &extension } else { format };
     match wanted {
@@ -123,20 +116,16 @@ fn form(format: &str, path: &Path) -> Result<Form, DeviceError> {
         "csv" => Ok(Form::Csv),
         "npy" => Ok(Form::Npy),
         "raw" => Ok(Form::Raw),
-        _ => refuse(
-            "format",
-            "the file's extension is not wav, csv, npy or raw; name the format",
-        ),
+        _ => refuse("format", "the file's extension is not wav, csv, npy or raw; name the format"),
     }
 }
 
 fn encoding(settings: &Settings, form: Form) -> Result<Encoding, DeviceError> {
     let full_scale = settings.number("full_scale");
     match (settings.text("encoding"), form) {
-        (_, Form::Csv) if settings.text("encoding") != "f32" => refuse(
-            "encoding",
-            "a CSV holds the quantity in its unit; only f32 is supported",
-        ),
+        (_, Form::Csv) if settings.text("encoding") != "f32" => {
+            refuse("encoding", "a CSV holds the quantity in its unit; only f32 is supported")
+        }
         ("i24", Form::Npy) => refuse("encoding", "NPY has no i24; choose f32 or i16"),
         ("i24", _) => Ok(Encoding::integer(24, full_scale)),
         ("i16", _) => Ok(Encoding::integer(16, full_scale)),
@@ -162,8 +151,5 @@ fn of_voltage(
 }
 
 fn refuse<T>(name: &str, what: &str) -> Result<T, DeviceError> {
-    Err(DeviceError::Setting {
-        name: name.to_owned(),
-        what: what.to_owned(),
-    })
+    Err(DeviceError::Setting { name: name.to_owned(), what: what.to_owned() })
 }

@@ -12,10 +12,8 @@ use htex_device_file::{FileAdapter, TABLE};
 type Given<'a> = &'a [(&'a str, &'a str)];
 
 fn settings(path: &Path, given: Given<'_>) -> Result<Settings, DeviceError> {
-    let mut all: BTreeMap<String, String> = given
-        .iter()
-        .map(|(k, v)| (k.to_string(), v.to_string()))
-        .collect();
+    let mut all: BTreeMap<String, String> =
+        given.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
     all.insert("path".to_owned(), path.to_str().unwrap().to_owned());
     Settings::resolve(FileAdapter.descriptor(), None, &all)
 }
@@ -26,10 +24,7 @@ fn open(
     given: Given<'_>,
     rate_hz: f64,
 ) -> Result<Box<dyn Device>, DeviceError> {
-    let format = StreamFormat {
-        rate_hz,
-        block_frames: 64,
-    };
+    let format = StreamFormat { rate_hz, block_frames: 64 };
     adapter.open(&settings(path, given)?, &format)
 }
 
@@ -62,10 +57,7 @@ fn wav_holds_the_samples() {
     let wave = wave();
     written(&FileAdapter, &path, &[], &wave);
     let mut reader = hound::WavReader::open(&path).unwrap();
-    assert_eq!(
-        (reader.spec().sample_rate, reader.spec().channels),
-        (8_000, 1)
-    );
+    assert_eq!((reader.spec().sample_rate, reader.spec().channels), (8_000, 1));
     let read: Vec<f32> = reader.samples::<f32>().map(Result::unwrap).collect();
     assert_eq!(read, wave);
     for (encoding, bits) in [("i16", 16), ("i24", 24)] {
@@ -126,10 +118,7 @@ fn a_drive_has_a_limit_and_a_carrier() {
     let can = can.unwrap();
     assert_eq!(can.quantity, Quantity::DisplayVoltage);
     assert_eq!((can.limit, can.carrier_hz), (Some(100.0), Some(10_000.0)));
-    assert_eq!(
-        (can.step, can.default_rate_hz),
-        (Some(200.0 / 32_768.0), 1e5)
-    );
+    assert_eq!((can.step, can.default_rate_hz), (Some(200.0 / 32_768.0), 1e5));
     can.check().unwrap();
 }
 
@@ -183,10 +172,7 @@ fn without_an_end_nothing_is_left() {
         let mut device = open(&FileAdapter, &path, &integers, 8_000.0).unwrap();
         device.write(&[0.1; 3], Duration::ZERO).unwrap();
         let error = device.write(&[0.1, bad], Duration::ZERO).unwrap_err();
-        assert!(
-            matches!(error, DeviceError::OverLimit { frame: 4, .. }),
-            "{error}"
-        );
+        assert!(matches!(error, DeviceError::OverLimit { frame: 4, .. }), "{error}");
         assert!(matches!(device.finish(), Err(DeviceError::Closed(_))));
     }
     assert_eq!(fs::read(&path).unwrap(), b"old");
@@ -224,10 +210,7 @@ fn the_abi_changes_nothing() {
     for error in errors {
         let direct = error(&FileAdapter, &path);
         assert!(direct.is_some());
-        assert_eq!(
-            error(&native, &path).map(|e| e.to_string()),
-            direct.map(|e| e.to_string())
-        );
+        assert_eq!(error(&native, &path).map(|e| e.to_string()), direct.map(|e| e.to_string()));
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }

@@ -115,9 +115,6 @@ fn by_process(display: &Display, child: &Mutex<Option<Child>>) -> Result<(), Str
 
 /// This process opens the device.
 fn by_player(display: &Display) -> Result<(), String> {
-    let opened = display
-        .known
-        .adapter
-        .open(&display.settings, &display.format);
+    let opened = display.known.adapter.open(&display.settings, &display.format);
     opened.map(drop).map_err(|error| error.to_string())
 }

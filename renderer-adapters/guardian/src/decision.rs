@@ -1,11 +1,14 @@
-//! What the player decides about its guardian: how long it waits, when it kills, how it gets the output to zero, and what it says.
+//! What the player decides about its guardian: how long it waits, when it kills, how it gets the
+//! output to zero, and what it says.
 //!
-//! This is a state machine without clock, process or pipe. The program runs it in `src/worker.rs`; the model checker
-//! (`cargo xtask prove zero`) runs the same code against a model of the guardian, the helpers, the card and the signals.
+//! This is a state machine without clock, process or pipe. The program runs it in `src/worker.rs`;
+//! the model checker (`cargo xtask prove zero`) runs the same code against a model of the guardian,
+//! the helpers, the card and the signals.
 //!
-//! A guardian that does not answer in time gets SIGKILL, which also ends a process that is stopped. Then attempts follow, one at a
-//! time, until one confirms zero: a helper process, then a thread of the player itself (the helper program may be gone), then a
-//! process again. Processes come first because a call of a driver that does not return takes a process with it, not the player.
+//! A guardian that does not answer in time gets SIGKILL, which also ends a process that is stopped.
+//! Then attempts follow, one at a time, until one confirms zero: a helper process, then a thread of
+//! the player itself (the helper program may be gone), then a process again. Processes come first
+//! because a call of a driver that does not return takes a process with it, not the player.
 
 use std::time::Duration;
 
@@ -44,7 +47,8 @@ impl Waits {
         self.to_zero + OPENING + GRACE
     }
 
-    /// Longest wait for the answer when the device is dropped: with [`CONFIRM`] after it, dropping takes at most D.
+    /// Longest wait for the answer when the device is dropped: with [`CONFIRM`] after it, dropping
+    /// takes at most D.
     pub fn abort(self) -> Duration {
         self.answer().saturating_sub(CONFIRM)
     }
@@ -163,13 +167,7 @@ enum Step {
 
 impl Default for Player {
     fn default() -> Self {
-        Self {
-            state: State::Idle,
-            attempt: 0,
-            own: None,
-            last: By::Player,
-            why: None,
-        }
+        Self { state: State::Idle, attempt: 0, own: None, last: By::Player, why: None }
     }
 }
 
@@ -219,8 +217,8 @@ impl Player {
         self.why
     }
 
-    /// The same player by a clock that is set back. The model checker keeps its clock at one time, so that worlds that differ only in
-    /// their time are one.
+    /// The same player by a clock that is set back. The model checker keeps its clock at one time,
+    /// so that worlds that differ only in their time are one.
     pub fn set_back(&mut self, by: Duration) {
         let set_back = |time: &mut Duration| *time = time.saturating_sub(by);
         match &mut self.state {
@@ -363,11 +361,7 @@ impl Player {
                 self.own = Some(number);
             }
             actions.push(Action::Start(number, by));
-            rescue.step = Step::Trying {
-                attempt: number,
-                by,
-                until: now + ATTEMPT,
-            };
+            rescue.step = Step::Trying { attempt: number, by, until: now + ATTEMPT };
         }
         if now >= rescue.say_at {
             actions.push(Action::Say);
@@ -379,7 +373,8 @@ impl Player {
         actions
     }
 
-    /// A number that no attempt has which may still be heard of; they are few, so that the model is finite.
+    /// A number that no attempt has which may still be heard of; they are few, so that the model is
+    /// finite.
     fn next_number(&self) -> u32 {
         let is_free = |number: &u32| *number != self.attempt && Some(*number) != self.own;
         (1..=3).find(is_free).unwrap_or(1)

@@ -37,17 +37,16 @@ pub fn htex() -> Command {
 
 /// Returns the error that no helper program can be started.
 pub fn not_started(error: impl Show) -> DeviceError {
-    DeviceError::Told(format!(
-        "no process to hold the output can be started: {error}"
-    ))
+    DeviceError::Told(format!("no process to hold the output can be started: {error}"))
 }
 
 /// A device that another process holds.
 ///
-/// Each call waits for that process at most buffer + ramp + 0.6 s (10 s more to open it; a write also its own timeout), and dropping the
-/// device at most as long. Then the process is killed, and a second one sets the output to zero. If that is not confirmed 0.5 s later, the
-/// call returns an error that says so, and a thread prints every second that the amplifier is to be switched off, until zero is confirmed
-/// ([`crate::is_unconfirmed`]).
+/// Each call waits for that process at most buffer + ramp + 0.6 s (10 s more to open it; a write
+/// also its own timeout), and dropping the device at most as long. Then the process is killed, and
+/// a second one sets the output to zero. If that is not confirmed 0.5 s later, the call returns an
+/// error that says so, and a thread prints every second that the amplifier is to be switched off,
+/// until zero is confirmed ([`crate::is_unconfirmed`]).
 pub struct Guarded {
     worker: Mutex<Sender<Message>>,
     name: String,
@@ -56,11 +55,12 @@ pub struct Guarded {
 }
 
 impl Guarded {
-    /// Starts the helper program, which opens the device. If the device is that of a library, the program's last arguments are
-    /// `--device-file` and the library's file.
+    /// Starts the helper program, which opens the device. If the device is that of a library, the
+    /// program's last arguments are `--device-file` and the library's file.
     ///
     /// # Errors
-    /// When the program cannot be started or does not answer, or the error of opening the device there.
+    /// When the program cannot be started or does not answer, or the error of opening the device
+    /// there.
     pub fn open(
         known: &KnownDevice,
         settings: &Settings,
@@ -75,7 +75,8 @@ impl Guarded {
             waits: waits(settings),
             ended: false,
         };
-        // A device that was not opened has no output to set to zero, and may belong to another process.
+        // A device that was not opened has no output to set to zero, and may belong to another
+        // process.
         if let Err(error) = guarded.ask(OPEN, opening, guarded.waits.opening()) {
             guarded.ended = true;
             return Err(error);
@@ -83,15 +84,11 @@ impl Guarded {
         Ok(guarded)
     }
 
-    /// Sends a request and waits for the answer, at most `patience` and then until the output is at zero or 0.5 s have passed.
+    /// Sends a request and waits for the answer, at most `patience` and then until the output is at
+    /// zero or 0.5 s have passed.
     fn ask(&self, tag: u8, body: Vec<u8>, patience: Duration) -> Result<Answer, DeviceError> {
         let (reply, replied) = channel();
-        let ask = Message::Ask {
-            tag,
-            body,
-            patience,
-            reply,
-        };
+        let ask = Message::Ask { tag, body, patience, reply };
         let worker = self.worker.lock().unwrap_or_else(PoisonError::into_inner);
         let replied = match worker.send(ask) {
             Ok(()) => replied.recv().unwrap_or(Reply::Closed),
@@ -99,15 +96,9 @@ impl Guarded {
         };
         match replied {
             Reply::Answer(Answer::Failed(text)) => Err(DeviceError::Told(text)),
-            Reply::Answer(Answer::Dry {
-                device,
-                frames,
-                advice,
-            }) => Err(DeviceError::Underflow {
-                device,
-                frames,
-                advice,
-            }),
+            Reply::Answer(Answer::Dry { device, frames, advice }) => {
+                Err(DeviceError::Underflow { device, frames, advice })
+            }
             Reply::Answer(answer) => Ok(answer),
             Reply::Failed(error) => Err(error),
             Reply::Closed => Err(DeviceError::Closed(self.name.clone())),
@@ -139,9 +130,7 @@ fn waits(settings: &Settings) -> Waits {
     let stated = [BUFFER_SETTING, RAMP_SETTING].map(|name| settings.number(name));
     let stated = stated.into_iter().filter(|ms| ms.is_finite());
     let to_zero = stated.map(|ms| Duration::from_secs_f64(ms.clamp(0.0, MOST_MS) / 1e3));
-    Waits {
-        to_zero: to_zero.reduce(|a, b| a + b).unwrap_or(USUAL_TO_ZERO),
-    }
+    Waits { to_zero: to_zero.reduce(|a, b| a + b).unwrap_or(USUAL_TO_ZERO) }
 }
 
 impl Device for Guarded {

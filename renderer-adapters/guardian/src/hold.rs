@@ -7,7 +7,8 @@ use htex_device::{Device, DeviceError, KnownDevice, Settings, StreamFormat};
 
 use crate::message::{Answer, FINISH, Opening, STATUS, WRITE, put, take};
 
-/// Holds a device for the app at the other end of the pipes, standard input and output of a helper program, until they end.
+/// Holds a device for the app at the other end of the pipes, standard input and output of a helper
+/// program, until they end.
 ///
 /// The program ignores signals: only the end of the pipe ends it.
 pub fn hold(
@@ -43,7 +44,8 @@ pub fn hold(
         let said = said.unwrap_or_else(Answer::of_error);
         heard = answer(&mut to, &said);
     }
-    // The app has ended: what was written is played and ends at zero. If that fails, dropping the device sets it to zero.
+    // The app has ended: what was written is played and ends at zero. If that fails, dropping the
+    // device sets it to zero.
     let _ = device.finish();
 }
 
@@ -55,10 +57,7 @@ fn open(
         .map_err(|error| DeviceError::Told(format!("invalid first message: {error}")))?;
     let known = find(&opening.device)?;
     let settings = Settings::from_lines(known.descriptor(), &opening.settings)?;
-    let format = StreamFormat {
-        rate_hz: opening.rate_hz,
-        block_frames: opening.block_frames,
-    };
+    let format = StreamFormat { rate_hz: opening.rate_hz, block_frames: opening.block_frames };
     known.adapter.open(&settings, &format)
 }
 
@@ -68,10 +67,7 @@ fn write(device: &mut dyn Device, body: &[u8]) -> Result<Answer, DeviceError> {
         return Ok(Answer::Done(0));
     };
     let timeout = Duration::from_millis(u32::from_le_bytes(*timeout_ms).into());
-    let samples: Vec<f32> = samples
-        .iter()
-        .map(|word| f32::from_le_bytes(*word))
-        .collect();
+    let samples: Vec<f32> = samples.iter().map(|word| f32::from_le_bytes(*word)).collect();
     let taken = device.write(&samples, timeout)?;
     Ok(Answer::Done(taken as u64))
 }

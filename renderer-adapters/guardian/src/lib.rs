@@ -1,14 +1,17 @@
-//! A second process that holds the output of a display which a finger touches, so that no end of the first one leaves a voltage there.
+//! A second process that holds the output of a display which a finger touches, so that no end of
+//! the first one leaves a voltage there.
 //!
-//! A signal that kills, stops or hangs the app reaches only the app: the guardian is in a process group of its own, receives no
-//! signals of the terminal's keys, and ends when its pipe does. It then plays what it has (at most the device's buffer), sets the output to
-//! zero, and exits; a device whose buffer runs dry sets its output to zero itself.
+//! A signal that kills, stops or hangs the app reaches only the app: the guardian is in a process
+//! group of its own, receives no signals of the terminal's keys, and ends when its pipe does. It
+//! then plays what it has (at most the device's buffer), sets the output to zero, and exits; a
+//! device whose buffer runs dry sets its output to zero itself.
 //!
-//! If the guardian ends first, is stopped or hangs, the app kills it and starts a second helper process, which sets the output to zero.
-//! When and how is decided in [`decision`].
+//! If the guardian ends first, is stopped or hangs, the app kills it and starts a second helper
+//! process, which sets the output to zero. When and how is decided in [`decision`].
 //!
-//! An app opens a device as [`Guarded`] where [`is_wanted`] says so. The helper program is [`htex`], or one of the app's own, which
-//! calls [`hold`]: it is needed for devices that `htex` does not have.
+//! An app opens a device as [`Guarded`] where [`is_wanted`] says so. The helper program is
+//! [`htex`], or one of the app's own, which calls [`hold`]: it is needed for devices that `htex`
+//! does not have.
 //!
 //! ```no_run
 //! use std::time::Duration;

@@ -35,18 +35,13 @@ pub(crate) enum Answer {
 }
 
 impl Answer {
-    /// The reply of an error: its message, and of a device that ran dry, which may be tried again, all that is known.
+    /// The reply of an error: its message, and of a device that ran dry, which may be tried again,
+    /// all that is known.
     pub(crate) fn of_error(error: DeviceError) -> Self {
         match error {
-            DeviceError::Underflow {
-                device,
-                frames,
-                advice,
-            } => Self::Dry {
-                device,
-                frames,
-                advice,
-            },
+            DeviceError::Underflow { device, frames, advice } => {
+                Self::Dry { device, frames, advice }
+            }
             error => Self::Failed(error.to_string()),
         }
     }

@@ -1,6 +1,7 @@
 //! The thread of the player that talks to the guardian, and does what [`crate::decision`] decides.
 //!
-//! It never blocks: pipes, attempts and standard error, which may all hang, have threads of their own.
+//! It never blocks: pipes, attempts and standard error, which may all hang, have threads of their
+//! own.
 
 use std::io::Write;
 use std::process::Child;
@@ -24,8 +25,9 @@ const LOOK: Duration = Duration::from_millis(5);
 /// Outputs that are not confirmed to be at zero.
 static UNCONFIRMED: AtomicUsize = AtomicUsize::new(0);
 
-/// Whether the output of a display may have kept a voltage, after its guardian failed. The player goes on trying to set it to zero, and
-/// prints every second that the amplifier is to be switched off. A program that is about to end waits here, so that it goes on.
+/// Whether the output of a display may have kept a voltage, after its guardian failed. The player
+/// goes on trying to set it to zero, and prints every second that the amplifier is to be switched
+/// off. A program that is about to end waits here, so that it goes on.
 pub fn is_unconfirmed() -> bool {
     UNCONFIRMED.load(Ordering::SeqCst) > 0
 }
@@ -145,12 +147,7 @@ impl Worker {
 
     fn event(&mut self, message: Message) -> Event {
         match message {
-            Message::Ask {
-                tag,
-                body,
-                patience,
-                reply,
-            } => {
+            Message::Ask { tag, body, patience, reply } => {
                 self.asker = Some(reply);
                 let requests = self.requests.as_ref();
                 let sent = requests.is_some_and(|requests| requests.send((tag, body)).is_ok());

@@ -14,10 +14,7 @@ use htex_device::{
 };
 use htex_device_guardian::{Guarded, hold, is_unconfirmed, is_wanted};
 
-const FORMAT: StreamFormat = StreamFormat {
-    rate_hz: 1_000.0,
-    block_frames: 4,
-};
+const FORMAT: StreamFormat = StreamFormat { rate_hz: 1_000.0, block_frames: 4 };
 
 /// A sample whose write does not return, and one after which closing the device does not.
 const HANGS: f32 = 8.0;
@@ -95,11 +92,7 @@ impl Adapter for Bench {
         }
         let log = s.text("log").to_owned();
         say(&log, "opened at zero");
-        Ok(Box::new(Open {
-            log,
-            frames: 0,
-            drop_hangs: false,
-        }))
+        Ok(Box::new(Open { log, frames: 0, drop_hangs: false }))
     }
 }
 
@@ -115,10 +108,7 @@ impl Device for Open {
     }
 
     fn status(&self) -> Status {
-        Status {
-            frames_written: self.frames as u64,
-            ..Status::default()
-        }
+        Status { frames_written: self.frames as u64, ..Status::default() }
     }
 
     fn finish(&mut self) -> Result<(), DeviceError> {
@@ -159,10 +149,7 @@ fn an_app_plays_through_its_helper(log: &Path) {
     assert_eq!(device.status().frames_written, 2);
     device.finish().unwrap();
     assert!(matches!(device.finish(), Err(DeviceError::Closed(_))));
-    assert_eq!(
-        lines(log),
-        ["opened at zero", "[1.0, 2.0]", "played to zero"]
-    );
+    assert_eq!(lines(log), ["opened at zero", "[1.0, 2.0]", "played to zero"]);
 }
 
 fn an_app_that_aborts_leaves_zero(log: &Path) {
@@ -177,10 +164,7 @@ fn an_app_that_aborts_leaves_zero(log: &Path) {
 
 fn errors_of_the_helper_are_those_of_the_app(log: &Path) {
     let log_text = log.display().to_string();
-    let other = StreamFormat {
-        block_frames: 5,
-        ..FORMAT
-    };
+    let other = StreamFormat { block_frames: 5, ..FORMAT };
     let refused = guarded(&log_text, &other, "helper").err().unwrap();
     assert_eq!(refused.to_string(), "no such clock");
     // A helper that ends at once: the app opens the device, which is at zero then.
@@ -189,7 +173,8 @@ fn errors_of_the_helper_are_those_of_the_app(log: &Path) {
     assert_eq!(lines(log), ["opened at zero"]);
 }
 
-/// A helper that does not answer is killed, and a second one opens the device, which sets its output to zero.
+/// A helper that does not answer is killed, and a second one opens the device, which sets its
+/// output to zero.
 fn a_helper_that_hangs_is_replaced_by_zero(log: &Path) {
     let mut device = guarded(&log.display().to_string(), &FORMAT, "helper").unwrap();
     let begun = Instant::now();
@@ -206,11 +191,7 @@ fn a_helper_that_hangs_is_replaced_by_zero(log: &Path) {
 
 fn second_helper_ends(log: &Path) {
     let begun = Instant::now();
-    while is_unconfirmed()
-        || lines(log)
-            .last()
-            .is_none_or(|line| line != "played to zero")
-    {
+    while is_unconfirmed() || lines(log).last().is_none_or(|line| line != "played to zero") {
         assert!(begun.elapsed().as_secs_f64() < BUSY_S, "{:?}", lines(log));
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -226,10 +207,7 @@ fn a_device_is_dropped_in_time(log: &Path) {
     println!("dropped after {waited:.2} s");
     assert!(waited < D_S + BUSY_S, "{waited} s");
     second_helper_ends(log);
-    let zeros = lines(log)
-        .iter()
-        .filter(|line| *line == "opened at zero")
-        .count();
+    let zeros = lines(log).iter().filter(|line| *line == "opened at zero").count();
     assert_eq!(zeros, 2, "the second helper opens it");
 }
 

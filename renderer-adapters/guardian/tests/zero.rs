@@ -1,6 +1,8 @@
-//! `cargo xtask prove zero`: every single and double failure of the player, its guardian, the helpers and the card, at every step.
+//! `cargo xtask prove zero`: every single and double failure of the player, its guardian, the
+//! helpers and the card, at every step.
 //!
-//! What must hold is in [`broken`]. Tests take every single failure, and double ones with `HTEX_WHOLE`.
+//! What must hold is in [`broken`]. Tests take every single failure, and double ones with
+//! `HTEX_WHOLE`.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "zero/faults.rs"]
@@ -51,7 +53,8 @@ struct Explored {
     seen: Seen,
     /// Worlds in which neither the player nor the guardian can act, and a voltage stands.
     nobody: u64,
-    /// Worlds in which all have ended, at zero, and those that are not at zero and have the sentence.
+    /// Worlds in which all have ended, at zero, and those that are not at zero and have the
+    /// sentence.
     at_zero: u64,
     said: u64,
     detected: u64,

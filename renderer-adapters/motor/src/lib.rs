@@ -1,11 +1,13 @@
-//! Devices that cannot play samples: motors and interfaces that are told a strength and a frequency some hundred times a second.
+//! Devices that cannot play samples: motors and interfaces that are told a strength and a frequency
+//! some hundred times a second.
 //!
-//! An adapter implements [`Motor`], and [`Paced`] makes an open device of it: it takes samples of sound, keeps them in a
-//! buffer, and a thread of its own hands them over by blocks at the pace of the clock, each with its level and mean
-//! frequency. They are measured by [`htex_dsp::envelope`], as those of `Voice::envelope` are, so that a device needs no model.
+//! An adapter implements [`Motor`], and [`Paced`] makes an open device of it: it takes samples of
+//! sound, keeps them in a buffer, and a thread of its own hands them over by blocks at the pace of
+//! the clock, each with its level and mean frequency. They are measured by [`htex_dsp::envelope`],
+//! as those of `Voice::envelope` are, so that a device needs no model.
 //!
-//! The motor is at rest before the first block, after the last one, after every error, when the device is dropped, and when samples
-//! come too late: the thread stops it even if the writer hangs.
+//! The motor is at rest before the first block, after the last one, after every error, when the
+//! device is dropped, and when samples come too late: the thread stops it even if the writer hangs.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 

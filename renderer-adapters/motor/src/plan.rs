@@ -69,11 +69,7 @@ pub fn has_usual_buffer(settings: &Settings) -> bool {
 
 /// The error of a rate that a device does not have.
 pub fn rate_error(device: &str, rate_hz: f64, can: &Capabilities) -> DeviceError {
-    DeviceError::Rate {
-        device: device.to_owned(),
-        rate_hz,
-        rates: can.rates.to_string(),
-    }
+    DeviceError::Rate { device: device.to_owned(), rate_hz, rates: can.rates.to_string() }
 }
 
 /// The values of the shared settings.
@@ -106,10 +102,7 @@ impl Plan {
     pub fn capabilities(&self) -> Capabilities {
         Capabilities {
             quantity: Quantity::Sound,
-            rates: Rates::Range {
-                min_hz: RATES_HZ.0,
-                max_hz: RATES_HZ.1,
-            },
+            rates: Rates::Range { min_hz: RATES_HZ.0, max_hz: RATES_HZ.1 },
             default_rate_hz: DEFAULT_RATE_HZ,
             limit: Some(1.0),
             step: None,

@@ -133,10 +133,7 @@ impl Worker {
             }
             analyser.push(&samples);
             let measured = analyser.read(&mut []);
-            let block = Block {
-                samples: &samples,
-                measured,
-            };
+            let block = Block { samples: &samples, measured };
             if let Err(what) = self.motor.play(&block) {
                 // It has failed, and its reason says more than that of the stop.
                 let _ = self.motor.stop();
@@ -175,10 +172,7 @@ impl Worker {
     }
 
     fn failed(&self, what: String) -> DeviceError {
-        DeviceError::Failed {
-            device: self.name.clone(),
-            what,
-        }
+        DeviceError::Failed { device: self.name.clone(), what }
     }
 
     fn ran_dry(&self) -> DeviceError {

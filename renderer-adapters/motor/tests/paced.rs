@@ -14,11 +14,7 @@ const LONG: Duration = Duration::from_secs(5);
 /// What the motor was told.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Told {
-    Play {
-        after: Duration,
-        level: f64,
-        frames: usize,
-    },
+    Play { after: Duration, level: f64, frames: usize },
     End,
     Stop,
     Closed,
@@ -34,11 +30,7 @@ struct Log {
 
 impl Log {
     fn new(fails_at: usize) -> Self {
-        Self {
-            since: Instant::now(),
-            told: Arc::default(),
-            fails_at,
-        }
+        Self { since: Instant::now(), told: Arc::default(), fails_at }
     }
 
     fn all(&self) -> Vec<Told> {
@@ -47,11 +39,7 @@ impl Log {
 
     fn plays(&self) -> Vec<(Duration, f64, usize)> {
         let play = |told: Told| match told {
-            Told::Play {
-                after,
-                level,
-                frames,
-            } => Some((after, level, frames)),
+            Told::Play { after, level, frames } => Some((after, level, frames)),
             _ => None,
         };
         self.all().into_iter().filter_map(play).collect()
@@ -63,10 +51,7 @@ impl Log {
 
     fn open(&self, settings: &[(&str, &str)]) -> Paced {
         let plan = plan(settings);
-        let format = StreamFormat {
-            rate_hz: RATE_HZ,
-            block_frames: 64,
-        };
+        let format = StreamFormat { rate_hz: RATE_HZ, block_frames: 64 };
         let motor = Box::new(Logged(self.clone()));
         Paced::open("Motor", motor, &plan, plan.capabilities(), &format).unwrap()
     }
@@ -116,10 +101,8 @@ fn plan(settings: &[(&str, &str)]) -> Plan {
         mapping: None,
     };
     descriptor.check().unwrap();
-    let given: BTreeMap<String, String> = settings
-        .iter()
-        .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
-        .collect();
+    let given: BTreeMap<String, String> =
+        settings.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
     Plan::new(&Settings::resolve(&descriptor, None, &given).unwrap())
 }
 
@@ -140,22 +123,13 @@ fn blocks_come_at_the_pace_of_the_clock_and_the_end_is_rest() {
     assert!(device.status().latency_s > 0.0);
     device.finish().unwrap();
     let status = device.status();
-    assert_eq!(
-        (status.frames_written, status.frames_played),
-        (3_240, 3_240)
-    );
-    assert_eq!(
-        (status.underruns, status.latency_s, status.peak),
-        (0, 0.0, 1.0)
-    );
+    assert_eq!((status.frames_written, status.frames_played), (3_240, 3_240));
+    assert_eq!((status.underruns, status.latency_s, status.peak), (0, 0.0, 1.0));
     let plays = log.plays();
     assert_eq!(plays.len(), 41);
     assert_eq!(plays[40].2, 40);
     for (i, (_, level, _)) in plays[..40].iter().enumerate() {
-        assert!(
-            (level - f64::from(levels[i / 10])).abs() < 1e-6,
-            "{i} {level}"
-        );
+        assert!((level - f64::from(levels[i / 10])).abs() < 1e-6, "{i} {level}");
     }
     // 400 ms; the thread may be late on a loaded machine, and makes up for at most a block.
     assert!(plays[40].0.saturating_sub(plays[0].0) >= Duration::from_millis(385));
@@ -172,10 +146,7 @@ fn a_dropped_device_rests_at_once() {
     write_all(&mut device, &[0.5; 48_000]);
     let since = Instant::now();
     drop(device);
-    assert!(
-        since.elapsed() < Duration::from_millis(90),
-        "it waits for a block"
-    );
+    assert!(since.elapsed() < Duration::from_millis(90), "it waits for a block");
     assert!(log.ends_with(&[Told::Stop, Told::Closed]));
 }
 
@@ -186,10 +157,7 @@ fn a_sample_over_the_limit_rests_at_once() {
         let mut device = log.open(&[]);
         write_all(&mut device, &[0.5; 700]);
         let error = device.write(&[0.5, bad], LONG).unwrap_err();
-        assert!(
-            matches!(error, DeviceError::OverLimit { frame: 701, .. }),
-            "{error}"
-        );
+        assert!(matches!(error, DeviceError::OverLimit { frame: 701, .. }), "{error}");
         assert!(log.ends_with(&[Told::Stop, Told::Closed]));
         assert!(matches!(device.finish(), Err(DeviceError::Closed(_))));
     }
@@ -206,21 +174,11 @@ fn a_device_that_runs_dry_rests_and_says_so() {
         assert!(since.elapsed() < LONG, "{:?}", log.all());
         std::thread::sleep(Duration::from_millis(1));
     }
-    assert_eq!(
-        log.plays().len(),
-        6,
-        "a block that is not full is not played"
-    );
+    assert_eq!(log.plays().len(), 6, "a block that is not full is not played");
     let error = device.write(&[0.5; 80], LONG).unwrap_err();
-    assert!(
-        matches!(error, DeviceError::Underflow { frames: 480, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, DeviceError::Underflow { frames: 480, .. }), "{error}");
     assert!(error.to_string().contains("buffer_ms"));
-    assert!(matches!(
-        device.write(&[0.5], LONG),
-        Err(DeviceError::Closed(_))
-    ));
+    assert!(matches!(device.write(&[0.5], LONG), Err(DeviceError::Closed(_))));
     assert_eq!(device.status().underruns, 1);
 }
 
@@ -248,13 +206,8 @@ fn a_write_takes_what_fits() {
     assert_eq!(device.write(&[0.1; 1_000], Duration::ZERO), Ok(160));
     assert_eq!(device.write(&[], Duration::ZERO), Ok(0));
     let since = Instant::now();
-    let taken = device
-        .write(&[0.1; 100_000], Duration::from_millis(50))
-        .unwrap();
-    assert!(
-        since.elapsed() >= Duration::from_millis(50) && taken >= 160,
-        "{taken}"
-    );
+    let taken = device.write(&[0.1; 100_000], Duration::from_millis(50)).unwrap();
+    assert!(since.elapsed() >= Duration::from_millis(50) && taken >= 160, "{taken}");
     assert_eq!(device.status().frames_written, 160 + taken as u64);
 }
 
@@ -269,10 +222,7 @@ fn nothing_written_is_rest_too() {
 #[test]
 fn a_rate_that_it_does_not_have_is_refused() {
     let plan = plan(&[]);
-    let format = StreamFormat {
-        rate_hz: 1_000.0,
-        block_frames: 64,
-    };
+    let format = StreamFormat { rate_hz: 1_000.0, block_frames: 64 };
     let motor = Box::new(Logged(Log::new(0)));
     let refused = Paced::open("Motor", motor, &plan, plan.capabilities(), &format);
     assert!(matches!(refused.err().unwrap(), DeviceError::Rate { .. }));

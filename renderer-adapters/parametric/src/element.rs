@@ -18,11 +18,7 @@ impl Element {
     pub(crate) fn take(runtime: &str, hand: Hand) -> Result<Self, DeviceError> {
         let session = Session::of(runtime)?;
         let claim = Claim::take(runtime, &format!("{} hand", hand.name()))?;
-        Ok(Self {
-            session,
-            hand,
-            _claim: claim,
-        })
+        Ok(Self { session, hand, _claim: claim })
     }
 
     pub(crate) fn stop(&self) -> Result<(), String> {

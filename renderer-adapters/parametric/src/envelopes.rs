@@ -1,7 +1,9 @@
-//! Piecewise linear envelopes (PWLE), as Android's `VibrationEffect.WaveformEnvelopeBuilder` (API 36) takes them.
+//! Piecewise linear envelopes (PWLE), as Android's `VibrationEffect.WaveformEnvelopeBuilder` (API
+//! 36) takes them.
 //!
-//! Android has vibrators in Java only, so that the application exports three functions in C, which call it (`docs/devices.md` states them). An
-//! effect replaces the one before and begins at rest: its first point is a ramp from 0. Streaming is a series of effects, each handed over when its
+//! Android has vibrators in Java only, so that the application exports three functions in C, which
+//! call it (`docs/devices.md` states them). An effect replaces the one before and begins at rest:
+//! its first point is a ramp from 0. Streaming is a series of effects, each handed over when its
 //! blocks are known.
 #![allow(unsafe_code)] // The application's functions are C.
 
@@ -15,7 +17,8 @@ use htex_native::{Library, Symbols};
 
 use crate::claim::Claim;
 
-/// Length of an effect, if the vibrator takes so many points, seconds: longer ones have fewer ramps, shorter ones less delay.
+/// Length of an effect, if the vibrator takes so many points, seconds: longer ones have fewer
+/// ramps, shorter ones less delay.
 const EFFECT_S: f64 = 0.1;
 /// Points of an effect at least: a ramp and one more.
 const LEAST_POINTS: u32 = 2;
@@ -51,10 +54,7 @@ pub(crate) struct Vibrator {
 impl Vibrator {
     /// That of the library at `path`.
     pub(crate) fn load(path: &str) -> Result<Self, DeviceError> {
-        let refused = |what: String| DeviceError::Setting {
-            name: "runtime".to_owned(),
-            what,
-        };
+        let refused = |what: String| DeviceError::Setting { name: "runtime".to_owned(), what };
         if path.is_empty() {
             return Err(refused(
                 "form=pwle wants the application's library, which has the vibrator; name it"
@@ -66,10 +66,7 @@ impl Vibrator {
         let library =
             library.map_err(|error| refused(format!("`{path}` cannot be loaded: {error}")))?;
         let missing = |name: &'static str| refused(format!("`{path}` has no `{name}`"));
-        let symbols = Symbols {
-            library,
-            missing: &missing,
-        };
+        let symbols = Symbols { library, missing: &missing };
         let mut limits = Limits::default();
         // SAFETY: the types are those that are published for these names.
         let (vibrator, code) = unsafe {
@@ -91,13 +88,7 @@ impl Vibrator {
     }
 
     fn check(self, path: &str) -> Result<Self, DeviceError> {
-        let Limits {
-            most_points,
-            least_ms,
-            most_ms,
-            low_hz,
-            high_hz,
-        } = self.limits;
+        let Limits { most_points, least_ms, most_ms, low_hz, high_hz } = self.limits;
         let is_sane =
             most_points >= LEAST_POINTS && least_ms <= most_ms && low_hz > 0.0 && low_hz <= high_hz;
         match is_sane && high_hz.is_finite() {
@@ -111,9 +102,7 @@ impl Vibrator {
 
     /// Whether points of so many milliseconds are taken.
     pub(crate) fn takes(&self, block_ms: u32) -> Result<(), DeviceError> {
-        let Limits {
-            least_ms, most_ms, ..
-        } = self.limits;
+        let Limits { least_ms, most_ms, .. } = self.limits;
         match (least_ms..=most_ms).contains(&block_ms) {
             true => Ok(()),
             false => Err(DeviceError::Setting {
@@ -145,12 +134,7 @@ impl Envelopes {
         let vibrator = Vibrator::load(path)?;
         let block_ms = milliseconds(plan);
         vibrator.takes(block_ms)?;
-        let Limits {
-            most_points,
-            low_hz,
-            high_hz,
-            ..
-        } = vibrator.limits;
+        let Limits { most_points, low_hz, high_hz, .. } = vibrator.limits;
         let effect = (EFFECT_S / plan.block_s).ceil() as u32;
         // The last effect has a point more, which ends it.
         let most = (most_points - 1).max(1);
@@ -184,9 +168,7 @@ impl Motor for Envelopes {
     fn play(&mut self, block: &Block<'_>) -> Result<(), String> {
         let measured = block.measured;
         if measured.centroid_hz > 0.0 {
-            self.frequency_hz = measured
-                .centroid_hz
-                .clamp(self.scale.low_hz, self.scale.high_hz);
+            self.frequency_hz = measured.centroid_hz.clamp(self.scale.low_hz, self.scale.high_hz);
         }
         self.waiting.push(ControlPoint {
             amplitude: self.scale.strength(measured.level_rms) as f32,
@@ -205,9 +187,7 @@ impl Motor for Envelopes {
             true => (self.effect - 1).saturating_sub(self.waiting.len()),
             false => 0,
         };
-        sleep(Duration::from_millis(
-            u64::from(self.block_ms) * left as u64,
-        ));
+        sleep(Duration::from_millis(u64::from(self.block_ms) * left as u64));
         if !self.waiting.is_empty() {
             self.waiting.push(ControlPoint {
                 amplitude: 0.0,

@@ -27,25 +27,16 @@ pub(crate) struct Instance {
 impl Instance {
     pub(crate) fn create(entry: Entry) -> Result<Self, String> {
         let there = extensions(entry)?;
-        if !there
-            .iter()
-            .any(|name| name == HEADLESS.to_string_lossy().as_ref())
-        {
+        if !there.iter().any(|name| name == HEADLESS.to_string_lossy().as_ref()) {
             return Err(
                 "it does not run without graphics: it has no XR_MND_headless. A program with a session of its own reduces the samples by \
                  `htex_dsp::reduced` and hands the points over itself"
                     .to_owned(),
             );
         }
-        let has = |name: &CStr| {
-            there
-                .iter()
-                .any(|other| other.as_bytes() == name.to_bytes())
-        };
-        let names: Vec<&CStr> = [HEADLESS, PARAMETRIC, PCM]
-            .into_iter()
-            .filter(|name| has(name))
-            .collect();
+        let has = |name: &CStr| there.iter().any(|other| other.as_bytes() == name.to_bytes());
+        let names: Vec<&CStr> =
+            [HEADLESS, PARAMETRIC, PCM].into_iter().filter(|name| has(name)).collect();
         let handle = create(entry, &names)?;
         let table = match Table::of(entry, handle) {
             Ok(table) => table,
@@ -83,11 +74,8 @@ impl Instance {
         if !has_parametric {
             return Ok(());
         }
-        let mut parametric = SystemProperties {
-            ty: SYSTEM_PROPERTIES,
-            next: null_mut(),
-            is_supported: xr::FALSE,
-        };
+        let mut parametric =
+            SystemProperties { ty: SYSTEM_PROPERTIES, next: null_mut(), is_supported: xr::FALSE };
         let mut properties = xr::SystemProperties::out((&raw mut parametric).cast());
         // SAFETY: a chain of two structures of the registry, in which the runtime writes.
         let code = unsafe {
@@ -127,9 +115,7 @@ fn extensions(entry: Entry) -> Result<Vec<String>, String> {
     }?;
     let mut count = 0;
     // SAFETY: no places, so that only the count is written.
-    done(call, unsafe {
-        enumerate(null(), 0, &mut count, null_mut())
-    })?;
+    done(call, unsafe { enumerate(null(), 0, &mut count, null_mut()) })?;
     let empty = xr::ExtensionProperties {
         ty: xr::ExtensionProperties::TYPE,
         next: null_mut(),
@@ -138,9 +124,7 @@ fn extensions(entry: Entry) -> Result<Vec<String>, String> {
     };
     let mut all = vec![empty; count as usize];
     // SAFETY: there are as many places as said.
-    done(call, unsafe {
-        enumerate(null(), count, &mut count, all.as_mut_ptr())
-    })?;
+    done(call, unsafe { enumerate(null(), count, &mut count, all.as_mut_ptr()) })?;
     all.truncate(count as usize);
     let name = |one: &xr::ExtensionProperties| {
         let bytes = one.extension_name.iter().take_while(|c| **c != 0);

@@ -1,13 +1,15 @@
 //! Controllers that are told points or samples some times a second, through an OpenXR runtime.
 //!
-//! The runtime is a library that is loaded at run time, a runtime itself or the installed loader; nothing is linked. `form=points` plays
-//! `XR_EXT_haptic_parametric`: each block of `block_ms` is a point of amplitude and of frequency at its end
-//! ([`htex_dsp::reduced::Points`]), handed over in frames as long as the runtime wishes. `form=pcm` plays `XR_FB_haptic_pcm`: the samples
-//! themselves, at the rate of the controller. `form=pwle` plays piecewise linear envelopes, which Android's vibrators take, by functions of the
-//! application.
+//! The runtime is a library that is loaded at run time, a runtime itself or the installed loader;
+//! nothing is linked. `form=points` plays `XR_EXT_haptic_parametric`: each block of `block_ms` is a
+//! point of amplitude and of frequency at its end ([`htex_dsp::reduced::Points`]), handed over in
+//! frames as long as the runtime wishes. `form=pcm` plays `XR_FB_haptic_pcm`: the samples
+//! themselves, at the rate of the controller. `form=pwle` plays piecewise linear envelopes, which
+//! Android's vibrators take, by functions of the application.
 //!
-//! The adapter has a session of its own, without graphics (`XR_MND_headless`), so that the command can play on a controller; a session
-//! ends with its last device. When a program hangs, the runtime ends a stream of points after 50 ms, and samples when it has no more.
+//! The adapter has a session of its own, without graphics (`XR_MND_headless`), so that the command
+//! can play on a controller; a session ends with its last device. When a program hangs, the runtime
+//! ends a stream of points after 50 ms, and samples when it has no more.
 #![deny(unsafe_code)]
 
 mod claim;
@@ -42,9 +44,7 @@ pub struct Parametric {
 impl Parametric {
     /// The adapter. A runtime is loaded at the first use.
     pub fn new() -> Self {
-        Self {
-            descriptor: descriptor(),
-        }
+        Self { descriptor: descriptor() }
     }
 }
 
@@ -115,7 +115,8 @@ impl Asked {
         Ok(self.plan.capabilities())
     }
 
-    /// What a controller can do that is set so; points are at any rate, samples at that of the controller.
+    /// What a controller can do that is set so; points are at any rate, samples at that of the
+    /// controller.
     fn of_session(&self, session: &Session) -> Result<Capabilities, DeviceError> {
         let can = self.plan.capabilities();
         if self.form != Form::Pcm {
@@ -135,12 +136,7 @@ impl Asked {
     fn motor(&self, element: Element, rate_hz: f64) -> Result<Box<dyn Motor>, DeviceError> {
         match self.form {
             Form::Pcm => Ok(Box::new(Samples::open(element, &self.plan, rate_hz)?)),
-            _ => Ok(Box::new(Stream::open(
-                element,
-                &self.plan,
-                self.range_hz,
-                rate_hz,
-            )?)),
+            _ => Ok(Box::new(Stream::open(element, &self.plan, self.range_hz, rate_hz)?)),
         }
     }
 

@@ -15,8 +15,8 @@ use crate::structures::{
     FREQUENCIES_HZ, Frame, MOST_POINTS, Properties, VIBRATION, Vibration, XrPoint,
 };
 
-/// The range of frequencies where neither a person nor the runtime states one, hertz: from a little below what wideband actuators reach to
-/// a little above what a finger feels best.
+/// The range of frequencies where neither a person nor the runtime states one, hertz: from a little
+/// below what wideband actuators reach to a little above what a finger feels best.
 const USUAL_HZ: (f64, f64) = (50.0, 500.0);
 pub(crate) struct Stream {
     element: Element,
@@ -27,8 +27,8 @@ pub(crate) struct Stream {
     waiting: Vec<Point>,
     /// Seconds of samples that were handed over.
     sent_s: f64,
-    /// Length of the first frame at least, and of each other one, seconds. The first one is a block longer than the others: each comes a block
-    /// before the runtime needs it.
+    /// Length of the first frame at least, and of each other one, seconds. The first one is a block
+    /// longer than the others: each comes a block before the runtime needs it.
     first_s: f64,
     frame_s: f64,
     block_s: f64,
@@ -63,11 +63,7 @@ impl Stream {
         }
         Ok(Self {
             element,
-            scale: Scale {
-                gain: plan.gain,
-                low_hz,
-                high_hz,
-            },
+            scale: Scale { gain: plan.gain, low_hz, high_hz },
             rate_hz,
             points: Points::default(),
             waiting: Vec::with_capacity(MOST_POINTS),
@@ -84,11 +80,10 @@ impl Stream {
         self.points.frames as f64 / self.rate_hz
     }
 
-    /// After a delay of this thread the runtime has played all that it had, and its time has gone on: what comes is of its present.
+    /// After a delay of this thread the runtime has played all that it had, and its time has gone
+    /// on: what comes is of its present.
     fn catch_up(&mut self) {
-        let now_s = self
-            .since
-            .map_or(0.0, |since| since.elapsed().as_secs_f64());
+        let now_s = self.since.map_or(0.0, |since| since.elapsed().as_secs_f64());
         if now_s > self.there_s() {
             self.points.frames = ((now_s + self.block_s) * self.rate_hz) as u64;
             self.sent_s = self.there_s();
@@ -96,20 +91,14 @@ impl Stream {
     }
 
     fn send(&mut self, frame: Frame) -> Result<(), String> {
-        let point = |time_ns: i64, value: f32| XrPoint {
-            time: xr::Duration::from_nanos(time_ns),
-            value,
-        };
+        let point =
+            |time_ns: i64, value: f32| XrPoint { time: xr::Duration::from_nanos(time_ns), value };
         let all = &self.waiting;
         let amplitudes: Vec<XrPoint> = all.iter().map(|p| point(p.time_ns, p.strength)).collect();
         let frequencies: Vec<XrPoint> = all.iter().map(|p| point(p.time_ns, p.place)).collect();
         let states_range = frame == Frame::FIRST || frame == Frame::WHOLE;
         let of_range = |hz: f64| {
-            if states_range {
-                hz as f32
-            } else {
-                xr::FREQUENCY_UNSPECIFIED
-            }
+            if states_range { hz as f32 } else { xr::FREQUENCY_UNSPECIFIED }
         };
         let vibration = Vibration {
             ty: VIBRATION,
@@ -137,9 +126,7 @@ impl Motor for Stream {
     fn play(&mut self, block: &Block<'_>) -> Result<(), String> {
         self.element.session.follow()?;
         self.catch_up();
-        let points = self
-            .points
-            .block(&block.measured, &self.scale, self.rate_hz);
+        let points = self.points.block(&block.measured, &self.scale, self.rate_hz);
         self.waiting.extend(points);
         let unsent_s = self.there_s() - self.sent_s + 0.5 / self.rate_hz;
         match self.since {
@@ -181,22 +168,19 @@ impl Motor for Stream {
     }
 }
 
-/// The range of frequencies that the points cover: what a person states and what the element has, as far as they meet.
+/// The range of frequencies that the points cover: what a person states and what the element has,
+/// as far as they meet.
 fn range(stated_hz: Option<(f64, f64)>, properties: &Properties) -> (f64, f64) {
-    let element = (
-        f64::from(properties.min_frequency_hz),
-        f64::from(properties.max_frequency_hz),
-    );
+    let element = (f64::from(properties.min_frequency_hz), f64::from(properties.max_frequency_hz));
     let is_told = element.0 >= FREQUENCIES_HZ.0 && element.0 <= element.1;
     match (stated_hz, is_told) {
         (None, false) => USUAL_HZ,
         (None, true) => element,
         (Some(stated), false) => stated,
         // As the runtime does: both ends are moved into the range of the element.
-        (Some((low, high)), true) => (
-            low.clamp(element.0, element.1),
-            high.clamp(element.0, element.1),
-        ),
+        (Some((low, high)), true) => {
+            (low.clamp(element.0, element.1), high.clamp(element.0, element.1))
+        }
     }
 }
 

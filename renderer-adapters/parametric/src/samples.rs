@@ -20,7 +20,8 @@ pub(crate) struct Samples {
     block_s: f64,
     /// Samples that the runtime has not taken.
     waiting: Vec<f32>,
-    /// Samples of the block that is kept until the next one is there: the runtime then has a block in hand.
+    /// Samples of the block that is kept until the next one is there: the runtime then has a block
+    /// in hand.
     first: usize,
     /// When the runtime began, and the samples that it has taken since.
     since: Option<Instant>,
@@ -106,9 +107,7 @@ impl Motor for Samples {
         }
         if let Some(since) = self.since {
             let played_s = self.taken as f64 / self.rate_hz;
-            sleep(Duration::from_secs_f64(
-                (played_s - since.elapsed().as_secs_f64()).max(0.0),
-            ));
+            sleep(Duration::from_secs_f64((played_s - since.elapsed().as_secs_f64()).max(0.0)));
         }
         self.stop()
     }

@@ -1,6 +1,7 @@
 //! A session of OpenXR with one action of haptics on both hands.
 //!
-//! A runtime has one session of a program at a time: devices of both hands share it, and it ends with the last one.
+//! A runtime has one session of a program at a time: devices of both hands share it, and it ends
+//! with the last one.
 #![allow(unsafe_code)] // The runtime's functions are C.
 
 use std::collections::BTreeMap;
@@ -94,11 +95,7 @@ impl Session {
         let entry = entry(path)?;
         let made = Instance::create(entry).and_then(Self::begin);
         let session = made.map_err(|what| {
-            let runtime = if path.is_empty() {
-                "the installed runtime"
-            } else {
-                path
-            };
+            let runtime = if path.is_empty() { "the installed runtime" } else { path };
             DeviceError::Missing(format!("OpenXR, {runtime}: {what}"))
         })?;
         let session = Arc::new(session);
@@ -107,10 +104,7 @@ impl Session {
     }
 
     fn begin(instance: Instance) -> Result<Self, String> {
-        let hands = [
-            instance.path(Hand::Left.user())?,
-            instance.path(Hand::Right.user())?,
-        ];
+        let hands = [instance.path(Hand::Left.user())?, instance.path(Hand::Right.user())?];
         let info = xr::SessionCreateInfo {
             ty: xr::SessionCreateInfo::TYPE,
             next: null(),
@@ -126,10 +120,7 @@ impl Session {
             action: xr::Action::NULL,
             action_set: xr::ActionSet::NULL,
             hands,
-            state: Mutex::new(State {
-                now: xr::SessionState::IDLE,
-                begun: false,
-            }),
+            state: Mutex::new(State { now: xr::SessionState::IDLE, begun: false }),
             instance,
         };
         session.make_action()?;
@@ -185,7 +176,8 @@ impl Session {
                 count_suggested_bindings: bindings.len() as u32,
                 suggested_bindings: bindings.as_ptr(),
             };
-            // SAFETY: the structure is that of the header, and its bindings last until the call returns.
+            // SAFETY: the structure is that of the header, and its bindings last until the call
+            // returns.
             let code = unsafe { (instance.table.suggest_bindings)(instance.handle, &suggested) };
             let taken = done("xrSuggestInteractionProfileBindings", code);
             if last.is_err() {
@@ -210,11 +202,7 @@ impl Session {
     fn wait_for_focus(&self) -> Result<(), String> {
         let since = Instant::now();
         while self.follow().is_err() {
-            let state = self
-                .state
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .now;
+            let state = self.state.lock().unwrap_or_else(PoisonError::into_inner).now;
             if is_over(state) || since.elapsed() > FOCUS {
                 return Err(format!(
                     "its session does not get the focus (it is {state:?}); is a headset connected, and does another program have it?"
@@ -239,15 +227,10 @@ impl Session {
             }
         }
         if state.now != xr::SessionState::FOCUSED {
-            return Err(format!(
-                "its session lost the focus (it is {:?})",
-                state.now
-            ));
+            return Err(format!("its session lost the focus (it is {:?})", state.now));
         }
-        let active = xr::ActiveActionSet {
-            action_set: self.action_set,
-            subaction_path: xr::Path::NULL,
-        };
+        let active =
+            xr::ActiveActionSet { action_set: self.action_set, subaction_path: xr::Path::NULL };
         let info = xr::ActionsSyncInfo {
             ty: xr::ActionsSyncInfo::TYPE,
             next: null(),
@@ -275,12 +258,10 @@ impl Session {
             }
             done("xrPollEvent", code)?;
             if event.ty == xr::EventDataSessionStateChanged::TYPE {
-                // SAFETY: an event of this type is this structure, for which the buffer has space and alignment.
-                let changed = unsafe {
-                    (&raw const event)
-                        .cast::<xr::EventDataSessionStateChanged>()
-                        .read()
-                };
+                // SAFETY: an event of this type is this structure, for which the buffer has space
+                // and alignment.
+                let changed =
+                    unsafe { (&raw const event).cast::<xr::EventDataSessionStateChanged>().read() };
                 return Ok(Some(changed.state));
             }
             if event.ty == xr::EventDataInstanceLossPending::TYPE {
@@ -312,7 +293,8 @@ impl Session {
     /// Hands haptics over to a hand.
     ///
     /// # Safety
-    /// `haptics` begins with the header of a structure that an extension in use defines, with valid arrays.
+    /// `haptics` begins with the header of a structure that an extension in use defines, with valid
+    /// arrays.
     pub(crate) unsafe fn apply(
         &self,
         hand: Hand,
@@ -369,10 +351,7 @@ impl Session {
         done("xrGetDeviceSampleRateFB", code)?;
         match f64::from(state.sample_rate) {
             rate_hz if rate_hz.is_finite() && rate_hz >= 1.0 => Ok(rate_hz),
-            _ => Err(format!(
-                "the {} hand has no device that plays samples",
-                hand.name()
-            )),
+            _ => Err(format!("the {} hand has no device that plays samples", hand.name())),
         }
     }
 }
@@ -386,10 +365,6 @@ impl Drop for Session {
 
 /// Whether a session can get the focus no more.
 fn is_over(state: xr::SessionState) -> bool {
-    [
-        xr::SessionState::STOPPING,
-        xr::SessionState::LOSS_PENDING,
-        xr::SessionState::EXITING,
-    ]
-    .contains(&state)
+    [xr::SessionState::STOPPING, xr::SessionState::LOSS_PENDING, xr::SessionState::EXITING]
+        .contains(&state)
 }

@@ -43,12 +43,7 @@ pub(crate) fn all() -> Vec<Setting> {
             "points",
             "What is handed over: points, samples at the controller's rate, or envelopes of an application's vibrator (then `runtime` names its library).",
         ),
-        setting(
-            "hand",
-            choice(&["left", "right"]),
-            "right",
-            "The controller that plays.",
-        ),
+        setting("hand", choice(&["left", "right"]), "right", "The controller that plays."),
         setting(
             "low_hz",
             hz.clone(),
@@ -92,10 +87,7 @@ impl Asked {
             );
         }
         if form == Form::Pwle && hand != Hand::Right {
-            return refuse(
-                "hand",
-                "a vibrator is in no hand; it is for form=points and form=pcm",
-            );
+            return refuse("hand", "a vibrator is in no hand; it is for form=points and form=pcm");
         }
         Ok(Self {
             runtime: settings.text("runtime").to_owned(),
@@ -120,8 +112,5 @@ fn range(settings: &Settings) -> Result<Option<(f64, f64)>, DeviceError> {
 }
 
 fn refuse<T>(name: &str, what: &str) -> Result<T, DeviceError> {
-    Err(DeviceError::Setting {
-        name: name.to_owned(),
-        what: what.to_owned(),
-    })
+    Err(DeviceError::Setting { name: name.to_owned(), what: what.to_owned() })
 }

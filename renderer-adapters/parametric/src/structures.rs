@@ -1,4 +1,5 @@
-//! `XR_EXT_haptic_parametric`, revision 1 (extension 776), as the registry defines it: `openxr-sys` 0.14 does not have it yet.
+//! `XR_EXT_haptic_parametric`, revision 1 (extension 776), as the registry defines it: `openxr-sys`
+//! 0.14 does not have it yet.
 
 use std::ffi::c_void;
 

@@ -81,12 +81,8 @@ fn negotiated(negotiate: pfn::NegotiateLoaderRuntimeInterface) -> Result<Entry, 
         get_instance_proc_addr: None,
     };
     // SAFETY: both structures are those of the header.
-    done("xrNegotiateLoaderRuntimeInterface", unsafe {
-        negotiate(&info, &mut request)
-    })?;
-    request
-        .get_instance_proc_addr
-        .ok_or_else(|| "it gives no `xrGetInstanceProcAddr`".to_owned())
+    done("xrNegotiateLoaderRuntimeInterface", unsafe { negotiate(&info, &mut request) })?;
+    request.get_instance_proc_addr.ok_or_else(|| "it gives no `xrGetInstanceProcAddr`".to_owned())
 }
 
 /// A call that succeeded, or its reason.

@@ -1,4 +1,5 @@
-//! Envelopes on the vibrator of an application, which holds them to the documented limits (`vibrator.c`).
+//! Envelopes on the vibrator of an application, which holds them to the documented limits
+//! (`vibrator.c`).
 #![allow(clippy::unwrap_used, unsafe_code)] // A failed unwrap is a failed test; the vibrator is C.
 
 mod mock;
@@ -15,8 +16,7 @@ fn effects(lines: &[String]) -> Vec<Vec<(f64, f64, u32)>> {
         (next(), next(), next() as u32)
     };
     let all = lines.iter().filter_map(|line| line.strip_prefix("effect "));
-    all.map(|line| line.split(' ').map(point).collect())
-        .collect()
+    all.map(|line| line.split(' ').map(point).collect()).collect()
 }
 
 fn is_sound(lines: &[String]) -> bool {
@@ -29,7 +29,8 @@ fn a_texture_is_a_series_of_effects() {
         return;
     };
     let given = [("form", "pwle"), ("block_ms", "20"), ("gain", "1")];
-    // Blocks of an effect of 0.1 s, and as many as the vibrator takes beside the point that ends it.
+    // Blocks of an effect of 0.1 s, and as many as the vibrator takes beside the point that ends
+    // it.
     for (most, blocks) in [(16.0, 5), (4.0, 3)] {
         mock.set("most_points", most);
         let mut device = mock.open(&given).unwrap();
@@ -41,25 +42,14 @@ fn a_texture_is_a_series_of_effects() {
         assert_eq!(lines.last().unwrap(), "cancel");
         let effects = effects(&lines);
         let (last, whole) = effects.split_last().unwrap();
-        assert!(
-            whole.iter().all(|effect| effect.len() == blocks),
-            "{effects:?}"
-        );
+        assert!(whole.iter().all(|effect| effect.len() == blocks), "{effects:?}");
         assert_eq!(whole.len() * blocks + last.len() - 1, 16);
         let all: Vec<_> = effects.concat();
         let (end, played) = all.split_last().unwrap();
         assert_eq!((end.0, end.2), (0.0, 20));
         let level = 0.5 / 2f64.sqrt();
-        assert!(
-            played
-                .iter()
-                .all(|p| (p.0 - level).abs() < 1e-3 && p.2 == 20),
-            "{played:?}"
-        );
-        assert!(
-            played[8..].iter().all(|p| (p.1 - 200.0).abs() < 2.0),
-            "{played:?}"
-        );
+        assert!(played.iter().all(|p| (p.0 - level).abs() < 1e-3 && p.2 == 20), "{played:?}");
+        assert!(played[8..].iter().all(|p| (p.1 - 200.0).abs() < 2.0), "{played:?}");
     }
 }
 
@@ -113,19 +103,13 @@ fn what_the_vibrator_does_not_take_is_refused() {
         adapter.capabilities(&mock.settings(&given)).unwrap_err()
     };
     let short = asked(&[("block_ms", "10")]).to_string();
-    assert!(
-        short.contains("`block_ms`") && short.contains("20 to 1000 ms"),
-        "{short}"
-    );
+    assert!(short.contains("`block_ms`") && short.contains("20 to 1000 ms"), "{short}");
     mock.set("most_points", 1.0);
     let senseless = asked(&[("block_ms", "20")]);
     assert!(matches!(senseless, DeviceError::Missing(_)), "{senseless}");
     mock.set("absent", 1.0);
     let absent = asked(&[("block_ms", "20")]).to_string();
-    assert!(
-        absent.contains("no vibrator that plays envelopes"),
-        "{absent}"
-    );
+    assert!(absent.contains("no vibrator that plays envelopes"), "{absent}");
     for library in ["", "libm.so.6", "no-such.so"] {
         let given = settings(&[("form", "pwle"), ("runtime", library)]).unwrap();
         let error = adapter.capabilities(&given).unwrap_err();

@@ -1,4 +1,5 @@
-//! The device through the OpenXR loader of the Khronos Group, which finds the runtime by the manifest that the environment names.
+//! The device through the OpenXR loader of the Khronos Group, which finds the runtime by the
+//! manifest that the environment names.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, unsafe_code)] // A failed unwrap is a failed test; the environment is set.
 
@@ -28,24 +29,15 @@ fn the_installed_loader_finds_the_runtime() {
     let endpoints = adapter.endpoints().unwrap();
     let names: Vec<&str> = endpoints.iter().map(|e| e.name.as_str()).collect();
     assert_eq!(names, ["left", "right"]);
-    let format = StreamFormat {
-        rate_hz: RATE_HZ,
-        block_frames: 80,
-    };
+    let format = StreamFormat { rate_hz: RATE_HZ, block_frames: 80 };
     let mut device = adapter.open(&settings(&[]).unwrap(), &format).unwrap();
     write_all(device.as_mut(), &sine(200.0, 0.5, 0.2, RATE_HZ));
     device.finish().unwrap();
     drop(device);
     let lines = mock.record();
-    assert!(
-        !lines.iter().any(|line| line.starts_with("broken")),
-        "{lines:#?}"
-    );
+    assert!(!lines.iter().any(|line| line.starts_with("broken")), "{lines:#?}");
     let frames: Vec<Frame> = lines.iter().filter_map(|line| Frame::of(line)).collect();
     assert_eq!(frames[0].kind, "first");
     let last = frames.last().unwrap();
-    assert_eq!(
-        (last.kind.as_str(), last.amplitudes.last().unwrap().1),
-        ("last", 0.0)
-    );
+    assert_eq!((last.kind.as_str(), last.amplitudes.last().unwrap().1), ("last", 0.0));
 }

@@ -14,22 +14,19 @@ fn frames(lines: &[String]) -> Vec<Frame> {
 }
 
 fn broken(lines: &[String]) -> Vec<&String> {
-    lines
-        .iter()
-        .filter(|line| line.starts_with("broken"))
-        .collect()
+    lines.iter().filter(|line| line.starts_with("broken")).collect()
 }
 
 #[test]
 fn a_texture_is_a_stream_that_keeps_the_rules() {
     let Some(mock) = Mock::new() else { return };
-    // Of a runtime without wishes, one that wants 50 ms before it begins, and one that wants frames of 40 ms.
+    // Of a runtime without wishes, one that wants 50 ms before it begins, and one that wants frames
+    // of 40 ms.
     for (ideal_ms, first_ms) in [(0.0, 0.0), (0.0, 50.0), (40.0, 30.0)] {
         mock.set("ideal_ns", ideal_ms * 1e6);
         mock.set("first_ns", first_ms * 1e6);
-        let mut device = mock
-            .open(&[("gain", "1"), ("low_hz", "100"), ("high_hz", "300")])
-            .unwrap();
+        let mut device =
+            mock.open(&[("gain", "1"), ("low_hz", "100"), ("high_hz", "300")]).unwrap();
         write_all(device.as_mut(), &sine(200.0, 0.5, 0.4, RATE_HZ));
         device.finish().unwrap();
         assert_eq!(device.status().frames_played, 3_200);
@@ -45,15 +42,8 @@ fn a_texture_is_a_stream_that_keeps_the_rules() {
         assert_eq!(frames[0].range_hz, (100.0, 300.0));
         assert!(frames[0].amplitudes.last().unwrap().0 as f64 >= first_ms * 1e6);
         // The runtime has time for the blocks that are kept.
-        let stop = lines
-            .iter()
-            .rposition(|line| line.starts_with("stop right"))
-            .unwrap();
-        assert_eq!(
-            lines[stop + 1..],
-            ["end"],
-            "the session ends with its last device"
-        );
+        let stop = lines.iter().rposition(|line| line.starts_with("stop right")).unwrap();
+        assert_eq!(lines[stop + 1..], ["end"], "the session ends with its last device");
         let since = frames[0].at_ns;
         let stopped: i64 = lines[stop].rsplit(' ').next().unwrap().parse().unwrap();
         assert!(stopped - since >= 400_000_000, "{}", stopped - since);
@@ -70,15 +60,8 @@ fn a_texture_is_a_stream_that_keeps_the_rules() {
         for (_, value) in &amplitudes[..amplitudes.len() - 1] {
             assert!((value - level).abs() < 1e-3, "{value}");
         }
-        let steady: Vec<_> = frames
-            .iter()
-            .flat_map(|f| f.frequencies.clone())
-            .skip(16)
-            .collect();
-        assert!(
-            steady.iter().all(|(_, place)| (place - 0.5).abs() < 0.01),
-            "{steady:?}"
-        );
+        let steady: Vec<_> = frames.iter().flat_map(|f| f.frequencies.clone()).skip(16).collect();
+        assert!(steady.iter().all(|(_, place)| (place - 0.5).abs() < 0.01), "{steady:?}");
     }
 }
 
@@ -93,10 +76,7 @@ fn frames_come_in_time() {
     let lines = mock.record();
     let late = lines.iter().filter(|line| line.starts_with("late")).count();
     // A machine that is busy holds a thread up for more than the block of 20 ms now and then.
-    assert!(
-        late <= 2 && frames(&lines).len() >= 24,
-        "{late} late: {lines:#?}"
-    );
+    assert!(late <= 2 && frames(&lines).len() >= 24, "{late} late: {lines:#?}");
     assert_eq!(broken(&lines), [""; 0]);
 }
 
@@ -108,10 +88,7 @@ fn a_texture_shorter_than_the_first_frame_is_one_event() {
     let since = Instant::now();
     write_all(device.as_mut(), &sine(200.0, 0.5, 0.05, RATE_HZ));
     device.finish().unwrap();
-    assert!(
-        since.elapsed().as_millis() >= 90,
-        "the runtime plays it after the last block"
-    );
+    assert!(since.elapsed().as_millis() >= 90, "the runtime plays it after the last block");
     let lines = mock.record();
     assert_eq!(broken(&lines), [""; 0]);
     let frames = frames(&lines);
@@ -137,9 +114,7 @@ fn frequencies_are_places_in_the_range_of_the_controller() {
     ] {
         mock.set("min_hz", element.0);
         mock.set("max_hz", element.1);
-        let stated = stated.map_or(vec![], |(low, high)| {
-            vec![("low_hz", low), ("high_hz", high)]
-        });
+        let stated = stated.map_or(vec![], |(low, high)| vec![("low_hz", low), ("high_hz", high)]);
         let mut device = mock.open(&stated).unwrap();
         write_all(device.as_mut(), &sine(200.0, 0.3, 0.2, RATE_HZ));
         device.finish().unwrap();
@@ -161,9 +136,7 @@ fn samples_are_played_as_they_are_at_the_rate_of_the_controller() {
         mock.set("pcm_rate", 2_000.0);
         mock.set("pcm_most", most);
         let given = [("form", "pcm"), ("hand", "left"), ("block_ms", "20")];
-        let can = Parametric::new()
-            .capabilities(&mock.settings(&given))
-            .unwrap();
+        let can = Parametric::new().capabilities(&mock.settings(&given)).unwrap();
         can.check().unwrap();
         assert_eq!(can.rates, Rates::List(vec![2_000.0]));
         let mut device = mock.open(&given).unwrap();
@@ -176,43 +149,25 @@ fn samples_are_played_as_they_are_at_the_rate_of_the_controller() {
         let lines = mock.record();
         assert_eq!(broken(&lines), [""; 0]);
         let calls: Vec<&String> = lines.iter().filter(|l| l.starts_with("samples")).collect();
-        assert!(
-            calls[0].starts_with("samples left rate 2000 append 0"),
-            "{}",
-            calls[0]
-        );
-        assert!(
-            calls[1..]
-                .iter()
-                .all(|l| l.starts_with("samples left rate 2000 append 1"))
-        );
+        assert!(calls[0].starts_with("samples left rate 2000 append 0"), "{}", calls[0]);
+        assert!(calls[1..].iter().all(|l| l.starts_with("samples left rate 2000 append 1")));
         let played = calls.iter().flat_map(|line| line.split(' ').skip(6));
         let played: Vec<f32> = played.map(|x| x.parse().unwrap()).collect();
-        assert!(
-            played == samples,
-            "{} of {} samples",
-            played.len(),
-            samples.len()
-        );
+        assert!(played == samples, "{} of {} samples", played.len(), samples.len());
         assert!(lines.iter().any(|line| line.starts_with("stop left")));
     }
     let refused = mock.open_at(8_000.0, &[("form", "pcm")]).err().unwrap();
     assert!(matches!(refused, DeviceError::Rate { .. }), "{refused}");
     mock.set("pcm_rate", 0.0);
     let refused = mock.open(&[("form", "pcm")]).err().unwrap().to_string();
-    assert!(
-        refused.contains("the right hand has no device that plays samples"),
-        "{refused}"
-    );
+    assert!(refused.contains("the right hand has no device that plays samples"), "{refused}");
 }
 
 #[test]
 fn both_hands_share_a_session_and_each_has_one_device() {
     let Some(mock) = Mock::new() else { return };
     let mut left = mock.open_at(RATE_HZ, &[("hand", "left")]).unwrap();
-    let mut right = mock
-        .open(&[("hand", "right"), ("buffer_ms", "1000")])
-        .unwrap();
+    let mut right = mock.open(&[("hand", "right"), ("buffer_ms", "1000")]).unwrap();
     let error = mock.open(&[("hand", "right")]).err().unwrap();
     assert!(matches!(error, DeviceError::Busy(_)), "{error}");
     let samples = sine(200.0, 0.5, 0.1, RATE_HZ);
@@ -226,14 +181,8 @@ fn both_hands_share_a_session_and_each_has_one_device() {
     assert_eq!(broken(&lines), [""; 0]);
     assert_eq!(lines.iter().filter(|line| *line == "instance").count(), 1);
     for hand in ["left", "right"] {
-        let last = frames(&lines)
-            .into_iter()
-            .rfind(|f| f.hand == hand)
-            .unwrap();
-        assert_eq!(
-            (last.kind.as_str(), last.amplitudes.last().unwrap().1),
-            ("last", 0.0)
-        );
+        let last = frames(&lines).into_iter().rfind(|f| f.hand == hand).unwrap();
+        assert_eq!((last.kind.as_str(), last.amplitudes.last().unwrap().1), ("last", 0.0));
     }
     drop(mock.open(&[]).unwrap());
 }
@@ -261,40 +210,19 @@ fn whatever_ends_it_the_hand_is_at_rest() {
         }
     };
     drop(play(&mock));
-    assert!(
-        mock.record()
-            .iter()
-            .any(|line| line.starts_with("stop right"))
-    );
+    assert!(mock.record().iter().any(|line| line.starts_with("stop right")));
 
     let mut device = play(&mock);
-    assert!(matches!(
-        device.write(&[2.0], LONG),
-        Err(DeviceError::OverLimit { .. })
-    ));
-    assert!(
-        mock.record()
-            .iter()
-            .any(|line| line.starts_with("stop right"))
-    );
+    assert!(matches!(device.write(&[2.0], LONG), Err(DeviceError::OverLimit { .. })));
+    assert!(mock.record().iter().any(|line| line.starts_with("stop right")));
     drop(device);
 
     let mut device = play(&mock);
     mock.set("fails", 1.0);
     let error = until_it_fails(device.as_mut());
-    assert!(
-        error.contains("xrApplyHapticFeedback") && error.contains("(-2)"),
-        "{error}"
-    );
-    assert!(
-        mock.record()
-            .iter()
-            .any(|line| line.starts_with("stop right"))
-    );
-    assert!(matches!(
-        device.write(&[0.0], LONG),
-        Err(DeviceError::Closed(_))
-    ));
+    assert!(error.contains("xrApplyHapticFeedback") && error.contains("(-2)"), "{error}");
+    assert!(mock.record().iter().any(|line| line.starts_with("stop right")));
+    assert!(matches!(device.write(&[0.0], LONG), Err(DeviceError::Closed(_))));
     mock.set("fails", 0.0);
     drop(device);
 
@@ -302,11 +230,7 @@ fn whatever_ends_it_the_hand_is_at_rest() {
     mock.set("focused", 0.0);
     let error = until_it_fails(device.as_mut());
     assert!(error.contains("lost the focus"), "{error}");
-    assert!(
-        mock.record()
-            .iter()
-            .any(|line| line.starts_with("stop right"))
-    );
+    assert!(mock.record().iter().any(|line| line.starts_with("stop right")));
 }
 
 #[test]
@@ -319,23 +243,11 @@ fn what_cannot_take_effect_is_refused() {
     assert_eq!((can.quantity, can.limit), (Quantity::Sound, Some(1.0)));
     for (given, name, says) in [
         (&[("form", "pcm"), ("gain", "2")][..], "gain", "form=points"),
-        (
-            &[("form", "pcm"), ("low_hz", "50"), ("high_hz", "90")],
-            "low_hz",
-            "form=points",
-        ),
+        (&[("form", "pcm"), ("low_hz", "50"), ("high_hz", "90")], "low_hz", "form=points"),
         (&[("low_hz", "50")], "high_hz", "belongs to it"),
         (&[("high_hz", "50")], "low_hz", "belongs to it"),
-        (
-            &[("low_hz", "90"), ("high_hz", "50")],
-            "high_hz",
-            "below low_hz",
-        ),
-        (
-            &[("low_hz", "0.5"), ("high_hz", "50")],
-            "low_hz",
-            "1 to 1000 Hz",
-        ),
+        (&[("low_hz", "90"), ("high_hz", "50")], "high_hz", "below low_hz"),
+        (&[("low_hz", "0.5"), ("high_hz", "50")], "low_hz", "1 to 1000 Hz"),
     ] {
         match adapter.capabilities(&mock.settings(given)) {
             Err(DeviceError::Setting { name: named, what }) => {
@@ -347,10 +259,7 @@ fn what_cannot_take_effect_is_refused() {
     assert!(settings(&[("high_hz", "1001")]).is_err());
     mock.set("first_ns", 6e9);
     let long = mock.open(&[("block_ms", "10")]).err().unwrap().to_string();
-    assert!(
-        long.contains("block_ms") && long.contains("500 points"),
-        "{long}"
-    );
+    assert!(long.contains("block_ms") && long.contains("500 points"), "{long}");
     mock.set("first_ns", 0.0);
     for (what, says) in [
         ("headless", "XR_MND_headless"),
@@ -360,16 +269,11 @@ fn what_cannot_take_effect_is_refused() {
     ] {
         mock.set(what, 0.0);
         let error = adapter.capabilities(&mock.settings(&[])).unwrap_err();
-        assert!(
-            matches!(&error, DeviceError::Missing(text) if text.contains(says)),
-            "{error}"
-        );
+        assert!(matches!(&error, DeviceError::Missing(text) if text.contains(says)), "{error}");
         mock.set(what, 1.0);
     }
     mock.set("pcm", 0.0);
-    let error = adapter
-        .capabilities(&mock.settings(&[("form", "pcm")]))
-        .unwrap_err();
+    let error = adapter.capabilities(&mock.settings(&[("form", "pcm")])).unwrap_err();
     assert!(error.to_string().contains("XR_FB_haptic_pcm"), "{error}");
     for library in ["no-such-runtime.so", "libm.so.6"] {
         let given = settings(&[("runtime", library)]).unwrap();

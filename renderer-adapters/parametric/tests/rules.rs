@@ -1,4 +1,5 @@
-//! The runtime of the tests refuses each frame that breaks a rule, and names the rule: otherwise its silence would say nothing.
+//! The runtime of the tests refuses each frame that breaks a rule, and names the rule: otherwise
+//! its silence would say nothing.
 #![allow(clippy::unwrap_used, unsafe_code)] // A failed unwrap is a failed test; the runtime is C.
 
 mod mock;
@@ -79,10 +80,7 @@ impl Caller {
             let entry = request.get_instance_proc_addr.unwrap();
             let find = |name: &CStr| {
                 let mut found = None;
-                assert_eq!(
-                    entry(instance, name.as_ptr(), &mut found),
-                    xr::Result::SUCCESS
-                );
+                assert_eq!(entry(instance, name.as_ptr(), &mut found), xr::Result::SUCCESS);
                 found.unwrap()
             };
             let to_path: pfn::StringToPath = std::mem::transmute(find(c"xrStringToPath"));
@@ -149,11 +147,7 @@ fn each_rule_bites() {
             assert_eq!(caller.apply(&sound(frame)), xr::Result::SUCCESS);
         }
         mock.record();
-        assert_eq!(
-            caller.apply(given),
-            xr::Result::ERROR_VALIDATION_FAILURE,
-            "{rule}"
-        );
+        assert_eq!(caller.apply(given), xr::Result::ERROR_VALIDATION_FAILURE, "{rule}");
         assert_eq!(mock.record(), [format!("broken {rule}")]);
     };
     let many = vec![Point(0, 0.5); 501];
@@ -163,27 +157,17 @@ fn each_rule_bites() {
         (1, "amplitude-count", &|g| g.amplitudes.truncate(1)),
         (0, "most-points", &|g| g.amplitudes = many.clone()),
         (0, "most-points", &|g| g.frequencies = many.clone()),
-        (0, "most-points", &|g| {
-            g.transients = vec![Transient(0, 0.5, 0.5); 501]
-        }),
+        (0, "most-points", &|g| g.transients = vec![Transient(0, 0.5, 0.5); 501]),
         (1, "first-amplitude-at-0", &|g| g.amplitudes[0].0 = 1),
         (1, "first-frequency-at-0", &|g| g.frequencies[0].0 = 1),
         (1, "first-frame-duration", &|g| g.amplitudes[1].0 = 49 * MS),
         (0, "one-frequency-unspecified", &|g| g.range = [0.0, 200.0]),
         (0, "frequency-range", &|g| g.range = [100.0, 1_001.0]),
         (0, "frequency-order", &|g| g.range = [300.0, 200.0]),
-        (0, "amplitudes-in-order", &|g| {
-            g.amplitudes.insert(1, Point(200 * MS, 0.1))
-        }),
-        (0, "frequencies-in-order", &|g| {
-            g.frequencies.insert(1, Point(200 * MS, 0.1))
-        }),
-        (0, "transients-in-order", &|g| {
-            g.transients = vec![Transient(9, 0.5, 0.5); 2]
-        }),
-        (0, "after-the-last-amplitude", &|g| {
-            g.frequencies[1].0 = 101 * MS
-        }),
+        (0, "amplitudes-in-order", &|g| g.amplitudes.insert(1, Point(200 * MS, 0.1))),
+        (0, "frequencies-in-order", &|g| g.frequencies.insert(1, Point(200 * MS, 0.1))),
+        (0, "transients-in-order", &|g| g.transients = vec![Transient(9, 0.5, 0.5); 2]),
+        (0, "after-the-last-amplitude", &|g| g.frequencies[1].0 = 101 * MS),
     ];
     for (frame, rule, change) in one {
         let mut given = sound(frame);
@@ -194,9 +178,7 @@ fn each_rule_bites() {
         ("amplitude-0-to-1", &|g| g.amplitudes[1].1 = 1.01),
         ("amplitude-0-to-1", &|g| g.amplitudes[1].1 = f32::NAN),
         ("frequency-0-to-1", &|g| g.frequencies[0].1 = -0.01),
-        ("transient-0-to-1", &|g| {
-            g.transients = vec![Transient(9, 0.5, 1.5)]
-        }),
+        ("transient-0-to-1", &|g| g.transients = vec![Transient(9, 0.5, 1.5)]),
     ];
     for (rule, change) in values {
         let mut given = sound(0);
@@ -225,10 +207,7 @@ fn each_rule_bites() {
 fn each_rule_of_samples_bites() {
     let Some(mock) = Mock::new() else { return };
     let device = mock.open(&[]).unwrap();
-    htex_device_parametric::Parametric::new()
-        .descriptor()
-        .check()
-        .unwrap();
+    htex_device_parametric::Parametric::new().descriptor().check().unwrap();
     let caller = Caller::new(&mock);
     let (samples, mut taken) = ([0.5_f32, -1.0, 1.0], 0_u32);
     let sound = xr::HapticPcmVibrationFB {
@@ -244,41 +223,16 @@ fn each_rule_of_samples_bites() {
     mock.record();
     let loud = [0.5_f32, -1.01, 1.0];
     let wrong = [
-        (
-            "bufferSize",
-            xr::HapticPcmVibrationFB {
-                buffer_size: 0,
-                ..sound
-            },
-        ),
-        (
-            "sampleRate",
-            xr::HapticPcmVibrationFB {
-                sample_rate: 0.0,
-                ..sound
-            },
-        ),
-        (
-            "sample-1-to-1",
-            xr::HapticPcmVibrationFB {
-                buffer: loud.as_ptr(),
-                ..sound
-            },
-        ),
+        ("bufferSize", xr::HapticPcmVibrationFB { buffer_size: 0, ..sound }),
+        ("sampleRate", xr::HapticPcmVibrationFB { sample_rate: 0.0, ..sound }),
+        ("sample-1-to-1", xr::HapticPcmVibrationFB { buffer: loud.as_ptr(), ..sound }),
         (
             "samplesConsumed",
-            xr::HapticPcmVibrationFB {
-                samples_consumed: std::ptr::null_mut(),
-                ..sound
-            },
+            xr::HapticPcmVibrationFB { samples_consumed: std::ptr::null_mut(), ..sound },
         ),
     ];
     for (rule, wrong) in wrong {
-        assert_eq!(
-            caller.haptics(&wrong),
-            xr::Result::ERROR_VALIDATION_FAILURE,
-            "{rule}"
-        );
+        assert_eq!(caller.haptics(&wrong), xr::Result::ERROR_VALIDATION_FAILURE, "{rule}");
         assert_eq!(mock.record(), [format!("broken {rule}")]);
     }
     drop(device);

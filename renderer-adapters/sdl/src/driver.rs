@@ -48,10 +48,7 @@ impl Driver {
         };
         start(&table)?;
         let path = path.to_owned();
-        let driver: &'static Self = Box::leak(Box::new(Self {
-            path: path.clone(),
-            table,
-        }));
+        let driver: &'static Self = Box::leak(Box::new(Self { path: path.clone(), table }));
         loaded.insert(path, driver);
         Ok(driver)
     }
@@ -68,10 +65,9 @@ fn start(table: &Table) -> Result<(), DeviceError> {
     };
     match code {
         0 => Ok(()),
-        _ => Err(DeviceError::Missing(format!(
-            "SDL cannot look for joysticks: {}",
-            table.reason()
-        ))),
+        _ => {
+            Err(DeviceError::Missing(format!("SDL cannot look for joysticks: {}", table.reason())))
+        }
     }
 }
 

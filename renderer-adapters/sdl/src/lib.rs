@@ -1,10 +1,12 @@
 //! The motors of gamepads and joysticks, through SDL 2, which is loaded at run time and not linked.
 //!
-//! A gamepad has two motors with an unbalanced mass, a large and a small one, which are told a strength each. They get the level of blocks of
-//! `block_ms`, divided by the mean frequency ([`htex_dsp::reduced::two_motors`]).
+//! A gamepad has two motors with an unbalanced mass, a large and a small one, which are told a
+//! strength each. They get the level of blocks of `block_ms`, divided by the mean frequency
+//! ([`htex_dsp::reduced::two_motors`]).
 //!
-//! Each call says that it holds for `HOLD_BLOCKS` blocks: if this thread hangs in a program that asks SDL for events, SDL stops the motors then.
-//! When the program is gone, the system does. SDL stays initialised, since an application may use it, too.
+//! Each call says that it holds for `HOLD_BLOCKS` blocks: if this thread hangs in a program that
+//! asks SDL for events, SDL stops the motors then. When the program is gone, the system does. SDL
+//! stays initialised, since an application may use it, too.
 #![deny(unsafe_code)]
 
 mod claim;
@@ -30,9 +32,7 @@ pub struct Sdl {
 impl Sdl {
     /// The adapter. SDL is loaded at the first use.
     pub fn new() -> Self {
-        Self {
-            descriptor: descriptor(),
-        }
+        Self { descriptor: descriptor() }
     }
 }
 
@@ -72,11 +72,7 @@ impl Adapter for Sdl {
         let driver = Driver::load(settings.text("driver"))?;
         let pad = driver.find(settings.text("device"))?;
         if !can.has_rate(format.rate_hz) {
-            return Err(htex_device_motor::rate_error(
-                &pad.name,
-                format.rate_hz,
-                &can,
-            ));
+            return Err(htex_device_motor::rate_error(&pad.name, format.rate_hz, &can));
         }
         let rumble = Rumble::open(driver, &pad, &plan)?;
         let paced = Paced::open(&pad.name, Box::new(rumble), &plan, can, format)?;

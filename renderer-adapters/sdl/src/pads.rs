@@ -36,11 +36,7 @@ impl Driver {
                     0 => name,
                     _ => format!("{name} #{}", alike + 1),
                 };
-                pads.push(Pad {
-                    name,
-                    index,
-                    instance,
-                });
+                pads.push(Pad { name, index, instance });
             }
             (sdl.unlock)();
         }

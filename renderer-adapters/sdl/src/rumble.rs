@@ -21,7 +21,8 @@ pub(crate) struct Rumble {
     _claim: Claim,
 }
 
-// SAFETY: SDL's functions of joysticks lock, and may be called from any thread; one thread at a time has this.
+// SAFETY: SDL's functions of joysticks lock, and may be called from any thread; one thread at a
+// time has this.
 unsafe impl Send for Rumble {}
 
 impl Rumble {
@@ -37,19 +38,12 @@ impl Rumble {
         let handle = unsafe { (sdl.open)(pad.index) };
         if handle.is_null() {
             let reason = sdl.reason();
-            return Err(DeviceError::Missing(format!(
-                "{} cannot be opened: {reason}",
-                pad.name
-            )));
+            return Err(DeviceError::Missing(format!("{} cannot be opened: {reason}", pad.name)));
         }
         let rumble = Self {
             driver,
             handle,
-            scale: Scale {
-                gain: plan.gain,
-                low_hz: 0.0,
-                high_hz: 0.0,
-            },
+            scale: Scale { gain: plan.gain, low_hz: 0.0, high_hz: 0.0 },
             hold_ms: (HOLD_BLOCKS * plan.block_s * 1e3) as u32,
             _claim: claim,
         };
@@ -87,10 +81,7 @@ impl Motor for Rumble {
             return Err("it was disconnected".to_owned());
         }
         let strength = self.scale.strength(block.measured.level_rms);
-        self.tell(
-            two_motors(strength, block.measured.centroid_hz),
-            self.hold_ms,
-        )
+        self.tell(two_motors(strength, block.measured.centroid_hz), self.hold_ms)
     }
 
     fn end(&mut self) -> Result<(), String> {

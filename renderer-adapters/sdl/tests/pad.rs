@@ -20,15 +20,7 @@ fn library() -> Option<&'static Path> {
     let built = BUILT.get_or_init(|| {
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pad.c");
         let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("libpad.so");
-        let flags = [
-            "-std=gnu11",
-            "-O1",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-shared",
-            "-fPIC",
-        ];
+        let flags = ["-std=gnu11", "-O1", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC"];
         let mut cc = Command::new("cc");
         cc.args(flags).arg(source).arg("-o").arg(&out);
         let built = cc.args(["-lSDL2", "-ldl"]).output();
@@ -53,12 +45,7 @@ impl Pad {
         let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: the library of this test.
         let library = unsafe { libloading::Library::new(path).unwrap() };
-        let mut pad = Self {
-            library,
-            path,
-            since: 0,
-            _alone: alone,
-        };
+        let mut pad = Self { library, path, since: 0, _alone: alone };
         // The gamepad is attached when the adapter initialises SDL.
         Sdl::new().capabilities(&pad.settings(&[])).unwrap();
         pad.since = pad.call("pad_count");
@@ -81,7 +68,8 @@ impl Pad {
         }
     }
 
-    /// What the motors were told since this test began: the time, and the large and the small one's strength.
+    /// What the motors were told since this test began: the time, and the large and the small one's
+    /// strength.
     fn told(&self) -> Vec<(i64, u16, u16)> {
         type Get = unsafe extern "C" fn(usize, &mut i64, &mut u16, &mut u16);
         let count: usize = self.call("pad_count");
@@ -108,10 +96,7 @@ impl Pad {
     }
 
     fn open(&self, given: &[(&str, &str)]) -> Result<Box<dyn Device>, DeviceError> {
-        let format = StreamFormat {
-            rate_hz: RATE_HZ,
-            block_frames: 80,
-        };
+        let format = StreamFormat { rate_hz: RATE_HZ, block_frames: 80 };
         Sdl::new().open(&self.settings(given), &format)
     }
 
@@ -139,10 +124,7 @@ fn a_low_frequency_is_on_the_large_motor_and_a_high_one_on_the_small() {
         write_all(device.as_mut(), &sine(hz, 0.5, 0.3));
         device.finish().unwrap();
         let status = device.status();
-        assert_eq!(
-            (status.frames_written, status.frames_played),
-            (2_400, 2_400)
-        );
+        assert_eq!((status.frames_written, status.frames_played), (2_400, 2_400));
         let told = pad.told().split_off(since);
         assert_eq!(told.last().map(|t| (t.1, t.2)), Some((0, 0)), "{hz} Hz");
         // SDL tells changes. The analyser's first window is not full before 64 ms.
@@ -153,15 +135,10 @@ fn a_low_frequency_is_on_the_large_motor_and_a_high_one_on_the_small() {
         for (_, large, small) in steady {
             let [large, small] = [*large, *small].map(|x| f64::from(x) / 65_535.0);
             let level = 0.5 / 2.0_f64.sqrt();
-            // A block of 10 ms has half a period of 50 Hz, whole ones of the others but for their ends.
-            assert!(
-                (large + small - level).abs() < 0.02,
-                "{hz} Hz: {large} {small}"
-            );
-            assert!(
-                (small - share * level).abs() < 0.01,
-                "{hz} Hz: {large} {small}"
-            );
+            // A block of 10 ms has half a period of 50 Hz, whole ones of the others but for their
+            // ends.
+            assert!((large + small - level).abs() < 0.02, "{hz} Hz: {large} {small}");
+            assert!((small - share * level).abs() < 0.01, "{hz} Hz: {large} {small}");
         }
     }
 }
@@ -208,14 +185,8 @@ fn a_pad_that_fails_or_is_pulled_out_says_so_and_rests() {
     pad.fail(1);
     let error = until_it_fails(device.as_mut());
     pad.fail(0);
-    assert!(
-        error.contains("Test pad failed") && error.contains("the cable is loose"),
-        "{error}"
-    );
-    assert!(matches!(
-        device.write(&[0.1], LONG),
-        Err(DeviceError::Closed(_))
-    ));
+    assert!(error.contains("Test pad failed") && error.contains("the cable is loose"), "{error}");
+    assert!(matches!(device.write(&[0.1], LONG), Err(DeviceError::Closed(_))));
 
     let mut device = pad.open(&[]).unwrap();
     write_all(device.as_mut(), &sine(100.0, 0.5, 0.1));
@@ -225,10 +196,7 @@ fn a_pad_that_fails_or_is_pulled_out_says_so_and_rests() {
     assert_eq!(error, "Test pad failed: it was disconnected");
     drop(device);
     let error = pad.open(&[]).err().unwrap().to_string();
-    assert!(
-        error.contains("no gamepad `first`: none is connected"),
-        "{error}"
-    );
+    assert!(error.contains("no gamepad `first`: none is connected"), "{error}");
     pad.call::<()>("pad_plug_in");
     let mut device = pad.open(&[("device", "Test pad")]).unwrap();
     write_all(device.as_mut(), &sine(100.0, 0.5, 0.05));
@@ -253,10 +221,7 @@ fn settings_that_name_nothing_are_refused() {
     sdl.descriptor().check().unwrap();
     let can = sdl.capabilities(&pad.settings(&[])).unwrap();
     can.check().unwrap();
-    assert_eq!(
-        (can.quantity, can.limit, can.paced),
-        (Quantity::Sound, Some(1.0), true)
-    );
+    assert_eq!((can.quantity, can.limit, can.paced), (Quantity::Sound, Some(1.0), true));
     let missing = sdl.capabilities(&pad.settings(&[("device", "Other pad")]));
     let missing = missing.unwrap_err().to_string();
     assert!(missing.contains("there is Test pad"), "{missing}");
@@ -264,10 +229,7 @@ fn settings_that_name_nothing_are_refused() {
         let given = [("driver".to_owned(), no_sdl.to_owned())].into();
         let settings = Settings::resolve(sdl.descriptor(), None, &given).unwrap();
         let error = sdl.capabilities(&settings).unwrap_err();
-        assert!(
-            matches!(&error, DeviceError::Setting { name, .. } if name == "driver"),
-            "{error}"
-        );
+        assert!(matches!(&error, DeviceError::Setting { name, .. } if name == "driver"), "{error}");
         assert!(error.to_string().contains(no_sdl), "{error}");
     }
 }

@@ -1,5 +1,5 @@
-//! Search for other options and models that fit a recording better than a representation with a large band
-//! error.
+//! Search for other options and models that fit a recording better than a representation with a
+//! large band error.
 
 use htex_format::{Measure, Quality};
 use htex_host::{FitOption, LoadedModel};
@@ -12,8 +12,9 @@ use crate::{agreement, read_spectrum};
 
 /// Nine-band RMS error above which a warning is given, decibels.
 const LIMIT_DB: f64 = 12.0;
-/// Error of one of the nine bands above which it is given, decibels. `sbeta.error=magnitude` with bins beside the peaks follows the strongest
-/// bins alone: on a spectrum that falls steeply it is 26 dB off in the highest band at an RMS of 10 dB, and there is no better fit of its kind.
+/// Error of one of the nine bands above which it is given, decibels. `sbeta.error=magnitude` with
+/// bins beside the peaks follows the strongest bins alone: on a spectrum that falls steeply it is
+/// 26 dB off in the highest band at an RMS of 10 dB, and there is no better fit of its kind.
 const BAND_LIMIT_DB: f64 = 24.0;
 
 /// A fit that was tried, and its nine-band RMS error, decibels.
@@ -22,8 +23,8 @@ struct Tried {
     error_db: f64,
 }
 
-/// Returns a warning if a representation exceeds an error limit at one of its `measured` conditions. `models` are tried
-/// beside the model's own options.
+/// Returns a warning if a representation exceeds an error limit at one of its `measured`
+/// conditions. `models` are tried beside the model's own options.
 pub(crate) fn warning(
     choice: &ModelRequest,
     measured: &[(&Quality, &Group)],
@@ -82,8 +83,8 @@ fn best(tried: impl Iterator<Item = Tried>) -> Option<Tried> {
     tried.min_by(|a, b| a.error_db.total_cmp(&b.error_db))
 }
 
-/// Returns the request's options with one of them set to another choice or to an end of its range, each with its
-/// name, `model.option=value`.
+/// Returns the request's options with one of them set to another choice or to an end of its range,
+/// each with its name, `model.option=value`.
 fn other_options(choice: &ModelRequest) -> Vec<(String, Vec<f64>)> {
     let mut others = Vec::new();
     let model = &choice.model;
@@ -96,10 +97,7 @@ fn other_options(choice: &ModelRequest) -> Vec<(String, Vec<f64>)> {
             options[i] = value;
             let shown = option.choices.get(value as usize);
             let shown = shown.cloned().unwrap_or_else(|| value.to_string());
-            others.push((
-                format!("{}.{}={shown}", model.short_name(), option.name),
-                options,
-            ));
+            others.push((format!("{}.{}={shown}", model.short_name(), option.name), options));
         }
     }
     others
@@ -112,7 +110,8 @@ fn other_values(option: &FitOption) -> Vec<f64> {
     }
 }
 
-/// Returns the nine-band RMS error of a model's stored fit, from its magnitudes as they are read; `None` when it cannot be fitted.
+/// Returns the nine-band RMS error of a model's stored fit, from its magnitudes as they are read;
+/// `None` when it cannot be fitted.
 fn error_of(model: &LoadedModel, options: &[f64], group: &Group, level: Level) -> Option<f64> {
     let reference = group.spectrum.as_ref();
     let request = group.spectrum.fit_request(options);

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Averaging {
-    /// Mean of the magnitudes: one reading of "averaged the FFTs" (paper, Texture processing). The mean of noise is
-    /// 1.05 dB, a factor of √π/2, below its RMS (Rayleigh distribution).
+    /// Mean of the magnitudes: one reading of "averaged the FFTs" (paper, Texture processing). The
+    /// mean of noise is 1.05 dB, a factor of √π/2, below its RMS (Rayleigh distribution).
     Magnitude,
     /// Root of the mean power: the RMS of noise and tones.
     #[default]

@@ -1,11 +1,14 @@
 //! Conditions between recorded speeds, computed by the law.
 //!
-//! A player mixes the parameters of neighbours. Where frequencies follow the speed, as on a relief with lines, mixing lets lines of
-//! one speed fade into those of the next instead of moving. So between two recorded speeds further conditions are computed: both
-//! spectra are moved by the law to the speed between, and then mixed. In the middle of octaves of speed, Bands meets the true third
-//! octaves of corrugated paper within 1.2 and 0.8 dB so, and within 4.3 and 5.5 dB by mixing what is not moved; on the other simulated reliefs
-//! within 0.3 to 1.6 dB, and 0.6 to 3.4 dB. One of ten is less near: vinyl, 1.6 for 0.9 dB, which has hardly any lines.
-//! It is done only where the recordings themselves told that frequencies follow the speed; recorded strokes of others never did.
+//! A player mixes the parameters of neighbours. Where frequencies follow the speed, as on a relief
+//! with lines, mixing lets lines of one speed fade into those of the next instead of moving. So
+//! between two recorded speeds further conditions are computed: both spectra are moved by the law
+//! to the speed between, and then mixed. In the middle of octaves of speed, Bands meets the true
+//! third octaves of corrugated paper within 1.2 and 0.8 dB so, and within 4.3 and 5.5 dB by mixing
+//! what is not moved; on the other simulated reliefs within 0.3 to 1.6 dB, and 0.6 to 3.4 dB. One
+//! of ten is less near: vinyl, 1.6 for 0.9 dB, which has hardly any lines. It is done only where
+//! the recordings themselves told that frequencies follow the speed; recorded strokes of others
+//! never did.
 
 use htex_dsp::grid::level_rms;
 use htex_format::{Condition, Exponent, ExponentSource, Law};
@@ -22,11 +25,10 @@ const RATIO: f64 = 1.2;
 /// Most conditions that are added.
 const MOST: usize = 64;
 
-/// Adds conditions between recorded ones of the same force, if the law was measured to move frequencies.
+/// Adds conditions between recorded ones of the same force, if the law was measured to move
+/// frequencies.
 pub(crate) fn add(grouped: &mut Grouped, law: &Law) {
-    let Exponent {
-        exponent, source, ..
-    } = law.frequency_speed;
+    let Exponent { exponent, source, .. } = law.frequency_speed;
     if source != ExponentSource::Measured || exponent < LEAST_EXPONENT {
         return;
     }
@@ -44,13 +46,9 @@ pub(crate) fn add(grouped: &mut Grouped, law: &Law) {
                 repeatability_rms_db: None,
                 segments: Some(0),
             });
-            grouped.groups.push(Group {
-                spectrum,
-                condition: FitCondition {
-                    speed_mm_s,
-                    force_n,
-                },
-            });
+            grouped
+                .groups
+                .push(Group { spectrum, condition: FitCondition { speed_mm_s, force_n } });
         }
     }
 }
@@ -58,21 +56,14 @@ pub(crate) fn add(grouped: &mut Grouped, law: &Law) {
 /// The pairs of conditions of one force between whose speeds no third one lies, the slower first.
 fn neighbours(conditions: &[Condition]) -> Vec<[usize; 2]> {
     let known = |i: usize| conditions[i].speed_mm_s.zip(conditions[i].force_n);
-    let mut order: Vec<usize> = (0..conditions.len())
-        .filter(|i| known(*i).is_some())
-        .collect();
+    let mut order: Vec<usize> = (0..conditions.len()).filter(|i| known(*i).is_some()).collect();
     htex_dsp::order::sort_by(&mut order, |a, b| {
-        known(*a)
-            .partial_cmp(&known(*b))
-            .unwrap_or(std::cmp::Ordering::Equal)
+        known(*a).partial_cmp(&known(*b)).unwrap_or(std::cmp::Ordering::Equal)
     });
     let next = |at: usize| {
         let force = conditions[order[at]].force_n?;
-        let same = |i: &&usize| {
-            conditions[**i]
-                .force_n
-                .is_some_and(|f| Condition::is_same(f, force))
-        };
+        let same =
+            |i: &&usize| conditions[**i].force_n.is_some_and(|f| Condition::is_same(f, force));
         let next = order[at + 1..].iter().find(same)?;
         Some([order[at], *next])
     };
@@ -107,14 +98,12 @@ struct Recorded<'a> {
 impl<'a> Recorded<'a> {
     fn new(group: &'a Group, condition: &Condition) -> Self {
         let known = [condition.speed_mm_s, condition.force_n].map(|x| x.unwrap_or(1.0));
-        Self {
-            spectrum: &group.spectrum,
-            motion: known,
-        }
+        Self { spectrum: &group.spectrum, motion: known }
     }
 
-    /// Returns the spectrum at a motion between this and another: both moved, and mixed by the weights by which a player mixes, with the
-    /// level that it would have. Where one of them has moved out of the band, the other stands alone.
+    /// Returns the spectrum at a motion between this and another: both moved, and mixed by the
+    /// weights by which a player mixes, with the level that it would have. Where one of them has
+    /// moved out of the band, the other stands alone.
     fn mixed(&self, other: &Self, motion: [f64; 2], exponent: f64) -> TextureSpectrum {
         let mesh = Mesh::new(&[self.motion, other.motion]);
         let mut weights = [0.0; 2];
@@ -139,11 +128,7 @@ impl<'a> Recorded<'a> {
         if now > 0.0 {
             magnitude.iter_mut().for_each(|m| *m *= level / now);
         }
-        let nearest = if weights[0] >= weights[1] {
-            self
-        } else {
-            other
-        };
+        let nearest = if weights[0] >= weights[1] { self } else { other };
         let factor = libm::pow(motion[0] / nearest.motion[0], exponent);
         TextureSpectrum {
             magnitude,
@@ -154,7 +139,8 @@ impl<'a> Recorded<'a> {
         }
     }
 
-    /// Returns the power in each bin with all frequencies multiplied by a factor; `None` where nothing was recorded.
+    /// Returns the power in each bin with all frequencies multiplied by a factor; `None` where
+    /// nothing was recorded.
     fn moved(&self, factor: f64) -> Vec<Option<f64>> {
         let (grid, magnitude) = (&self.spectrum.frequency_hz, &self.spectrum.magnitude);
         let power = |at: usize| magnitude[at] * magnitude[at];
@@ -182,10 +168,7 @@ fn faster(signal: &[f64], factor: f64) -> Vec<f64> {
         let place = i as f64 * factor;
         let before = place as usize;
         let after = signal.get(before + 1).or_else(|| signal.last());
-        let (a, b) = (
-            signal.get(before).copied().unwrap_or(0.0),
-            after.copied().unwrap_or(0.0),
-        );
+        let (a, b) = (signal.get(before).copied().unwrap_or(0.0), after.copied().unwrap_or(0.0));
         a + (place - before as f64) * (b - a)
     };
     (0..samples).map(at).collect()

@@ -1,8 +1,9 @@
 //! Repeatability: the difference between blocks of time of what is read of a texture.
 //!
-//! Windows that overlap share samples, and so would halves made of every second window: their difference would be several times
-//! too small. Blocks share none. Each of them lasts up to a second, so that a difference between them contains
-//! how the texture, the finger and the motion drift, as far as it shows within a second.
+//! Windows that overlap share samples, and so would halves made of every second window: their
+//! difference would be several times too small. Blocks share none. Each of them lasts up to a
+//! second, so that a difference between them contains how the texture, the finger and the motion
+//! drift, as far as it shows within a second.
 
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
@@ -17,7 +18,8 @@ const FEWEST: usize = 4;
 /// Tolerance of times, in segments.
 const TOLERANCE: f64 = 1e-9;
 
-/// The part of a recording from which a spectrum was taken, in segments of 0.2 s from the recording's beginning.
+/// The part of a recording from which a spectrum was taken, in segments of 0.2 s from the
+/// recording's beginning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
     /// Index of the recording.
@@ -26,8 +28,9 @@ pub(crate) struct Span {
     pub(crate) to: f64,
 }
 
-/// Returns the RMS over nine bands of the difference between the spectra of odd and of even blocks, over √2, decibels: by as much two
-/// readings like this one differ. `None` if fewer than four blocks are read, or half of them are silent.
+/// Returns the RMS over nine bands of the difference between the spectra of odd and of even blocks,
+/// over √2, decibels: by as much two readings like this one differ. `None` if fewer than four
+/// blocks are read, or half of them are silent.
 ///
 /// Halves of n/2 blocks each have √2 times the deviation of all n blocks; the root takes that out.
 pub(crate) fn repeatability_rms_db(
@@ -50,11 +53,12 @@ pub(crate) fn repeatability_rms_db(
     Some(difference_db / std::f64::consts::SQRT_2).filter(|db| db.is_finite())
 }
 
-/// Returns the block of each span, counted from 0; `None` for a span that shares samples with two blocks, and for all if there are fewer
-/// than four blocks. Spans are in the order of their recordings and times.
+/// Returns the block of each span, counted from 0; `None` for a span that shares samples with two
+/// blocks, and for all if there are fewer than four blocks. Spans are in the order of their
+/// recordings and times.
 ///
-/// Each stretch of overlapping spans is cut into equal blocks of a quarter of what is read, but of 0.2 to 1 s. Sweeps, of which one
-/// segment is read, are a block each.
+/// Each stretch of overlapping spans is cut into equal blocks of a quarter of what is read, but of
+/// 0.2 to 1 s. Sweeps, of which one segment is read, are a block each.
 pub(crate) fn blocks(spans: &[Span]) -> Option<Vec<Option<usize>>> {
     let stretches = stretches(spans);
     let read: f64 = stretches.iter().map(|stretch| length(stretch)).sum();
@@ -67,8 +71,8 @@ pub(crate) fn blocks(spans: &[Span]) -> Option<Vec<Option<usize>>> {
     (count >= FEWEST).then_some(blocks)
 }
 
-/// Appends the blocks of a stretch, counted from `count`, and returns the next number. A span belongs to the block that its middle is in,
-/// unless it shares samples with an earlier block.
+/// Appends the blocks of a stretch, counted from `count`, and returns the next number. A span
+/// belongs to the block that its middle is in, unless it shares samples with an earlier block.
 fn cut(stretch: &[Span], longest: f64, mut count: usize, blocks: &mut Vec<Option<usize>>) -> usize {
     let (start, length) = (earliest(stretch), length(stretch));
     let most = libm::floor(length + TOLERANCE);
@@ -151,16 +155,12 @@ mod tests {
             let [least, most] = [sizes.iter().min(), sizes.iter().max()];
             assert!(sizes.len() >= 4 && most <= Some(&9) && least >= Some(&1));
         }
-        let sweeps: Vec<Span> = (0..5)
-            .flat_map(|i| windows(0, 6.1 * f64::from(i), 1))
-            .collect();
+        let sweeps: Vec<Span> = (0..5).flat_map(|i| windows(0, 6.1 * f64::from(i), 1)).collect();
         assert_eq!(counts(&sweeps), Some(vec![1; 5]));
         assert_eq!(counts(&sweeps[..3]), None);
         // Two recordings, and a part between them that is not read.
-        let takes: Vec<Span> = windows(0, 0.0, 9)
-            .chain(windows(0, 40.0, 9))
-            .chain(windows(1, 0.0, 9))
-            .collect();
+        let takes: Vec<Span> =
+            windows(0, 0.0, 9).chain(windows(0, 40.0, 9)).chain(windows(1, 0.0, 9)).collect();
         assert_eq!(counts(&takes), Some(vec![4; 6]));
     }
 }

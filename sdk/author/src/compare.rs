@@ -1,4 +1,5 @@
-//! How spectra differ from that of a recording: those of an asset's representations, and that of another recording.
+//! How spectra differ from that of a recording: those of an asset's representations, and that of
+//! another recording.
 
 use htex_dsp::vibrotactile::Listener;
 use htex_format::{Measure, Quality, Quantity};
@@ -96,8 +97,8 @@ impl Difference {
     }
 }
 
-/// Compares each representation of an asset with a recording: at the recording's speed and force where both are known, else at the asset's
-/// default condition.
+/// Compares each representation of an asset with a recording: at the recording's speed and force
+/// where both are known, else at the asset's default condition.
 ///
 /// # Errors
 /// When the quantities differ, a representation cannot be read, or a model refuses its parameters.
@@ -112,20 +113,16 @@ pub fn compare(
     }
     let motion = found.speed_mm_s.zip(found.force_n);
     let motion = motion.map(|(speed, force)| htex_play::Motion::new(speed, force));
-    let compared = asset
-        .manifest()
-        .representations
-        .iter()
-        .map(|representation| {
-            let id = Some(&representation.model[..]);
-            let (parameters, level_rms) = asset.parameters(id, motion)?;
-            let model = asset.loaded_model(id)?;
-            let of = reference.as_ref();
-            let (magnitude, quality) = read_and_measure(&model, &parameters, level_rms, of)?;
-            Ok(ComparedModel {
-                model: representation.model.clone(),
-                difference: Difference::new(reference, level_rms, &magnitude, quality),
-            })
-        });
+    let compared = asset.manifest().representations.iter().map(|representation| {
+        let id = Some(&representation.model[..]);
+        let (parameters, level_rms) = asset.parameters(id, motion)?;
+        let model = asset.loaded_model(id)?;
+        let of = reference.as_ref();
+        let (magnitude, quality) = read_and_measure(&model, &parameters, level_rms, of)?;
+        Ok(ComparedModel {
+            model: representation.model.clone(),
+            difference: Difference::new(reference, level_rms, &magnitude, quality),
+        })
+    });
     compared.collect()
 }

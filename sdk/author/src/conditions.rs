@@ -60,10 +60,7 @@ pub(crate) fn group_takes(
         let (condition, part) = (reading.condition, reading.part);
         warnings.add(&take.recording.source, reading.warnings);
         notes.add(&take.recording.source, reading.notes);
-        findings.extend(RecordingFinding::all(
-            &take.recording.source,
-            reading.findings,
-        ));
+        findings.extend(RecordingFinding::all(&take.recording.source, reading.findings));
         sources.push(source_of(take, part.spectra.len()));
         match gatherings.iter_mut().find(|g| same(g.condition, condition)) {
             Some(gathering) => {
@@ -98,22 +95,13 @@ pub(crate) fn group_takes(
             repeatability_rms_db: spectrum.repeatability_rms_db,
             segments: None,
         });
-        groups.push(Group {
-            spectrum,
-            condition,
-        });
+        groups.push(Group { spectrum, condition });
     }
     let first = groups.first().map(|group| group.spectrum.quantity);
-    if groups
-        .iter()
-        .any(|group| Some(group.spectrum.quantity) != first)
-    {
+    if groups.iter().any(|group| Some(group.spectrum.quantity) != first) {
         return Err(AuthorError::QuantitiesDiffer);
     }
-    if groups
-        .windows(2)
-        .any(|pair| pair[0].spectrum.band != pair[1].spectrum.band)
-    {
+    if groups.windows(2).any(|pair| pair[0].spectrum.band != pair[1].spectrum.band) {
         return Err(AuthorError::BandsDiffer);
     }
     Ok(Grouped {
@@ -145,10 +133,7 @@ fn check_known(gatherings: &[Gathering]) -> Result<(), AuthorError> {
     if gatherings.len() < 2 || known == gatherings.len() {
         return Ok(());
     }
-    Err(AuthorError::UnknownConditions {
-        known,
-        all: gatherings.len(),
-    })
+    Err(AuthorError::UnknownConditions { known, all: gatherings.len() })
 }
 
 /// Rounds to four digits, the precision of measured speeds and forces.

@@ -12,12 +12,14 @@ pub enum EditError {
     /// It is not a valid asset.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// Writing it again would lose entries that its manifest does not name, or keys inside it that this program does not know.
+    /// Writing it again would lose entries that its manifest does not name, or keys inside it that
+    /// this program does not know.
     #[error("an edit would not keep all of it: {}; edit it with the program that wrote it", .lost.join("; "))]
     Lost { lost: Vec<String> },
 }
 
-/// Reads an asset and changes its metadata. Parameters, recorded spectra and embedded models, with their signatures, are kept.
+/// Reads an asset and changes its metadata. Parameters, recorded spectra and embedded models, with
+/// their signatures, are kept.
 ///
 /// # Errors
 /// When the bytes are not a valid asset, or it would lose data.
@@ -47,7 +49,8 @@ fn lost(bytes: &[u8], asset: &Asset) -> Vec<String> {
     lost
 }
 
-/// Adds the pointers of keys that were read and are not written. Empty values and defaults are left out on purpose.
+/// Adds the pointers of keys that were read and are not written. Empty values and defaults are left
+/// out on purpose.
 fn lost_keys(read: &Value, written: &Value, pointer: &str, lost: &mut Vec<String>) {
     match (read, written) {
         (Value::Object(read), Value::Object(written)) => {

@@ -17,14 +17,11 @@ pub enum EmbedError {
     NotFitted { file: PathBuf, model: String },
     /// The file cannot be read.
     #[error("cannot read {file}: {error}")]
-    Read {
-        file: PathBuf,
-        error: std::io::Error,
-    },
+    Read { file: PathBuf, error: std::io::Error },
 }
 
-/// Puts the modules of fitted models into an asset, signed with an ed25519 secret key if there is one. `registry` has loaded the
-/// models from these files.
+/// Puts the modules of fitted models into an asset, signed with an ed25519 secret key if there is
+/// one. `registry` has loaded the models from these files.
 ///
 /// # Errors
 /// See [`EmbedError`].
@@ -38,15 +35,10 @@ pub fn embed_plugins(
         let model = model_of(registry, file)?;
         let representations = &asset.manifest.representations;
         if !representations.iter().any(|r| r.model == model.id()) {
-            return Err(EmbedError::NotFitted {
-                file: file.clone(),
-                model: model.id().to_owned(),
-            });
+            return Err(EmbedError::NotFitted { file: file.clone(), model: model.id().to_owned() });
         }
-        let module = std::fs::read(file).map_err(|error| EmbedError::Read {
-            file: file.clone(),
-            error,
-        })?;
+        let module =
+            std::fs::read(file).map_err(|error| EmbedError::Read { file: file.clone(), error })?;
         let plugin = Plugin::new(model.id(), &model.descriptor().version, &module);
         asset.manifest.plugins.push(match secret_key {
             Some(key) => plugin.signed(key),
@@ -61,7 +53,5 @@ pub fn embed_plugins(
 fn model_of<'a>(registry: &'a Registry, file: &Path) -> Result<&'a LoadedModel, EmbedError> {
     let of_file = |m: &&LoadedModel| matches!(m.origin(), Origin::Wasm(path) if path == file);
     let model = registry.models().iter().find(of_file);
-    model.ok_or_else(|| EmbedError::NoModule {
-        file: file.to_owned(),
-    })
+    model.ok_or_else(|| EmbedError::NoModule { file: file.to_owned() })
 }

@@ -156,11 +156,7 @@ pub enum AuthorError {
     #[error(
         "{rate_hz} Hz: a loop has a rate above {least_hz} Hz, up to {most_hz} Hz, in steps of 10 Hz"
     )]
-    LoopRate {
-        rate_hz: f64,
-        least_hz: f64,
-        most_hz: f64,
-    },
+    LoopRate { rate_hz: f64, least_hz: f64, most_hz: f64 },
     /// A model could not be fitted or measured.
     #[error(transparent)]
     Model(#[from] HostError),
@@ -192,10 +188,7 @@ pub enum AuthorError {
     Asset(#[from] htex_format::WriteError),
     /// A file could not be written.
     #[error("cannot write {path}: {error}")]
-    Write {
-        path: PathBuf,
-        error: std::io::Error,
-    },
+    Write { path: PathBuf, error: std::io::Error },
 }
 
 impl AuthorError {

@@ -7,11 +7,11 @@ use crate::segments::Segments;
 use crate::{AuthorError, Recording};
 use htex_recording::Sums;
 
-/// Allowed relative deviation of speed and force from their target (paper: recordings beyond it were discarded
-/// and repeated).
+/// Allowed relative deviation of speed and force from their target (paper: recordings beyond it
+/// were discarded and repeated).
 const TOLERANCE: f64 = 0.10;
-/// Half the length of the average in which speed and force are compared with the target, seconds. Faster changes are
-/// caused by the texture, not by the hand.
+/// Half the length of the average in which speed and force are compared with the target, seconds.
+/// Faster changes are caused by the texture, not by the hand.
 const HALF_AVERAGE_S: f64 = 0.025;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -63,8 +63,8 @@ impl Exploration {
     }
 }
 
-/// Lowest and highest value over the segments that are read, averaged over 50 ms; `None` if the signal is not
-/// known.
+/// Lowest and highest value over the segments that are read, averaged over 50 ms; `None` if the
+/// signal is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spread {
     /// Range of the scanning speed, mm/s.
@@ -122,21 +122,14 @@ impl Known<'_> {
     }
 
     fn spread(&self, segments: &Segments) -> [f64; 2] {
-        let ranges = segments
-            .starts
-            .iter()
-            .map(|&start| self.range(start, segments.len));
-        ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| {
-            [a[0].min(b[0]), a[1].max(b[1])]
-        })
+        let ranges = segments.starts.iter().map(|&start| self.range(start, segments.len));
+        ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 
     /// Returns the median over the samples of all segments, which a few outliers do not change.
     fn median(&self, segments: &Segments) -> Option<f64> {
         let (starts, len) = (&segments.starts, segments.len);
-        quantile(0.5, starts.len() * len, |at| {
-            self.values[starts[at / len] + at % len]
-        })
+        quantile(0.5, starts.len() * len, |at| self.values[starts[at / len] + at % len])
     }
 
     fn keeps_to(&self, target: f64, [low, high]: [f64; 2]) -> bool {
@@ -146,8 +139,7 @@ impl Known<'_> {
 
     /// Whether a segment stays within the tolerance of the target, if there is one.
     fn is_on_target(&self, start: usize, len: usize) -> bool {
-        self.target
-            .is_none_or(|target| self.keeps_to(target, self.range(start, len)))
+        self.target.is_none_or(|target| self.keeps_to(target, self.range(start, len)))
     }
 }
 
@@ -176,11 +168,8 @@ pub(crate) fn keep_on_target(
     if off == 0 {
         return Ok(());
     }
-    let comparison: Vec<String> = known
-        .iter()
-        .flatten()
-        .filter_map(|one| one.comparison(&of_all))
-        .collect();
+    let comparison: Vec<String> =
+        known.iter().flatten().filter_map(|one| one.comparison(&of_all)).collect();
     let comparison = comparison.join("; ");
     if segments.starts.is_empty() {
         return Err(AuthorError::OffTarget {
@@ -200,8 +189,9 @@ pub(crate) fn keep_on_target(
     Ok(())
 }
 
-/// Returns speed and force over the segments, which are the given values or else the medians of the measured ones,
-/// and the range of the measured ones. A deviation of more than 10 % from a median is a finding.
+/// Returns speed and force over the segments, which are the given values or else the medians of the
+/// measured ones, and the range of the measured ones. A deviation of more than 10 % from a median
+/// is a finding.
 ///
 /// # Errors
 /// When a value is out of range.
@@ -226,7 +216,8 @@ pub(crate) fn exploration(
 }
 
 impl Known<'_> {
-    /// Returns the target, or else the median; adds a finding when the motion is not steady about the median.
+    /// Returns the target, or else the median; adds a finding when the motion is not steady about
+    /// the median.
     fn value(&self, segments: &Segments, findings: &mut Findings) -> Option<f64> {
         if self.target.is_some() {
             return self.target;

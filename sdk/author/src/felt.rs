@@ -1,5 +1,5 @@
-//! How much of a difference between two spectra is above what a fingertip detects: a listener that shares nothing with the measures that
-//! models are fitted and compared by.
+//! How much of a difference between two spectra is above what a fingertip detects: a listener that
+//! shares nothing with the measures that models are fitted and compared by.
 
 use htex_dsp::fidelity::{THIRD_OCTAVES, third_octave};
 use htex_dsp::vibrotactile::{Listener, Skin};
@@ -10,12 +10,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::spectrum::{SpectrumRef, TextureSpectrum};
 
-/// Smallest difference of a level that people notice, decibels: 20 % (the smallest median of Forta, Griffin & Morioka 2012, *Experimental Brain
-/// Research* 220, whose conditions have 20 % to 58 %).
+/// Smallest difference of a level that people notice, decibels: 20 % (the smallest median of Forta,
+/// Griffin & Morioka 2012, *Experimental Brain Research* 220, whose conditions have 20 % to 58 %).
 pub const DIFFERENCE_THRESHOLD_DB: f64 = 1.584;
 
-/// Levels above the detection threshold (sensation levels) of two spectra in third-octave bands, and their difference. Below the threshold
-/// there is nothing to feel, so that a difference counts from 0 dB on.
+/// Levels above the detection threshold (sensation levels) of two spectra in third-octave bands,
+/// and their difference. Below the threshold there is nothing to feel, so that a difference counts
+/// from 0 dB on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Felt {
     /// Centre frequencies of the bands, hertz.
@@ -26,7 +27,8 @@ pub struct Felt {
     pub level_db: Vec<f64>,
     /// Difference of what is above the threshold in each band, decibels.
     pub error_db: Vec<f64>,
-    /// RMS of these differences over the bands in which one of both is above the threshold, decibels; 0 if there is none.
+    /// RMS of these differences over the bands in which one of both is above the threshold,
+    /// decibels; 0 if there is none.
     pub error_rms_db: f64,
     /// The largest of them without its sign, decibels.
     pub largest_error_db: f64,
@@ -55,12 +57,14 @@ pub struct FeltError {
     pub below_difference_threshold: bool,
     /// The same for a person with a sensitive finger and a soft skin ([`Listener::sensitive`]).
     pub below_if_sensitive: bool,
-    /// Whether the nine-band error is at or below the recording's own repeatability; false if that is not known.
+    /// Whether the nine-band error is at or below the recording's own repeatability; false if that
+    /// is not known.
     pub within_repeatability: bool,
 }
 
 impl FeltError {
-    /// Measures the difference of magnitudes from a recorded spectrum; their nine-band error ([`htex_format::Measure::NineBand`]) is given.
+    /// Measures the difference of magnitudes from a recorded spectrum; their nine-band error
+    /// ([`htex_format::Measure::NineBand`]) is given.
     pub fn new(recorded: &TextureSpectrum, magnitude: &[f64], nine_band_db: Option<f64>) -> Self {
         let by =
             |listener: &Listener| felt(recorded.as_ref(), magnitude, recorded.quantity, listener);
@@ -93,15 +97,17 @@ impl FeltError {
     }
 }
 
-/// Of some textures, how many a model keeps below the difference threshold of a listener; and, apart from that, how many within what the
-/// recording itself varies, which says nothing about what is felt: the worse a recording repeats, the more is within it.
+/// Of some textures, how many a model keeps below the difference threshold of a listener; and,
+/// apart from that, how many within what the recording itself varies, which says nothing about what
+/// is felt: the worse a recording repeats, the more is within it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FeltShare {
     /// Number of textures.
     pub textures: usize,
     /// Those whose difference is below the difference threshold.
     pub below_difference_threshold: usize,
-    /// Those of them for which that holds for a person with a sensitive finger and a soft skin, too.
+    /// Those of them for which that holds for a person with a sensitive finger and a soft skin,
+    /// too.
     pub below_if_sensitive: usize,
     /// Those whose nine-band error is at or below the recording's own repeatability.
     pub within_repeatability: usize,
@@ -117,8 +123,8 @@ impl FeltShare {
     }
 }
 
-/// Compares what is felt of a spectrum with what is felt of a reference on the same grid. Forces become displacements of the skin by its
-/// impedance; accelerations and velocities by integration.
+/// Compares what is felt of a spectrum with what is felt of a reference on the same grid. Forces
+/// become displacements of the skin by its impedance; accelerations and velocities by integration.
 ///
 /// ```
 /// use htex_author::{SpectrumRef, felt};
@@ -144,17 +150,11 @@ pub fn felt(
     let (ours, theirs) = (energies(reference.magnitude), energies(magnitude));
     let bands: Vec<usize> = (0..THIRD_OCTAVES).filter(|k| ours[*k].is_some()).collect();
     let levels = |all: &[Option<f64>]| -> Vec<f64> {
-        bands
-            .iter()
-            .map(|k| level_db(all[*k].unwrap_or_default()))
-            .collect()
+        bands.iter().map(|k| level_db(all[*k].unwrap_or_default())).collect()
     };
     let (reference_db, level_db) = (levels(&ours), levels(&theirs));
     let pairs = reference_db.iter().zip(&level_db);
-    let error_db: Vec<f64> = pairs
-        .clone()
-        .map(|(r, m)| m.max(0.0) - r.max(0.0))
-        .collect();
+    let error_db: Vec<f64> = pairs.clone().map(|(r, m)| m.max(0.0) - r.max(0.0)).collect();
     let felt: Vec<f64> = pairs
         .zip(&error_db)
         .filter(|((r, m), _)| **r > 0.0 || **m > 0.0)
@@ -163,11 +163,7 @@ pub fn felt(
     let total = |all: &[Option<f64>]| self::level_db(all.iter().flatten().sum()).max(0.0);
     Felt {
         centre_hz: bands.iter().map(|k| centre_hz(*k)).collect(),
-        error_rms_db: if felt.is_empty() {
-            0.0
-        } else {
-            htex_dsp::bands::rms(&felt)
-        },
+        error_rms_db: if felt.is_empty() { 0.0 } else { htex_dsp::bands::rms(&felt) },
         largest_error_db: error_db.iter().fold(0.0, |most, e| f64::max(most, e.abs())),
         total_error_db: total(&theirs) - total(&ours),
         reference_db,
@@ -207,7 +203,8 @@ fn displacement_m(hertz: f64, quantity: Quantity, skin: &Skin) -> f64 {
     }
 }
 
-/// Returns the magnitude of a sinusoid that is at a listener's detection threshold, in the quantity's unit, at a frequency in hertz above 0.
+/// Returns the magnitude of a sinusoid that is at a listener's detection threshold, in the
+/// quantity's unit, at a frequency in hertz above 0.
 ///
 /// ```
 /// use htex_author::threshold_magnitude;
@@ -244,11 +241,8 @@ mod tests {
 
     fn compared(a: impl Fn(f64) -> f64, b: impl Fn(f64) -> f64, quantity: Quantity) -> Felt {
         let (hertz, reference) = spectra(a);
-        let reference = SpectrumRef {
-            band: Band::TACTILE,
-            frequency_hz: &hertz,
-            magnitude: &reference,
-        };
+        let reference =
+            SpectrumRef { band: Band::TACTILE, frequency_hz: &hertz, magnitude: &reference };
         felt(reference, &spectra(b).1, quantity, &Listener::default())
     }
 
@@ -271,17 +265,11 @@ mod tests {
             (Quantity::LateralForce, force),
         ] {
             let felt = compared(line(peak), line(10.0 * peak), quantity);
-            // The line is seen in three bins of two bands. The neighbours' thresholds differ by less than 0.4 dB.
-            let energy: f64 = felt
-                .reference_db
-                .iter()
-                .map(|db| 10f64.powf(db / 10.0))
-                .sum();
+            // The line is seen in three bins of two bands. The neighbours' thresholds differ by
+            // less than 0.4 dB.
+            let energy: f64 = felt.reference_db.iter().map(|db| 10f64.powf(db / 10.0)).sum();
             assert!(level_db(energy).abs() < 0.15, "{quantity}: {felt:?}");
-            assert!(
-                (felt.total_error_db - 20.0).abs() < 0.15,
-                "{quantity}: {felt:?}"
-            );
+            assert!((felt.total_error_db - 20.0).abs() < 0.15, "{quantity}: {felt:?}");
         }
     }
 
@@ -292,16 +280,10 @@ mod tests {
         for gain_db in [-12.0, -3.0, -1.0, 0.5, 2.0, 9.0] {
             for tilt in [-1.0, 0.0, 1.0] {
                 let gain = |f: f64| 10f64.powf(gain_db / 20.0) * (f / 200.0).powf(tilt);
-                let other: Vec<f64> = hertz
-                    .iter()
-                    .zip(&recorded)
-                    .map(|(f, m)| m * gain(*f))
-                    .collect();
-                let reference = SpectrumRef {
-                    band: Band::TACTILE,
-                    frequency_hz: &hertz,
-                    magnitude: &recorded,
-                };
+                let other: Vec<f64> =
+                    hertz.iter().zip(&recorded).map(|(f, m)| m * gain(*f)).collect();
+                let reference =
+                    SpectrumRef { band: Band::TACTILE, frequency_hz: &hertz, magnitude: &recorded };
                 let by = |listener| felt(reference, &other, Quantity::LateralForce, &listener);
                 let (typical, sensitive) = (by(Listener::default()), by(Listener::sensitive()));
                 let pairs = typical.error_db.iter().zip(&sensitive.error_db);
@@ -313,17 +295,15 @@ mod tests {
         }
     }
 
-    /// What differs below the threshold alone is not felt; a difference of 6 dB far above it is, in every band.
+    /// What differs below the threshold alone is not felt; a difference of 6 dB far above it is, in
+    /// every band.
     #[test]
     fn only_what_is_felt_counts() {
         let below = compared(|_| 1e-9, |_| 1e-8, Quantity::LateralForce);
         assert_eq!((below.error_rms_db, below.total_error_db), (0.0, 0.0));
         assert!(below.is_below_difference_threshold());
         let above = compared(|_| 0.1, |_| 0.2, Quantity::LateralForce);
-        assert!(
-            above.error_db.iter().all(|e| (e - 6.0206).abs() < 1e-3),
-            "{above:?}"
-        );
+        assert!(above.error_db.iter().all(|e| (e - 6.0206).abs() < 1e-3), "{above:?}");
         assert!(!above.is_below_difference_threshold());
     }
 }

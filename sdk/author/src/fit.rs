@@ -35,8 +35,9 @@ pub struct FittedAsset {
     pub skipped: Vec<(String, String)>,
     /// The texture spectrum of each condition.
     pub spectra: Vec<TextureSpectrum>,
-    /// What is felt of the difference from them, of each representation at each of its conditions; `None` at a condition that was
-    /// computed between recorded ones, where there is no recording to differ from.
+    /// What is felt of the difference from them, of each representation at each of its conditions;
+    /// `None` at a condition that was computed between recorded ones, where there is no recording
+    /// to differ from.
     pub felt: Vec<Vec<Option<FeltError>>>,
     /// The warnings that the asset's provenance has, with what helps.
     pub warnings: Vec<Notice>,
@@ -111,9 +112,7 @@ pub fn fit_asset_watched(
     }
     if fitted.is_empty() {
         let reasons = skipped.iter().map(|(id, why)| format!("{id}: {why}"));
-        return Err(AuthorError::NothingFitted {
-            reasons: reasons.collect::<Vec<_>>().join("; "),
-        });
+        return Err(AuthorError::NothingFitted { reasons: reasons.collect::<Vec<_>>().join("; ") });
     }
     let spectra: Vec<TextureSpectrum> = grouped.groups.into_iter().map(|g| g.spectrum).collect();
     let provenance = Provenance {
@@ -127,25 +126,8 @@ pub fn fit_asset_watched(
     let fit_ms = fitted.iter().map(|f| f.fit_ms).collect();
     let felt = fitted.iter_mut().map(|f| std::mem::take(&mut f.felt));
     let felt = felt.collect();
-    let asset = assemble(
-        request,
-        provenance,
-        (contact, law),
-        grouped.conditions,
-        &spectra,
-        fitted,
-    );
-    Ok(FittedAsset {
-        asset,
-        fit_ms,
-        skipped,
-        spectra,
-        felt,
-        warnings,
-        notes,
-        findings,
-        grid,
-    })
+    let asset = assemble(request, provenance, (contact, law), grouped.conditions, &spectra, fitted);
+    Ok(FittedAsset { asset, fit_ms, skipped, spectra, felt, warnings, notes, findings, grid })
 }
 
 /// What slid over the surface, as far as recordings tell: the simulator has a finger.
@@ -193,18 +175,10 @@ fn fit_group(choice: &ModelRequest, group: &Group, level: Level) -> Result<Group
     let request = group.spectrum.fit_request(&choice.options);
     let fit = model.fit_at(&request, group.condition)?;
     let fit_ms = start.elapsed().as_secs_f64() * 1e3;
-    let stored = round_within(
-        &stored_fields(model.descriptor()),
-        model.descriptor(),
-        &fit.parameters,
-    )?;
+    let stored =
+        round_within(&stored_fields(model.descriptor()), model.descriptor(), &fit.parameters)?;
     let level_rms = stored_level(model, &fit, &stored, group.spectrum.as_ref(), level)?;
-    Ok(GroupFit {
-        fitted: fit.parameters,
-        stored,
-        level_rms,
-        fit_ms,
-    })
+    Ok(GroupFit { fitted: fit.parameters, stored, level_rms, fit_ms })
 }
 
 fn fit_model(
@@ -217,29 +191,20 @@ fn fit_model(
     let (mut at, mut parameters, mut felt, mut fit_ms) = (Vec::new(), Vec::new(), Vec::new(), 0.0);
     for (condition, group) in groups.iter().enumerate() {
         let reference = group.spectrum.as_ref();
-        let GroupFit {
-            fitted,
-            stored,
-            level_rms,
-            fit_ms: own_ms,
-        } = fit_group(choice, group, level)?;
+        let GroupFit { fitted, stored, level_rms, fit_ms: own_ms } =
+            fit_group(choice, group, level)?;
         fit_ms += own_ms;
         let (magnitude, measured) = read_and_measure(model, &stored, level_rms, reference)?;
         let rounding = rounding_error_db(model, &fitted, &stored, reference)?;
         // Nothing was recorded at a condition that was computed.
-        let quality = group.spectrum.is_recorded().then_some(Quality {
-            rounding_error_db: Some(rounding),
-            ..measured
-        });
+        let quality = group
+            .spectrum
+            .is_recorded()
+            .then_some(Quality { rounding_error_db: Some(rounding), ..measured });
         felt.push(quality.as_ref().map(|quality| {
             FeltError::new(&group.spectrum, &magnitude, quality.get(Measure::NineBand))
         }));
-        at.push(AtCondition {
-            condition,
-            level_rms,
-            quality,
-            left_out: None,
-        });
+        at.push(AtCondition { condition, level_rms, quality, left_out: None });
         parameters.push(stored);
     }
     let representation = Representation {
@@ -250,12 +215,7 @@ fn fit_model(
         triangles: Vec::new(),
         parameters: format!("parameters/{}.bin", model.short_name()),
     };
-    Ok(FittedModel {
-        representation,
-        parameters,
-        felt,
-        fit_ms,
-    })
+    Ok(FittedModel { representation, parameters, felt, fit_ms })
 }
 
 /// Returns the warning of a representation whose model no other program can load.
@@ -289,7 +249,8 @@ fn band_error_warning(
     warning(choice, &measured, &models, request.level)
 }
 
-/// Measures the agreement of parameters and level with a recorded spectrum: by magnitude, as a recording of the voice reads it, and by samples.
+/// Measures the agreement of parameters and level with a recorded spectrum: by magnitude, as a
+/// recording of the voice reads it, and by samples.
 ///
 /// # Errors
 /// When the model refuses the parameters.
@@ -323,7 +284,8 @@ pub(crate) fn read_and_measure(
     Ok((read, quality))
 }
 
-/// Returns the nine-band RMS difference between the shapes of the fitted and the stored parameters, decibels.
+/// Returns the nine-band RMS difference between the shapes of the fitted and the stored parameters,
+/// decibels.
 fn rounding_error_db(
     model: &LoadedModel,
     fitted: &[f64],
@@ -349,10 +311,8 @@ fn assemble(
     // `group_takes` returns one spectrum per condition, all with the same band and quantity.
     let band = spectra.first().map_or(Band::TACTILE, |s| s.band);
     let quantity = spectra.first().map_or(Quantity::default(), |s| s.quantity);
-    let (representations, parameters) = fitted
-        .into_iter()
-        .map(|f| (f.representation, f.parameters))
-        .unzip();
+    let (representations, parameters) =
+        fitted.into_iter().map(|f| (f.representation, f.parameters)).unzip();
     let to_f32 = |s: &TextureSpectrum| s.magnitude.iter().map(|&m| m as f32).collect();
     Asset {
         manifest: Manifest {
@@ -374,18 +334,16 @@ fn assemble(
             conditions,
             law: Some(law),
             representations,
-            reference: request.keep_reference.then(|| Reference {
-                file: "reference.bin".to_owned(),
-            }),
+            reference: request
+                .keep_reference
+                .then(|| Reference { file: "reference.bin".to_owned() }),
             plugins: Vec::new(),
             extensions: BTreeMap::new(),
             extensions_required: Vec::new(),
             other: BTreeMap::new(),
         },
         parameters,
-        reference: request
-            .keep_reference
-            .then(|| spectra.iter().map(to_f32).collect()),
+        reference: request.keep_reference.then(|| spectra.iter().map(to_f32).collect()),
         plugins: Vec::new(),
         notes: Vec::new(),
     }

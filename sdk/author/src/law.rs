@@ -1,13 +1,15 @@
 //! The law of a texture that was recorded at several motions: exponents with their standard errors.
 //!
-//! Levels: least squares of `ln L = k + b ln v + c ln F` over the conditions. A level of one recording is taken to be known
-//! within [`LEVEL_ERROR_DB`] at best, so that two conditions do not count as a sure exponent.
+//! Levels: least squares of `ln L = k + b ln v + c ln F` over the conditions. A level of one
+//! recording is taken to be known within [`LEVEL_ERROR_DB`] at best, so that two conditions do not
+//! count as a sure exponent.
 //!
-//! Frequencies: the exponent at which the spectra, each shifted by `(v / v0)^a` on a logarithmic axis and without its level,
-//! differ least. Spectra change with the speed for other reasons, too: without lines that move, the best shift of recorded
-//! strokes was anywhere between -0.5 and 1.5, and lowered the squared difference to 0.25 to 0.9 of that without a shift. So an
-//! exponent is measured only where the difference falls to a quarter of that without a shift, or of that at the exponent that is
-//! assumed.
+//! Frequencies: the exponent at which the spectra, each shifted by `(v / v0)^a` on a logarithmic
+//! axis and without its level, differ least. Spectra change with the speed for other reasons, too:
+//! without lines that move, the best shift of recorded strokes was anywhere between -0.5 and 1.5,
+//! and lowered the squared difference to 0.25 to 0.9 of that without a shift. So an exponent is
+//! measured only where the difference falls to a quarter of that without a shift, or of that at the
+//! exponent that is assumed.
 
 use std::borrow::Borrow;
 
@@ -17,9 +19,11 @@ use crate::spectrum::TextureSpectrum;
 
 /// Least error of a recorded level, decibels.
 const LEVEL_ERROR_DB: f64 = 2.0;
-/// Most of the difference without a shift, or at the assumed exponent, that is left at a measured one.
+/// Most of the difference without a shift, or at the assumed exponent, that is left at a measured
+/// one.
 const MOST_LEFT: f64 = 0.25;
-/// Points per octave at which spectra are compared, and half the width over which each is read, octaves.
+/// Points per octave at which spectra are compared, and half the width over which each is read,
+/// octaves.
 const POINTS: f64 = 24.0;
 const HALF_WIDTH: f64 = 1.0 / 12.0;
 /// Exponents of frequency that are tried, in hundredths.
@@ -37,25 +41,17 @@ pub(crate) fn law<S: Borrow<TextureSpectrum>>(
     let quantity = spectra.first().map_or(Quantity::default(), |s| s.quantity);
     let mut law = Law::assumed(quantity, contact);
     let [speeds, forces] = [speed, force].map(|of| logarithms(conditions, of));
-    let levels: Vec<f64> = spectra
-        .iter()
-        .map(|s| libm::log(htex_dsp::grid::level_rms(&s.magnitude)))
-        .collect();
+    let levels: Vec<f64> =
+        spectra.iter().map(|s| libm::log(htex_dsp::grid::level_rms(&s.magnitude))).collect();
     for (exponent, estimate) in [&mut law.level_speed, &mut law.level_force]
         .into_iter()
-        .zip(level_exponents(
-            &levels,
-            [speeds.as_deref(), forces.as_deref()],
-        ))
+        .zip(level_exponents(&levels, [speeds.as_deref(), forces.as_deref()]))
     {
         measured(exponent, estimate);
     }
     if let Some(speeds) = &speeds {
         let assumed = law.frequency_speed.exponent;
-        measured(
-            &mut law.frequency_speed,
-            frequency_exponent(&spectra, speeds, assumed),
-        );
+        measured(&mut law.frequency_speed, frequency_exponent(&spectra, speeds, assumed));
     }
     law.reassumed(quantity, contact)
 }
@@ -89,7 +85,8 @@ fn logarithms(conditions: &[Condition], of: fn(&Condition) -> Option<f64>) -> Op
     varies.then(|| all.iter().map(|x| libm::log(*x)).collect())
 }
 
-/// Returns the exponents of the level over speed and force with their standard errors, as far as they can be told.
+/// Returns the exponents of the level over speed and force with their standard errors, as far as
+/// they can be told.
 fn level_exponents(levels: &[f64], axes: [Option<&[f64]>; 2]) -> [Option<[f64; 2]>; 2] {
     let n = levels.len() as f64;
     let mean = |values: &[f64]| values.iter().sum::<f64>() / n;
@@ -128,13 +125,11 @@ fn level_exponents(levels: &[f64], axes: [Option<&[f64]>; 2]) -> [Option<[f64; 2
         false => least,
     };
     let error = |inverse: f64| (variance * inverse).sqrt();
-    [
-        varies[0].then(|| [b, error(inverse[0])]),
-        varies[1].then(|| [c, error(inverse[2])]),
-    ]
+    [varies[0].then(|| [b, error(inverse[0])]), varies[1].then(|| [c, error(inverse[2])])]
 }
 
-/// Returns the exponent of frequencies over the speed with its standard error, if the spectra tell it.
+/// Returns the exponent of frequencies over the speed with its standard error, if the spectra tell
+/// it.
 fn frequency_exponent(
     spectra: &[&TextureSpectrum],
     speeds: &[f64],
@@ -142,18 +137,14 @@ fn frequency_exponent(
 ) -> Option<[f64; 2]> {
     let curves: Vec<Curve> = spectra.iter().map(|s| Curve::new(s)).collect();
     let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
-    let octaves: Vec<f64> = speeds
-        .iter()
-        .map(|speed| (speed - mean) / std::f64::consts::LN_2)
-        .collect();
+    let octaves: Vec<f64> =
+        speeds.iter().map(|speed| (speed - mean) / std::f64::consts::LN_2).collect();
     let differ = |a: f64| difference(&curves, &octaves, a);
     let all: Vec<(f64, Difference)> = TRIED
         .map(|hundredths| f64::from(hundredths) / 100.0)
         .filter_map(|a| Some((a, differ(a)?)))
         .collect();
-    let (best, least) = all
-        .iter()
-        .min_by(|x, y| x.1.mean_square.total_cmp(&y.1.mean_square))?;
+    let (best, least) = all.iter().min_by(|x, y| x.1.mean_square.total_cmp(&y.1.mean_square))?;
     let inside = *best > all.first()?.0 && *best < all.last()?.0;
     let [still, usual] = [0.0, assumed].map(|a| differ(a).map_or(0.0, |d| d.mean_square));
     if !inside || least.mean_square > MOST_LEFT * still.max(usual) {
@@ -190,10 +181,7 @@ impl Curve {
             let power: f64 = spectrum.magnitude[near.clone()].iter().map(|m| m * m).sum();
             libm::log(power / near.len() as f64)
         };
-        Self {
-            low,
-            values: (0..count).map(value).collect(),
-        }
+        Self { low, values: (0..count).map(value).collect() }
     }
 
     fn high(&self) -> f64 {
@@ -217,13 +205,12 @@ struct Difference {
     count: f64,
 }
 
-/// Returns the difference of curves shifted by `a` times their octaves of speed, over the octaves that all have.
+/// Returns the difference of curves shifted by `a` times their octaves of speed, over the octaves
+/// that all have.
 fn difference(curves: &[Curve], octaves: &[f64], a: f64) -> Option<Difference> {
     let shifted = || curves.iter().zip(octaves).map(|(curve, o)| (curve, -a * o));
     let low = shifted().map(|(c, s)| c.low + s).fold(f64::MIN, f64::max);
-    let high = shifted()
-        .map(|(c, s)| c.high() + s)
-        .fold(f64::MAX, f64::min);
+    let high = shifted().map(|(c, s)| c.high() + s).fold(f64::MAX, f64::min);
     let points = ((high - low) * POINTS).floor();
     if points < LEAST_OCTAVES * POINTS || curves.len() < 2 {
         return None;
@@ -259,20 +246,14 @@ mod tests {
         let motions = [(20.0, 0.3), (40.0, 0.6), (80.0, 0.3), (160.0, 0.9)];
         let speeds: Vec<f64> = motions.iter().map(|m: &(f64, f64)| m.0.ln()).collect();
         let forces: Vec<f64> = motions.iter().map(|m| m.1.ln()).collect();
-        let levels: Vec<f64> = speeds
-            .iter()
-            .zip(&forces)
-            .map(|(v, f)| 0.6 * v + 0.9 * f - 3.0)
-            .collect();
+        let levels: Vec<f64> =
+            speeds.iter().zip(&forces).map(|(v, f)| 0.6 * v + 0.9 * f - 3.0).collect();
         let [b, c] = level_exponents(&levels, [Some(&speeds), Some(&forces)]);
         let ([b, of_b], [c, of_c]) = (b.unwrap_or_default(), c.unwrap_or_default());
         assert!((b - 0.6).abs() < 1e-9 && (c - 0.9).abs() < 1e-9);
         // Two decibels in a level are a fifth of three octaves of speed.
         assert!((0.1..0.3).contains(&of_b) && of_c > of_b, "{of_b}, {of_c}");
         // Of speed and force that change together neither is told.
-        assert_eq!(
-            level_exponents(&levels, [Some(&speeds), Some(&speeds)]),
-            [None; 2]
-        );
+        assert_eq!(level_exponents(&levels, [Some(&speeds), Some(&speeds)]), [None; 2]);
     }
 }

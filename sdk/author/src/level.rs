@@ -1,14 +1,15 @@
 //! The level of stored representations.
 //!
-//! The level is the recording's, for the shape as stored. The levels of the models' own fits (`--level fitted`) differ
-//! by up to 6 dB from the recording on simulated surfaces: sBeta is fitted to the ten largest peaks, among other bins,
-//! and sSlope to the largest bin, which are too high in a noisy estimate, and MFCC averages logarithms, which is too
-//! low. A model whose level is one of the energies that it stores says so ([`htex_host::Descriptor::keeps_level`],
-//! Bands) and keeps it.
-//! sBeta and sSlope round their parameters as files do before they compute the level.
+//! The level is the recording's, for the shape as stored. The levels of the models' own fits
+//! (`--level fitted`) differ by up to 6 dB from the recording on simulated surfaces: sBeta is
+//! fitted to the ten largest peaks, among other bins, and sSlope to the largest bin, which are too
+//! high in a noisy estimate, and MFCC averages logarithms, which is too low. A model whose level is
+//! one of the energies that it stores says so ([`htex_host::Descriptor::keeps_level`], Bands) and
+//! keeps it. sBeta and sSlope round their parameters as files do before they compute the level.
 //!
-//! A model with a rate of its own plays too weak where its spectrum reaches up to half that rate, since a conversion to the player's rate
-//! takes up to half the power away there: AR at its Nyquist frequency of 1000 Hz by up to 3.0 dB. The stored level makes up for it
+//! A model with a rate of its own plays too weak where its spectrum reaches up to half that rate,
+//! since a conversion to the player's rate takes up to half the power away there: AR at its Nyquist
+//! frequency of 1000 Hz by up to 3.0 dB. The stored level makes up for it
 //! ([`LoadedModel::played_part`]), so that what is played has the level of the recording.
 
 use htex_dsp::grid::level_rms;
@@ -22,12 +23,13 @@ use crate::SpectrumRef;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
-    /// The recording's RMS in the band: the asset plays at the level of its recording, and a copy of a copy at the
-    /// level of the first. A model whose level is a part of its parameters
+    /// The recording's RMS in the band: the asset plays at the level of its recording, and a copy
+    /// of a copy at the level of the first. A model whose level is a part of its parameters
     /// ([`htex_host::Descriptor::keeps_level`]) keeps that of its fit.
     #[default]
     Recording,
-    /// The level of the model's fit, for the parameters as stored. (The paper gives no rule for levels.)
+    /// The level of the model's fit, for the parameters as stored. (The paper gives no rule for
+    /// levels.)
     Fitted,
 }
 
@@ -64,8 +66,8 @@ pub fn stored_level(
     }
 }
 
-/// Returns the level at which the stored shape is closest to the fitted magnitudes, by least squares over
-/// the band's grid.
+/// Returns the level at which the stored shape is closest to the fitted magnitudes, by least
+/// squares over the band's grid.
 fn fitted_level(
     model: &LoadedModel,
     fit: &Fit,

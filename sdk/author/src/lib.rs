@@ -1,22 +1,26 @@
 //! Authoring: from recordings to fitted and measured texture assets.
 //!
-//! The pipeline is [`recording::read_recording`], [`segment_spectra`], [`TextureSpectrum::average`], [`fit_asset`].
-//! Definitions follow the paper's section Texture processing; where it is silent, the option's documentation
-//! states what is done.
+//! The pipeline is [`recording::read_recording`], [`segment_spectra`],
+//! [`TextureSpectrum::average`], [`fit_asset`]. Definitions follow the paper's section Texture
+//! processing; where it is silent, the option's documentation states what is done.
 //!
 //! From a recording to an asset:
 //!
-//! 1. `segments`: complete sweeps by mean threshold, or half-overlapping windows, of 0.2 s. `findings`: problems of the
-//!    signals, with stable codes (`spec/recording-findings.md`). `reading` combines both.
-//! 2. `spectrum`: mean removed, Hann window, FFT, two axes folded into one, divided by the response of the setup,
-//!    averaged. `blocks`: the odd and the even blocks of time, two readings that share no sample.
-//! 3. `conditions`: recordings with the same speed and force are averaged, others become further conditions. `grid`, on
-//!    request, takes many conditions from a free motion: windows of `steady` motion, `lines` of speed and force,
-//!    `cells` around their crossings, spectra over equal `paths`, corrected by `slopes`.
-//! 4. `fit`: each model at each condition. Parameters are rounded as the file stores them; the *rounded* ones get a
-//!    `level` and are measured, by magnitude (`metrics`) and by samples (`rendered`). Where the errors of bands are
-//!    large, other options and models are tried and listed (`alternatives`). In a grid each condition is also predicted
-//!    from its neighbours, by the mesh of the player.
+//! 1. `segments`: complete sweeps by mean threshold, or half-overlapping windows, of 0.2 s.
+//!    `findings`: problems of the signals, with stable codes (`spec/recording-findings.md`).
+//!    `reading` combines both.
+//! 2. `spectrum`: mean removed, Hann window, FFT, two axes folded into one, divided by the response
+//!    of the setup, averaged. `blocks`: the odd and the even blocks of time, two readings that
+//!    share no sample.
+//! 3. `conditions`: recordings with the same speed and force are averaged, others become further
+//!    conditions. `grid`, on request, takes many conditions from a free motion: windows of `steady`
+//!    motion, `lines` of speed and force, `cells` around their crossings, spectra over equal
+//!    `paths`, corrected by `slopes`.
+//! 4. `fit`: each model at each condition. Parameters are rounded as the file stores them; the
+//!    *rounded* ones get a `level` and are measured, by magnitude (`metrics`) and by samples
+//!    (`rendered`). Where the errors of bands are large, other options and models are tried and
+//!    listed (`alternatives`). In a grid each condition is also predicted from its neighbours, by
+//!    the mesh of the player.
 //!
 //! ```
 //! use htex_simulate::{SimulationOptions, Surface, simulate};

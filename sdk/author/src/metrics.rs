@@ -1,4 +1,5 @@
-//! Measures of agreement between a spectrum and a reference: the function of each row of [`Measure`].
+//! Measures of agreement between a spectrum and a reference: the function of each row of
+//! [`Measure`].
 
 use htex_dsp::bands::{
     BAND_COUNT, BandBank, band_error_db, energy_matching_gain, pearson_correlation, rms,
@@ -9,8 +10,9 @@ use htex_format::{Measure, Measures, Quality};
 
 use crate::spectrum::SpectrumRef;
 
-/// Agreement of a spectrum with a reference: every measure that needs no more than magnitudes (all but [`Measure::Felt`]), and the errors
-/// in the nine bands of the paper's regression (which uses standardised absolute differences).
+/// Agreement of a spectrum with a reference: every measure that needs no more than magnitudes (all
+/// but [`Measure::Felt`]), and the errors in the nine bands of the paper's regression (which uses
+/// standardised absolute differences).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     pub measures: Measures,
@@ -62,9 +64,5 @@ pub fn agreement(reference: SpectrumRef<'_>, magnitude: &[f64]) -> Agreement {
         }
         Measure::Felt => None,
     });
-    Agreement {
-        measures,
-        band_error_db,
-        matching_gain_db: 20.0 * libm::log10(gain),
-    }
+    Agreement { measures, band_error_db, matching_gain_db: 20.0 * libm::log10(gain) }
 }

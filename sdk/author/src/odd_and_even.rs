@@ -1,4 +1,5 @@
-//! Odd and even blocks of time of what is read of recordings: two readings of a texture that share no sample.
+//! Odd and even blocks of time of what is read of recordings: two readings of a texture that share
+//! no sample.
 
 use htex_dsp::spectrum::Complex;
 
@@ -84,12 +85,9 @@ mod tests {
     #[test]
     fn lengths_of_blocks() {
         // Seconds read, blocks, and the length of each.
-        for (seconds, count, block_s) in [
-            (0.7, None, 0.0),
-            (0.8, Some(4), 0.2),
-            (2.0, Some(4), 0.5),
-            (10.0, Some(10), 1.0),
-        ] {
+        for (seconds, count, block_s) in
+            [(0.7, None, 0.0), (0.8, Some(4), 0.2), (2.0, Some(4), 0.5), (10.0, Some(10), 1.0)]
+        {
             let part = read(seconds).unwrap_or_else(|e| panic!("{e}"));
             let found = odd_and_even(std::slice::from_ref(&part), Averaging::Rms);
             assert_eq!(found.as_ref().map(|f| f.blocks), count, "{seconds} s");
@@ -98,22 +96,18 @@ mod tests {
         }
     }
 
-    /// Each half averages its own segments: the mean power of both together is that of all that are read.
+    /// Each half averages its own segments: the mean power of both together is that of all that are
+    /// read.
     #[test]
     fn odd_and_even_are_two_readings() {
         let part = read(0.8).unwrap_or_else(|e| panic!("{e}"));
         let halves = odd_and_even(std::slice::from_ref(&part), Averaging::Rms);
-        let Some(OddAndEven { odd, even, .. }) = halves else {
-            panic!("four blocks of 0.2 s")
-        };
+        let Some(OddAndEven { odd, even, .. }) = halves else { panic!("four blocks of 0.2 s") };
         assert_eq!((odd.segments, even.segments), (2, 2));
         let power = |segment: usize, k: usize| part.spectra[segment][k].norm_sqr();
         for k in 0..odd.magnitude.len() {
             // Windows of 0.2 s begin every 0.1 s: every second one is a block.
-            let expected = [
-                0.5 * (power(0, k) + power(4, k)),
-                0.5 * (power(2, k) + power(6, k)),
-            ];
+            let expected = [0.5 * (power(0, k) + power(4, k)), 0.5 * (power(2, k) + power(6, k))];
             let found = [&odd, &even].map(|half| half.magnitude[k].powi(2));
             for (a, b) in found.iter().zip(expected) {
                 assert!((a / b - 1.0).abs() < 1e-9, "bin {k}");

@@ -33,8 +33,9 @@ pub struct Reading {
 /// differ from the given condition by more than 10 %, and takes their spectra.
 ///
 /// # Errors
-/// When the recording is too short, its rate too low, no segment remains, the response cannot be divided
-/// by, or a speed or force is out of range; with `strict`, when a finding is an error or a warning.
+/// When the recording is too short, its rate too low, no segment remains, the response cannot be
+/// divided by, or a speed or force is out of range; with `strict`, when a finding is an error or a
+/// warning.
 pub fn read_take(
     take: &Take,
     options: &SpectrumOptions,
@@ -55,9 +56,7 @@ pub fn read_take(
     let of_part = part.warnings.iter().cloned().map(Notice::from);
     let noticed = recording.warnings.iter().cloned().chain(of_part);
     Ok(Reading {
-        warnings: noticed
-            .chain(sentences(&recording.source, &findings, false))
-            .collect(),
+        warnings: noticed.chain(sentences(&recording.source, &findings, false)).collect(),
         notes: sentences(&recording.source, &findings, true).collect(),
         part,
         condition,
@@ -72,9 +71,7 @@ pub(crate) fn sentences(
     findings: &[Finding],
     info: bool,
 ) -> impl Iterator<Item = Notice> {
-    let chosen = findings
-        .iter()
-        .filter(move |f| (f.severity == Severity::Info) == info);
+    let chosen = findings.iter().filter(move |f| (f.severity == Severity::Info) == info);
     chosen.map(move |f| {
         let text = format!("{source}: {}: {}", f.code, f.message);
         Notice::new(text, f.hint)
@@ -88,10 +85,7 @@ pub(crate) fn refuse(source: &str, findings: &[Finding]) -> Result<(), AuthorErr
     if findings.is_empty() {
         Ok(())
     } else {
-        Err(AuthorError::Strict {
-            source_name: source.to_owned(),
-            findings,
-        })
+        Err(AuthorError::Strict { source_name: source.to_owned(), findings })
     }
 }
 
@@ -129,12 +123,7 @@ fn validated(
     options: &SpectrumOptions,
 ) -> Result<Report, ReadError> {
     let findings = match read {
-        Err(error)
-            if matches!(
-                error.problem,
-                ReadProblem::Io(_) | ReadProblem::Option { .. }
-            ) =>
-        {
+        Err(error) if matches!(error.problem, ReadProblem::Io(_) | ReadProblem::Option { .. }) => {
             return Err(error);
         }
         Err(error) => {
@@ -161,9 +150,7 @@ fn all_findings(take: Take, options: &SpectrumOptions) -> Vec<Finding> {
             recording_findings(&take.recording)
         }
     };
-    noticed
-        .into_iter()
-        .for_each(|sentence| rest.add(RECORDING_NOTED, "", sentence));
+    noticed.into_iter().for_each(|sentence| rest.add(RECORDING_NOTED, "", sentence));
     findings.extend(rest.into_list());
     findings
 }

@@ -1,10 +1,12 @@
 //! A recording as sound: what is read of it, in the band, as a loop.
 //!
-//! The segments of a spectrum are windowed (Hann), and half overlap. They are windowed once more and added, since the frequencies outside of the
-//! band, which they have no more, were what made their ends zero: without it there is a step every 0.1 s. The sum is divided by that of the squared
-//! windows, which gives the recorded signal back. Two segments of different stretches share no signal: where one fades to the other,
-//! the sum is divided by the root of the sum of the fourth powers, which keeps the power. The last segment fades to the first one in this
-//! way, so that the loop has no seam.
+//! The segments of a spectrum are windowed (Hann), and half overlap. They are windowed once more
+//! and added, since the frequencies outside of the band, which they have no more, were what made
+//! their ends zero: without it there is a step every 0.1 s. The sum is divided by that of the
+//! squared windows, which gives the recorded signal back. Two segments of different stretches share
+//! no signal: where one fades to the other, the sum is divided by the root of the sum of the fourth
+//! powers, which keeps the power. The last segment fades to the first one in this way, so that the
+//! loop has no seam.
 
 use htex_dsp::bands::rms;
 use htex_dsp::grid::{Band, GRID_HZ};
@@ -43,8 +45,8 @@ impl RecordedLoop {
     /// Reads a recording and makes its loop at a rate.
     ///
     /// # Errors
-    /// As [`read_take`], and for a rate that is no multiple of 10 Hz, that is not above twice the band's highest frequency, or above
-    /// 192 kHz.
+    /// As [`read_take`], and for a rate that is no multiple of 10 Hz, that is not above twice the
+    /// band's highest frequency, or above 192 kHz.
     pub fn of(
         take: &Take,
         options: &SpectrumOptions,
@@ -83,7 +85,8 @@ fn frame_len(rate_hz: f64, band: Band) -> Result<usize, AuthorError> {
     }
 }
 
-/// Adds the segments, of `len` samples each, around the loop, which has a step of half a segment for each of them.
+/// Adds the segments, of `len` samples each, around the loop, which has a step of half a segment
+/// for each of them.
 fn joined(part: &SegmentSpectra, len: usize) -> Vec<f64> {
     let half = len / 2;
     let spectra = part.spectra.iter().take(MOST_SEGMENTS);
@@ -97,11 +100,7 @@ fn joined(part: &SegmentSpectra, len: usize) -> Vec<f64> {
         add(&mut samples, (i + 1) % all.len() * half, falling, last);
     });
     for (i, join) in samples.chunks_mut(half).enumerate() {
-        let of = if follows(&part.segments, i) {
-            square_sum
-        } else {
-            power_sum
-        };
+        let of = if follows(&part.segments, i) { square_sum } else { power_sum };
         let weights = first.iter().zip(last).map(|(a, b)| of(*a, *b));
         join.iter_mut().zip(weights).for_each(|(s, w)| *s /= w);
     }

@@ -13,9 +13,6 @@ pub struct RecordingFinding {
 impl RecordingFinding {
     /// The findings of one recording, in their order.
     pub(crate) fn all(recording: &str, findings: Vec<Finding>) -> impl Iterator<Item = Self> {
-        findings.into_iter().map(move |finding| Self {
-            recording: recording.to_owned(),
-            finding,
-        })
+        findings.into_iter().map(move |finding| Self { recording: recording.to_owned(), finding })
     }
 }

@@ -13,9 +13,10 @@ use crate::{
 const SECONDS: f64 = 20.0;
 const SEED: u64 = 1;
 
-/// Returns the magnitudes, on the reference's grid, that a recording of the voice reads: those of the model as a Hann window reads them
-/// ([`LoadedModel::read_magnitude`]), without chance. Lines state what is read for the
-/// window's main lobe alone, so that their samples are read ([`rendered_spectrum`]).
+/// Returns the magnitudes, on the reference's grid, that a recording of the voice reads: those of
+/// the model as a Hann window reads them ([`LoadedModel::read_magnitude`]), without chance. Lines
+/// state what is read for the window's main lobe alone, so that their samples are read
+/// ([`rendered_spectrum`]).
 ///
 /// # Errors
 /// When the model refuses the parameters, or renders samples that are not finite.
@@ -50,8 +51,8 @@ pub fn rendered_spectrum(
     spectrum_of_samples(&samples, rate_hz, level_rms, reference)
 }
 
-/// Returns the magnitudes of samples of unit RMS at a level, in its unit, on the reference's grid, RMS-averaged;
-/// zero above the samples' Nyquist frequency.
+/// Returns the magnitudes of samples of unit RMS at a level, in its unit, on the reference's grid,
+/// RMS-averaged; zero above the samples' Nyquist frequency.
 ///
 /// # Errors
 /// When there are too few samples, or they are not finite.

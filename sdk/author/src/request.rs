@@ -21,10 +21,7 @@ impl ModelRequest {
     /// Requests a model at its default options.
     #[must_use]
     pub fn new(model: &LoadedModel) -> Self {
-        Self {
-            model: model.clone(),
-            options: model.descriptor().default_options(),
-        }
+        Self { model: model.clone(), options: model.descriptor().default_options() }
     }
 
     #[must_use]
@@ -59,12 +56,13 @@ pub struct AssetRequest {
     pub models: Vec<ModelRequest>,
     pub spectrum: SpectrumOptions,
     pub level: Level,
-    /// Models to try at their default options when a representation has a large band error; those in `models` are
-    /// always tried.
+    /// Models to try at their default options when a representation has a large band error; those
+    /// in `models` are always tried.
     pub alternatives: Vec<LoadedModel>,
     /// Whether to refuse recordings with errors or warnings.
     pub strict: bool,
-    /// A grid of conditions from recordings of a free motion; without it, each recording has one condition.
+    /// A grid of conditions from recordings of a free motion; without it, each recording has one
+    /// condition.
     pub grid: Option<Grid>,
     /// Whether to keep the recorded spectra in the asset.
     pub keep_reference: bool,
@@ -78,10 +76,7 @@ impl AssetRequest {
     /// Requests an asset of this name, without models.
     #[must_use]
     pub fn new(name: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            ..Self::default()
-        }
+        Self { name: name.into(), ..Self::default() }
     }
 
     #[must_use]

@@ -13,13 +13,14 @@ use htex_recording::Sums;
 pub(crate) const SEGMENTS_PER_S: f64 = 5.0;
 /// Half the length of the moving average in which sweeps are detected (50 ms in all), seconds.
 const HALF_AVERAGE_S: f64 = 0.025;
-/// A recording has sweeps if its friction falls below this part of the threshold between them; above it
-/// the finger slides.
+/// A recording has sweeps if its friction falls below this part of the threshold between them;
+/// above it the finger slides.
 const REST_LEVEL: f64 = 0.5;
 /// Longest sliding that a sweep's one segment represents, seconds: ten segments. A sweep across
 /// the paper's samples, 100 mm at 80 mm/s, lasts 1.25 s at most.
 const REPRESENTED_S: f64 = 2.0;
-/// Least part of the sliding that the segments of sweeps must represent; otherwise windows are used.
+/// Least part of the sliding that the segments of sweeps must represent; otherwise windows are
+/// used.
 const REPRESENTED: f64 = 0.5;
 
 /// Defines what is read of a recording, for `spec/recording-findings.md`.
@@ -41,7 +42,8 @@ pub(crate) fn definition() -> String {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum SegmentChoice {
-    /// Sweeps if the recording has them and their segments represent at least half of its sliding, else windows.
+    /// Sweeps if the recording has them and their segments represent at least half of its sliding,
+    /// else windows.
     ///
     /// A segment represents its sweep, but at most 2 s of it.
     #[default]
@@ -49,8 +51,9 @@ pub enum SegmentChoice {
     /// One segment in the middle of each complete sweep (paper, Texture
     /// processing). The middle of a sweep cut off by the beginning or the end is not known.
     Sweeps,
-    /// Windows over the whole recording, each overlapping the previous by half (Welch 1967). Without overlap, Hann
-    /// windows leave half of it unused, and the level of 10 s of noise is uncertain by 0.2 dB.
+    /// Windows over the whole recording, each overlapping the previous by half (Welch 1967).
+    /// Without overlap, Hann windows leave half of it unused, and the level of 10 s of noise is
+    /// uncertain by 0.2 dB.
     Windows,
 }
 
@@ -163,8 +166,8 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
     }
 }
 
-/// Returns for each sample whether the finger slides: the length of the signal's vector, averaged over 50 ms, is at least half of its
-/// mean over the recording.
+/// Returns for each sample whether the finger slides: the length of the signal's vector, averaged
+/// over 50 ms, is at least half of its mean over the recording.
 pub fn sliding(recording: &Recording) -> Vec<bool> {
     let friction = Friction::of(recording);
     let slides = |at| friction.slides(friction.smooth(at));
@@ -176,8 +179,9 @@ pub fn segment_len(rate_hz: f64) -> usize {
     (rate_hz / SEGMENTS_PER_S).round().max(1.0) as usize
 }
 
-/// Computes the length of the signal's vector, sample by sample. The mean of a friction force separates sliding from
-/// rest; the mean of any other quantity (gravity, position, weight) is an offset and is removed.
+/// Computes the length of the signal's vector, sample by sample. The mean of a friction force
+/// separates sliding from rest; the mean of any other quantity (gravity, position, weight) is an
+/// offset and is removed.
 fn resultant(recording: &Recording) -> Sums {
     let mean = |axis: &Vec<f64>| match recording.quantity {
         Quantity::LateralForce => 0.0,
@@ -242,10 +246,7 @@ fn scan(friction: &Friction, shortest: usize) -> Scan {
             (false, Some(from)) => {
                 start = None;
                 if i - from >= shortest {
-                    sweeps.push(Sweep {
-                        start: from,
-                        end: i,
-                    });
+                    sweeps.push(Sweep { start: from, end: i });
                 }
             }
             _ => {}

@@ -60,7 +60,8 @@ pub struct SegmentSpectra {
     pub quantity: Quantity,
     /// The band: 20 to 1000 Hz, or up to half the rate.
     pub band: Band,
-    /// One spectrum per segment on the band's grid; a sinusoid of amplitude A on the grid has magnitude A.
+    /// One spectrum per segment on the band's grid; a sinusoid of amplitude A on the grid has
+    /// magnitude A.
     pub spectra: Vec<Vec<Complex<f64>>>,
     pub segments: Segments,
     /// Warnings, as sentences.
@@ -79,10 +80,12 @@ pub struct TextureSpectrum {
     pub magnitude: Vec<f64>,
     /// Number of averaged segments; 0 if it was computed between two recorded speeds.
     pub segments: usize,
-    /// Repeatability, decibels: the RMS over nine bands of the difference between the spectra of odd and even blocks of time, over √2.
+    /// Repeatability, decibels: the RMS over nine bands of the difference between the spectra of
+    /// odd and even blocks of time, over √2.
     ///
-    /// It is by how much two recordings like this one differ. What is read is cut into at least four equal blocks of 0.2 to 1 s that share no
-    /// sample; a segment in the middle of a sweep is a block. `None` if less is read than four segments that share none, or when half of the
+    /// It is by how much two recordings like this one differ. What is read is cut into at least
+    /// four equal blocks of 0.2 to 1 s that share no sample; a segment in the middle of a sweep is
+    /// a block. `None` if less is read than four segments that share none, or when half of the
     /// blocks are silent.
     pub repeatability_rms_db: Option<f64>,
     /// The segments, windowed and overlap-added to one signal in the band.
@@ -110,19 +113,15 @@ impl TextureSpectrum {
     /// # Errors
     /// When there are no segments, or the quantities or bands differ.
     pub fn average(parts: &[SegmentSpectra], averaging: Averaging) -> Result<Self, AuthorError> {
-        let first = parts.first().ok_or(AuthorError::NoSegments {
-            source_name: String::new(),
-        })?;
+        let first = parts.first().ok_or(AuthorError::NoSegments { source_name: String::new() })?;
         if parts.iter().any(|part| part.quantity != first.quantity) {
             return Err(AuthorError::QuantitiesDiffer);
         }
         if parts.iter().any(|part| part.band != first.band) {
             return Err(AuthorError::BandsDiffer);
         }
-        let all: Vec<&[Complex<f64>]> = parts
-            .iter()
-            .flat_map(|part| part.spectra.iter().map(Vec::as_slice))
-            .collect();
+        let all: Vec<&[Complex<f64>]> =
+            parts.iter().flat_map(|part| part.spectra.iter().map(Vec::as_slice)).collect();
         let spans: Vec<Span> = parts.iter().enumerate().flat_map(spans_of).collect();
         let (quantity, band) = (first.quantity, first.band);
         Ok(Self::of(quantity, band, &all, &spans, averaging))
@@ -176,18 +175,14 @@ impl TextureSpectrum {
 pub(crate) fn spans_of((take, part): (usize, &SegmentSpectra)) -> impl Iterator<Item = Span> {
     let len = part.segments.len as f64;
     let starts = part.segments.starts.iter().take(part.spectra.len());
-    starts.map(move |&start| Span {
-        take,
-        from: start as f64 / len,
-        to: start as f64 / len + 1.0,
-    })
+    starts.map(move |&start| Span { take, from: start as f64 / len, to: start as f64 / len + 1.0 })
 }
 
 /// Cuts a recording into segments and computes their spectra.
 ///
 /// # Errors
-/// When the rate leaves no useful band, no segment is found, or the setup's response cannot be divided
-/// by.
+/// When the rate leaves no useful band, no segment is found, or the setup's response cannot be
+/// divided by.
 pub fn segment_spectra(
     recording: &Recording,
     options: &SpectrumOptions,
@@ -215,11 +210,8 @@ pub(crate) fn spectra_of(
     let mut segments = choose_segments(recording, options.segments);
     keep(&mut segments)?;
     check_segments(recording, &segments, &mut warnings)?;
-    let inverse = options
-        .response
-        .as_ref()
-        .map(|r| inverse_response(r, band, &mut warnings))
-        .transpose()?;
+    let inverse =
+        options.response.as_ref().map(|r| inverse_response(r, band, &mut warnings)).transpose()?;
     let mut spectra = Vec::with_capacity(segments.starts.len());
     let mut reader = SegmentReader::new(segments.len, band, trend);
     for &start in &segments.starts {
@@ -229,28 +221,15 @@ pub(crate) fn spectra_of(
         }
         spectra.push(bins);
     }
-    Ok(SegmentSpectra {
-        quantity: recording.quantity,
-        band,
-        spectra,
-        segments,
-        warnings,
-    })
+    Ok(SegmentSpectra { quantity: recording.quantity, band, spectra, segments, warnings })
 }
 
 fn usable_band(recording: &Recording, warnings: &mut Vec<String>) -> Result<Band, AuthorError> {
     let (source, rate_hz) = (&recording.source, recording.rate_hz);
     let nyquist_hz = 0.5 * rate_hz;
-    let band = Band {
-        high_hz: Band::TACTILE.high_hz.min(nyquist_hz),
-        ..Band::TACTILE
-    };
+    let band = Band { high_hz: Band::TACTILE.high_hz.min(nyquist_hz), ..Band::TACTILE };
     if nyquist_hz <= band.low_hz || band.bins() < FEWEST_BINS {
-        return Err(AuthorError::RateTooLow {
-            source_name: source.clone(),
-            rate_hz,
-            nyquist_hz,
-        });
+        return Err(AuthorError::RateTooLow { source_name: source.clone(), rate_hz, nyquist_hz });
     }
     if band.high_hz < Band::TACTILE.high_hz {
         warnings.push(format!(
@@ -284,9 +263,7 @@ fn check_segments(
         });
     }
     match segments.starts.len() {
-        0 => Err(AuthorError::NoSegments {
-            source_name: source.clone(),
-        }),
+        0 => Err(AuthorError::NoSegments { source_name: source.clone() }),
         n @ 1..=2 => {
             warnings.push(format!(
                 "{source}: {n} segment{} of 0.2 s: an average of so few is noisy; record for 10 s",
@@ -311,10 +288,7 @@ fn inverse_response(
         .map(|(re, im)| Complex::new(re, im))
         .collect();
     let largest = response.largest_in(band);
-    let broken = values
-        .iter()
-        .map(|h| magnitude(*h))
-        .find(|h| !h.is_finite());
+    let broken = values.iter().map(|h| magnitude(*h)).find(|h| !h.is_finite());
     if let Some(largest) = broken.or(Some(largest).filter(|l| *l < SMALLEST_RESPONSE)) {
         return Err(AuthorError::Response { largest });
     }
@@ -358,7 +332,8 @@ fn inverse(h: Complex<f64>, floor: f64) -> Complex<f64> {
     h.conj() / (norm * norm.max(floor))
 }
 
-/// Computes spectra of segments: mean removed, Hann window, FFT; axes folded into one (Landin 2010).
+/// Computes spectra of segments: mean removed, Hann window, FFT; axes folded into one (Landin
+/// 2010).
 pub(crate) struct SegmentReader {
     analyzer: SegmentAnalyzer,
     len: usize,
@@ -368,12 +343,7 @@ pub(crate) struct SegmentReader {
 
 impl SegmentReader {
     pub(crate) fn new(len: usize, band: Band, trend: Trend) -> Self {
-        Self {
-            analyzer: SegmentAnalyzer::new(len),
-            len,
-            band,
-            trend,
-        }
+        Self { analyzer: SegmentAnalyzer::new(len), len, band, trend }
     }
 
     pub(crate) fn read(
@@ -390,9 +360,7 @@ impl SegmentReader {
                 Trend::Mean => Cow::Borrowed(segment),
                 Trend::Linear => Cow::Owned(without_line(segment)),
             };
-            self.analyzer
-                .analyze(&level, &mut bins)
-                .map_err(|_| AuthorError::BandsDiffer)?;
+            self.analyzer.analyze(&level, &mut bins).map_err(|_| AuthorError::BandsDiffer)?;
             let in_band = self.band.first_bin()..=self.band.last_bin();
             let bin = |k: usize| bins.get(k).copied().unwrap_or_default();
             spectra.push(in_band.map(bin).collect::<Vec<_>>());
@@ -403,7 +371,8 @@ impl SegmentReader {
     }
 }
 
-/// Subtracts the straight line of least squares through equally spaced samples, except for its mean.
+/// Subtracts the straight line of least squares through equally spaced samples, except for its
+/// mean.
 pub(crate) fn without_line(segment: &[f64]) -> Vec<f64> {
     let middle = 0.5 * (segment.len() as f64 - 1.0);
     let place = |i: usize| i as f64 - middle;
@@ -437,7 +406,8 @@ pub(crate) fn each_frame(
     for (i, spectrum) in all.iter().enumerate() {
         bins.fill(Complex::new(0.0, 0.0));
         for (bin, x) in bins[band.first_bin()..].iter_mut().zip(*spectrum) {
-            // The windowed sinusoid of amplitude A has magnitude A; the mean of its window is a half.
+            // The windowed sinusoid of amplitude A has magnitude A; the mean of its window is a
+            // half.
             *bin = x * 0.25;
         }
         fft.inverse(&bins, &mut frame);

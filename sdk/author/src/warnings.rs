@@ -39,9 +39,7 @@ impl Warnings {
 
 impl Warning {
     fn into_notice(self) -> Notice {
-        let Self {
-            recordings, text, ..
-        } = self;
+        let Self { recordings, text, .. } = self;
         match recordings.len() {
             1 => self.notice,
             n => Notice {

@@ -31,7 +31,8 @@ struct Expected {
     below: bool,
 }
 
-/// `tests/peers/felt.py` has a complex impedance, a threshold in decibels over decades, and bands by their edges: 1e-6 dB.
+/// `tests/peers/felt.py` has a complex impedance, a threshold in decibels over decades, and bands
+/// by their edges: 1e-6 dB.
 #[test]
 fn another_program_feels_the_same() {
     let text = include_str!("../../../tests/golden/felt.json");
@@ -52,25 +53,9 @@ fn agrees(name: &str, found: &Felt, expected: &Expected) {
     let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
     let bands = found.error_db.iter().zip(&expected.error_db);
     assert_eq!(found.error_db.len(), expected.error_db.len(), "{name}");
-    assert!(
-        bands.into_iter().all(|(a, b)| near(*a, *b)),
-        "{name}: {found:?}"
-    );
-    assert!(
-        near(found.error_rms_db, expected.error_rms_db),
-        "{name}: {found:?}"
-    );
-    assert!(
-        near(found.largest_error_db, expected.largest_error_db),
-        "{name}: {found:?}"
-    );
-    assert!(
-        near(found.total_error_db, expected.total_error_db),
-        "{name}: {found:?}"
-    );
-    assert_eq!(
-        found.is_below_difference_threshold(),
-        expected.below,
-        "{name}"
-    );
+    assert!(bands.into_iter().all(|(a, b)| near(*a, *b)), "{name}: {found:?}");
+    assert!(near(found.error_rms_db, expected.error_rms_db), "{name}: {found:?}");
+    assert!(near(found.largest_error_db, expected.largest_error_db), "{name}: {found:?}");
+    assert!(near(found.total_error_db, expected.total_error_db), "{name}: {found:?}");
+    assert_eq!(found.is_below_difference_threshold(), expected.below, "{name}");
 }

@@ -52,10 +52,8 @@ fn errors_db(asset: &Asset, model: &str, options: &SimulationOptions, count: usi
     let truth = options.truth().unwrap();
     let rig = options.setup_response().unwrap();
     let conditions = &asset.manifest().conditions;
-    let points: Vec<[f64; 2]> = conditions
-        .iter()
-        .map(|c| [c.speed_mm_s.unwrap(), c.force_n.unwrap()])
-        .collect();
+    let points: Vec<[f64; 2]> =
+        conditions.iter().map(|c| [c.speed_mm_s.unwrap(), c.force_n.unwrap()]).collect();
     let mesh = Mesh::new(&points);
     let mut random = Normal::new(99);
     let mut errors = Vec::new();
@@ -93,11 +91,7 @@ fn one_free_recording_gives_the_truth_inside_the_mesh() {
     let report = fitted.grid.clone().unwrap();
     let conditions = &fitted.asset.manifest.conditions;
     assert!(conditions.len() >= 18 && conditions.len() == fitted.spectra.len());
-    assert!(
-        conditions
-            .iter()
-            .all(|c| c.segments.is_some_and(|n| n >= 8))
-    );
+    assert!(conditions.iter().all(|c| c.segments.is_some_and(|n| n >= 8)));
     assert!(!report.triangles.is_empty() && report.steady < report.windows);
     assert!(fitted.findings.is_empty(), "{:?}", fitted.findings);
     assert!(report.one_condition_rms_db.unwrap() > 2.0 * report.left_out_rms_db.unwrap());
@@ -109,10 +103,7 @@ fn one_free_recording_gives_the_truth_inside_the_mesh() {
     }
     let [slow, fast] = [0, report.speed_mm_s.len() - 1].map(|i| report.speed_mm_s[i]);
     assert!(slow < 45.0 && fast > 220.0, "{slow} to {fast} mm/s");
-    assert_eq!(
-        fitted.asset.manifest.provenance.recordings[0].segments,
-        report.steady as u64
-    );
+    assert_eq!(fitted.asset.manifest.provenance.recordings[0].segments, report.steady as u64);
     // The left-out error, known without the truth, bounds what a player does.
     let at = &fitted.asset.manifest.representations[0].at;
     let left: Vec<f64> = at.iter().filter_map(left_out_db).collect();
@@ -124,37 +115,29 @@ fn one_free_recording_gives_the_truth_inside_the_mesh() {
         errors[(part * last) as usize]
     });
     println!("median {half:.2}, 95 % {most:.2}, worst {all:.2} dB; left out {left_db:.2} dB");
-    assert!(
-        half < 0.7 && most < 1.0 && all < 1.3,
-        "{half}, {most}, {all} dB"
-    );
+    assert!(half < 0.7 && most < 1.0 && all < 1.3, "{half}, {most}, {all} dB");
     assert!(left_db < 1.2 && left_db > half);
 }
 
-/// So it is where frequencies stay, the level rises with the speed, and the finger leaves the surface a fifth of the time.
+/// So it is where frequencies stay, the level rises with the speed, and the finger leaves the
+/// surface a fifth of the time.
 #[test]
 fn a_hand_that_lifts_over_no_relief_gives_the_truth_inside_the_mesh() {
-    let departures = Departures::default()
-        .with_frequency_speed(0.0)
-        .with_level_speed(0.5)
-        .with_level_force(0.3);
+    let departures =
+        Departures::default().with_frequency_speed(0.0).with_level_speed(0.5).with_level_force(0.3);
     let in_contact = free(Surface::Sandpaper, 120.0).with_departures(departures);
-    let lifting = in_contact
-        .clone()
-        .with_departures(departures.with_lifted(0.2));
+    let lifting = in_contact.clone().with_departures(departures.with_lifted(0.2));
     let errors = thirds(&in_contact, fit_at_finger(&lifting, &["bands"]));
     let [half, most] = [0.5, 0.95].map(|part| errors[(part * errors.len() as f64) as usize]);
     println!("median {half:.2}, 95 % {most:.2} dB");
     assert!(half < 0.7 && most < 1.0, "{half}, {most} dB");
 }
 
-/// Noise whose level follows the law that is assumed of an unknown contact and rises in time by some decibels, over a motion whose speed
-/// and force vary by a quarter.
+/// Noise whose level follows the law that is assumed of an unknown contact and rises in time by
+/// some decibels, over a motion whose speed and force vary by a quarter.
 fn noise(seconds: f64, rise_db: f64) -> Take {
     const RATE_HZ: f64 = 2000.0;
-    let times: Vec<f64> = (0..(seconds * RATE_HZ) as usize)
-        .map(|at| at as f64 / RATE_HZ)
-        .collect();
+    let times: Vec<f64> = (0..(seconds * RATE_HZ) as usize).map(|at| at as f64 / RATE_HZ).collect();
     let speed = |t: &f64| 100.0 * (0.25 * (2.0 * t).sin()).exp();
     let normal = |t: &f64| (0.25 * (2.7 * t).sin()).exp();
     let mut random = Normal::new(5);
@@ -167,14 +150,13 @@ fn noise(seconds: f64, rise_db: f64) -> Take {
     let recording = recording.with_speed(times.iter().map(speed).collect());
     let recording = recording.unwrap();
     Take {
-        recording: recording
-            .with_normal(times.iter().map(normal).collect())
-            .unwrap(),
+        recording: recording.with_normal(times.iter().map(normal).collect()).unwrap(),
         given: Exploration::default(),
     }
 }
 
-/// What is left out is another time, so a texture that drifts is further from it than noise alone is.
+/// What is left out is another time, so a texture that drifts is further from it than noise alone
+/// is.
 #[test]
 fn what_drifts_is_in_the_left_out_error() {
     let [still, drifting] = [0.0, 8.0].map(|rise_db| {
@@ -192,10 +174,7 @@ fn a_grid_that_is_no_better_than_one_condition_is_found() {
     let report = fitted.grid.unwrap();
     let (grid, one) = (report.left_out_rms_db, report.one_condition_rms_db);
     assert!(one.unwrap() <= grid.unwrap(), "{one:?} {grid:?}");
-    let found = fitted
-        .findings
-        .iter()
-        .find(|f| f.finding.code == "GRID_NOT_BETTER");
+    let found = fitted.findings.iter().find(|f| f.finding.code == "GRID_NOT_BETTER");
     assert_eq!(found.unwrap().recording, "noise.csv");
     let warnings = &fitted.asset.manifest.provenance.warnings;
     assert!(warnings.iter().any(|w| w.contains("GRID_NOT_BETTER")));
@@ -207,13 +186,8 @@ fn given_lines_are_the_conditions_and_far_lines_stay_empty() {
     let takes = [take(&options)];
     let grid = Grid::parse(["speed=60,90,135,1000", "force=0.5,1.5"]).unwrap();
     let fitted = fit(&takes, &["bands"], grid);
-    let speeds: Vec<f64> = fitted
-        .asset
-        .manifest
-        .conditions
-        .iter()
-        .map(|c| c.speed_mm_s.unwrap())
-        .collect();
+    let speeds: Vec<f64> =
+        fitted.asset.manifest.conditions.iter().map(|c| c.speed_mm_s.unwrap()).collect();
     assert_eq!(speeds, [60.0, 60.0, 90.0, 90.0, 135.0, 135.0]);
     let report = fitted.grid.unwrap();
     let at = |speed, force| report.cell(speed, force).unwrap().status;
@@ -225,14 +199,7 @@ fn given_lines_are_the_conditions_and_far_lines_stay_empty() {
     };
     let halves = [half(None, Some(15.0)), half(Some(15.0), None)];
     let grid = Grid::parse(["speed=60,90,135", "force=0.5,1.5"]).unwrap();
-    assert_eq!(
-        fit(&halves, &["bands"], grid)
-            .asset
-            .manifest
-            .conditions
-            .len(),
-        6
-    );
+    assert_eq!(fit(&halves, &["bands"], grid).asset.manifest.conditions.len(), 6);
 }
 
 #[test]
@@ -248,10 +215,7 @@ fn recordings_without_a_free_motion_are_refused_with_what_to_do() {
     };
     let one = Exploration::default();
     let moving = take(&free(Surface::Vinyl, 10.0)).recording;
-    let still = Recording {
-        speed_mm_s: None,
-        ..moving.clone()
-    };
+    let still = Recording { speed_mm_s: None, ..moving.clone() };
     assert!(refused(still, one, "auto").contains("the speed is not in the file"));
     let constant = SimulationOptions::new(Surface::Vinyl).with_rate_hz(5_000.0);
     let constant = simulate(&constant).unwrap().to_recording("sweeps").unwrap();
@@ -261,31 +225,16 @@ fn recordings_without_a_free_motion_are_refused_with_what_to_do() {
     let short = moving.clone().between(None, Some(1.0)).unwrap();
     assert!(refused(short, one, "auto").contains("record for longer"));
     let restless = Recording {
-        speed_mm_s: Some(
-            (0..moving.samples())
-                .map(|i| (i / 200 % 2) as f64 * 100.0)
-                .collect(),
-        ),
+        speed_mm_s: Some((0..moving.samples()).map(|i| (i / 200 % 2) as f64 * 100.0).collect()),
         ..moving.clone()
     };
     assert!(refused(restless, one, "auto").contains("stroke more evenly"));
     // A given force stands for a column, and leaves lines of speed alone.
-    let unpressed = Recording {
-        normal_n: None,
-        ..moving
-    };
-    let given = Exploration {
-        force_n: Some(0.5),
-        ..one
-    };
+    let unpressed = Recording { normal_n: None, ..moving };
+    let given = Exploration { force_n: Some(0.5), ..one };
     assert!(refused(unpressed.clone(), one, "auto").contains("the normal force"));
-    let request = AssetRequest::new("x")
-        .with_models(bands)
-        .with_grid(Grid::default());
-    let take = Take {
-        recording: unpressed,
-        given,
-    };
+    let request = AssetRequest::new("x").with_models(bands).with_grid(Grid::default());
+    let take = Take { recording: unpressed, given };
     let fitted = fit_asset(&[take], &request).unwrap();
     assert_eq!(fitted.grid.unwrap().force_n, [0.5]);
     for (text, why) in [
@@ -301,7 +250,8 @@ fn recordings_without_a_free_motion_are_refused_with_what_to_do() {
     assert!(Grid::parse(["speed=1", "speed=2"]).is_err());
 }
 
-/// The numbers of `docs/free-motion.md`: `cargo xtask prove grids` takes all models and surfaces, a test Bands on vinyl.
+/// The numbers of `docs/free-motion.md`: `cargo xtask prove grids` takes all models and surfaces, a
+/// test Bands on vinyl.
 #[test]
 fn errors_inside_the_mesh_stay_small() {
     let (models, surfaces) = if xtask::prove::whole() {

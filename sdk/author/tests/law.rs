@@ -1,5 +1,5 @@
-//! Laws of simulated surfaces, of some that are a relief and of some that are not: what recordings tell, and what plays outside
-//! of them.
+//! Laws of simulated surfaces, of some that are a relief and of some that are not: what recordings
+//! tell, and what plays outside of them.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -32,10 +32,8 @@ fn recorded(
         let simulation = simulate(&steady(surface, departures, *motion)).unwrap();
         let mut recording = simulation.to_recording("steady.csv").unwrap();
         recording.simulated = contact == Contact::Finger;
-        let given = Exploration {
-            speed_mm_s: Some(motion.speed_mm_s),
-            force_n: Some(motion.force_n),
-        };
+        let given =
+            Exploration { speed_mm_s: Some(motion.speed_mm_s), force_n: Some(motion.force_n) };
         Take { recording, given }
     };
     let takes: Vec<Take> = motions.iter().map(take).collect();
@@ -60,30 +58,22 @@ fn motions<const N: usize>(motions: [(f64, f64); N]) -> [Motion; N] {
     motions.map(|(speed, force)| Motion::new(speed, force))
 }
 
-/// A relief, whose frequencies follow the speed and whose level follows the force, and a surface that keeps its frequencies; each with
-/// its exponents and a contact of which others are assumed.
+/// A relief, whose frequencies follow the speed and whose level follows the force, and a surface
+/// that keeps its frequencies; each with its exponents and a contact of which others are assumed.
 fn kinds() -> [(&'static str, Departures, [f64; 3], Contact); 2] {
     let relief = Departures::default();
-    let other = relief
-        .with_frequency_speed(0.0)
-        .with_level_speed(0.5)
-        .with_level_force(0.3);
+    let other = relief.with_frequency_speed(0.0).with_level_speed(0.5).with_level_force(0.3);
     [
         ("relief", relief, [1.0, 0.0, 1.0], Contact::Unknown),
         ("other", other, [0.0, 0.5, 0.3], Contact::Finger),
     ]
 }
 
-/// Three speeds and two forces tell the exponents, on every surface although others are assumed of the contact.
+/// Three speeds and two forces tell the exponents, on every surface although others are assumed of
+/// the contact.
 #[test]
 fn exponents_of_simulated_surfaces_are_found() {
-    let recorded_at = motions([
-        (40.0, 0.3),
-        (80.0, 0.3),
-        (160.0, 0.3),
-        (40.0, 1.2),
-        (160.0, 1.2),
-    ]);
+    let recorded_at = motions([(40.0, 0.3), (80.0, 0.3), (160.0, 0.3), (40.0, 1.2), (160.0, 1.2)]);
     for surface in Surface::ALL {
         for (kind, departures, [a, b, c], contact) in kinds() {
             let law = law(&recorded(surface, departures, contact, &recorded_at));
@@ -127,7 +117,8 @@ fn without_computed(asset: &Asset) -> Asset {
     Asset::new(data)
 }
 
-/// Between recorded speeds the lines of a relief move instead of fading into each other, and nothing is computed where they stay.
+/// Between recorded speeds the lines of a relief move instead of fading into each other, and
+/// nothing is computed where they stay.
 #[test]
 fn lines_move_between_recorded_speeds() {
     let recorded_at = motions([(40.0, 0.4), (80.0, 0.4), (160.0, 0.4)]);
@@ -136,10 +127,7 @@ fn lines_move_between_recorded_speeds() {
             let asset = recorded(surface, departures, contact, &recorded_at);
             let plain = without_computed(&asset);
             let count = |asset: &Asset| asset.manifest().conditions.len();
-            assert_eq!(
-                [count(&plain), count(&asset)],
-                [3, if a == 1.0 { 9 } else { 3 }]
-            );
+            assert_eq!([count(&plain), count(&asset)], [3, if a == 1.0 { 9 } else { 3 }]);
             for between in motions([(57.0, 0.4), (113.0, 0.4)]) {
                 let (grid, truth) = true_spectrum(surface, departures, between);
                 let error_db = |asset: &Asset| {
@@ -157,7 +145,8 @@ fn lines_move_between_recorded_speeds() {
     }
 }
 
-/// Of two speeds, what plays an octave beyond them is nearer to the truth than the nearest recording, on both kinds.
+/// Of two speeds, what plays an octave beyond them is nearer to the truth than the nearest
+/// recording, on both kinds.
 #[test]
 fn what_plays_outside_is_nearer_than_the_nearest_recording() {
     let recorded_at = motions([(40.0, 0.4), (80.0, 0.4)]);
@@ -165,7 +154,8 @@ fn what_plays_outside_is_nearer_than_the_nearest_recording() {
     for surface in Surface::ALL {
         for (kind, departures, _, contact) in kinds() {
             let (grid, truth) = true_spectrum(surface, departures, beyond);
-            // What the recording at 80 mm/s has below 20 Hz is not known, and would be below 40 Hz here.
+            // What the recording at 80 mm/s has below 20 Hz is not known, and would be below 40 Hz
+            // here.
             let known = grid.partition_point(|hz| *hz < 40.0);
             let asset = recorded(surface, departures, contact, &recorded_at);
             let of = |motion| asset.magnitude(None, Some(motion), &grid).unwrap();
@@ -177,10 +167,7 @@ fn what_plays_outside_is_nearer_than_the_nearest_recording() {
             println!(
                 "{surface}, {kind}, {contact:?}: {follows:.2} dB, the nearest recording {clamped:.2} dB"
             );
-            assert!(
-                follows < 2.1 && follows < clamped - 0.5,
-                "{follows} {clamped}"
-            );
+            assert!(follows < 2.1 && follows < clamped - 0.5, "{follows} {clamped}");
         }
     }
 }

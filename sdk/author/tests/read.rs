@@ -46,15 +46,11 @@ fn measures_of_magnitudes_are_those_of_the_voice() {
             };
             let [stated, heard] = [read, voice].map(|m| agreement(reference, &at_level(&m)));
             let name = model.short_name();
-            for measure in [
-                Measure::NineBand,
-                Measure::ThirdOctave,
-                Measure::LogSpectral,
-            ] {
+            for measure in [Measure::NineBand, Measure::ThirdOctave, Measure::LogSpectral] {
                 let [stated, heard] = [&stated, &heard].map(|a| a.get(measure).unwrap());
                 println!("{surface} {name} {measure:?}: {stated:.3} {heard:.3} dB");
-                // 0.3 dB is chance and the edges of voices. Large errors are those of bands next to empty, where the voice is read
-                // through the side lobes of the window, too.
+                // 0.3 dB is chance and the edges of voices. Large errors are those of bands next to
+                // empty, where the voice is read through the side lobes of the window, too.
                 let tolerance_db = f64::max(0.3, 0.06 * heard);
                 assert!(
                     (stated - heard).abs() < tolerance_db,
@@ -65,7 +61,8 @@ fn measures_of_magnitudes_are_those_of_the_voice() {
     }
 }
 
-/// A filter loses up to half the power near half its own rate when it is played; the stored level makes up for it.
+/// A filter loses up to half the power near half its own rate when it is played; the stored level
+/// makes up for it.
 #[test]
 fn a_filter_plays_at_the_level_of_a_recording_near_half_its_rate() {
     let mut spectrum = spectrum(Surface::Sandpaper);
@@ -85,15 +82,9 @@ fn a_filter_plays_at_the_level_of_a_recording_near_half_its_rate() {
         let [before, after] = [recorded, stored.unwrap()].map(off_db);
         println!("{name}: {before:.2} dB at the recording's level, {after:.2} dB as stored");
         // 0.3 dB is chance.
-        assert!(
-            before < -0.6 && after.abs() < 0.3,
-            "{name}: {before} {after}"
-        );
+        assert!(before < -0.6 && after.abs() < 0.3, "{name}: {before} {after}");
         let part = model.played_part(&fit.parameters, spectrum.band).unwrap();
         let read = read_spectrum(model, &fit.parameters, 1.0, reference).unwrap();
-        assert!(
-            (level_rms(&read) - part).abs() < 1e-9 && part < 0.93,
-            "{part}"
-        );
+        assert!((level_rms(&read) - part).abs() < 1e-9 && part < 0.93, "{part}");
     }
 }

@@ -12,10 +12,7 @@ const RATE_HZ: f64 = 48_000.0;
 
 fn take(surface: Surface) -> Take {
     let simulation = simulate(&SimulationOptions::new(surface)).unwrap();
-    Take {
-        recording: simulation.to_recording("surface").unwrap(),
-        given: Exploration::default(),
-    }
+    Take { recording: simulation.to_recording("surface").unwrap(), given: Exploration::default() }
 }
 
 fn spectrum(recording: &Recording, options: &SpectrumOptions) -> TextureSpectrum {
@@ -23,8 +20,9 @@ fn spectrum(recording: &Recording, options: &SpectrumOptions) -> TextureSpectrum
     TextureSpectrum::average(&[part], options.averaging).unwrap()
 }
 
-/// Largest errors of nine bands, dB: of windows, which share their signal with their neighbours, and of the eight segments of four sweeps, each
-/// second of which fades to another stretch, and is read with it by windows that lie across both.
+/// Largest errors of nine bands, dB: of windows, which share their signal with their neighbours,
+/// and of the eight segments of four sweeps, each second of which fades to another stretch, and is
+/// read with it by windows that lie across both.
 const WITHIN_DB: [f64; 2] = [0.5, 0.6];
 
 /// Two turns of a loop have the spectrum and the level of its recording, of windows and of sweeps.
@@ -39,22 +37,17 @@ fn a_loop_has_the_spectrum_of_its_recording() {
             let twice = made.samples.repeat(2);
             let again = Recording::new("loop", RATE_HZ, vec![twice]).unwrap();
             let windows = SpectrumOptions::default().with_segments(SegmentChoice::Windows);
-            let (first, second) = (
-                spectrum(&take.recording, &options),
-                spectrum(&again, &windows),
-            );
+            let (first, second) = (spectrum(&take.recording, &options), spectrum(&again, &windows));
             let found = agreement(first.as_ref(), &second.magnitude);
             let error_db = found.get(Measure::NineBand).unwrap();
-            println!(
-                "{surface} {choice:?}: {error_db:.3} dB, {} segments",
-                made.segments
-            );
+            println!("{surface} {choice:?}: {error_db:.3} dB, {} segments", made.segments);
             assert!(error_db < within_db, "{surface} {choice:?}: {error_db} dB");
         }
     }
 }
 
-/// The samples are those of the recording: a sinusoid stays one through all segments, and there is no step at the seam.
+/// The samples are those of the recording: a sinusoid stays one through all segments, and there is
+/// no step at the seam.
 #[test]
 fn a_loop_is_the_recorded_signal() {
     let hertz = 150.0;
@@ -67,7 +60,8 @@ fn a_loop_is_the_recorded_signal() {
     let options = SpectrumOptions::default().with_segments(SegmentChoice::Windows);
     let made = RecordedLoop::of(&take, &options, false, 8000.0).unwrap();
     assert_eq!(made.samples.len(), made.segments * 800);
-    // Between the first half segment and the seam; the level is that of the spectrum, which is as near.
+    // Between the first half segment and the seam; the level is that of the spectrum, which is as
+    // near.
     let inside = made.samples.iter().zip(&samples).skip(800);
     let worst = inside.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(worst < 0.004, "{worst}");
@@ -81,9 +75,6 @@ fn rates_that_do_not_fit_are_refused() {
     let take = take(Surface::Vinyl);
     for rate_hz in [0.0, -10.0, 2000.0, 8005.0, 1e6, f64::NAN] {
         let made = RecordedLoop::of(&take, &SpectrumOptions::default(), false, rate_hz);
-        assert!(
-            matches!(made, Err(AuthorError::LoopRate { .. })),
-            "{rate_hz}"
-        );
+        assert!(matches!(made, Err(AuthorError::LoopRate { .. })), "{rate_hz}");
     }
 }

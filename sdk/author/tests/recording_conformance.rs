@@ -1,4 +1,5 @@
-//! The conformance recordings of `spec/` with their reports, the page of findings, and valid recordings without findings.
+//! The conformance recordings of `spec/` with their reports, the page of findings, and valid
+//! recordings without findings.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/recordings.rs"]
@@ -28,10 +29,7 @@ fn conformance() -> PathBuf {
 fn generated_recordings_reports_and_page_are_fresh() {
     let mut files = Vec::new();
     for case in cases() {
-        let recording = (
-            format!("{FOLDER}/{}", case.file()),
-            case.text.as_bytes().to_vec(),
-        );
+        let recording = (format!("{FOLDER}/{}", case.file()), case.text.as_bytes().to_vec());
         // The report is that of the recording as a file.
         file(&recording.0, &recording.1);
         let report = case.golden(&conformance()).into_bytes();
@@ -60,14 +58,8 @@ fn recordings_raise_the_code_they_are_named_after_and_every_code_has_one() {
             raised.insert(code);
         }
         let is_raised = findings.iter().any(|finding| of(finding, "code") == own);
-        assert!(
-            is_raised || case.name == "valid",
-            "{}: {findings:?}",
-            case.name
-        );
-        let worst = findings
-            .iter()
-            .any(|finding| of(finding, "severity") == "error");
+        assert!(is_raised || case.name == "valid", "{}: {findings:?}", case.name);
+        let worst = findings.iter().any(|finding| of(finding, "severity") == "error");
         assert_eq!(golden["valid"], !worst, "{}", case.name);
     }
     let silent: Vec<_> = RULES
@@ -78,8 +70,8 @@ fn recordings_raise_the_code_they_are_named_after_and_every_code_has_one() {
     assert!(silent.is_empty(), "{silent:?}");
 }
 
-/// The simulated hand varies by a few percent, and the surfaces have knots and ribs: the only finding is a
-/// sweep that is cut off.
+/// The simulated hand varies by a few percent, and the surfaces have knots and ribs: the only
+/// finding is a sweep that is cut off.
 #[test]
 fn sound_recordings_at_any_rate_and_speed_have_no_warning() {
     let surfaces = [
@@ -90,42 +82,29 @@ fn sound_recordings_at_any_rate_and_speed_have_no_warning() {
         Surface::Vinyl,
     ];
     for surface in surfaces {
-        for (rate_hz, speed_mm_s, seed) in [
-            (20_000.0, 80.0, 1),
-            (2_000.0, 120.0, 2),
-            (1_000.0, 160.0, 3),
-        ] {
+        for (rate_hz, speed_mm_s, seed) in
+            [(20_000.0, 80.0, 1), (2_000.0, 120.0, 2), (1_000.0, 160.0, 3)]
+        {
             let options = SimulationOptions::new(surface)
                 .with_rate_hz(rate_hz)
                 .with_speed_mm_s(speed_mm_s)
                 .with_seed(seed);
             let recording = simulate(&options).unwrap().to_recording("sound").unwrap();
-            let target = Exploration {
-                speed_mm_s: Some(speed_mm_s),
-                force_n: Some(0.4),
-            };
+            let target = Exploration { speed_mm_s: Some(speed_mm_s), force_n: Some(0.4) };
             for given in [target, Exploration::default()] {
-                let take = Take {
-                    recording: recording.clone(),
-                    given,
-                };
+                let take = Take { recording: recording.clone(), given };
                 let reading = read_take(&take, &SpectrumOptions::default(), false).unwrap();
                 assert!(reading.part.segments.from_sweeps);
-                let grave: Vec<_> = reading
-                    .findings
-                    .iter()
-                    .filter(|f| f.severity != Severity::Info)
-                    .collect();
-                assert!(
-                    grave.is_empty(),
-                    "{surface} {rate_hz} {speed_mm_s}: {grave:?}"
-                );
+                let grave: Vec<_> =
+                    reading.findings.iter().filter(|f| f.severity != Severity::Info).collect();
+                assert!(grave.is_empty(), "{surface} {rate_hz} {speed_mm_s}: {grave:?}");
             }
         }
     }
 }
 
-/// Two recordings of one condition whose levels differ are found by the fit that averages them, and refused by a strict one.
+/// Two recordings of one condition whose levels differ are found by the fit that averages them, and
+/// refused by a strict one.
 #[test]
 fn recordings_of_one_condition_with_different_levels_are_found() {
     let take = |gain: f64, name: &str| {
@@ -133,22 +112,16 @@ fn recordings_of_one_condition_with_different_levels_are_found() {
         let mut recording = simulation.unwrap().to_recording(name).unwrap();
         let values = recording.axes.iter_mut().flatten();
         values.for_each(|x| *x *= gain);
-        let given = Exploration {
-            speed_mm_s: Some(80.0),
-            force_n: Some(0.4),
-        };
+        let given = Exploration { speed_mm_s: Some(80.0), force_n: Some(0.4) };
         Take { recording, given }
     };
     let registry = htex_host::Registry::builtin();
     let fit = |gains: &[f64], strict: bool| {
         let names = ["one", "two", "three"];
         let takes: Vec<Take> = gains.iter().zip(names).map(|(g, n)| take(*g, n)).collect();
-        let models = vec![htex_author::ModelRequest::new(
-            registry.find("bands").unwrap(),
-        )];
-        let request = htex_author::AssetRequest::new("vinyl")
-            .with_models(models)
-            .with_strict(strict);
+        let models = vec![htex_author::ModelRequest::new(registry.find("bands").unwrap())];
+        let request =
+            htex_author::AssetRequest::new("vinyl").with_models(models).with_strict(strict);
         htex_author::fit_asset(&takes, &request)
     };
     let found = |gains: &[f64]| -> Vec<String> {
@@ -162,10 +135,5 @@ fn recordings_of_one_condition_with_different_levels_are_found() {
     assert_eq!(found(&[1.0, 0.316]), ["two"]);
     assert_eq!(found(&[0.1, 1.0]), ["one"]);
     assert_eq!(found(&[1.0, 1.0, 10.0]), ["three"]);
-    assert!(
-        fit(&[1.0, 0.1], true)
-            .unwrap_err()
-            .to_string()
-            .contains("RECORDING_LEVELS_DIFFER")
-    );
+    assert!(fit(&[1.0, 0.1], true).unwrap_err().to_string().contains("RECORDING_LEVELS_DIFFER"));
 }

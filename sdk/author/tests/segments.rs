@@ -28,10 +28,7 @@ fn friction(seconds: f64, sweeps: &[(f64, f64)]) -> Vec<f64> {
 }
 
 fn read(recording: &Recording, given: Exploration) -> Result<Reading, AuthorError> {
-    let take = Take {
-        recording: recording.clone(),
-        given,
-    };
+    let take = Take { recording: recording.clone(), given };
     read_take(&take, &SpectrumOptions::default(), false)
 }
 
@@ -49,11 +46,7 @@ fn a_sweep_that_the_end_cuts_off_is_left_out() {
     assert!(slowest > 72.0 && fastest < 88.0, "{slowest} {fastest}");
     let codes: Vec<&str> = reading.findings.iter().map(|f| f.code.as_str()).collect();
     assert_eq!(codes, ["RECORDING_SWEEPS_CUT_OFF"]);
-    assert!(
-        reading.notes[0].contains("1 of 9 sweeps left out"),
-        "{:?}",
-        reading.notes
-    );
+    assert!(reading.notes[0].contains("1 of 9 sweeps left out"), "{:?}", reading.notes);
     // The same at the beginning.
     let cut = recording.between(Some(0.6), None).unwrap();
     assert_eq!(choose_segments(&cut, SegmentChoice::Sweeps).cut_off, 2);
@@ -61,9 +54,8 @@ fn a_sweep_that_the_end_cuts_off_is_left_out() {
 
 #[test]
 fn with_a_target_a_segment_counts_within_ten_percent_and_without_one_always() {
-    let sweeps: Vec<(f64, f64)> = (0..6)
-        .map(|n| (1.3 * f64::from(n) + 0.2, 1.3 * f64::from(n) + 1.2))
-        .collect();
+    let sweeps: Vec<(f64, f64)> =
+        (0..6).map(|n| (1.3 * f64::from(n) + 0.2, 1.3 * f64::from(n) + 1.2)).collect();
     let lateral = friction(8.0, &sweeps);
     // The first at 65 mm/s, the second at 80 except for a moment at 95, the others at 80.
     let speed = |at: usize| match at {
@@ -74,19 +66,12 @@ fn with_a_target_a_segment_counts_within_ten_percent_and_without_one_always() {
     let speed: Vec<f64> = (0..lateral.len()).map(speed).collect();
     let recording = Recording::new("r", RATE_HZ, vec![lateral]).unwrap();
     let recording = recording.with_speed(speed).unwrap();
-    let at = |speed_mm_s| Exploration {
-        speed_mm_s,
-        force_n: Some(0.4),
-    };
+    let at = |speed_mm_s| Exploration { speed_mm_s, force_n: Some(0.4) };
     let near = read(&recording, at(Some(81.0))).unwrap();
     assert_eq!(near.part.spectra.len(), 4);
     assert_eq!(near.part.segments.off_target.len(), 2);
     assert_eq!(near.findings[0].code, "RECORDING_OFF_TARGET");
-    assert!(
-        near.warnings[1].contains("2 of 6 segments left out"),
-        "{:?}",
-        near.warnings
-    );
+    assert!(near.warnings[1].contains("2 of 6 segments left out"), "{:?}", near.warnings);
     assert_eq!(near.condition.speed_mm_s, Some(81.0));
     let all = read(&recording, at(None)).unwrap();
     assert_eq!(all.part.spectra.len(), 6);
@@ -94,10 +79,7 @@ fn with_a_target_a_segment_counts_within_ten_percent_and_without_one_always() {
     assert_eq!(all.spread.speed_mm_s, Some([65.0, 95.0]));
     assert_eq!(all.findings[0].code, "RECORDING_UNSTEADY");
     let none = read(&recording, at(Some(200.0))).unwrap_err().to_string();
-    assert!(
-        none.contains("all 6 segments") && none.contains("10 %"),
-        "{none}"
-    );
+    assert!(none.contains("all 6 segments") && none.contains("10 %"), "{none}");
 }
 
 #[test]
@@ -119,23 +101,14 @@ fn a_long_stroke_is_read_all_along_and_sweeps_in_their_middles() {
 #[test]
 fn readings_that_no_finger_makes_do_not_move_the_condition() {
     let lateral = friction(3.0, &[(0.2, 1.2), (1.5, 2.5)]);
-    let mut normal: Vec<f64> = (0..lateral.len())
-        .map(|at| 1.0 + 0.02 * noise(at))
-        .collect();
+    let mut normal: Vec<f64> = (0..lateral.len()).map(|at| 1.0 + 0.02 * noise(at)).collect();
     normal[700] = 36_870.0;
     let recording = Recording::new("r", RATE_HZ, vec![lateral]).unwrap();
     let recording = recording.with_normal(normal).unwrap();
     let reading = read(&recording, Exploration::default()).unwrap();
     let force_n = reading.condition.force_n.unwrap();
     assert!((force_n - 1.0).abs() < 0.01, "{force_n}");
-    let outlier = reading
-        .findings
-        .iter()
-        .find(|f| f.code == "RECORDING_FORCE_OUTLIER")
-        .unwrap();
-    assert!(
-        outlier.message.contains("36870.0000 N at 0.7000 s"),
-        "{outlier}"
-    );
+    let outlier = reading.findings.iter().find(|f| f.code == "RECORDING_FORCE_OUTLIER").unwrap();
+    assert!(outlier.message.contains("36870.0000 N at 0.7000 s"), "{outlier}");
     assert_eq!(outlier.pointer, "/normal/700");
 }

@@ -37,26 +37,21 @@ fn played(model: &LoadedModel, spectrum: &TextureSpectrum, synthesis: &str) -> (
     let still = StillSound::new(synthesis, model, &parameters, spectrum.band, RATE_HZ, 1);
     let mut still = still.unwrap().unwrap();
     let mut samples = vec![0.0; 800_000];
-    samples
-        .chunks_mut(333)
-        .for_each(|block| still.render(block));
+    samples.chunks_mut(333).for_each(|block| still.render(block));
     let power: f64 = samples.iter().map(|&x| f64::from(x) * f64::from(x)).sum();
-    let shape = model
-        .magnitude(&parameters, spectrum.band, &spectrum.frequency_hz)
-        .unwrap();
+    let shape = model.magnitude(&parameters, spectrum.band, &spectrum.frequency_hz).unwrap();
     let mut stated = spectrum.clone();
     stated.magnitude = shape;
     let found = spectrum_of_samples(&samples, RATE_HZ, 1.0, stated.as_ref()).unwrap();
-    let error_db = agreement(stated.as_ref(), &found)
-        .get(Measure::NineBand)
-        .unwrap();
+    let error_db = agreement(stated.as_ref(), &found).get(Measure::NineBand).unwrap();
     (error_db, (power / samples.len() as f64).sqrt())
 }
 
 #[test]
 fn a_filter_has_the_spectrum_within_three_quarters_of_a_decibel() {
     let (registry, spectrum) = (Registry::builtin(), spectrum());
-    // The lowest band is 24 Hz wide, from 20 to 44 Hz, which 511 taps at 2500 Hz just resolve; other errors are chance.
+    // The lowest band is 24 Hz wide, from 20 to 44 Hz, which 511 taps at 2500 Hz just resolve;
+    // other errors are chance.
     for name in ["ar", "mfcc", "sbeta"] {
         let model = registry.find(name).unwrap();
         let (error_db, rms) = played(model, &spectrum, "filter");
@@ -73,8 +68,8 @@ fn a_loop_has_unit_power_and_the_spectrum_of_its_piece() {
     for model in registry.models() {
         let (error_db, rms) = played(model, &spectrum, "loop:10");
         assert!((rms - 1.0).abs() < 1e-3, "{}: {rms}", model.id());
-        // Ten seconds of noise determine the energy of the lowest band within 0.3 dB; a set of lines has
-        // empty bands, whose only energy is that of the seam.
+        // Ten seconds of noise determine the energy of the lowest band within 0.3 dB; a set of
+        // lines has empty bands, whose only energy is that of the seam.
         let is_noise = model.short_name() != "speak";
         assert!(!is_noise || error_db < 0.6, "{}: {error_db} dB", model.id());
     }

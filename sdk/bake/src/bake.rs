@@ -19,7 +19,8 @@ use crate::{BakeError, Grid};
 
 /// Largest error of the nine bands at a condition up to which the shortest filter is taken, dB.
 const TOLERANCE_DB: f64 = 0.1;
-/// Additional error at conditions for which filters are left out where the tolerance cannot be met, dB.
+/// Additional error at conditions for which filters are left out where the tolerance cannot be met,
+/// dB.
 const LEFT_OUT_DB: f64 = 0.01;
 /// The same for a block that would take more than [`WANTED_BYTES`] otherwise, dB.
 const MORE_LEFT_OUT_DB: f64 = 0.1;
@@ -29,20 +30,24 @@ const WANTED_BYTES: usize = 16 * 1024;
 const MOST_CONDITIONS: usize = 64;
 /// Lengths of one side of the filter that are tried.
 const HALVES: [usize; 7] = [32, 64, 96, 128, 192, 256, MOST_HALF];
-/// Magnitude of noise that one of a million samples exceeds, in its level: the full scale of a block.
+/// Magnitude of noise that one of a million samples exceeds, in its level: the full scale of a
+/// block.
 const CREST: f64 = 5.0;
 
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Baked {
     pub bytes: Vec<u8>,
-    /// Numbers of 32 bits that the player in C keeps for the block, behind the members of a `htex_player`.
+    /// Numbers of 32 bits that the player in C keeps for the block, behind the members of a
+    /// `htex_player`.
     pub numbers: usize,
-    /// The conditions of the block: the wanted ones, and those between them that the accuracy needs.
+    /// The conditions of the block: the wanted ones, and those between them that the accuracy
+    /// needs.
     pub grid: Grid,
     /// The id of the baked model.
     pub model: String,
-    /// The rights of the asset, which source code has as comments; the bytes have no place for them.
+    /// The rights of the asset, which source code has as comments; the bytes have no place for
+    /// them.
     pub rights: Rights,
     /// The quantity of the samples, which has their unit.
     pub quantity: Quantity,
@@ -60,12 +65,15 @@ pub struct Baked {
     pub filters: usize,
     /// Sinusoids; 0 for noise.
     pub tones: usize,
-    /// Largest error of the nine bands at the conditions, dB, among bands within 40 dB of the strongest.
+    /// Largest error of the nine bands at the conditions, dB, among bands within 40 dB of the
+    /// strongest.
     pub at_conditions_db: f64,
-    /// The same midway between conditions, where the model mixes parameters and the player filters or sinusoids.
+    /// The same midway between conditions, where the model mixes parameters and the player filters
+    /// or sinusoids.
     pub between_db: f64,
-    /// The same at half the lowest speed and twice the highest, where the law moves the frequencies of the texture and cannot
-    /// move those of a filter; `None` where it moves none, and for sinusoids, which follow.
+    /// The same at half the lowest speed and twice the highest, where the law moves the frequencies
+    /// of the texture and cannot move those of a filter; `None` where it moves none, and for
+    /// sinusoids, which follow.
     pub beyond_db: Option<f64>,
     /// Recorded speeds, lowest and highest, mm/s, if the asset states them.
     pub recorded_speeds_mm_s: Option<(f64, f64)>,
@@ -89,10 +97,7 @@ impl BakeLimits {
 
     /// Limits the error between conditions.
     pub fn within_db(within_db: f64) -> Self {
-        Self {
-            within_db,
-            longest: Self::MOST,
-        }
+        Self { within_db, longest: Self::MOST }
     }
 
     /// Limits the coefficients of a filter; at least [`Self::FEWEST`] are taken.
@@ -104,10 +109,7 @@ impl BakeLimits {
     /// Returns the number of lengths that may be tried.
     fn lengths(self) -> usize {
         let longest = self.longest.max(Self::FEWEST);
-        HALVES
-            .iter()
-            .take_while(|half| 2 * **half < longest)
-            .count()
+        HALVES.iter().take_while(|half| 2 * **half < longest).count()
     }
 }
 
@@ -117,9 +119,10 @@ impl From<f64> for BakeLimits {
     }
 }
 
-/// Bakes a representation, named by its id or short name, else the best one, at the conditions of a grid. The block plays at
-/// `rate_hz`. Conditions are inserted midway between neighbours until the error there is at most that of `limits`, which may be given as a
-/// number of decibels, or the block has 64 conditions.
+/// Bakes a representation, named by its id or short name, else the best one, at the conditions of a
+/// grid. The block plays at `rate_hz`. Conditions are inserted midway between neighbours until the
+/// error there is at most that of `limits`, which may be given as a number of decibels, or the
+/// block has 64 conditions.
 ///
 /// # Errors
 /// When the asset cannot be played, or a condition or the rate is out of range.
@@ -164,12 +167,7 @@ struct Designs {
 
 impl Designs {
     fn new(lengths: usize) -> Self {
-        Self {
-            designer: None,
-            lengths,
-            length: 0,
-            is_best: false,
-        }
+        Self { designer: None, lengths, length: 0, is_best: false }
     }
 
     /// Returns the designer of a rate.
@@ -178,10 +176,7 @@ impl Designs {
             Some(designer) if designer.is_of(&design) => Rc::clone(designer),
             _ => {
                 let designer = Rc::new(Designer::new(design, texture.band()));
-                *self = Self {
-                    designer: Some(Rc::clone(&designer)),
-                    ..Self::new(self.lengths)
-                };
+                *self = Self { designer: Some(Rc::clone(&designer)), ..Self::new(self.lengths) };
                 designer
             }
         }
@@ -215,9 +210,7 @@ impl Designs {
             false => self.length..self.lengths,
         };
         for length in lengths {
-            let least_db = best
-                .as_ref()
-                .map_or(f64::INFINITY, |(_, shape)| shape.at_conditions_db);
+            let least_db = best.as_ref().map_or(f64::INFINITY, |(_, shape)| shape.at_conditions_db);
             let Some(shape) = with(length, least_db)? else {
                 continue;
             };
@@ -352,8 +345,8 @@ impl Designed {
         })
     }
 
-    /// Finds the fewest filters within the tolerance at the conditions and `within_db` between them, or nearly as accurate as all
-    /// filters; shape and errors become theirs.
+    /// Finds the fewest filters within the tolerance at the conditions and `within_db` between
+    /// them, or nearly as accurate as all filters; shape and errors become theirs.
     fn compress(
         &mut self,
         texture: &Texture<'_>,
@@ -445,23 +438,11 @@ fn largest(errors: &[(Motion, f64)]) -> f64 {
 }
 
 fn check_level(moment: &Moment) -> Result<(), BakeError> {
-    let Motion {
-        speed_mm_s,
-        force_n,
-        ..
-    } = moment.motion;
+    let Motion { speed_mm_s, force_n, .. } = moment.motion;
     let most = 0.1 * f64::from(MOST_LEVEL);
     match moment.level_rms {
-        level if level > most => Err(BakeError::Level {
-            speed_mm_s,
-            force_n,
-            level,
-            most,
-        }),
+        level if level > most => Err(BakeError::Level { speed_mm_s, force_n, level, most }),
         level if level > 0.0 => Ok(()),
-        _ => Err(BakeError::Silent {
-            speed_mm_s,
-            force_n,
-        }),
+        _ => Err(BakeError::Silent { speed_mm_s, force_n }),
     }
 }

@@ -1,15 +1,17 @@
 //! Few filters of which the filters of all conditions are weighted sums.
 //!
-//! The filters of conditions are projected on the leading eigenvectors of the matrix of their products. The products are those of
-//! their responses, weighted by the inverse mean of their power: an error counts in a faint band as it does in a loud one. A sum
-//! of projected filters is the projected sum, so that motions between conditions need no other formula. Weights and
+//! The filters of conditions are projected on the leading eigenvectors of the matrix of their
+//! products. The products are those of their responses, weighted by the inverse mean of their
+//! power: an error counts in a faint band as it does in a loud one. A sum of projected filters is
+//! the projected sum, so that motions between conditions need no other formula. Weights and
 //! coefficients are stored as integers of 16 bits with a scale.
 
 use std::ops::RangeInclusive;
 
 use crate::filter::Design;
 
-/// Power below the strongest at which frequencies weigh no more: 20 dB. Of 50, 40, 30, 20 and 10 dB, it needs the fewest filters.
+/// Power below the strongest at which frequencies weigh no more: 20 dB. Of 50, 40, 30, 20 and 10
+/// dB, it needs the fewest filters.
 const FLOOR: f64 = 1e-2;
 /// Part of the energy that ends the search for independent filters.
 const NOTHING: f64 = 1e-14;
@@ -34,7 +36,8 @@ pub(crate) struct Stored {
 }
 
 impl Factors {
-    /// Factors the filters of conditions into at most `most` filters, which have their responses at the frequencies `hz`.
+    /// Factors the filters of conditions into at most `most` filters, which have their responses at
+    /// the frequencies `hz`.
     pub(crate) fn new(
         design: &mut Design,
         conditions: &[&[f64]],
@@ -44,9 +47,7 @@ impl Factors {
         let frequencies = design.frequencies_hz();
         let respond = |side: &&[f64]| {
             let all = design.response(side).into_iter().zip(&frequencies);
-            all.filter(|(_, f)| hz.contains(f))
-                .map(|(r, _)| r)
-                .collect()
+            all.filter(|(_, f)| hz.contains(f)).map(|(r, _)| r).collect()
         };
         let responses = weighted(conditions.iter().map(respond).collect());
         let columns = independent(&responses, most);
@@ -123,8 +124,8 @@ fn weighted(mut responses: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     responses
 }
 
-/// Returns the columns of a matrix whose product with its transpose is that of the vectors: pivoted Cholesky factors, at most
-/// `most`.
+/// Returns the columns of a matrix whose product with its transpose is that of the vectors: pivoted
+/// Cholesky factors, at most `most`.
 fn independent(vectors: &[Vec<f64>], most: usize) -> Vec<Vec<f64>> {
     let mut left: Vec<f64> = vectors.iter().map(|v| dot(v, v)).collect();
     let all: f64 = left.iter().sum();
@@ -168,7 +169,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// Returns the eigenvalues of a symmetrical matrix, and its eigenvectors as columns: Jacobi's rotations.
+/// Returns the eigenvalues of a symmetrical matrix, and its eigenvectors as columns: Jacobi's
+/// rotations.
 fn eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
     let n = a.len();
     let unit = |i: usize| (0..n).map(|j| f64::from(u8::from(i == j))).collect();
@@ -225,11 +227,7 @@ mod tests {
 
     #[test]
     fn eigenvectors_are_those_of_the_matrix() {
-        let matrix = vec![
-            vec![4.0, 1.0, 0.5],
-            vec![1.0, 3.0, -1.0],
-            vec![0.5, -1.0, 2.0],
-        ];
+        let matrix = vec![vec![4.0, 1.0, 0.5], vec![1.0, 3.0, -1.0], vec![0.5, -1.0, 2.0]];
         let (values, vectors) = eigen(matrix.clone());
         for k in 0..3 {
             let vector: Vec<f64> = vectors.iter().map(|row| row[k]).collect();

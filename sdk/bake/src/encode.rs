@@ -24,7 +24,8 @@ pub(crate) struct Content {
 /// What conditions store.
 pub(crate) enum Encoded {
     Noise(Stored),
-    /// A frequency in cycles per sample of the internal rate and an amplitude for each sinusoid of each condition.
+    /// A frequency in cycles per sample of the internal rate and an amplitude for each sinusoid of
+    /// each condition.
     Tones {
         count: usize,
         random_phase: bool,
@@ -39,11 +40,7 @@ pub(crate) fn encode(grid: &Grid, interpolator: &Interpolator, content: &Content
             let half = stored.filters.first().map_or(0, |f| f.len() - 1);
             (KIND_NOISE, 0, half, stored.filters.len())
         }
-        Encoded::Tones {
-            count,
-            random_phase,
-            ..
-        } => {
+        Encoded::Tones { count, random_phase, .. } => {
             let flags = if *random_phase { RANDOM_PHASE } else { 0 };
             (KIND_TONES, flags, *count, 0)
         }
@@ -60,16 +57,9 @@ pub(crate) fn encode(grid: &Grid, interpolator: &Interpolator, content: &Content
     let (speeds, forces) = (grid.speeds_mm_s(), grid.forces_n());
     bytes.extend([speeds.len(), forces.len(), filters].map(|n| n as u8));
     bytes.push(code(content.quantity) as u8);
-    let Law {
-        frequency_speed,
-        level_speed,
-        level_force,
-    } = content.law;
+    let Law { frequency_speed, level_speed, level_force } = content.law;
     let scalars = [content.ceiling, content.full_scale, interpolator.highest].map(|x| x as f32);
-    for number in [frequency_speed, level_speed, level_force]
-        .iter()
-        .chain(&scalars)
-    {
+    for number in [frequency_speed, level_speed, level_force].iter().chain(&scalars) {
         bytes.extend(number.to_le_bytes());
     }
     debug_assert_eq!(bytes.len(), HEADER);

@@ -13,13 +13,7 @@ pub enum BakeError {
     #[error(
         "{axis} of the grid: {values:?}; they are 1 to {most} different numbers, each from {least} to {largest}"
     )]
-    Axis {
-        axis: &'static str,
-        values: Vec<f64>,
-        most: usize,
-        least: f64,
-        largest: f64,
-    },
+    Axis { axis: &'static str, values: Vec<f64>, most: usize, least: f64, largest: f64 },
     /// The conditions are not all combinations of their speeds and forces.
     #[error(
         "no condition at {speed_mm_s} mm/s and {force_n} N: the conditions are all combinations of their speeds and \

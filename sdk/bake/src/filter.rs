@@ -20,7 +20,8 @@ const SPACING: f64 = 0.25;
 /// Number of frequencies, a power of two: at least four for each coefficient of the longest filter.
 const STEPS: (usize, usize) = (2048, 8192);
 
-/// The frequencies at which filters of a rate are designed and read, evenly spaced from 0 to half the rate.
+/// The frequencies at which filters of a rate are designed and read, evenly spaced from 0 to half
+/// the rate.
 #[derive(Clone)]
 pub(crate) struct Design {
     rate_hz: f64,
@@ -33,11 +34,7 @@ impl Design {
     pub(crate) fn new(rate_hz: f64, spacing_hz: f64) -> Self {
         let wanted = (0.5 * rate_hz / (SPACING * spacing_hz)).ceil() as usize;
         let steps = wanted.next_power_of_two().clamp(STEPS.0, STEPS.1);
-        Self {
-            rate_hz,
-            steps,
-            fft: RealFft::new(2 * steps),
-        }
+        Self { rate_hz, steps, fft: RealFft::new(2 * steps) }
     }
 
     /// Returns whether filters of another design are filters of this one.
@@ -49,9 +46,10 @@ impl Design {
         (0..=self.steps).map(|i| self.hz(i)).collect()
     }
 
-    /// Designs the centre and one side of a filter of unit energy by frequency sampling. `magnitude` is given at the
-    /// design's frequencies; its spectrum, read as a recording's, is then compared with the `stated` one at the bins, the
-    /// magnitude is corrected, and the filter designed again. The one with the least error of the nine bands is returned.
+    /// Designs the centre and one side of a filter of unit energy by frequency sampling.
+    /// `magnitude` is given at the design's frequencies; its spectrum, read as a recording's, is
+    /// then compared with the `stated` one at the bins, the magnitude is corrected, and the filter
+    /// designed again. The one with the least error of the nine bands is returned.
     pub(crate) fn filter(&mut self, wanted: &Wanted, bins: &Bins, half: usize) -> Vec<f64> {
         let window = window(half);
         let mut magnitude = wanted.magnitude.clone();
@@ -84,11 +82,7 @@ impl Design {
         }
         let mut side = best.1;
         let energy = energy(&side);
-        let scale = if energy > 0.0 {
-            1.0 / energy.sqrt()
-        } else {
-            0.0
-        };
+        let scale = if energy > 0.0 { 1.0 / energy.sqrt() } else { 0.0 };
         side.iter_mut().for_each(|c| *c *= scale);
         side
     }
@@ -139,11 +133,13 @@ pub(crate) struct Wanted<'a> {
     pub(crate) bands: &'a Bands,
 }
 
-/// The bins of a spectrum whose frequencies are multiplied by a ratio, as a Hann window reads them from a filter of a design.
+/// The bins of a spectrum whose frequencies are multiplied by a ratio, as a Hann window reads them
+/// from a filter of a design.
 pub(crate) struct Bins {
     first_hz: f64,
     spacing_hz: f64,
-    /// The first of the design's frequencies in each bin's reach, and the weights of the power from there.
+    /// The first of the design's frequencies in each bin's reach, and the weights of the power from
+    /// there.
     reaches: Vec<(usize, Vec<f64>)>,
 }
 
@@ -152,7 +148,8 @@ impl Bins {
         let spacing_hz = GRID_HZ * ratio;
         let reach = 2.0 * spacing_hz;
         let index = |hz: f64| (hz / design.hz(1)).clamp(0.0, design.steps as f64) as usize;
-        // A bin holds the power of its width, and the sum of squared magnitudes is three times the power.
+        // A bin holds the power of its width, and the sum of squared magnitudes is three times the
+        // power.
         let density = 3.0 * spacing_hz * 2.0 / design.rate_hz;
         let at = |hz: f64| {
             let first = index(hz - reach);
@@ -175,10 +172,7 @@ impl Bins {
     pub(crate) fn read(&self, response: &[f64]) -> Vec<f64> {
         let at = |(first, weights): &(usize, Vec<f64>)| {
             let reached = response[*first..].iter().zip(weights);
-            reached
-                .map(|(r, weight)| weight * r * r)
-                .sum::<f64>()
-                .sqrt()
+            reached.map(|(r, weight)| weight * r * r).sum::<f64>().sqrt()
         };
         self.reaches.iter().map(at).collect()
     }

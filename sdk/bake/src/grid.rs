@@ -23,18 +23,15 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Makes a grid of speeds, mm/s, and forces, newtons, in any order. Values are rounded to single precision.
+    /// Makes a grid of speeds, mm/s, and forces, newtons, in any order. Values are rounded to
+    /// single precision.
     ///
     /// # Errors
-    /// When an axis is empty or has more than 32 different values, or when no finger slides at one of them: below 0.5 mm/s or
-    /// 1e-6 N, above 1000 mm/s or 20 N.
+    /// When an axis is empty or has more than 32 different values, or when no finger slides at one
+    /// of them: below 0.5 mm/s or 1e-6 N, above 1000 mm/s or 20 N.
     pub fn new(speeds_mm_s: Vec<f64>, forces_n: Vec<f64>) -> Result<Self, BakeError> {
         Ok(Self {
-            speeds_mm_s: axis(
-                "the speeds",
-                [MIN_SLIDING_MM_S, MOST_SPEED_MM_S],
-                speeds_mm_s,
-            )?,
+            speeds_mm_s: axis("the speeds", [MIN_SLIDING_MM_S, MOST_SPEED_MM_S], speeds_mm_s)?,
             forces_n: axis("the forces", [LEAST_FORCE_N, MOST_FORCE_N], forces_n)?,
         })
     }
@@ -56,20 +53,16 @@ impl Grid {
         };
         let absent = grid.motions().find(|wanted| !is_there(wanted));
         match absent {
-            Some(Motion {
-                speed_mm_s,
-                force_n,
-                ..
-            }) => Err(BakeError::Incomplete {
-                speed_mm_s,
-                force_n,
-            }),
+            Some(Motion { speed_mm_s, force_n, .. }) => {
+                Err(BakeError::Incomplete { speed_mm_s, force_n })
+            }
             None => Ok(grid),
         }
     }
 
-    /// Makes the grid of the default condition of a representation, named by its model's id or short name, else of the best one
-    /// ([`Asset::default_condition`]); a speed or a force that it does not state is 80 mm/s or 0.4 N.
+    /// Makes the grid of the default condition of a representation, named by its model's id or
+    /// short name, else of the best one ([`Asset::default_condition`]); a speed or a force that it
+    /// does not state is 80 mm/s or 0.4 N.
     ///
     /// # Errors
     /// As [`Self::new`], and when there is no such representation.
@@ -94,7 +87,8 @@ impl Grid {
         forces.flat_map(move |&force| self.speeds_mm_s.iter().map(at(force)))
     }
 
-    /// Returns the grid with the motions whose errors exceed `within_db` on both axes. An axis with 32 values stays.
+    /// Returns the grid with the motions whose errors exceed `within_db` on both axes. An axis with
+    /// 32 values stays.
     pub(crate) fn refined(&self, errors: &[(Motion, f64)], within_db: f64) -> Self {
         let worst = || errors.iter().filter(|(_, error)| *error > within_db);
         let axis = |own: &[f64], more: Vec<f64>| {
@@ -112,26 +106,20 @@ impl Grid {
         let speeds = worst().filter(|(m, _)| on(&self.forces_n, m.force_n));
         let forces = worst().filter(|(m, _)| on(&self.speeds_mm_s, m.speed_mm_s));
         let refined = Self {
-            speeds_mm_s: axis(
-                &self.speeds_mm_s,
-                speeds.map(|(m, _)| m.speed_mm_s).collect(),
-            ),
+            speeds_mm_s: axis(&self.speeds_mm_s, speeds.map(|(m, _)| m.speed_mm_s).collect()),
             forces_n: axis(&self.forces_n, forces.map(|(m, _)| m.force_n).collect()),
         };
         if refined != *self {
             return refined;
         }
         Self {
-            speeds_mm_s: axis(
-                &self.speeds_mm_s,
-                worst().map(|(m, _)| m.speed_mm_s).collect(),
-            ),
+            speeds_mm_s: axis(&self.speeds_mm_s, worst().map(|(m, _)| m.speed_mm_s).collect()),
             forces_n: self.forces_n.clone(),
         }
     }
 
-    /// Returns the centre of each cell and of each edge between neighbours, with the indices of the conditions that are
-    /// mixed there in equal parts.
+    /// Returns the centre of each cell and of each edge between neighbours, with the indices of the
+    /// conditions that are mixed there in equal parts.
     pub(crate) fn midpoints(&self) -> Vec<(Motion, Vec<usize>)> {
         let columns = self.speeds_mm_s.len();
         let mut all = Vec::new();
@@ -167,13 +155,7 @@ fn axis(axis: &'static str, range: [f32; 2], values: Vec<f64>) -> Result<Vec<f64
     rounded.dedup();
     match in_range && (1..=MOST_ON_AXIS).contains(&rounded.len()) {
         true => Ok(rounded),
-        false => Err(BakeError::Axis {
-            axis,
-            values,
-            most: MOST_ON_AXIS,
-            least,
-            largest,
-        }),
+        false => Err(BakeError::Axis { axis, values, most: MOST_ON_AXIS, least, largest }),
     }
 }
 
@@ -186,13 +168,7 @@ mod tests {
         let grid = Grid::new(vec![40.0, 80.0], vec![0.2, 0.5]).unwrap();
         let mixed: Vec<Vec<usize>> = grid.midpoints().into_iter().map(|(_, of)| of).collect();
         assert_eq!(mixed.len(), 5);
-        for of in [
-            vec![0, 1],
-            vec![2, 3],
-            vec![0, 2],
-            vec![1, 3],
-            vec![0, 1, 2, 3],
-        ] {
+        for of in [vec![0, 1], vec![2, 3], vec![0, 2], vec![1, 3], vec![0, 1, 2, 3]] {
             assert!(mixed.contains(&of), "{of:?} in {mixed:?}");
         }
     }
@@ -202,15 +178,6 @@ mod tests {
         let [a, b, c] = [(40.0, 0.2), (80.0, 0.2), (40.0, 0.5)].map(|(s, f)| Motion::new(s, f));
         assert!(Grid::of_conditions(&[a, b]).is_ok());
         let absent = Grid::of_conditions(&[a, b, c]).unwrap_err();
-        assert!(
-            matches!(
-                absent,
-                BakeError::Incomplete {
-                    speed_mm_s: 80.0,
-                    ..
-                }
-            ),
-            "{absent}"
-        );
+        assert!(matches!(absent, BakeError::Incomplete { speed_mm_s: 80.0, .. }), "{absent}");
     }
 }

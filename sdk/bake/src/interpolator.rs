@@ -27,17 +27,13 @@ pub(crate) struct Interpolator {
 }
 
 impl Interpolator {
-    /// Makes the interpolator to `rate_hz` for frequencies up to `top_hz`, from the lowest sufficient internal rate.
+    /// Makes the interpolator to `rate_hz` for frequencies up to `top_hz`, from the lowest
+    /// sufficient internal rate.
     pub(crate) fn new(rate_hz: f64, top_hz: f64) -> Result<Self, BakeError> {
         let rate_hz = f64::from(rate_hz as f32);
         let (least_hz, most_hz) = ((LEAST * top_hz).max(RATE_HZ.0.into()), RATE_HZ.1.into());
         if !(least_hz..=most_hz).contains(&rate_hz) {
-            return Err(BakeError::Rate {
-                rate_hz,
-                least_hz,
-                most_hz,
-                top_hz,
-            });
+            return Err(BakeError::Rate { rate_hz, least_hz, most_hz, top_hz });
         }
         let up = ((rate_hz / (PREFERRED * top_hz)) as usize).clamp(1, MOST_UP);
         let internal_hz = rate_hz / up as f64;
@@ -71,11 +67,7 @@ fn coefficients(row: usize, phase: f64) -> Vec<f64> {
     let at = |input: usize| {
         let t = (row - 1 - input) as f64 - half + phase;
         let x = t / half;
-        let sinc = if t == 0.0 {
-            1.0
-        } else {
-            (PI * t).sin() / (PI * t)
-        };
+        let sinc = if t == 0.0 { 1.0 } else { (PI * t).sin() / (PI * t) };
         sinc * bessel(beta * (1.0 - x * x).max(0.0).sqrt())
     };
     let all: Vec<f64> = (0..row).map(at).collect();

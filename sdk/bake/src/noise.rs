@@ -77,8 +77,8 @@ impl Designer {
         self.bins(ratio).read(&response)
     }
 
-    /// Factors the filters of conditions into at most `most` filters. The frequencies of the band are multiplied by at least
-    /// `slowest` and at most `fastest`.
+    /// Factors the filters of conditions into at most `most` filters. The frequencies of the band
+    /// are multiplied by at least `slowest` and at most `fastest`.
     pub(crate) fn factors(
         &self,
         conditions: &[&[f64]],

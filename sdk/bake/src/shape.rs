@@ -17,7 +17,8 @@ const BEYOND: f64 = 2.0;
 /// The spectra and levels of the conditions of a grid.
 pub(crate) struct Shape {
     pub(crate) spectra: Spectra,
-    /// The level of each condition as it is stored: that of the whole spectrum, of which a part lies beyond the band's edges.
+    /// The level of each condition as it is stored: that of the whole spectrum, of which a part
+    /// lies beyond the band's edges.
     pub(crate) levels: Vec<f64>,
     /// Largest error of the nine bands at the conditions, dB.
     pub(crate) at_conditions_db: f64,
@@ -31,7 +32,8 @@ pub(crate) enum Spectra {
 }
 
 impl Spectra {
-    /// Returns the magnitude on the band's grid of conditions mixed in equal parts, as the player mixes them, at unit power.
+    /// Returns the magnitude on the band's grid of conditions mixed in equal parts, as the player
+    /// mixes them, at unit power.
     fn read(&self, mixed: &[usize], texture: &Texture<'_>, ratio: f64) -> Vec<f64> {
         let part = 1.0 / mixed.len() as f64;
         match self {
@@ -39,9 +41,7 @@ impl Spectra {
                 let mut side = vec![0.0; filters[mixed[0]].len()];
                 for i in mixed {
                     let filter = filters[*i].iter();
-                    side.iter_mut()
-                        .zip(filter)
-                        .for_each(|(sum, c)| *sum += part * c);
+                    side.iter_mut().zip(filter).for_each(|(sum, c)| *sum += part * c);
                 }
                 let scale = 1.0 / energy(&side).sqrt();
                 side.iter_mut().for_each(|c| *c *= scale);
@@ -65,18 +65,15 @@ impl Spectra {
 }
 
 impl Shape {
-    /// Finds the levels, and measures the conditions. `None` if the error of a condition exceeds `within_db`.
+    /// Finds the levels, and measures the conditions. `None` if the error of a condition exceeds
+    /// `within_db`.
     pub(crate) fn within(
         spectra: Spectra,
         texture: &Texture<'_>,
         moments: &[Rc<Moment>],
         within_db: f64,
     ) -> Result<Option<Self>, BakeError> {
-        let mut shape = Self {
-            spectra,
-            levels: Vec::new(),
-            at_conditions_db: 0.0,
-        };
+        let mut shape = Self { spectra, levels: Vec::new(), at_conditions_db: 0.0 };
         for (i, moment) in moments.iter().enumerate() {
             let mut read = shape.spectra.read(&[i], texture, moment.ratio);
             let rms = htex_dsp::grid::level_rms(&read);
@@ -97,8 +94,8 @@ impl Shape {
         Ok(Some(shape))
     }
 
-    /// Returns the error of the nine bands at each motion midway between conditions, dB, as long as none exceeds `within_db`: after
-    /// that one the list ends.
+    /// Returns the error of the nine bands at each motion midway between conditions, dB, as long as
+    /// none exceeds `within_db`: after that one the list ends.
     pub(crate) fn between(
         &self,
         texture: &Texture<'_>,
@@ -117,8 +114,9 @@ impl Shape {
         Ok(errors)
     }
 
-    /// Returns the largest error of the nine bands at half the lowest speed of the grid and at twice the highest, dB: the level
-    /// follows the law of the texture, and the spectrum stays that of the nearest condition.
+    /// Returns the largest error of the nine bands at half the lowest speed of the grid and at
+    /// twice the highest, dB: the level follows the law of the texture, and the spectrum stays that
+    /// of the nearest condition.
     pub(crate) fn beyond_db(&self, texture: &Texture<'_>, grid: &Grid) -> Result<f64, BakeError> {
         let law = texture.law();
         let last = grid.speeds_mm_s().len() - 1;
@@ -134,7 +132,8 @@ impl Shape {
         Ok(largest)
     }
 
-    /// Returns the error of the nine bands at a motion for which conditions are mixed in equal parts, dB.
+    /// Returns the error of the nine bands at a motion for which conditions are mixed in equal
+    /// parts, dB.
     fn error_db(
         &self,
         texture: &Texture<'_>,

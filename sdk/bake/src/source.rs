@@ -100,8 +100,8 @@ pub fn rust_name(stem: &str) -> String {
     identifier(stem).to_ascii_uppercase()
 }
 
-/// Returns whether a name is one that an array may have in C and C++: a letter, then letters, digits and underscores, and no
-/// keyword.
+/// Returns whether a name is one that an array may have in C and C++: a letter, then letters,
+/// digits and underscores, and no keyword.
 ///
 /// ```
 /// assert!(htex_bake::is_c_name("felt2"));
@@ -115,7 +115,8 @@ pub fn is_c_name(name: &str) -> bool {
         && !RESERVED.contains(&name)
 }
 
-/// Returns whether a name is one of a constant in Rust: a capital letter, then capital letters, digits and underscores.
+/// Returns whether a name is one of a constant in Rust: a capital letter, then capital letters,
+/// digits and underscores.
 ///
 /// ```
 /// assert!(htex_bake::is_rust_name("FELT_2"));
@@ -126,8 +127,9 @@ pub fn is_rust_name(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_uppercase()) && name.chars().all(is_capital)
 }
 
-/// Returns a C header that defines a block as an array of bytes of this name, and the numbers that its player needs as a
-/// macro, `NAME_NUMBERS` in capitals. Comments state the author and the licence.
+/// Returns a C header that defines a block as an array of bytes of this name, and the numbers that
+/// its player needs as a macro, `NAME_NUMBERS` in capitals. Comments state the author and the
+/// licence.
 pub fn c_header(name: &str, baked: &Baked) -> String {
     let (bytes, numbers) = (&baked.bytes, baked.numbers);
     let macros = name.to_ascii_uppercase();
@@ -166,8 +168,8 @@ fn lines(bytes: &[u8]) -> String {
     text
 }
 
-/// Returns an identifier of C and Rust: other characters become underscores. The prefix keeps digits from being first, and
-/// the name from being a keyword.
+/// Returns an identifier of C and Rust: other characters become underscores. The prefix keeps
+/// digits from being first, and the name from being a keyword.
 fn identifier(stem: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let name: String = stem.chars().map(plain).collect();

@@ -31,7 +31,8 @@ pub(crate) struct Moment {
     /// Factor of all frequencies.
     pub(crate) ratio: f64,
     pub(crate) motion: Motion,
-    /// Magnitude of unit RMS on the band's grid that a recording of the host's voice reads through a Hann window.
+    /// Magnitude of unit RMS on the band's grid that a recording of the host's voice reads through
+    /// a Hann window.
     pub(crate) stated: Vec<f64>,
 }
 
@@ -80,7 +81,8 @@ impl<'a> Texture<'a> {
         &self.bands
     }
 
-    /// Returns the exponents that are played: 0 over a speed or a force that the asset does not state.
+    /// Returns the exponents that are played: 0 over a speed or a force that the asset does not
+    /// state.
     pub(crate) fn law(&self) -> Law {
         let explored = self.motions.explored();
         let law = explored.law;
@@ -127,7 +129,8 @@ impl<'a> Texture<'a> {
         Ok(moment)
     }
 
-    /// Returns the magnitude of unit RMS at recorded frequencies, hertz: those before the moment's ratio.
+    /// Returns the magnitude of unit RMS at recorded frequencies, hertz: those before the moment's
+    /// ratio.
     pub(crate) fn magnitude(&self, moment: &Moment, hz: &[f64]) -> Result<Vec<f64>, BakeError> {
         Ok(self.model.magnitude(&moment.parameters, self.band(), hz)?)
     }

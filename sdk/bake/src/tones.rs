@@ -16,8 +16,9 @@ const SAME_HZ: f64 = 0.01;
 /// Frequency in hertz and amplitude, in any scale.
 pub(crate) type Tone = (f64, f64);
 
-/// The sinusoids of conditions, as many for each, and whether phases are random. Conditions with the same number of
-/// sinusoids are matched by index, as the model does; others by frequency, with zero amplitude where one is absent.
+/// The sinusoids of conditions, as many for each, and whether phases are random. Conditions with
+/// the same number of sinusoids are matched by index, as the model does; others by frequency, with
+/// zero amplitude where one is absent.
 pub(crate) fn of_moments(
     moments: &[Rc<Moment>],
     band: Band,
@@ -35,25 +36,22 @@ pub(crate) fn of_moments(
     let count = all.first().map_or(0, Vec::len);
     match count <= MOST_TONES {
         true => Ok((all, random)),
-        false => Err(BakeError::Tones {
-            count,
-            most: MOST_TONES,
-        }),
+        false => Err(BakeError::Tones { count, most: MOST_TONES }),
     }
 }
 
-/// Returns the magnitude on the band's grid of sinusoids, with frequencies divided by `ratio`, through a Hann window.
+/// Returns the magnitude on the band's grid of sinusoids, with frequencies divided by `ratio`,
+/// through a Hann window.
 pub(crate) fn magnitude(tones: &[Tone], band: Band, ratio: f64) -> Vec<f64> {
     let at = |hz: f64| {
-        let seen = tones
-            .iter()
-            .map(|&(f, a)| a * hann_main_lobe((hz - f / ratio) / GRID_HZ));
+        let seen = tones.iter().map(|&(f, a)| a * hann_main_lobe((hz - f / ratio) / GRID_HZ));
         seen.map(|m| m * m).sum::<f64>().sqrt()
     };
     band.grid_hz().into_iter().map(at).collect()
 }
 
-/// Reads the model's fields: a list of frequencies, a list of amplitudes, whether phases are random.
+/// Reads the model's fields: a list of frequencies, a list of amplitudes, whether phases are
+/// random.
 fn read(moment: &Moment, band: Band) -> Option<(Vec<Tone>, bool)> {
     let (&count, rest) = moment.parameters.split_first()?;
     let (frequencies, rest) = rest.split_at_checked(count as usize)?;

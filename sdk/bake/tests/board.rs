@@ -1,4 +1,5 @@
-//! Blocks of all models have the same samples on an emulated Cortex-M4F, in Rust and in C, and on the host.
+//! Blocks of all models have the same samples on an emulated Cortex-M4F, in Rust and in C, and on
+//! the host.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -53,11 +54,7 @@ fn baked() -> &'static [(&'static str, Vec<u8>)] {
     BAKED.get_or_init(|| {
         let asset = asset();
         let grid = Grid::new(vec![60.0, 120.0], vec![0.3, 0.6]).unwrap();
-        let block = |model| {
-            bake(&asset, Some(model), &grid, 8_000.0, 0.3)
-                .unwrap()
-                .bytes
-        };
+        let block = |model| bake(&asset, Some(model), &grid, 8_000.0, 0.3).unwrap().bytes;
         let models = Registry::placeless_names().into_iter();
         models.map(|model| (model, block(model))).collect()
     })
@@ -76,7 +73,8 @@ fn blocks(folder: &str) -> Vec<(&'static str, PathBuf, u32)> {
     baked().iter().map(block).collect()
 }
 
-/// Runs a program on the board with a block in memory; an instruction takes a nanosecond of its clock.
+/// Runs a program on the board with a block in memory; an instruction takes a nanosecond of its
+/// clock.
 fn on_board(program: &Path, block: &Path) -> String {
     let mut qemu = Command::new("qemu-system-arm");
     qemu.args(["-M", "mps2-an386", "-nographic", "-monitor", "none"]);
@@ -94,11 +92,7 @@ fn on_board(program: &Path, block: &Path) -> String {
 fn number(output: &str, label: &str) -> u64 {
     let mut lines = output.lines();
     let found = lines.find_map(|line| line.strip_prefix(label));
-    found
-        .unwrap_or_else(|| unreachable!("no {label} in {output}"))
-        .trim()
-        .parse()
-        .unwrap()
+    found.unwrap_or_else(|| unreachable!("no {label} in {output}")).trim().parse().unwrap()
 }
 
 fn all_met(needs: &[(&Need, bool)]) -> bool {
@@ -107,27 +101,18 @@ fn all_met(needs: &[(&Need, bool)]) -> bool {
 
 #[test]
 fn a_cortex_m4f_returns_the_bits_of_the_host() {
-    if !all_met(&[
-        (&BARE_TARGET, has_target()),
-        (&QEMU_ARM, has("qemu-system-arm")),
-    ]) {
+    if !all_met(&[(&BARE_TARGET, has_target()), (&QEMU_ARM, has("qemu-system-arm"))]) {
         return;
     }
     let program = cargo(&player().join("examples/cortex-m4"), Some(TARGET)).join("cortex-m4");
     for (model, block, hash) in blocks("rust") {
         let output = on_board(&program, &block);
-        assert!(
-            output.contains(&format!("hash {hash:08x}\n")),
-            "{model}: {output}"
-        );
+        assert!(output.contains(&format!("hash {hash:08x}\n")), "{model}: {output}");
         let instructions = number(&output, "instructions per sample");
         let bytes = std::fs::read(&block).unwrap();
         let kind = Block::open(&bytes).unwrap().kind();
         println!("{model}, {} bytes, {kind:?}: {output}", bytes.len());
-        assert!(
-            (50..MOST_INSTRUCTIONS).contains(&instructions),
-            "{model}: {output}"
-        );
+        assert!((50..MOST_INSTRUCTIONS).contains(&instructions), "{model}: {output}");
         assert!(number(&output, "bytes of a player") <= 16 * 1024);
     }
 }
@@ -135,10 +120,7 @@ fn a_cortex_m4f_returns_the_bits_of_the_host() {
 /// The linker keeps what a program may reach, and found no panic to keep.
 #[test]
 fn no_panic_is_reachable_on_the_board() {
-    if !all_met(&[
-        (&BARE_TARGET, has_target()),
-        (&ARM_GCC, has("arm-none-eabi-gcc")),
-    ]) {
+    if !all_met(&[(&BARE_TARGET, has_target()), (&ARM_GCC, has("arm-none-eabi-gcc"))]) {
         return;
     }
     let program = cargo(&player().join("examples/cortex-m4"), Some(TARGET)).join("cortex-m4");
@@ -149,10 +131,7 @@ fn no_panic_is_reachable_on_the_board() {
 
 #[test]
 fn a_damaged_block_is_an_error_on_the_board() {
-    if !all_met(&[
-        (&BARE_TARGET, has_target()),
-        (&QEMU_ARM, has("qemu-system-arm")),
-    ]) {
+    if !all_met(&[(&BARE_TARGET, has_target()), (&QEMU_ARM, has("qemu-system-arm"))]) {
         return;
     }
     let program = cargo(&player().join("examples/cortex-m4"), Some(TARGET)).join("cortex-m4");
@@ -164,16 +143,11 @@ fn a_damaged_block_is_an_error_on_the_board() {
     assert!(output.contains("error: the checksum"), "{output}");
 }
 
-/// Motions within and beyond the conditions, of a finger at rest and of none, by blocks of all models.
+/// Motions within and beyond the conditions, of a finger at rest and of none, by blocks of all
+/// models.
 fn cases() -> Vec<Case> {
-    let motions = [
-        (80.0, 0.4),
-        (55.5, 0.25),
-        (0.0, 0.0),
-        (101.25, 0.5),
-        (1e6, 100.0),
-        (-60.0, 0.3),
-    ];
+    let motions =
+        [(80.0, 0.4), (55.5, 0.25), (0.0, 0.0), (101.25, 0.5), (1e6, 100.0), (-60.0, 0.3)];
     let steps = motions.into_iter().flat_map(|(speed, force)| {
         let lengths = [64, 1, 33, 200].map(Step::Render).into_iter();
         let motion = [Step::SetMotion(speed, force)].into_iter();
@@ -191,10 +165,7 @@ fn cases() -> Vec<Case> {
 
 #[test]
 fn all_models_play_in_c_on_a_cortex_m4f() {
-    let needs = [
-        (&QEMU_ARM, has("qemu-system-arm")),
-        (&ARM_GCC, has("arm-none-eabi-gcc")),
-    ];
+    let needs = [(&QEMU_ARM, has("qemu-system-arm")), (&ARM_GCC, has("arm-none-eabi-gcc"))];
     if !all_met(&needs) {
         return;
     }
@@ -220,10 +191,7 @@ fn the_c_program_fits_into_small_memory() {
         let sources = ["cases.c", "cases_on_board.c", "board.c"];
         let program = board.program(&sources, "", "size");
         let size = run(Command::new("arm-none-eabi-size").arg(&program));
-        let flash = size
-            .lines()
-            .nth(1)
-            .and_then(|row| row.split_whitespace().next());
+        let flash = size.lines().nth(1).and_then(|row| row.split_whitespace().next());
         let flash: u64 = flash.unwrap().parse().unwrap();
         println!("{}: {size}", board.options);
         assert!(flash <= MOST_FLASH, "{size}");

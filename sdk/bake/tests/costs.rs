@@ -1,4 +1,5 @@
-//! What a sample takes on a Cortex-M4F, for all models and all surfaces of the simulator, as `docs/microcontroller.md` says.
+//! What a sample takes on a Cortex-M4F, for all models and all surfaces of the simulator, as
+//! `docs/microcontroller.md` says.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -43,9 +44,7 @@ impl Cost {
         let output = CORTEX_M4F.run(program, block);
         let number = |label: &str| {
             let line = output.lines().find_map(|line| line.strip_prefix(label));
-            line.unwrap_or_else(|| unreachable!("no {label} in {output}"))
-                .parse()
-                .unwrap()
+            line.unwrap_or_else(|| unreachable!("no {label} in {output}")).parse().unwrap()
         };
         Self {
             sample: number("sample "),
@@ -85,13 +84,7 @@ fn table_of(rows: &[Row]) -> String {
             taps => (format!("{taps} coefficients"), baked.filters.to_string()),
         };
         let kilobytes = baked.bytes.len() as f64 / 1000.0;
-        let Cost {
-            sample,
-            gliding,
-            motion,
-            bytes,
-            ..
-        } = cost;
+        let Cost { sample, gliding, motion, bytes, .. } = cost;
         let _ = writeln!(
             text,
             "| {model} | {kilobytes:.1} kB | {kind} | {filters} | {sample} | {gliding} | {motion} | {bytes} bytes |"
@@ -104,29 +97,18 @@ fn table_of(rows: &[Row]) -> String {
 fn table_of_all(all: &[(Surface, Vec<Row>)]) -> String {
     let names = all.iter().map(|(surface, _)| surface.name());
     let names: Vec<&str> = names.collect();
-    let mut text = format!(
-        "| model | {} |\n|{}\n",
-        names.join(" | "),
-        "---|".repeat(names.len() + 1)
-    );
+    let mut text =
+        format!("| model | {} |\n|{}\n", names.join(" | "), "---|".repeat(names.len() + 1));
     for (i, model) in Registry::placeless_names().into_iter().enumerate() {
         let cells = all.iter().map(|(_, rows)| rows[i].2.sample.to_string());
-        let _ = writeln!(
-            text,
-            "| {model} | {} |",
-            cells.collect::<Vec<_>>().join(" | ")
-        );
+        let _ = writeln!(text, "| {model} | {} |", cells.collect::<Vec<_>>().join(" | "));
     }
     text
 }
 
 /// Whether two texts are equal but for numbers that differ by at most the tolerance.
 fn is_near(kept: &str, measured: &str) -> bool {
-    let words = |text: &str| {
-        text.split_whitespace()
-            .map(str::to_owned)
-            .collect::<Vec<_>>()
-    };
+    let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
     let (kept, measured) = (words(kept), words(measured));
     let near = |(a, b): (&String, &String)| match (a.parse::<f64>(), b.parse::<f64>()) {
         (Ok(a), Ok(b)) => (a - b).abs() <= TOLERANCE * b,
@@ -145,9 +127,8 @@ fn generated_costs_are_those_of_the_page_and_within_the_limit() {
     let taken = |surface: &Surface| takes_all || *surface == TOLD;
     let all: Vec<(Surface, Vec<Row>)> = std::thread::scope(|scope| {
         let surfaces = Surface::ALL.into_iter().filter(taken);
-        let threads: Vec<_> = surfaces
-            .map(|surface| scope.spawn(move || (surface, costs(surface))))
-            .collect();
+        let threads: Vec<_> =
+            surfaces.map(|surface| scope.spawn(move || (surface, costs(surface)))).collect();
         let joined = threads.into_iter().map(|thread| thread.join().unwrap());
         joined.collect()
     });

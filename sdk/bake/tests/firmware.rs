@@ -1,4 +1,5 @@
-//! The examples in C and the layouts for the builds of microcontrollers, with the example of a block.
+//! The examples in C and the layouts for the builds of microcontrollers, with the example of a
+//! block.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -46,10 +47,7 @@ fn generated_example_is_fresh() {
 
 #[test]
 fn a_double_buffer_is_filled_while_it_is_sent() {
-    let needs = [
-        (&QEMU_ARM, has("qemu-system-arm")),
-        (&ARM_GCC, has("arm-none-eabi-gcc")),
-    ];
+    let needs = [(&QEMU_ARM, has("qemu-system-arm")), (&ARM_GCC, has("arm-none-eabi-gcc"))];
     if !needs.iter().all(|(need, there)| need.met(*there)) {
         return;
     }
@@ -91,11 +89,7 @@ fn the_sketch_plays_with_a_stub_of_arduino() {
     let stub = folder().join("tests/arduino");
     let mut cxx = Command::new("c++");
     cxx.args(["-std=c++17", "-O2", "-Wall", "-Wextra", "-Werror"]);
-    for folder in [
-        &stub,
-        &library.join("src"),
-        &library.join("examples/Texture"),
-    ] {
+    for folder in [&stub, &library.join("src"), &library.join("examples/Texture")] {
         cxx.arg("-I").arg(folder);
     }
     cxx.arg(stub.join("sketch.cpp")).arg(&object);
@@ -108,13 +102,12 @@ fn the_sketch_plays_with_a_stub_of_arduino() {
     let mut samples = vec![0; 8000];
     let full_scale = player.block().full_scale();
     player.render_i16(&mut samples, full_scale);
-    let lines = samples
-        .iter()
-        .map(|sample| format!("0 {}\n", 128 + sample / 256));
+    let lines = samples.iter().map(|sample| format!("0 {}\n", 128 + sample / 256));
     assert_eq!(output, lines.collect::<String>());
 }
 
-/// The lines of `docs/microcontroller.md`: what they include stands before a function, the rest in it.
+/// The lines of `docs/microcontroller.md`: what they include stands before a function, the rest in
+/// it.
 #[test]
 fn the_lines_of_the_page_play() {
     if !CC.met(has("cc")) {
@@ -166,11 +159,7 @@ fn built(stub: &str, layout: &Path) -> String {
     cmake.arg("-B").arg(&build);
     run(cmake.arg(format!("-DLAYOUT={}", layout.display())));
     run(Command::new("cmake").arg("--build").arg(&build));
-    let library = if stub == "zephyr" {
-        "module"
-    } else {
-        "component"
-    };
+    let library = if stub == "zephyr" { "module" } else { "component" };
     run(Command::new("nm").arg(build.join(library).join("libhtex_player.a")))
 }
 
@@ -179,10 +168,7 @@ fn layouts_build_in_stubs_of_their_builds() {
     if !(CC.met(has("cc")) && CMAKE.met(has("cmake"))) {
         return;
     }
-    for (stub, name) in [
-        ("esp-idf", "esp-idf/htex_player"),
-        ("zephyr", "zephyr/htex_player"),
-    ] {
+    for (stub, name) in [("esp-idf", "esp-idf/htex_player"), ("zephyr", "zephyr/htex_player")] {
         let symbols = built(stub, &layout(name));
         assert!(symbols.contains(" T htex_player_render_i16"), "{symbols}");
     }

@@ -11,7 +11,8 @@ use htex_player::{Block, Player};
 const KILOBYTE: usize = 1024;
 const WITHIN_DB: f64 = 0.3;
 
-/// Most bytes of a block of the documented grid, and its largest errors at conditions and between them, dB.
+/// Most bytes of a block of the documented grid, and its largest errors at conditions and between
+/// them, dB.
 fn limits(model: &str) -> (usize, [f64; 2]) {
     match model {
         // A filter of 641 coefficients does not resolve Bands at a fourth of the highest speed.
@@ -31,14 +32,7 @@ fn documented(model: &str) -> Baked {
 fn a_grid_takes_what_is_documented() {
     for model in Registry::placeless_names() {
         let baked = documented(model);
-        let Baked {
-            at_conditions_db,
-            between_db,
-            taps,
-            filters,
-            grid,
-            ..
-        } = baked;
+        let Baked { at_conditions_db, between_db, taps, filters, grid, .. } = baked;
         let conditions = grid.motions().count();
         let bytes = baked.bytes.len();
         println!(
@@ -60,10 +54,7 @@ fn a_limit_of_the_filter_is_kept_and_its_error_told() {
     for (longest, most) in [(300, 257), (65, 65), (3, 65)] {
         let limited = with(BakeLimits::within_db(WITHIN_DB).with_longest(longest));
         assert!(limited.taps <= most, "{longest}: {}", limited.taps);
-        assert!(
-            limited.at_conditions_db > free.at_conditions_db,
-            "{longest}"
-        );
+        assert!(limited.at_conditions_db > free.at_conditions_db, "{longest}");
     }
 }
 
@@ -85,24 +76,14 @@ fn a_block_states_quantity_and_law_and_follows_it() {
         player.render(&mut samples);
         let power: f64 = samples.iter().map(|x| f64::from(*x).powi(2)).sum();
         let peak = samples.iter().fold(0.0f32, |most, x| most.max(x.abs()));
-        (
-            (power / samples.len() as f64).sqrt(),
-            peak / block.full_scale(),
-        )
+        ((power / samples.len() as f64).sqrt(), peak / block.full_scale())
     };
     let edge = Motion::new(160.0, 0.6);
     let (at_edge, peak) = player(edge);
     assert!((0.5..1.1).contains(&peak), "{peak} of the full scale");
-    for beyond in [
-        Motion::new(240.0, 0.6),
-        Motion::new(160.0, 1.1),
-        Motion::new(160.0, 19.0),
-    ] {
+    for beyond in [Motion::new(240.0, 0.6), Motion::new(160.0, 1.1), Motion::new(160.0, 19.0)] {
         let ratio = player(beyond).0 / at_edge;
         let expected = host(beyond) / host(edge);
-        assert!(
-            (ratio / expected - 1.0).abs() < 0.04,
-            "{beyond:?}: {ratio}, host {expected}"
-        );
+        assert!((ratio / expected - 1.0).abs() < 0.04, "{beyond:?}: {ratio}, host {expected}");
     }
 }

@@ -1,4 +1,5 @@
-//! A player of a baked block has the spectrum of the host's voice, at its conditions and between them.
+//! A player of a baked block has the spectrum of the host's voice, at its conditions and between
+//! them.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -34,10 +35,8 @@ fn energies(samples: Vec<f32>) -> Vec<f64> {
 }
 
 fn of_host(asset: &Asset, model: &str, motion: Motion) -> Vec<f64> {
-    let mut options = VoiceOptions::default()
-        .with_rate_hz(RATE_HZ)
-        .with_motion(Some(motion))
-        .with_seed(3);
+    let mut options =
+        VoiceOptions::default().with_rate_hz(RATE_HZ).with_motion(Some(motion)).with_seed(3);
     options.model = Some(model);
     let mut samples = vec![0.0; (SECONDS * RATE_HZ) as usize];
     asset.voice(&options).unwrap().render(&mut samples).unwrap();
@@ -73,10 +72,8 @@ fn a_player_has_the_spectrum_of_the_host() {
         for (speed, force) in &motions[..tried] {
             let (speed, force) = (*speed, *force);
             let motion = Motion::new(speed, force);
-            let error = largest_db(
-                &of_host(&asset, model, motion),
-                &of_player(&baked.bytes, motion),
-            );
+            let error =
+                largest_db(&of_host(&asset, model, motion), &of_player(&baked.bytes, motion));
             println!("{model} at {speed} mm/s, {force} N: {error:.3} dB");
             if error > WITHIN_DB {
                 let line = format!("{model} at {speed} mm/s, {force} N: {error:.3} dB");
@@ -106,10 +103,7 @@ fn one_recorded_speed_scales_frequencies_and_level() {
     let grid = Grid::new(vec![45.0, 60.0], vec![0.2, 0.3]).unwrap();
     let baked = bake(&asset, Some("sslope"), &grid, RATE_HZ, 0.2).unwrap();
     let motion = Motion::new(45.0, 0.2);
-    let (host, player) = (
-        of_host(&asset, "sslope", motion),
-        of_player(&baked.bytes, motion),
-    );
+    let (host, player) = (of_host(&asset, "sslope", motion), of_player(&baked.bytes, motion));
     let error = largest_db(&host, &player);
     assert!(error < WITHIN_DB, "{error}");
     // It is not the texture as recorded.

@@ -84,10 +84,7 @@ pub(crate) fn assemble(
         if report.status == Status::Built {
             dist.put(&Dist::texture(&texture.name), &made.asset)?;
             if options.browser_package.is_none() {
-                dist.put(
-                    &Dist::sound(&texture.name),
-                    &with_rights(made.sound, &report)?,
-                )?;
+                dist.put(&Dist::sound(&texture.name), &with_rights(made.sound, &report)?)?;
             }
         }
         Ok(report)
@@ -140,9 +137,7 @@ fn with_rights(sound: Vec<u8>, report: &TextureReport) -> Result<Vec<u8>, BuildE
     let license = asset.and_then(|asset| asset.license.as_deref());
     let author = asset.and_then(|asset| asset.author.as_deref());
     let mut wav = Cursor::new(sound);
-    Rights::new(license, author)
-        .add_to_wav(&mut wav)
-        .at(&report.name)?;
+    Rights::new(license, author).add_to_wav(&mut wav).at(&report.name)?;
     Ok(wav.into_inner())
 }
 
@@ -184,9 +179,7 @@ fn contents(plan: &Plan, textures: &[TextureReport]) -> String {
     let built = textures.iter().filter(|t| t.status == Status::Built);
     let named = built.map(|t| (&t.name, t.asset.as_ref().map(|asset| &asset.blake3)));
     let parts = serde_json::json!([plan.library, named.collect::<Vec<_>>()]);
-    blake3::hash(parts.to_string().as_bytes())
-        .to_hex()
-        .to_string()
+    blake3::hash(parts.to_string().as_bytes()).to_hex().to_string()
 }
 
 /// Returns the library that is there, if it has these contents and nobody wrote to it since.
@@ -219,10 +212,7 @@ fn library_report(
     packed: &KeptLibrary,
     textures: &[TextureReport],
 ) -> LibraryReport {
-    let built = textures
-        .iter()
-        .filter(|t| t.status == Status::Built)
-        .count();
+    let built = textures.iter().filter(|t| t.status == Status::Built).count();
     LibraryReport {
         name: plan.library.clone(),
         file,
@@ -275,10 +265,7 @@ fn remove_stale(
     let kept: BTreeSet<String> = built(now).collect();
     let before_built: BTreeSet<String> =
         built(&before).chain(now.removed.iter().cloned()).collect();
-    for name in before_built
-        .iter()
-        .filter(|name| htex_library::check_name(name).is_ok())
-    {
+    for name in before_built.iter().filter(|name| htex_library::check_name(name).is_ok()) {
         if !kept.contains(name) {
             dist.remove(&Dist::texture(name))?;
         }

@@ -40,18 +40,22 @@ pub struct BuildOptions {
     /// Whether to go on after a texture that cannot be made, and to leave it out.
     pub keep_going: bool,
     pub limits: WasmLimits,
-    /// Program and version, for the assets' provenance. A texture that another one fitted is fitted again.
+    /// Program and version, for the assets' provenance. A texture that another one fitted is fitted
+    /// again.
     pub program: String,
-    /// Folder of the browser package, with which the catalogue plays textures; without it, the catalogue has short sounds.
+    /// Folder of the browser package, with which the catalogue plays textures; without it, the
+    /// catalogue has short sounds.
     pub browser_package: Option<PathBuf>,
-    /// Plugins that a person names: WASM modules, or native libraries, which run with all rights of this program. A recipe names
-    /// modules alone.
+    /// Plugins that a person names: WASM modules, or native libraries, which run with all rights of
+    /// this program. A recipe names modules alone.
     pub plugins: Vec<PathBuf>,
     /// Whether to refuse to remove textures that the library of the build before has.
     pub no_removals: bool,
-    /// The URI that the results are copied to, whose library is the one before where this machine has none.
+    /// The URI that the results are copied to, whose library is the one before where this machine
+    /// has none.
     pub published: Option<Location>,
-    /// Whether to remove at once what was fitted and no texture uses any more; otherwise it stays for 30 days.
+    /// Whether to remove at once what was fitted and no texture uses any more; otherwise it stays
+    /// for 30 days.
     pub prune: bool,
 }
 
@@ -159,21 +163,17 @@ pub struct Build {
 }
 
 impl Build {
-    /// Reads a recipe, finds and hashes its recordings, and compares them with what is in the folder `output`, which is made if it
-    /// is not there.
+    /// Reads a recipe, finds and hashes its recordings, and compares them with what is in the
+    /// folder `output`, which is made if it is not there.
     ///
     /// # Errors
-    /// See [`Recipe::open`]; when a glob matches nothing, a template or a pattern fails, a name cannot be one, two recordings of a texture have
-    /// different settings; when the library would lose textures and the options forbid it; when a file cannot be read, the folder cannot be written, or another build uses it.
+    /// See [`Recipe::open`]; when a glob matches nothing, a template or a pattern fails, a name
+    /// cannot be one, two recordings of a texture have different settings; when the library would
+    /// lose textures and the options forbid it; when a file cannot be read, the folder cannot be
+    /// written, or another build uses it.
     pub fn open(recipe: &Path, output: &Path, options: BuildOptions) -> Result<Self, BuildError> {
-        let Prepared {
-            named,
-            plan,
-            hashes,
-            elsewhere,
-            kept,
-            lock,
-        } = Prepared::new(recipe, output, &options.plugins, options.missing())?;
+        let Prepared { named, plan, hashes, elsewhere, kept, lock } =
+            Prepared::new(recipe, output, &options.plugins, options.missing())?;
         let dist = Dist::new(output);
         let before = textures_before(&dist, &plan.library, options.published.as_ref());
         if options.no_removals {
@@ -223,8 +223,8 @@ impl Build {
         })
     }
 
-    /// Checks what is known before a fit: that the plugins can be loaded, the settings are those of models that there are, and gates
-    /// name models that are fitted.
+    /// Checks what is known before a fit: that the plugins can be loaded, the settings are those of
+    /// models that there are, and gates name models that are fitted.
     ///
     /// # Errors
     /// What is wrong, with its place.
@@ -253,7 +253,8 @@ impl Build {
         workbench
     }
 
-    /// Returns the names of textures that the library before this build has and the recipe no longer asks for.
+    /// Returns the names of textures that the library before this build has and the recipe no
+    /// longer asks for.
     pub fn removed(&self) -> Vec<String> {
         self.plan.removed(&self.before)
     }
@@ -263,7 +264,8 @@ impl Build {
         &self.plan
     }
 
-    /// Returns how many textures are left out because a recording or a tracker of theirs cannot be read.
+    /// Returns how many textures are left out because a recording or a tracker of theirs cannot be
+    /// read.
     pub fn unreadable(&self) -> usize {
         let keys = self.jobs.iter().map(|(key, _)| key);
         keys.filter(|key| self.unreadable.contains(*key)).count()
@@ -278,8 +280,8 @@ impl Build {
     /// Keeps what a job made elsewhere ([`Made::to_bytes`]).
     ///
     /// # Errors
-    /// When the bytes are not those of a job with this key, or cannot be written; when the texture cannot be made, unless the build
-    /// keeps going.
+    /// When the bytes are not those of a job with this key, or cannot be written; when the texture
+    /// cannot be made, unless the build keeps going.
     pub fn store(&mut self, key: &str, bytes: &[u8]) -> Result<(), BuildError> {
         let Some(at) = self.pending.iter().position(|i| self.jobs[*i].0 == key) else {
             // Somebody else did the job, too.
@@ -287,8 +289,7 @@ impl Build {
         };
         let made = Made::from_bytes(key, bytes)?;
         let refused = self.keep(key, &self.jobs[self.pending[at]].1, made)?;
-        self.unkept
-            .extend(refused.map(|made| (key.to_owned(), made)));
+        self.unkept.extend(refused.map(|made| (key.to_owned(), made)));
         self.pending.remove(at);
         Ok(())
     }
@@ -296,8 +297,8 @@ impl Build {
     /// Does the pending jobs, several at a time; calls `done` after each, from any thread.
     ///
     /// # Errors
-    /// When a texture cannot be made, unless the build keeps going; when a file cannot be read or written. What was made by then
-    /// is kept.
+    /// When a texture cannot be made, unless the build keeps going; when a file cannot be read or
+    /// written. What was made by then is kept.
     pub fn run(&mut self, done: &(dyn Fn(&Job) + Sync)) -> Result<(), BuildError> {
         let next = AtomicUsize::new(0);
         let stopped = AtomicBool::new(false);
@@ -361,7 +362,8 @@ impl Build {
         Err(BuildError::at(&job.texture, problem))
     }
 
-    /// Writes an error, line by line, into the report of this build's folder, beside what an earlier build left there.
+    /// Writes an error, line by line, into the report of this build's folder, beside what an
+    /// earlier build left there.
     ///
     /// # Errors
     /// When the report cannot be written.
@@ -372,8 +374,8 @@ impl Build {
     /// Writes the library, the textures, the report and the catalogue.
     ///
     /// # Errors
-    /// When jobs are still pending, or a file cannot be written; when a texture of the library before is left out and the options forbid
-    /// removals, in which case nothing was written.
+    /// When jobs are still pending, or a file cannot be written; when a texture of the library
+    /// before is left out and the options forbid removals, in which case nothing was written.
     pub fn finish(self) -> Result<Built, BuildError> {
         if let Some(i) = self.pending.first() {
             let problem = "it is not fitted yet; run the build again";
@@ -384,16 +386,7 @@ impl Build {
             None => self.cache.get(key),
         };
         let put = (&self.dist, &*self.kept);
-        let assemble = || {
-            assemble(
-                &self.plan,
-                &self.jobs,
-                &made,
-                put,
-                &self.options,
-                &self.before,
-            )
-        };
+        let assemble = || assemble(&self.plan, &self.jobs, &made, put, &self.options, &self.before);
         let built = self.pool.install(assemble)?;
         let keys: BTreeSet<&str> = self.jobs.iter().map(|(key, _)| &key[..]).collect();
         self.cache.keep(&keys, self.options.prune)?;
@@ -412,8 +405,8 @@ fn is_of_input(error: &BuildError) -> bool {
     }
 }
 
-/// Returns the files of a recipe whose contents a build would have to read to know their hashes, so that others can read them:
-/// [`hash_file`] and [`remember`].
+/// Returns the files of a recipe whose contents a build would have to read to know their hashes, so
+/// that others can read them: [`hash_file`] and [`remember`].
 ///
 /// # Errors
 /// As [`Build::open`].
@@ -432,8 +425,8 @@ pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError
     Ok(unknown.collect())
 }
 
-/// Checks a recipe without a build: its keys, that its recordings are there, that its plugins can be loaded, and its options and gates.
-/// Nothing is written. Returns the textures that it asks for.
+/// Checks a recipe without a build: its keys, that its recordings are there, that its plugins can
+/// be loaded, and its options and gates. Nothing is written. Returns the textures that it asks for.
 ///
 /// # Errors
 /// What is wrong, and where.
@@ -454,10 +447,7 @@ pub fn check(recipe: &Path, options: &BuildOptions) -> Result<Plan, BuildError> 
             hashes.check(&joined(&named.folder, file))?;
         }
         // Its recordings are not read.
-        let without = PlannedTexture {
-            recordings: Vec::new(),
-            ..texture.clone()
-        };
+        let without = PlannedTexture { recordings: Vec::new(), ..texture.clone() };
         let job = Job::new(&without, &named, &options.program, &hashes)?;
         if checked.insert(job.checked_by(&texture.gates)) {
             job.check(&texture.gates, &mut workbench)?;
@@ -469,12 +459,14 @@ pub fn check(recipe: &Path, options: &BuildOptions) -> Result<Plan, BuildError> 
 /// Hashes a file of a recipe, of this machine or by URI.
 ///
 /// # Errors
-/// When it cannot be read, or changes meanwhile; when it has an address that the recipe may not name.
+/// When it cannot be read, or changes meanwhile; when it has an address that the recipe may not
+/// name.
 pub fn hash_file(recipe: &Path, file: &Path) -> Result<Hashed, BuildError> {
     hash(file, &Elsewhere::temporary(origin(recipe)?))
 }
 
-/// Keeps hashes of files for the next build. A file whose size or times are others there is read again.
+/// Keeps hashes of files for the next build. A file whose size or times are others there is read
+/// again.
 ///
 /// # Errors
 /// When another build uses the folder, or it cannot be written.

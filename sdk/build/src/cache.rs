@@ -1,7 +1,9 @@
-//! The folder of what was made, by key. Entries are authenticated ([`Kept`]), so that one of somebody else, or one that a crash left
-//! incomplete, is made again; they are not flushed to disk one by one.
+//! The folder of what was made, by key. Entries are authenticated ([`Kept`]), so that one of
+//! somebody else, or one that a crash left incomplete, is made again; they are not flushed to disk
+//! one by one.
 //!
-//! An entry that no texture uses any more stays for [`UNUSED`]: a setting that is tried and taken back fits nothing again.
+//! An entry that no texture uses any more stays for [`UNUSED`]: a setting that is tried and taken
+//! back fits nothing again.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -37,7 +39,8 @@ impl Cache {
         Ok(Self { kept })
     }
 
-    /// Returns what was made for a key; `None` if nothing was, or if it is damaged or somebody else's.
+    /// Returns what was made for a key; `None` if nothing was, or if it is damaged or somebody
+    /// else's.
     pub(crate) fn get(&self, key: &str) -> Option<Made> {
         let bytes = self.kept.get(&name(key), MOST_BYTES)?;
         Made::from_bytes(key, &bytes).ok()
@@ -49,7 +52,8 @@ impl Cache {
         path.is_ok_and(|path| path.symlink_metadata().is_ok())
     }
 
-    /// Keeps what was made for a key. A refusal is not kept: what caused it may be gone the next time.
+    /// Keeps what was made for a key. A refusal is not kept: what caused it may be gone the next
+    /// time.
     pub(crate) fn put(&self, key: &str, made: &Made) -> Result<(), BuildError> {
         if matches!(made.record.outcome, Outcome::Refused(_)) {
             return Ok(());
@@ -57,8 +61,8 @@ impl Cache {
         self.kept.put(&name(key), &made.to_bytes(key)?)
     }
 
-    /// Keeps the entries of these keys, and removes others: those that were not used for [`UNUSED`], or all if `prune`. Files that are
-    /// no entries stay.
+    /// Keeps the entries of these keys, and removes others: those that were not used for
+    /// [`UNUSED`], or all if `prune`. Files that are no entries stay.
     pub(crate) fn keep(&self, keys: &BTreeSet<&str>, prune: bool) -> Result<(), BuildError> {
         let (own, folder) = (self.kept.own(), inside(MADE));
         let shown = own.path().join(&folder);
@@ -67,9 +71,8 @@ impl Cache {
             let Some(key) = key_of(&file) else { continue };
             let path = own.path().join(&folder).join(&file);
             let modified = path.metadata().and_then(|is| is.modified());
-            let age = modified.map_or(Duration::MAX, |then| {
-                now.duration_since(then).unwrap_or_default()
-            });
+            let age =
+                modified.map_or(Duration::MAX, |then| now.duration_since(then).unwrap_or_default());
             let is_part = file.len() > key.len();
             if keys.contains(key) && !is_part {
                 if age > RENEWED {

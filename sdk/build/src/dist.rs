@@ -1,5 +1,6 @@
-//! The folder of a build's results. A file is written to a new one and renamed; one that is there with the same bytes is left
-//! alone, so that its time says when it changed. Links in the folder are not followed ([`OwnFolder`]).
+//! The folder of a build's results. A file is written to a new one and renamed; one that is there
+//! with the same bytes is left alone, so that its time says when it changed. Links in the folder
+//! are not followed ([`OwnFolder`]).
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -22,10 +23,7 @@ pub(crate) struct Dist {
 
 impl Dist {
     pub(crate) fn new(folder: &Path) -> Self {
-        Self {
-            own: OwnFolder::new(folder),
-            written: AtomicU64::new(0),
-        }
+        Self { own: OwnFolder::new(folder), written: AtomicU64::new(0) }
     }
 
     /// Returns the file of a texture.
@@ -38,7 +36,8 @@ impl Dist {
         Path::new("sounds").join(format!("{name}.wav"))
     }
 
-    /// Returns the path of a file for what is not written by [`Self::put`]; nothing above it is a link.
+    /// Returns the path of a file for what is not written by [`Self::put`]; nothing above it is a
+    /// link.
     pub(crate) fn at(&self, file: &Path) -> Result<PathBuf, BuildError> {
         let at = self.own.at(file);
         Ok(at.writing(self.own.path().join(file))?)

@@ -1,8 +1,8 @@
-//! Files by URI: paths of a recipe that name a file of a web server or an object store. They are listed, hashed, and copied for the
-//! job that reads them.
+//! Files by URI: paths of a recipe that name a file of a web server or an object store. They are
+//! listed, hashed, and copied for the job that reads them.
 //!
-//! A list request tells versions; the key is the hash of the contents, as for local files, and the copy is read by the
-//! job on whichever machine it runs.
+//! A list request tells versions; the key is the hash of the contents, as for local files, and the
+//! copy is read by the job on whichever machine it runs.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -55,7 +55,8 @@ pub(crate) fn is_elsewhere(path: &Path) -> bool {
     !matches!(elsewhere(path), Ok(None))
 }
 
-/// Returns a path as a recipe in `folder` means it: a URI stays, another path is relative to the folder, which may be a URI.
+/// Returns a path as a recipe in `folder` means it: a URI stays, another path is relative to the
+/// folder, which may be a URI.
 pub(crate) fn joined(folder: &Path, path: &Path) -> PathBuf {
     match (is_elsewhere(path), is_elsewhere(folder), folder.to_str()) {
         (true, ..) => path.to_owned(),
@@ -70,7 +71,8 @@ pub(crate) fn joined(folder: &Path, path: &Path) -> PathBuf {
     }
 }
 
-/// Returns the URI of a path in a folder elsewhere, in which `..` leads to the folder above, up to the bucket or host.
+/// Returns the URI of a path in a folder elsewhere, in which `..` leads to the folder above, up to
+/// the bucket or host.
 fn below(folder: &str, path: &str) -> String {
     let mut folder = folder.trim_end_matches('/').to_owned();
     let mut path = path;
@@ -96,10 +98,7 @@ fn below(folder: &str, path: &str) -> String {
 pub(crate) fn folder_of(path: &Path) -> PathBuf {
     if let (Ok(Some(_)), Some(text)) = (elsewhere(path), path.to_str()) {
         let text = text.split('?').next().unwrap_or(text);
-        return text
-            .rsplit_once('/')
-            .map_or(text, |(folder, _)| folder)
-            .into();
+        return text.rsplit_once('/').map_or(text, |(folder, _)| folder).into();
     }
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder.to_owned(),
@@ -108,7 +107,8 @@ pub(crate) fn folder_of(path: &Path) -> PathBuf {
 }
 
 impl Elsewhere {
-    /// With copies in the folder of the results, which [`Self::forget`] removes; `origin` is where the recipe is.
+    /// With copies in the folder of the results, which [`Self::forget`] removes; `origin` is where
+    /// the recipe is.
     pub(crate) fn with_copies(output: OwnFolder, origin: Option<Location>) -> Self {
         Self::new(Copies::Folder(output), origin)
     }
@@ -119,12 +119,7 @@ impl Elsewhere {
     }
 
     fn new(copies: Copies, origin: Option<Location>) -> Self {
-        Self {
-            origin,
-            storage: OnceLock::new(),
-            listed: Mutex::default(),
-            copies,
-        }
+        Self { origin, storage: OnceLock::new(), listed: Mutex::default(), copies }
     }
 
     /// Lists the files of a folder elsewhere by glob: their URIs, and their paths in the folder.
@@ -165,7 +160,8 @@ impl Elsewhere {
         Ok(Hashed { blake3, stamp })
     }
 
-    /// Returns a copy of the contents with a hash, under the file's own name. One that is there is used if it has the hash.
+    /// Returns a copy of the contents with a hash, under the file's own name. One that is there is
+    /// used if it has the hash.
     pub(crate) fn copy(&self, location: &Location, blake3: &str) -> Result<PathBuf, BuildError> {
         let name = named(location)?;
         let copies = self.copies()?;
@@ -200,13 +196,12 @@ impl Elsewhere {
         }
     }
 
-    /// Downloads a file. Returns its hash and its copy. Others may not read it: the store may be private.
+    /// Downloads a file. Returns its hash and its copy. Others may not read it: the store may be
+    /// private.
     fn fetch(&self, location: &Location) -> Result<(String, PathBuf), BuildError> {
         let (copies, name) = (self.copies()?, named(location)?);
         let folder = copies.own.path().join(&copies.inside);
-        let part = tempfile::Builder::new()
-            .suffix(".part")
-            .tempfile_in(&folder);
+        let part = tempfile::Builder::new().suffix(".part").tempfile_in(&folder);
         let part = part.writing(&folder)?;
         let file = part.reopen().writing(&folder)?;
         self.storage()?.download(location, file, MOST_BYTES)?;
@@ -221,8 +216,8 @@ impl Elsewhere {
         Ok((blake3, copy))
     }
 
-    /// What a recipe names is read under the rule for files: no address of this machine or network but that of the recipe's own
-    /// server.
+    /// What a recipe names is read under the rule for files: no address of this machine or network
+    /// but that of the recipe's own server.
     fn storage(&self) -> Result<&Storage, StorageError> {
         if let Some(storage) = self.storage.get() {
             return Ok(storage);
@@ -238,10 +233,7 @@ impl Elsewhere {
                 let made = own.make_folder(&copies);
                 let made = made.writing(own.path().join(&copies))?;
                 htex_files::private::close(&made).writing(&made)?;
-                Ok(CopiesIn {
-                    own: own.clone(),
-                    inside: copies,
-                })
+                Ok(CopiesIn { own: own.clone(), inside: copies })
             }
             Copies::Temporary(held) => {
                 if held.get().is_none() {
@@ -250,10 +242,7 @@ impl Elsewhere {
                     held.get_or_init(|| folder);
                 }
                 let folder = held.get().map(TempDir::path).unwrap_or(Path::new(""));
-                Ok(CopiesIn {
-                    own: OwnFolder::new(folder),
-                    inside: PathBuf::new(),
-                })
+                Ok(CopiesIn { own: OwnFolder::new(folder), inside: PathBuf::new() })
             }
         }
     }

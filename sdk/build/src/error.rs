@@ -3,7 +3,8 @@
 use std::fmt::Display;
 use std::path::PathBuf;
 
-/// An error that stops a build. Nothing that was there is lost, and what was fitted is kept for the next build.
+/// An error that stops a build. Nothing that was there is lost, and what was fitted is kept for the
+/// next build.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BuildError {
@@ -51,10 +52,7 @@ impl BuildError {
     }
 
     pub(crate) fn at(place: impl Display, problem: impl Display) -> Self {
-        Self::At {
-            place: place.to_string(),
-            problem: problem.to_string(),
-        }
+        Self::At { place: place.to_string(), problem: problem.to_string() }
     }
 }
 

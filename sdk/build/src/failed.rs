@@ -1,5 +1,6 @@
-//! The report of a build that failed: the error, beside what an earlier build left in the folder. Who reads reports alone, such as a
-//! page of continuous integration, sees it, and the next build still knows which files are its own.
+//! The report of a build that failed: the error, beside what an earlier build left in the folder.
+//! Who reads reports alone, such as a page of continuous integration, sees it, and the next build
+//! still knows which files are its own.
 
 use std::path::Path;
 
@@ -9,8 +10,8 @@ use crate::dist::Dist;
 use crate::kept::{KEPT, Kept};
 use crate::report::{LibraryReport, REPORT, Report};
 
-/// Writes an error, line by line, into the report of a folder in which a build has begun. Returns whether it was written: it is not
-/// where none has begun, or while another one uses the folder.
+/// Writes an error, line by line, into the report of a folder in which a build has begun. Returns
+/// whether it was written: it is not where none has begun, or while another one uses the folder.
 ///
 /// # Errors
 /// When the report cannot be written.

@@ -12,12 +12,9 @@ use crate::report::{Status, TextureReport};
 
 /// Names of textures that a share lists.
 const NAMED: usize = 3;
-/// Codes that no recording of an asset has: the first two stop a fit, the last one stands for a reader's sentence.
-const NOT_OF_ASSETS: [&str; 3] = [
-    "RECORDING_UNREADABLE",
-    "RECORDING_UNUSABLE",
-    "RECORDING_NOTED",
-];
+/// Codes that no recording of an asset has: the first two stop a fit, the last one stands for a
+/// reader's sentence.
+const NOT_OF_ASSETS: [&str; 3] = ["RECORDING_UNREADABLE", "RECORDING_UNUSABLE", "RECORDING_NOTED"];
 
 /// The findings of one code in the recordings of a texture.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -91,9 +88,6 @@ pub(crate) fn unknown_code(code: &str) -> Option<String> {
     let all = RULES.iter().map(|rule| rule.code);
     let known: Vec<&str> = all.filter(|known| !NOT_OF_ASSETS.contains(known)).collect();
     (!known.contains(&code)).then(|| {
-        format!(
-            "no recording of an asset has a finding {code}; there are {}",
-            known.join(", ")
-        )
+        format!("no recording of an asset has a finding {code}; there are {}", known.join(", "))
     })
 }

@@ -14,11 +14,7 @@ pub(crate) fn missed(gates: &Gates, asset: &AssetReport) -> Vec<Missed> {
     if let Some(gate) = &gates.max_felt_error_db {
         missed.extend(felt_errors(gate, asset));
     }
-    missed.extend(
-        gates
-            .max_repeatability_db
-            .and_then(|most| repeatability(most, asset)),
-    );
+    missed.extend(gates.max_repeatability_db.and_then(|most| repeatability(most, asset)));
     missed.extend(denied(gates, asset));
     if let Some(least) = gates.min_segments
         && asset.segments < least
@@ -106,8 +102,8 @@ fn felt_errors(gate: &ModelGate, asset: &AssetReport) -> Vec<Missed> {
     by_model(gate, &errors, "max_felt_error_db", &above)
 }
 
-/// The models whose error is above the gate, or that the gate names and the asset lacks. `above` says what is wrong with a model, its
-/// error and the largest one that is allowed.
+/// The models whose error is above the gate, or that the gate names and the asset lacks. `above`
+/// says what is wrong with a model, its error and the largest one that is allowed.
 fn by_model(
     gate: &ModelGate,
     errors: &[(&str, f64)],
@@ -121,17 +117,13 @@ fn by_model(
     match gate {
         ModelGate::All(most) => {
             let all = errors.iter();
-            all.filter_map(|(model, error)| compare(model, *error, *most))
-                .collect()
+            all.filter_map(|(model, error)| compare(model, *error, *most)).collect()
         }
         ModelGate::ByModel(by_model) => {
             let gates = by_model.iter().filter_map(|(name, most)| {
                 match errors.iter().find(|(id, _)| is_named(id, name)) {
                     Some((model, error)) => compare(model, *error, *most),
-                    None => Some(Missed::new(
-                        key,
-                        format!("{name} has a gate and was not fitted"),
-                    )),
+                    None => Some(Missed::new(key, format!("{name} has a gate and was not fitted"))),
                 }
             });
             gates.collect()
@@ -157,16 +149,12 @@ pub(crate) fn check_gates(gates: &Gates, models: &[&str]) -> Result<(), String> 
                 && !models.iter().any(|id| is_named(id, name))
             {
                 let models = models.join(", ");
-                return Err(format!(
-                    "gates.{key}: {name} is not fitted; there are {models}"
-                ));
+                return Err(format!("gates.{key}: {name} is not fitted; there are {models}"));
             }
             check_number(key, most)?;
         }
     }
-    gates
-        .max_repeatability_db
-        .map_or(Ok(()), |most| check_number("max_repeatability_db", most))
+    gates.max_repeatability_db.map_or(Ok(()), |most| check_number("max_repeatability_db", most))
 }
 
 /// The numbers of a gate, by model if it says so.

@@ -1,7 +1,8 @@
 //! Files by glob: of this machine, and elsewhere.
 //!
-//! A glob comes from a recipe, which may be anybody's: its length and its braces are bounded, since the library that compiles them
-//! recurses, and so is the number of entries of folders that are looked at.
+//! A glob comes from a recipe, which may be anybody's: its length and its braces are bounded, since
+//! the library that compiles them recurses, and so is the number of entries of folders that are
+//! looked at.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -37,9 +38,7 @@ pub(crate) fn glob_set<S: AsRef<str>>(globs: &[S], place: &str) -> Result<GlobSe
     let mut set = GlobSetBuilder::new();
     for glob in globs {
         check(glob.as_ref()).at(place)?;
-        let compiled = GlobBuilder::new(glob.as_ref())
-            .literal_separator(true)
-            .build();
+        let compiled = GlobBuilder::new(glob.as_ref()).literal_separator(true).build();
         set.add(compiled.at(place)?);
     }
     set.build().at(place)
@@ -75,7 +74,8 @@ pub(crate) fn is_glob(text: &str) -> bool {
     text[path].contains(GLOB)
 }
 
-/// The part of a text that is a path: of a URI without its scheme and host, of a URL without its query.
+/// The part of a text that is a path: of a URI without its scheme and host, of a URL without its
+/// query.
 fn path_of(text: &str) -> Range<usize> {
     let Some(host) = text.find("://").map(|at| at + 3) else {
         return 0..text.len();
@@ -88,7 +88,8 @@ fn path_of(text: &str) -> Range<usize> {
     start..end
 }
 
-/// Splits a path or a URI before the first part that is a glob, else before the file's name: a folder, and a glob in it.
+/// Splits a path or a URI before the first part that is a glob, else before the file's name: a
+/// folder, and a glob in it.
 pub(crate) fn split(text: &str) -> (&str, &str) {
     let path = path_of(text);
     let first = text[path.clone()].find(GLOB);
@@ -100,8 +101,8 @@ pub(crate) fn split(text: &str) -> (&str, &str) {
     }
 }
 
-/// Returns the files of this machine that match a glob of a recipe in `folder`: relative to the folder as the glob is, else absolute.
-/// Files in `output` are none of them.
+/// Returns the files of this machine that match a glob of a recipe in `folder`: relative to the
+/// folder as the glob is, else absolute. Files in `output` are none of them.
 pub(crate) fn files(
     glob: &str,
     place: &str,
@@ -176,9 +177,8 @@ pub(crate) fn matching(
 ) -> Result<Vec<(PathBuf, PathBuf)>, BuildError> {
     let set = glob_set(&[pattern], place)?;
     let mut seen = BTreeSet::new();
-    let matching = paths
-        .into_iter()
-        .filter(|(uri, inside)| set.is_match(inside) && seen.insert(uri.clone()));
+    let matching =
+        paths.into_iter().filter(|(uri, inside)| set.is_match(inside) && seen.insert(uri.clone()));
     Ok(matching.collect())
 }
 

@@ -14,8 +14,8 @@ use crate::BuildError;
 use crate::elsewhere::{Elsewhere, elsewhere, is_elsewhere};
 use crate::kept::Kept;
 
-/// A file that changed this shortly before it was hashed may change again without a change of its time, since file systems keep
-/// times in steps of up to 2 s (FAT).
+/// A file that changed this shortly before it was hashed may change again without a change of its
+/// time, since file systems keep times in steps of up to 2 s (FAT).
 const RACY: Duration = Duration::from_secs(2);
 
 /// Most bytes of the hashes of a build: a few million files.
@@ -28,15 +28,17 @@ const MOST_FILE_BYTES: u64 = 4 << 30;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
     pub bytes: u64,
-    /// Time of the last change of the contents, nanoseconds since 1970; 0 of a file elsewhere that has a version.
+    /// Time of the last change of the contents, nanoseconds since 1970; 0 of a file elsewhere that
+    /// has a version.
     modified_ns: u64,
-    /// Number of the file on its file system; 0 where there is none. The version of a file elsewhere.
+    /// Number of the file on its file system; 0 where there is none. The version of a file
+    /// elsewhere.
     number: u64,
 }
 
 impl Stamp {
-    /// Returns the stamp of a file elsewhere, whose version is its entity tag, else the time of its last change. Without both, any other time
-    /// is another version.
+    /// Returns the stamp of a file elsewhere, whose version is its entity tag, else the time of its
+    /// last change. Without both, any other time is another version.
     pub(crate) fn elsewhere(bytes: u64, etag: Option<&str>, modified: Option<SystemTime>) -> Self {
         let version = |etag: &str| {
             let hash = blake3::hash(etag.as_bytes());
@@ -112,20 +114,12 @@ impl Hashes {
     pub(crate) fn open(kept: &Kept, name: &str, elsewhere: Arc<Elsewhere>) -> Self {
         let known = kept.get(name, MOST_BYTES);
         let known = known.and_then(|bytes| serde_json::from_slice(&bytes).ok());
-        Self {
-            known: known.unwrap_or_default(),
-            elsewhere,
-            used: Mutex::default(),
-        }
+        Self { known: known.unwrap_or_default(), elsewhere, used: Mutex::default() }
     }
 
     /// Without hashes of an earlier build.
     pub(crate) fn new(elsewhere: Arc<Elsewhere>) -> Self {
-        Self {
-            known: BTreeMap::new(),
-            elsewhere,
-            used: Mutex::default(),
-        }
+        Self { known: BTreeMap::new(), elsewhere, used: Mutex::default() }
     }
 
     /// Checks that a file is there, and a regular one, without reading it.
@@ -180,13 +174,11 @@ impl Hashes {
         }
     }
 
-    /// Returns the hashes to keep for the next build as JSON: those of files that have not just changed. A URL with a query, which may
-    /// hold a signature, is not kept.
+    /// Returns the hashes to keep for the next build as JSON: those of files that have not just
+    /// changed. A URL with a query, which may hold a signature, is not kept.
     pub(crate) fn to_keep(&self) -> Vec<u8> {
         let used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
-        let now = SystemTime::now()
-            .duration_since(UNIX_EPOCH)
-            .unwrap_or_default();
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let settled = |(path, hashed): &(&PathBuf, &Hashed)| {
             let racy_until = hashed.stamp.modified_ns.saturating_add(nanoseconds(RACY));
             let has_query = is_elsewhere(path) && path.to_string_lossy().contains('?');
@@ -214,10 +206,7 @@ pub(crate) fn hash_local(path: &Path) -> io::Result<Hashed> {
     if Stamp::of(path)? != before {
         return Err(changed());
     }
-    Ok(Hashed {
-        blake3: hasher.finalize().to_hex().to_string(),
-        stamp: before,
-    })
+    Ok(Hashed { blake3: hasher.finalize().to_hex().to_string(), stamp: before })
 }
 
 fn too_large(bytes: u64) -> io::Error {

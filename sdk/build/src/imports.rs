@@ -1,5 +1,6 @@
-//! Files of other haptic formats in a recipe, by their extension: signals, which are fitted as recordings are once full scale, speed and force are
-//! given, and files that state a texture, which become assets as they are. They take the settings of `htex import`, under the keys of recipes.
+//! Files of other haptic formats in a recipe, by their extension: signals, which are fitted as
+//! recordings are once full scale, speed and force are given, and files that state a texture, which
+//! become assets as they are. They take the settings of `htex import`, under the keys of recipes.
 
 use std::path::Path;
 
@@ -29,7 +30,8 @@ pub enum FileKind {
     Asset,
 }
 
-/// Keys of recipes, and the settings of imports that they are. A key that is not here is a setting of no import.
+/// Keys of recipes, and the settings of imports that they are. A key that is not here is a setting
+/// of no import.
 const KEYS: [(&str, &str); 11] = [
     ("full_scale", "full_scale"),
     ("pitch_mm", "pitch"),
@@ -69,8 +71,9 @@ impl FileKind {
     }
 }
 
-/// Sets what the files of a texture are, checks that they go together and that its settings are theirs. A licence is asked for unless the recipe
-/// says that none has to be stated: files of others have one, which seldom stands in them.
+/// Sets what the files of a texture are, checks that they go together and that its settings are
+/// theirs. A licence is asked for unless the recipe says that none has to be stated: files of
+/// others have one, which seldom stands in them.
 pub(crate) fn check_files(texture: &mut PlannedTexture) -> Result<(), BuildError> {
     texture.kind = kind(texture).at(&texture.name)?;
     check_settings(texture).at(&texture.name)?;
@@ -156,9 +159,7 @@ fn check_import(
         force_n: recording.force_n,
         pitch_mm: signal.pitch_mm,
     };
-    physical
-        .check(format)
-        .map_err(|error| of_file(by_keys(&error)))
+    physical.check(format).map_err(|error| of_file(by_keys(&error)))
 }
 
 /// Whether the import of a format takes a key of recipes.
@@ -178,10 +179,7 @@ fn takes(format: &Format, key: &str) -> bool {
 fn given(texture: &PlannedTexture, recording: &PlannedRecording) -> Vec<String> {
     let (settings, gates) = (&texture.settings, &texture.gates);
     // A gate that its `fit` has, too.
-    let fit = htex_author::settings::FitSettings {
-        strict: None,
-        ..settings.fit.clone()
-    };
+    let fit = htex_author::settings::FitSettings { strict: None, ..settings.fit.clone() };
     let mut given = [
         keys(&settings.reading, ""),
         keys(&fit, ""),
@@ -265,10 +263,7 @@ mod tests {
         let kind = |file: &str| FileKind::of(format_of(Path::new(file)));
         assert_eq!(kind("a/Models_Felt.xml"), FileKind::Asset);
         assert_eq!(kind("a.b/hum.HAPTIC"), FileKind::Signal);
-        assert_eq!(
-            kind("https://example.org/hum.hjif?key=a.xml"),
-            FileKind::Signal
-        );
+        assert_eq!(kind("https://example.org/hum.hjif?key=a.xml"), FileKind::Signal);
         // Formats that go out alone, and names without an extension.
         for file in ["hum.wav", "hum.json", "a.xml/hum", "hum"] {
             assert_eq!(kind(file), FileKind::Recording, "{file}");

@@ -14,8 +14,8 @@ use crate::globs;
 use crate::recipe::Textures;
 use crate::template::Fields;
 
-/// Most recordings of a recipe. A texture takes about 4.7 kB of memory until it is put together, and more with long names: these take
-/// less than 512 MiB.
+/// Most recordings of a recipe. A texture takes about 4.7 kB of memory until it is put together,
+/// and more with long names: these take less than 512 MiB.
 pub(crate) const MOST_RECORDINGS: usize = 50_000;
 /// Most bytes of a table.
 const MOST_TABLE_BYTES: u64 = 64 << 20;
@@ -25,7 +25,8 @@ const MOST_TABLE_BYTES: u64 = 64 << 20;
 pub(crate) struct Input {
     /// The file, relative to the recipe's folder where it lies inside it, or its URI.
     pub(crate) file: PathBuf,
-    /// The path that fields and patterns see, with `/` between its parts: of a URI, the part in the listed folder.
+    /// The path that fields and patterns see, with `/` between its parts: of a URI, the part in the
+    /// listed folder.
     path: String,
     /// Fields of templates.
     pub(crate) fields: Fields,
@@ -40,7 +41,8 @@ pub(crate) enum Missing {
     LeftOut,
 }
 
-/// Returns the recordings of a rule, in the order of their paths; those of a table in the order of its rows.
+/// Returns the recordings of a rule, in the order of their paths; those of a table in the order of
+/// its rows.
 pub(crate) fn inputs(
     rule: &Textures,
     place: &str,
@@ -64,9 +66,7 @@ pub(crate) fn inputs(
         (_, None) => recordings(&rule.recordings, place, (folder, output), elsewhere)?,
     };
     let inputs = found.into_iter();
-    inputs
-        .map(|input| named_groups(input, pattern.as_ref(), place))
-        .collect()
+    inputs.map(|input| named_groups(input, pattern.as_ref(), place)).collect()
 }
 
 /// Returns the files that match globs, here and elsewhere, sorted by path.
@@ -109,7 +109,8 @@ pub(crate) fn too_many(place: &str) -> BuildError {
     BuildError::at(place, problem)
 }
 
-/// Returns the files elsewhere that match a glob: a URI, or a path relative to the folder of a recipe that lies elsewhere.
+/// Returns the files elsewhere that match a glob: a URI, or a path relative to the folder of a
+/// recipe that lies elsewhere.
 fn globbed_elsewhere(
     glob: &str,
     place: &str,
@@ -135,9 +136,7 @@ fn globbed_elsewhere(
         let problem = format!("no file matches {pattern} in {}", below.display());
         return Err(BuildError::at(place, problem));
     }
-    let inputs = found
-        .into_iter()
-        .map(|(uri, inside)| input_elsewhere(uri, &inside));
+    let inputs = found.into_iter().map(|(uri, inside)| input_elsewhere(uri, &inside));
     Ok(inputs.collect())
 }
 
@@ -155,9 +154,7 @@ fn tabulated(
         Some(location) => elsewhere.text(&location)?.into_bytes(),
         None => read_regular(table, MOST_TABLE_BYTES).reading(table)?,
     };
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .from_reader(&text[..]);
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&text[..]);
     let in_table = format!("{place}: {shown}");
     let headers = reader.headers().at(&in_table)?.clone();
     let column = headers.iter().position(|name| name == "recording");
@@ -197,11 +194,7 @@ fn tabulated(
 
 /// A recording with the fields of its path.
 fn input(file: PathBuf) -> Input {
-    Input {
-        fields: fields(&file),
-        path: slashed(&file),
-        file,
-    }
+    Input { fields: fields(&file), path: slashed(&file), file }
 }
 
 /// A recording elsewhere, with the fields of its path in the listed folder.
@@ -211,17 +204,12 @@ fn input_elsewhere(uri: PathBuf, inside: &Path) -> Input {
         _ => None,
     }
     .unwrap_or_else(|| inside.to_owned());
-    Input {
-        fields: fields(&inside),
-        path: slashed(&inside),
-        file: uri,
-    }
+    Input { fields: fields(&inside), path: slashed(&inside), file: uri }
 }
 
 fn fields(file: &Path) -> Fields {
     let text = |part: Option<&std::ffi::OsStr>| {
-        part.map(|p| p.to_string_lossy().into_owned())
-            .unwrap_or_default()
+        part.map(|p| p.to_string_lossy().into_owned()).unwrap_or_default()
     };
     let folder = file.parent().unwrap_or(Path::new(""));
     let fields = [

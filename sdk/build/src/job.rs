@@ -1,8 +1,8 @@
 //! A job: the fit of one texture, as data. Equal jobs give equal bytes, on any machine.
 //!
-//! Models that are installed on a machine are not used, and no path or time is part of a key. Neither are a texture's name and its
-//! metadata but those that decide how it plays (`contact`, `law`): they are laid over what was fitted when it is put together
-//! ([`Job::named`]).
+//! Models that are installed on a machine are not used, and no path or time is part of a key.
+//! Neither are a texture's name and its metadata but those that decide how it plays (`contact`,
+//! `law`): they are laid over what was fitted when it is put together ([`Job::named`]).
 
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -67,12 +67,7 @@ impl Named {
             path.is_ok_and(|path| by_person.contains(&path))
         };
         let of_recipe = of_recipe.into_iter().filter(|file| !is_named(file));
-        Ok(Self {
-            of_recipe: of_recipe.collect(),
-            by_person,
-            folder,
-            origin,
-        })
+        Ok(Self { of_recipe: of_recipe.collect(), by_person, folder, origin })
     }
 }
 
@@ -96,19 +91,22 @@ pub struct Job {
     /// The setup's response.
     pub response: Option<JobFile>,
     pub plugins: Vec<JobFile>,
-    /// How many of them, the first ones, a person named. They may be native libraries; the others are WASM modules.
+    /// How many of them, the first ones, a person named. They may be native libraries; the others
+    /// are WASM modules.
     #[serde(default)]
     pub named: usize,
     /// How many of them, the last ones, travel in the asset.
     pub embedded: usize,
-    /// Where the recipe is, if it is elsewhere: the one server of this machine or network that it may name.
+    /// Where the recipe is, if it is elsewhere: the one server of this machine or network that it
+    /// may name.
     #[serde(default)]
     pub origin: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobRecording {
-    /// Its name in reports and messages: that of the file, with the folders that tell it from another recording of the texture.
+    /// Its name in reports and messages: that of the file, with the folders that tell it from
+    /// another recording of the texture.
     pub name: String,
     pub file: JobFile,
     pub tracker: Option<JobFile>,
@@ -130,13 +128,7 @@ pub struct JobFile {
 impl JobFile {
     /// Returns the file's name without its folder.
     pub fn name(&self) -> String {
-        let own = || {
-            self.path
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned()
-        };
+        let own = || self.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         match elsewhere(&self.path) {
             Ok(Some(location)) => location.file_name().unwrap_or_else(own),
             _ => own(),
@@ -177,23 +169,19 @@ impl Job {
             Ok::<_, BuildError>(JobFile { path, hashed })
         };
         let names = told_apart(texture);
-        let recordings = texture
-            .recordings
-            .iter()
-            .zip(names)
-            .map(|(recording, name)| {
-                Ok::<_, BuildError>(JobRecording {
-                    name,
-                    file: file(joined(folder, &recording.file))?,
-                    tracker: recording
-                        .tracker
-                        .as_ref()
-                        .map(|path| file(joined(folder, path)))
-                        .transpose()?,
-                    speed_mm_s: recording.speed_mm_s,
-                    force_n: recording.force_n,
-                })
-            });
+        let recordings = texture.recordings.iter().zip(names).map(|(recording, name)| {
+            Ok::<_, BuildError>(JobRecording {
+                name,
+                file: file(joined(folder, &recording.file))?,
+                tracker: recording
+                    .tracker
+                    .as_ref()
+                    .map(|path| file(joined(folder, path)))
+                    .transpose()?,
+                speed_mm_s: recording.speed_mm_s,
+                force_n: recording.force_n,
+            })
+        });
         let reading = texture.settings.reading(folder);
         let embedded = texture.settings.embed_plugins.as_deref();
         let embedded = embedded.unwrap_or_default();
@@ -217,28 +205,26 @@ impl Job {
         })
     }
 
-    /// Returns the job, and its key, of a texture of which a recording or a tracker cannot be read. It makes nothing, and no job that
-    /// can be done has its key.
+    /// Returns the job, and its key, of a texture of which a recording or a tracker cannot be read.
+    /// It makes nothing, and no job that can be done has its key.
     ///
     /// # Errors
-    /// When another of its files cannot be read: a response or a plugin, which other textures need as well.
+    /// When another of its files cannot be read: a response or a plugin, which other textures need
+    /// as well.
     pub(crate) fn absent(
         texture: &PlannedTexture,
         named: &Named,
         program: &str,
         hashes: &Hashes,
     ) -> Result<(String, Self), BuildError> {
-        let without = PlannedTexture {
-            recordings: Vec::new(),
-            ..texture.clone()
-        };
+        let without = PlannedTexture { recordings: Vec::new(), ..texture.clone() };
         let job = Self::new(&without, named, program, hashes)?;
         let key = hash_of(&serde_json::json!(["absent", texture.name, job.key()]));
         Ok((key, job))
     }
 
-    /// Returns the key of what this job makes: a hash of everything that its bytes depend on. Folders and times of files are no
-    /// part of it, their names and contents are.
+    /// Returns the key of what this job makes: a hash of everything that its bytes depend on.
+    /// Folders and times of files are no part of it, their names and contents are.
     pub fn key(&self) -> String {
         let parts = serde_json::json!([JOB, self.parts()]);
         hash_of(&parts)
@@ -255,22 +241,13 @@ impl Job {
                 r.force_n,
             )
         });
-        let reading = ReadingSettings {
-            response: None,
-            ..self.reading.clone()
-        };
+        let reading = ReadingSettings { response: None, ..self.reading.clone() };
         let plays = (&self.metadata.contact, &self.metadata.law);
         let response = self.response.as_ref().map(named);
         let plugins = self.plugins.iter().map(named).collect::<Vec<_>>();
         [
-            (
-                "recordings",
-                serde_json::json!(recordings.collect::<Vec<_>>()),
-            ),
-            (
-                "reading",
-                serde_json::json!([reading, response, self.kind, self.signal]),
-            ),
+            ("recordings", serde_json::json!(recordings.collect::<Vec<_>>())),
+            ("reading", serde_json::json!([reading, response, self.kind, self.signal])),
             ("options", serde_json::json!([self.fit, plays])),
             ("plugins", serde_json::json!([plugins, self.embedded])),
             ("program", serde_json::json!(self.program)),
@@ -285,11 +262,7 @@ impl Job {
 
     /// Checks plugins, settings and gates as far as that is possible without a fit.
     pub(crate) fn check(&self, gates: &Gates, workbench: &mut Workbench) -> Result<(), BuildError> {
-        let without = Self {
-            recordings: Vec::new(),
-            response: None,
-            ..self.clone()
-        };
+        let without = Self { recordings: Vec::new(), response: None, ..self.clone() };
         let here = without.copied(&workbench.elsewhere)?;
         let job = here.as_ref().unwrap_or(&without);
         let registry = workbench.registry(job).at("plugins")?;
@@ -297,14 +270,9 @@ impl Job {
             // It is not fitted, and the plan has refused settings and gates of fits.
             return Ok(());
         }
-        let reading = ReadingSettings {
-            response: None,
-            ..self.reading.clone()
-        };
-        let request = self
-            .fit
-            .request(registry, &reading, &self.texture, &self.program)
-            .at(&self.texture)?;
+        let reading = ReadingSettings { response: None, ..self.reading.clone() };
+        let request =
+            self.fit.request(registry, &reading, &self.texture, &self.program).at(&self.texture)?;
         let models: Vec<&str> = request.models.iter().map(|m| m.model.id()).collect();
         check_gates(gates, &models).at(&self.texture)
     }
@@ -318,25 +286,18 @@ impl Job {
         let mut asset = Asset::from_bytes(bytes).map_err(|error| damaged(error.to_string()))?;
         asset.manifest.name.clone_from(&self.texture);
         // Another name may have made it, with the same bytes but for what is laid over now.
-        let metadata = Metadata {
-            contact: None,
-            law: None,
-            ..self.metadata.clone()
-        };
+        let metadata = Metadata { contact: None, law: None, ..self.metadata.clone() };
         metadata.apply(&mut asset.manifest);
         asset.to_bytes().map_err(|error| damaged(error.to_string()))
     }
 
     /// Returns the size of the recordings, bytes.
     pub fn recording_bytes(&self) -> u64 {
-        self.recordings
-            .iter()
-            .map(|r| r.file.hashed.stamp.bytes)
-            .sum()
+        self.recordings.iter().map(|r| r.file.hashed.stamp.bytes).sum()
     }
 
-    /// Reads the recordings, fits the models, and returns the asset. A recording that cannot be used, or a model that fails, is a
-    /// result too: [`Outcome::Refused`].
+    /// Reads the recordings, fits the models, and returns the asset. A recording that cannot be
+    /// used, or a model that fails, is a result too: [`Outcome::Refused`].
     ///
     /// # Errors
     /// When a file cannot be read, or is not the one that was hashed.
@@ -360,9 +321,7 @@ impl Job {
             return Ok(None);
         }
         let mut copied = self.clone();
-        copied
-            .files_mut()
-            .try_for_each(|file| file.copy_here(elsewhere))?;
+        copied.files_mut().try_for_each(|file| file.copy_here(elsewhere))?;
         copied.reading.response = copied.response.as_ref().map(|file| file.path.clone());
         Ok(Some(copied))
     }
@@ -389,12 +348,11 @@ impl Job {
         let recordings = self.recordings.iter_mut();
         let recordings =
             recordings.flat_map(|r| std::iter::once(&mut r.file).chain(&mut r.tracker));
-        recordings
-            .chain(&mut self.response)
-            .chain(&mut self.plugins)
+        recordings.chain(&mut self.response).chain(&mut self.plugins)
     }
 
-    /// Refuses a file that is not the one that was hashed: by size and time, or where these differ, by its contents.
+    /// Refuses a file that is not the one that was hashed: by size and time, or where these differ,
+    /// by its contents.
     fn check_files(&self) -> Result<(), BuildError> {
         for file in self.files() {
             if Stamp::of(&file.path).reading(&file.path)? == file.hashed.stamp {
@@ -408,7 +366,8 @@ impl Job {
     }
 }
 
-/// Returns the result that the error of a fit is. A [`BuildError`] is none: a file that cannot be read now may be read later.
+/// Returns the result that the error of a fit is. A [`BuildError`] is none: a file that cannot be
+/// read now may be read later.
 fn outcome(error: Box<dyn Error>) -> Result<Outcome, BuildError> {
     let error = match error.downcast::<BuildError>() {
         Ok(error) => return Err(*error),
@@ -433,11 +392,7 @@ pub struct Workbench {
 impl Workbench {
     /// Returns a workbench that loads WASM models under `limits`.
     pub fn new(limits: WasmLimits) -> Self {
-        Self {
-            limits,
-            elsewhere: Arc::new(Elsewhere::temporary(None)),
-            loaded: None,
-        }
+        Self { limits, elsewhere: Arc::new(Elsewhere::temporary(None)), loaded: None }
     }
 
     /// Returns a workbench for a job of another process, whose recipe may name its own server.
@@ -445,18 +400,15 @@ impl Workbench {
     /// # Errors
     /// When the job's origin is no location.
     pub fn of_job(limits: WasmLimits, job: &Job) -> Result<Self, BuildError> {
-        let origin = job
-            .origin
-            .as_ref()
-            .map(|origin| Location::parse(origin.as_ref()));
+        let origin = job.origin.as_ref().map(|origin| Location::parse(origin.as_ref()));
         Ok(Self {
             elsewhere: Arc::new(Elsewhere::temporary(origin.transpose()?)),
             ..Self::new(limits)
         })
     }
 
-    /// Returns the built-in models and the plugins of a job. Those that are installed on a machine are not used: a build is the
-    /// same on all.
+    /// Returns the built-in models and the plugins of a job. Those that are installed on a machine
+    /// are not used: a build is the same on all.
     fn registry(&mut self, job: &Job) -> Result<&Registry, Box<dyn Error>> {
         let files: Vec<PathBuf> = job.plugins.iter().map(|file| file.path.clone()).collect();
         let is_loaded = |(loaded, named, _): &(Vec<PathBuf>, usize, Registry)| {
@@ -478,17 +430,13 @@ impl Workbench {
 }
 
 fn hash_of(value: &serde_json::Value) -> String {
-    blake3::hash(value.to_string().as_bytes())
-        .to_hex()
-        .to_string()
+    blake3::hash(value.to_string().as_bytes()).to_hex().to_string()
 }
 
-/// Returns the names of a texture's recordings: those of the files, with as many folders before each as tell all apart.
+/// Returns the names of a texture's recordings: those of the files, with as many folders before
+/// each as tell all apart.
 fn told_apart(texture: &PlannedTexture) -> Vec<String> {
-    let paths = texture
-        .recordings
-        .iter()
-        .map(|r| slashed(&shown_path(&r.file)));
+    let paths = texture.recordings.iter().map(|r| slashed(&shown_path(&r.file)));
     let paths: Vec<String> = paths.collect();
     let deepest = paths.iter().map(|path| path.split('/').count()).max();
     for parts in 1..deepest.unwrap_or(1) {

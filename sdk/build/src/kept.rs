@@ -1,9 +1,10 @@
 //! What a build keeps for the next one: `.htex-build` in the folder of the results.
 //!
-//! The folder of the results may come from somebody else, with a `.htex-build` that says what a recording's fit is, which files are
-//! known, or what was published. Each file in it begins with a keyed hash of its name and content, by a key of this user
-//! ([`htex_files::Key`]): what this user has not made is not used, and made again. A user without a folder for a key has one that
-//! ends with the build.
+//! The folder of the results may come from somebody else, with a `.htex-build` that says what a
+//! recording's fit is, which files are known, or what was published. Each file in it begins with a
+//! keyed hash of its name and content, by a key of this user ([`htex_files::Key`]): what this user
+//! has not made is not used, and made again. A user without a folder for a key has one that ends
+//! with the build.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -36,10 +37,7 @@ impl Kept {
             Some(key) => key,
             None => passing().writing(output)?,
         };
-        Ok(Self {
-            own: OwnFolder::new(output),
-            key,
-        })
+        Ok(Self { own: OwnFolder::new(output), key })
     }
 
     /// Makes the folder, and locks it for this build.
@@ -52,16 +50,17 @@ impl Kept {
         let lock = lock.writing(&file)?;
         match lock.try_lock() {
             Ok(()) => Ok(lock),
-            Err(std::fs::TryLockError::WouldBlock) => Err(BuildError::Locked {
-                folder: self.own.path().to_owned(),
-            }),
+            Err(std::fs::TryLockError::WouldBlock) => {
+                Err(BuildError::Locked { folder: self.own.path().to_owned() })
+            }
             Err(std::fs::TryLockError::Error(error)) => {
                 Err(FileError::writing(&file, error).into())
             }
         }
     }
 
-    /// Returns what this user kept under a name; `None` if there is nothing, or if it is somebody else's or damaged.
+    /// Returns what this user kept under a name; `None` if there is nothing, or if it is somebody
+    /// else's or damaged.
     pub(crate) fn get(&self, name: &str, most_bytes: u64) -> Option<Vec<u8>> {
         let most = most_bytes.saturating_add(TAG as u64);
         let mut bytes = self.own.read(&inside(name), most).ok()?;

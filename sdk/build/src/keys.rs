@@ -8,7 +8,8 @@ use crate::{BuildError, recipe_schema};
 /// Most keys that one message names.
 const MOST_NAMED: usize = 20;
 
-/// Refuses keys that recipes do not have, each with its line and the known key that is most like it.
+/// Refuses keys that recipes do not have, each with its line and the known key that is most like
+/// it.
 pub(crate) fn check_keys(text: &str, recipe: &Value) -> Result<(), BuildError> {
     let unknown = htex_schema::unknown_keys(&recipe_schema(), recipe);
     let named = &unknown[..unknown.len().min(MOST_NAMED)];
@@ -68,10 +69,7 @@ mod tests {
                 "[[overrides]]\ntextures = ['a']\nlicence = 'MIT'",
                 "line 6: there is no key `overrides[0].licence`; did you mean `license`?",
             ),
-            (
-                "[librarie]",
-                "line 4: there is no key `librarie`; did you mean `library`?",
-            ),
+            ("[librarie]", "line 4: there is no key `librarie`; did you mean `library`?"),
         ];
         for (added, expected) in texts {
             let text = format!("library.name = 'a'\n[[textures]]\nrecordings = '*.csv'\n{added}");
@@ -95,15 +93,9 @@ mod tests {
         assert_eq!(textures.settings.metadata.name, None);
         let fit = textures.settings.fit();
         assert_eq!(fit.grid, Some(vec!["auto".to_owned()]));
-        let options: Vec<String> = fit
-            .options
-            .iter()
-            .map(|(name, value)| format!("{name}={value}"))
-            .collect();
+        let options: Vec<String> =
+            fit.options.iter().map(|(name, value)| format!("{name}={value}")).collect();
         assert_eq!(options, ["ar.order=6", "org.htex.mfcc.inverse=nnls"]);
-        assert_eq!(
-            textures.settings.reading.tracker,
-            Some(vec!["{stem}.trk".into()])
-        );
+        assert_eq!(textures.settings.reading.tracker, Some(vec!["{stem}.trk".into()]));
     }
 }

@@ -1,19 +1,21 @@
 //! Recipes: recordings in, a checked library of textures out.
 //!
-//! A recording may also be a file of another haptic format: a signal, which is fitted, or a file that states its texture, which is taken as it is
-//! (`imports`).
+//! A recording may also be a file of another haptic format: a signal, which is fitted, or a file
+//! that states its texture, which is taken as it is (`imports`).
 //!
-//! A recipe is data, a build is a function of it. The key of a texture is the hash of everything its bytes depend on: the contents
-//! of its recordings, its settings, the program and the plugins. What has been made for a key is kept, so that going on after a kill,
-//! building only what changed and building on many machines ([`Build::pending`], [`Job::run`], [`Build::store`]) are one mechanism.
+//! A recipe is data, a build is a function of it. The key of a texture is the hash of everything
+//! its bytes depend on: the contents of its recordings, its settings, the program and the plugins.
+//! What has been made for a key is kept, so that going on after a kill, building only what changed
+//! and building on many machines ([`Build::pending`], [`Job::run`], [`Build::store`]) are one
+//! mechanism.
 //!
 //! From recordings to a library:
 //!
-//! 1. `recipe`, `plan`: a recipe becomes textures, each with its recordings and settings, which are those of the
-//!    command and of Python.
+//! 1. `recipe`, `plan`: a recipe becomes textures, each with its recordings and settings, which are
+//!    those of the command and of Python.
 //! 2. `hashes`, `job`: a texture becomes a job, data with a key.
-//! 3. `cache`: what was made for a key is there, or the job is pending. Threads, or a cluster (`htex.dask`), do the
-//!    pending jobs.
+//! 3. `cache`: what was made for a key is there, or the job is pending. Threads, or a cluster
+//!    (`htex.dask`), do the pending jobs.
 //! 4. `assemble`: gates, textures, the library, report and catalogue, from what was made alone.
 //!
 //! ```no_run

@@ -33,7 +33,8 @@ pub struct Record {
     pub felt: BTreeMap<String, FeltError>,
     /// Findings of the recordings, by code.
     pub findings: Vec<FindingReport>,
-    /// The recorded spectrum of the first condition; for a texture that a file states, the spectrum of its default condition.
+    /// The recorded spectrum of the first condition; for a texture that a file states, the spectrum
+    /// of its default condition.
     pub thumbnail: Thumbnail,
 }
 
@@ -126,10 +127,6 @@ impl Made {
         if header.hash(asset, sound).ok().as_deref() != Some(&header.blake3) {
             return Err(damaged("its hash differs"));
         }
-        Ok(Self {
-            record: header.record,
-            asset: asset.to_vec(),
-            sound: sound.to_vec(),
-        })
+        Ok(Self { record: header.record, asset: asset.to_vec(), sound: sound.to_vec() })
     }
 }

@@ -1,4 +1,5 @@
-//! What a job makes: a fit to recordings or signals, or the texture that a file of another format states.
+//! What a job makes: a fit to recordings or signals, or the texture that a file of another format
+//! states.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -39,18 +40,12 @@ impl Job {
         };
         plays.apply(&mut asset.manifest);
         let travelling = self.plugins.len() - self.embedded.min(self.plugins.len());
-        let files: Vec<PathBuf> = self.plugins[travelling..]
-            .iter()
-            .map(|f| f.path.clone())
-            .collect();
+        let files: Vec<PathBuf> =
+            self.plugins[travelling..].iter().map(|f| f.path.clone()).collect();
         embed_plugins(&mut asset, registry, &files, None)?;
         let bytes = asset.to_bytes()?;
         let sound = sound(&bytes, registry)?;
-        Ok(Made {
-            record,
-            asset: bytes,
-            sound,
-        })
+        Ok(Made { record, asset: bytes, sound })
     }
 
     /// Takes the texture that a file of another format states.
@@ -88,7 +83,8 @@ impl Job {
         for source in &mut fitted.asset.manifest.provenance.recordings {
             let mut recordings = self.recordings.iter();
             if let Some(recording) = recordings.find(|recording| recording.name == source.file) {
-                // A folder has no meaning on other machines; the hash tells recordings of one name apart.
+                // A folder has no meaning on other machines; the hash tells recordings of one name
+                // apart.
                 source.file = recording.file.name();
                 source.blake3 = Some(recording.file.hashed.blake3.clone());
             }
@@ -122,30 +118,19 @@ impl Job {
             return self.signal(recording);
         }
         let reading = ReadingSettings {
-            tracker: recording
-                .tracker
-                .as_ref()
-                .map(|file| vec![file.path.clone()]),
+            tracker: recording.tracker.as_ref().map(|file| vec![file.path.clone()]),
             ..self.reading.clone()
         };
         let options = reading.read_options(1)?.pop().unwrap_or_default();
-        let given = Exploration {
-            speed_mm_s: recording.speed_mm_s,
-            force_n: recording.force_n,
-        };
+        let given = Exploration { speed_mm_s: recording.speed_mm_s, force_n: recording.force_n };
         let file = &recording.file.path;
         match read_recording(file, &options) {
-            Ok(read) => Ok(Take {
-                recording: Recording {
-                    source: recording.name.clone(),
-                    ..read
-                },
-                given,
-            }),
-            Err(ReadError {
-                problem: ReadProblem::Io(error),
-                ..
-            }) => Err(Box::new(BuildError::from(FileError::reading(file, error)))),
+            Ok(read) => {
+                Ok(Take { recording: Recording { source: recording.name.clone(), ..read }, given })
+            }
+            Err(ReadError { problem: ReadProblem::Io(error), .. }) => {
+                Err(Box::new(BuildError::from(FileError::reading(file, error))))
+            }
             Err(error) => Err(error.into()),
         }
     }
@@ -170,17 +155,12 @@ impl Job {
         let read = htex_exchange::recording_of(&recording.name, &bytes, &physical, profile)?;
         Ok(Take {
             recording: read,
-            given: Exploration {
-                speed_mm_s: recording.speed_mm_s,
-                force_n: recording.force_n,
-            },
+            given: Exploration { speed_mm_s: recording.speed_mm_s, force_n: recording.force_n },
         })
     }
 
     fn trackers(&self) -> impl Iterator<Item = &JobFile> {
-        self.recordings
-            .iter()
-            .filter_map(|recording| recording.tracker.as_ref())
+        self.recordings.iter().filter_map(|recording| recording.tracker.as_ref())
     }
 }
 
@@ -203,14 +183,13 @@ fn played(asset: &Asset, registry: &Registry) -> Result<Thumbnail, htex_play::Er
     Ok(of_magnitudes(&frequency_hz, &magnitude))
 }
 
-/// What is felt of the difference from the recordings, of each model at its worst recorded condition.
+/// What is felt of the difference from the recordings, of each model at its worst recorded
+/// condition.
 fn felt(fitted: &FittedAsset) -> BTreeMap<String, FeltError> {
     let models = fitted.asset.manifest.representations.iter();
-    let worst = models
-        .zip(&fitted.felt)
-        .filter_map(|(representation, felt)| {
-            let worst = felt.iter().copied().flatten().reduce(FeltError::worse)?;
-            Some((representation.model.clone(), worst))
-        });
+    let worst = models.zip(&fitted.felt).filter_map(|(representation, felt)| {
+        let worst = felt.iter().copied().flatten().reduce(FeltError::worse)?;
+        Some((representation.model.clone(), worst))
+    });
     worst.collect()
 }

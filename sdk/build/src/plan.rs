@@ -54,16 +54,13 @@ pub struct PlannedRecording {
 }
 
 impl PlannedTexture {
-    /// Returns the files that its job reads, relative to the recipe, but the plugins of the whole library.
+    /// Returns the files that its job reads, relative to the recipe, but the plugins of the whole
+    /// library.
     pub(crate) fn files(&self) -> impl Iterator<Item = &PathBuf> {
-        let recordings = self
-            .recordings
-            .iter()
-            .flat_map(|r| std::iter::once(&r.file).chain(&r.tracker));
+        let recordings =
+            self.recordings.iter().flat_map(|r| std::iter::once(&r.file).chain(&r.tracker));
         let settings = &self.settings;
-        recordings
-            .chain(&settings.reading.response)
-            .chain(settings.embed_plugins.iter().flatten())
+        recordings.chain(&settings.reading.response).chain(settings.embed_plugins.iter().flatten())
     }
 }
 
@@ -75,11 +72,12 @@ impl Plan {
         removed.cloned().collect()
     }
 
-    /// Finds the recordings of a recipe that lies in `folder`. Files in the build's own `output` folder are no recordings.
+    /// Finds the recordings of a recipe that lies in `folder`. Files in the build's own `output`
+    /// folder are no recordings.
     ///
     /// # Errors
-    /// When a glob matches nothing, a template or a pattern fails, a name cannot be one, or two recordings of a texture have
-    /// different settings.
+    /// When a glob matches nothing, a template or a pattern fails, a name cannot be one, or two
+    /// recordings of a texture have different settings.
     pub(crate) fn new(
         recipe: &Recipe,
         folder: &Path,
@@ -115,10 +113,7 @@ impl Plan {
             check_files(texture)?;
         }
         check_folders(&textures)?;
-        Ok(Self {
-            library: recipe.library.name.clone(),
-            textures,
-        })
+        Ok(Self { library: recipe.library.name.clone(), textures })
     }
 }
 
@@ -160,9 +155,7 @@ fn planned(
     input: Input,
     place: &str,
 ) -> Result<PlannedTexture, BuildError> {
-    let Input {
-        file, mut fields, ..
-    } = input;
+    let Input { file, mut fields, .. } = input;
     let shown = slashed(&file);
     let of = |key: &str| format!("{place}.{key}: {shown}");
     let template = match (&rule.name, fields.get("name")) {
@@ -221,9 +214,7 @@ fn number(
     if text.is_empty() {
         return Ok(None);
     }
-    let number = text
-        .parse()
-        .map_err(|_| format!("{key} is `{text}`; it is a number"))?;
+    let number = text.parse().map_err(|_| format!("{key} is `{text}`; it is a number"))?;
     Ok(Some(number))
 }
 
@@ -254,7 +245,8 @@ fn filled(
     Ok(metadata)
 }
 
-/// Refuses a recording that the texture has already; `known` are hashes of textures with their recordings.
+/// Refuses a recording that the texture has already; `known` are hashes of textures with their
+/// recordings.
 fn check_once(
     known: &mut HashSet<[u8; 32]>,
     planned: &PlannedTexture,
@@ -294,11 +286,7 @@ fn gather(
         == (&planned.settings, &planned.metadata, &planned.gates);
     if !same {
         let file = |texture: &PlannedTexture| {
-            texture
-                .recordings
-                .first()
-                .map(|r| slashed(&r.file))
-                .unwrap_or_default()
+            texture.recordings.first().map(|r| slashed(&r.file)).unwrap_or_default()
         };
         let problem = format!(
             "{} and {} are recordings of one texture, {}, and have different settings; give them the same, or other names",
@@ -321,10 +309,7 @@ fn check_folders(textures: &[PlannedTexture]) -> Result<(), BuildError> {
     for pair in textures.windows(2) {
         let (folder, inside) = (format!("{}.htex/", pair[0].name), &pair[1].name);
         if inside.starts_with(&folder) {
-            let problem = format!(
-                "{} and {inside} cannot both be files; rename one",
-                pair[0].name
-            );
+            let problem = format!("{} and {inside} cannot both be files; rename one", pair[0].name);
             return Err(BuildError::at("textures", problem));
         }
     }

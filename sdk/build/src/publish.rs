@@ -59,29 +59,25 @@ struct Copied {
 }
 
 impl Destination {
-    /// Reads an argument: a folder, or the URI of one (`s3://`, `gs://`, `az://`). Results for a URI are made in the folder `work`,
-    /// by default one of the user's cache, which also keeps what the next build needs.
+    /// Reads an argument: a folder, or the URI of one (`s3://`, `gs://`, `az://`). Results for a
+    /// URI are made in the folder `work`, by default one of the user's cache, which also keeps what
+    /// the next build needs.
     ///
     /// # Errors
-    /// A URI that is malformed or read-only; a URI without `work` where the environment names no cache.
+    /// A URI that is malformed or read-only; a URI without `work` where the environment names no
+    /// cache.
     pub fn parse(argument: &OsStr, work: Option<&Path>) -> Result<Self, BuildError> {
         let Some(location) = elsewhere(Path::new(argument))? else {
             let location = Location::parse(argument)?;
             let folder = location.local().unwrap_or(Path::new(argument)).to_owned();
-            return Ok(Self {
-                folder,
-                remote: None,
-            });
+            return Ok(Self { folder, remote: None });
         };
         Storage::from_environment()?.check_writable(&location)?;
         let folder = match work {
             Some(folder) => folder.to_owned(),
             None => default_folder(&location)?,
         };
-        Ok(Self {
-            folder,
-            remote: Some(location),
-        })
+        Ok(Self { folder, remote: Some(location) })
     }
 
     /// Returns the folder of this machine in which the results are made.
@@ -100,8 +96,8 @@ impl Destination {
         self.remote.as_ref()
     }
 
-    /// Tries whether the URI, if there is one, can be listed, written and removed from, before hours of fitting: by a file that is removed
-    /// again.
+    /// Tries whether the URI, if there is one, can be listed, written and removed from, before
+    /// hours of fitting: by a file that is removed again.
     ///
     /// # Errors
     /// When it cannot.
@@ -114,11 +110,13 @@ impl Destination {
         Ok(storage.remove(&file)?)
     }
 
-    /// Copies the results to the URI, if there is one: files that are not there as they are here, textures first, report and catalogue last. Files
-    /// that an earlier build copied and this one has not made are removed. Returns the number of files that were copied.
+    /// Copies the results to the URI, if there is one: files that are not there as they are here,
+    /// textures first, report and catalogue last. Files that an earlier build copied and this one
+    /// has not made are removed. Returns the number of files that were copied.
     ///
     /// # Errors
-    /// When a file cannot be read or written. The next call copies again what is not known to be there.
+    /// When a file cannot be read or written. The next call copies again what is not known to be
+    /// there.
     pub fn publish(&self) -> Result<usize, BuildError> {
         match &self.remote {
             Some(to) => Publishing::new(&self.folder, to)?.run(),
@@ -127,7 +125,8 @@ impl Destination {
     }
 }
 
-/// Returns the folder in which results for a URI are made: `htex/builds/HASH` in the user's cache, by the URI's hash.
+/// Returns the folder in which results for a URI are made: `htex/builds/HASH` in the user's cache,
+/// by the URI's hash.
 fn default_folder(location: &Location) -> Result<PathBuf, BuildError> {
     // A relative path is ignored, as the XDG base directory specification has it.
     let variable = |name| {
@@ -162,9 +161,7 @@ impl<'a> Publishing<'a> {
             folder,
             to,
             storage: Storage::from_environment()?,
-            before: before
-                .filter(|before| before.to == to.to_string())
-                .unwrap_or_default(),
+            before: before.filter(|before| before.to == to.to_string()).unwrap_or_default(),
             kept,
         })
     }
@@ -183,10 +180,8 @@ impl<'a> Publishing<'a> {
             .filter(|(name, blake3)| !is_there(name, blake3))
             .map(|(name, _)| name)
             .collect();
-        let (last, first): (Vec<_>, Vec<_>) = wanted
-            .iter()
-            .copied()
-            .partition(|name| LAST.contains(&name.as_str()));
+        let (last, first): (Vec<_>, Vec<_>) =
+            wanted.iter().copied().partition(|name| LAST.contains(&name.as_str()));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(AT_ONCE).build();
         let pool = pool.at("publish")?;
         pool.install(|| first.par_iter().try_for_each(|name| self.copy(name)))?;
@@ -214,10 +209,7 @@ impl<'a> Publishing<'a> {
         let kept =
             |entry: &walkdir::DirEntry| entry.depth() == 1 && entry.file_name() == ".htex-build";
         let mut files = Vec::new();
-        for entry in WalkDir::new(self.folder)
-            .into_iter()
-            .filter_entry(|e| !kept(e))
-        {
+        for entry in WalkDir::new(self.folder).into_iter().filter_entry(|e| !kept(e)) {
             let entry = entry.reading(self.folder)?;
             if entry.file_type().is_file() {
                 files.push(entry.into_path());
@@ -232,9 +224,7 @@ impl<'a> Publishing<'a> {
     }
 
     fn copy(&self, name: &str) -> Result<(), BuildError> {
-        Ok(self
-            .storage
-            .write_file(&self.to.inside(name), &self.folder.join(name))?)
+        Ok(self.storage.write_file(&self.to.inside(name), &self.folder.join(name))?)
     }
 
     /// Removes what an earlier build copied and this one has not made.
@@ -258,10 +248,7 @@ impl<'a> Publishing<'a> {
             let there = *there.get(&name)?;
             Some((name, Copied { blake3, there }))
         });
-        let published = Published {
-            to: self.to.to_string(),
-            files: files.collect(),
-        };
+        let published = Published { to: self.to.to_string(), files: files.collect() };
         self.kept.put(PUBLISHED, &serde_json::to_vec(&published)?)
     }
 }

@@ -1,4 +1,5 @@
-//! Why a texture is to be fitted: what its fit depends on, compared with what the last finished build had.
+//! Why a texture is to be fitted: what its fit depends on, compared with what the last finished
+//! build had.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -21,7 +22,8 @@ const MOST_BYTES: u64 = 1 << 30;
 pub enum Why {
     /// No build of this user has fitted it in this folder.
     New,
-    /// These are not what they were: `recordings`, `reading`, `options`, `plugins`, `program`, in this order.
+    /// These are not what they were: `recordings`, `reading`, `options`, `plugins`, `program`, in
+    /// this order.
     Changed(Vec<&'static str>),
     /// What was made is there and is damaged, or of another user.
     Unusable,

@@ -55,8 +55,9 @@ pub struct Recipe {
 pub struct LibraryPart {
     /// Name of the library and of its file.
     pub name: String,
-    /// Plugins of models to fit with: WASM modules, which run in a sandbox. Relative to the recipe. A native library, which runs with all
-    /// rights, is named by a person alone: `htex build --plugin`.
+    /// Plugins of models to fit with: WASM modules, which run in a sandbox. Relative to the recipe.
+    /// A native library, which runs with all rights, is named by a person alone:
+    /// `htex build --plugin`.
     #[serde(default)]
     pub plugins: Vec<PathBuf>,
 }
@@ -65,20 +66,23 @@ pub struct LibraryPart {
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Textures {
-    /// Files by glob, relative to the recipe: `rec/**/*.csv`. Recordings, and what `htex import` takes: models of HaTT (`.xml`), `.haptic`, `.ahap`,
-    /// `.hjif`.
+    /// Files by glob, relative to the recipe: `rec/**/*.csv`. Recordings, and what `htex import`
+    /// takes: models of HaTT (`.xml`), `.haptic`, `.ahap`, `.hjif`.
     #[serde(default, deserialize_with = "one_or_more")]
     #[schemars(with = "OneOrMore", extend("default" = []))]
     pub recordings: Vec<String>,
-    /// A CSV with a row for each recording: the column `recording` is its file, relative to the table; other columns are fields of
-    /// templates. `name`, `speed_mm_s` and `force_n` are used where the recipe says nothing else.
+    /// A CSV with a row for each recording: the column `recording` is its file, relative to the
+    /// table; other columns are fields of templates. `name`, `speed_mm_s` and `force_n` are used
+    /// where the recipe says nothing else.
     #[serde(default)]
     pub table: Option<PathBuf>,
-    /// A regular expression with named groups, which become fields of templates. It is matched against each file's path relative to
-    /// the recipe, with `/` between folders; a file that it does not match is an error.
+    /// A regular expression with named groups, which become fields of templates. It is matched
+    /// against each file's path relative to the recipe, with `/` between folders; a file that it
+    /// does not match is an error.
     #[serde(default)]
     pub pattern: Option<String>,
-    /// Name of the texture, a template; `{stem}` when absent. Recordings with the same name are one texture.
+    /// Name of the texture, a template; `{stem}` when absent. Recordings with the same name are one
+    /// texture.
     #[serde(default)]
     pub name: Option<String>,
     /// Settings of these textures.
@@ -104,7 +108,8 @@ pub struct Override {
 #[serde(default)]
 #[schemars(deny_unknown_fields)]
 pub struct Settings {
-    /// How recordings are read; files are relative to the recipe, that of the tracker is a template.
+    /// How recordings are read; files are relative to the recipe, that of the tracker is a
+    /// template.
     #[serde(flatten)]
     pub reading: ReadingSettings,
     /// What haptic signals of other formats do not say.
@@ -163,21 +168,25 @@ pub enum NumberOrTemplate {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Gates {
-    /// Largest nine-band RMS error of every representation at every condition, decibels; or by model.
+    /// Largest nine-band RMS error of every representation at every condition, decibels; or by
+    /// model.
     pub max_band_error_db: Option<ModelGate>,
-    /// Largest difference from the recording that is felt of every representation at every condition, of a third-octave band or of all
-    /// together above the detection threshold, decibels; or by model. The difference threshold is 1.584 dB.
+    /// Largest difference from the recording that is felt of every representation at every
+    /// condition, of a third-octave band or of all together above the detection threshold,
+    /// decibels; or by model. The difference threshold is 1.584 dB.
     pub max_felt_error_db: Option<ModelGate>,
-    /// Largest repeatability of a condition: the RMS over nine bands of the difference between odd and even blocks of time, over √2,
-    /// decibels.
+    /// Largest repeatability of a condition: the RMS over nine bands of the difference between odd
+    /// and even blocks of time, over √2, decibels.
     pub max_repeatability_db: Option<f64>,
     /// Codes of findings that recordings may not have, such as `RECORDING_CLIPPED`.
     pub deny: Option<Vec<String>>,
     /// Fewest segments of 0.2 s at every condition.
     pub min_segments: Option<usize>,
-    /// Whether recordings may have no findings that are errors or warnings: a steady motion on target, no clipping, …
+    /// Whether recordings may have no findings that are errors or warnings: a steady motion on
+    /// target, no clipping, …
     pub strict: Option<bool>,
-    /// Whether a licence must be stated; of files of other haptic formats it must unless this is false.
+    /// Whether a licence must be stated; of files of other haptic formats it must unless this is
+    /// false.
     pub license: Option<bool>,
     /// Largest size of the asset, bytes.
     pub max_bytes: Option<u64>,
@@ -197,7 +206,8 @@ impl Recipe {
     /// Reads a recipe's text.
     ///
     /// # Errors
-    /// When it is not TOML, or has other keys or values than a recipe, or a gate by a code that no finding has.
+    /// When it is not TOML, or has other keys or values than a recipe, or a gate by a code that no
+    /// finding has.
     pub fn parse(text: &str) -> Result<Self, BuildError> {
         check_keys(text, &htex_files::toml::from_str(text)?)?;
         let recipe: Self = htex_files::toml::from_str(text)?;
@@ -209,9 +219,7 @@ impl Recipe {
     fn check_codes(&self) -> Result<(), BuildError> {
         let textures = self.textures.iter().map(|textures| &textures.settings);
         let overrides = self.overrides.iter().map(|over| &over.settings);
-        let settings = std::iter::once(&self.defaults)
-            .chain(textures)
-            .chain(overrides);
+        let settings = std::iter::once(&self.defaults).chain(textures).chain(overrides);
         let mut codes = settings.flat_map(|settings| settings.gates.deny.iter().flatten());
         match codes.find_map(|code| unknown_code(code)) {
             None => Ok(()),
@@ -233,7 +241,8 @@ impl Recipe {
 }
 
 impl Settings {
-    /// Returns these settings, and where they are absent those of `under`; options and gates are laid over each other one by one.
+    /// Returns these settings, and where they are absent those of `under`; options and gates are
+    /// laid over each other one by one.
     pub(crate) fn over(self, under: Self) -> Self {
         Self {
             reading: self.reading.over(under.reading),

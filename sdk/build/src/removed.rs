@@ -1,7 +1,7 @@
 //! Textures that the library before this build had and the library after it lacks.
 //!
-//! A glob that matches fewer files than before is not wrong, so a folder that was moved removes its textures. That is said, and refused
-//! where the build keeps all.
+//! A glob that matches fewer files than before is not wrong, so a folder that was moved removes its
+//! textures. That is said, and refused where the build keeps all.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -16,8 +16,9 @@ use crate::report::{Report, Status};
 /// Most places in a message.
 const NAMED: usize = 3;
 
-/// Names of the textures in the library that the last build wrote: by its report, and by the library's own index. A folder of this machine without either may be a new
-/// one for results elsewhere, whose report is read.
+/// Names of the textures in the library that the last build wrote: by its report, and by the
+/// library's own index. A folder of this machine without either may be a new one for results
+/// elsewhere, whose report is read.
 pub(crate) fn textures_before(
     dist: &Dist,
     library: &str,
@@ -26,9 +27,7 @@ pub(crate) fn textures_before(
     let report = previous(dist);
     let file = report.as_ref().map(|report| report.library.file.clone());
     let is_name = |file: &String| !file.contains(['/', '\\']) && file.ends_with(".htexlib");
-    let file = file
-        .filter(is_name)
-        .unwrap_or_else(|| format!("{library}.htexlib"));
+    let file = file.filter(is_name).unwrap_or_else(|| format!("{library}.htexlib"));
     let mut names = in_library(dist, Path::new(&file));
     names.extend(report.iter().flat_map(built));
     if names.is_empty() {
@@ -49,18 +48,13 @@ fn in_library(dist: &Dist, file: &Path) -> BTreeSet<String> {
     let path = dist.at(file).ok().filter(|path| is_file(path));
     let library = path.and_then(|path| Library::open(&path).ok());
     let entries = library.iter().flat_map(Library::entries);
-    entries
-        .map_while(Result::ok)
-        .map(|entry| entry.name)
-        .collect()
+    entries.map_while(Result::ok).map(|entry| entry.name).collect()
 }
 
 /// The report at a URI.
 fn report_at(location: &Location) -> Option<Report> {
     let storage = Storage::from_environment().ok()?;
-    let bytes = storage
-        .read(&location.inside(REPORT_FILE), MOST_REPORT_BYTES)
-        .ok()?;
+    let bytes = storage.read(&location.inside(REPORT_FILE), MOST_REPORT_BYTES).ok()?;
     serde_json::from_slice(&bytes).ok()
 }
 

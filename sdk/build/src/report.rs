@@ -1,5 +1,5 @@
-//! The report of a build: `build-report.json`. It has no times and no folders: equal builds have equal reports, except for what
-//! the build before had and this one removed.
+//! The report of a build: `build-report.json`. It has no times and no folders: equal builds have
+//! equal reports, except for what the build before had and this one removed.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,8 @@ pub struct Report {
     pub report: String,
     /// Program and version that built.
     pub program: String,
-    /// The error that ended the build, line by line. All else is then what an earlier build left, if there was one.
+    /// The error that ended the build, line by line. All else is then what an earlier build left,
+    /// if there was one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub error: Vec<String>,
     /// The library.
@@ -32,8 +33,8 @@ pub struct Report {
     /// Names of textures that the library before this build had and the recipe no longer asks for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub removed: Vec<String>,
-    /// Of the textures of the library, by the id of a model, how many it keeps at all their conditions below the difference threshold,
-    /// and how many within what their recordings vary.
+    /// Of the textures of the library, by the id of a model, how many it keeps at all their
+    /// conditions below the difference threshold, and how many within what their recordings vary.
     pub felt_shares: BTreeMap<String, FeltShare>,
     /// By code of a finding of recordings, the textures that have it.
     pub findings: BTreeMap<String, FindingShare>,
@@ -136,13 +137,14 @@ pub struct AssetReport {
     pub force_n: Option<[f64; 2]>,
     /// Fewest segments of a condition; 0 of a texture that a file of another format states.
     pub segments: usize,
-    /// Largest repeatability of a condition, which an error is compared with: the RMS over nine bands of the difference between odd and even
-    /// blocks of time, over √2, decibels.
+    /// Largest repeatability of a condition, which an error is compared with: the RMS over nine
+    /// bands of the difference between odd and even blocks of time, over √2, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeatability_rms_db: Option<f64>,
     /// Largest nine-band RMS error over the conditions of each model, decibels, by id.
     pub band_error_rms_db: BTreeMap<String, f64>,
-    /// What is felt of the difference from the recordings, of each model at its worst condition, by id.
+    /// What is felt of the difference from the recordings, of each model at its worst condition, by
+    /// id.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub felt: BTreeMap<String, FeltError>,
     /// Findings of its recordings, by code.
@@ -151,8 +153,9 @@ pub struct AssetReport {
     /// Warnings of the fit, those of the findings among them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
-    /// The recorded spectrum of the first condition; of a texture that a file states, that of its default condition: 48 points evenly spaced in log frequency; 63 is the largest magnitude, 0 is 40 dB
-    /// below or less.
+    /// The recorded spectrum of the first condition; of a texture that a file states, that of its
+    /// default condition: 48 points evenly spaced in log frequency; 63 is the largest magnitude, 0
+    /// is 40 dB below or less.
     #[schemars(with = "Vec<u8>")]
     pub spectrum: Thumbnail,
 }
@@ -182,10 +185,7 @@ impl TextureReport {
 
 impl Missed {
     pub(crate) fn new(gate: &str, reason: impl Into<String>) -> Self {
-        Self {
-            gate: gate.to_owned(),
-            reason: reason.into(),
-        }
+        Self { gate: gate.to_owned(), reason: reason.into() }
     }
 }
 
@@ -194,18 +194,12 @@ impl AssetReport {
         let manifest = &asset.manifest;
         let conditions = || manifest.conditions.iter();
         // A representation that a file of another format states has none.
-        let errors = manifest
-            .representations
-            .iter()
-            .filter_map(|representation| {
-                let qualities = representation
-                    .at
-                    .iter()
-                    .filter_map(|at| at.quality.as_ref());
-                let errors = qualities.filter_map(|q| q.get(Measure::NineBand));
-                let worst = errors.reduce(f64::max)?;
-                Some((representation.model.clone(), worst))
-            });
+        let errors = manifest.representations.iter().filter_map(|representation| {
+            let qualities = representation.at.iter().filter_map(|at| at.quality.as_ref());
+            let errors = qualities.filter_map(|q| q.get(Measure::NineBand));
+            let worst = errors.reduce(f64::max)?;
+            Some((representation.model.clone(), worst))
+        });
         Self {
             bytes: made.asset.len() as u64,
             blake3: blake3::hash(&made.asset).to_hex().to_string(),
@@ -237,7 +231,8 @@ impl AssetReport {
     }
 }
 
-/// Counts, by model, the textures whose difference is below the difference threshold, and those within what their recording varies.
+/// Counts, by model, the textures whose difference is below the difference threshold, and those
+/// within what their recording varies.
 pub(crate) fn felt_shares(textures: &[TextureReport]) -> BTreeMap<String, FeltShare> {
     let mut shares: BTreeMap<String, FeltShare> = BTreeMap::new();
     let built = textures.iter().filter(|t| t.status == Status::Built);
@@ -261,7 +256,8 @@ pub fn report_schema() -> serde_json::Value {
     htex_schema::document::<Report>("build-report-1.json", "report of the build of a library")
 }
 
-/// Returns the JSON Schema of [`Recipe`], for editors that check TOML: `spec/schemas/recipe-1.json`.
+/// Returns the JSON Schema of [`Recipe`], for editors that check TOML:
+/// `spec/schemas/recipe-1.json`.
 pub fn recipe_schema() -> serde_json::Value {
     htex_schema::document::<Recipe>("recipe-1.json", "recipe of a library of textures")
 }

@@ -6,7 +6,8 @@ use std::io::Cursor;
 use htex_host::Registry;
 use htex_play::{Asset, VoiceOptions};
 
-/// Rate of the sound, hertz: twice the band's upper edge and a little, so that browsers play it and files are small.
+/// Rate of the sound, hertz: twice the band's upper edge and a little, so that browsers play it and
+/// files are small.
 const RATE_HZ: u32 = 8_000;
 /// Its length, samples.
 const SAMPLES: usize = RATE_HZ as usize;
@@ -15,8 +16,8 @@ const RMS: f32 = 0.1;
 /// Length of the fade at both ends, samples.
 const FADE: usize = 200;
 
-/// Returns a second of the asset's best representation at its default condition, as a WAV of 16 bits, at the same loudness for all
-/// textures.
+/// Returns a second of the asset's best representation at its default condition, as a WAV of 16
+/// bits, at the same loudness for all textures.
 pub(crate) fn sound(asset: &[u8], registry: &Registry) -> Result<Vec<u8>, Box<dyn Error>> {
     let data = htex_format::Asset::from_bytes(asset)?;
     let asset = Asset::with_registry(data, registry.clone());

@@ -30,9 +30,7 @@ pub(crate) fn fill(text: &str, fields: &Fields) -> Result<String, String> {
             filled.push_str(value(text, name, fields)?);
             rest = after;
         } else {
-            return Err(format!(
-                "`{text}`: a `}}` without `{{`; write }}}} for a brace"
-            ));
+            return Err(format!("`{text}`: a `}}` without `{{`; write }}}} for a brace"));
         }
     }
     filled.push_str(rest);
@@ -43,10 +41,7 @@ fn value<'a>(text: &str, name: &str, fields: &'a Fields) -> Result<&'a str, Stri
     let value = fields.get(name).map(String::as_str);
     value.ok_or_else(|| {
         let known: Vec<&str> = fields.keys().map(String::as_str).collect();
-        format!(
-            "`{text}`: nothing is called `{name}`; there are {}",
-            known.join(", ")
-        )
+        format!("`{text}`: nothing is called `{name}`; there are {}", known.join(", "))
     })
 }
 

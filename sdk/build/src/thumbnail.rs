@@ -10,7 +10,8 @@ const RANGE_DB: f64 = 40.0;
 /// Steps of that range.
 const STEPS: f64 = 63.0;
 
-/// A spectrum of 48 points, evenly spaced in log frequency over its band: 63 is its largest magnitude, 0 is 40 dB below it or less.
+/// A spectrum of 48 points, evenly spaced in log frequency over its band: 63 is its largest
+/// magnitude, 0 is 40 dB below it or less.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Thumbnail(pub Vec<u8>);
@@ -35,11 +36,7 @@ pub(crate) fn of_magnitudes(frequency_hz: &[f64], magnitude: &[f64]) -> Thumbnai
         let within = within.filter(|(f, _)| (from..=to).contains(*f));
         let peak = within.map(|(_, m)| *m).fold(0.0, f64::max);
         // Below 50 Hz the grid of 5 Hz is coarser than the points.
-        let peak = if peak > 0.0 {
-            peak
-        } else {
-            nearest(frequency_hz, magnitude, from)
-        };
+        let peak = if peak > 0.0 { peak } else { nearest(frequency_hz, magnitude, from) };
         level(peak, largest)
     });
     Thumbnail(points.collect())
@@ -55,7 +52,5 @@ fn level(magnitude: f64, largest: f64) -> u8 {
         return 0;
     }
     let below_db = 20.0 * libm::log10(largest / magnitude);
-    (STEPS * (1.0 - below_db / RANGE_DB))
-        .clamp(0.0, STEPS)
-        .round() as u8
+    (STEPS * (1.0 - below_db / RANGE_DB)).clamp(0.0, STEPS).round() as u8
 }

@@ -119,15 +119,11 @@ fn models_of_the_penn_toolkit() {
     assert_eq!(manifest.license.as_deref(), Some("LicenseRef-HaTT"));
     assert_eq!(manifest.quantity, Quantity::Acceleration);
     assert_eq!(manifest.conditions.len(), 4);
-    assert!(
-        manifest
-            .description
-            .unwrap()
-            .starts_with("Leather 1 Back, of")
-    );
+    assert!(manifest.description.unwrap().starts_with("Leather 1 Back, of"));
 }
 
-/// Times whose steps differ by half, as those of the set, and accelerations in g with the weight on Z.
+/// Times whose steps differ by half, as those of the set, and accelerations in g with the weight on
+/// Z.
 fn cluster(seed: u64, gain: f64) -> String {
     let [x, y, z] = [0, 1, 2].map(|axis| noise(3 * seed + axis, 18_000));
     let mut text = "time,X,Y,Z\n".to_owned();
@@ -157,15 +153,9 @@ fn accelerations_of_the_cluster_set() {
     assert_eq!(names(&report), ["0", "117"]);
     let asset = report.textures[0].asset.as_ref().unwrap();
     assert_eq!(asset.conditions, 4);
-    assert_eq!(
-        (asset.speed_mm_s, asset.force_n),
-        (Some([20.0, 60.0]), Some([0.5, 1.0]))
-    );
+    assert_eq!((asset.speed_mm_s, asset.force_n), (Some([20.0, 60.0]), Some([0.5, 1.0])));
     let manifest = set.asset("117").manifest;
-    assert_eq!(
-        (manifest.contact, manifest.quantity),
-        (Contact::Finger, Quantity::Acceleration)
-    );
+    assert_eq!((manifest.contact, manifest.quantity), (Contact::Finger, Quantity::Acceleration));
     assert_eq!(manifest.license.as_deref(), Some("CC-BY-4.0"));
     // 0.1 g of noise are about 1 m/s², of which the band has a part.
     let level = manifest.representations[0].at.iter().map(|at| at.level_rms);
@@ -191,10 +181,7 @@ fn movements_of_the_lmt_set() {
     assert_eq!(names(&report), ["EpoxyRasterPlate", "PaperTile"]);
     assert_eq!(report.textures[0].recordings.len(), 2);
     let manifest = set.asset("PaperTile").manifest;
-    assert_eq!(
-        (manifest.contact, manifest.quantity),
-        (Contact::Tool, Quantity::Acceleration)
-    );
+    assert_eq!((manifest.contact, manifest.quantity), (Contact::Tool, Quantity::Acceleration));
     assert_eq!(manifest.conditions[0].speed_mm_s, None);
     assert!(manifest.description.unwrap().contains("group 9"));
 }
@@ -233,13 +220,11 @@ fn strokes_of_textsense() {
     let report = set.built();
     assert_eq!(names(&report), ["text24", "text3", "text54", "text9"]);
     let asset = report.textures[0].asset.as_ref().unwrap();
-    assert_eq!(
-        (asset.conditions, asset.speed_mm_s),
-        (5, Some([20.0, 60.0]))
-    );
+    assert_eq!((asset.conditions, asset.speed_mm_s), (5, Some([20.0, 60.0])));
 }
 
-/// The form of SENS3 is filled in with columns of forces and places; a column that is not there is named, with those that are.
+/// The form of SENS3 is filled in with columns of forces and places; a column that is not there is
+/// named, with those that are.
 #[test]
 fn the_form_of_sens3() {
     let set = Set::new("sens3");
@@ -256,25 +241,18 @@ fn the_form_of_sens3() {
     let asset = report.textures[0].asset.as_ref().unwrap();
     let near =
         |range: Option<[f64; 2]>, value: f64| (range.unwrap()[0] - value).abs() < 0.01 * value;
-    assert!(
-        near(asset.speed_mm_s, 80.0) && near(asset.force_n, 0.8),
-        "{asset:?}"
-    );
+    assert!(near(asset.speed_mm_s, 80.0) && near(asset.force_n, 0.8), "{asset:?}");
     set.write("sliding/sandpaper.csv", text.replace("force_x_n", "Fx"));
     let error = set.build().unwrap_err().to_string();
-    assert!(
-        error.contains("force_x_n") && error.contains("Fx"),
-        "{error}"
-    );
+    assert!(error.contains("force_x_n") && error.contains("Fx"), "{error}");
 }
 
-/// Every recipe of the folder is read, has a section in the page, and names a licence or asks for one.
+/// Every recipe of the folder is read, has a section in the page, and names a licence or asks for
+/// one.
 #[test]
 fn each_recipe_is_described_and_asks_for_a_licence() {
     let page = fs::read_to_string(examples().join("README.md")).unwrap();
-    let folders = fs::read_dir(examples())
-        .unwrap()
-        .map(|entry| entry.unwrap().path());
+    let folders = fs::read_dir(examples()).unwrap().map(|entry| entry.unwrap().path());
     let folders: Vec<PathBuf> = folders.filter(|path| path.is_dir()).collect();
     assert_eq!(folders.len(), 5);
     for folder in folders {

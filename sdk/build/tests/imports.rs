@@ -17,7 +17,8 @@ const PROGRAM: &str = "htex-build tests";
 const HAPTIC: &str = r#"{"version": {"major": 1, "minor": 0, "patch": 0}, "metadata": {}, "signals": {"continuous": {"envelopes": {
     "amplitude": [{"time": 0, "amplitude": 0.4}, {"time": 0.5, "amplitude": 0.6}], "frequency": [{"time": 0, "frequency": 0.5}]}}}}"#;
 
-/// A model file of the Penn Haptic Texture Toolkit with four nodes, of which the first two are silent.
+/// A model file of the Penn Haptic Texture Toolkit with four nodes, of which the first two are
+/// silent.
 fn hatt(material: &str) -> String {
     let node = |number: usize, speed: f64, force: f64, variance: f64| {
         format!(
@@ -71,14 +72,8 @@ impl Place {
 
     /// Opens the build of a recipe without its first table.
     fn open(&self, textures: &str) -> Result<Build, BuildError> {
-        self.write(
-            "library.toml",
-            &format!("library.name = 'others'\n{textures}"),
-        );
-        let (recipe, output) = (
-            self.0.path().join("library.toml"),
-            self.0.path().join("out"),
-        );
+        self.write("library.toml", &format!("library.name = 'others'\n{textures}"));
+        let (recipe, output) = (self.0.path().join("library.toml"), self.0.path().join("out"));
         Build::open(&recipe, &output, BuildOptions::new(PROGRAM))
     }
 
@@ -118,7 +113,8 @@ fn files_of_other_formats_become_textures() {
     let report = place.build(&[SIGNAL, MODEL_FILE].concat()).unwrap();
     assert_eq!(report.library.textures, 2);
 
-    // A model file as it is: its conditions, its quantity, a spectrum and a sound of its strongest node.
+    // A model file as it is: its conditions, its quantity, a spectrum and a sound of its strongest
+    // node.
     let felt = place.asset("felt");
     assert_eq!(
         (&felt.manifest.name[..], felt.manifest.license.as_deref()),
@@ -148,14 +144,8 @@ fn files_of_other_formats_become_textures() {
             force_n: Some(0.4),
             ..Physical::default()
         },
-        fit: FitSettings {
-            models: Some(vec!["bands".to_owned()]),
-            ..FitSettings::default()
-        },
-        metadata: Metadata {
-            license: Some("CC0-1.0".to_owned()),
-            ..Metadata::default()
-        },
+        fit: FitSettings { models: Some(vec!["bands".to_owned()]), ..FitSettings::default() },
+        metadata: Metadata { license: Some("CC0-1.0".to_owned()), ..Metadata::default() },
         tool: PROGRAM,
         ..Import::default()
     };
@@ -178,10 +168,7 @@ fn signals_of_one_name_are_conditions_of_a_texture() {
         let exported = export(&hum, &Export::new(format)).unwrap();
         fs::write(place.0.path().join(format!("at.{name}")), exported.bytes).unwrap();
     }
-    place.write(
-        "table.csv",
-        "recording,speed_mm_s,force_n\nat.ahap,40,0.4\nat.hjif,120,0.4\n",
-    );
+    place.write("table.csv", "recording,speed_mm_s,force_n\nat.ahap,40,0.4\nat.hjif,120,0.4\n");
     let recipe = "[[textures]]\ntable = 'table.csv'\nfull_scale = 0.1\nquantity = 'acceleration'\nmodels = ['bands']\nlicense = 'MIT'";
     let report = place.build(recipe).unwrap();
     let at = texture(&report, "at");
@@ -205,10 +192,7 @@ fn a_key_depends_on_what_an_import_depends_on() {
     assert_eq!(keys.len(), 2);
     let same = [
         ("license = \"CC0-1.0\"", "license = \"MIT\""),
-        (
-            "license = \"CC-BY-4.0\"",
-            "author = 'me'\ngates.license = false",
-        ),
+        ("license = \"CC-BY-4.0\"", "author = 'me'\ngates.license = false"),
     ];
     for (before, after) in same {
         assert_eq!(place.keys(&both.replace(before, after)), keys, "{after}");
@@ -216,10 +200,7 @@ fn a_key_depends_on_what_an_import_depends_on() {
     let other = [
         ("full_scale = 0.2", "full_scale = 0.3"),
         ("full_scale = 0.2", "full_scale = 0.2\nprofile = 'android'"),
-        (
-            "full_scale = 0.2",
-            "full_scale = 0.2\nquantity = 'acceleration'",
-        ),
+        ("full_scale = 0.2", "full_scale = 0.2\nquantity = 'acceleration'"),
         ("full_scale = 0.2", "full_scale = 0.2\nlevel = 'fitted'"),
         ("speed_mm_s = 80", "speed_mm_s = 90"),
         ("force_n = 0.4", "force_n = 0.5"),
@@ -246,46 +227,28 @@ fn settings_of_other_files_are_refused_and_missing_ones_asked_for() {
     let model_file = |added: &str| format!("{MODEL_FILE}{added}\n");
     let recording = |added: &str| format!("[[textures]]\nrecordings = 'sine.csv'\n{added}");
     let cases = [
-        (
-            signal("full_scale = 0.2", ""),
-            "does not say how strong 1 is; give `full_scale`",
-        ),
+        (signal("full_scale = 0.2", ""), "does not say how strong 1 is; give `full_scale`"),
         (
             signal("at = { speed_mm_s = 80, force_n = 0.4 }", ""),
             "does not say at which speed it is felt, at which force; give `at.speed_mm_s`, `at.force_n`",
         ),
-        (
-            signal("0.2", "-0.2"),
-            "`full_scale` is -0.2; it is more than 0, at most 1e6",
-        ),
+        (signal("0.2", "-0.2"), "`full_scale` is -0.2; it is more than 0, at most 1e6"),
         (
             signal("speed_mm_s = 80", "speed_mm_s = 0"),
             "`at.speed_mm_s` is 0; it is more than 0 mm/s",
         ),
-        (
-            signal("0.2", "0.2\nprofile = 'walkman'"),
-            "there is no profile `walkman`",
-        ),
+        (signal("0.2", "0.2\nprofile = 'walkman'"), "there is no profile `walkman`"),
         (signal("0.2", "0.2\nscale = 2"), "takes no `scale`"),
         (signal("0.2", "0.2\ngrid = 'auto'"), "takes no `grid`"),
-        (
-            signal("0.2", "0.2\ntracker = 'a.csv'"),
-            "takes no `tracker`",
-        ),
+        (signal("0.2", "0.2\ntracker = 'a.csv'"), "takes no `tracker`"),
         (
             model_file("full_scale = 1"),
             "felt.xml: Penn Haptic Texture Toolkit, XML takes no `full_scale`",
         ),
         (model_file("models = ['bands']"), "takes no `models`"),
         (model_file("options.ar.order = 6"), "takes no `options`"),
-        (
-            model_file("at = { speed_mm_s = 80 }"),
-            "takes no `at.speed_mm_s`",
-        ),
-        (
-            model_file("gates.min_segments = 4"),
-            "takes no `gates.min_segments`",
-        ),
+        (model_file("at = { speed_mm_s = 80 }"), "takes no `at.speed_mm_s`"),
+        (model_file("gates.min_segments = 4"), "takes no `gates.min_segments`"),
         (model_file("gates.strict = true"), "takes no `gates.strict`"),
         (
             recording("full_scale = 1"),
@@ -302,17 +265,11 @@ fn settings_of_other_files_are_refused_and_missing_ones_asked_for() {
     }
     place.write("wool.xml", &hatt("Wool"));
     let error = place.refused("[[textures]]\nrecordings = '*.xml'\nname = 'one'");
-    assert!(
-        error.contains("one: felt.xml and wool.xml state a texture each"),
-        "{error}"
-    );
+    assert!(error.contains("one: felt.xml and wool.xml state a texture each"), "{error}");
     // Both are found without a build, too.
     let recipe = place.0.path().join("library.toml");
     let error = check(&recipe, &BuildOptions::new(PROGRAM)).unwrap_err();
-    assert!(
-        error.to_string().contains("state a texture each"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("state a texture each"), "{error}");
 }
 
 #[test]
@@ -323,24 +280,16 @@ fn a_licence_is_asked_for() {
     let report = place.build(&recipe).unwrap();
     assert_eq!((report.library.textures, report.library.left_out), (1, 1));
     let hum = texture(&report, "hum");
-    assert_eq!(
-        (hum.status, &hum.missed[0].gate[..]),
-        (Status::LeftOut, "license")
-    );
+    assert_eq!((hum.status, &hum.missed[0].gate[..]), (Status::LeftOut, "license"));
     assert!(hum.missed[0].reason.contains("set `license`"));
-    let report = place
-        .build(&format!("{recipe}\n[defaults.gates]\nlicense = false"))
-        .unwrap();
+    let report = place.build(&format!("{recipe}\n[defaults.gates]\nlicense = false")).unwrap();
     assert_eq!(report.library.textures, 2);
 }
 
 #[test]
 fn a_damaged_file_is_named_with_its_place() {
     let place = Place::new();
-    place.write(
-        "felt.xml",
-        &hatt("Felt").replace("<value>0.5</value>", "<value>half</value>"),
-    );
+    place.write("felt.xml", &hatt("Felt").replace("<value>0.5</value>", "<value>half</value>"));
     let error = place.refused(MODEL_FILE);
     assert!(error.starts_with("felt: felt.xml: line "), "{error}");
     place.write("hum.haptic", &HAPTIC.replace("0.6", "1.6"));
@@ -367,7 +316,8 @@ fn a_job_of_an_import_is_data() {
     }
 }
 
-/// A friction map is a texture as it is, once full scale, speed and force are given, and the distance of pixels where the file states none.
+/// A friction map is a texture as it is, once full scale, speed and force are given, and the
+/// distance of pixels where the file states none.
 #[test]
 fn a_map_becomes_a_texture() {
     const MAP: &str = "[[textures]]\nrecordings = 'row.png'\nlicense = 'CC0-1.0'\nfull_scale = 0.3\nat = { speed_mm_s = 80, force_n = 0.4 }\n";
@@ -388,13 +338,7 @@ fn a_map_becomes_a_texture() {
     fs::write(place.0.path().join("row.png"), &image).unwrap();
     let error = place.refused(MAP);
     assert!(error.starts_with("row: "), "{error}");
-    assert!(
-        error.ends_with("how far apart its pixels are; give `pitch_mm`"),
-        "{error}"
-    );
+    assert!(error.ends_with("how far apart its pixels are; give `pitch_mm`"), "{error}");
     let error = place.refused(&MAP.replace("full_scale = 0.3\n", ""));
-    assert!(
-        error.contains("how strong 1 is; give `full_scale`"),
-        "{error}"
-    );
+    assert!(error.contains("how strong 1 is; give `full_scale`"), "{error}");
 }

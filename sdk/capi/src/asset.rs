@@ -88,7 +88,8 @@ pub unsafe extern "C" fn htex_asset_open_wide(
     })
 }
 
-/// [any thread; calls the reader] Opens an asset that the program reads. The reader is closed before this returns. `options` may be NULL.
+/// [any thread; calls the reader] Opens an asset that the program reads. The reader is closed
+/// before this returns. `options` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_open_reader(
     reader: *const htex_reader,
@@ -98,9 +99,8 @@ pub unsafe extern "C" fn htex_asset_open_reader(
     guarded(|| {
         // SAFETY: the pointers are the caller's.
         let (reader, models) = unsafe { (Reader::of(reader)?, models(options)?) };
-        let bytes = reader
-            .read_whole()
-            .map_err(|error| Failure::of(htex_status::HTEX_STATUS_IO, error))?;
+        let bytes =
+            reader.read_whole().map_err(|error| Failure::of(htex_status::HTEX_STATUS_IO, error))?;
         let data = htex::AssetData::from_bytes(&bytes).map_err(htex::Error::from)?;
         keep(data, models, out)
     })
@@ -122,15 +122,16 @@ pub unsafe extern "C" fn htex_asset_from_bytes(
     })
 }
 
-/// [any thread] Frees an asset; its voices play on. HTEX_STATUS_BUSY if another thread uses it at this moment.
+/// [any thread] Frees an asset; its voices play on. HTEX_STATUS_BUSY if another thread uses it at
+/// this moment.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_asset_free(asset: htex_asset) -> htex_status {
     guarded(|| ASSETS.remove(asset.id).map(drop))
 }
 
-/// [any thread] The asset's manifest as JSON: name, conditions, representations, qualities and all else that it states. Writes
-/// at most `capacity` bytes with the zero at the end, and the length without the zero to `length`, which may be NULL; a `capacity`
-/// of 0 asks for the length.
+/// [any thread] The asset's manifest as JSON: name, conditions, representations, qualities and all
+/// else that it states. Writes at most `capacity` bytes with the zero at the end, and the length
+/// without the zero to `length`, which may be NULL; a `capacity` of 0 asks for the length.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_manifest_json(
     asset: htex_asset,
@@ -183,10 +184,7 @@ pub unsafe extern "C" fn htex_asset_band(asset: htex_asset, out: *mut htex_band)
     guarded(|| {
         let band = ASSETS.shared(asset.id)?.band();
         // SAFETY: the place is the caller's.
-        *unsafe { place(out) }? = htex_band {
-            low_hz: band.low_hz,
-            high_hz: band.high_hz,
-        };
+        *unsafe { place(out) }? = htex_band { low_hz: band.low_hz, high_hz: band.high_hz };
         Ok(())
     })
 }
@@ -241,7 +239,8 @@ pub unsafe extern "C" fn htex_asset_representation_count(
     })
 }
 
-/// [any thread] Id of the model of a representation, counted from 0. Written as by htex_asset_manifest_json.
+/// [any thread] Id of the model of a representation, counted from 0. Written as by
+/// htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_representation_model(
     asset: htex_asset,
@@ -261,9 +260,11 @@ pub unsafe extern "C" fn htex_asset_representation_model(
     })
 }
 
-/// [any thread; may load a model] Magnitudes that a recording of the voice reads at frequencies in Hz, in the asset's unit. `model` may be
-/// NULL (the representation of least error), and so may `at` (its first condition, or its strongest if the first is silent). Between conditions it is interpolated, outside them
-/// it follows the law of the asset, and where the finger does not slide it is 0.
+/// [any thread; may load a model] Magnitudes that a recording of the voice reads at frequencies in
+/// Hz, in the asset's unit. `model` may be NULL (the representation of least error), and so may
+/// `at` (its first condition, or its strongest if the first is silent). Between conditions it is
+/// interpolated, outside them it follows the law of the asset, and where the finger does not slide
+/// it is 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_magnitude(
     asset: htex_asset,
@@ -287,7 +288,8 @@ pub unsafe extern "C" fn htex_asset_magnitude(
     })
 }
 
-/// [any thread; may load a model] Level of the voice of a representation, RMS in the asset's unit. `model` and `at` as for htex_asset_magnitude.
+/// [any thread; may load a model] Level of the voice of a representation, RMS in the asset's unit.
+/// `model` and `at` as for htex_asset_magnitude.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_level_rms(
     asset: htex_asset,

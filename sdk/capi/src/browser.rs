@@ -1,5 +1,5 @@
-//! Memory for the arguments and results of JavaScript (`sdk/web/src/core.js`), which has no other way to get any. Not
-//! part of the C interface.
+//! Memory for the arguments and results of JavaScript (`sdk/web/src/core.js`), which has no other
+//! way to get any. Not part of the C interface.
 
 #[cfg(feature = "library")]
 mod library;

@@ -30,8 +30,9 @@ pub struct htex_device_counts {
     pub peak: f64,
 }
 
-/// [any thread; asks drivers] The devices that this library has as JSON, each with `id`, `name`, the names of what is connected now as `endpoints`, and `problem`, which
-/// is null or says what to install. Written as by htex_asset_manifest_json.
+/// [any thread; asks drivers] The devices that this library has as JSON, each with `id`, `name`,
+/// the names of what is connected now as `endpoints`, and `problem`, which is null or says what to
+/// install. Written as by htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_list_json(
     out: *mut c_char,
@@ -42,8 +43,10 @@ pub unsafe extern "C" fn htex_device_list_json(
     unsafe { calls::list_json(out, capacity, length) }
 }
 
-/// [any thread; asks drivers] A device as JSON: its `descriptor` with its settings and what becomes of the samples (`mapping`), and its `capabilities`
-/// with these settings: the quantity of its samples, rates, the largest magnitude; null, and a `problem`, where it cannot be used with them. `settings` as in htex_device_open.
+/// [any thread; asks drivers] A device as JSON: its `descriptor` with its settings and what becomes
+/// of the samples (`mapping`), and its `capabilities` with these settings: the quantity of its
+/// samples, rates, the largest magnitude; null, and a `problem`, where it cannot be used with them.
+/// `settings` as in htex_device_open.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_info_json(
     name: *const c_char,
@@ -56,10 +59,12 @@ pub unsafe extern "C" fn htex_device_info_json(
     unsafe { calls::info_json(name, settings, out, capacity, length) }
 }
 
-/// [any thread; asks drivers] Opens a device, at rest: `sdl`, `parametric`, `channels`, `file`, or its id. `settings` are lines NAME=VALUE; NULL: the defaults.
-/// `rate_hz` is that of the samples; 0: the device's own. Samples are of the quantity that htex_device_info_json tells; a texture's in newtons become parts of full
-/// scale by the gain of its voice. A display that is driven by a voltage is not opened here: it needs a process that takes the voltage away
-/// if the program dies (`htex play`).
+/// [any thread; asks drivers] Opens a device, at rest: `sdl`, `parametric`, `channels`, `file`, or
+/// its id. `settings` are lines NAME=VALUE; NULL: the defaults. `rate_hz` is that of the samples;
+/// 0: the device's own. Samples are of the quantity that htex_device_info_json tells; a texture's
+/// in newtons become parts of full scale by the gain of its voice. A display that is driven by a
+/// voltage is not opened here: it needs a process that takes the voltage away if the program dies
+/// (`htex play`).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_open(
     name: *const c_char,
@@ -78,8 +83,10 @@ pub unsafe extern "C" fn htex_device_rate_hz(device: htex_device, out: *mut f64)
     unsafe { calls::rate_hz(device, out) }
 }
 
-/// [one thread at a time; waits] Gives samples to a device, as many as it takes within `timeout_ms`, and writes their number to `written`. The first
-/// samples start it; when later ones come too late it goes to rest, and the call fails. After an error it is at rest, and stays there.
+/// [one thread at a time; waits] Gives samples to a device, as many as it takes within
+/// `timeout_ms`, and writes their number to `written`. The first samples start it; when later ones
+/// come too late it goes to rest, and the call fails. After an error it is at rest, and stays
+/// there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_device_write(
     device: htex_device,
@@ -102,14 +109,15 @@ pub unsafe extern "C" fn htex_device_status(
     unsafe { calls::status(device, out) }
 }
 
-/// [one thread at a time; waits] Plays what was written to its end, goes to rest, and keeps the result: a file appears under its name. Nothing can be written
-/// afterwards.
+/// [one thread at a time; waits] Plays what was written to its end, goes to rest, and keeps the
+/// result: a file appears under its name. Nothing can be written afterwards.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_device_finish(device: htex_device) -> htex_status {
     calls::finish(device)
 }
 
-/// [one thread at a time; may wait] Frees a device. One that was not finished goes to rest at once, and leaves no file behind.
+/// [one thread at a time; may wait] Frees a device. One that was not finished goes to rest at once,
+/// and leaves no file behind.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_device_free(device: htex_device) -> htex_status {
     calls::free(device)

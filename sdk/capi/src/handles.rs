@@ -1,8 +1,9 @@
-//! Handles of objects: an index and a generation, so that the handle of a freed object is recognised.
+//! Handles of objects: an index and a generation, so that the handle of a freed object is
+//! recognised.
 //!
-//! A lookup neither locks nor allocates. An object is used by one thread at a time, or read by several: a counter in its
-//! slot says which, and a call that would break the rule fails at once. A handle also has its kind, so that that of a voice is no
-//! asset.
+//! A lookup neither locks nor allocates. An object is used by one thread at a time, or read by
+//! several: a counter in its slot says which, and a call that would break the rule fails at once. A
+//! handle also has its kind, so that that of a voice is no asset.
 
 use std::cell::UnsafeCell;
 use std::ops::{Deref, DerefMut};
@@ -62,8 +63,8 @@ struct Slot<T> {
     value: UnsafeCell<Option<Box<T>>>,
 }
 
-// SAFETY: a value is reached through `state` alone: exclusively, or by several readers, which `Table::shared` allows only
-// where the value is `Sync`.
+// SAFETY: a value is reached through `state` alone: exclusively, or by several readers, which
+// `Table::shared` allows only where the value is `Sync`.
 unsafe impl<T: Send> Sync for Slot<T> {}
 
 const fn generation(state: u64) -> u64 {
@@ -79,11 +80,7 @@ impl<T: Send + 'static> Table<T> {
         Self {
             kind,
             chunks: [const { AtomicPtr::new(std::ptr::null_mut()) }; CHUNKS],
-            spare: Mutex::new(Spare {
-                free: Vec::new(),
-                made: 0,
-                unused: 0,
-            }),
+            spare: Mutex::new(Spare { free: Vec::new(), made: 0, unused: 0 }),
         }
     }
 
@@ -119,10 +116,7 @@ impl<T: Send + 'static> Table<T> {
         let pointer = self.chunks.get(chunk).ok_or(FULL)?;
         if pointer.load(Ordering::Relaxed).is_null() {
             let slots: Box<[Slot<T>]> = (0..FIRST << chunk)
-                .map(|_| Slot {
-                    state: AtomicU64::new(unused << 32),
-                    value: UnsafeCell::new(None),
-                })
+                .map(|_| Slot { state: AtomicU64::new(unused << 32), value: UnsafeCell::new(None) })
                 .collect();
             // Slots live until `clear`: stale handles are looked up in them.
             pointer.store(Box::leak(slots).as_mut_ptr(), Ordering::Release);
@@ -159,13 +153,11 @@ impl<T: Send + 'static> Table<T> {
         wanted: u64,
         change: impl Fn(u64) -> Option<u64>,
     ) -> Result<(), Failure> {
-        let result = slot
-            .state
-            .fetch_update(Ordering::Acquire, Ordering::Relaxed, |state| {
-                (generation(state) == wanted)
-                    .then(|| change(users(state)).map(|users| wanted << 32 | users))
-                    .flatten()
-            });
+        let result = slot.state.fetch_update(Ordering::Acquire, Ordering::Relaxed, |state| {
+            (generation(state) == wanted)
+                .then(|| change(users(state)).map(|users| wanted << 32 | users))
+                .flatten()
+        });
         match result {
             Ok(_) => Ok(()),
             Err(state) if generation(state) == wanted => Err(BUSY),
@@ -179,10 +171,7 @@ impl<T: Send + 'static> Table<T> {
         Self::enter(slot, wanted, |users| (users == 0).then_some(EXCLUSIVE))?;
         // SAFETY: the slot is of this generation, so it has an object, and this is its only user.
         match unsafe { &mut *slot.value.get() } {
-            Some(value) => Ok(Exclusive {
-                value: &mut **value,
-                slot,
-            }),
+            Some(value) => Ok(Exclusive { value: &mut **value, slot }),
             None => Err(BAD),
         }
     }
@@ -193,15 +182,10 @@ impl<T: Send + 'static> Table<T> {
         T: Sync,
     {
         let (slot, wanted, _) = self.find(handle)?;
-        Self::enter(slot, wanted, |users| {
-            (users < MOST_USERS).then_some(users + 1)
-        })?;
+        Self::enter(slot, wanted, |users| (users < MOST_USERS).then_some(users + 1))?;
         // SAFETY: the slot is of this generation, so it has an object, and all its users read.
         match unsafe { &*slot.value.get() } {
-            Some(value) => Ok(Shared {
-                value: &**value,
-                slot,
-            }),
+            Some(value) => Ok(Shared { value: &**value, slot }),
             None => Err(BAD),
         }
     }
@@ -212,8 +196,7 @@ impl<T: Send + 'static> Table<T> {
         Self::enter(slot, wanted, |users| (users == 0).then_some(EXCLUSIVE))?;
         // SAFETY: this is the only user.
         let value = unsafe { (*slot.value.get()).take() };
-        slot.state
-            .store(((wanted + 1) & EXCLUSIVE) << 32, Ordering::Release);
+        slot.state.store(((wanted + 1) & EXCLUSIVE) << 32, Ordering::Release);
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
         // The last generation is not used again: a handle of the first would be its twin.
         if wanted + 1 < EXCLUSIVE {
@@ -301,7 +284,8 @@ impl<T> DerefMut for Exclusive<T> {
 
 impl<T> Drop for Exclusive<T> {
     fn drop(&mut self) {
-        // No other thread changes the state of a slot that is used exclusively, so that a store suffices.
+        // No other thread changes the state of a slot that is used exclusively, so that a store
+        // suffices.
         let state = self.slot.state.load(Ordering::Relaxed);
         self.slot.state.store(state & !EXCLUSIVE, Ordering::Release);
     }
@@ -391,8 +375,8 @@ mod tests {
         assert_eq!(TABLE.remove(handle).unwrap(), 2);
     }
 
-    /// Threads make, use and free objects, and try handles of the others: no update is lost, and no handle finds
-    /// another's object.
+    /// Threads make, use and free objects, and try handles of the others: no update is lost, and no
+    /// handle finds another's object.
     #[test]
     fn threads_meet_at_one_table() {
         static TABLE: Table<(u64, u64)> = Table::new(Kind::Asset);

@@ -1,10 +1,12 @@
-//! libhtex: the player, the libraries and the scenes of [`htex`] as C functions. `include/htex.h` is generated from this crate.
+//! libhtex: the player, the libraries and the scenes of [`htex`] as C functions. `include/htex.h`
+//! is generated from this crate.
 //!
-//! - Objects are handles, a number each. A freed handle, a foreign number or an object that another thread uses at
-//!   the same time is an error, not undefined behaviour (`handles`).
-//! - A call returns a [`htex_status`]; the text of the last error of a thread is [`htex_last_error`]. No call unwinds.
-//! - A struct of options begins with its size in bytes. Zero in the other fields selects the defaults, so programs
-//!   that were compiled against an older header still run.
+//! - Objects are handles, a number each. A freed handle, a foreign number or an object that another
+//!   thread uses at the same time is an error, not undefined behaviour (`handles`).
+//! - A call returns a [`htex_status`]; the text of the last error of a thread is
+//!   [`htex_last_error`]. No call unwinds.
+//! - A struct of options begins with its size in bytes. Zero in the other fields selects the
+//!   defaults, so programs that were compiled against an older header still run.
 #![warn(missing_docs)]
 #![allow(non_camel_case_types)] // The names of the C header.
 #![allow(clippy::missing_safety_doc)] // Stated once: see `pointers`.
@@ -26,7 +28,8 @@ mod shutdown;
 mod status;
 mod voice;
 
-/// What the functions of this crate are made of, for those that the module of `sdk/web/author` adds. Not part of the C interface.
+/// What the functions of this crate are made of, for those that the module of `sdk/web/author`
+/// adds. Not part of the C interface.
 #[doc(hidden)]
 pub mod calls {
     pub use crate::memory::{allocate, free};

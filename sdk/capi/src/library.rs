@@ -1,5 +1,5 @@
-//! Libraries: files with thousands of textures. Without the feature `library` each call says so, and so it does in a browser, which has
-//! functions of its own (`browser/library.rs`).
+//! Libraries: files with thousands of textures. Without the feature `library` each call says so,
+//! and so it does in a browser, which has functions of its own (`browser/library.rs`).
 
 use std::ffi::c_char;
 
@@ -16,7 +16,8 @@ pub struct htex_library {
     pub id: u64,
 }
 
-/// [any thread; reads a file] Opens a library file. Its index is read page by page, its textures one at a time.
+/// [any thread; reads a file] Opens a library file. Its index is read page by page, its textures
+/// one at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_open(
     path: *const c_char,
@@ -48,8 +49,8 @@ pub unsafe extern "C" fn htex_library_from_bytes(
     unsafe { calls::from_bytes(bytes, len, out) }
 }
 
-/// [any thread; calls the reader] Opens a library that the program reads. The struct is copied; its functions are called until the
-/// library is freed.
+/// [any thread; calls the reader] Opens a library that the program reads. The struct is copied; its
+/// functions are called until the library is freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_open_reader(
     reader: *const htex_reader,
@@ -59,7 +60,8 @@ pub unsafe extern "C" fn htex_library_open_reader(
     unsafe { calls::open_reader(reader, out) }
 }
 
-/// [any thread] Frees a library; its assets stay open. HTEX_STATUS_BUSY if another thread uses it at this moment.
+/// [any thread] Frees a library; its assets stay open. HTEX_STATUS_BUSY if another thread uses it
+/// at this moment.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_library_free(library: htex_library) -> htex_status {
     calls::free(library)
@@ -94,8 +96,9 @@ pub unsafe extern "C" fn htex_library_page_count(
     unsafe { calls::page_count(library, out) }
 }
 
-/// [any thread; reads the file] The entries of a page of the index, counted from 0, as a JSON array: the textures' names in ascending order, tags, models, ranges of
-/// recorded speeds and forces, bytes and hashes. Written as by htex_asset_manifest_json.
+/// [any thread; reads the file] The entries of a page of the index, counted from 0, as a JSON
+/// array: the textures' names in ascending order, tags, models, ranges of recorded speeds and
+/// forces, bytes and hashes. Written as by htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_page_json(
     library: htex_library,
@@ -108,8 +111,8 @@ pub unsafe extern "C" fn htex_library_page_json(
     unsafe { calls::page_json(library, page, out, capacity, length) }
 }
 
-/// [any thread; reads the file] The entry of a texture as JSON, as in htex_library_page_json; HTEX_STATUS_ABSENT if there is none of this
-/// name.
+/// [any thread; reads the file] The entry of a texture as JSON, as in htex_library_page_json;
+/// HTEX_STATUS_ABSENT if there is none of this name.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_entry_json(
     library: htex_library,
@@ -122,7 +125,8 @@ pub unsafe extern "C" fn htex_library_entry_json(
     unsafe { calls::entry_json(library, name, out, capacity, length) }
 }
 
-/// [any thread; reads the file] Opens a texture of the library; HTEX_STATUS_ABSENT if there is none of this name. `options` may be NULL.
+/// [any thread; reads the file] Opens a texture of the library; HTEX_STATUS_ABSENT if there is none
+/// of this name. `options` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_library_asset(
     library: htex_library,

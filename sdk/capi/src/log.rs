@@ -32,8 +32,9 @@ unsafe impl Sync for Log {}
 
 static LOG: RwLock<Option<Log>> = RwLock::new(None);
 
-/// [any thread] Sets the function that receives messages; NULL: none, which is the default. It is called in the thread
-/// of the call that has the message, which is never one that renders or sets a motion, and must not call back into the library.
+/// [any thread] Sets the function that receives messages; NULL: none, which is the default. It is
+/// called in the thread of the call that has the message, which is never one that renders or sets a
+/// motion, and must not call back into the library.
 ///
 /// Once this returns the previous function is not called any more.
 #[unsafe(no_mangle)]

@@ -7,8 +7,8 @@ use htex::Motion;
 use crate::pointers::slice;
 use crate::status::Failure;
 
-/// Motion of a finger over a texture, at one moment. Later versions add what may be unknown at the end; what a program that was compiled
-/// against an earlier one does not have is not known.
+/// Motion of a finger over a texture, at one moment. Later versions add what may be unknown at the
+/// end; what a program that was compiled against an earlier one does not have is not known.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_motion {
@@ -18,11 +18,11 @@ pub struct htex_motion {
     pub speed_mm_s: f64,
     /// Normal force, N; finite and not negative.
     pub force_n: f64,
-    /// Position along the path, mm, of either sign; NAN if it is not known. Only models that follow the position use
-    /// it.
+    /// Position along the path, mm, of either sign; NAN if it is not known. Only models that follow
+    /// the position use it.
     pub position_mm: f64,
-    /// Place on the surface, x and y, mm, of either sign; NAN, either or both, if it is not known. Only models that are maps of
-    /// a surface use it.
+    /// Place on the surface, x and y, mm, of either sign; NAN, either or both, if it is not known.
+    /// Only models that are maps of a surface use it.
     pub x_mm: f64,
     /// As `x_mm`, across it.
     pub y_mm: f64,
@@ -68,11 +68,7 @@ impl Motions {
     pub(crate) unsafe fn of(pointer: *const htex_motion, len: usize) -> Result<Self, Failure> {
         let first = pointer.cast::<u8>();
         if len == 0 {
-            return Ok(Self {
-                first,
-                size: 0,
-                len,
-            });
+            return Ok(Self { first, size: 0, len });
         }
         if pointer.is_null() || !pointer.is_aligned() {
             return Err(Failure::argument("a motion is NULL or misaligned"));
@@ -92,7 +88,8 @@ impl Motions {
     pub(crate) fn iter(self) -> impl Iterator<Item = Motion> {
         (0..self.len).map(move |index| {
             let mut motion = UNKNOWN;
-            // SAFETY: the caller's motions are there, and both have as many bytes, which are numbers.
+            // SAFETY: the caller's motions are there, and both have as many bytes, which are
+            // numbers.
             unsafe {
                 let from = self.first.add(index * self.size);
                 let to = (&raw mut motion).cast::<u8>();

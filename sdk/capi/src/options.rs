@@ -24,17 +24,21 @@ pub struct htex_bytes {
 pub const HTEX_ENGINE_OFF: u32 = 0;
 /// Modules run without handlers for signals: each access to memory is compared with its bound.
 pub const HTEX_ENGINE_CHECKED: u32 = 1;
-/// Modules run with handlers of the process for SIGSEGV, SIGBUS, SIGILL and SIGFPE, which stay after htex_shutdown and pass on what
-/// is not of a module. The model of `examples/model-c-bursts` then takes 34 ns a sample instead of 42.
+/// Modules run with handlers of the process for SIGSEGV, SIGBUS, SIGILL and SIGFPE, which stay
+/// after htex_shutdown and pass on what is not of a module. The model of `examples/model-c-bursts`
+/// then takes 34 ns a sample instead of 42.
 pub const HTEX_ENGINE_SIGNALS: u32 = 2;
 
-/// Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to zero for the defaults: the
-/// built-in models alone, which make no thread, file or handler of signals.
+/// Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to
+/// zero for the defaults: the built-in models alone, which make no thread, file or handler of
+/// signals.
 ///
-/// WASM modules, which assets may bring along, are run by an engine that must be turned on. The library in `lib/whole` has one; in a
-/// build without it, turning it on is HTEX_STATUS_UNSUPPORTED when an asset is opened. Each module is compiled when it is
-/// first used (that example takes 0.07 to 0.4 s, and 5 s is the limit, unless `cache` has it), and as long as it is loaded one thread sleeps and wakes every 50 ms to stop
-/// calls at their time limit. All is limited: 64 MiB of memory for a voice, 0.5 s for a block, 5 s to compile.
+/// WASM modules, which assets may bring along, are run by an engine that must be turned on. The
+/// library in `lib/whole` has one; in a build without it, turning it on is HTEX_STATUS_UNSUPPORTED
+/// when an asset is opened. Each module is compiled when it is first used (that example takes 0.07
+/// to 0.4 s, and 5 s is the limit, unless `cache` has it), and as long as it is loaded one thread
+/// sleeps and wakes every 50 ms to stop calls at their time limit. All is limited: 64 MiB of memory
+/// for a voice, 0.5 s for a block, 5 s to compile.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_open_options {
@@ -42,43 +46,50 @@ pub struct htex_open_options {
     pub size: u32,
     /// HTEX_ENGINE_OFF, HTEX_ENGINE_CHECKED or HTEX_ENGINE_SIGNALS.
     pub engine: u32,
-    /// Files of models to load, native libraries or WASM modules. A native library runs with all rights of the program.
+    /// Files of models to load, native libraries or WASM modules. A native library runs with all
+    /// rights of the program.
     pub plugins: *const *const c_char,
     /// Number of `plugins`.
     pub plugins_len: usize,
-    /// WASM modules of models, in memory; they run in a sandbox. The bytes are used during the call alone.
+    /// WASM modules of models, in memory; they run in a sandbox. The bytes are used during the call
+    /// alone.
     pub modules: *const htex_bytes,
     /// Number of `modules`.
     pub modules_len: usize,
-    /// Folder for compiled modules, made for this user alone; NULL: none is written. With one, a key that authenticates the files in
-    /// it is kept as `wasm.key` in the user's folder of settings, such as `~/.config/htex`.
+    /// Folder for compiled modules, made for this user alone; NULL: none is written. With one, a
+    /// key that authenticates the files in it is kept as `wasm.key` in the user's folder of
+    /// settings, such as `~/.config/htex`.
     pub cache: *const c_char,
     /// Not 0: modules that assets bring along do not run even with an engine.
     pub no_embedded: u32,
-    /// Not 0: installed models are searched for too: in the folders of HTEX_PLUGIN_PATH and in the user's.
+    /// Not 0: installed models are searched for too: in the folders of HTEX_PLUGIN_PATH and in the
+    /// user's.
     pub installed: u32,
 }
 
-/// Options of a voice. Set `size` to sizeof(htex_voice_options) and the rest to zero for the defaults.
+/// Options of a voice. Set `size` to sizeof(htex_voice_options) and the rest to zero for the
+/// defaults.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_voice_options {
     /// sizeof(htex_voice_options).
     pub size: u32,
-    /// The model of the representation, by its id or short name; NULL: the representation of least error.
+    /// The model of the representation, by its id or short name; NULL: the representation of least
+    /// error.
     pub model: *const c_char,
     /// Rate of the samples, Hz, at least twice the asset's highest frequency; 0: 20000.
     pub rate_hz: f64,
     /// Seed of the noise. Equal seeds give equal samples.
     pub seed: u64,
-    /// Motion of the start; NULL: the first recorded condition, or the strongest if the first is silent.
+    /// Motion of the start; NULL: the first recorded condition, or the strongest if the first is
+    /// silent.
     pub motion: *const htex_motion,
     /// How samples are made: "streamed", "loop:SECONDS" or "filter:TAPS"; NULL: streamed.
     pub synthesis: *const c_char,
     /// Gain of the samples; 0: 1. htex_voice_set_gain changes it.
     pub gain: f64,
-    /// Greatest magnitude of a sample after the gain, in the asset's unit; 0: no limit. The gain falls at once where a sample would
-    /// exceed it, and returns with a time constant of 50 ms.
+    /// Greatest magnitude of a sample after the gain, in the asset's unit; 0: no limit. The gain
+    /// falls at once where a sample would exceed it, and returns with a time constant of 50 ms.
     pub limit: f64,
     /// Number of bands of htex_voice_envelope, 1 to 32; 0: no envelope, which takes no time.
     pub envelope_bands: u32,
@@ -88,8 +99,8 @@ pub struct htex_voice_options {
     pub no_level_scaling: u32,
     /// Not 0: a finger that rests is not silent.
     pub no_contact: u32,
-    /// Highest level that a motion outside the recorded ones has, as a multiple of the strongest recorded level; 0: 4. Otherwise above
-    /// 0 and finite.
+    /// Highest level that a motion outside the recorded ones has, as a multiple of the strongest
+    /// recorded level; 0: 4. Otherwise above 0 and finite.
     pub ceiling: f64,
 }
 
@@ -184,13 +195,11 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
     for note in registry.notes() {
         log(htex_log_level::HTEX_LOG_WARNING, &note.to_string());
     }
-    Ok(Models {
-        registry,
-        embedded: options.no_embedded == 0 && engine != WasmEngine::Off,
-    })
+    Ok(Models { registry, embedded: options.no_embedded == 0 && engine != WasmEngine::Off })
 }
 
-/// The engine of a number; one that this build does not have is an error here, and not where a module is first used.
+/// The engine of a number; one that this build does not have is an error here, and not where a
+/// module is first used.
 fn engine(number: u32, is_built: bool) -> Result<WasmEngine, Failure> {
     match number {
         HTEX_ENGINE_CHECKED | HTEX_ENGINE_SIGNALS if !is_built => Err(Failure::plain(
@@ -232,13 +241,8 @@ pub(crate) unsafe fn voice_options<'a>(
     // SAFETY: as here.
     let options = unsafe { options(pointer, ZEROS) }?;
     // SAFETY: as here.
-    let (model, synthesis, motion) = unsafe {
-        (
-            text(options.model)?,
-            text(options.synthesis)?,
-            motion(options.motion)?,
-        )
-    };
+    let (model, synthesis, motion) =
+        unsafe { (text(options.model)?, text(options.synthesis)?, motion(options.motion)?) };
     let effects = Effects::default()
         .with_frequency_scaling(options.no_frequency_scaling == 0)
         .with_level_scaling(options.no_level_scaling == 0)

@@ -1,5 +1,6 @@
-//! Pointers of C as Rust values. A caller of a C function promises what C cannot check: a pointer that is not NULL
-//! points to as many values as its length says, and they stay there during the call.
+//! Pointers of C as Rust values. A caller of a C function promises what C cannot check: a pointer
+//! that is not NULL points to as many values as its length says, and they stay there during the
+//! call.
 
 use std::ffi::{CStr, c_char};
 
@@ -47,9 +48,7 @@ fn check<T>(pointer: *const T, len: usize) -> Result<(), Failure> {
 /// As the module says.
 pub unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
     if pointer.is_null() || !pointer.is_aligned() {
-        return Err(Failure::argument(
-            "the pointer for the result is NULL or misaligned",
-        ));
+        return Err(Failure::argument("the pointer for the result is NULL or misaligned"));
     }
     // SAFETY: a value of the caller's is there.
     Ok(unsafe { &mut *pointer })
@@ -100,8 +99,8 @@ pub(crate) unsafe fn wide_path(path: *const u16) -> Result<std::path::PathBuf, F
     Ok(std::ffi::OsString::from_wide(units).into())
 }
 
-/// Writes a text with a zero at its end, and its length without the zero to `length` unless that is NULL. With a
-/// `capacity` of 0 only the length.
+/// Writes a text with a zero at its end, and its length without the zero to `length` unless that is
+/// NULL. With a `capacity` of 0 only the length.
 ///
 /// # Safety
 /// As the module says.
@@ -119,9 +118,7 @@ pub(crate) unsafe fn write_text(
     let out = unsafe { slice_mut(out.cast::<u8>(), capacity) }?;
     let Some(space) = out.len().checked_sub(1) else {
         return match length.is_null() {
-            true => Err(Failure::argument(
-                "neither a buffer nor a place for the length is given",
-            )),
+            true => Err(Failure::argument("neither a buffer nor a place for the length is given")),
             false => Ok(()),
         };
     };

@@ -18,8 +18,9 @@ pub struct htex_reader {
     pub len: u64,
     /// The first argument of the functions.
     pub context: *mut c_void,
-    /// Fills `buffer` with the `len` bytes from `offset` on, which are in the file. Returns 0, or another number for an error. Is called
-    /// in the thread of a call of the library, for a library of textures in several threads at a time.
+    /// Fills `buffer` with the `len` bytes from `offset` on, which are in the file. Returns 0, or
+    /// another number for an error. Is called in the thread of a call of the library, for a library
+    /// of textures in several threads at a time.
     pub read: Option<
         unsafe extern "C" fn(context: *mut c_void, offset: u64, buffer: *mut u8, len: usize) -> i32,
     >,
@@ -35,8 +36,8 @@ pub struct htex_files {
     pub size: u32,
     /// The first argument of `open`.
     pub context: *mut c_void,
-    /// Opens the file of a name, as the scene has it (UTF-8): fills `file`, whose `size` is set. Returns 0, or another number if
-    /// there is no such file.
+    /// Opens the file of a name, as the scene has it (UTF-8): fills `file`, whose `size` is set.
+    /// Returns 0, or another number if there is no such file.
     pub open: Option<
         unsafe extern "C" fn(
             context: *mut c_void,
@@ -78,15 +79,8 @@ impl Reader {
                 "the reader's size is not that of its struct; set it to sizeof(htex_reader)",
             ));
         }
-        let read = reader
-            .read
-            .ok_or(Failure::argument("the reader's function `read` is NULL"))?;
-        Ok(Self {
-            len: reader.len,
-            context: reader.context,
-            read,
-            close: reader.close,
-        })
+        let read = reader.read.ok_or(Failure::argument("the reader's function `read` is NULL"))?;
+        Ok(Self { len: reader.len, context: reader.context, read, close: reader.close })
     }
 
     #[cfg(all(feature = "library", not(target_family = "wasm")))]

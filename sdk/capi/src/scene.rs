@@ -1,4 +1,5 @@
-//! Scenes: loading, planning, following a finger, rendering. Without the feature `scene` each call says so.
+//! Scenes: loading, planning, following a finger, rendering. Without the feature `scene` each call
+//! says so.
 
 use std::ffi::c_char;
 
@@ -14,7 +15,8 @@ pub struct htex_scene {
     pub id: u64,
 }
 
-/// Options of a scene. Set `size` to sizeof(htex_scene_options) and the rest to zero for the defaults.
+/// Options of a scene. Set `size` to sizeof(htex_scene_options) and the rest to zero for the
+/// defaults.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_scene_options {
@@ -34,14 +36,15 @@ pub struct htex_finger {
     pub speed_mm_s: f64,
     /// Normal force, N; not negative.
     pub force_n: f64,
-    /// Position, mm; both NAN if it is not known: then the finger is on every surface without a region.
+    /// Position, mm; both NAN if it is not known: then the finger is on every surface without a
+    /// region.
     pub x_mm: f64,
     /// See `x_mm`.
     pub y_mm: f64,
 }
 
-/// [any thread; reads files] Loads a scene file and its assets and plans it. Its samples have the assets' unit: the scene's own device is
-/// not used. `open` and `options` may be NULL.
+/// [any thread; reads files] Loads a scene file and its assets and plans it. Its samples have the
+/// assets' unit: the scene's own device is not used. `open` and `options` may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_open(
     path: *const c_char,
@@ -66,8 +69,8 @@ pub unsafe extern "C" fn htex_scene_open_wide(
     unsafe { calls::open_wide(path, open, options, out) }
 }
 
-/// [any thread] As htex_scene_open, of a scene in memory, whose files the program reads. Bytes and `files` are used during the call
-/// alone.
+/// [any thread] As htex_scene_open, of a scene in memory, whose files the program reads. Bytes and
+/// `files` are used during the call alone.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_from_bytes(
     bytes: *const u8,
@@ -87,8 +90,8 @@ pub extern "C" fn htex_scene_free(scene: htex_scene) -> htex_status {
     calls::free(scene)
 }
 
-/// [one thread at a time] The plan as JSON: the stages that run and those that are left out, with the reasons. Written as by
-/// htex_asset_manifest_json.
+/// [one thread at a time] The plan as JSON: the stages that run and those that are left out, with
+/// the reasons. Written as by htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_plan_json(
     scene: htex_scene,
@@ -107,8 +110,8 @@ pub unsafe extern "C" fn htex_scene_rate_hz(scene: htex_scene, out: *mut f64) ->
     unsafe { calls::rate_hz(scene, out) }
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Sets position and motion of the finger of a scene whose motion is live; in
-/// other scenes it changes nothing.
+/// [one thread at a time; real-time: neither allocates nor locks] Sets position and motion of the
+/// finger of a scene whose motion is live; in other scenes it changes nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_set_finger(
     scene: htex_scene,
@@ -118,8 +121,9 @@ pub unsafe extern "C" fn htex_scene_set_finger(
     unsafe { calls::set_finger(scene, finger) }
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Renders the next samples; writes their number, which is smaller at the end of the
-/// scene, to `rendered`. If a model fails, its surface is silent, the others play on, and the call returns the error.
+/// [one thread at a time; real-time: neither allocates nor locks] Renders the next samples; writes
+/// their number, which is smaller at the end of the scene, to `rendered`. If a model fails, its
+/// surface is silent, the others play on, and the call returns the error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_scene_render(
     scene: htex_scene,
@@ -131,7 +135,8 @@ pub unsafe extern "C" fn htex_scene_render(
     unsafe { calls::render(scene, out, frames, rendered) }
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Ends the scene with a ramp to silence, as early as possible.
+/// [one thread at a time; real-time: neither allocates nor locks] Ends the scene with a ramp to
+/// silence, as early as possible.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_scene_stop(scene: htex_scene) -> htex_status {
     calls::stop(scene)

@@ -151,11 +151,7 @@ impl Write for LastError {
         self.bytes[self.len..self.len + len].copy_from_slice(&text.as_bytes()[..len]);
         self.len += len;
         self.bytes[self.len] = 0;
-        if len < text.len() {
-            Err(fmt::Error)
-        } else {
-            Ok(())
-        }
+        if len < text.len() { Err(fmt::Error) } else { Ok(()) }
     }
 }
 
@@ -175,14 +171,16 @@ fn remember(text: &Text) {
     });
 }
 
-/// [any thread] Text of the last error of the calling thread, in English, UTF-8 and at most 1023 bytes; empty if there was
-/// none. Valid until the thread's next call that fails. A call that succeeds leaves it as it is.
+/// [any thread] Text of the last error of the calling thread, in English, UTF-8 and at most 1023
+/// bytes; empty if there was none. Valid until the thread's next call that fails. A call that
+/// succeeds leaves it as it is.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_last_error() -> *const c_char {
     LAST.with(|last| last.get().cast::<c_char>().cast_const())
 }
 
-/// [any thread; real-time] What a status means, in English. Static; "unknown status" for other numbers.
+/// [any thread; real-time] What a status means, in English. Static; "unknown status" for other
+/// numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_status_text(status: i32) -> *const c_char {
     let text: &CStr = match status {

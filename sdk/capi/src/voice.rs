@@ -59,7 +59,8 @@ impl DerefMut for Playing {
     }
 }
 
-/// What a voice played since the last htex_voice_envelope. Set `size` to sizeof(htex_envelope) before the call.
+/// What a voice played since the last htex_voice_envelope. Set `size` to sizeof(htex_envelope)
+/// before the call.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct htex_envelope {
@@ -97,8 +98,9 @@ pub extern "C" fn htex_voice_free(voice: htex_voice) -> htex_status {
     guarded(|| VOICES.remove(voice.id).map(drop))
 }
 
-/// [one thread at a time; not the real-time thread] Makes the voice as it was when it was made, with the same options and the same
-/// handle: the samples are those of a new voice. `motion` may be NULL (the motion of its options). After an error the voice plays on as before.
+/// [one thread at a time; not the real-time thread] Makes the voice as it was when it was made,
+/// with the same options and the same handle: the samples are those of a new voice. `motion` may be
+/// NULL (the motion of its options). After an error the voice plays on as before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_reset(
     voice: htex_voice,
@@ -118,8 +120,8 @@ pub unsafe extern "C" fn htex_voice_reset(
     })
 }
 
-/// [one thread at a time] Id of the model that plays: of the options, or that of the representation that was chosen. Written as by
-/// htex_asset_manifest_json.
+/// [one thread at a time] Id of the model that plays: of the options, or that of the representation
+/// that was chosen. Written as by htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_model(
     voice: htex_voice,
@@ -134,14 +136,16 @@ pub unsafe extern "C" fn htex_voice_model(
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Sets the gain, which is not negative and changes within 10 ms.
+/// [one thread at a time; real-time: neither allocates nor locks] Sets the gain, which is not
+/// negative and changes within 10 ms.
 #[unsafe(no_mangle)]
 pub extern "C" fn htex_voice_set_gain(voice: htex_voice, gain: f64) -> htex_status {
     guarded(|| Ok(VOICES.exclusive(voice.id)?.set_gain(gain)?))
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Writes 1 if the voice rests, so that its samples are 0 until a motion
-/// is felt again, else 0. A voice that rests takes hardly any time to render.
+/// [one thread at a time; real-time: neither allocates nor locks] Writes 1 if the voice rests, so
+/// that its samples are 0 until a motion is felt again, else 0. A voice that rests takes hardly any
+/// time to render.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_is_silent(voice: htex_voice, out: *mut u32) -> htex_status {
     guarded(|| {
@@ -152,8 +156,8 @@ pub unsafe extern "C" fn htex_voice_is_silent(voice: htex_voice, out: *mut u32) 
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Sets the motion of the finger; spectrum and level glide to it.
-/// After an error the voice plays on as before.
+/// [one thread at a time; real-time: neither allocates nor locks] Sets the motion of the finger;
+/// spectrum and level glide to it. After an error the voice plays on as before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_set_motion(
     voice: htex_voice,
@@ -167,8 +171,8 @@ pub unsafe extern "C" fn htex_voice_set_motion(
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Renders the next samples, in the asset's unit. The samples
-/// do not depend on the lengths of the blocks.
+/// [one thread at a time; real-time: neither allocates nor locks] Renders the next samples, in the
+/// asset's unit. The samples do not depend on the lengths of the blocks.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_render(
     voice: htex_voice,
@@ -183,8 +187,8 @@ pub unsafe extern "C" fn htex_voice_render(
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Adds the next samples, multiplied by `gain`, to `out`: for a mix of
-/// voices.
+/// [one thread at a time; real-time: neither allocates nor locks] Adds the next samples, multiplied
+/// by `gain`, to `out`: for a mix of voices.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_render_add(
     voice: htex_voice,
@@ -200,13 +204,15 @@ pub unsafe extern "C" fn htex_voice_render_add(
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Tells what the voice played since the last call, effects, gain and limit
-/// included, for phones, pads and motors, which take level and frequency. Writes the mean square in each of the voice's `envelope_bands`, in the
-/// squared unit, to `bands`, which may be NULL with a `bands_len` of 0.
+/// [one thread at a time; real-time: neither allocates nor locks] Tells what the voice played since
+/// the last call, effects, gain and limit included, for phones, pads and motors, which take level
+/// and frequency. Writes the mean square in each of the voice's `envelope_bands`, in the squared
+/// unit, to `bands`, which may be NULL with a `bands_len` of 0.
 ///
-/// The level is exact. Frequency and bands are those of Hann windows of N samples, the least power of two that lasts 40 ms (20 kHz: 1024), of
-/// which one ends every N / 4 samples; a call has the mean of the windows that ended since the last call, and the numbers of that call if none
-/// did. The middle of a window is N / 2 samples before its end.
+/// The level is exact. Frequency and bands are those of Hann windows of N samples, the least power
+/// of two that lasts 40 ms (20 kHz: 1024), of which one ends every N / 4 samples; a call has the
+/// mean of the windows that ended since the last call, and the numbers of that call if none did.
+/// The middle of a window is N / 2 samples before its end.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_envelope(
     voice: htex_voice,
@@ -231,8 +237,9 @@ pub unsafe extern "C" fn htex_voice_envelope(
     })
 }
 
-/// [one thread at a time] Writes the edges of the bands of htex_voice_envelope, one more than bands, Hz: equal ratios from the lowest to the highest frequency of
-/// the asset. The first band reaches down to 0 Hz, and the last up to half the rate.
+/// [one thread at a time] Writes the edges of the bands of htex_voice_envelope, one more than
+/// bands, Hz: equal ratios from the lowest to the highest frequency of the asset. The first band
+/// reaches down to 0 Hz, and the last up to half the rate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_envelope_edges(
     voice: htex_voice,
@@ -254,8 +261,9 @@ pub unsafe extern "C" fn htex_voice_envelope_edges(
     })
 }
 
-/// [one thread at a time; real-time: neither allocates nor locks] Renders a block of `frames` samples for each of `motions_len` motions, which is set
-/// before its block: `motions_len * frames` samples. Stops at the first error; the rest of `out` is then unchanged.
+/// [one thread at a time; real-time: neither allocates nor locks] Renders a block of `frames`
+/// samples for each of `motions_len` motions, which is set before its block: `motions_len * frames`
+/// samples. Stops at the first error; the rest of `out` is then unchanged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_render_path(
     voice: htex_voice,
@@ -271,9 +279,7 @@ pub unsafe extern "C" fn htex_voice_render_path(
         // SAFETY: the arrays are the caller's.
         let (motions, out) = unsafe { (Motions::of(motions, motions_len)?, slice_mut(out, len)?) };
         if frames == 0 {
-            return motions
-                .iter()
-                .try_for_each(|motion| Ok(voice.set_motion(motion)?));
+            return motions.iter().try_for_each(|motion| Ok(voice.set_motion(motion)?));
         }
         for (motion, block) in motions.iter().zip(out.chunks_exact_mut(frames)) {
             voice.set_motion(motion)?;
@@ -283,8 +289,8 @@ pub unsafe extern "C" fn htex_voice_render_path(
     })
 }
 
-/// [one thread at a time] How the voice plays a motion, and whether that is within the recorded conditions, as English text. Written as
-/// by htex_asset_manifest_json.
+/// [one thread at a time] How the voice plays a motion, and whether that is within the recorded
+/// conditions, as English text. Written as by htex_asset_manifest_json.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_coverage(
     voice: htex_voice,

@@ -1,5 +1,5 @@
-//! The plugin for FMOD: compiled against stubs of FMOD's headers, which were written from its documentation, and run by hosts that do what
-//! FMOD does. FMOD itself was not run.
+//! The plugin for FMOD: compiled against stubs of FMOD's headers, which were written from its
+//! documentation, and run by hosts that do what FMOD does. FMOD itself was not run.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 #![cfg(target_os = "linux")]
 
@@ -16,7 +16,8 @@ use htex::{Asset, Motion, Registry, VoiceOptions};
 use programs::{Language, Project, asset};
 use xtask::needs;
 
-/// Speeds (mm/s) and forces (N) of strokes, numbers that a float holds: two speeds, rests, a lifted finger, forces beyond the recorded one.
+/// Speeds (mm/s) and forces (N) of strokes, numbers that a float holds: two speeds, rests, a lifted
+/// finger, forces beyond the recorded one.
 const STROKES: [(f64, f64); 8] = [
     (80.0, 0.5),
     (120.0, 0.5),
@@ -61,9 +62,7 @@ impl Built {
             let includes = includes.each_ref().map(String::as_str);
             let text = fs::read_to_string(capi(source)).unwrap();
             let program = project.build_with(&text, &[&includes, flags, more].concat());
-            let named = project
-                .folder()
-                .join(Path::new(source).file_stem().unwrap());
+            let named = project.folder().join(Path::new(source).file_stem().unwrap());
             fs::rename(program, &named).unwrap();
             named
         };
@@ -75,7 +74,8 @@ impl Built {
         }
     }
 
-    /// The samples of the strokes, played in blocks of so many frames, and the counts of blocks that were played and left out.
+    /// The samples of the strokes, played in blocks of so many frames, and the counts of blocks
+    /// that were played and left out.
     fn played(&self, frames: usize) -> (Vec<u8>, Vec<usize>) {
         let (asset, out) = (asset(), self.project.folder().join("out.f32"));
         let frames = frames.to_string();
@@ -94,11 +94,7 @@ impl Built {
     /// What the checks print.
     fn checked(&self, under: &[&str], changes: usize) -> String {
         let (asset, changes) = (asset(), changes.to_string());
-        let arguments = [
-            self.plugin.as_os_str(),
-            asset.as_os_str(),
-            OsStr::new(&changes),
-        ];
+        let arguments = [self.plugin.as_os_str(), asset.as_os_str(), OsStr::new(&changes)];
         let run = self.project.run_under(under, &self.checks, &arguments);
         assert!(run.status.success(), "{under:?}: {run:?}");
         String::from_utf8(run.stdout).unwrap()
@@ -122,7 +118,8 @@ fn expected() -> Vec<u8> {
     samples.iter().flat_map(|x| x.to_le_bytes()).collect()
 }
 
-/// In blocks of any length, with gcc and clang; while the finger rests FMOD is told to leave the plugin out.
+/// In blocks of any length, with gcc and clang; while the finger rests FMOD is told to leave the
+/// plugin out.
 #[test]
 fn the_plugin_plays_the_samples_of_the_library() {
     let expected = expected();
@@ -133,7 +130,8 @@ fn the_plugin_plays_the_samples_of_the_library() {
         for frames in [256, 512, 1_024] {
             let (samples, counts) = built.played(frames);
             assert!(samples == expected, "{language:?}, {frames}");
-            // Three of eight strokes are silent, but for the block or blocks in which the texture fades.
+            // Three of eight strokes are silent, but for the block or blocks in which the texture
+            // fades.
             let fading = 960usize.div_ceil(frames);
             let silent = 3 * (STROKE_FRAMES / frames - fading);
             assert_eq!(counts[1], silent, "{language:?}, {frames}");
@@ -142,8 +140,8 @@ fn the_plugin_plays_the_samples_of_the_library() {
     }
 }
 
-/// Silence, refusals, parameters, instances and a mixer that runs meanwhile, without an allocation in it. The README has the parameters, and
-/// the plugin the models of the library.
+/// Silence, refusals, parameters, instances and a mixer that runs meanwhile, without an allocation
+/// in it. The README has the parameters, and the plugin the models of the library.
 #[test]
 fn the_plugin_keeps_to_its_description() {
     let Some(built) = Built::new(Language::C, "fmod_checks", COUNTED) else {
@@ -166,10 +164,7 @@ fn the_plugin_keeps_to_its_description() {
     let bytes = fs::read(asset()).unwrap();
     let damaged = Asset::from_bytes(&bytes[..bytes.len() / 2]).unwrap_err();
     let messages = lines("message ");
-    assert_eq!(
-        messages[0],
-        format!("the asset cannot be opened: {damaged}")
-    );
+    assert_eq!(messages[0], format!("the asset cannot be opened: {damaged}"));
     let expected = [
         "no representation `bands`",
         "a rate of 1000 Hz",

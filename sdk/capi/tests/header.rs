@@ -40,9 +40,7 @@ fn generated_listing_is_frozen() {
         let kept = std::fs::read_to_string(path).unwrap();
         assert_eq!(fnv(kept.as_bytes()), *hash, "{THAW}");
         // The version itself is the one line that changes.
-        let mut lines = kept
-            .lines()
-            .filter(|line| !line.contains("HTEX_API_VERSION"));
+        let mut lines = kept.lines().filter(|line| !line.contains("HTEX_API_VERSION"));
         assert!(lines.all(|line| now.contains(line)), "{THAW}");
     }
 }
@@ -53,10 +51,7 @@ fn generated_listing_is_frozen() {
 fn all_tables_of_statuses_agree() {
     let header = header();
     let statuses = header.lines().filter_map(|line| {
-        let (name, number) = line
-            .trim()
-            .strip_prefix("HTEX_STATUS_")?
-            .split_once(" = ")?;
+        let (name, number) = line.trim().strip_prefix("HTEX_STATUS_")?.split_once(" = ")?;
         Some((name, number.trim_end_matches(',').parse::<i32>().ok()?))
     });
     let statuses: Vec<(&str, i32)> = statuses.collect();
@@ -72,16 +67,12 @@ fn all_tables_of_statuses_agree() {
     let sharp = std::fs::read_to_string("unity/Runtime/Htex.cs").unwrap();
     let (_, sharp) = sharp.split_once("public enum Status").unwrap();
     let (sharp, _) = sharp.split_once('}').unwrap();
-    let own = sharp
-        .lines()
-        .filter_map(|line| line.trim().split_once(" = "));
-    let own: Vec<(String, String)> = own
-        .map(|(name, number)| (lower(name), number.trim_end_matches(',').to_owned()))
-        .collect();
+    let own = sharp.lines().filter_map(|line| line.trim().split_once(" = "));
+    let own: Vec<(String, String)> =
+        own.map(|(name, number)| (lower(name), number.trim_end_matches(',').to_owned())).collect();
     let wanted = statuses.iter();
-    let wanted: Vec<(String, String)> = wanted
-        .map(|(name, number)| (lower(&name.replace('_', "")), number.to_string()))
-        .collect();
+    let wanted: Vec<(String, String)> =
+        wanted.map(|(name, number)| (lower(&name.replace('_', "")), number.to_string())).collect();
     assert_eq!(own, wanted, "Htex.cs");
 
     let script = std::fs::read_to_string("../web/src/core.js").unwrap();
@@ -90,9 +81,7 @@ fn all_tables_of_statuses_agree() {
     let own = script.split(',').map(|name| name.trim().trim_matches('"'));
     let own: Vec<&str> = own.filter(|name| !name.is_empty()).collect();
     let wanted = statuses.iter();
-    let wanted: Vec<String> = wanted
-        .map(|(name, _)| lower(&name.replace('_', "-")))
-        .collect();
+    let wanted: Vec<String> = wanted.map(|(name, _)| lower(&name.replace('_', "-"))).collect();
     assert_eq!(own, wanted, "core.js");
 }
 

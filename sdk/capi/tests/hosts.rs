@@ -1,5 +1,5 @@
-//! What libhtex takes from the program that it is part of: allocations in its real-time calls, memory, threads, files and handlers of
-//! signals.
+//! What libhtex takes from the program that it is part of: allocations in its real-time calls,
+//! memory, threads, files and handlers of signals.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 #![cfg(target_os = "linux")]
 
@@ -21,9 +21,7 @@ use programs::{Language, Project, asset};
 use xtask::needs;
 
 fn hosts(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/hosts")
-        .join(file)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/hosts").join(file)
 }
 
 /// Builds a program of this folder.
@@ -80,7 +78,8 @@ fn the_library_is_clean_under_valgrind_and_sanitizers() {
     }
 }
 
-/// The first voice of a model takes at most 64 kB more than the next ones, and the end of the library leaves constants alone.
+/// The first voice of a model takes at most 64 kB more than the next ones, and the end of the
+/// library leaves constants alone.
 #[test]
 fn voices_are_small_and_the_end_gives_everything_back() {
     let Some(project) = Project::new(Language::C, "memory") else {
@@ -95,24 +94,16 @@ fn voices_are_small_and_the_end_gives_everything_back() {
 /// A texture recorded at two speeds, in these models.
 fn fitted(registry: &Registry, models: &[&str]) -> htex::AssetData {
     let take = |speed_mm_s| {
-        let options = SimulationOptions::new(Surface::Vinyl)
-            .with_speed_mm_s(speed_mm_s)
-            .with_duration_s(3.0);
+        let options =
+            SimulationOptions::new(Surface::Vinyl).with_speed_mm_s(speed_mm_s).with_duration_s(3.0);
         Take {
             recording: simulate(&options).unwrap().to_recording("vinyl").unwrap(),
-            given: Exploration {
-                speed_mm_s: Some(speed_mm_s),
-                force_n: Some(0.4),
-            },
+            given: Exploration { speed_mm_s: Some(speed_mm_s), force_n: Some(0.4) },
         }
     };
-    let models = models
-        .iter()
-        .map(|name| ModelRequest::new(registry.find(name).unwrap()));
+    let models = models.iter().map(|name| ModelRequest::new(registry.find(name).unwrap()));
     let request = AssetRequest::new("vinyl").with_models(models);
-    fit_asset(&[take(60.0), take(120.0)], &request)
-        .unwrap()
-        .asset
+    fit_asset(&[take(60.0), take(120.0)], &request).unwrap().asset
 }
 
 /// A texture in all models, in the folder of a program.
@@ -132,7 +123,8 @@ fn asset_with_module(module: &Path) -> Vec<u8> {
     asset.to_bytes().unwrap()
 }
 
-/// A program that opens an asset with a module and asked for none has no new thread, file or handler of signals.
+/// A program that opens an asset with a module and asked for none has no new thread, file or
+/// handler of signals.
 #[test]
 fn modules_run_only_in_a_program_that_asks_for_them() {
     let Some(project) = Project::new(Language::C, "host_of_modules") else {
@@ -182,11 +174,8 @@ fn calls_of_each_language_tell_the_same() {
     let scene = asset().with_file_name("constant.scene.json");
 
     let opened = Asset::open(asset()).unwrap();
-    let options = VoiceOptions::default()
-        .with_seed(7)
-        .with_gain(0.5)
-        .with_limit(0.01)
-        .with_envelope_bands(3);
+    let options =
+        VoiceOptions::default().with_seed(7).with_gain(0.5).with_limit(0.01).with_envelope_bands(3);
     let mut voice = opened.voice(&options).unwrap();
     let (mut samples, mut bands) = ([0.0f32; 4_000], [0.0; 3]);
     voice.render(&mut samples).unwrap();
@@ -196,10 +185,7 @@ fn calls_of_each_language_tell_the_same() {
         ("level", vec![opened.level_rms(None, None).unwrap()]),
         ("band", vec![20.0, 1_000.0]),
         ("edges", voice.envelope_edges_hz()[1..3].to_vec()),
-        (
-            "envelope",
-            [&[envelope.level_rms, envelope.centroid_hz], &bands[..]].concat(),
-        ),
+        ("envelope", [&[envelope.level_rms, envelope.centroid_hz], &bands[..]].concat()),
         ("again", vec![1.0]),
         ("silent", vec![1.0]),
         ("device", vec![2_000.0, 2_000.0, 48_000.0]),
@@ -217,13 +203,9 @@ fn calls_of_each_language_tell_the_same() {
         let files = [unity, hosts("NativeArray.cs")].map(|file| file.display().to_string());
         let [unity, types] = &files;
         let more: &[&str] = match language {
-            Language::Csharp => &[
-                "-r:System.Core",
-                "-unsafe",
-                "-d:UNITY_2021_2_OR_NEWER",
-                unity,
-                types,
-            ],
+            Language::Csharp => {
+                &["-r:System.Core", "-unsafe", "-d:UNITY_2021_2_OR_NEWER", unity, types]
+            }
             _ => &[],
         };
         let program = project.build_with(&source, more);
@@ -249,11 +231,7 @@ fn calls_of_each_language_tell_the_same() {
         played.push(fs::read(channels).unwrap());
     }
     // Four channels of 2,000 samples, the same from each language.
-    assert!(
-        played
-            .iter()
-            .all(|file| *file == played[0] && file.len() > 2_000 * 4 * 4)
-    );
+    assert!(played.iter().all(|file| *file == played[0] && file.len() > 2_000 * 4 * 4));
 }
 
 /// 2,000 toggles of `HtexSource` while an audio thread renders without a pause.

@@ -1,4 +1,5 @@
-//! Invalid use of the C functions is an error with a status and a text, whatever is passed that C cannot exclude.
+//! Invalid use of the C functions is an error with a status and a text, whatever is passed that C
+//! cannot exclude.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::ffi::{CStr, CString, c_char, c_void};
@@ -15,10 +16,7 @@ fn asset_path() -> PathBuf {
 
 fn last_error() -> String {
     // SAFETY: a text of the library that ends with a zero.
-    unsafe { CStr::from_ptr(htex_last_error()) }
-        .to_str()
-        .unwrap()
-        .to_owned()
+    unsafe { CStr::from_ptr(htex_last_error()) }.to_str().unwrap().to_owned()
 }
 
 fn opened() -> htex_asset {
@@ -61,28 +59,16 @@ fn freed_and_foreign_handles_are_refused() {
     // SAFETY: live pointers.
     unsafe {
         // The voice plays on without its asset.
-        assert_eq!(
-            htex_voice_render(voice, block.as_mut_ptr(), 64),
-            HTEX_STATUS_OK
-        );
+        assert_eq!(htex_voice_render(voice, block.as_mut_ptr(), 64), HTEX_STATUS_OK);
         let mut out = htex_voice { id: 0 };
-        is(
-            htex_voice_new(asset, null(), &mut out),
-            HTEX_STATUS_BAD_HANDLE,
-        );
+        is(htex_voice_new(asset, null(), &mut out), HTEX_STATUS_BAD_HANDLE);
         assert_eq!(htex_voice_free(voice), HTEX_STATUS_OK);
         // Other tests have objects at the same time: the places of these handles are nobody else's.
         let never = [0, 1, 1 << 20, u64::MAX];
         for id in never.into_iter().chain([voice.id]) {
             let voice = htex_voice { id };
-            is(
-                htex_voice_render(voice, block.as_mut_ptr(), 64),
-                HTEX_STATUS_BAD_HANDLE,
-            );
-            is(
-                htex_voice_set_motion(voice, &MOTION),
-                HTEX_STATUS_BAD_HANDLE,
-            );
+            is(htex_voice_render(voice, block.as_mut_ptr(), 64), HTEX_STATUS_BAD_HANDLE);
+            is(htex_voice_set_motion(voice, &MOTION), HTEX_STATUS_BAD_HANDLE);
             is(htex_voice_free(voice), HTEX_STATUS_BAD_HANDLE);
         }
         for id in never.into_iter().chain([asset.id]) {
@@ -93,18 +79,9 @@ fn freed_and_foreign_handles_are_refused() {
         }
         // A handle of one kind is none of another.
         let (asset, voice) = (opened(), voice_of(opened()));
-        is(
-            htex_asset_free(htex_asset { id: voice.id }),
-            HTEX_STATUS_BAD_HANDLE,
-        );
-        is(
-            htex_voice_free(htex_voice { id: asset.id }),
-            HTEX_STATUS_BAD_HANDLE,
-        );
-        is(
-            htex_library_free(htex_library { id: voice.id }),
-            HTEX_STATUS_BAD_HANDLE,
-        );
+        is(htex_asset_free(htex_asset { id: voice.id }), HTEX_STATUS_BAD_HANDLE);
+        is(htex_voice_free(htex_voice { id: asset.id }), HTEX_STATUS_BAD_HANDLE);
+        is(htex_library_free(htex_library { id: voice.id }), HTEX_STATUS_BAD_HANDLE);
         assert_eq!(htex_asset_free(asset), HTEX_STATUS_OK);
         assert_eq!(htex_voice_free(voice), HTEX_STATUS_OK);
     }
@@ -120,30 +97,15 @@ fn libraries_refuse_what_is_none() {
         let bad = HTEX_STATUS_INVALID_ARGUMENT;
         is(htex_library_open(null(), &mut library), bad);
         is(htex_library_open(path.as_ptr(), null_mut()), bad);
-        is(
-            htex_library_open(c"no.htexlib".as_ptr(), &mut library),
-            HTEX_STATUS_IO,
-        );
-        is(
-            htex_library_open(path.as_ptr(), &mut library),
-            HTEX_STATUS_INVALID_LIBRARY,
-        );
+        is(htex_library_open(c"no.htexlib".as_ptr(), &mut library), HTEX_STATUS_IO);
+        is(htex_library_open(path.as_ptr(), &mut library), HTEX_STATUS_INVALID_LIBRARY);
         let bad = HTEX_STATUS_BAD_HANDLE;
         is(htex_library_count(library, &mut count), bad);
         is(htex_library_page_count(library, &mut pages), bad);
         is(htex_library_name(library, null_mut(), 0, &mut pages), bad);
-        is(
-            htex_library_page_json(library, 0, null_mut(), 0, &mut pages),
-            bad,
-        );
-        is(
-            htex_library_entry_json(library, c"a".as_ptr(), null_mut(), 0, &mut pages),
-            bad,
-        );
-        is(
-            htex_library_asset(library, c"a".as_ptr(), null(), &mut asset),
-            bad,
-        );
+        is(htex_library_page_json(library, 0, null_mut(), 0, &mut pages), bad);
+        is(htex_library_entry_json(library, c"a".as_ptr(), null_mut(), 0, &mut pages), bad);
+        is(htex_library_asset(library, c"a".as_ptr(), null(), &mut asset), bad);
         is(htex_library_free(library), bad);
     }
 }
@@ -158,20 +120,11 @@ fn null_and_misaligned_pointers_are_refused() {
     unsafe {
         let bad = HTEX_STATUS_INVALID_ARGUMENT;
         is(htex_asset_open(null(), null(), null_mut()), bad);
-        is(
-            htex_asset_open(c"x.htex".as_ptr(), null(), null_mut()),
-            HTEX_STATUS_IO,
-        );
+        is(htex_asset_open(c"x.htex".as_ptr(), null(), null_mut()), HTEX_STATUS_IO);
         is(htex_asset_open(c"\xff".as_ptr(), null(), null_mut()), bad);
         is(htex_asset_from_bytes(null(), 10, null(), null_mut()), bad);
-        is(
-            htex_asset_manifest_json(asset, null_mut(), 10, null_mut()),
-            bad,
-        );
-        is(
-            htex_asset_manifest_json(asset, null_mut(), 0, null_mut()),
-            bad,
-        );
+        is(htex_asset_manifest_json(asset, null_mut(), 10, null_mut()), bad);
+        is(htex_asset_manifest_json(asset, null_mut(), 0, null_mut()), bad);
         is(htex_asset_condition(asset, 1_000, null_mut()), bad);
         is(htex_asset_condition(asset, 0, null_mut()), bad);
         is(htex_voice_new(asset, null(), null_mut()), bad);
@@ -180,10 +133,7 @@ fn null_and_misaligned_pointers_are_refused() {
         is(htex_voice_render(voice, null_mut(), usize::MAX), bad);
         is(htex_voice_set_motion(voice, null()), bad);
         is(htex_voice_set_motion(voice, odd.cast()), bad);
-        is(
-            htex_voice_render_path(voice, null(), 2, null_mut(), usize::MAX),
-            bad,
-        );
+        is(htex_voice_render_path(voice, null(), 2, null_mut(), usize::MAX), bad);
         is(htex_scene_open(null(), null(), null(), null_mut()), bad);
         assert_eq!(htex_voice_render(voice, null_mut(), 0), HTEX_STATUS_OK);
     }
@@ -199,56 +149,26 @@ fn motions_out_of_range_leave_the_voice_as_it_was() {
     let mut blocks = [[0.0f32; 256]; 2];
     // SAFETY: live pointers.
     unsafe {
-        assert_eq!(
-            htex_voice_set_motion(voice, &MOTION),
-            HTEX_STATUS_OK,
-            "{}",
-            last_error()
-        );
+        assert_eq!(htex_voice_set_motion(voice, &MOTION), HTEX_STATUS_OK, "{}", last_error());
         assert_eq!(htex_voice_set_motion(twin, &MOTION), HTEX_STATUS_OK);
         for number in wrong {
             for motion in [
-                htex_motion {
-                    speed_mm_s: number,
-                    ..MOTION
-                },
-                htex_motion {
-                    force_n: number,
-                    ..MOTION
-                },
+                htex_motion { speed_mm_s: number, ..MOTION },
+                htex_motion { force_n: number, ..MOTION },
             ] {
-                is(
-                    htex_voice_set_motion(voice, &motion),
-                    HTEX_STATUS_INVALID_MOTION,
-                );
+                is(htex_voice_set_motion(voice, &motion), HTEX_STATUS_INVALID_MOTION);
             }
         }
-        let place = |x_mm, y_mm| htex_motion {
-            x_mm,
-            y_mm,
-            ..MOTION
-        };
-        let far = htex_motion {
-            position_mm: f64::INFINITY,
-            ..MOTION
-        };
+        let place = |x_mm, y_mm| htex_motion { x_mm, y_mm, ..MOTION };
+        let far = htex_motion { position_mm: f64::INFINITY, ..MOTION };
         for motion in [far, place(f64::INFINITY, 0.0), place(0.0, f64::INFINITY)] {
-            is(
-                htex_voice_set_motion(voice, &motion),
-                HTEX_STATUS_INVALID_MOTION,
-            );
+            is(htex_voice_set_motion(voice, &motion), HTEX_STATUS_INVALID_MOTION);
         }
         // A place of which one number is known is not known.
-        assert_eq!(
-            htex_voice_set_motion(voice, &place(f64::NAN, 1.0)),
-            HTEX_STATUS_OK
-        );
+        assert_eq!(htex_voice_set_motion(voice, &place(f64::NAN, 1.0)), HTEX_STATUS_OK);
         assert_eq!(htex_voice_set_motion(twin, &MOTION), HTEX_STATUS_OK);
         for (voice, block) in [voice, twin].into_iter().zip(&mut blocks) {
-            assert_eq!(
-                htex_voice_render(voice, block.as_mut_ptr(), 256),
-                HTEX_STATUS_OK
-            );
+            assert_eq!(htex_voice_render(voice, block.as_mut_ptr(), 256), HTEX_STATUS_OK);
         }
     }
     assert_eq!(blocks[0], blocks[1]);
@@ -330,10 +250,7 @@ fn options_are_checked_by_their_size() {
     }
     options.rate_hz = 0.0;
     options.size = size_of::<Newer>() as u32;
-    let mut newer = Newer {
-        known: options,
-        more: 0,
-    };
+    let mut newer = Newer { known: options, more: 0 };
     // SAFETY: `size` bytes are there.
     let at = |newer: &Newer| unsafe { &*(&raw const *newer).cast::<htex_voice_options>() };
     assert_eq!(new(at(&newer)), HTEX_STATUS_OK);
@@ -348,10 +265,7 @@ fn texts_tell_their_length() {
     let mut length = 0;
     // SAFETY: live pointers.
     unsafe {
-        assert_eq!(
-            htex_asset_manifest_json(asset, null_mut(), 0, &mut length),
-            HTEX_STATUS_OK
-        );
+        assert_eq!(htex_asset_manifest_json(asset, null_mut(), 0, &mut length), HTEX_STATUS_OK);
         let mut text = vec![1 as c_char; length + 1];
         let status = htex_asset_manifest_json(asset, text.as_mut_ptr(), text.len(), null_mut());
         assert_eq!(status, HTEX_STATUS_OK);
@@ -367,7 +281,8 @@ fn texts_tell_their_length() {
     htex_asset_free(asset);
 }
 
-/// Motions of programs that were compiled against other headers: of speed and force alone, and with more at the end.
+/// Motions of programs that were compiled against other headers: of speed and force alone, and with
+/// more at the end.
 #[test]
 fn motions_have_the_size_of_their_header() {
     #[repr(C)]
@@ -378,20 +293,13 @@ fn motions_have_the_size_of_their_header() {
     let asset = opened();
     let mut blocks = [[0.0f32; 256]; 3];
     let speeds = [80.0, 200.0];
-    let now = speeds.map(|speed_mm_s| htex_motion {
-        speed_mm_s,
-        ..MOTION
-    });
+    let now = speeds.map(|speed_mm_s| htex_motion { speed_mm_s, ..MOTION });
     let early = speeds.map(|speed| Early(size(size_of::<Early>()), speed, 0.4));
     let late = now.map(|motion| {
         let size = size(size_of::<Late>());
         Late(htex_motion { size, ..motion }, 7.0)
     });
-    let paths = [
-        now.as_ptr(),
-        early.as_ptr().cast(),
-        late.as_ptr().cast::<htex_motion>(),
-    ];
+    let paths = [now.as_ptr(), early.as_ptr().cast(), late.as_ptr().cast::<htex_motion>()];
     for (path, block) in paths.into_iter().zip(&mut blocks) {
         let voice = voice_of(asset);
         // SAFETY: live pointers, to motions of the sizes that they state.
@@ -399,14 +307,8 @@ fn motions_have_the_size_of_their_header() {
             let status = htex_voice_render_path(voice, path, 2, block.as_mut_ptr(), 128);
             assert_eq!(status, HTEX_STATUS_OK, "{}", last_error());
             for wrong in [0, 4, 23, 25, u32::MAX] {
-                let motion = htex_motion {
-                    size: wrong,
-                    ..MOTION
-                };
-                is(
-                    htex_voice_set_motion(voice, &motion),
-                    HTEX_STATUS_INVALID_ARGUMENT,
-                );
+                let motion = htex_motion { size: wrong, ..MOTION };
+                is(htex_voice_set_motion(voice, &motion), HTEX_STATUS_INVALID_ARGUMENT);
             }
         }
         assert_eq!(htex_voice_free(voice), HTEX_STATUS_OK);
@@ -421,9 +323,8 @@ fn mutated_files_are_errors() {
     let original = std::fs::read(asset_path()).unwrap();
     let mut state = 1u64;
     let mut random = |below: usize| {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize % below
     };
     let (mut refused, mut played) = (0, 0);
@@ -501,17 +402,12 @@ fn a_scene_plays_and_reports() {
         assert_eq!(status, HTEX_STATUS_OK, "{}", last_error());
         htex_set_log(None, null_mut());
         let mut length = 0;
-        assert_eq!(
-            htex_scene_plan_json(playing, null_mut(), 0, &mut length),
-            HTEX_STATUS_OK
-        );
+        assert_eq!(htex_scene_plan_json(playing, null_mut(), 0, &mut length), HTEX_STATUS_OK);
         assert!(length > 100);
         let mut rate_hz = 0.0;
         for (asked, expected) in [(48_000.0, 48_000.0), (0.0, 20_000.0)] {
-            let options = htex_scene_options {
-                size: size_of::<htex_scene_options>() as u32,
-                rate_hz: asked,
-            };
+            let options =
+                htex_scene_options { size: size_of::<htex_scene_options>() as u32, rate_hz: asked };
             let mut other = htex_scene { id: 0 };
             let status = htex_scene_open(path.as_ptr(), null(), &options, &mut other);
             assert_eq!(status, HTEX_STATUS_OK, "{}", last_error());
@@ -520,14 +416,8 @@ fn a_scene_plays_and_reports() {
             assert_eq!(htex_scene_free(other), HTEX_STATUS_OK);
         }
         assert_eq!(htex_scene_set_finger(playing, &finger), HTEX_STATUS_OK);
-        let lost = htex_finger {
-            x_mm: f64::NAN,
-            ..finger
-        };
-        is(
-            htex_scene_set_finger(playing, &lost),
-            HTEX_STATUS_INVALID_MOTION,
-        );
+        let lost = htex_finger { x_mm: f64::NAN, ..finger };
+        is(htex_scene_set_finger(playing, &lost), HTEX_STATUS_INVALID_MOTION);
         let mut rendered = 0;
         let status = htex_scene_render(playing, samples.as_mut_ptr(), 2_000, &mut rendered);
         assert_eq!((status, rendered), (HTEX_STATUS_OK, 2_000));
@@ -539,7 +429,8 @@ fn a_scene_plays_and_reports() {
     }
 }
 
-/// A device is refused with what to do, takes samples until it is finished, and is at rest when it is freed.
+/// A device is refused with what to do, takes samples until it is finished, and is at rest when it
+/// is freed.
 #[cfg(feature = "scene")]
 #[test]
 fn a_device_is_opened_by_its_name() {
@@ -552,16 +443,10 @@ fn a_device_is_opened_by_its_name() {
         (status, device)
     };
     is(open(other, c"", 0.0).0, HTEX_STATUS_INVALID_ARGUMENT);
-    is(
-        open(name, c"to=nowhere", 0.0).0,
-        HTEX_STATUS_INVALID_ARGUMENT,
-    );
+    is(open(name, c"to=nowhere", 0.0).0, HTEX_STATUS_INVALID_ARGUMENT);
     is(open(name, c"to", 0.0).0, HTEX_STATUS_INVALID_ARGUMENT);
     is(open(name, c"to=null", 1.0).0, HTEX_STATUS_INVALID_ARGUMENT);
-    is(
-        open(c"sdl", c"driver=/nowhere/libSDL2.so", 0.0).0,
-        HTEX_STATUS_INVALID_ARGUMENT,
-    );
+    is(open(c"sdl", c"driver=/nowhere/libSDL2.so", 0.0).0, HTEX_STATUS_INVALID_ARGUMENT);
     assert!(last_error().contains("SDL"), "{}", last_error());
     let (status, device) = open(name, c"to=null", 0.0);
     assert_eq!(status, HTEX_STATUS_OK, "{}", last_error());
@@ -581,19 +466,11 @@ fn a_device_is_opened_by_its_name() {
         };
         assert_eq!(write(256, &mut written), HTEX_STATUS_OK, "{}", last_error());
         assert_eq!(written, 256);
-        is(
-            htex_device_status(device, &mut counts),
-            HTEX_STATUS_INVALID_ARGUMENT,
-        );
+        is(htex_device_status(device, &mut counts), HTEX_STATUS_INVALID_ARGUMENT);
         counts.size = size_of::<htex_device_counts>() as u32;
         assert_eq!(htex_device_status(device, &mut counts), HTEX_STATUS_OK);
         assert_eq!((counts.frames_written, counts.peak), (256, 0.25));
-        assert_eq!(
-            htex_device_finish(device),
-            HTEX_STATUS_OK,
-            "{}",
-            last_error()
-        );
+        assert_eq!(htex_device_finish(device), HTEX_STATUS_OK, "{}", last_error());
         is(write(1, &mut written), HTEX_STATUS_DEVICE);
         assert_eq!(written, 0);
         assert_eq!(htex_device_free(device), HTEX_STATUS_OK);

@@ -54,10 +54,7 @@ fn examples_play_the_same_samples() {
 #[test]
 fn examples_of_the_readme_run() {
     let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
-    let mut voice = Asset::open(asset())
-        .unwrap()
-        .voice(&VoiceOptions::default())
-        .unwrap();
+    let mut voice = Asset::open(asset()).unwrap().voice(&VoiceOptions::default()).unwrap();
     let mut block = [0.0f32; 64];
     voice.set_motion(Motion::new(80.0, 0.4)).unwrap();
     voice.render(&mut block).unwrap();
@@ -74,7 +71,8 @@ fn examples_of_the_readme_run() {
     }
 }
 
-/// A program that prints the number of textures of a library, its first page, and the model of one texture.
+/// A program that prints the number of textures of a library, its first page, and the model of one
+/// texture.
 fn look_into_a_library(language: Language) -> &'static str {
     match language {
         Language::C | Language::Clang => {
@@ -141,9 +139,7 @@ fn libraries_open_in_each_language() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.htexlib");
     let mut writer = htex::library::Writer::create(&path, "A").unwrap();
-    writer
-        .add("floor/vinyl", &fs::read(asset()).unwrap())
-        .unwrap();
+    writer.add("floor/vinyl", &fs::read(asset()).unwrap()).unwrap();
     writer.finish().unwrap();
     let library = htex::Library::open(&path).unwrap();
     let entry = library.entry("floor/vinyl").unwrap().unwrap();
@@ -162,7 +158,8 @@ fn libraries_open_in_each_language() {
     }
 }
 
-/// C# passes modules to the library: a model in C is loaded, and other bytes are an error that names their place.
+/// C# passes modules to the library: a model in C is loaded, and other bytes are an error that
+/// names their place.
 #[test]
 fn modules_reach_the_library_from_csharp() {
     let Some(project) = Project::new(Language::Csharp, "modules") else {
@@ -201,7 +198,8 @@ fn modules_reach_the_library_from_csharp() {
     assert!(lines[2].contains("module 0"), "{printed}");
 }
 
-/// The example in C under valgrind, and with the sanitizers of gcc and clang: neither invalid accesses nor leaks.
+/// The example in C under valgrind, and with the sanitizers of gcc and clang: neither invalid
+/// accesses nor leaks.
 #[test]
 fn the_example_has_no_memory_errors() {
     let source = fs::read_to_string(Language::C.example()).unwrap();
@@ -210,10 +208,7 @@ fn the_example_has_no_memory_errors() {
         let out = project.folder().join("stroke.f32");
         let run = project.run_under(under, &program, &[asset().as_os_str(), out.as_os_str()]);
         assert!(run.status.success(), "{under:?} {more:?}: {run:?}");
-        assert!(
-            fs::read(&out).unwrap() == stroke(&asset()),
-            "{under:?} {more:?}"
-        );
+        assert!(fs::read(&out).unwrap() == stroke(&asset()), "{under:?} {more:?}");
     };
     let valgrind = Command::new("valgrind").arg("--version").output().is_ok();
     if needs::VALGRIND.met(valgrind) {

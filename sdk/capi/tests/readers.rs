@@ -94,16 +94,10 @@ fn an_asset_is_read_whole_and_closed() {
         let status = htex_asset_open_reader(&file.reader(), null(), &mut read);
         assert_eq!((status, file.closed()), (HTEX_STATUS_IO, 2));
         // A length that no asset has is not allocated.
-        let endless = htex_reader {
-            len: u64::MAX,
-            ..file.reader()
-        };
+        let endless = htex_reader { len: u64::MAX, ..file.reader() };
         let status = htex_asset_open_reader(&endless, null(), &mut read);
         assert_eq!((status, file.closed()), (HTEX_STATUS_IO, 3));
-        let small = htex_reader {
-            size: 8,
-            ..file.reader()
-        };
+        let small = htex_reader { size: 8, ..file.reader() };
         for (reader, bad) in [(&raw const small, file.closed()), (null(), file.closed())] {
             let status = htex_asset_open_reader(reader, null(), &mut read);
             assert_eq!((status, file.closed()), (HTEX_STATUS_INVALID_ARGUMENT, bad));
@@ -207,10 +201,7 @@ fn a_scene_in_memory_plays_as_its_file_does() {
             assert_eq!(status, HTEX_STATUS_OK, "{}: {error:?}", path.display());
             assert_eq!(rendered(of_memory), rendered(of_file), "{}", path.display());
             assert!(!opened.is_empty() && opened.iter().all(|file| file.closed() == 1));
-            let nothing = htex_files {
-                open: None,
-                ..files
-            };
+            let nothing = htex_files { open: None, ..files };
             let status = htex_scene_from_bytes(
                 bytes.as_ptr(),
                 bytes.len(),
@@ -234,14 +225,7 @@ fn a_scene_in_memory_plays_as_its_file_does() {
     let mut scene = htex_scene { id: 0 };
     // SAFETY: live pointers.
     let status = unsafe {
-        htex_scene_from_bytes(
-            missing.as_ptr(),
-            missing.len(),
-            &files,
-            null(),
-            null(),
-            &mut scene,
-        )
+        htex_scene_from_bytes(missing.as_ptr(), missing.len(), &files, null(), null(), &mut scene)
     };
     assert_eq!(status, HTEX_STATUS_INVALID_SCENE);
 }

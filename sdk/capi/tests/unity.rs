@@ -1,5 +1,5 @@
-//! The Unity package is whole: its `.meta` files, its assemblies for each target, its tests with libhtex, what it allocates; and the
-//! layout of the NuGet package beside it.
+//! The Unity package is whole: its `.meta` files, its assemblies for each target, its tests with
+//! libhtex, what it allocates; and the layout of the NuGet package beside it.
 #![allow(clippy::unwrap_used, clippy::panic)] // They fail a test.
 #![cfg(target_os = "linux")]
 
@@ -49,10 +49,7 @@ fn generated_metas_are_those_of_the_files() {
     }
     let expected: Vec<_> = metas.keys().cloned().collect();
     let there: BTreeSet<_> = metas::there(&package()).into_iter().collect();
-    assert!(
-        there.iter().eq(&expected),
-        "{there:?} instead of {expected:?}"
-    );
+    assert!(there.iter().eq(&expected), "{there:?} instead of {expected:?}");
     let line = |text: &str| text.lines().nth(1).unwrap().to_owned();
     let guids: BTreeSet<_> = metas.values().map(|text| line(text)).collect();
     assert_eq!(guids.len(), metas.len());
@@ -62,10 +59,7 @@ fn generated_metas_are_those_of_the_files() {
 /// What users of earlier versions refer to has the GUID that it had.
 #[test]
 fn a_guid_stays_the_same() {
-    assert_eq!(
-        metas::guid("Runtime/HtexSource.cs"),
-        "d730aa622899ec37c515d7e2433d9e1f"
-    );
+    assert_eq!(metas::guid("Runtime/HtexSource.cs"), "d730aa622899ec37c515d7e2433d9e1f");
 }
 
 #[test]
@@ -86,7 +80,8 @@ fn the_manifest_names_what_is_there() {
     }
 }
 
-/// The scene of the sample refers to scripts of the package, and its texture is that of the examples.
+/// The scene of the sample refers to scripts of the package, and its texture is that of the
+/// examples.
 #[test]
 fn the_sample_has_its_scripts_and_its_texture() {
     let sample = package().join("Samples~/Touch");
@@ -96,16 +91,14 @@ fn the_sample_has_its_scripts_and_its_texture() {
         let guid = metas::guid(path);
         format!("  m_Script: {{fileID: 11500000, guid: {guid}, type: 3}}")
     });
-    let there: Vec<_> = scene
-        .lines()
-        .filter(|line| line.contains("guid:"))
-        .collect();
+    let there: Vec<_> = scene.lines().filter(|line| line.contains("guid:")).collect();
     assert_eq!(there, expected);
     let texture = fs::read(sample.join("Resources/Vinyl.htex")).unwrap();
     assert!(texture == fs::read(asset()).unwrap());
 }
 
-/// In the editor: the tests of the package import a texture, play it and render it in a job, with the real library.
+/// In the editor: the tests of the package import a texture, play it and render it in a job, with
+/// the real library.
 #[test]
 fn the_tests_of_the_package_pass_in_the_editor() {
     let Some(project) = Project::new(Language::Csharp, "unity") else {
@@ -126,9 +119,7 @@ fn the_tests_of_the_package_pass_in_the_editor() {
     let tests = ["Tests/Runtime", "Tests/Editor"].map(|tests| {
         let files = assemblies::sources(&package().join(tests)).into_iter();
         let texts = files.map(|file| fs::read_to_string(file).unwrap());
-        texts
-            .map(|text| text.matches("[Test]").count())
-            .sum::<usize>()
+        texts.map(|text| text.matches("[Test]").count()).sum::<usize>()
     });
     let passed = printed.lines().filter(|line| line.starts_with("passed "));
     assert_eq!(passed.count(), tests[0] + tests[1], "{printed}");
@@ -136,7 +127,8 @@ fn the_tests_of_the_package_pass_in_the_editor() {
     assert_eq!(touch_the_sample(&project), "speed 80 force 0.4\n");
 }
 
-/// Imports a library of one texture in a project with the assemblies of the editor; returns what is printed of it.
+/// Imports a library of one texture in a project with the assemblies of the editor; returns what is
+/// printed of it.
 fn import_library(project: &Project) -> String {
     let library = project.folder().join("Assets/floors.htexlib");
     let mut writer = htex::library::Writer::create(&library, "Floors").unwrap();
@@ -150,7 +142,8 @@ fn import_library(project: &Project) -> String {
     run(project, "libraries.exe", &["Assets/floors.htexlib"])
 }
 
-/// Moves the mouse over the sample in a project with its assemblies; returns what is printed of its source.
+/// Moves the mouse over the sample in a project with its assemblies; returns what is printed of its
+/// source.
 fn touch_the_sample(project: &Project) -> String {
     let source = [hosts().join("unity/Sample.cs")];
     let references = ["UnityEngine", "Htex", "Sample"].map(|name| format!("-r:{name}.dll"));
@@ -158,7 +151,8 @@ fn touch_the_sample(project: &Project) -> String {
     run(project, "touch.exe", &[&asset().display().to_string()])
 }
 
-/// In players: the package compiles, native code calls only marked static methods, and iOS links the library into the program.
+/// In players: the package compiles, native code calls only marked static methods, and iOS links
+/// the library into the program.
 #[test]
 fn the_package_compiles_for_players() {
     let Some(project) = Project::new(Language::Csharp, "unity_players") else {
@@ -186,10 +180,7 @@ fn messages_do_not_reach_code_that_the_editor_unloaded() {
     let Some(project) = Project::new(Language::Csharp, "unity_reload") else {
         return;
     };
-    let files = [
-        hosts().join("unity/Reload.cs"),
-        package().join("Runtime/Htex.cs"),
-    ];
+    let files = [hosts().join("unity/Reload.cs"), package().join("Runtime/Htex.cs")];
     compile(project.folder(), "reload.exe", &files, &[]);
     let scene = asset().with_file_name("electrovibration.scene.json");
     let printed = run(&project, "reload.exe", &[&scene.display().to_string()]);
@@ -205,11 +196,7 @@ fn the_audio_thread_allocates_nothing_in_csharp() {
     let mut files = assemblies::sources(&package().join("Runtime"));
     let stubs = ["Allocations.cs", "NativeArray.cs", "unity/UnityEngine.cs"];
     files.extend(stubs.map(|file| hosts().join(file)));
-    let arguments = [
-        "-unsafe",
-        "-d:UNITY_5_3_OR_NEWER",
-        "-d:UNITY_2021_2_OR_NEWER",
-    ];
+    let arguments = ["-unsafe", "-d:UNITY_5_3_OR_NEWER", "-d:UNITY_2021_2_OR_NEWER"];
     let arguments = arguments.map(str::to_owned);
     compile(project.folder(), "allocations.exe", &files, &arguments);
     let asset = asset().display().to_string();
@@ -217,56 +204,38 @@ fn the_audio_thread_allocates_nothing_in_csharp() {
     assert_eq!(printed, "source 0\nvoice 0\njob 0\n");
 }
 
-/// The NuGet package has the file of the Unity package and each library of a release. `dotnet`, which packs it, is not run here.
+/// The NuGet package has the file of the Unity package and each library of a release. `dotnet`,
+/// which packs it, is not run here.
 #[test]
 fn the_nuget_package_has_its_files() {
     let folder = capi("nuget");
     let text = fs::read_to_string(folder.join("Htex.csproj")).unwrap();
     let project = roxmltree::Document::parse(&text).unwrap();
     let texts = |name| {
-        let nodes = project
-            .descendants()
-            .filter(move |node| node.has_tag_name(name));
-        nodes
-            .map(|node| node.text().unwrap_or_default())
-            .collect::<Vec<_>>()
+        let nodes = project.descendants().filter(move |node| node.has_tag_name(name));
+        nodes.map(|node| node.text().unwrap_or_default()).collect::<Vec<_>>()
     };
     assert_eq!(texts("Version"), [env!("CARGO_PKG_VERSION")]);
     assert_eq!(texts("TargetFramework"), ["netstandard2.0"]);
     let nuspec = texts("NuspecFile");
-    let sources = project
-        .descendants()
-        .filter_map(|node| node.attribute("Include"));
+    let sources = project.descendants().filter_map(|node| node.attribute("Include"));
     let sources: Vec<_> = sources.collect();
     assert_eq!(sources, ["../unity/Runtime/Htex.cs"]);
     assert!(folder.join(sources[0]).is_file());
 
     let text = fs::read_to_string(folder.join(nuspec[0])).unwrap();
     let nuspec = roxmltree::Document::parse(&text).unwrap();
-    let nodes = nuspec
-        .descendants()
-        .filter(|node| node.tag_name().name() == "file");
+    let nodes = nuspec.descendants().filter(|node| node.tag_name().name() == "file");
     let files: Vec<_> = nodes
-        .map(|node| {
-            (
-                node.attribute("src").unwrap(),
-                node.attribute("target").unwrap(),
-            )
-        })
+        .map(|node| (node.attribute("src").unwrap(), node.attribute("target").unwrap()))
         .collect();
     let expected = [
         ("README.md", ""),
         ("$output$/Htex.dll", "lib/netstandard2.0/"),
         ("natives/linux-x64/libhtex.so", "runtimes/linux-x64/native/"),
-        (
-            "natives/linux-arm64/libhtex.so",
-            "runtimes/linux-arm64/native/",
-        ),
+        ("natives/linux-arm64/libhtex.so", "runtimes/linux-arm64/native/"),
         ("natives/win-x64/htex.dll", "runtimes/win-x64/native/"),
-        (
-            "natives/osx-arm64/libhtex.dylib",
-            "runtimes/osx-arm64/native/",
-        ),
+        ("natives/osx-arm64/libhtex.dylib", "runtimes/osx-arm64/native/"),
     ];
     assert_eq!(files, expected);
 }

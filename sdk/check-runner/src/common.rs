@@ -14,8 +14,8 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// Runs a tenth of `count` repetitions as a warm-up, then `count`, and measures the growth over the latter. `of` is the
-    /// plural name of the repeated object.
+    /// Runs a tenth of `count` repetitions as a warm-up, then `count`, and measures the growth over
+    /// the latter. `of` is the plural name of the repeated object.
     ///
     /// # Errors
     /// Those of `repeat`.
@@ -35,8 +35,8 @@ impl Growth {
 /// Checks that memory does not grow while something plays and while it is opened and closed.
 ///
 /// # Errors
-/// A failed finding when either grows by more than 2 MiB, and those of `measure`; a skipped one where resident memory
-/// cannot be read.
+/// A failed finding when either grows by more than 2 MiB, and those of `measure`; a skipped one
+/// where resident memory cannot be read.
 pub fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> Found {
     if resident_bytes().is_none() {
         return Err(Finding::skipped("resident memory is read on Linux only"));
@@ -62,12 +62,11 @@ pub fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> Found {
     }))
 }
 
-/// Returns the resident memory of this process (`/proc/self/status`, `VmRSS`), bytes; `None` without this file.
+/// Returns the resident memory of this process (`/proc/self/status`, `VmRSS`), bytes; `None`
+/// without this file.
 pub fn resident_bytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
     let kib: f64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
     Some(1024.0 * kib)
 }
@@ -78,13 +77,7 @@ pub fn resident_bytes() -> Option<f64> {
 /// A failed finding that names the extension that `has` reports; and the errors of `has`.
 pub fn made_up_extensions<E: Into<Finding>>(has: impl Fn(&str) -> Result<bool, E>) -> Found {
     let long = "x".repeat(100_000);
-    let ids = [
-        "htex.no-such-thing/1",
-        "com.example.unheard-of/7",
-        "",
-        "\u{1f}é",
-        &long,
-    ];
+    let ids = ["htex.no-such-thing/1", "com.example.unheard-of/7", "", "\u{1f}é", &long];
     for id in ids {
         if has(id).map_err(Into::into)? {
             let id: String = id.chars().take(40).collect();

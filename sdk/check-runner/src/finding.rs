@@ -24,14 +24,8 @@ pub enum Outcome {
 
 impl Outcome {
     /// All outcomes, in the order of the counts in reports.
-    pub const ALL: [Self; 6] = [
-        Self::Passed,
-        Self::Warning,
-        Self::Skipped,
-        Self::Failed,
-        Self::Crashed,
-        Self::TimedOut,
-    ];
+    pub const ALL: [Self; 6] =
+        [Self::Passed, Self::Warning, Self::Skipped, Self::Failed, Self::Crashed, Self::TimedOut];
 
     /// Returns whether the checked model or device is at fault.
     pub fn is_bad(self) -> bool {
@@ -67,11 +61,7 @@ pub type Found = Result<Finding, Finding>;
 impl Finding {
     /// A finding without numbers.
     pub fn new(outcome: Outcome, message: impl Into<String>) -> Self {
-        Self {
-            outcome,
-            message: message.into(),
-            numbers: BTreeMap::new(),
-        }
+        Self { outcome, message: message.into(), numbers: BTreeMap::new() }
     }
 
     /// The guarantee holds.

@@ -1,5 +1,6 @@
-//! The common part of the checkers of models and of devices: a table of checks ([`checks!`]), a runner that runs each of
-//! them in a separate process ([`run_all`]), so that a crash or an endless loop becomes a finding, and the report.
+//! The common part of the checkers of models and of devices: a table of checks ([`checks!`]), a
+//! runner that runs each of them in a separate process ([`run_all`]), so that a crash or an endless
+//! loop becomes a finding, and the report.
 //!
 //! ```
 //! use htex_check_runner::{Finding, Found, Owner, run_one};

@@ -11,13 +11,10 @@ use crate::{Finding, Outcome};
 /// Most bytes of a child's output that are kept.
 const MOST_OUTPUT: usize = 1 << 20;
 
-/// Runs a program that writes one [`Finding`] as a line of JSON. A program that crashes or exceeds `timeout` gives a finding
-/// that says so.
+/// Runs a program that writes one [`Finding`] as a line of JSON. A program that crashes or exceeds
+/// `timeout` gives a finding that says so.
 pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
-    command
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = match command.spawn() {
         Ok(child) => child,
         Err(error) => return Finding::skipped(format!("the check cannot be started: {error}")),
@@ -50,7 +47,8 @@ fn announced(mut finding: Finding, said: Option<Finding>) -> Finding {
     finding
 }
 
-/// Reads a pipe to its end, so that the child never blocks on it; keeps the last [`MOST_OUTPUT`] bytes.
+/// Reads a pipe to its end, so that the child never blocks on it; keeps the last [`MOST_OUTPUT`]
+/// bytes.
 fn drain(pipe: Option<impl Read + Send + 'static>) -> JoinHandle<Vec<u8>> {
     std::thread::spawn(move || {
         let mut kept = VecDeque::new();
@@ -89,18 +87,11 @@ fn wait(child: &mut Child, timeout: Duration) -> Option<ExitStatus> {
 
 /// Returns the last line that is a finding: the model or device may print other lines.
 fn last_finding(out: &str) -> Option<Finding> {
-    out.lines()
-        .rev()
-        .find_map(|line| serde_json::from_str(line).ok())
+    out.lines().rev().find_map(|line| serde_json::from_str(line).ok())
 }
 
 fn crashed(status: ExitStatus, err: &str) -> Finding {
     let last = err.lines().rev().find(|line| !line.trim().is_empty());
-    let said = last
-        .map(|line| format!("; its last line: {line}"))
-        .unwrap_or_default();
-    Finding::new(
-        Outcome::Crashed,
-        format!("the process ended with {status}{said}"),
-    )
+    let said = last.map(|line| format!("; its last line: {line}")).unwrap_or_default();
+    Finding::new(Outcome::Crashed, format!("the process ended with {status}{said}"))
 }

@@ -29,11 +29,7 @@ pub struct Report<Subject> {
 impl<Subject> Report<Subject> {
     pub fn new(subject: Subject, checks: Vec<CheckReport>) -> Self {
         let ok = !checks.iter().any(|check| check.finding.outcome.is_bad());
-        Self {
-            subject,
-            ok,
-            checks,
-        }
+        Self { subject, ok, checks }
     }
 
     /// Returns the names of the checks that failed, crashed or timed out.

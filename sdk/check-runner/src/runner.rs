@@ -45,8 +45,9 @@ pub struct Runner {
     pub timeout: Duration,
 }
 
-/// Runs each check in a separate process. `add_arguments` adds the arguments that name the check. A check is skipped if
-/// one that it needs failed or was skipped for this reason; a check that did not apply does not cause others to be skipped.
+/// Runs each check in a separate process. `add_arguments` adds the arguments that name the check. A
+/// check is skipped if one that it needs failed or was skipped for this reason; a check that did
+/// not apply does not cause others to be skipped.
 pub fn run_all<'a, Case: 'a>(
     checks: impl IntoIterator<Item = &'a Check<Case>>,
     runner: &Runner,
@@ -68,16 +69,13 @@ pub fn run_all<'a, Case: 'a>(
         if need.is_some() || finding.outcome.is_bad() {
             broken.push(check.name);
         }
-        reports.push(CheckReport {
-            check: check.name,
-            finding,
-        });
+        reports.push(CheckReport { check: check.name, finding });
     }
     reports
 }
 
-/// Runs one check in this process: a crash ends the process. `load` loads the model or device; `owner` names the check that
-/// an error of loading belongs to.
+/// Runs one check in this process: a crash ends the process. `load` loads the model or device;
+/// `owner` names the check that an error of loading belongs to.
 ///
 /// # Errors
 /// When the table has no check of this name.
@@ -92,10 +90,7 @@ pub fn run_one<Case, Error: Display>(
         Ok(case) => return Ok((check.run)(&case).unwrap_or_else(|finding| finding)),
         Err(error) => error,
     };
-    let Owner {
-        check: broken,
-        reached,
-    } = owner(&error);
+    let Owner { check: broken, reached } = owner(&error);
     Ok(if broken == check.name {
         Finding::failed(error.to_string())
     } else if reached && comes_before(check.name, broken) {

@@ -26,8 +26,9 @@ pub struct UnknownCheck {
     pub known: Vec<&'static str>,
 }
 
-/// Defines `CHECKS`, a table of [`Check`]s, in the order in which they run. A check follows those that it needs. A row
-/// is `"name" needs ["name", …] path::of::function: "summary", "method";`; the method may be left out.
+/// Defines `CHECKS`, a table of [`Check`]s, in the order in which they run. A check follows those
+/// that it needs. A row is `"name" needs ["name", …] path::of::function: "summary", "method";`; the
+/// method may be left out.
 #[macro_export]
 macro_rules! checks {
     ($case:ty; $($name:literal needs [$($need:literal),*] $run:path: $summary:literal $(, $method:literal)?;)*) => {

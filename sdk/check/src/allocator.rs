@@ -1,17 +1,19 @@
 //! Counts calls of the C library's allocator by the libraries that this process has loaded.
 //!
-//! The dynamic linker writes the addresses of `malloc` and related functions into a table of each loaded library (its
-//! relocations by symbol). [`AllocatorCalls::watch`] replaces those addresses by functions that count and then call the
-//! allocator. It changes every library of the process, the C library and the C++ runtime among them, so that `new`,
-//! `strdup` and a Rust library's `Vec` are counted, each in its own thread. It leaves the program itself as it is: what the
-//! host allocates is not counted.
+//! The dynamic linker writes the addresses of `malloc` and related functions into a table of each
+//! loaded library (its relocations by symbol). [`AllocatorCalls::watch`] replaces those addresses
+//! by functions that count and then call the allocator. It changes every library of the process,
+//! the C library and the C++ runtime among them, so that `new`, `strdup` and a Rust library's `Vec`
+//! are counted, each in its own thread. It leaves the program itself as it is: what the host
+//! allocates is not counted.
 //!
-//! Not detected: an allocator that a library links statically and that maps pages itself; calls through an
-//! address that was taken with `dlsym`; libraries loaded after the call; threads that a library starts.
+//! Not detected: an allocator that a library links statically and that maps pages itself; calls
+//! through an address that was taken with `dlsym`; libraries loaded after the call; threads that a
+//! library starts.
 //!
-//! Other ways were not taken: the state of the heap before and after does not show memory that is allocated and freed,
-//! an own `malloc` would be in every command, and a preloaded library would be a second file to install. Of a module
-//! only the growth of its memory is visible.
+//! Other ways were not taken: the state of the heap before and after does not show memory that is
+//! allocated and freed, an own `malloc` would be in every command, and a preloaded library would be
+//! a second file to install. Of a module only the growth of its memory is visible.
 #![allow(unsafe_code)] // The dynamic linker's tables are C.
 
 use std::cell::Cell;
@@ -33,7 +35,8 @@ impl AllocatorCalls {
     /// Counts the calls of all libraries that are loaded now.
     pub(crate) fn watch() -> Self {
         let mut places = 0usize;
-        // SAFETY: `visit` has the required type, and gets the address of `places`, which outlives the call.
+        // SAFETY: `visit` has the required type, and gets the address of `places`, which outlives
+        // the call.
         unsafe { libc::dl_iterate_phdr(Some(visit), (&raw mut places).cast()) };
         Self { places }
     }
@@ -140,7 +143,8 @@ struct Library {
 
 /// Replaces the addresses in one library; `places` is the number of those replaced.
 unsafe extern "C" fn visit(info: *mut dl_phdr_info, _: size_t, places: *mut c_void) -> c_int {
-    // SAFETY: the dynamic linker passes a description that lives for the call, and `watch` the address of a number.
+    // SAFETY: the dynamic linker passes a description that lives for the call, and `watch` the
+    // address of a number.
     let (info, places) = unsafe { (&*info, &mut *places.cast::<usize>()) };
     // SAFETY: a name is a string, or null.
     let name = (!info.dlpi_name.is_null()).then(|| unsafe { CStr::from_ptr(info.dlpi_name) });
@@ -154,10 +158,7 @@ unsafe extern "C" fn visit(info: *mut dl_phdr_info, _: size_t, places: *mut c_vo
         unsafe { std::slice::from_raw_parts(info.dlpi_phdr, usize::from(info.dlpi_phnum)) };
     if let Some(header) = headers.iter().find(|h| h.p_type == libc::PT_DYNAMIC) {
         let base = info.dlpi_addr as usize;
-        let library = Library {
-            base,
-            dynamic: (base + header.p_vaddr as usize) as *const Dynamic,
-        };
+        let library = Library { base, dynamic: (base + header.p_vaddr as usize) as *const Dynamic };
         *places += library.replace();
     }
     0
@@ -179,7 +180,8 @@ impl Library {
         }
     }
 
-    /// An address of the dynamic section: the GNU linker has added the base to it already, others have not.
+    /// An address of the dynamic section: the GNU linker has added the base to it already, others
+    /// have not.
     fn address(&self, tag: i64) -> usize {
         match self.value(tag) {
             0 => 0,
@@ -188,7 +190,8 @@ impl Library {
         }
     }
 
-    /// Replaces all entries that hold the address of a function of the allocator; returns their number.
+    /// Replaces all entries that hold the address of a function of the allocator; returns their
+    /// number.
     fn replace(&self) -> usize {
         let mut replaced = 0;
         for relocation in self.relocations(DT_RELA, DT_RELASZ) {
@@ -225,7 +228,8 @@ impl Library {
         let place = (self.base + relocation.offset) as *mut usize;
         // The linker makes the table read-only after it has filled it.
         let page = place as usize & !(page_bytes() - 1);
-        // SAFETY: the pages contain this word, which is data of the library, and writing to them is allowed by `mprotect`.
+        // SAFETY: the pages contain this word, which is data of the library, and writing to them is
+        // allowed by `mprotect`.
         unsafe {
             let writable = libc::PROT_READ | libc::PROT_WRITE;
             if libc::mprotect(page as *mut c_void, page_bytes(), writable) != 0 {

@@ -58,8 +58,8 @@ pub struct Cost {
     pub rate_hz: f64,
     /// Times in blocks of [`BLOCKS`].
     pub blocks: Vec<BlockCost>,
-    /// Overhead of a call, ns: the time of a call for one sample minus that of a sample in a large block,
-    /// both minima.
+    /// Overhead of a call, ns: the time of a call for one sample minus that of a sample in a large
+    /// block, both minima.
     pub per_call_ns: f64,
     /// Time to the first sample, for a WASM module.
     pub start: Option<Start>,
@@ -85,8 +85,8 @@ pub struct BenchError {
     pub what: String,
 }
 
-/// Measures models in one interleaved run, so that other load of the machine affects all equally. Each
-/// plays parameters fitted to a reference spectrum.
+/// Measures models in one interleaved run, so that other load of the machine affects all equally.
+/// Each plays parameters fitted to a reference spectrum.
 ///
 /// # Errors
 /// [`BenchError`] when a model cannot be fitted or fails to render.
@@ -115,11 +115,7 @@ pub fn bench(subjects: &[Subject]) -> Result<Vec<Cost>, BenchError> {
 
 impl Subject {
     fn failed(&self, what: impl std::fmt::Display) -> BenchError {
-        BenchError {
-            model: self.model.clone(),
-            way: self.way.clone(),
-            what: what.to_string(),
-        }
+        BenchError { model: self.model.clone(), way: self.way.clone(), what: what.to_string() }
     }
 }
 
@@ -156,11 +152,7 @@ impl Runner {
     fn cost(self, subject: &Subject) -> Cost {
         let timings = self.rounds.map(timing);
         let [.., large, single] = timings;
-        let block = |(block, per_sample)| BlockCost {
-            block,
-            per_sample,
-            ratio: 1.0,
-        };
+        let block = |(block, per_sample)| BlockCost { block, per_sample, ratio: 1.0 };
         Cost {
             model: subject.model.clone(),
             way: subject.way.clone(),
@@ -185,9 +177,5 @@ fn timing(mut rounds: Vec<f64>) -> Timing {
     let warm = &mut rounds[1..];
     warm.sort_by(f64::total_cmp);
     let at = |share: f64| warm[(share * (warm.len() - 1) as f64) as usize];
-    Timing {
-        min_ns: at(0.0),
-        median_ns: at(0.5),
-        spread_ns: 0.5 * (at(0.75) - at(0.25)),
-    }
+    Timing { min_ns: at(0.0), median_ns: at(0.5), spread_ns: 0.5 * (at(0.75) - at(0.25)) }
 }

@@ -14,7 +14,8 @@ use htex_check_runner::Finding;
 /// Rate at which sounds are checked, hertz: that of the recordings.
 pub(crate) const RATE_HZ: f64 = 20_000.0;
 
-/// Total time of a module in one check. A check does far more than a player, and the runner ends one that takes too long.
+/// Total time of a module in one check. A check does far more than a player, and the runner ends
+/// one that takes too long.
 const MODULE_TOTAL: Duration = Duration::from_secs(600);
 
 /// The limits of a player, but for the total time.
@@ -121,18 +122,13 @@ impl Case {
         for Reference { name, curve } in REFERENCES {
             let spectrum: Vec<f64> = Band::TACTILE.grid_hz().into_iter().map(curve).collect();
             match self.fit(&spectrum) {
-                Ok(fit) => fitted.push(Fitted {
-                    reference: name,
-                    parameters: fit.parameters,
-                }),
+                Ok(fit) => fitted.push(Fitted { reference: name, parameters: fit.parameters }),
                 Err(error) if is_cannot_fit(&error) => {}
                 Err(error) => return Err(Finding::failed(format!("spectrum `{name}`: {error}"))),
             }
         }
         if fitted.is_empty() {
-            return Err(Finding::failed(
-                "the model cannot be fitted to any reference spectrum",
-            ));
+            return Err(Finding::failed("the model cannot be fitted to any reference spectrum"));
         }
         Ok(fitted)
     }
@@ -196,16 +192,11 @@ impl Case {
 
 /// Returns whether the model cannot be fitted to this spectrum.
 pub(crate) fn is_cannot_fit(error: &HostError) -> bool {
-    matches!(
-        error,
-        HostError::Call {
-            status: Status::CannotFit,
-            ..
-        }
-    )
+    matches!(error, HostError::Call { status: Status::CannotFit, .. })
 }
 
-/// Returns whether the model refused a call: a status that neither a failed model nor a trapped module gives.
+/// Returns whether the model refused a call: a status that neither a failed model nor a trapped
+/// module gives.
 pub(crate) fn is_refusal(error: &HostError) -> bool {
     matches!(error, HostError::Call { status, .. } if !matches!(status, Status::Panicked | Status::Failed))
 }

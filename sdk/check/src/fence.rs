@@ -1,5 +1,5 @@
-//! Arrays with guard values and, on 64-bit Linux, a page behind them that nobody may touch: a call that reads or writes beyond an array
-//! is found and named.
+//! Arrays with guard values and, on 64-bit Linux, a page behind them that nobody may touch: a call
+//! that reads or writes beyond an array is found and named.
 
 use htex_check_runner::Finding;
 
@@ -46,7 +46,8 @@ impl<T: Number> Fenced<T> {
         fenced
     }
 
-    /// An array that a call writes to, no more than `len` values: its guards are in front of the page.
+    /// An array that a call writes to, no more than `len` values: its guards are in front of the
+    /// page.
     pub(crate) fn output(len: usize, call: &'static str, bound: &'static str) -> Self {
         let mut fenced = Self::new(len, GUARDS, "wrote", (call, bound));
         fenced.pages.get().fill(T::GUARD);
@@ -60,13 +61,7 @@ impl<T: Number> Fenced<T> {
         (call, bound): (&'static str, &'static str),
     ) -> Self {
         let finding = Finding::failed(format!("`{call}` {did} beyond `{bound}`, which was {len}"));
-        Self {
-            pages: Pages::new(len + 2 * guards, finding),
-            guards,
-            len,
-            call,
-            bound,
-        }
+        Self { pages: Pages::new(len + 2 * guards, finding), guards, len, call, bound }
     }
 
     pub(crate) fn get(&mut self) -> &mut [T] {
@@ -82,9 +77,9 @@ impl<T: Number> Fenced<T> {
         let (before, behind) = (written(&all[..guards]), written(&all[guards + len..]));
         match (before, behind) {
             (0, 0) => Ok(()),
-            (0, _) => Err(Finding::failed(format!(
-                "`{call}` wrote beyond `{bound}`, which was {len}"
-            ))),
+            (0, _) => {
+                Err(Finding::failed(format!("`{call}` wrote beyond `{bound}`, which was {len}")))
+            }
             _ => Err(Finding::failed(format!(
                 "`{call}` wrote in front of the array that `{bound}` bounds"
             ))),
@@ -96,9 +91,9 @@ impl<T: Number> Fenced<T> {
         let call = self.call;
         match self.get() == values {
             true => Ok(()),
-            false => Err(Finding::failed(format!(
-                "`{call}` wrote to `{array}`, which it may only read"
-            ))),
+            false => {
+                Err(Finding::failed(format!("`{call}` wrote to `{array}`, which it may only read")))
+            }
         }
     }
 }

@@ -28,11 +28,7 @@ pub fn model_checks_page() -> String {
         let _ = writeln!(page, "| {} | {} |", check.name, check.summary);
     }
     for check in CHECKS {
-        let _ = write!(
-            page,
-            "\n## {}\n\n{}\n\n{}\n",
-            check.name, check.summary, check.method
-        );
+        let _ = write!(page, "\n## {}\n\n{}\n\n{}\n", check.name, check.summary, check.method);
         if !check.needs.is_empty() {
             let _ = writeln!(page, "\nNeeds: {}.", check.needs.join(", "));
         }

@@ -1,6 +1,8 @@
-//! Memory whose end is the end of a page, with pages behind it that nobody may touch, and the handler that names who did.
+//! Memory whose end is the end of a page, with pages behind it that nobody may touch, and the
+//! handler that names who did.
 //!
-//! A debugger's allocator or an instrumented build would be needed otherwise, and a model is checked as it is shipped.
+//! A debugger's allocator or an instrumented build would be needed otherwise, and a model is
+//! checked as it is shipped.
 #![allow(unsafe_code)] // Pages and signals are calls of the system.
 
 use std::ffi::c_void;
@@ -15,7 +17,8 @@ const FENCE: usize = 64 << 20;
 /// Arrays at a time.
 const PLACES: usize = 32;
 
-/// Fences of the live arrays, for the handler: start, and the line that it prints. A start of 0 is a free place, of 1 one that is being filled.
+/// Fences of the live arrays, for the handler: start, and the line that it prints. A start of 0 is
+/// a free place, of 1 one that is being filled.
 static STARTS: [AtomicUsize; PLACES] = [const { AtomicUsize::new(0) }; PLACES];
 static LINES: [AtomicPtr<u8>; PLACES] = [const { AtomicPtr::new(std::ptr::null_mut()) }; PLACES];
 static LENGTHS: [AtomicUsize; PLACES] = [const { AtomicUsize::new(0) }; PLACES];
@@ -82,7 +85,8 @@ impl<T: Copy + Default> Pages<T> {
     }
 
     pub(crate) fn get(&mut self) -> &mut [T] {
-        // SAFETY: the mapping holds `len` values here, which the system has set to zero; page ends and sizes of numbers align them.
+        // SAFETY: the mapping holds `len` values here, which the system has set to zero; page ends
+        // and sizes of numbers align them.
         unsafe { std::slice::from_raw_parts_mut(self.start, self.len) }
     }
 }
@@ -99,7 +103,8 @@ impl<T> Drop for Pages<T> {
 
 /// Prints the finding of a fence that is touched, and ends the process.
 pub(crate) fn watch() {
-    // SAFETY: the handler has the signature that SA_SIGINFO wants, and calls only what a handler may call.
+    // SAFETY: the handler has the signature that SA_SIGINFO wants, and calls only what a handler
+    // may call.
     unsafe {
         let mut action: libc::sigaction = std::mem::zeroed();
         action.sa_sigaction = on_fault as *const () as usize;

@@ -21,7 +21,8 @@ impl Random {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A number in a range, both ends included; even in its logarithm for a wide range of positive numbers.
+    /// A number in a range, both ends included; even in its logarithm for a wide range of positive
+    /// numbers.
     pub(crate) fn within(&mut self, min: f64, max: f64) -> f64 {
         let part = self.unit();
         let is_wide = min > 0.0 && max / min > 100.0;

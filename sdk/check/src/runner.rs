@@ -12,8 +12,8 @@ use crate::table::CHECKS;
 
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// A program that calls [`run_one`]. After its own arguments it receives the file, the check's name and the options
-    /// for the seed and for the other file, if there is one.
+    /// A program that calls [`run_one`]. After its own arguments it receives the file, the check's
+    /// name and the options for the seed and for the other file, if there is one.
     pub runner: Runner,
     /// Seed of the voices.
     pub seed: u64,
@@ -32,10 +32,7 @@ pub enum CheckError {
     Unknown(#[from] UnknownCheck),
     /// The model cannot be read.
     #[error("{}: {error}", path.display())]
-    File {
-        path: PathBuf,
-        error: std::io::Error,
-    },
+    File { path: PathBuf, error: std::io::Error },
 }
 
 /// Fails unless the file can be read: a check would blame the model for it.
@@ -72,10 +69,7 @@ pub fn check(file: &Path, options: &Options) -> Result<Report, CheckError> {
             command.args(["--fuzz", &time.as_secs_f64().to_string()]);
         }
     });
-    let subject = ModelFile {
-        file: file.display().to_string(),
-        seed: options.seed,
-    };
+    let subject = ModelFile { file: file.display().to_string(), seed: options.seed };
     Ok(Report::new(subject, checks))
 }
 

@@ -50,7 +50,8 @@ impl Case {
         flatten(self.model.descriptor(), &lists)
     }
 
-    /// Parameters with each field at both ends of its range, in turn: as a file stores them. Lists are at their bounds as a whole.
+    /// Parameters with each field at both ends of its range, in turn: as a file stores them. Lists
+    /// are at their bounds as a whole.
     pub(crate) fn at_bounds(&self, parameters: &[f64]) -> Result<Vec<AtBound>, Finding> {
         let lists = self.lists(parameters)?;
         let mut sets = Vec::new();
@@ -95,7 +96,8 @@ impl Case {
         Ok(self.flat(&lists))
     }
 
-    /// A seeded set within the ranges that the model takes; `None` if it refuses all that were tried.
+    /// A seeded set within the ranges that the model takes; `None` if it refuses all that were
+    /// tried.
     pub(crate) fn seeded(&self, near: &[f64], seed: u64) -> Result<Option<Set>, Finding> {
         let mut random = Random::new(seed);
         for _ in 0..TRIES {
@@ -108,7 +110,8 @@ impl Case {
         Ok(None)
     }
 
-    /// Whether a model has a magnitude of parameters within the ranges, which may describe no spectrum in the band.
+    /// Whether a model has a magnitude of parameters within the ranges, which may describe no
+    /// spectrum in the band.
     ///
     /// # Errors
     /// When the magnitude is not finite, or the call fails in another way.
@@ -116,13 +119,12 @@ impl Case {
         match self.model.magnitude(parameters, band, &band.grid_hz()) {
             Ok(_) => Ok(true),
             Err(error) if describes_nothing(&error) => Ok(false),
-            Err(error) => Err(Finding::failed(format!(
-                "parameters {parameters:?}: {error}"
-            ))),
+            Err(error) => Err(Finding::failed(format!("parameters {parameters:?}: {error}"))),
         }
     }
 
-    /// Fits of reference spectra with signals behind them, stationary and modulated: of those that the model can be fitted to.
+    /// Fits of reference spectra with signals behind them, stationary and modulated: of those that
+    /// the model can be fitted to.
     pub(crate) fn fitted_to_signals(&self) -> Result<Vec<Set>, Finding> {
         let mut sets = Vec::new();
         for reference in [&REFERENCES[0], &REFERENCES[4]] {
@@ -131,10 +133,9 @@ impl Case {
                 let signal = signal(reference, depth);
                 let fit = || self.fit_signal(reference, &signal, FitCondition::default());
                 match (fit(), fit()) {
-                    (Ok(fit), Ok(again)) if fit == again => sets.push(Set {
-                        name,
-                        parameters: fit.parameters,
-                    }),
+                    (Ok(fit), Ok(again)) if fit == again => {
+                        sets.push(Set { name, parameters: fit.parameters })
+                    }
                     (Err(error), Err(_)) if is_cannot_fit(&error) => {}
                     (Err(error), _) | (_, Err(error)) => {
                         return Err(Finding::failed(format!("{name}: {error}")));
@@ -161,7 +162,8 @@ pub(crate) fn describes_nothing(error: &HostError) -> bool {
     )
 }
 
-/// A signal of a spectrum: a sine of each bin, with a level that changes by `depth` in the rhythm of [`MODULATION_HZ`].
+/// A signal of a spectrum: a sine of each bin, with a level that changes by `depth` in the rhythm
+/// of [`MODULATION_HZ`].
 fn signal(reference: &Reference, depth: f64) -> Vec<f64> {
     let mut random = Random::new(1);
     let turn = std::f64::consts::TAU / RATE_HZ;
@@ -183,8 +185,8 @@ fn signal(reference: &Reference, depth: f64) -> Vec<f64> {
     (0..(SIGNAL_S * RATE_HZ) as usize).map(sample).collect()
 }
 
-/// Returns numbers as a file stores them. A value in its range stays in it, as by the writer of assets: where the nearest stored value is
-/// outside, the next one towards the range is taken.
+/// Returns numbers as a file stores them. A value in its range stays in it, as by the writer of
+/// assets: where the nearest stored value is outside, the next one towards the range is taken.
 pub(crate) fn stored(field: &Field, numbers: &[f64]) -> Vec<f64> {
     let Field { min, max, .. } = *field;
     let keep = |&x: &f64| {

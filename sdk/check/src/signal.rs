@@ -38,8 +38,8 @@ pub(crate) fn measured_spectrum(samples: &[f32]) -> Vec<f64> {
     power.iter().map(|p| (p / count).sqrt() * scale).collect()
 }
 
-/// RMS of the differences of two spectra in decibels, with their levels matched, over the reference's strongest
-/// bins that contain 99 % of its energy.
+/// RMS of the differences of two spectra in decibels, with their levels matched, over the
+/// reference's strongest bins that contain 99 % of its energy.
 pub(crate) fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
     let energy = |m: &[f64]| m.iter().map(|m| m * m).sum::<f64>();
     let total = energy(reference);
@@ -59,8 +59,9 @@ pub(crate) fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
     (sum / n).sqrt()
 }
 
-/// The spectrum that the periodic Hann window measures for noise with these magnitudes as its density: two thirds of
-/// the power in its own bin, a sixth in each neighbour, and no power from outside the band.
+/// The spectrum that the periodic Hann window measures for noise with these magnitudes as its
+/// density: two thirds of the power in its own bin, a sixth in each neighbour, and no power from
+/// outside the band.
 pub(crate) fn read_as_noise(magnitude: &[f64]) -> Vec<f64> {
     let power = |i: Option<usize>| i.and_then(|i| magnitude.get(i)).map_or(0.0, |m| m * m);
     let read = |i: usize| {
@@ -91,12 +92,11 @@ pub(crate) fn sharpest_bend(samples: &[f32]) -> f32 {
 
 /// Index of the first sample whose bits differ in two signals.
 pub(crate) fn first_difference(a: &[f32], b: &[f32]) -> Option<usize> {
-    a.iter()
-        .zip(b)
-        .position(|(a, b)| a.to_bits() != b.to_bits())
+    a.iter().zip(b).position(|(a, b)| a.to_bits() != b.to_bits())
 }
 
-/// Returns whether a spectrum of the tactile band consists of lines: on a fine grid most magnitudes are 0.
+/// Returns whether a spectrum of the tactile band consists of lines: on a fine grid most magnitudes
+/// are 0.
 pub(crate) fn is_line_spectrum(fine: &[f64]) -> bool {
     let largest = fine.iter().copied().fold(0.0, f64::max);
     let empty = fine.iter().filter(|m| **m <= 1e-9 * largest).count();

@@ -8,54 +8,24 @@ pub(crate) struct Reference {
 
 /// Five simplified spectra of real surfaces.
 pub(crate) const REFERENCES: &[Reference] = &[
-    Reference {
-        name: "two bumps",
-        curve: two_bumps,
-    },
-    Reference {
-        name: "falling",
-        curve: |f| 0.02 * (-f / 90.0).exp() * (1.2 + (f / 25.0).sin()),
-    },
+    Reference { name: "two bumps", curve: two_bumps },
+    Reference { name: "falling", curve: |f| 0.02 * (-f / 90.0).exp() * (1.2 + (f / 25.0).sin()) },
     Reference {
         name: "rising",
         curve: |f| 0.002 * (f / 1000.0).powf(1.5) * (1.2 + 0.5 * (f / 60.0).sin()),
     },
-    Reference {
-        name: "broad with ripple",
-        curve: |f| 0.004 * (1.0 + 0.3 * (f * 0.18).sin()),
-    },
-    Reference {
-        name: "few peaks",
-        curve: few_peaks,
-    },
+    Reference { name: "broad with ripple", curve: |f| 0.004 * (1.0 + 0.3 * (f * 0.18).sin()) },
+    Reference { name: "few peaks", curve: few_peaks },
 ];
 
 /// Degenerate spectra: a fit succeeds or returns a status.
 pub(crate) const HARD: &[Reference] = &[
-    Reference {
-        name: "silence",
-        curve: |_| 0.0,
-    },
-    Reference {
-        name: "one line",
-        curve: |f| if f == 200.0 { 0.01 } else { 0.0 },
-    },
-    Reference {
-        name: "flat",
-        curve: |_| 0.003,
-    },
-    Reference {
-        name: "very faint",
-        curve: |f| 1e-200 * two_bumps(f),
-    },
-    Reference {
-        name: "very strong",
-        curve: |f| 1e100 * two_bumps(f),
-    },
-    Reference {
-        name: "all at the low edge",
-        curve: |f| if f == 20.0 { 0.01 } else { 0.0 },
-    },
+    Reference { name: "silence", curve: |_| 0.0 },
+    Reference { name: "one line", curve: |f| if f == 200.0 { 0.01 } else { 0.0 } },
+    Reference { name: "flat", curve: |_| 0.003 },
+    Reference { name: "very faint", curve: |f| 1e-200 * two_bumps(f) },
+    Reference { name: "very strong", curve: |f| 1e100 * two_bumps(f) },
+    Reference { name: "all at the low edge", curve: |f| if f == 20.0 { 0.01 } else { 0.0 } },
 ];
 
 fn two_bumps(f: f64) -> f64 {

@@ -27,21 +27,14 @@ pub(crate) fn start(model: &LoadedModel, parameters: &[f64]) -> Result<Option<St
     let Origin::Wasm(file) = model.origin() else {
         return Ok(None);
     };
-    let mut best = Start {
-        cold_ms: f64::INFINITY,
-        warm_ms: f64::INFINITY,
-    };
+    let mut best = Start { cold_ms: f64::INFINITY, warm_ms: f64::INFINITY };
     for _ in 0..COLD {
         let folder = tempfile::tempdir()
             .map_err(|e| Finding::failed(format!("cannot create a cache folder: {e}")))?;
         let limits = WasmLimits::default().with_cache(WasmCache::Dir(folder.path().join("wasm")));
-        best.cold_ms = best
-            .cold_ms
-            .min(first_sample_ms(file, &limits, parameters)?);
+        best.cold_ms = best.cold_ms.min(first_sample_ms(file, &limits, parameters)?);
         for _ in 0..WARM {
-            best.warm_ms = best
-                .warm_ms
-                .min(first_sample_ms(file, &limits, parameters)?);
+            best.warm_ms = best.warm_ms.min(first_sample_ms(file, &limits, parameters)?);
         }
     }
     Ok(Some(best))

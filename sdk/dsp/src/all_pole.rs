@@ -1,9 +1,9 @@
-//! All-pole filter: a fast direct form while its coefficients are constant, a lattice, which stays stable,
-//! while they change.
+//! All-pole filter: a fast direct form while its coefficients are constant, a lattice, which stays
+//! stable, while they change.
 //!
-//! The direct form can be unrolled for four samples. After constant coefficients for as many samples as it has stages a
-//! lattice equals it, to rounding. Mixed filters are computed from line spectral frequencies, between which every
-//! filter is stable.
+//! The direct form can be unrolled for four samples. After constant coefficients for as many
+//! samples as it has stages a lattice equals it, to rounding. Mixed filters are computed from line
+//! spectral frequencies, between which every filter is stable.
 
 pub use crate::direct_form::GROUP;
 use crate::direct_form::{Direct, MAX_ORDER as MAX_DIRECT_ORDER};
@@ -14,18 +14,18 @@ use crate::quad::{Quad, VOICES};
 /// [`GROUP`] samples, which are filtered together.
 pub type Group = [f64; GROUP];
 
-/// Limit for the direct form. Its rounding error, relative to the output, is at most about 1e-16 times the
-/// sum of the absolute coefficients times the filter's gain for noise. Up to this product the error is below
-/// the resolution of single-precision samples.
+/// Limit for the direct form. Its rounding error, relative to the output, is at most about 1e-16
+/// times the sum of the absolute coefficients times the filter's gain for noise. Up to this product
+/// the error is below the resolution of single-precision samples.
 const MAX_DIRECT_ERROR: f64 = 1e7;
 
 /// `H(z) = 1 / (1 - Σ A_i z⁻ⁱ)` with coefficients that can change while it runs (f64 state).
 ///
-/// While the coefficients are constant, the filter computes four samples at a time (transposed direct form
-/// II, the recursion unrolled for four samples). While they change it runs as a lattice, which is stable as
-/// long as each reflection coefficient is inside (-1, 1). The switch is inaudible: a lattice whose
-/// coefficients have been constant for as many samples as it has stages has a state that depends on its last
-/// outputs alone.
+/// While the coefficients are constant, the filter computes four samples at a time (transposed
+/// direct form II, the recursion unrolled for four samples). While they change it runs as a
+/// lattice, which is stable as long as each reflection coefficient is inside (-1, 1). The switch is
+/// inaudible: a lattice whose coefficients have been constant for as many samples as it has stages
+/// has a state that depends on its last outputs alone.
 ///
 /// ```
 /// use htex_dsp::all_pole::AllPole;
@@ -46,14 +46,14 @@ pub struct AllPole {
     direct: Option<Direct>,
 }
 
-/// Four filters with constant coefficients, computed side by side. Each output is bit-identical to that of
-/// the filter run alone.
+/// Four filters with constant coefficients, computed side by side. Each output is bit-identical to
+/// that of the filter run alone.
 #[derive(Debug)]
 pub struct AllPoles<'a>([&'a mut AllPole; VOICES]);
 
 impl AllPole {
-    /// Returns a filter with zero state; `None` if a pole lies on or outside the unit circle. Its order can be raised up to
-    /// `max_order` without an allocation.
+    /// Returns a filter with zero state; `None` if a pole lies on or outside the unit circle. Its
+    /// order can be raised up to `max_order` without an allocation.
     pub fn with_max_order(coefficients: &[f64], max_order: usize) -> Option<Self> {
         let mut filter = Self::new(coefficients)?;
         filter.lattice.reserve(max_order);
@@ -90,8 +90,8 @@ impl AllPole {
         self.lattice.order()
     }
 
-    /// The reflection coefficients. They may be changed between samples and must stay inside (-1, 1). Does
-    /// not allocate.
+    /// The reflection coefficients. They may be changed between samples and must stay inside (-1,
+    /// 1). Does not allocate.
     pub fn reflection_mut(&mut self) -> &mut [f64] {
         if self.direct.take().is_some() {
             self.lattice.set_past(&self.past);
@@ -159,7 +159,8 @@ impl AllPole {
 }
 
 impl<'a> AllPoles<'a> {
-    /// Combines four filters; `None` if one of them still runs as a lattice because its coefficients changed.
+    /// Combines four filters; `None` if one of them still runs as a lattice because its
+    /// coefficients changed.
     pub fn new(filters: [&'a mut AllPole; VOICES]) -> Option<Self> {
         let direct = filters.iter().all(|filter| filter.direct.is_some());
         direct.then_some(Self(filters))
@@ -199,7 +200,8 @@ mod tests {
     use crate::noise::GaussianNoise;
     use alloc::vec::Vec;
 
-    /// Alternates constant and changing coefficients; the output equals that of a lattice throughout.
+    /// Alternates constant and changing coefficients; the output equals that of a lattice
+    /// throughout.
     #[test]
     fn switching_forms_matches_the_lattice() {
         for coefficients in [&[1.2, -0.8, 0.3, -0.1, 0.05, 0.02, -0.3][..], &[0.9]] {
@@ -211,10 +213,7 @@ mod tests {
                 let expected = if n % 300 < 40 {
                     group.map(|x| {
                         let moved = |k: &f64| (k + 0.01 * libm::sin(n as f64)).clamp(-0.99, 0.99);
-                        lattice
-                            .reflection_mut()
-                            .iter_mut()
-                            .for_each(|k| *k = moved(k));
+                        lattice.reflection_mut().iter_mut().for_each(|k| *k = moved(k));
                         lattice.tick(x)
                     })
                 } else {
@@ -223,10 +222,7 @@ mod tests {
                 if n % 300 < 40 {
                     group = group.map(|x| {
                         let moved = |k: &f64| (k + 0.01 * libm::sin(n as f64)).clamp(-0.99, 0.99);
-                        filter
-                            .reflection_mut()
-                            .iter_mut()
-                            .for_each(|k| *k = moved(k));
+                        filter.reflection_mut().iter_mut().for_each(|k| *k = moved(k));
                         filter.tick(x)
                     });
                 } else {
@@ -303,7 +299,8 @@ mod tests {
         }
     }
 
-    /// Blocks of any length give the bits of single groups, also of a filter that stays a lattice and settles within a block.
+    /// Blocks of any length give the bits of single groups, also of a filter that stays a lattice
+    /// and settles within a block.
     #[test]
     fn blocks_of_any_length_are_single_groups() {
         for order in [1, 7, 16, 17, 40] {
@@ -328,18 +325,12 @@ mod tests {
         }
     }
 
-    /// Four filters side by side give the bits of each alone, for all block lengths; a lattice is rejected.
+    /// Four filters side by side give the bits of each alone, for all block lengths; a lattice is
+    /// rejected.
     #[test]
     fn four_filters_are_bit_identical_to_single_ones() {
         let order = |n: usize| -> Vec<f64> { (0..n).map(|i| 0.5 / (i + n) as f64).collect() };
-        for orders in [
-            [1, 2, 2, 1],
-            [4, 3, 1, 2],
-            [6; 4],
-            [7, 1, 8, 2],
-            [12, 9, 3, 4],
-            [16; 4],
-        ] {
+        for orders in [[1, 2, 2, 1], [4, 3, 1, 2], [6; 4], [7, 1, 8, 2], [12, 9, 3, 4], [16; 4]] {
             let mut alone = orders.map(|n| AllPole::new(&order(n)).unwrap());
             let mut beside = alone.clone();
             let mut noise = GaussianNoise::new(3);

@@ -38,7 +38,8 @@ impl AllZero {
         Some(filter)
     }
 
-    /// Makes the filter one of at least this order, at most [`MAX_ORDER`]; the new coefficients are 0.
+    /// Makes the filter one of at least this order, at most [`MAX_ORDER`]; the new coefficients are
+    /// 0.
     pub fn raise_order(&mut self, order: usize) {
         self.order = self.order.max(order.min(MAX_ORDER));
     }
@@ -48,12 +49,11 @@ impl AllZero {
         &mut self.coefficients[..self.order]
     }
 
-    /// Filters one sample; for use while coefficients change. The sums are those of [`Self::process`].
+    /// Filters one sample; for use while coefficients change. The sums are those of
+    /// [`Self::process`].
     pub fn tick(&mut self, input: f64) -> f64 {
         let own = self.coefficients[..self.order].iter();
-        let output = own
-            .zip(self.past.iter().rev())
-            .fold(input, |sum, (a, x)| sum - a * x);
+        let output = own.zip(self.past.iter().rev()).fold(input, |sum, (a, x)| sum - a * x);
         self.past.copy_within(1.., 0);
         self.past[MAX_ORDER - 1] = input;
         output
@@ -70,8 +70,7 @@ impl AllZero {
                 inputs: &room,
                 block: chunk,
             });
-            self.past
-                .copy_from_slice(&room[chunk.len()..chunk.len() + MAX_ORDER]);
+            self.past.copy_from_slice(&room[chunk.len()..chunk.len() + MAX_ORDER]);
         }
     }
 }

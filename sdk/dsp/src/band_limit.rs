@@ -1,7 +1,8 @@
 //! Steep filters at the edges of the band, for noise that is generated wider than the band.
 //!
-//! The level of a model that is filtered is measured after its filter: the filter's ripple, and the half bin that the
-//! Nyquist frequency cuts off, change the RMS by up to 2 %. It is summed over a table of angles ([`PassedPower`]).
+//! The level of a model that is filtered is measured after its filter: the filter's ripple, and the
+//! half bin that the Nyquist frequency cuts off, change the RMS by up to 2 %. It is summed over a
+//! table of angles ([`PassedPower`]).
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -14,20 +15,22 @@ use crate::pipeline::Pipeline;
 use crate::shared::Shared;
 use crate::wide::{Work, very_wide, wide};
 
-/// 80 dB a decade, as steep at the edge as a Butterworth filter of twice the order: half a bin outside the
-/// band almost no power passes.
+/// 80 dB a decade, as steep at the edge as a Butterworth filter of twice the order: half a bin
+/// outside the band almost no power passes.
 const ORDER: usize = 4;
 const RIPPLE_DB: f64 = 0.2;
 /// Bins on either side of an edge in which the response changes within one bin.
 const EDGE_BINS: usize = 3;
 /// Points per bin at which the response is evaluated there.
 const EDGE_POINTS: usize = 4;
-/// Distance from an edge, relative to its frequency, beyond which the attenuation is at least 30 dB.
+/// Distance from an edge, relative to its frequency, beyond which the attenuation is at least 30
+/// dB.
 const BESIDE: f64 = 0.5;
 
-/// Returns Chebyshev filters for `band` at the sampling rate `rate_hz`: within 0.2 dB up to an eighth of the frequency of each edge, and 3
-/// dB down half a grid bin outside each edge. An edge at or above the Nyquist frequency gets no filter. The
-/// output is delayed by some samples ([`Pipeline`]).
+/// Returns Chebyshev filters for `band` at the sampling rate `rate_hz`: within 0.2 dB up to an
+/// eighth of the frequency of each edge, and 3 dB down half a grid bin outside each edge. An edge
+/// at or above the Nyquist frequency gets no filter. The output is delayed by some samples
+/// ([`Pipeline`]).
 pub fn band_limit(band: Band, rate_hz: f64) -> Pipeline {
     Pipeline::new(&sections(band, rate_hz))
 }
@@ -52,19 +55,19 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
         .collect()
 }
 
-/// For each grid bin in the band and some beside it: the part of a noise's power that passes [`band_limit`]
-/// and is measured by the bins of the band. Near the edges bins are subdivided. A bin that
-/// contains the Nyquist frequency counts up to it.
+/// For each grid bin in the band and some beside it: the part of a noise's power that passes
+/// [`band_limit`] and is measured by the bins of the band. Near the edges bins are subdivided. A
+/// bin that contains the Nyquist frequency counts up to it.
 ///
-/// It corrects the level of filtered noise. Without the correction noise would be too weak: by the filters'
-/// ripple, by the part of the highest bin above the Nyquist frequency, and by the power that the window
-/// misses at the band's edges.
+/// It corrects the level of filtered noise. Without the correction noise would be too weak: by the
+/// filters' ripple, by the part of the highest bin above the Nyquist frequency, and by the power
+/// that the window misses at the band's edges.
 #[derive(Debug, Clone)]
 pub struct PassedPower {
     /// Frequency in hertz, and the part of the power measured there, 0 to about 1.
     points: Vec<(f64, f64)>,
-    /// The same points in groups of [`TURNS`]: cosine and sine of the phase advance per sample, and the part
-    /// of the power.
+    /// The same points in groups of [`TURNS`]: cosine and sine of the phase advance per sample, and
+    /// the part of the power.
     turns: Vec<Turns>,
 }
 
@@ -111,13 +114,7 @@ impl PassedPower {
                 .collect::<Vec<_>>()
         };
         let points: Vec<(f64, f64)> = (first_bin..=last_bin).flat_map(heard).collect();
-        Self {
-            turns: points
-                .chunks(TURNS)
-                .map(|p| Turns::of(p, rate_hz))
-                .collect(),
-            points,
-        }
+        Self { turns: points.chunks(TURNS).map(|p| Turns::of(p, rate_hz)).collect(), points }
     }
 
     /// RMS of filtered noise whose magnitudes before the filters are `curve`, as
@@ -132,28 +129,19 @@ impl PassedPower {
         crate::root::sqrt(power / 3.0)
     }
 
-    /// [`Self::level_rms`] of white noise of unit magnitude behind the filter `1 / (1 - Σ A_i z⁻ⁱ)` at this rate. Does
-    /// not allocate.
+    /// [`Self::level_rms`] of white noise of unit magnitude behind the filter `1 / (1 - Σ A_i z⁻ⁱ)`
+    /// at this rate. Does not allocate.
     pub fn all_pole_level_rms(&self, coefficients: &[f64]) -> f64 {
         let mut power = 0.0;
-        wide(AllPolePower {
-            turns: &self.turns,
-            coefficients,
-            power: &mut power,
-        });
+        wide(AllPolePower { turns: &self.turns, coefficients, power: &mut power });
         crate::root::sqrt(power / 3.0)
     }
 
-    /// As [`Self::all_pole_level_rms`], behind a filter with zeros and poles, from the cosines of the line spectral frequencies of both.
-    /// Does not allocate.
+    /// As [`Self::all_pole_level_rms`], behind a filter with zeros and poles, from the cosines of
+    /// the line spectral frequencies of both. Does not allocate.
     pub fn rational_level_rms(&self, zeros: &[f64], poles: &[f64]) -> f64 {
         let mut power = 0.0;
-        let work = RationalPower {
-            turns: &self.turns,
-            zeros,
-            poles,
-            power: &mut power,
-        };
+        let work = RationalPower { turns: &self.turns, zeros, poles, power: &mut power };
         if let Err(work) = very_wide(work) {
             wide(work);
         }
@@ -162,11 +150,7 @@ impl PassedPower {
 }
 
 impl Turns {
-    const NONE: Self = Self {
-        cos: [1.0; TURNS],
-        sin: [0.0; TURNS],
-        part: [0.0; TURNS],
-    };
+    const NONE: Self = Self { cos: [1.0; TURNS], sin: [0.0; TURNS], part: [0.0; TURNS] };
 
     fn of(points: &[(f64, f64)], rate_hz: f64) -> Self {
         let mut turns = Self::NONE;
@@ -238,8 +222,9 @@ impl Work for RationalPower<'_> {
     }
 }
 
-/// The squared absolute values of a polynomial at a group of points, over 4 for each pair of lines, from the cosines of its line
-/// spectral frequencies: those of the symmetric and the antisymmetric polynomial, which are a quarter turn apart.
+/// The squared absolute values of a polynomial at a group of points, over 4 for each pair of lines,
+/// from the cosines of its line spectral frequencies: those of the symmetric and the antisymmetric
+/// polynomial, which are a quarter turn apart.
 #[inline(always)]
 fn lines_power(turns: &Turns, cosines: &[f64]) -> [f64; TURNS] {
     let (mut symmetric, mut antisymmetric) = ([1.0; TURNS], [1.0; TURNS]);
@@ -305,8 +290,9 @@ mod tests {
         }
     }
 
-    /// White noise of unit variance: half its power per hertz below the Nyquist frequency, times the mean
-    /// power of the filters' response. The energy of the impulse response equals the same mean.
+    /// White noise of unit variance: half its power per hertz below the Nyquist frequency, times
+    /// the mean power of the filters' response. The energy of the impulse response equals the same
+    /// mean.
     #[test]
     fn passed_power_equals_the_energy_of_the_impulse_response() {
         for (low_hz, high_hz, rate_hz) in [

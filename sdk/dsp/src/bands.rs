@@ -12,11 +12,12 @@ use crate::triangles::TriangleBank;
 /// Bands in the standard comparison.
 pub const BAND_COUNT: usize = 9;
 
-/// Added to both energies before a ratio is taken, relative to the largest reference band, so that an empty
-/// band gives a large but finite error.
+/// Added to both energies before a ratio is taken, relative to the largest reference band, so that
+/// an empty band gives a large but finite error.
 const RELATIVE_FLOOR: f64 = 1e-12;
 
-/// Triangular bands, log-spaced, half overlapping, with flanks linear in the logarithm of frequency.
+/// Triangular bands, log-spaced, half overlapping, with flanks linear in the logarithm of
+/// frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BandBank {
     edges_hz: Vec<f64>,
@@ -36,22 +37,16 @@ impl BandBank {
         let last = count + 1;
         // On this axis the edges are whole numbers, so they have no rounding error.
         let edges: Vec<f64> = (0..=last).map(|i| i as f64).collect();
-        let axis: Vec<f64> = frequencies_hz
-            .iter()
-            .map(|&f| log_unit(f, band) * last as f64)
-            .collect();
+        let axis: Vec<f64> =
+            frequencies_hz.iter().map(|&f| log_unit(f, band) * last as f64).collect();
         let ratio = band.high_hz / band.low_hz;
-        let edges_hz = (0..=last)
-            .map(|i| band.low_hz * libm::pow(ratio, i as f64 / last as f64))
-            .collect();
-        Self {
-            edges_hz,
-            bank: TriangleBank::new(&edges, &axis),
-        }
+        let edges_hz =
+            (0..=last).map(|i| band.low_hz * libm::pow(ratio, i as f64 / last as f64)).collect();
+        Self { edges_hz, bank: TriangleBank::new(&edges, &axis) }
     }
 
-    /// The `count + 2` edges, hertz: band `i` extends from edge `i` to edge `i + 2` with its apex at edge `i
-    /// + 1`.
+    /// The `count + 2` edges, hertz: band `i` extends from edge `i` to edge `i + 2` with its apex
+    /// at edge `i + 1`.
     pub fn edges_hz(&self) -> &[f64] {
         &self.edges_hz
     }
@@ -70,9 +65,9 @@ impl BandBank {
     }
 }
 
-/// Error of each band in dB, `10 log10((model + tiny) / (reference + tiny))`, from band *energies*; `tiny` is
-/// 1e-12 of the largest reference band. If all energies on both sides are zero, the errors are 0 dB; a model
-/// with energy against an all-zero reference gives +∞.
+/// Error of each band in dB, `10 log10((model + tiny) / (reference + tiny))`, from band *energies*;
+/// `tiny` is 1e-12 of the largest reference band. If all energies on both sides are zero, the
+/// errors are 0 dB; a model with energy against an all-zero reference gives +∞.
 pub fn band_error_db(reference: &[f64], model: &[f64]) -> Vec<f64> {
     let tiny = RELATIVE_FLOOR * reference.iter().copied().fold(0.0, f64::max);
     reference
@@ -83,25 +78,18 @@ pub fn band_error_db(reference: &[f64], model: &[f64]) -> Vec<f64> {
 }
 
 fn ratio_db(model: f64, reference: f64) -> f64 {
-    if model == reference {
-        0.0
-    } else {
-        10.0 * libm::log10(model / reference)
-    }
+    if model == reference { 0.0 } else { 10.0 * libm::log10(model / reference) }
 }
 
-/// Returns the gain that gives a model's *magnitudes* the total energy of the reference: `sqrt(Σ reference² /
-/// Σ model²)`; 1 if either sum is zero or not finite.
+/// Returns the gain that gives a model's *magnitudes* the total energy of the reference:
+/// `sqrt(Σ reference² / Σ model²)`; 1 if either sum is zero or not finite.
 ///
-/// Multiply the model's band energies by its square to compare spectral shapes independently of level.
+/// Multiply the model's band energies by its square to compare spectral shapes independently of
+/// level.
 pub fn energy_matching_gain(reference_magnitude: &[f64], model_magnitude: &[f64]) -> f64 {
     let total = |magnitude: &[f64]| magnitude.iter().map(|m| m * m).sum::<f64>();
     let gain = crate::root::sqrt(total(reference_magnitude) / total(model_magnitude));
-    if gain.is_finite() && gain > 0.0 {
-        gain
-    } else {
-        1.0
-    }
+    if gain.is_finite() && gain > 0.0 { gain } else { 1.0 }
 }
 
 /// Root mean square; 0 for an empty slice.
@@ -112,10 +100,11 @@ pub fn rms(values: &[f64]) -> f64 {
     crate::root::sqrt(values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64)
 }
 
-/// Pearson correlation of two slices, in `[-1, 1]`; a longer slice is cut to the length of the other.
+/// Pearson correlation of two slices, in `[-1, 1]`; a longer slice is cut to the length of the
+/// other.
 ///
-/// Never NaN for finite input. If either slice is constant the correlation is undefined and the result is 0,
-/// except that two equal slices give 1.
+/// Never NaN for finite input. If either slice is constant the correlation is undefined and the
+/// result is 0, except that two equal slices give 1.
 ///
 /// ```
 /// use htex_dsp::bands::pearson_correlation;
@@ -133,11 +122,7 @@ pub fn pearson_correlation(a: &[f64], b: &[f64]) -> f64 {
     let product: f64 = a.iter().zip(&b).map(|(x, y)| x * y).sum();
     let norm = |values: &[f64]| crate::root::sqrt(values.iter().map(|v| v * v).sum());
     let correlation = product / (norm(&a) * norm(&b));
-    if correlation.is_nan() {
-        0.0
-    } else {
-        correlation.clamp(-1.0, 1.0)
-    }
+    if correlation.is_nan() { 0.0 } else { correlation.clamp(-1.0, 1.0) }
 }
 
 /// Deviations from the mean, divided by the largest one; all zero if the values are constant.

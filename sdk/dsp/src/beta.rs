@@ -2,8 +2,8 @@
 
 use crate::Band;
 
-/// Position of `f_hz` on the band's normalised logarithmic axis: 0 at the lower edge, 1 at the upper edge,
-/// `ln(f / low) / ln(high / low)`. Outside `[0, 1]` for frequencies outside the band.
+/// Position of `f_hz` on the band's normalised logarithmic axis: 0 at the lower edge, 1 at the
+/// upper edge, `ln(f / low) / ln(high / low)`. Outside `[0, 1]` for frequencies outside the band.
 ///
 /// ```
 /// use htex_dsp::{Band, beta::log_unit};
@@ -23,10 +23,7 @@ pub struct LogAxis {
 
 impl LogAxis {
     pub fn new(band: Band) -> Self {
-        Self {
-            low_hz: band.low_hz,
-            log_ratio: libm::log(band.high_hz / band.low_hz),
-        }
+        Self { low_hz: band.low_hz, log_ratio: libm::log(band.high_hz / band.low_hz) }
     }
 
     /// Position of `f_hz`, as [`log_unit`].
@@ -37,8 +34,8 @@ impl LogAxis {
 
 /// Density of the beta distribution, `u^(α-1) (1-u)^(β-1) / B(α, β)`, 0 outside `[0, 1]`.
 ///
-/// At an edge the value is the limit: 0 for a parameter above 1, finite for exactly 1, +∞ below 1. Relative
-/// error: about 1e-13 for parameters below 100, 1e-8 at a million.
+/// At an edge the value is the limit: 0 for a parameter above 1, finite for exactly 1, +∞ below 1.
+/// Relative error: about 1e-13 for parameters below 100, 1e-8 at a million.
 ///
 /// ```
 /// use htex_dsp::beta::BetaDensity;
@@ -55,8 +52,8 @@ pub struct BetaDensity {
 }
 
 impl BetaDensity {
-    /// Makes the density. `alpha` and `beta` must be positive and finite, otherwise the density is NaN
-    /// everywhere.
+    /// Makes the density. `alpha` and `beta` must be positive and finite, otherwise the density is
+    /// NaN everywhere.
     pub fn new(alpha: f64, beta: f64) -> Self {
         let valid = [alpha, beta].iter().all(|p| *p > 0.0 && p.is_finite());
         let log_scale = if valid {
@@ -64,11 +61,7 @@ impl BetaDensity {
         } else {
             f64::NAN
         };
-        Self {
-            alpha,
-            beta,
-            log_scale,
-        }
+        Self { alpha, beta, log_scale }
     }
 
     pub fn at(&self, u: f64) -> f64 {
@@ -84,7 +77,8 @@ impl BetaDensity {
     }
 
     /// Writes the density at points given by finite `ln u` and `ln (1 - u)`, with the accuracy of
-    /// [`exponentials`](crate::exponential::exponentials). The shortest slice sets the number of points.
+    /// [`exponentials`](crate::exponential::exponentials). The shortest slice sets the number of
+    /// points.
     pub fn fill(&self, log: &[f64], log_rest: &[f64], density: &mut [f64]) {
         let (left, right) = (self.alpha - 1.0, self.beta - 1.0);
         for ((d, log), log_rest) in density.iter_mut().zip(log).zip(log_rest) {

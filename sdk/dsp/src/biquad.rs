@@ -5,8 +5,8 @@ use core::f64::consts::PI;
 
 use crate::spectrum::Complex;
 
-/// State smaller than this is set to zero, which avoids denormals: some processors handle them a hundred
-/// times slower. The threshold is some 200 decades below any perceptible amplitude.
+/// State smaller than this is set to zero, which avoids denormals: some processors handle them a
+/// hundred times slower. The threshold is some 200 decades below any perceptible amplitude.
 const SMALLEST_STATE: f64 = 1e-200;
 
 /// One section: `H(z) = (b0 + b1 z⁻¹ + b2 z⁻²) / (1 + a1 z⁻¹ + a2 z⁻²)`.
@@ -26,13 +26,7 @@ pub struct Biquad {
 
 impl Biquad {
     /// The section that passes its input unchanged.
-    pub const IDENTITY: Self = Self {
-        b0: 1.0,
-        b1: 0.0,
-        b2: 0.0,
-        a1: 0.0,
-        a2: 0.0,
-    };
+    pub const IDENTITY: Self = Self { b0: 1.0, b1: 0.0, b2: 0.0, a1: 0.0, a2: 0.0 };
 
     /// Magnitude `|H|` at `f_hz` for the sampling rate `rate_hz`, both in hertz.
     pub fn magnitude(&self, f_hz: f64, rate_hz: f64) -> f64 {
@@ -41,15 +35,16 @@ impl Biquad {
             if sine.abs() < cosine.abs() {
                 squared_magnitude(c0, c1, c2, sine * sine)
             } else {
-                // Computed from the Nyquist frequency down: z -> -z changes the sign of the odd coefficient.
+                // Computed from the Nyquist frequency down: z -> -z changes the sign of the odd
+                // coefficient.
                 squared_magnitude(c0, -c1, c2, cosine * cosine)
             }
         };
         crate::root::sqrt(squared(self.b0, self.b1, self.b2) / squared(1.0, self.a1, self.a2))
     }
 
-    /// Complex frequency response at `f_hz` for the sampling rate `rate_hz`, both in hertz. Near 0 Hz,
-    /// [`Self::magnitude`] is more accurate.
+    /// Complex frequency response at `f_hz` for the sampling rate `rate_hz`, both in hertz. Near 0
+    /// Hz, [`Self::magnitude`] is more accurate.
     ///
     /// ```
     /// use htex_dsp::biquad::Biquad;
@@ -70,7 +65,8 @@ impl Biquad {
     }
 }
 
-/// `|c0 + c1 z⁻¹ + c2 z⁻²|²` from `phi = sin²(ω/2)`. Accurate near ω = 0, where the direct sum cancels.
+/// `|c0 + c1 z⁻¹ + c2 z⁻²|²` from `phi = sin²(ω/2)`. Accurate near ω = 0, where the direct sum
+/// cancels.
 fn squared_magnitude(c0: f64, c1: f64, c2: f64, phi: f64) -> f64 {
     let sum = c0 + c1 + c2;
     let linear = c0 * c1 + 4.0 * c0 * c2 + c1 * c2;
@@ -96,11 +92,7 @@ struct Section {
 
 impl Section {
     fn at_rest(biquad: Biquad) -> Self {
-        Self {
-            biquad,
-            s1: 0.0,
-            s2: 0.0,
-        }
+        Self { biquad, s1: 0.0, s2: 0.0 }
     }
 
     #[inline]
@@ -115,11 +107,7 @@ impl Section {
 
 #[inline]
 pub(crate) fn without_denormals(state: f64) -> f64 {
-    if state.abs() < SMALLEST_STATE {
-        0.0
-    } else {
-        state
-    }
+    if state.abs() < SMALLEST_STATE { 0.0 } else { state }
 }
 
 /// Sections in series, with f64 state. Does not allocate after construction.
@@ -143,23 +131,19 @@ pub struct Cascade {
 impl Cascade {
     /// A cascade of `sections` with zero state; its capacity is their number.
     pub fn new(sections: &[Biquad]) -> Self {
-        Self {
-            sections: sections.iter().map(|&b| Section::at_rest(b)).collect(),
-        }
+        Self { sections: sections.iter().map(|&b| Section::at_rest(b)).collect() }
     }
 
     /// Filters one sample.
     #[inline]
     pub fn tick(&mut self, input: f64) -> f64 {
-        self.sections
-            .iter_mut()
-            .fold(input, |x, section| section.tick(x))
+        self.sections.iter_mut().fold(input, |x, section| section.tick(x))
     }
 
     /// Filters a block in place.
     pub fn process(&mut self, block: &mut [f64]) {
-        // Several sections at a time, sample by sample: the processor works on one section while another
-        // waits for its own last output.
+        // Several sections at a time, sample by sample: the processor works on one section while
+        // another waits for its own last output.
         let (fours, rest) = self.sections.as_chunks_mut::<4>();
         for four in fours {
             run(four, block);
@@ -180,12 +164,10 @@ impl Cascade {
         }
     }
 
-    /// Magnitude `|H|` of the whole cascade at `f_hz` for the sampling rate `rate_hz`, both in hertz.
+    /// Magnitude `|H|` of the whole cascade at `f_hz` for the sampling rate `rate_hz`, both in
+    /// hertz.
     pub fn magnitude(&self, f_hz: f64, rate_hz: f64) -> f64 {
-        self.sections
-            .iter()
-            .map(|section| section.biquad.magnitude(f_hz, rate_hz))
-            .product()
+        self.sections.iter().map(|section| section.biquad.magnitude(f_hz, rate_hz)).product()
     }
 }
 
@@ -195,11 +177,7 @@ mod tests {
 
     #[test]
     fn state_decays_to_exact_zero() {
-        let resonator = Biquad {
-            a1: -1.8,
-            a2: 0.9,
-            ..Biquad::IDENTITY
-        };
+        let resonator = Biquad { a1: -1.8, a2: 0.9, ..Biquad::IDENTITY };
         let mut cascade = Cascade::new(&[resonator]);
         cascade.tick(1.0);
         for _ in 0..20_000 {
@@ -212,11 +190,7 @@ mod tests {
     #[test]
     fn a_section_is_stable_if_both_poles_lie_inside() {
         let holds = |a1, a2| {
-            let section = Biquad {
-                a1,
-                a2,
-                ..Biquad::IDENTITY
-            };
+            let section = Biquad { a1, a2, ..Biquad::IDENTITY };
             section.is_stable()
         };
         // Real poles, (z - p) (z - q), and a pair at a radius.

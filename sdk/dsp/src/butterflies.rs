@@ -24,8 +24,8 @@ impl Number for f64 {
     }
 }
 
-/// A transform of `R` numbers with positive exponents, real and imaginary parts apart. A trait, as functions that are passed
-/// are not always compiled into the one that has the wide registers.
+/// A transform of `R` numbers with positive exponents, real and imaginary parts apart. A trait, as
+/// functions that are passed are not always compiled into the one that has the wide registers.
 pub(crate) trait Butterfly<const R: usize> {
     fn turn<T: Number>(re: [T; R], im: [T; R]) -> ([T; R], [T; R]);
 }
@@ -63,18 +63,8 @@ impl Butterfly<4> for Four {
         let (even, even_i) = Two::turn([re[0], re[2]], [im[0], im[2]]);
         let (odd, odd_i) = Two::turn([re[1], re[3]], [im[1], im[3]]);
         (
-            [
-                even[0] + odd[0],
-                even[1] - odd_i[1],
-                even[0] - odd[0],
-                even[1] + odd_i[1],
-            ],
-            [
-                even_i[0] + odd_i[0],
-                even_i[1] + odd[1],
-                even_i[0] - odd_i[0],
-                even_i[1] - odd[1],
-            ],
+            [even[0] + odd[0], even[1] - odd_i[1], even[0] - odd[0], even[1] + odd_i[1]],
+            [even_i[0] + odd_i[0], even_i[1] + odd[1], even_i[0] - odd_i[0], even_i[1] - odd[1]],
         )
     }
 }
@@ -113,10 +103,7 @@ fn sums<T: Number>(x: [T; 5]) -> [T; 2] {
 #[inline(always)]
 fn fifths<T: Number>(first: T, [a, b]: [T; 2]) -> [T; 2] {
     const COS: [f64; 2] = [0.309_016_994_374_947_45, -0.809_016_994_374_947_5];
-    [
-        first + (a.times(COS[0]) + b.times(COS[1])),
-        first + (a.times(COS[1]) + b.times(COS[0])),
-    ]
+    [first + (a.times(COS[0]) + b.times(COS[1])), first + (a.times(COS[1]) + b.times(COS[0]))]
 }
 
 /// By the sines of one and of two fifths of a turn.
@@ -124,10 +111,7 @@ fn fifths<T: Number>(first: T, [a, b]: [T; 2]) -> [T; 2] {
 fn turned<T: Number>(x: [T; 5]) -> [T; 2] {
     const SIN: [f64; 2] = [0.951_056_516_295_153_5, 0.587_785_252_292_473_1];
     let [a, b] = [x[1] - x[4], x[2] - x[3]];
-    [
-        a.times(SIN[0]) + b.times(SIN[1]),
-        a.times(SIN[1]) - b.times(SIN[0]),
-    ]
+    [a.times(SIN[0]) + b.times(SIN[1]), a.times(SIN[1]) - b.times(SIN[0])]
 }
 
 impl Butterfly<7> for Seven {
@@ -151,12 +135,8 @@ impl Butterfly<7> for Seven {
 /// By the cosines of `k`, `2 k` and `3 k` sevenths of a turn.
 #[inline(always)]
 fn sevenths<T: Number>(x: [T; 7], k: usize) -> T {
-    const COS: [f64; 4] = [
-        1.0,
-        0.623_489_801_858_733_5,
-        -0.222_520_933_956_314_4,
-        -0.900_968_867_902_419_1,
-    ];
+    const COS: [f64; 4] =
+        [1.0, 0.623_489_801_858_733_5, -0.222_520_933_956_314_4, -0.900_968_867_902_419_1];
     (1..4).fold(x[0], |sum, j| {
         let turn = j * k % 7;
         sum + (x[j] + x[7 - j]).times(COS[turn.min(7 - turn)])

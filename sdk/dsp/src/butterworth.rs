@@ -1,5 +1,6 @@
 //! Butterworth low-pass and high-pass filters of order 1 to 20, analogue magnitudes and digital
-//! second-order sections. The paper (Spectral slope) uses a high-pass and a low-pass and names no family.
+//! second-order sections. The paper (Spectral slope) uses a high-pass and a low-pass and names no
+//! family.
 //!
 //! The digital design is the bilinear transform with the cut-off prewarped, as
 //! `scipy.signal.butter(..., output="sos")` does it: at the cut-off the magnitude is 1/√2 exactly.
@@ -12,7 +13,8 @@ use crate::biquad::Biquad;
 /// Highest order that can be designed: 400 dB a decade, more than the dynamic range of a spectrum.
 pub const MAX_ORDER: usize = 20;
 
-/// The second-order sections of one filter, lowest Q first; dereferences to a slice. Does not allocate.
+/// The second-order sections of one filter, lowest Q first; dereferences to a slice. Does not
+/// allocate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sections {
     sections: [Biquad; MAX_ORDER / 2],
@@ -70,8 +72,8 @@ fn design(kind: PassKind, order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sect
         len = 1;
     }
     for pair in 0..order / 2 {
-        // Poles at angles π/2 ± (2k + 1)π/(2n) from the imaginary axis; 1/(2Q) is the cosine of a pole's
-        // angle to the negative real axis. The largest Q (k = 0) comes last.
+        // Poles at angles π/2 ± (2k + 1)π/(2n) from the imaginary axis; 1/(2Q) is the cosine of a
+        // pole's angle to the negative real axis. The largest Q (k = 0) comes last.
         let k = order / 2 - 1 - pair;
         let half_inverse_q = crate::trig::sin(PI * (2 * k + 1) as f64 / (2 * order) as f64);
         sections[len] = second_order(kind, omega, half_inverse_q);
@@ -85,8 +87,8 @@ pub(crate) fn in_range(edge_hz: f64, rate_hz: f64) -> bool {
     edge_hz > 0.0 && edge_hz < rate_hz / 2.0 && rate_hz.is_finite()
 }
 
-/// Bilinear transform of `1 / (s + 1)` or `s / (s + 1)`, written with the sine and cosine of half the cut-off
-/// angle, which stay finite near Nyquist, where the usual tangent overflows.
+/// Bilinear transform of `1 / (s + 1)` or `s / (s + 1)`, written with the sine and cosine of half
+/// the cut-off angle, which stay finite near Nyquist, where the usual tangent overflows.
 fn first_order(kind: PassKind, omega: f64) -> Biquad {
     let (sine, cosine) = crate::trig::sincos(omega / 2.0);
     let scale = 1.0 / (sine + cosine);
@@ -94,13 +96,7 @@ fn first_order(kind: PassKind, omega: f64) -> Biquad {
         PassKind::LowPass => (sine * scale, sine * scale),
         PassKind::HighPass => (cosine * scale, -cosine * scale),
     };
-    Biquad {
-        b0,
-        b1,
-        b2: 0.0,
-        a1: (sine - cosine) * scale,
-        a2: 0.0,
-    }
+    Biquad { b0, b1, b2: 0.0, a1: (sine - cosine) * scale, a2: 0.0 }
 }
 
 /// Bilinear transform of `1 / (s² + s/Q + 1)` or `s² / (s² + s/Q + 1)`.
@@ -136,7 +132,8 @@ mod tests {
                     assert!(sections.iter().all(Biquad::is_stable), "{order} {fc}");
                     let magnitude = Cascade::new(&sections).magnitude(fc, 20_000.0);
                     let error = magnitude * core::f64::consts::SQRT_2 - 1.0;
-                    // A thousandth of a hertz below Nyquist, f64 coefficients cannot resolve the poles.
+                    // A thousandth of a hertz below Nyquist, f64 coefficients cannot resolve the
+                    // poles.
                     assert!(fc > 9999.5 || error.abs() < 1e-6, "{order} {fc} {error}");
                 }
             }

@@ -3,8 +3,8 @@
 /// Angle in radians of one step of a signed 32-bit number whose full range spans half a turn.
 const QUARTER: f32 = core::f32::consts::FRAC_PI_2 / (1u32 << 31) as f32;
 const TERMS: usize = 7;
-/// Taylor coefficients, in the square of the angle, of the cosine and of the sine divided by its angle. Up to
-/// a quarter turn the truncation error is below 1e-8.
+/// Taylor coefficients, in the square of the angle, of the cosine and of the sine divided by its
+/// angle. Up to a quarter turn the truncation error is below 1e-8.
 const TAYLOR: [[f32; 2]; TERMS] = taylor();
 
 const fn taylor() -> [[f32; 2]; TERMS] {
@@ -23,8 +23,8 @@ const fn taylor() -> [[f32; 2]; TERMS] {
 
 /// Cosines and sines of angles made from random bits, uniform on the circle; error below 3e-7.
 ///
-/// The signed bits give an angle in the right half plane; the lowest bit flips both signs. Two short series
-/// suffice and there are no branches.
+/// The signed bits give an angle in the right half plane; the lowest bit flips both signs. Two
+/// short series suffice and there are no branches.
 #[inline(always)]
 pub(crate) fn directions<const N: usize>(bits: [u32; N]) -> ([f32; N], [f32; N]) {
     let mut angle = [0.0; N];

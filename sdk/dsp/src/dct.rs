@@ -42,8 +42,9 @@ impl InverseDct {
         }
     }
 
-    /// Writes the values of the first coefficients. Missing coefficients count as zero, and those beyond the number of
-    /// values are ignored; elements of `out` beyond that number are left unchanged. Does not allocate.
+    /// Writes the values of the first coefficients. Missing coefficients count as zero, and those
+    /// beyond the number of values are ignored; elements of `out` beyond that number are left
+    /// unchanged. Does not allocate.
     pub fn run(&self, coefficients: &[f64], out: &mut [f64]) {
         let rows = self.cosines.chunks(self.scale.len().max(1));
         for (value, row) in out.iter_mut().zip(rows) {

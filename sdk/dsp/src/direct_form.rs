@@ -10,8 +10,9 @@ pub const GROUP: usize = 4;
 /// Orders up to this have a direct form with all state in registers.
 pub(crate) const MAX_ORDER: usize = 16;
 
-/// Transposed direct form II unrolled for four samples: the contribution of each of the four inputs, together
-/// with the state it meets, to the outputs and to the next state. Entries beyond the order are zero.
+/// Transposed direct form II unrolled for four samples: the contribution of each of the four
+/// inputs, together with the state it meets, to the outputs and to the next state. Entries beyond
+/// the order are zero.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Direct {
     outputs: [[f64; GROUP]; GROUP],
@@ -47,7 +48,8 @@ impl Direct {
         match order {
             0..=2 => wide(One::<2>(self, groups)),
             3..=4 => wide(One::<4>(self, groups)),
-            // Not 6: of a vector and a half compilers make a loop that shuffles lanes, and a voice takes a quarter longer.
+            // Not 6: of a vector and a half compilers make a loop that shuffles lanes, and a voice
+            // takes a quarter longer.
             5..=8 => wide(One::<8>(self, groups)),
             9..=12 => wide(One::<12>(self, groups)),
             _ => wide(One::<MAX_ORDER>(self, groups)),
@@ -77,11 +79,7 @@ impl Direct {
         for at in 0..GROUP {
             states[at] = first(&self.states[at]);
         }
-        Short {
-            outputs: self.outputs,
-            states,
-            state: first(&self.state),
-        }
+        Short { outputs: self.outputs, states, state: first(&self.state) }
     }
 
     #[inline(always)]
@@ -126,8 +124,8 @@ fn run_four<const N: usize>(mut four: [&mut Direct; VOICES], groups: &mut [[Quad
     }
 }
 
-/// A separate function from the one that interleaves the voices: otherwise compilers shuffle lanes inside the
-/// loop.
+/// A separate function from the one that interleaves the voices: otherwise compilers shuffle lanes
+/// inside the loop.
 struct Four<'a, const N: usize>(&'a mut Short<Quad, N>, &'a mut [[Quad; GROUP]]);
 
 impl<const N: usize> Work for Four<'_, N> {
@@ -184,12 +182,7 @@ impl Lane for Quad {
     #[inline(always)]
     fn outputs(&[_, h1, h2, h3]: &Self::Outputs, met: &[Self; GROUP]) -> [Self; GROUP] {
         let [a, b, c, d] = *met;
-        [
-            a,
-            h1 * a + b,
-            (h2 * a + h1 * b) + c,
-            (h3 * a + h2 * b) + (h1 * c + d),
-        ]
+        [a, h1 * a + b, (h2 * a + h1 * b) + c, (h3 * a + h2 * b) + (h1 * c + d)]
     }
 }
 

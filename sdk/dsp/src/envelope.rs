@@ -1,11 +1,13 @@
 //! Level, mean frequency and powers in bands of a stream of samples.
 //!
-//! The level is that of the samples of a block, exactly and without delay. Mean frequency and bands are those of Hann windows (periodic) of
-//! `N` samples, the least power of two that lasts 40 ms (20 kHz: 1024 samples, 51.2 ms; 48 kHz: 2048, 42.7 ms), of which one ends every
-//! `N / 4` samples; samples before the first are 0. With `X[k]` the transform of the windowed samples and `W` the sum of the
-//! squared window, bin `k` at `k * rate / N` has the power `|X[k]|² / (N * W)`, twice that for all bins but the first and the
-//! last, so that the powers of all bins are the mean square of the windowed samples, as a share of the window's. A block has the mean of
-//! the windows that end in it, and the numbers of the block before if none does.
+//! The level is that of the samples of a block, exactly and without delay. Mean frequency and bands
+//! are those of Hann windows (periodic) of `N` samples, the least power of two that lasts 40 ms (20
+//! kHz: 1024 samples, 51.2 ms; 48 kHz: 2048, 42.7 ms), of which one ends every `N / 4` samples;
+//! samples before the first are 0. With `X[k]` the transform of the windowed samples and `W` the
+//! sum of the squared window, bin `k` at `k * rate / N` has the power `|X[k]|² / (N * W)`, twice
+//! that for all bins but the first and the last, so that the powers of all bins are the mean square
+//! of the windowed samples, as a share of the window's. A block has the mean of the windows that
+//! end in it, and the numbers of the block before if none does.
 
 use alloc::vec::Vec;
 
@@ -15,7 +17,8 @@ use crate::fft::RealFft;
 use crate::grid::Band;
 use crate::window::hann_periodic;
 
-/// Shortest window, seconds: two periods of 50 Hz, and nearly one of 20 Hz, the lowest frequency of a texture.
+/// Shortest window, seconds: two periods of 50 Hz, and nearly one of 20 Hz, the lowest frequency of
+/// a texture.
 const WINDOW_S: f64 = 0.040;
 /// Windows that overlap at each sample.
 const OVERLAP: usize = 4;
@@ -97,9 +100,7 @@ impl Analyser {
         let squares: f64 = window.iter().map(|w| w * w).sum();
         Self {
             rate_hz,
-            band_of: (0..bins.len())
-                .map(|k| band_at(k as f64 * rate_hz / len as f64))
-                .collect(),
+            band_of: (0..bins.len()).map(|k| band_at(k as f64 * rate_hz / len as f64)).collect(),
             scale: 1.0 / (len as f64 * squares),
             window,
             fft,
@@ -120,8 +121,8 @@ impl Analyser {
         self.bands.len()
     }
 
-    /// Returns the edges of the bands, one more than bands, ascending, hertz. The first band reaches down to 0 Hz, and the last up to
-    /// half the rate.
+    /// Returns the edges of the bands, one more than bands, ascending, hertz. The first band
+    /// reaches down to 0 Hz, and the last up to half the rate.
     pub fn edges_hz(&self) -> &[f64] {
         &self.edges_hz
     }
@@ -195,12 +196,7 @@ impl Analyser {
             return;
         }
         let (new, old) = self.ring.split_at(self.at);
-        for ((to, x), w) in self
-            .windowed
-            .iter_mut()
-            .zip(old.iter().chain(new))
-            .zip(&self.window)
-        {
+        for ((to, x), w) in self.windowed.iter_mut().zip(old.iter().chain(new)).zip(&self.window) {
             *to = f64::from(*x) * w;
         }
         self.fft.forward(&self.windowed, &mut self.bins);
@@ -215,13 +211,12 @@ impl Analyser {
         }
     }
 
-    /// Returns what was taken since the last call; writes the mean square of each band, as far as there are places.
+    /// Returns what was taken since the last call; writes the mean square of each band, as far as
+    /// there are places.
     pub fn read(&mut self, bands: &mut [f64]) -> Measured {
         let sums = core::mem::take(&mut self.sums);
         if sums.windows > 0 {
-            self.bands
-                .iter_mut()
-                .for_each(|power| *power /= sums.windows as f64);
+            self.bands.iter_mut().for_each(|power| *power /= sums.windows as f64);
             self.centroid_hz = match sums.power > 0.0 {
                 true => sums.moment / sums.power,
                 false => 0.0,
@@ -234,10 +229,6 @@ impl Analyser {
             0 => 0.0,
             frames => libm::sqrt(sums.squares / frames as f64),
         };
-        Measured {
-            level_rms,
-            centroid_hz: self.centroid_hz,
-            frames: sums.frames,
-        }
+        Measured { level_rms, centroid_hz: self.centroid_hz, frames: sums.frames }
     }
 }

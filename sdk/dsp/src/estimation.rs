@@ -1,8 +1,8 @@
 //! Linear prediction from signals: Yule–Walker, Burg and covariance.
 //!
-//! Each method takes several segments of one process and pools their sums, so neither a window nor the
-//! boundaries between segments enter; pass a single signal as `&[signal]`. Segments no longer than the order
-//! contribute nothing.
+//! Each method takes several segments of one process and pools their sums, so neither a window nor
+//! the boundaries between segments enter; pass a single signal as `&[signal]`. Segments no longer
+//! than the order contribute nothing.
 
 use alloc::vec::Vec;
 
@@ -11,16 +11,13 @@ use crate::linear_prediction::{
     LinearPrediction, Stages, coefficients_to_reflection, levinson_durbin, stabilize,
 };
 
-/// Biased autocorrelation, lags `0..=order`: `r[m] = Σ x[n] x[n + m] / N`, with sums and N pooled over the
-/// segments. All zero if there are no samples.
+/// Biased autocorrelation, lags `0..=order`: `r[m] = Σ x[n] x[n + m] / N`, with sums and N pooled
+/// over the segments. All zero if there are no samples.
 pub fn autocorrelation(segments: &[&[f64]], order: usize) -> Vec<f64> {
     let total: usize = segments.iter().map(|segment| segment.len()).sum();
     (0..=order)
         .map(|m| {
-            let sum: f64 = segments
-                .iter()
-                .map(|segment| lagged_product(segment, m))
-                .sum();
+            let sum: f64 = segments.iter().map(|segment| lagged_product(segment, m)).sum();
             sum / total.max(1) as f64
         })
         .collect()
@@ -36,8 +33,8 @@ pub fn yule_walker(segments: &[&[f64]], order: usize) -> LinearPrediction {
     levinson_durbin(&autocorrelation(segments, order), order)
 }
 
-/// Burg's estimate: each reflection coefficient minimises the sum of forward and backward error power (Burg
-/// 1975). Resolves short signals better than Yule–Walker, and is always stable.
+/// Burg's estimate: each reflection coefficient minimises the sum of forward and backward error
+/// power (Burg 1975). Resolves short signals better than Yule–Walker, and is always stable.
 pub fn burg(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let mut errors: Vec<BurgErrors> = segments.iter().map(|s| BurgErrors::new(s)).collect();
     let mut stages = Stages::new(order, autocorrelation(segments, 0)[0]);
@@ -73,12 +70,11 @@ impl BurgErrors {
     /// `Σ f b` and `Σ f² + b²`.
     fn sums(&self) -> (f64, f64) {
         let pairs = self.forward.iter().zip(&self.backward);
-        pairs.fold((0.0, 0.0), |(cross, power), (f, b)| {
-            (cross + f * b, power + f * f + b * b)
-        })
+        pairs.fold((0.0, 0.0), |(cross, power), (f, b)| (cross + f * b, power + f * f + b * b))
     }
 
-    /// Advances to the next stage: updates both errors and delays the backward one by a sample. Returns the sums of that stage.
+    /// Advances to the next stage: updates both errors and delays the backward one by a sample.
+    /// Returns the sums of that stage.
     fn advance(&mut self, k: f64) -> (f64, f64) {
         let (forward, backward) = (&mut self.forward[..], &mut self.backward[..]);
         let (mut cross, mut power) = (0.0, 0.0);
@@ -99,32 +95,24 @@ impl BurgErrors {
     }
 }
 
-/// Covariance estimate: least squares of the forward error over the samples that have all their predecessors.
-/// Exact for noiseless resonances, but possibly unstable; it is then made stable by [`stabilize`] and marked
-/// `adjusted`. `error` is the residual power per predicted sample before that.
+/// Covariance estimate: least squares of the forward error over the samples that have all their
+/// predecessors. Exact for noiseless resonances, but possibly unstable; it is then made stable by
+/// [`stabilize`] and marked `adjusted`. `error` is the residual power per predicted sample before
+/// that.
 pub fn covariance(segments: &[&[f64]], order: usize) -> LinearPrediction {
-    let long: Vec<&[f64]> = segments
-        .iter()
-        .copied()
-        .filter(|s| s.len() > order)
-        .collect();
+    let long: Vec<&[f64]> = segments.iter().copied().filter(|s| s.len() > order).collect();
     let count: usize = long.iter().map(|s| s.len() - order).sum();
     let gram = covariance_matrix(&long, order);
     let stride = order + 1;
     if !gram.iter().all(|g| g.is_finite()) {
         return LinearPrediction::silent(order);
     }
-    let matrix: Vec<f64> = (1..stride)
-        .flat_map(|i| gram[i * stride + 1..(i + 1) * stride].iter().copied())
-        .collect();
+    let matrix: Vec<f64> =
+        (1..stride).flat_map(|i| gram[i * stride + 1..(i + 1) * stride].iter().copied()).collect();
     let inverse = PseudoInverse::new(&matrix, order, order);
     let mut coefficients = alloc::vec![0.0; order];
     inverse.apply(&gram[1..stride], &mut coefficients);
-    let explained: f64 = coefficients
-        .iter()
-        .zip(&gram[1..])
-        .map(|(a, g)| a * g)
-        .sum();
+    let explained: f64 = coefficients.iter().zip(&gram[1..]).map(|(a, g)| a * g).sum();
     let error = (gram[0] - explained).max(0.0) / count.max(1) as f64;
     stable_model(coefficients, error, inverse.rank())
 }

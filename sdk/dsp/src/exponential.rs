@@ -4,13 +4,16 @@ use core::f64::consts::{LN_2, LOG2_E};
 
 use crate::wide::{Work, wide};
 
-/// Adding this to a number of magnitude below 2⁵¹ leaves the nearest integer in the low bits of the sum.
+/// Adding this to a number of magnitude below 2⁵¹ leaves the nearest integer in the low bits of the
+/// sum.
 const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
-/// Numbers that are worked on side by side: in a module, whose loops are not made to by the compiler (`xtask/src/wasm.rs`).
+/// Numbers that are worked on side by side: in a module, whose loops are not made to by the
+/// compiler (`xtask/src/wasm.rs`).
 const GROUP: usize = if cfg!(target_family = "wasm") { 4 } else { 1 };
 /// Range to which inputs are clamped; exponentials at both ends are normal numbers.
 const RANGE: (f64, f64) = (-700.0, 700.0);
-/// Taylor coefficients, highest first; for arguments up to half of ln 2 the truncation error is below 3e-10.
+/// Taylor coefficients, highest first; for arguments up to half of ln 2 the truncation error is
+/// below 3e-10.
 const TAYLOR: [f64; 9] = taylor();
 
 const fn taylor() -> [f64; 9] {
@@ -25,8 +28,9 @@ const fn taylor() -> [f64; 9] {
     terms
 }
 
-/// Replaces each number by its exponential, with a relative error below 1e-9. Inputs are clamped to ±700; NaN
-/// counts as -700. Branch-free, so that compilers vectorise it; bit-identical on every machine.
+/// Replaces each number by its exponential, with a relative error below 1e-9. Inputs are clamped to
+/// ±700; NaN counts as -700. Branch-free, so that compilers vectorise it; bit-identical on every
+/// machine.
 ///
 /// ```
 /// let mut numbers = [0.0, 1.0];

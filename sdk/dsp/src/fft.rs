@@ -1,8 +1,8 @@
 //! Real FFTs of any length in double precision, bit-identical on every machine.
 //!
-//! Library FFTs choose instructions, and thereby rounding, by the processor, and take sines from the system's C library.
-//! These (Stockham, radices 2 to 5 and 7; Bluestein's algorithm for lengths with other prime factors) are plain arithmetic,
-//! with tables from `libm`.
+//! Library FFTs choose instructions, and thereby rounding, by the processor, and take sines from
+//! the system's C library. These (Stockham, radices 2 to 5 and 7; Bluestein's algorithm for lengths
+//! with other prime factors) are plain arithmetic, with tables from `libm`.
 
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
@@ -52,8 +52,8 @@ impl RealFft {
         alloc::vec![Complex::ZERO; self.len / 2 + 1]
     }
 
-    /// Writes `X_k = Σ x_n exp(-2πi k n / len)`. Samples beyond the length are ignored, and missing ones are zero.
-    /// Does not allocate.
+    /// Writes `X_k = Σ x_n exp(-2πi k n / len)`. Samples beyond the length are ignored, and missing
+    /// ones are zero. Does not allocate.
     pub fn forward(&mut self, samples: &[f64], bins: &mut [Complex<f64>]) {
         let samples = &samples[..samples.len().min(self.len)];
         if self.len.is_multiple_of(2) {
@@ -70,8 +70,9 @@ impl RealFft {
         }
     }
 
-    /// Writes `x_n = Re X_0 + Σ 2 Re(X_k exp(2πi k n / len))`, where an even length's last bin counts once. This is `len` times
-    /// the signal whose spectrum the bins are. Missing bins are zero. Does not allocate.
+    /// Writes `x_n = Re X_0 + Σ 2 Re(X_k exp(2πi k n / len))`, where an even length's last bin
+    /// counts once. This is `len` times the signal whose spectrum the bins are. Missing bins are
+    /// zero. Does not allocate.
     pub fn inverse(&mut self, bins: &[Complex<f64>], samples: &mut [f64]) {
         let len = self.len;
         let bin = |k: usize| bins.get(k).copied().unwrap_or_default();
@@ -105,7 +106,8 @@ impl RealFft {
         }
     }
 
-    /// The spectrum of a real signal from that of the complex signal whose parts are its even and odd samples.
+    /// The spectrum of a real signal from that of the complex signal whose parts are its even and
+    /// odd samples.
     fn unfold(&self, bins: &mut [Complex<f64>]) {
         let half = self.fold.len();
         for (k, bin) in bins.iter_mut().enumerate().take(half) {
@@ -143,7 +145,8 @@ mod tests {
     }
 
     proptest! {
-        /// As rustfft's transforms, by lengths of all kinds: products of small primes, primes, odd ones.
+        /// As rustfft's transforms, by lengths of all kinds: products of small primes, primes, odd
+        /// ones.
         #[test]
         fn transforms_equal_those_of_rustfft(
             len in prop_oneof![1..400usize, Just(4_000), Just(8_820), Just(9_600), Just(2_205), Just(4_003), Just(10_006)],

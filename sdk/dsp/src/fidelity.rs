@@ -1,10 +1,11 @@
-//! Distances of a magnitude spectrum from a reference, by measures that no model of this project is fitted
-//! to: third-octave bands, and the bin-by-bin log-spectral distance.
+//! Distances of a magnitude spectrum from a reference, by measures that no model of this project is
+//! fitted to: third-octave bands, and the bin-by-bin log-spectral distance.
 //!
-//! Both measures take slices of equal length (a longer one is cut) and raise a model's magnitude to at least
-//! 1e-9 of the reference's largest, so that an empty band gives a large but finite error.
+//! Both measures take slices of equal length (a longer one is cut) and raise a model's magnitude to
+//! at least 1e-9 of the reference's largest, so that an empty band gives a large but finite error.
 //!
-//! The nine-band error is no such measure: it is computed from the energies that `bands` of nine stores.
+//! The nine-band error is no such measure: it is computed from the energies that `bands` of nine
+//! stores.
 
 use alloc::vec::Vec;
 
@@ -13,15 +14,15 @@ use crate::bands::rms;
 /// Third-octave bands: their edges are `20 · 2^(k/3)` Hz, k from 0 to this.
 pub const THIRD_OCTAVES: usize = 17;
 const LOWEST_HZ: f64 = 20.0;
-/// Relative tolerance within which a frequency below an edge counts as on it: edges at 40, 80, ... Hz are
-/// bins of the grid, and a computed power of 2 may be rounded up.
+/// Relative tolerance within which a frequency below an edge counts as on it: edges at 40, 80, ...
+/// Hz are bins of the grid, and a computed power of 2 may be rounded up.
 const ON_EDGE: f64 = 1e-12;
 /// Smallest magnitude of a model, relative to the largest of the reference.
 const RELATIVE_FLOOR: f64 = 1e-9;
 
-/// RMS over third-octave bands of `10 log10(model energy / reference energy)`, decibels; energy is the sum of
-/// squared magnitudes. Level differences count: no gain is removed. Uses the bands that contain a bin and
-/// energy of the reference; `None` if there is no such band.
+/// RMS over third-octave bands of `10 log10(model energy / reference energy)`, decibels; energy is
+/// the sum of squared magnitudes. Level differences count: no gain is removed. Uses the bands that
+/// contain a bin and energy of the reference; `None` if there is no such band.
 ///
 /// ```
 /// use htex_dsp::fidelity::third_octave_error_rms_db;
@@ -44,20 +45,18 @@ pub fn third_octave_error_rms_db(
         }
     }
     let heard = energies.iter().filter(|(reference, _)| *reference > 0.0);
-    let errors_db: Vec<f64> = heard
-        .map(|(reference, model)| 10.0 * libm::log10(model / reference))
-        .collect();
+    let errors_db: Vec<f64> =
+        heard.map(|(reference, model)| 10.0 * libm::log10(model / reference)).collect();
     (!errors_db.is_empty()).then(|| rms(&errors_db))
 }
 
-/// RMS over the bins in which the reference is above 0 of `20 log10(model / reference)`, decibels; `None` if
-/// there is no such bin.
+/// RMS over the bins in which the reference is above 0 of `20 log10(model / reference)`, decibels;
+/// `None` if there is no such bin.
 pub fn log_spectral_distance_db(reference: &[f64], model: &[f64]) -> Option<f64> {
     let least = floor(reference);
     let heard = reference.iter().zip(model).filter(|(r, _)| **r > 0.0);
-    let errors_db: Vec<f64> = heard
-        .map(|(reference, model)| 20.0 * libm::log10(model.max(least) / reference))
-        .collect();
+    let errors_db: Vec<f64> =
+        heard.map(|(reference, model)| 20.0 * libm::log10(model.max(least) / reference)).collect();
     (!errors_db.is_empty()).then(|| rms(&errors_db))
 }
 
@@ -65,7 +64,8 @@ fn floor(reference: &[f64]) -> f64 {
     RELATIVE_FLOOR * reference.iter().copied().fold(0.0, f64::max)
 }
 
-/// Returns the index of the third-octave band that contains a frequency; the lower edge belongs to the band, the upper one does not.
+/// Returns the index of the third-octave band that contains a frequency; the lower edge belongs to
+/// the band, the upper one does not.
 pub fn third_octave(frequency_hz: f64) -> Option<usize> {
     let edge_hz = |k: usize| LOWEST_HZ * libm::exp2(k as f64 / 3.0) * (1.0 - ON_EDGE);
     (0..THIRD_OCTAVES).find(|&k| edge_hz(k) <= frequency_hz && frequency_hz < edge_hz(k + 1))
@@ -89,14 +89,8 @@ mod tests {
     #[test]
     fn silence_gives_a_finite_error_and_an_empty_reference_none() {
         let f = [100.0, 105.0];
-        assert_eq!(
-            third_octave_error_rms_db(&f, &[1.0; 2], &[0.0; 2]),
-            Some(180.0)
-        );
-        assert_eq!(
-            log_spectral_distance_db(&[1.0, 0.0], &[0.0, 5.0]),
-            Some(180.0)
-        );
+        assert_eq!(third_octave_error_rms_db(&f, &[1.0; 2], &[0.0; 2]), Some(180.0));
+        assert_eq!(log_spectral_distance_db(&[1.0, 0.0], &[0.0, 5.0]), Some(180.0));
         assert_eq!(third_octave_error_rms_db(&f, &[0.0; 2], &[1.0; 2]), None);
         assert_eq!(log_spectral_distance_db(&[0.0; 2], &[1.0; 2]), None);
         assert_eq!(third_octave_error_rms_db(&[2000.0], &[1.0], &[1.0]), None);

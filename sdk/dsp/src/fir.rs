@@ -17,16 +17,15 @@ pub struct Fir {
 
 impl Fir {
     /// Makes a filter of `taps` coefficients (rounded up to an odd number) that approximates
-    /// `magnitude(hertz)` from 0 to half of `rate_hz`. Frequency sampling with a Hann window: the resolution
-    /// is about `4 · rate_hz / taps` hertz. The delay is half the length.
+    /// `magnitude(hertz)` from 0 to half of `rate_hz`. Frequency sampling with a Hann window: the
+    /// resolution is about `4 · rate_hz / taps` hertz. The delay is half the length.
     pub fn with_magnitude(taps: usize, rate_hz: f64, magnitude: impl Fn(f64) -> f64) -> Self {
         let taps = taps.max(1) | 1;
         let half = taps / 2;
         // A fine frequency grid, so that the truncated impulse response does not alias in time.
         let bins = (4 * taps).max(64);
-        let sampled: Vec<f64> = (0..=bins)
-            .map(|k| magnitude(0.5 * rate_hz * k as f64 / bins as f64))
-            .collect();
+        let sampled: Vec<f64> =
+            (0..=bins).map(|k| magnitude(0.5 * rate_hz * k as f64 / bins as f64)).collect();
         let cosine: Vec<f64> = (0..2 * bins)
             .map(|i| libm::cos(core::f64::consts::PI * i as f64 / bins as f64))
             .collect();
@@ -55,10 +54,7 @@ impl Fir {
         let padded = kernel.len().next_multiple_of(8);
         let mut front = alloc::vec![0.0; padded - kernel.len()];
         front.append(&mut kernel);
-        Self {
-            history: alloc::vec![0.0; padded - 1 + CHUNK],
-            kernel: front,
-        }
+        Self { history: alloc::vec![0.0; padded - 1 + CHUNK], kernel: front }
     }
 
     /// Filters in place. Does not allocate.
@@ -69,8 +65,7 @@ impl Fir {
             for (i, sample) in chunk.iter_mut().enumerate() {
                 *sample = dot(&self.kernel, &self.history[i..i + self.kernel.len()]);
             }
-            self.history
-                .copy_within(chunk.len()..chunk.len() + before, 0);
+            self.history.copy_within(chunk.len()..chunk.len() + before, 0);
         }
     }
 }

@@ -20,13 +20,7 @@ pub struct Glide {
 impl Glide {
     /// A constant gain of `value`; later changes take `len` samples (at least one).
     pub fn new(value: f32, len: u32) -> Self {
-        Self {
-            value,
-            target: value,
-            step: 0.0,
-            len: len.max(1),
-            left: 0,
-        }
+        Self { value, target: value, step: 0.0, len: len.max(1), left: 0 }
     }
 
     /// Sets the gain at once.
@@ -73,11 +67,7 @@ impl Glide {
     pub fn advance(&mut self) -> f32 {
         if self.left > 0 {
             self.left -= 1;
-            self.value = if self.left == 0 {
-                self.target
-            } else {
-                self.value + self.step
-            };
+            self.value = if self.left == 0 { self.target } else { self.value + self.step };
         }
         self.value
     }

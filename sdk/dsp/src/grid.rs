@@ -1,8 +1,8 @@
 //! The frequency grid of texture spectra.
 //!
-//! Unit RMS is that of the band's bins. The window spreads a component at 20 Hz partly into bins outside the band: with
-//! unit RMS over all bins each copy of a texture with much energy there would lose up to 0.1 dB, with this definition
-//! 300 s of three copies stay within 0.1 dB.
+//! Unit RMS is that of the band's bins. The window spreads a component at 20 Hz partly into bins
+//! outside the band: with unit RMS over all bins each copy of a texture with much energy there
+//! would lose up to 0.1 dB, with this definition 300 s of three copies stay within 0.1 dB.
 
 use alloc::vec::Vec;
 
@@ -26,10 +26,7 @@ pub struct Band {
 
 impl Band {
     /// The tactile band of the paper: 20 to 1000 Hz.
-    pub const TACTILE: Self = Self {
-        low_hz: 20.0,
-        high_hz: 1000.0,
-    };
+    pub const TACTILE: Self = Self { low_hz: 20.0, high_hz: 1000.0 };
 
     /// Both edges, hertz.
     pub fn edges(self) -> (f64, f64) {
@@ -53,9 +50,7 @@ impl Band {
 
     /// The grid frequencies in the band, ascending, hertz.
     pub fn grid_hz(&self) -> Vec<f64> {
-        (self.first_bin()..=self.last_bin())
-            .map(|bin| bin as f64 * GRID_HZ)
-            .collect()
+        (self.first_bin()..=self.last_bin()).map(|bin| bin as f64 * GRID_HZ).collect()
     }
 
     /// Whether `frequency_hz` lies in the band, edges included.
@@ -64,12 +59,12 @@ impl Band {
     }
 }
 
-/// Part of a component's power that the bins of a band measure through the periodic Hann window: 1 well
-/// inside the band, 5/6 at its edge bins, 1/2 midway between an edge bin and the first one outside, 0 far
-/// outside.
+/// Part of a component's power that the bins of a band measure through the periodic Hann window: 1
+/// well inside the band, 5/6 at its edge bins, 1/2 midway between an edge bin and the first one
+/// outside, 0 far outside.
 ///
-/// Over all bins the window measures 1.5 times a component's power; bins outside the band do not contribute.
-/// Noise that is to have a given level in the band is amplified to compensate.
+/// Over all bins the window measures 1.5 times a component's power; bins outside the band do not
+/// contribute. Noise that is to have a given level in the band is amplified to compensate.
 pub fn read_part(band: Band, frequency_hz: f64) -> f64 {
     ReadPart::new(band).at(frequency_hz)
 }
@@ -82,10 +77,7 @@ pub(crate) struct ReadPart {
 
 impl ReadPart {
     pub(crate) fn new(band: Band) -> Self {
-        Self {
-            first: band.first_bin() as f64,
-            last: band.last_bin() as f64,
-        }
+        Self { first: band.first_bin() as f64, last: band.last_bin() as f64 }
     }
 
     pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
@@ -98,19 +90,17 @@ impl ReadPart {
         let turn = crate::trig::sin(core::f64::consts::PI * (at - nearest)) / core::f64::consts::PI;
         let low = first.max(nearest - WINDOW_BINS) as i64;
         let high = last.min(nearest + WINDOW_BINS) as i64;
-        let read: f64 = (low..=high)
-            .map(|bin| hann_power(bin as f64 - at, turn))
-            .sum();
+        let read: f64 = (low..=high).map(|bin| hann_power(bin as f64 - at, turn)).sum();
         read / 1.5
     }
 }
 
-/// Bins on either side of a component beyond which the Hann window measures almost nothing: 2e-5 of its power
-/// in total.
+/// Bins on either side of a component beyond which the Hann window measures almost nothing: 2e-5 of
+/// its power in total.
 const WINDOW_BINS: f64 = 4.0;
 
-/// Power that the Hann window measures `x` bins from a component of unit power: the square of `sinc(x) / (1 -
-/// x²)`; `turn` is `sin(πx) / π` up to its sign.
+/// Power that the Hann window measures `x` bins from a component of unit power: the square of
+/// `sinc(x) / (1 - x²)`; `turn` is `sin(πx) / π` up to its sign.
 fn hann_power(x: f64, turn: f64) -> f64 {
     let x = libm::fabs(x);
     let amplitude = if x < 1e-6 {
@@ -129,8 +119,8 @@ impl From<(f64, f64)> for Band {
     }
 }
 
-/// RMS of a texture spectrum given on the grid. Each bin is measured through the periodic Hann window, so its
-/// power is `magnitude² / (2 · 1.5)` (equivalent noise bandwidth 1.5 bins).
+/// RMS of a texture spectrum given on the grid. Each bin is measured through the periodic Hann
+/// window, so its power is `magnitude² / (2 · 1.5)` (equivalent noise bandwidth 1.5 bins).
 ///
 /// Unit: that of the magnitudes.
 pub fn level_rms(magnitude: &[f64]) -> f64 {
@@ -158,9 +148,9 @@ mod tests {
         let rate_hz = len as f64 * GRID_HZ;
         let mut analyzer = SegmentAnalyzer::new(len);
         let mut bins = analyzer.make_bins();
-        for hz in [
-            9.0, 12.5, 15.0, 17.5, 18.7, 20.0, 22.5, 31.0, 500.0, 998.0, 1000.0, 1002.5, 1011.0,
-        ] {
+        for hz in
+            [9.0, 12.5, 15.0, 17.5, 18.7, 20.0, 22.5, 31.0, 500.0, 998.0, 1000.0, 1002.5, 1011.0]
+        {
             // Two phases a quarter turn apart, whose mean power is that of noise of this frequency.
             let power: f64 = [0.0, 0.25]
                 .map(|turn| {
@@ -168,9 +158,7 @@ mod tests {
                         libm::cos(core::f64::consts::TAU * (turn + hz * n as f64 / rate_hz))
                     };
                     let samples: Vec<f64> = (0..len).map(wave).collect();
-                    analyzer
-                        .analyze(&samples, &mut bins)
-                        .expect("as long as the segment");
+                    analyzer.analyze(&samples, &mut bins).expect("as long as the segment");
                     let magnitude: Vec<f64> = bins[band.first_bin()..=band.last_bin()]
                         .iter()
                         .map(|bin| bin.norm() * analyzer.amplitude_scale())

@@ -1,10 +1,11 @@
-//! Peaks of a spectrum between its bins: frequency and amplitude of the sinusoid whose line, read through the periodic
-//! Hann window, has the heights of a local maximum and its larger neighbour.
+//! Peaks of a spectrum between its bins: frequency and amplitude of the sinusoid whose line, read
+//! through the periodic Hann window, has the heights of a local maximum and its larger neighbour.
 //!
-//! Of a line `d` bins from the maximum the neighbour on its side is `(1 + d) / (2 - d)` times as high; averages of
-//! magnitudes over segments keep this ratio. The ratio of two bins was compared with a formula of three bins, `d = 2 (R -
-//! L) / (L + 2 C + R)`, and with a parabola through three logarithms; errors as RMS and largest, of averages of 10
-//! segments in power, from 60 Hz to 900 Hz:
+//! Of a line `d` bins from the maximum the neighbour on its side is `(1 + d) / (2 - d)` times as
+//! high; averages of magnitudes over segments keep this ratio. The ratio of two bins was compared
+//! with a formula of three bins, `d = 2 (R - L) / (L + 2 C + R)`, and with a parabola through three
+//! logarithms; errors as RMS and largest, of averages of 10 segments in power, from 60 Hz to 900
+//! Hz:
 //!
 //! | spectrum | two bins | three bins | parabola |
 //! |---|---|---|---|
@@ -21,12 +22,14 @@ use crate::peaks::{Peak, local_maxima, select_distinct};
 use crate::window::hann_main_lobe;
 
 /// Selects the strongest local maxima that are at least `jnd` apart, ascending in frequency, as
-/// [`select_peaks`](crate::peaks::select_peaks) does, by their frequencies and magnitudes between the bins.
+/// [`select_peaks`](crate::peaks::select_peaks) does, by their frequencies and magnitudes between
+/// the bins.
 ///
-/// An edge bin counts as a maximum where it is above its only neighbour: its peak is at the edge or inside. A spectrum of
-/// one value has no peak.
+/// An edge bin counts as a maximum where it is above its only neighbour: its peak is at the edge or
+/// inside. A spectrum of one value has no peak.
 ///
-/// `frequency_hz` is the 5 Hz grid of a band, in hertz, and as long as `magnitude`; the longer slice is cut.
+/// `frequency_hz` is the 5 Hz grid of a band, in hertz, and as long as `magnitude`; the longer
+/// slice is cut.
 ///
 /// ```
 /// use htex_dsp::interpolated_peaks::select_interpolated_peaks;
@@ -43,9 +46,7 @@ pub fn select_interpolated_peaks(
 ) -> Vec<Peak> {
     let magnitude = &magnitude[..magnitude.len().min(frequency_hz.len())];
     let maxima = maxima_with_edges(magnitude);
-    let peaks = maxima
-        .into_iter()
-        .map(|bin| peak_near(bin, frequency_hz, magnitude));
+    let peaks = maxima.into_iter().map(|bin| peak_near(bin, frequency_hz, magnitude));
     select_distinct(peaks, max_count, jnd)
 }
 
@@ -76,8 +77,8 @@ fn peak_near(bin: usize, frequency_hz: &[f64], magnitude: &[f64]) -> Peak {
     }
 }
 
-/// Distance of a line from the bin of a maximum towards a neighbour, from the neighbour's height over the maximum's; 0
-/// for a neighbour lower than half, as no line has two of.
+/// Distance of a line from the bin of a maximum towards a neighbour, from the neighbour's height
+/// over the maximum's; 0 for a neighbour lower than half, as no line has two of.
 fn line_distance_bins(ratio: f64) -> f64 {
     ((2.0 * ratio - 1.0) / (1.0 + ratio)).max(0.0)
 }

@@ -1,7 +1,8 @@
 //! Inverse FFT of a half spectrum to a real signal, bit-identical on every machine.
 //!
-//! Library FFTs choose instructions, and thereby rounding, by the processor. This one (Stockham, radices 2 to
-//! 5) is plain arithmetic on arrays, which compilers vectorise in native libraries and WASM modules alike.
+//! Library FFTs choose instructions, and thereby rounding, by the processor. This one (Stockham,
+//! radices 2 to 5) is plain arithmetic on arrays, which compilers vectorise in native libraries and
+//! WASM modules alike.
 //!
 //! Lengths of frames have no prime factor above 5. Library FFTs are slow as WASM, too.
 
@@ -36,16 +37,17 @@ pub struct Workspace {
     to: Complexes,
 }
 
-/// One radix. Butterfly `i` reads the points `i + count j`, for each `j` below the radix, and writes the points
-/// `radix stride p + stride k + q`, for each `k`, where `i = stride p + q`.
+/// One radix. Butterfly `i` reads the points `i + count j`, for each `j` below the radix, and
+/// writes the points `radix stride p + stride k + q`, for each `k`, where `i = stride p + q`.
 #[derive(Debug, Clone)]
 struct Stage {
     radix: usize,
     stride: usize,
     /// Butterflies of the stage.
     count: usize,
-    /// Groups of [`WIDTH`] butterflies that follow each other and have the same twiddles. A stage whose stride is not a
-    /// multiple of the width has 1, and writes its results in groups that are then spread.
+    /// Groups of [`WIDTH`] butterflies that follow each other and have the same twiddles. A stage
+    /// whose stride is not a multiple of the width has 1, and writes its results in groups that are
+    /// then spread.
     groups: usize,
     /// `exp(2πi p k / length)` for each such group and each `k`: cosines, then sines.
     twiddles: Vec<[Lanes; 2]>,
@@ -69,7 +71,8 @@ pub(crate) fn smooth_length(least: usize) -> usize {
 }
 
 impl InverseRealFft {
-    /// A transform to `2 * half` samples. If `half` has a prime factor above 5, the next number without one is used.
+    /// A transform to `2 * half` samples. If `half` has a prime factor above 5, the next number
+    /// without one is used.
     pub fn new(half: usize) -> Self {
         let half = smooth_length(half);
         let (mut length, mut stride) = (half, 1);
@@ -87,15 +90,12 @@ impl InverseRealFft {
 
     /// Allocates the memory for [`Self::run`].
     pub fn workspace(&self) -> Workspace {
-        Workspace {
-            from: Complexes::zeros(self.half),
-            to: Complexes::zeros(self.half),
-        }
+        Workspace { from: Complexes::zeros(self.half), to: Complexes::zeros(self.half) }
     }
 
-    /// Writes `Σ 2 Re(X_k exp(2πi k n / len))` over `n`. The bins from `first` on, in 1 to `half - 1`, are
-    /// directions (cosines and sines) times amplitudes; other bins are zero and surplus values are ignored.
-    /// Does not allocate.
+    /// Writes `Σ 2 Re(X_k exp(2πi k n / len))` over `n`. The bins from `first` on, in 1 to
+    /// `half - 1`, are directions (cosines and sines) times amplitudes; other bins are zero and
+    /// surplus values are ignored. Does not allocate.
     pub fn run(
         &self,
         workspace: &mut Workspace,
@@ -104,18 +104,11 @@ impl InverseRealFft {
         amplitude: &[f32],
         out: &mut [f32],
     ) {
-        wide(Transform {
-            fft: self,
-            workspace,
-            first,
-            directions,
-            amplitude,
-            out,
-        });
+        wide(Transform { fft: self, workspace, first, directions, amplitude, out });
     }
 
-    /// Computes from the real signal's spectrum that of the complex signal whose parts are its even and odd
-    /// samples.
+    /// Computes from the real signal's spectrum that of the complex signal whose parts are its even
+    /// and odd samples.
     #[inline(always)]
     fn fold(&self, to: &mut Complexes, first: usize, [cos, sin]: [&[f32]; 2], amplitude: &[f32]) {
         to.re.fill(0.0);
@@ -147,8 +140,7 @@ impl Work for Transform<'_> {
     #[inline(always)]
     fn run(self) {
         let Workspace { from, to } = self.workspace;
-        self.fft
-            .fold(from, self.first, self.directions, self.amplitude);
+        self.fft.fold(from, self.first, self.directions, self.amplitude);
         for stage in &self.fft.stages {
             stage.run(from, to);
         }
@@ -164,21 +156,14 @@ impl Complexes {
     /// Numbers for `len` points, and for the lanes beside the last ones of each row of a stage.
     fn zeros(len: usize) -> Self {
         let zeros = || alloc::vec![0.0; len + LARGEST_RADIX * (WIDTH - 1)];
-        Self {
-            re: zeros(),
-            im: zeros(),
-        }
+        Self { re: zeros(), im: zeros() }
     }
 }
 
 impl Stage {
     fn new(radix: usize, length: usize, stride: usize) -> Self {
         let count = length / radix * stride;
-        let groups = if stride.is_multiple_of(WIDTH) {
-            stride / WIDTH
-        } else {
-            1
-        };
+        let groups = if stride.is_multiple_of(WIDTH) { stride / WIDTH } else { 1 };
         let twiddle = |i: usize| {
             let (first, k) = (i / radix * groups * WIDTH, i % radix);
             let (mut of, mut one) = (first / stride, unit(first / stride * k, length));
@@ -197,9 +182,7 @@ impl Stage {
             stride,
             count,
             groups,
-            twiddles: (0..radix * count.div_ceil(groups * WIDTH))
-                .map(twiddle)
-                .collect(),
+            twiddles: (0..radix * count.div_ceil(groups * WIDTH)).map(twiddle).collect(),
         }
     }
 
@@ -217,7 +200,8 @@ impl Stage {
         }
     }
 
-    /// Transforms by one radix; the results stand in `to` where the stride is a multiple of [`WIDTH`], else in `from`.
+    /// Transforms by one radix; the results stand in `to` where the stride is a multiple of
+    /// [`WIDTH`], else in `from`.
     #[inline(always)]
     fn run_by<const R: usize, B: Butterfly<R>>(&self, from: &mut Complexes, to: &mut Complexes) {
         self.turn::<R, B>(from, to);
@@ -234,7 +218,8 @@ impl Stage {
         }
     }
 
-    /// Writes the butterflies of `from` to `to`, all `k` of each group of twiddles behind one another.
+    /// Writes the butterflies of `from` to `to`, all `k` of each group of twiddles behind one
+    /// another.
     #[inline(always)]
     fn turn<const R: usize, B: Butterfly<R>>(&self, from: &Complexes, to: &mut Complexes) {
         let run = self.groups * WIDTH;
@@ -262,7 +247,8 @@ impl Stage {
         }
     }
 
-    /// From groups of [`WIDTH`] results, all `k` of each behind one another, to the places of the points.
+    /// From groups of [`WIDTH`] results, all `k` of each behind one another, to the places of the
+    /// points.
     #[cfg_attr(target_family = "wasm", inline(never))]
     #[cfg_attr(not(target_family = "wasm"), inline(always))]
     fn spread(&self, groups: &[f32], out: &mut [f32]) {
@@ -309,8 +295,8 @@ fn spread_first<const R: usize>(groups: &[f32], out: &mut [f32]) {
     }
 }
 
-/// The groups of `len` numbers from `first` on. What the bounds of all rows of a loop are known by is
-/// this length: nothing is checked at each number.
+/// The groups of `len` numbers from `first` on. What the bounds of all rows of a loop are known by
+/// is this length: nothing is checked at each number.
 #[inline(always)]
 fn groups(from: &[f32], first: usize, len: usize) -> &[[f32; WIDTH]] {
     &from[first..first + len].as_chunks().0[..len / WIDTH]
@@ -352,9 +338,8 @@ mod tests {
     #[test]
     fn the_transform_equals_the_direct_sum() {
         for half in [4, 6, 10, 15, 16, 45, 48, 90, 120, 500, 810] {
-            let bins: Vec<(f32, f32)> = (2..half)
-                .map(|k| (1.0 / k as f32, 0.3 - 0.01 * k as f32))
-                .collect();
+            let bins: Vec<(f32, f32)> =
+                (2..half).map(|k| (1.0 / k as f32, 0.3 - 0.01 * k as f32)).collect();
             let mut out = alloc::vec![0.0; 2 * half];
             let (re, im): (Vec<f32>, Vec<f32>) = bins.iter().copied().unzip();
             let fft = InverseRealFft::new(half);

@@ -11,15 +11,16 @@ pub(crate) const ATTENUATION_DB: f64 = 70.0;
 /// Length, number of phases, whether the rows are exact, and the bits of the cut-off.
 type Key = (usize, u64, bool, u64);
 
-/// Returns the kernel of [`windowed_sinc`]. With `std`, kernels in use are shared: all voices of the same
-/// rates read the same coefficients.
+/// Returns the kernel of [`windowed_sinc`]. With `std`, kernels in use are shared: all voices of
+/// the same rates read the same coefficients.
 pub(crate) fn kernel(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Arc<[f32]> {
     static KERNELS: Shared<Key, [f32]> = Shared::new();
     let key = (taps, phases, exact, cutoff.to_bits());
     KERNELS.get(key, || windowed_sinc(taps, phases, exact, cutoff).into())
 }
 
-/// Windowed sinc, one row per phase, plus one row if rows are interpolated; `cutoff` in cycles per sample.
+/// Windowed sinc, one row per phase, plus one row if rows are interpolated; `cutoff` in cycles per
+/// sample.
 fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32> {
     let rows = phases + u64::from(!exact);
     let beta = 0.1102 * (ATTENUATION_DB - 8.7);
@@ -51,11 +52,7 @@ pub(crate) fn kaiser_length(width: f64) -> usize {
 
 fn sinc(x: f64) -> f64 {
     let a = core::f64::consts::PI * x;
-    if x == 0.0 {
-        1.0
-    } else {
-        crate::trig::sin(a) / a
-    }
+    if x == 0.0 { 1.0 } else { crate::trig::sin(a) / a }
 }
 
 /// Kaiser's window.

@@ -1,9 +1,9 @@
-//! All-pole lattice filter: unlike a direct form, stable while its coefficients change, as long as each
-//! reflection coefficient is inside (-1, 1).
+//! All-pole lattice filter: unlike a direct form, stable while its coefficients change, as long as
+//! each reflection coefficient is inside (-1, 1).
 //!
-//! A module checks its time limit at the head of every loop, and values that one round passes to the next go through
-//! memory there. The lattice therefore has a few fixed lengths with all state in registers; [`crate::biquad`] and
-//! [`crate::sine_bank`] are unrolled for the same reason.
+//! A module checks its time limit at the head of every loop, and values that one round passes to
+//! the next go through memory there. The lattice therefore has a few fixed lengths with all state
+//! in registers; [`crate::biquad`] and [`crate::sine_bank`] are unrolled for the same reason.
 
 use alloc::vec::Vec;
 
@@ -26,14 +26,11 @@ pub struct AllPoleLattice {
 impl AllPoleLattice {
     /// A filter with zero state. Stable for coefficients inside (-1, 1).
     pub fn new(reflection: &[f64]) -> Self {
-        Self {
-            reflection: reflection.to_vec(),
-            delayed: alloc::vec![0.0; reflection.len()],
-        }
+        Self { reflection: reflection.to_vec(), delayed: alloc::vec![0.0; reflection.len()] }
     }
 
-    /// Makes the filter one of at least this order; the new coefficients are 0, so that it stays the same filter. Does not allocate
-    /// after [`Self::reserve`] of this order.
+    /// Makes the filter one of at least this order; the new coefficients are 0, so that it stays
+    /// the same filter. Does not allocate after [`Self::reserve`] of this order.
     pub fn raise_order(&mut self, order: usize) {
         let order = order.max(self.order());
         self.reflection.resize(order, 0.0);
@@ -70,8 +67,8 @@ impl AllPoleLattice {
 
     /// Filters a block in place.
     pub fn process(&mut self, block: &mut [f64]) {
-        // Stages with zero coefficients above the others change nothing, so a few fixed lengths, with all
-        // state in registers, cover every order.
+        // Stages with zero coefficients above the others change nothing, so a few fixed lengths,
+        // with all state in registers, cover every order.
         match self.order() {
             0..=2 => self.run::<2>(block),
             3..=4 => self.run::<4>(block),
@@ -99,21 +96,19 @@ impl AllPoleLattice {
         for sample in block {
             *sample = stages(*sample, &self.reflection, &mut self.delayed);
         }
-        self.delayed
-            .iter_mut()
-            .for_each(|x| *x = without_denormals(*x));
+        self.delayed.iter_mut().for_each(|x| *x = without_denormals(*x));
     }
 
-    /// Stores the state after a block. Small values become zero before they reach denormals, which slow down
-    /// arithmetic.
+    /// Stores the state after a block. Small values become zero before they reach denormals, which
+    /// slow down arithmetic.
     fn keep(&mut self, delayed: &[f64]) {
         for (kept, x) in self.delayed.iter_mut().zip(delayed) {
             *kept = without_denormals(*x);
         }
     }
 
-    /// Sets the state of a filter with constant coefficients from its last outputs, the newest at the end;
-    /// `past` has at least as many elements as the order.
+    /// Sets the state of a filter with constant coefficients from its last outputs, the newest at
+    /// the end; `past` has at least as many elements as the order.
     pub(crate) fn set_past(&mut self, past: &[f64]) {
         self.reset();
         for &y in past {

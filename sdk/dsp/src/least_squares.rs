@@ -12,8 +12,8 @@ const ORTHOGONAL: f64 = 1e-15;
 
 /// The Moore–Penrose inverse of a matrix, stored for repeated use.
 ///
-/// Singular values up to `max(rows, columns) · 2⁻⁵²` times the largest count as zero, so that zero or
-/// dependent rows are handled.
+/// Singular values up to `max(rows, columns) · 2⁻⁵²` times the largest count as zero, so that zero
+/// or dependent rows are handled.
 ///
 /// ```
 /// use htex_dsp::least_squares::PseudoInverse;
@@ -61,11 +61,7 @@ impl PseudoInverse {
                 }
             }
         }
-        Self {
-            inverse,
-            rows,
-            rank,
-        }
+        Self { inverse, rows, rank }
     }
 
     /// Number of singular values that do not count as zero.
@@ -81,8 +77,8 @@ impl PseudoInverse {
     }
 }
 
-/// Result of the one-sided Jacobi method: orthogonal `vectors`, each of length sigma, and the rotation that
-/// makes them.
+/// Result of the one-sided Jacobi method: orthogonal `vectors`, each of length sigma, and the
+/// rotation that makes them.
 struct Factors {
     vectors: Vec<Vec<f64>>,
     rotation: Vec<Vec<f64>>,

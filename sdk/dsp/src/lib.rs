@@ -2,8 +2,9 @@
 //! beta density, Butterworth filters, noise, oscillators, spectral shaping and resampling.
 //!
 //! This crate knows no texture asset and no file. Without the `std` feature it is `no_std + alloc`
-//! and detects no vector instructions. Elementary functions come from `libm`, and FFTs are plain arithmetic,
-//! so that the same inputs give the same bits on every processor, in native libraries and in WASM modules.
+//! and detects no vector instructions. Elementary functions come from `libm`, and FFTs are plain
+//! arithmetic, so that the same inputs give the same bits on every processor, in native libraries
+//! and in WASM modules.
 //!
 //! Frequencies are in hertz, rates in hertz, angles in radians, magnitudes in the unit of the
 //! signal unless a name says otherwise.

@@ -1,24 +1,25 @@
-//! Line spectral frequencies: the angles of the zeros of the symmetric and antisymmetric polynomials of a
-//! stable all-pole model (Itakura 1975). They interlace, so any weighted mean of two models' frequencies is
-//! again a stable model, which makes them safe to interpolate.
+//! Line spectral frequencies: the angles of the zeros of the symmetric and antisymmetric
+//! polynomials of a stable all-pole model (Itakura 1975). They interlace, so any weighted mean of
+//! two models' frequencies is again a stable model, which makes them safe to interpolate.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
 use crate::linear_prediction::coefficients_to_reflection;
 
-/// Step limit of a search: at least every third step halves the bracket, so this many steps halve `[0, π]` 56
-/// times, below the f64 resolution there.
+/// Step limit of a search: at least every third step halves the bracket, so this many steps halve
+/// `[0, π]` 56 times, below the f64 resolution there.
 const MOST_STEPS: usize = 3 * 56;
 /// Relative phase difference that is attributed to rounding.
 const NEAR: f64 = 4.0 * f64::EPSILON;
 
-/// Returns the p line spectral frequencies, radians, ascending inside (0, π); `None` if the model is
-/// unstable.
+/// Returns the p line spectral frequencies, radians, ascending inside (0, π); `None` if the model
+/// is unstable.
 ///
-/// They are the angles at which the phase of the lattice's all-pass, which decreases monotonically from 0 at
-/// ω = 0 to -(p + 1)π at ω = π, passes a multiple of π. The phase is an unambiguous sum over the reflection
-/// coefficients, so Newton's method inside a bracket finds each angle at any order.
+/// They are the angles at which the phase of the lattice's all-pass, which decreases monotonically
+/// from 0 at ω = 0 to -(p + 1)π at ω = π, passes a multiple of π. The phase is an unambiguous sum
+/// over the reflection coefficients, so Newton's method inside a bracket finds each angle at any
+/// order.
 ///
 /// ```
 /// use htex_dsp::line_spectrum::{from_line_spectral_frequencies, line_spectral_frequencies};
@@ -69,8 +70,8 @@ fn angle_of_phase(reflection: &[f64], target: f64, from: f64) -> f64 {
     at
 }
 
-/// Phase lag of `z⁻¹ B_p(z) / A_p(z)` at ω, where `B` is `A` reversed, and its slope. One stage maps the lag
-/// θ to `ω + θ + 2 arg(1 - k e^{-iθ})`; for |k| < 1 that argument is within ±π/2.
+/// Phase lag of `z⁻¹ B_p(z) / A_p(z)` at ω, where `B` is `A` reversed, and its slope. One stage
+/// maps the lag θ to `ω + θ + 2 arg(1 - k e^{-iθ})`; for |k| < 1 that argument is within ±π/2.
 fn all_pass_lag(reflection: &[f64], omega: f64) -> (f64, f64) {
     reflection.iter().fold((omega, 1.0), |(theta, slope), k| {
         let (sine, cosine) = crate::trig::sincos(theta);
@@ -81,23 +82,24 @@ fn all_pass_lag(reflection: &[f64], omega: f64) -> (f64, f64) {
     })
 }
 
-/// Prediction coefficients from line spectral frequencies in radians; `None` unless they are strictly
-/// ascending inside (0, π), the condition for a stable model, and at most [`MOST_LINES`].
+/// Prediction coefficients from line spectral frequencies in radians; `None` unless they are
+/// strictly ascending inside (0, π), the condition for a stable model, and at most [`MOST_LINES`].
 pub fn from_line_spectral_frequencies(lsf: &[f64]) -> Option<Vec<f64>> {
     let mut coefficients = alloc::vec![0.0; lsf.len()];
     coefficients_of_lines(lsf, &mut coefficients).then_some(coefficients)
 }
 
-/// As [`from_line_spectral_frequencies`], into an array of the same length; returns false instead of `None`.
-/// Does not allocate.
+/// As [`from_line_spectral_frequencies`], into an array of the same length; returns false instead
+/// of `None`. Does not allocate.
 pub fn coefficients_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     let inside = lsf.iter().all(|&w| w > 0.0 && w < PI);
     let ascend = lsf.windows(2).all(|pair| pair[0] < pair[1]);
     inside && ascend && zeros_of_lines(lsf, coefficients)
 }
 
-/// As [`coefficients_of_lines`], of a polynomial that is no denominator: its zeros may lie on the unit circle, where two lines are
-/// equal, or one is 0 or π. Returns false if the lines descend, or there are too many.
+/// As [`coefficients_of_lines`], of a polynomial that is no denominator: its zeros may lie on the
+/// unit circle, where two lines are equal, or one is 0 or π. Returns false if the lines descend, or
+/// there are too many.
 pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     let mut cosines = [0.0; MOST_LINES];
     let ascend = lsf.windows(2).all(|pair| pair[0] <= pair[1]);
@@ -113,8 +115,8 @@ pub fn zeros_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
 
 /// As [`zeros_of_lines`], from the cosines of at most [`MOST_LINES`] lines.
 ///
-/// The symmetric and the antisymmetric polynomial are a fixed factor and the quadratics of every second line, whose product is a
-/// palindrome: half of it is computed, of both together.
+/// The symmetric and the antisymmetric polynomial are a fixed factor and the quadratics of every
+/// second line, whose product is a palindrome: half of it is computed, of both together.
 pub fn coefficients_of_cosines(cosines: &[f64], coefficients: &mut [f64]) {
     // Memory for few lines is cleared in less time than for many.
     match cosines.len() {
@@ -128,8 +130,9 @@ pub const MOST_LINES: usize = 128;
 /// Quadratics of the symmetric polynomial at most.
 const MOST_FACTORS: usize = MOST_LINES / 2;
 
-/// The first halves of two palindromes, of the symmetric and the antisymmetric polynomial, each of degree `2 factors`:
-/// `Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line. The coefficient in the middle is the last.
+/// The first halves of two palindromes, of the symmetric and the antisymmetric polynomial, each of
+/// degree `2 factors`: `Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line. The coefficient in the
+/// middle is the last.
 struct Halves<const N: usize> {
     coefficients: [[f64; 2]; N],
     factors: [usize; 2],
@@ -137,10 +140,7 @@ struct Halves<const N: usize> {
 
 impl<const N: usize> Halves<N> {
     fn of(cosines: &[f64]) -> Self {
-        let mut halves = Self {
-            coefficients: [[0.0; 2]; N],
-            factors: [0; 2],
-        };
+        let mut halves = Self { coefficients: [[0.0; 2]; N], factors: [0; 2] };
         halves.coefficients[0] = [1.0; 2];
         let (pairs, last) = cosines.as_chunks::<2>();
         for i in spread_order(pairs.len()) {
@@ -173,7 +173,8 @@ impl<const N: usize> Halves<N> {
         self.factors = self.factors.map(|factors| factors + 1);
     }
 
-    /// Writes the coefficients of the half of their sum, times the fixed factors: `(1 + z⁻¹)` and `(1 - z⁻¹)`, or 1 and `(1 - z⁻²)`.
+    /// Writes the coefficients of the half of their sum, times the fixed factors: `(1 + z⁻¹)` and
+    /// `(1 - z⁻¹)`, or 1 and `(1 - z⁻²)`.
     fn write(&self, coefficients: &mut [f64]) {
         let (back, added) = match coefficients.len().is_multiple_of(2) {
             true => (1, 1.0),
@@ -195,14 +196,10 @@ impl<const N: usize> Halves<N> {
     }
 }
 
-/// `0..n` in bit-reversed order, which separates neighbours. In ascending order the product of the first
-/// factors would contain large binomial coefficients, which the last factors would cancel.
+/// `0..n` in bit-reversed order, which separates neighbours. In ascending order the product of the
+/// first factors would contain large binomial coefficients, which the last factors would cancel.
 fn spread_order(n: usize) -> impl Iterator<Item = usize> {
     let bits = n.next_power_of_two().trailing_zeros();
-    let reversed = move |i: usize| {
-        i.reverse_bits()
-            .checked_shr(usize::BITS - bits)
-            .unwrap_or(0)
-    };
+    let reversed = move |i: usize| i.reverse_bits().checked_shr(usize::BITS - bits).unwrap_or(0);
     (0..1 << bits).map(reversed).filter(move |&i| i < n)
 }

@@ -8,9 +8,9 @@
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
-/// Largest absolute value of an estimated reflection coefficient. A stage that would exceed it has a
-/// completely predicted signal (a pure sinusoid, or rounding); the limit corresponds to a resonance of 10¹⁰
-/// samples.
+/// Largest absolute value of an estimated reflection coefficient. A stage that would exceed it has
+/// a completely predicted signal (a pure sinusoid, or rounding); the limit corresponds to a
+/// resonance of 10¹⁰ samples.
 pub const MAX_REFLECTION: f64 = 1.0 - 1e-10;
 
 /// An all-pole model, always stable.
@@ -22,11 +22,12 @@ pub struct LinearPrediction {
     pub reflection: Vec<f64>,
     /// Power of the prediction error, in the squared unit of the signal.
     pub error: f64,
-    /// Stages that the data determine. Fewer than p if the signal is completely predicted earlier: the last
-    /// usable coefficient is then limited to [`MAX_REFLECTION`] and the later ones are zero.
+    /// Stages that the data determine. Fewer than p if the signal is completely predicted earlier:
+    /// the last usable coefficient is then limited to [`MAX_REFLECTION`] and the later ones are
+    /// zero.
     pub usable_stages: usize,
-    /// Whether the estimate was changed to be stable (see `usable_stages`, and [`stabilize`] for the
-    /// covariance method).
+    /// Whether the estimate was changed to be stable (see `usable_stages`, and [`stabilize`] for
+    /// the covariance method).
     pub adjusted: bool,
 }
 
@@ -99,8 +100,8 @@ impl Stages {
 
 /// Solves the Yule–Walker equations for autocorrelation lags `0..=order` (Levinson–Durbin).
 ///
-/// Missing lags count as zero. Any autocorrelation gives a stable model; without power, or from the first lag
-/// that is not finite, the coefficients are zero.
+/// Missing lags count as zero. Any autocorrelation gives a stable model; without power, or from the
+/// first lag that is not finite, the coefficients are zero.
 ///
 /// ```
 /// use htex_dsp::linear_prediction::levinson_durbin;
@@ -133,15 +134,15 @@ pub fn reflection_to_coefficients(reflection: &[f64]) -> Vec<f64> {
 
 /// Reflection coefficients of a stable model; `None` if it is unstable or not finite.
 ///
-/// Each stage divides by `1 - k` and `1 + k`: with several poles very close to the unit circle precision is
-/// lost.
+/// Each stage divides by `1 - k` and `1 + k`: with several poles very close to the unit circle
+/// precision is lost.
 pub fn coefficients_to_reflection(coefficients: &[f64]) -> Option<Vec<f64>> {
     let mut a = coefficients.to_vec();
     step_down_in_place(&mut a).then_some(a)
 }
 
-/// As [`coefficients_to_reflection`], in place and without allocating; `false` if the model is unstable or
-/// not finite, in which case the contents of `a` are unspecified.
+/// As [`coefficients_to_reflection`], in place and without allocating; `false` if the model is
+/// unstable or not finite, in which case the contents of `a` are unspecified.
 pub fn step_down_in_place(a: &mut [f64]) -> bool {
     for m in (0..a.len()).rev() {
         let k = a[m];
@@ -159,9 +160,9 @@ pub fn is_stable(coefficients: &[f64]) -> bool {
     coefficients_to_reflection(coefficients).is_some()
 }
 
-/// Makes an unstable model stable by scaling its poles: `A_i g^i` with the g that moves the outermost pole to
-/// its mirror image in the unit circle, where its magnitude peak is the same. Stable models are returned
-/// unchanged; a model that is not finite becomes zeros.
+/// Makes an unstable model stable by scaling its poles: `A_i g^i` with the g that moves the
+/// outermost pole to its mirror image in the unit circle, where its magnitude peak is the same.
+/// Stable models are returned unchanged; a model that is not finite becomes zeros.
 pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
     if is_stable(coefficients) {
         return coefficients.to_vec();
@@ -179,9 +180,10 @@ pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
     }
 }
 
-/// Limits the radius of every pole to `radius` (below 1): returns the model unchanged if no pole lies farther
-/// out, else `A_i g^i` with the g that moves the outermost pole to that radius. Also corrects poles that
-/// rounding of the coefficients moved outside the unit circle. A model that is not finite becomes zeros.
+/// Limits the radius of every pole to `radius` (below 1): returns the model unchanged if no pole
+/// lies farther out, else `A_i g^i` with the g that moves the outermost pole to that radius. Also
+/// corrects poles that rounding of the coefficients moved outside the unit circle. A model that is
+/// not finite becomes zeros.
 ///
 /// ```
 /// use htex_dsp::linear_prediction::within_radius;
@@ -199,8 +201,8 @@ pub fn within_radius(coefficients: &[f64], radius: f64) -> Vec<f64> {
     scale_poles(coefficients, largest * radius)
 }
 
-/// Largest factor up to `unstable` by which the poles can be scaled with a stable result, 1 / outermost
-/// radius, by bisection: factor 0 is always stable.
+/// Largest factor up to `unstable` by which the poles can be scaled with a stable result, 1 /
+/// outermost radius, by bisection: factor 0 is always stable.
 fn largest_stable_factor(coefficients: &[f64], mut unstable: f64) -> f64 {
     let mut stable = 0.0;
     for _ in 0..60 {
@@ -226,8 +228,8 @@ pub fn scale_poles(coefficients: &[f64], factor: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Magnitude `|H|` at `f_hz` for a model at the rate `rate_hz`, both in hertz: the output magnitude for white
-/// noise of unit magnitude. Unbounded towards a pole on the unit circle.
+/// Magnitude `|H|` at `f_hz` for a model at the rate `rate_hz`, both in hertz: the output magnitude
+/// for white noise of unit magnitude. Unbounded towards a pole on the unit circle.
 pub fn ar_magnitude(coefficients: &[f64], f_hz: f64, rate_hz: f64) -> f64 {
     let omega = 2.0 * PI * f_hz / rate_hz;
     let (mut re, mut im) = (1.0, 0.0);
@@ -253,8 +255,8 @@ pub(crate) fn step_up(a: &mut [f64], k: f64) {
     }
 }
 
-/// Inverse of [`step_up`] on all but the last coefficient: `(front + k back) / (1 - k²)`, computed from sum
-/// and difference, which stay precise when |k| is nearly 1.
+/// Inverse of [`step_up`] on all but the last coefficient: `(front + k back) / (1 - k²)`, computed
+/// from sum and difference, which stay precise when |k| is nearly 1.
 fn step_down(previous: &mut [f64], k: f64) {
     let m = previous.len();
     let (of_sum, of_difference) = (0.5 / (1.0 - k), 0.5 / (1.0 + k));

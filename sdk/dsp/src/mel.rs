@@ -61,13 +61,13 @@ impl MelBank {
         energies
     }
 
-    /// Writes a power spectrum interpolated from band energies. At each filter's apex the power is the
-    /// filter's energy divided by the sum of its weights; between apexes it is linear in hertz, beyond the
-    /// first and last apex constant. Empty filters are skipped. `power` has as many elements as the bank has
-    /// frequencies.
+    /// Writes a power spectrum interpolated from band energies. At each filter's apex the power is
+    /// the filter's energy divided by the sum of its weights; between apexes it is linear in hertz,
+    /// beyond the first and last apex constant. Empty filters are skipped. `power` has as many
+    /// elements as the bank has frequencies.
     ///
-    /// Smoother than the pseudo-inverse and never negative; the `energies` of the result differ slightly from
-    /// the ones given.
+    /// Smoother than the pseudo-inverse and never negative; the `energies` of the result differ
+    /// slightly from the ones given.
     pub fn interpolate(&self, energies: &[f64], power: &mut [f64]) {
         let apexes: Vec<(f64, f64)> = self
             .bank
@@ -96,14 +96,11 @@ fn mel_edges(bands: usize, band: Band) -> Vec<f64> {
         .collect()
 }
 
-/// Value at `x` of the polyline through `points` (ascending), constant beyond its ends; 0 if there are no
-/// points.
+/// Value at `x` of the polyline through `points` (ascending), constant beyond its ends; 0 if there
+/// are no points.
 fn interpolate_linearly(points: &[(f64, f64)], x: f64) -> f64 {
     let above = points.partition_point(|point| point.0 <= x);
-    match (
-        above.checked_sub(1).and_then(|i| points.get(i)),
-        points.get(above),
-    ) {
+    match (above.checked_sub(1).and_then(|i| points.get(i)), points.get(above)) {
         (Some(left), Some(right)) => {
             let t = (x - left.0) / (right.0 - left.0);
             left.1 * (1.0 - t) + right.1 * t

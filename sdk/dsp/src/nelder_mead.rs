@@ -1,13 +1,14 @@
-//! Nelder–Mead simplex minimisation with the standard coefficients, as in SciPy's `fmin` and MATLAB's
-//! `fminsearch` (Lagarias et al. 1998).
+//! Nelder–Mead simplex minimisation with the standard coefficients, as in SciPy's `fmin` and
+//! MATLAB's `fminsearch` (Lagarias et al. 1998).
 //!
-//! It is the project's own, since the maintained library in Rust reads a clock, which a sandboxed model must not
-//! import.
+//! It is the project's own, since the maintained library in Rust reads a clock, which a sandboxed
+//! model must not import.
 
 /// Stopping criteria, and the size of the initial simplex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Stop when no vertex is farther than this from the best one along any axis and `f_tolerance` is met.
+    /// Stop when no vertex is farther than this from the best one along any axis and `f_tolerance`
+    /// is met.
     pub x_tolerance: f64,
     /// Stop when no vertex value exceeds the best one by more than this and `x_tolerance` is met.
     pub f_tolerance: f64,
@@ -47,8 +48,8 @@ pub struct Minimum<const N: usize> {
 
 /// Minimises `f` from `start`. NaN counts as +∞, so `f` may exclude a region by returning either.
 ///
-/// Deterministic: the same function, start and options evaluate the same points. Reaching `max_evaluations`
-/// is not an error: the best point so far is returned.
+/// Deterministic: the same function, start and options evaluate the same points. Reaching
+/// `max_evaluations` is not an error: the best point so far is returned.
 ///
 /// ```
 /// use htex_dsp::nelder_mead::{Options, minimize};
@@ -92,16 +93,8 @@ struct Search<F, const N: usize> {
 
 impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
     fn start(f: F, start: [f64; N], options: &Options) -> Self {
-        let unknown = Vertex {
-            x: start,
-            value: f64::INFINITY,
-        };
-        let mut search = Self {
-            f,
-            best: unknown,
-            others: [unknown; N],
-            evaluations: 0,
-        };
+        let unknown = Vertex { x: start, value: f64::INFINITY };
+        let mut search = Self { f, best: unknown, others: [unknown; N], evaluations: 0 };
         search.best = search.evaluate(start);
         for axis in 0..N {
             if search.evaluations >= options.max_evaluations {
@@ -174,21 +167,14 @@ impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
             self.evaluations = max_evaluations;
             return;
         };
-        let second_worst = if N > 1 {
-            self.others[N - 2].value
-        } else {
-            self.best.value
-        };
+        let second_worst = if N > 1 { self.others[N - 2].value } else { self.best.value };
         let reflected = self.evaluate(self.away_from_worst(1.0));
         if self.evaluations >= max_evaluations {
             self.keep_if_better(reflected);
         } else if reflected.value < self.best.value {
             let expanded = self.evaluate(self.away_from_worst(2.0));
-            self.others[N - 1] = if expanded.value < reflected.value {
-                expanded
-            } else {
-                reflected
-            };
+            self.others[N - 1] =
+                if expanded.value < reflected.value { expanded } else { reflected };
         } else if reflected.value < second_worst {
             self.others[N - 1] = reflected;
         } else {
@@ -256,19 +242,16 @@ mod tests {
         assert!((found.x[0] - 1.0).abs() < 1e-6 && (found.x[1] - 1.0).abs() < 1e-6);
     }
 
-    /// Needs at most as many evaluations, and finds as low a minimum, as SciPy 1.17's `fmin` with these
-    /// tolerances.
+    /// Needs at most as many evaluations, and finds as low a minimum, as SciPy 1.17's `fmin` with
+    /// these tolerances.
     fn is_as_scipy<const N: usize>(
         f: impl FnMut(&[f64; N]) -> f64,
         start: [f64; N],
         tolerance: f64,
         (evaluations, value): (usize, f64),
     ) {
-        let options = Options {
-            x_tolerance: tolerance,
-            f_tolerance: tolerance,
-            ..Options::default()
-        };
+        let options =
+            Options { x_tolerance: tolerance, f_tolerance: tolerance, ..Options::default() };
         let found = minimize(f, start, &options);
         assert!(found.converged);
         assert_eq!(found.evaluations, evaluations);
@@ -292,12 +275,7 @@ mod tests {
             let (c, d) = (square(x[1] - 2.0 * x[2]), square(x[0] - x[3]));
             a + b + square(c) + 10.0 * square(d)
         };
-        is_as_scipy(
-            powell,
-            [3.0, -1.0, 0.0, 1.0],
-            1e-2,
-            (161, 1.172_335_029_864_933_5e-4),
-        );
+        is_as_scipy(powell, [3.0, -1.0, 0.0, 1.0], 1e-2, (161, 1.172_335_029_864_933_5e-4));
     }
 
     #[test]
@@ -311,10 +289,7 @@ mod tests {
         assert!((found.x[0] - 0.5).abs() < 1e-6);
         assert_eq!(calls, found.evaluations);
         for budget in 1..100 {
-            let options = Options {
-                max_evaluations: budget,
-                ..Options::default()
-            };
+            let options = Options { max_evaluations: budget, ..Options::default() };
             let mut least = f64::INFINITY;
             let seen = |x: &[f64; 3]| {
                 let value = crease(x);

@@ -1,8 +1,8 @@
 //! Seeded Gaussian noise.
 //!
-//! Box and Muller's transform, eight pairs at a time, with series of its own for the logarithm, sine and cosine:
-//! without branches compilers use all lanes, and the results are bit-identical on every machine. Two streams share a
-//! register of 512 bits where there is one.
+//! Box and Muller's transform, eight pairs at a time, with series of its own for the logarithm,
+//! sine and cosine: without branches compilers use all lanes, and the results are bit-identical on
+//! every machine. Two streams share a register of 512 bits where there is one.
 
 use crate::root::sqrt_f32;
 
@@ -13,8 +13,8 @@ use crate::wide::{Work, very_wide, wide};
 /// Samples of Gaussian noise generated together; rendering is fastest in whole groups.
 pub const GROUP: usize = 2 * LANES;
 
-/// White Gaussian noise of zero mean and unit variance, by the Box–Muller transform in single precision; no
-/// absolute value exceeds 6.6.
+/// White Gaussian noise of zero mean and unit variance, by the Box–Muller transform in single
+/// precision; no absolute value exceeds 6.6.
 ///
 /// ```
 /// use htex_dsp::noise::GaussianNoise;
@@ -33,11 +33,7 @@ pub struct GaussianNoise {
 
 impl GaussianNoise {
     pub fn new(seed: u64) -> Self {
-        Self {
-            random: RandomLanes::new(seed),
-            ready: [0.0; GROUP],
-            taken: GROUP,
-        }
+        Self { random: RandomLanes::new(seed), ready: [0.0; GROUP], taken: GROUP }
     }
 
     /// Returns the next sample; [`Self::fill`] is several times faster.
@@ -47,8 +43,8 @@ impl GaussianNoise {
         one[0]
     }
 
-    /// Fills a block of each of two streams, which may be faster than one after the other; the samples are
-    /// those of [`Self::fill`]. Does not allocate.
+    /// Fills a block of each of two streams, which may be faster than one after the other; the
+    /// samples are those of [`Self::fill`]. Does not allocate.
     pub fn fill_both([a, b]: [&mut Self; 2], [x, y]: [&mut [f32]; 2]) {
         // First up to the nearer end of the two current groups.
         let head = (GROUP - a.taken.max(b.taken)).min(x.len()).min(y.len());
@@ -69,18 +65,15 @@ impl GaussianNoise {
         let (groups, last) = rest.as_chunks_mut();
         wide(Normals(&mut self.random, groups));
         if !last.is_empty() {
-            wide(Normals(
-                &mut self.random,
-                core::slice::from_mut(&mut self.ready),
-            ));
+            wide(Normals(&mut self.random, core::slice::from_mut(&mut self.ready)));
             last.copy_from_slice(&self.ready[..last.len()]);
             self.taken = last.len();
         }
     }
 }
 
-/// Fills whole groups of two streams that are both at the start of a group, if registers are wide enough for
-/// both; returns the number of samples filled in each.
+/// Fills whole groups of two streams that are both at the start of a group, if registers are wide
+/// enough for both; returns the number of samples filled in each.
 fn fill_two([a, b]: [&mut GaussianNoise; 2], [x, y]: [&mut [f32]; 2]) -> usize {
     if a.taken < GROUP || b.taken < GROUP {
         return 0;
@@ -114,15 +107,12 @@ impl Work for Normals<'_> {
     }
 }
 
-/// Groups computed before the two streams are separated: otherwise compilers compute in half registers.
+/// Groups computed before the two streams are separated: otherwise compilers compute in half
+/// registers.
 const PARTED: usize = 8;
 
 /// Groups of normally distributed numbers of two streams.
-struct TwoNormals<'a>(
-    [&'a mut RandomLanes; 2],
-    &'a mut [[f32; GROUP]],
-    &'a mut [[f32; GROUP]],
-);
+struct TwoNormals<'a>([&'a mut RandomLanes; 2], &'a mut [[f32; GROUP]], &'a mut [[f32; GROUP]]);
 
 impl Work for TwoNormals<'_> {
     #[inline(always)]
@@ -167,8 +157,8 @@ fn radii<const N: usize>(bits: [u32; N]) -> [f32; N] {
 
 /// Natural logarithm of a number up to 1, with an error below 2e-7 relative plus 2e-7 absolute.
 ///
-/// Splits the number into `m 2ᵉ` with `m` in √½ to √2. The series for `m` (Moshier, Cephes) is summed in
-/// independent pairs.
+/// Splits the number into `m 2ᵉ` with `m` in √½ to √2. The series for `m` (Moshier, Cephes) is
+/// summed in independent pairs.
 #[inline(always)]
 fn ln(x: f32) -> f32 {
     const SQRT_HALF: u32 = core::f32::consts::FRAC_1_SQRT_2.to_bits();
@@ -204,22 +194,15 @@ mod tests {
         assert_eq!(ln(1.0), 0.0);
     }
 
-    /// Two streams filled together equal the two streams filled alone, at any position within their groups.
+    /// Two streams filled together equal the two streams filled alone, at any position within their
+    /// groups.
     #[test]
     fn two_streams_filled_together_are_bit_identical() {
         let mut alone = [GaussianNoise::new(1), GaussianNoise::new(2)];
         let mut both = alone.clone();
-        for (first, second) in [
-            (64, 64),
-            (9, 2),
-            (80, 80),
-            (100, 33),
-            (0, 7),
-            (64, 64),
-            (5, 16),
-            (7, 8),
-            (96, 96),
-        ] {
+        for (first, second) in
+            [(64, 64), (9, 2), (80, 80), (100, 33), (0, 7), (64, 64), (5, 16), (7, 8), (96, 96)]
+        {
             let buffer = || [alloc::vec![0.0; first], alloc::vec![0.0; second]];
             let (mut expected, mut found) = (buffer(), buffer());
             for (noise, out) in alone.iter_mut().zip(&mut expected) {
@@ -272,14 +255,8 @@ mod tests {
         assert!((m1 / n).abs() < 0.005);
         assert!((m2 / n - 1.0).abs() < 0.007);
         assert!((m4 / n - 3.0).abs() < 0.05);
-        for (count, p) in beyond
-            .iter()
-            .zip([0.317_311, 0.045_500, 0.002_700, 0.000_063_3])
-        {
-            assert!(
-                (count / n - p).abs() < 5.0 * libm::sqrt(p / n),
-                "{p}: {count}"
-            );
+        for (count, p) in beyond.iter().zip([0.317_311, 0.045_500, 0.002_700, 0.000_063_3]) {
+            assert!((count / n - p).abs() < 5.0 * libm::sqrt(p / n), "{p}: {count}");
         }
     }
 }

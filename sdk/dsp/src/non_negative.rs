@@ -1,14 +1,15 @@
 //! Non-negative power spectra from the energies of triangular filters.
 //!
-//! With fewer bands than bins least squares alone has many solutions. A ridge of 10^-6 leaves one, which Newton's
-//! method finds with a tridiagonal matrix in a few steps, and any solver of non-negative least squares finds as well.
+//! With fewer bands than bins least squares alone has many solutions. A ridge of 10^-6 leaves one,
+//! which Newton's method finds with a tridiagonal matrix in a few steps, and any solver of
+//! non-negative least squares finds as well.
 
 use alloc::vec::Vec;
 
 use crate::triangles::TriangleBank;
 
-/// Weight of the squared norm of the power. It makes the solution unique and changes attainable energies by
-/// about a millionth.
+/// Weight of the squared norm of the power. It makes the solution unique and changes attainable
+/// energies by about a millionth.
 pub const RIDGE: f64 = 1e-6;
 /// Maximum number of Newton steps; energies of recordings take three to eight.
 const STEPS: usize = 100;
@@ -17,12 +18,12 @@ const HALVINGS: usize = 40;
 /// Slope along a step, relative to that at its start, that is attributed to rounding.
 const FLAT: f64 = 1e-9;
 
-/// Finds the powers `p >= 0` that minimise `|W p - e|² + RIDGE |p|²` for a bank `W` of triangular filters and
-/// energies `e`. The solution is unique.
+/// Finds the powers `p >= 0` that minimise `|W p - e|² + RIDGE |p|²` for a bank `W` of triangular
+/// filters and energies `e`. The solution is unique.
 ///
-/// It has the form `p = max(0, Wᵀ s)` with one number `s` per filter, and `s` solves `RIDGE s + W max(0, Wᵀ
-/// s) = e`, which is piecewise linear: Newton's method is exact on each piece. Its matrix is tridiagonal,
-/// since only neighbouring filters overlap.
+/// It has the form `p = max(0, Wᵀ s)` with one number `s` per filter, and `s` solves
+/// `RIDGE s + W max(0, Wᵀ s) = e`, which is piecewise linear: Newton's method is exact on each
+/// piece. Its matrix is tridiagonal, since only neighbouring filters overlap.
 ///
 /// ```
 /// use htex_dsp::non_negative::{NonNegative, Scratch};
@@ -82,14 +83,12 @@ impl NonNegative {
             let weight = [first, first + 1].map(|row| bank.weight(row, c));
             Column { first, weight }
         };
-        Self {
-            columns: (0..bank.columns()).map(column).collect(),
-            rows,
-        }
+        Self { columns: (0..bank.columns()).map(column).collect(), rows }
     }
 
-    /// Writes the power of `energies`, which must not be negative; `scratch` must be made for the same number
-    /// of filters. The energy of a filter without weights is ignored. Does not allocate.
+    /// Writes the power of `energies`, which must not be negative; `scratch` must be made for the
+    /// same number of filters. The energy of a filter without weights is ignored. Does not
+    /// allocate.
     pub fn solve(&self, energies: &[f64], power: &mut [f64], scratch: &mut Scratch) {
         let largest = energies.iter().copied().fold(0.0, f64::max);
         self.start(energies, largest, scratch);
@@ -118,7 +117,8 @@ impl NonNegative {
         solve_tridiagonal(&mut scratch.diagonal, &scratch.beside, &mut scratch.at);
     }
 
-    /// One Newton step, halved until the slope along it is no longer positive; false at the solution.
+    /// One Newton step, halved until the slope along it is no longer positive; false at the
+    /// solution.
     fn advance(&self, scratch: &mut Scratch) -> bool {
         scratch.measure(&self.columns, 0.0);
         let Scratch { residual, step, .. } = scratch;
@@ -184,11 +184,7 @@ impl Scratch {
 
     /// Slope of the cost along the step.
     fn slope(&self) -> f64 {
-        self.residual
-            .iter()
-            .zip(&self.step)
-            .map(|(r, d)| r * d)
-            .sum()
+        self.residual.iter().zip(&self.step).map(|(r, d)| r * d).sum()
     }
 
     /// Derivative of the residual at the current solution.
@@ -213,7 +209,8 @@ impl Scratch {
     }
 }
 
-/// Solves a symmetric positive definite tridiagonal system in place; `beside[i]` couples `i` and `i + 1`.
+/// Solves a symmetric positive definite tridiagonal system in place; `beside[i]` couples `i` and
+/// `i + 1`.
 fn solve_tridiagonal(diagonal: &mut [f64], beside: &[f64], values: &mut [f64]) {
     for i in 1..values.len() {
         let ratio = beside[i - 1] / diagonal[i - 1];
@@ -234,8 +231,8 @@ mod tests {
     use crate::mel::MelBank;
     use crate::uniform::Uniform;
 
-    /// Optimality conditions of a convex cost: its gradient is zero where the power is positive, and not
-    /// negative where the power is zero.
+    /// Optimality conditions of a convex cost: its gradient is zero where the power is positive,
+    /// and not negative where the power is zero.
     #[test]
     fn the_solution_is_the_minimum() {
         let grid = Band::TACTILE.grid_hz();
@@ -247,9 +244,8 @@ mod tests {
             for round in 0..20 {
                 // Up to 100 dB apart, so that most energies are unattainable.
                 let spread = f64::from(round);
-                let energies: Vec<f64> = (0..bands)
-                    .map(|_| libm::exp(spread * uniform.next_unit()))
-                    .collect();
+                let energies: Vec<f64> =
+                    (0..bands).map(|_| libm::exp(spread * uniform.next_unit())).collect();
                 solver.solve(&energies, &mut power, &mut scratch);
                 let reached = mel.energies(&power);
                 let largest = energies.iter().copied().fold(0.0, f64::max);

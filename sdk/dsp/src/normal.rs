@@ -3,9 +3,9 @@
 use crate::root::sqrt;
 use crate::uniform::Uniform;
 
-/// A seeded generator of normal numbers of zero mean and unit variance, by Marsaglia's polar method; the same seed
-/// gives the same bits on every machine. [`GaussianNoise`](crate::noise::GaussianNoise) is several times faster, in
-/// single precision.
+/// A seeded generator of normal numbers of zero mean and unit variance, by Marsaglia's polar
+/// method; the same seed gives the same bits on every machine.
+/// [`GaussianNoise`](crate::noise::GaussianNoise) is several times faster, in single precision.
 ///
 /// ```
 /// use htex_dsp::normal::Normal;
@@ -21,10 +21,7 @@ pub struct Normal {
 
 impl Normal {
     pub fn new(seed: u64) -> Self {
-        Self {
-            uniform: Uniform::new(seed),
-            spare: None,
-        }
+        Self { uniform: Uniform::new(seed), spare: None }
     }
 
     pub fn next_normal(&mut self) -> f64 {

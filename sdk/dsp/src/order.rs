@@ -1,10 +1,12 @@
-//! Sorting by one sort for all types: each type and each comparison that is given to the standard library's takes some 6 kB of a program.
+//! Sorting by one sort for all types: each type and each comparison that is given to the standard
+//! library's takes some 6 kB of a program.
 
 use core::cmp::Ordering;
 
 use alloc::vec::Vec;
 
-/// Returns the indices below `len` in ascending order of what they stand for; equal ones keep their order.
+/// Returns the indices below `len` in ascending order of what they stand for; equal ones keep their
+/// order.
 ///
 /// ```
 /// let names = ["cork", "ash", "birch"];
@@ -54,9 +56,7 @@ mod tests {
         for len in 0..200 {
             let mut values = vec![(0, 0); len];
             for (i, value) in values.iter_mut().enumerate() {
-                state = state
-                    .wrapping_mul(6_364_136_223_846_793_005)
-                    .wrapping_add(1);
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
                 *value = ((state >> 33) % 20, i);
             }
             let mut expected = values.clone();

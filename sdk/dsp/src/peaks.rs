@@ -1,4 +1,5 @@
-//! Spectral peaks, and the selection of those that differ perceptibly in frequency (paper, Spectral peaks).
+//! Spectral peaks, and the selection of those that differ perceptibly in frequency (paper, Spectral
+//! peaks).
 
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
@@ -15,9 +16,9 @@ pub struct Peak {
     pub magnitude: f64,
 }
 
-/// Indices of the strict interior local maxima, ascending. A plateau counts once, at its middle (the lower of
-/// two), and only if the values fall on both sides; the first and last value are never maxima. Matches
-/// `scipy.signal.find_peaks`.
+/// Indices of the strict interior local maxima, ascending. A plateau counts once, at its middle
+/// (the lower of two), and only if the values fall on both sides; the first and last value are
+/// never maxima. Matches `scipy.signal.find_peaks`.
 ///
 /// ```
 /// use htex_dsp::peaks::local_maxima;
@@ -44,10 +45,10 @@ pub fn local_maxima(values: &[f64]) -> Vec<usize> {
 
 /// Selects the strongest local maxima that are at least `jnd` apart, ascending in frequency.
 ///
-/// Candidates are taken strongest first (the lower frequency wins a tie); a peak at f is kept if `|f - g| /
-/// min(f, g) >= jnd` for every g kept before it, until `max_count` are kept. `frequency_hz` is ascending, in
-/// hertz, and as long as `magnitude`; the longer slice is cut. A spectrum without local maxima gives an empty
-/// list.
+/// Candidates are taken strongest first (the lower frequency wins a tie); a peak at f is kept if
+/// `|f - g| / min(f, g) >= jnd` for every g kept before it, until `max_count` are kept.
+/// `frequency_hz` is ascending, in hertz, and as long as `magnitude`; the longer slice is cut. A
+/// spectrum without local maxima gives an empty list.
 pub fn select_peaks(
     frequency_hz: &[f64],
     magnitude: &[f64],
@@ -55,15 +56,8 @@ pub fn select_peaks(
     jnd: f64,
 ) -> Vec<Peak> {
     let magnitude = &magnitude[..magnitude.len().min(frequency_hz.len())];
-    let at_bin = |bin: usize| Peak {
-        frequency_hz: frequency_hz[bin],
-        magnitude: magnitude[bin],
-    };
-    select_distinct(
-        local_maxima(magnitude).into_iter().map(at_bin),
-        max_count,
-        jnd,
-    )
+    let at_bin = |bin: usize| Peak { frequency_hz: frequency_hz[bin], magnitude: magnitude[bin] };
+    select_distinct(local_maxima(magnitude).into_iter().map(at_bin), max_count, jnd)
 }
 
 /// Selects the strongest peaks that are at least `jnd` apart, as [`select_peaks`] does.

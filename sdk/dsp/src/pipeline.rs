@@ -12,9 +12,10 @@ const FEW: usize = 2;
 /// Samples processed per step.
 const PAIR: usize = 2;
 
-/// Sections in series, as [`crate::biquad::Cascade`], but pipelined: each section works on the two samples
-/// that the section before it finished last. All sections compute at the same time, and the output is delayed
-/// by six samples per four sections. For streams in which a delay of a few samples does not matter.
+/// Sections in series, as [`crate::biquad::Cascade`], but pipelined: each section works on the two
+/// samples that the section before it finished last. All sections compute at the same time, and the
+/// output is delayed by six samples per four sections. For streams in which a delay of a few
+/// samples does not matter.
 ///
 /// ```
 /// use htex_dsp::{biquad::Biquad, pipeline::Pipeline};
@@ -29,13 +30,14 @@ pub struct Pipeline {
     last: Option<Row<f64, FEW>>,
 }
 
-/// Four pipelines with the same number of sections, computed side by side. Each output is bit-identical to
-/// that of the pipeline run alone.
+/// Four pipelines with the same number of sections, computed side by side. Each output is
+/// bit-identical to that of the pipeline run alone.
 #[derive(Debug)]
 pub struct Pipelines<'a>([&'a mut Pipeline; VOICES]);
 
-/// Sections side by side: transposed direct form II unrolled for two samples, so that the new state is the
-/// sum of the contributions of the inputs and of the old state, which are independent of each other.
+/// Sections side by side: transposed direct form II unrolled for two samples, so that the new state
+/// is the sum of the contributions of the inputs and of the old state, which are independent of
+/// each other.
 #[derive(Debug, Clone, Copy)]
 struct Row<T, const N: usize> {
     /// Product of all `b0`; the other numerator coefficients are divided by it.
@@ -43,7 +45,8 @@ struct Row<T, const N: usize> {
     /// Contributions of the first and the second input to the two state variables.
     first: [[T; N]; 2],
     second: [[T; N]; 2],
-    /// Contributions of the first and the second state variable to both, the second with its sign changed.
+    /// Contributions of the first and the second state variable to both, the second with its sign
+    /// changed.
     kept: [[T; N]; 2],
     crossed: [[T; N]; 2],
     state: State<T, N>,
@@ -57,8 +60,8 @@ struct State<T, const N: usize> {
 }
 
 impl Pipeline {
-    /// Makes a pipeline of `sections` with zero state; every `b0` must be nonzero. Rows are padded with
-    /// sections that pass their input.
+    /// Makes a pipeline of `sections` with zero state; every `b0` must be nonzero. Rows are padded
+    /// with sections that pass their input.
     pub fn new(sections: &[Biquad]) -> Self {
         let (rows, last) = match sections.len() % LANES {
             few @ 1..=FEW => sections.split_at(sections.len() - few),
@@ -138,8 +141,8 @@ impl<const N: usize> Work for Beside<'_, N> {
     }
 }
 
-/// A separate function from the one that interleaves the rows: otherwise compilers shuffle lanes inside the
-/// loop.
+/// A separate function from the one that interleaves the rows: otherwise compilers shuffle lanes
+/// inside the loop.
 struct Run<'a, const N: usize>(&'a mut Row<Quad, N>, &'a mut [[Quad; PAIR]]);
 
 impl<const N: usize> Work for Run<'_, N> {
@@ -163,11 +166,7 @@ impl<const N: usize> Row<f64, N> {
             second: [lanes(|s| s.b1 / s.b0 - s.a1), lanes(|s| s.b2 / s.b0 - s.a2)],
             kept: [lanes(|s| s.a1 * s.a1 - s.a2), lanes(|s| s.a1 * s.a2)],
             crossed: [lanes(|s| s.a1), lanes(|s| s.a2)],
-            state: State {
-                s1: [0.0; N],
-                s2: [0.0; N],
-                y: [[0.0; N]; PAIR],
-            },
+            state: State { s1: [0.0; N], s2: [0.0; N], y: [[0.0; N]; PAIR] },
         }
     }
 }
@@ -181,11 +180,7 @@ impl<const N: usize> Row<Quad, N> {
             second: [zeros; 2],
             kept: [zeros; 2],
             crossed: [zeros; 2],
-            state: State {
-                s1: zeros,
-                s2: zeros,
-                y: [zeros; PAIR],
-            },
+            state: State { s1: zeros, s2: zeros, y: [zeros; PAIR] },
         }
     };
 }
@@ -272,7 +267,8 @@ mod tests {
         }
     }
 
-    /// Four pipelines side by side give the bits of each alone; different numbers of rows are rejected.
+    /// Four pipelines side by side give the bits of each alone; different numbers of rows are
+    /// rejected.
     #[test]
     fn four_pipelines_are_bit_identical_to_single_ones() {
         for order in [2, 4, 6, 8, 12] {

@@ -16,8 +16,8 @@ pub(crate) struct Polyphase {
     /// Integer and remaining part of M/L.
     step: (usize, usize),
     taps: usize,
-    /// Phase-major; one row more than phases if rows are interpolated. Shared by all converters of the same
-    /// rates.
+    /// Phase-major; one row more than phases if rows are interpolated. Shared by all converters of
+    /// the same rates.
     kernel: Arc<[f32]>,
     exact: bool,
     phase: usize,
@@ -28,8 +28,8 @@ pub(crate) struct Polyphase {
 }
 
 impl Polyphase {
-    /// `step` is the integer and the remaining part of M/L; `taps` is a multiple of eight. The kernel has one
-    /// row per phase, or [`INTERPOLATED_PHASES`] rows plus one.
+    /// `step` is the integer and the remaining part of M/L; `taps` is a multiple of eight. The
+    /// kernel has one row per phase, or [`INTERPOLATED_PHASES`] rows plus one.
     pub(crate) fn new(up: usize, step: (usize, usize), taps: usize, kernel: Arc<[f32]>) -> Self {
         Self {
             up,
@@ -44,12 +44,10 @@ impl Polyphase {
         }
     }
 
-    /// A filter between equal rates whose outputs are `phase` of `phases` parts of a sample behind the source's.
+    /// A filter between equal rates whose outputs are `phase` of `phases` parts of a sample behind
+    /// the source's.
     pub(crate) fn at(phase: usize, phases: usize, taps: usize, kernel: Arc<[f32]>) -> Self {
-        Self {
-            phase,
-            ..Self::new(phases, (1, 0), taps, kernel)
-        }
+        Self { phase, ..Self::new(phases, (1, 0), taps, kernel) }
     }
 
     pub(crate) fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
@@ -69,7 +67,8 @@ impl Polyphase {
         }
     }
 
-    /// Pulls a few more samples; when the buffer is full, first moves those still needed to its start.
+    /// Pulls a few more samples; when the buffer is full, first moves those still needed to its
+    /// start.
     fn refill(&mut self, source: &mut dyn FnMut(&mut [f32])) {
         while self.start + self.taps > self.filled {
             // Small pulls keep parameter changes low in latency.
@@ -112,7 +111,8 @@ pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
     sum(&lanes)
 }
 
-/// Not inlined: its additions across lanes would keep the loop of [`dot`] from being compiled to vectors, which takes half as long again.
+/// Not inlined: its additions across lanes would keep the loop of [`dot`] from being compiled to
+/// vectors, which takes half as long again.
 #[inline(never)]
 fn sum(lanes: &[f32; 8]) -> f32 {
     (lanes[0] + lanes[4]) + (lanes[1] + lanes[5]) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))

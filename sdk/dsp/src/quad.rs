@@ -1,5 +1,5 @@
-//! Numbers of four voices side by side. Recursive filters, whose samples depend on each other, fill the lanes
-//! of a vector register with voices instead of samples.
+//! Numbers of four voices side by side. Recursive filters, whose samples depend on each other, fill
+//! the lanes of a vector register with voices instead of samples.
 
 use core::ops::{Add, Mul, Sub};
 
@@ -31,13 +31,14 @@ impl Real for f64 {
 }
 
 impl Quad {
-    /// Interleaves one single-precision row per voice, multiplied by its gain. The shortest slice sets the
-    /// length.
+    /// Interleaves one single-precision row per voice, multiplied by its gain. The shortest slice
+    /// sets the length.
     pub fn gather(rows: [&[f32]; VOICES], gains: Self, to: &mut [Self]) {
         wide(Gather(rows, gains, to));
     }
 
-    /// Writes each voice's numbers to its row in single precision. The shortest slice sets the length.
+    /// Writes each voice's numbers to its row in single precision. The shortest slice sets the
+    /// length.
     pub fn scatter(from: &[Self], rows: [&mut [f32]; VOICES]) {
         wide(Scatter(from, rows));
     }

@@ -1,7 +1,9 @@
-//! Level and mean frequency as motors and parametric interfaces take them: strengths, frequencies and points from 0 to 1.
+//! Level and mean frequency as motors and parametric interfaces take them: strengths, frequencies
+//! and points from 0 to 1.
 //!
-//! An interface that is told in points interpolates linearly between them. A block has one point, at its end, with its level: the level
-//! of a block is then reached when the block ends, half a block later on average than with steps.
+//! An interface that is told in points interpolates linearly between them. A block has one point,
+//! at its end, with its level: the level of a block is then reached when the block ends, half a
+//! block later on average than with steps.
 
 use crate::envelope::Measured;
 
@@ -41,8 +43,9 @@ fn unit(x: f64) -> f64 {
     if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
 }
 
-/// Returns the parts of a strength that the large and the small motor of a gamepad have at a mean frequency: all on the large one up to 60 Hz, all on
-/// the small one from 420 Hz, in between in proportion.
+/// Returns the parts of a strength that the large and the small motor of a gamepad have at a mean
+/// frequency: all on the large one up to 60 Hz, all on the small one from 420 Hz, in between in
+/// proportion.
 ///
 /// ```
 /// use htex_dsp::reduced::two_motors;
@@ -99,14 +102,9 @@ impl Points {
         if measured.centroid_hz > 0.0 {
             self.place = scale.place(measured.centroid_hz) as f32;
         }
-        let point = Point {
-            strength: scale.strength(measured.level_rms) as f32,
-            ..self.end(rate_hz)
-        };
-        let first = is_first.then_some(Point {
-            time_ns: 0,
-            ..point
-        });
+        let point =
+            Point { strength: scale.strength(measured.level_rms) as f32, ..self.end(rate_hz) };
+        let first = is_first.then_some(Point { time_ns: 0, ..point });
         first.into_iter().chain(Some(point))
     }
 
@@ -126,7 +124,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Whatever is measured, the points keep what takers of points ask for: numbers from 0 to 1, in the order of time.
+        /// Whatever is measured, the points keep what takers of points ask for: numbers from 0 to
+        /// 1, in the order of time.
         #[test]
         fn points_are_in_range_and_in_order(
             blocks in prop::collection::vec((any::<f64>(), any::<f64>(), 0..1_000_u64), 1..50),

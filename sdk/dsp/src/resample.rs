@@ -1,12 +1,12 @@
 //! Streaming sample-rate conversion by polyphase windowed-sinc filters.
 //!
-//! A texture voice renders at a low rate of its own; the converter brings it to the device's rate. The
-//! converter pulls exactly the samples it needs from its source, never allocates while it runs, and gives the
-//! same samples for any block size.
+//! A texture voice renders at a low rate of its own; the converter brings it to the device's rate.
+//! The converter pulls exactly the samples it needs from its source, never allocates while it runs,
+//! and gives the same samples for any block size.
 //!
-//! A voice states the rate at which it renders. Textures end at 1 kHz, so noise is generated at 2 to 4 kHz: five to
-//! eight times fewer samples, and the steep filter at the top of the band is the converter's. It is not a library's,
-//! since those work in chunks of their own size.
+//! A voice states the rate at which it renders. Textures end at 1 kHz, so noise is generated at 2
+//! to 4 kHz: five to eight times fewer samples, and the steep filter at the top of the band is the
+//! converter's. It is not a library's, since those work in chunks of their own size.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -17,7 +17,8 @@ use crate::upsample::Upsampler;
 
 /// Number of phases beyond which the kernel table is interpolated instead of exact.
 const MAX_EXACT_PHASES: u64 = 1024;
-/// Half the width of the transition band around the source's Nyquist frequency, relative to that frequency.
+/// Half the width of the transition band around the source's Nyquist frequency, relative to that
+/// frequency.
 const TRANSITION: f64 = 0.02;
 /// Kernel length beyond which rates are refused, to bound memory.
 const MAX_TAPS: usize = 16_384;
@@ -61,8 +62,8 @@ pub struct Resampler {
 }
 
 impl Resampler {
-    /// Makes a converter from `from_hz` to `to_hz` for a source without content above `top_hz`, all in hertz;
-    /// `None` if the rates are equal (to a millihertz) and no conversion is needed.
+    /// Makes a converter from `from_hz` to `to_hz` for a source without content above `top_hz`, all
+    /// in hertz; `None` if the rates are equal (to a millihertz) and no conversion is needed.
     ///
     /// # Errors
     /// Rates outside 1 mHz to 10 MHz, or that differ by more than a factor of 10,000.
@@ -70,9 +71,10 @@ impl Resampler {
         Self::of(specs(from_hz, to_hz, top_hz)?)
     }
 
-    /// As [`Self::new`], for a source that has `from_hz` whichever rate is wanted, such as a filter. Its level is the same at all rates
-    /// that hold its content. Near half its own rate it loses up to half its power at high rates, so it loses as much at low ones:
-    /// where the rates are equal ([`OwnRate`]), and where the wanted one is lower.
+    /// As [`Self::new`], for a source that has `from_hz` whichever rate is wanted, such as a
+    /// filter. Its level is the same at all rates that hold its content. Near half its own rate it
+    /// loses up to half its power at high rates, so it loses as much at low ones: where the rates
+    /// are equal ([`OwnRate`]), and where the wanted one is lower.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -89,7 +91,8 @@ impl Resampler {
         Ok((!stages.is_empty()).then_some(Self { stages }))
     }
 
-    /// Returns the work of such a converter; `None` if no conversion is needed. `own_rate`: of [`Self::of_own_rate`].
+    /// Returns the work of such a converter; `None` if no conversion is needed. `own_rate`: of
+    /// [`Self::of_own_rate`].
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -122,8 +125,8 @@ impl Resampler {
         Ok((!specs.is_empty()).then_some(work))
     }
 
-    /// Fills `out`, pulling source samples through `source`, which must fill the whole slice that it is
-    /// given. Does not allocate.
+    /// Fills `out`, pulling source samples through `source`, which must fill the whole slice that
+    /// it is given. Does not allocate.
     pub fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         run(&mut self.stages, out, source);
     }
@@ -138,7 +141,8 @@ pub struct Work {
     pub rational: Part,
 }
 
-/// Samples that stages of a kind give for each sample of a converter's output, and their multiply-accumulates.
+/// Samples that stages of a kind give for each sample of a converter's output, and their
+/// multiply-accumulates.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Part {
     /// Samples.
@@ -147,8 +151,9 @@ pub struct Part {
     pub macs: f64,
 }
 
-/// What a conversion to high rates passes of a source that has a rate of its own, and content up to the transition band around half
-/// that rate: in the middle of it, half the amplitude, beside an image of the same amplitude.
+/// What a conversion to high rates passes of a source that has a rate of its own, and content up to
+/// the transition band around half that rate: in the middle of it, half the amplitude, beside an
+/// image of the same amplitude.
 #[derive(Debug, Clone)]
 pub struct OwnRate {
     rate_hz: f64,
@@ -160,15 +165,11 @@ pub struct OwnRate {
 const OWN_PHASES: u64 = 4;
 
 impl OwnRate {
-    /// Takes the rate and the highest frequency of the source, hertz; `None` if the content ends below the transition band, which
-    /// passes whole.
+    /// Takes the rate and the highest frequency of the source, hertz; `None` if the content ends
+    /// below the transition band, which passes whole.
     pub fn new(rate_hz: f64, top_hz: f64) -> Option<Self> {
         let spec = Spec::of_own_rate(rate_hz, millihertz(rate_hz)?, top_hz)?;
-        Some(Self {
-            rate_hz,
-            kernel: spec.own_kernel(),
-            taps: spec.taps(),
-        })
+        Some(Self { rate_hz, kernel: spec.own_kernel(), taps: spec.taps() })
     }
 
     /// Returns the rate of the source, hertz.
@@ -176,7 +177,8 @@ impl OwnRate {
         self.rate_hz
     }
 
-    /// Returns the amplitude that passes at a frequency, hertz, which is an image above half the rate.
+    /// Returns the amplitude that passes at a frequency, hertz, which is an image above half the
+    /// rate.
     pub fn amplitude(&self, hz: f64) -> f64 {
         let middle = 0.5 * self.taps as f64 - 1.0;
         let turn = core::f64::consts::TAU * hz / self.rate_hz;
@@ -187,10 +189,7 @@ impl OwnRate {
             let mut sum = 0.0;
             for x in kernel {
                 sum += f64::from(*x) * cos;
-                (cos, sin) = (
-                    cos * step_cos - sin * step_sin,
-                    sin * step_cos + cos * step_sin,
-                );
+                (cos, sin) = (cos * step_cos - sin * step_sin, sin * step_cos + cos * step_sin);
             }
             sum
         };
@@ -222,11 +221,7 @@ fn own_specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, Unusabl
     let edges = |spec: Spec| {
         let nyquist = 0.5 * from_hz;
         let pass_hz = top_hz.min(nyquist * (1.0 - TRANSITION));
-        Spec {
-            pass_hz,
-            stop_hz: (from_hz - pass_hz).max(nyquist * (1.0 + TRANSITION)),
-            ..spec
-        }
+        Spec { pass_hz, stop_hz: (from_hz - pass_hz).max(nyquist * (1.0 + TRANSITION)), ..spec }
     };
     Ok(all.into_iter().map(edges).collect())
 }
@@ -248,12 +243,7 @@ fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRat
     if from > MAX_RATIO * to || to > MAX_RATIO * from {
         return Err(unusable);
     }
-    let spec = |from, to, pass_hz, stop_hz| Spec {
-        from,
-        to,
-        pass_hz,
-        stop_hz,
-    };
+    let spec = |from, to, pass_hz, stop_hz| Spec { from, to, pass_hz, stop_hz };
     let nyquist = 0.5 * from_hz.min(to_hz);
     // The transition band is wide if the source's highest content is far below its first image.
     let pass = top_hz.min(nyquist * (1.0 - TRANSITION));
@@ -271,7 +261,8 @@ fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRat
 }
 
 impl Spec {
-    /// The filter of a source at its own rate; `None` if its content ends below the transition band.
+    /// The filter of a source at its own rate; `None` if its content ends below the transition
+    /// band.
     fn of_own_rate(rate_hz: f64, rate: u64, top_hz: f64) -> Option<Self> {
         let nyquist = 0.5 * rate_hz;
         let pass_hz = nyquist * (1.0 - TRANSITION);
@@ -344,17 +335,13 @@ enum Stage {
 impl Stage {
     fn new(spec: &Spec) -> Self {
         if spec.from == spec.to {
-            // A quarter of a sample from the source's, a frequency and its image add up in power, as at other rates: their phases are a
-            // quarter turn apart.
+            // A quarter of a sample from the source's, a frequency and its image add up in power,
+            // as at other rates: their phases are a quarter turn apart.
             let kernel = spec.own_kernel();
             return Self::Rational(Polyphase::at(1, OWN_PHASES as usize, spec.taps(), kernel));
         }
         let (up, down, taps) = (spec.up(), spec.down(), spec.taps());
-        let phases = if spec.is_exact() {
-            up
-        } else {
-            INTERPOLATED_PHASES
-        };
+        let phases = if spec.is_exact() { up } else { INTERPOLATED_PHASES };
         let kernel = kernels::kernel(taps, phases, spec.is_exact(), spec.cutoff());
         if spec.is_whole() {
             return Self::Whole(Upsampler::new(up as usize, taps, kernel, spec.source_hz()));
@@ -394,10 +381,7 @@ mod tests {
             resampler.process(block, &mut source);
         }
         // Each stage's first output is at the centre of its first window.
-        let stages = specs(from_hz, to_hz, 1000.0)
-            .unwrap()
-            .into_iter()
-            .zip(&resampler.stages);
+        let stages = specs(from_hz, to_hz, 1000.0).unwrap().into_iter().zip(&resampler.stages);
         let delay_s: f64 = stages
             .map(|(spec, stage)| {
                 let skipped = match stage {
@@ -445,12 +429,14 @@ mod tests {
             work.unwrap().unwrap().whole.macs
         };
         let taps = specs(2_000.0, 4_000.0, 1_000.0).unwrap()[0].taps() as f64;
-        // Every other sample is a copy; the second stage makes five times as many samples with few taps.
+        // Every other sample is a copy; the second stage makes five times as many samples with few
+        // taps.
         assert_eq!(macs(4_000.0), 0.5 * taps);
         assert!(macs(20_000.0) < 0.2 * macs(4_000.0) + 12.0);
     }
 
-    /// Noise in the transition band of a source at 2 kHz has one power at all rates, which is what [`OwnRate`] states.
+    /// Noise in the transition band of a source at 2 kHz has one power at all rates, which is what
+    /// [`OwnRate`] states.
     #[test]
     fn a_source_of_its_own_rate_has_one_level_at_all_rates() {
         let own = OwnRate::new(2_000.0, 1_000.0).unwrap();
@@ -461,7 +447,8 @@ mod tests {
             for to_hz in [2_000.0, 2_001.0, 2_050.0, 2_400.0, 8_000.0, 48_000.0] {
                 let found = 2.0 * power(2_000.0, to_hz, hz);
                 let off_db = 10.0 * libm::log10(found / stated);
-                // Lengths of kernels are rounded up to multiples of 2 or 8. A level, of many frequencies, differs by less.
+                // Lengths of kernels are rounded up to multiples of 2 or 8. A level, of many
+                // frequencies, differs by less.
                 assert!(off_db.abs() < 0.06, "{hz} Hz at {to_hz}: {off_db} dB");
             }
         }

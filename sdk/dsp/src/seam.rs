@@ -1,7 +1,7 @@
 //! Seamless loops of samples.
 //!
-//! A loop is closed at constant power: the gains of its cross-fade depend on the correlation of the two pieces, so that
-//! noise and tones alike keep their power.
+//! A loop is closed at constant power: the gains of its cross-fade depend on the correlation of the
+//! two pieces, so that noise and tones alike keep their power.
 
 use alloc::vec::Vec;
 
@@ -24,12 +24,12 @@ pub struct Loop {
 }
 
 impl Loop {
-    /// Makes a loop of `samples`. The last `fade` of them (at most half) are cross-faded over the first ones,
-    /// so that the loop is shorter than `samples` by `fade`.
+    /// Makes a loop of `samples`. The last `fade` of them (at most half) are cross-faded over the
+    /// first ones, so that the loop is shorter than `samples` by `fade`.
     ///
-    /// The cross-fade gains are a sine and a cosine divided by the square root of the power of the sum, given
-    /// the correlation of the two pieces: noise keeps its power, and a sound with the period of the loop is
-    /// unchanged.
+    /// The cross-fade gains are a sine and a cosine divided by the square root of the power of the
+    /// sum, given the correlation of the two pieces: noise keeps its power, and a sound with the
+    /// period of the loop is unchanged.
     pub fn new(mut samples: Vec<f32>, fade: usize) -> Self {
         let fade = fade.min(samples.len() / 2);
         let len = samples.len() - fade;
@@ -82,11 +82,7 @@ impl Loop {
 fn correlation(a: &[f32], b: &[f32]) -> f32 {
     let sum = |x: &[f32], y: &[f32]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f32>();
     let both = libm::sqrtf(sum(a, a) * sum(b, b));
-    if both > 0.0 {
-        (sum(a, b) / both).clamp(LEAST_CORRELATION, 1.0)
-    } else {
-        0.0
-    }
+    if both > 0.0 { (sum(a, b) / both).clamp(LEAST_CORRELATION, 1.0) } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -155,9 +151,7 @@ mod tests {
         let mut out = [1.0; 3];
         Loop::new(Vec::new(), 5).with_rms(1.0).render(&mut out);
         assert_eq!(out, [0.0; 3]);
-        Loop::new(alloc::vec![0.0; 4], 2)
-            .with_rms(1.0)
-            .render(&mut out);
+        Loop::new(alloc::vec![0.0; 4], 2).with_rms(1.0).render(&mut out);
         assert_eq!(out, [0.0; 3]);
     }
 }

@@ -1,13 +1,14 @@
 //! Random-phase noise with a given spectrum, streamed by overlap-add.
 //!
-//! Frames of uniformly random phases overlap by an eighth, in which one frame fades out while the next fades
-//! in. Frames are independent and the squares of the two weights add up to 1, so the power is the same at
-//! every sample. A frame is one period of its components, so nothing repeats (numeric definitions: random
-//! phase).
+//! Frames of uniformly random phases overlap by an eighth, in which one frame fades out while the
+//! next fades in. Frames are independent and the squares of the two weights add up to 1, so the
+//! power is the same at every sample. A frame is one period of its components, so nothing repeats
+//! (numeric definitions: random phase).
 //!
-//! A retune computes the current frames again with the same phases and cross-fades over 10 ms. Of the parameters that
-//! arrive during a cross-fade only the last are converted to a spectrum, at its end, so that a retune computes one
-//! frame and not two. Frames have single precision, as the output does.
+//! A retune computes the current frames again with the same phases and cross-fades over 10 ms. Of
+//! the parameters that arrive during a cross-fade only the last are converted to a spectrum, at its
+//! end, so that a retune computes one frame and not two. Frames have single precision, as the
+//! output does.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -24,9 +25,9 @@ const OVERLAP: usize = 8;
 /// Duration of the cross-fade after a retune, seconds.
 const FADE_S: f64 = 0.010;
 
-/// An endless stream of noise whose spectrum follows a magnitude curve, with unit RMS as measured by the bins
-/// of the band: all components are amplified to compensate for the power at the band's edges that the bins
-/// miss (1/6 of the power of an edge bin).
+/// An endless stream of noise whose spectrum follows a magnitude curve, with unit RMS as measured
+/// by the bins of the band: all components are amplified to compensate for the power at the band's
+/// edges that the bins miss (1/6 of the power of an edge bin).
 pub struct ShapedNoise {
     frames: Arc<Frames>,
     /// Half the amplitude of each component.
@@ -40,10 +41,11 @@ pub struct ShapedNoise {
     next: Uniform,
     /// Generator state after the next hop's frame, if that hop is already in `faded`.
     prepared: Option<Uniform>,
-    /// Position in a hop from which on the next hop is computed. It depends on the seed, so that streams that start
-    /// together do not all compute their frames in the same block.
+    /// Position in a hop from which on the next hop is computed. It depends on the seed, so that
+    /// streams that start together do not all compute their frames in the same block.
     prepare_at: usize,
-    /// Whether a change of spectrum began in this hop: another one may follow and would discard a prepared hop.
+    /// Whether a change of spectrum began in this hop: another one may follow and would discard a
+    /// prepared hop.
     changes: bool,
     /// Cosines and sines of the phases of the frame that began last.
     cos: Vec<f32>,
@@ -88,15 +90,15 @@ enum Pending {
     Wanted,
 }
 
-/// Rate in hertz at which a voice of [`ShapedNoise`] renders if `wanted_hz` is wanted: an integer fraction of
-/// it that contains the band and leaves a wide transition band for interpolation.
+/// Rate in hertz at which a voice of [`ShapedNoise`] renders if `wanted_hz` is wanted: an integer
+/// fraction of it that contains the band and leaves a wide transition band for interpolation.
 pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
     let parts = libm::floor(wanted_hz / (3.7 * band.high_hz)).max(1.0);
     wanted_hz / parts
 }
 
-/// Part of a component's power that the band's bins measure, including the spectral spread of a finite frame.
-/// The spread is that of a rectangle as long as the hop between frames.
+/// Part of a component's power that the band's bins measure, including the spectral spread of a
+/// finite frame. The spread is that of a rectangle as long as the hop between frames.
 fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
     if part.at(hz - FRAME_SPREAD * spacing_hz) == 1.0
         && part.at(hz + FRAME_SPREAD * spacing_hz) == 1.0
@@ -109,11 +111,7 @@ fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
     for step in -steps..=steps {
         let offset_hz = step as f64 / FRAME_STEPS * spacing_hz;
         let x = core::f64::consts::PI * offset_hz / lobe_hz;
-        let amplitude = if step == 0 {
-            1.0
-        } else {
-            crate::trig::sin(x) / x
-        };
+        let amplitude = if step == 0 { 1.0 } else { crate::trig::sin(x) / x };
         let weight = amplitude * amplitude;
         read += weight * part.at(hz + offset_hz);
         all += weight;
@@ -121,20 +119,22 @@ fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
     read / all
 }
 
-/// Number of component spacings on either side of a component over which its frames spread it, and points per
-/// spacing.
+/// Number of component spacings on either side of a component over which its frames spread it, and
+/// points per spacing.
 const FRAME_SPREAD: f64 = 4.0;
 const FRAME_STEPS: f64 = 2.0;
 
-/// Fade-in weight at sample `n` of `overlap`: `sin(π/2 sin²)`. Unlike a sine it is smooth at both ends, which
-/// keeps the noise floor of steep spectra low. With its mirror image the squares add up to 1.
+/// Fade-in weight at sample `n` of `overlap`: `sin(π/2 sin²)`. Unlike a sine it is smooth at both
+/// ends, which keeps the noise floor of steep spectra low. With its mirror image the squares add up
+/// to 1.
 fn rise(n: usize, overlap: usize) -> f64 {
     let quarter = core::f64::consts::FRAC_PI_2;
     let sine = crate::trig::sin(quarter * (n as f64 + 0.5) / overlap as f64);
     crate::trig::sin(quarter * sine * sine)
 }
 
-/// [`ShapedNoise::prepare_at`] of a seed: multiples of the golden ratio spread consecutive seeds evenly.
+/// [`ShapedNoise::prepare_at`] of a seed: multiples of the golden ratio spread consecutive seeds
+/// evenly.
 fn prepare_at(seed: u64, hop: usize) -> usize {
     let part = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
     ((part * hop as u64) >> 32) as usize
@@ -168,12 +168,8 @@ impl Frames {
             hop,
             fade_len: libm::ceil(FADE_S * rate_hz).max(1.0).min(hop as f64) as usize,
             first: low,
-            component_hz: components()
-                .map(|hz| hz.clamp(band.low_hz, band.high_hz))
-                .collect(),
-            read: components()
-                .map(|hz| frame_read_part(&part, hz, spacing))
-                .collect(),
+            component_hz: components().map(|hz| hz.clamp(band.low_hz, band.high_hz)).collect(),
+            read: components().map(|hz| frame_read_part(&part, hz, spacing)).collect(),
         }
     }
 }
@@ -238,11 +234,12 @@ impl ShapedNoise {
         self.pending = Pending::Made;
     }
 
-    /// As [`Self::retune`], with a spectrum that is computed when it is needed: immediately, or, during
-    /// another change, at its end, in [`Self::render_with`]. Of several requests in between only the last one
-    /// counts. `make` receives [`Self::component_hz`] and writes a magnitude for each, in any scale; negative
-    /// and non-finite values count as zero. Returns false if all magnitudes are zero in the immediate case;
-    /// the stream then continues unchanged. Does not allocate.
+    /// As [`Self::retune`], with a spectrum that is computed when it is needed: immediately, or,
+    /// during another change, at its end, in [`Self::render_with`]. Of several requests in between
+    /// only the last one counts. `make` receives [`Self::component_hz`] and writes a magnitude for
+    /// each, in any scale; negative and non-finite values count as zero. Returns false if all
+    /// magnitudes are zero in the immediate case; the stream then continues unchanged. Does not
+    /// allocate.
     pub fn retune_with(&mut self, make: impl FnOnce(&[f64], &mut [f64])) -> bool {
         if self.fade_position.is_some() {
             self.pending = Pending::Wanted;
@@ -266,8 +263,8 @@ impl ShapedNoise {
         self.normalise()
     }
 
-    /// Scales magnitudes to component amplitudes that together measure as unit RMS; false if there is no
-    /// power.
+    /// Scales magnitudes to component amplitudes that together measure as unit RMS; false if there
+    /// is no power.
     fn normalise(&mut self) -> bool {
         let mut power = 0.0;
         for (a, read) in self.pending_amplitude.iter_mut().zip(&self.frames.read) {
@@ -276,11 +273,7 @@ impl ShapedNoise {
             }
             power += 0.5 * read * *a * *a;
         }
-        let gain = if power > 0.0 {
-            1.0 / crate::root::sqrt(power)
-        } else {
-            0.0
-        };
+        let gain = if power > 0.0 { 1.0 / crate::root::sqrt(power) } else { 0.0 };
         self.pending_amplitude.iter_mut().for_each(|a| *a *= gain);
         power > 0.0
     }
@@ -315,8 +308,8 @@ impl ShapedNoise {
         }
     }
 
-    /// Renders samples of the current hop up to its end; returns their number. The result does not depend on
-    /// the block size, even while a change waits for the next hop.
+    /// Renders samples of the current hop up to its end; returns their number. The result does not
+    /// depend on the block size, even while a change waits for the next hop.
     fn run_steady(&mut self, out: &mut [f32]) -> usize {
         if self.position >= self.prepare_at && !self.changes && self.prepared.is_none() {
             self.prepare();
@@ -346,8 +339,8 @@ impl ShapedNoise {
         run
     }
 
-    /// Starts a cross-fade to the pending spectrum, unless one is in progress or too little of the hop is
-    /// left.
+    /// Starts a cross-fade to the pending spectrum, unless one is in progress or too little of the
+    /// hop is left.
     fn begin_fade(&mut self, make: &mut dyn FnMut(&[f64], &mut [f64])) {
         if self.fade_position.is_some() || self.position + self.frames.fade_len > self.frames.hop {
             return;
@@ -406,8 +399,8 @@ impl ShapedNoise {
         phases.fill_directions(&mut self.cos, &mut self.sin);
     }
 
-    /// Computes the rest of the current hop again into `faded`, with the same phases and the current
-    /// amplitudes.
+    /// Computes the rest of the current hop again into `faded`, with the same phases and the
+    /// current amplitudes.
     fn remake_hop(&mut self) {
         let overlaps = self.position < self.frames.rise.len();
         if overlaps {

@@ -1,9 +1,10 @@
-//! Tables that depend on a few parameters alone: computed once, shared while in use, and the last few cached.
+//! Tables that depend on a few parameters alone: computed once, shared while in use, and the last
+//! few cached.
 
 use alloc::sync::Arc;
 
-/// Number of unused tables of one kind that stay cached, so that an app that opens one texture after another
-/// computes them once.
+/// Number of unused tables of one kind that stay cached, so that an app that opens one texture
+/// after another computes them once.
 #[cfg(feature = "std")]
 const KEPT: usize = 4;
 
@@ -31,10 +32,7 @@ impl<K: PartialEq, V: ?Sized> Shared<K, V> {
     /// Returns the table of a key; calls `make` if it is neither in use nor cached.
     pub fn get(&self, key: K, make: impl FnOnce() -> Arc<V>) -> Arc<V> {
         // A panic in another thread leaves the lists valid.
-        let mut tables = self
-            .0
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut tables = self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let Tables { in_use, kept } = &mut *tables;
         let found = in_use.iter().find(|(known, _)| *known == key);
         let table = match found.and_then(|(_, table)| table.upgrade()) {

@@ -1,12 +1,14 @@
-//! Sharpening of a power spectrum against the blur of the Hann window, for noise that is to measure as stated.
+//! Sharpening of a power spectrum against the blur of the Hann window, for noise that is to measure
+//! as stated.
 
 /// Rounds of sharpening.
 const SHARPENINGS: usize = 2;
 
-/// Writes a power spectrum on the band's grid that approximately measures as `power` through the Hann window. The window
-/// distributes the power of noise over bins: two thirds in its own and a sixth in each neighbour. Sharpening
-/// inverts this by two Richardson–Lucy steps; next to flanks steeper than the window's, some blur remains. All slices have the length of
-/// `power`, which may be empty; `before` is scratch. Does not allocate.
+/// Writes a power spectrum on the band's grid that approximately measures as `power` through the
+/// Hann window. The window distributes the power of noise over bins: two thirds in its own and a
+/// sixth in each neighbour. Sharpening inverts this by two Richardson–Lucy steps; next to flanks
+/// steeper than the window's, some blur remains. All slices have the length of `power`, which may
+/// be empty; `before` is scratch. Does not allocate.
 ///
 /// ```
 /// let (mut before, mut sharp) = ([0.0; 3], [0.0; 3]);
@@ -23,10 +25,8 @@ pub fn sharpen(power: &[f64], before: &mut [f64], sharp: &mut [f64]) {
     for _ in 0..SHARPENINGS {
         before.copy_from_slice(sharp);
         sharp[0] = sharpened(power[0], [before[0], before[0], before[last.min(1)]]);
-        sharp[last] = sharpened(
-            power[last],
-            [before[last.saturating_sub(1)], before[last], before[last]],
-        );
+        sharp[last] =
+            sharpened(power[last], [before[last.saturating_sub(1)], before[last], before[last]]);
         let inner = sharp.iter_mut().skip(1).zip(power.iter().skip(1));
         for ((sharp, power), neighbours) in inner.zip(before.array_windows()) {
             *sharp = sharpened(*power, *neighbours);
@@ -34,12 +34,9 @@ pub fn sharpen(power: &[f64], before: &mut [f64], sharp: &mut [f64]) {
     }
 }
 
-/// Power of a bin after a round; `[below, here, above]` is the power before in the bin and its neighbours.
+/// Power of a bin after a round; `[below, here, above]` is the power before in the bin and its
+/// neighbours.
 fn sharpened(power: f64, [below, here, above]: [f64; 3]) -> f64 {
     let read = (below + 4.0 * here + above) / 6.0;
-    if read > 0.0 {
-        here * (power / read)
-    } else {
-        here
-    }
+    if read > 0.0 { here * (power / read) } else { here }
 }

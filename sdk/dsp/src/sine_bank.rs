@@ -1,16 +1,18 @@
 //! A bank of sine oscillators without phase drift.
 //!
-//! Each oscillator counts its phase in 64-bit fixed point (one cycle is 2^64), so that the phase after a day
-//! of samples is as accurate as at the start. Between anchors a recurrence generates the samples; at each
-//! anchor it restarts from the counted phase. While nothing changes, an oscillator generates eight samples at
-//! a time from the previous sixteen: `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`, each lane independently, which
-//! suits vector instructions. While amplitudes or frequencies change, oscillators rotate sample by sample.
+//! Each oscillator counts its phase in 64-bit fixed point (one cycle is 2^64), so that the phase
+//! after a day of samples is as accurate as at the start. Between anchors a recurrence generates
+//! the samples; at each anchor it restarts from the counted phase. While nothing changes, an
+//! oscillator generates eight samples at a time from the previous sixteen:
+//! `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`, each lane independently, which suits vector
+//! instructions. While amplitudes or frequencies change, oscillators rotate sample by sample.
 //!
 //! A day of samples drifts by less than a millionth of a cycle.
 
 use alloc::vec::Vec;
 
-/// Samples between two anchors; within them the recurrences drift by less than 1e-10 of an amplitude.
+/// Samples between two anchors; within them the recurrences drift by less than 1e-10 of an
+/// amplitude.
 const ANCHOR_INTERVAL: u32 = 4096;
 /// Samples that an oscillator generates at a time.
 const LANES: usize = 8;
@@ -116,8 +118,8 @@ impl SineBank {
         bank
     }
 
-    /// Changes to `sines` from the next sample on. Amplitudes and frequencies ramp linearly over 10 ms;
-    /// phases are continuous. Oscillators are matched by index. Does not allocate.
+    /// Changes to `sines` from the next sample on. Amplitudes and frequencies ramp linearly over 10
+    /// ms; phases are continuous. Oscillators are matched by index. Does not allocate.
     pub fn retune(&mut self, sines: &[Sine]) {
         self.advance();
         self.heard = self.heard.max(sines.len()).min(self.osc.phase.len());
@@ -146,11 +148,7 @@ impl SineBank {
                 self.advance();
                 self.anchor();
             }
-            let run = if self.ramp_left > 0 {
-                self.run_ramp(rest)
-            } else {
-                self.run_steady(rest)
-            };
+            let run = if self.ramp_left > 0 { self.run_ramp(rest) } else { self.run_steady(rest) };
             rest = &mut rest[run..];
         }
     }
@@ -159,9 +157,8 @@ impl SineBank {
         let heard = sine.filter(|s| s.frequency_hz < 0.5 * self.rate_hz);
         self.osc.target[i] = heard.map_or(0.0, |s| s.amplitude);
         // An oscillator that fades out keeps its frequency.
-        self.osc.goal[i] = heard.map_or(self.osc.increment[i], |s| {
-            cycles_to_fixed(s.frequency_hz / self.rate_hz)
-        });
+        self.osc.goal[i] =
+            heard.map_or(self.osc.increment[i], |s| cycles_to_fixed(s.frequency_hz / self.rate_hz));
     }
 
     /// Advances the counted phases and increments to the current sample.
@@ -237,10 +234,7 @@ impl Oscillators {
 
     /// The samples around an anchor, and the factor of the recurrence.
     fn anchor_wave(&mut self, i: usize) {
-        let start = (
-            self.amplitude[i] * self.cos[i],
-            self.amplitude[i] * self.sin[i],
-        );
+        let start = (self.amplitude[i] * self.cos[i], self.amplitude[i] * self.sin[i]);
         let turn = (self.turn_cos[i], self.turn_sin[i]);
         let [before, now] = &mut self.wave[i];
         let mut ahead = start;
@@ -320,16 +314,8 @@ mod tests {
 
     fn two_sines() -> [Sine; 2] {
         [
-            Sine {
-                frequency_hz: 70.0,
-                amplitude: 1.0,
-                phase_cycles: 0.0,
-            },
-            Sine {
-                frequency_hz: 333.3,
-                amplitude: 0.5,
-                phase_cycles: 0.25,
-            },
+            Sine { frequency_hz: 70.0, amplitude: 1.0, phase_cycles: 0.0 },
+            Sine { frequency_hz: 333.3, amplitude: 0.5, phase_cycles: 0.25 },
         ]
     }
 
@@ -353,17 +339,10 @@ mod tests {
         let mut bank = SineBank::new(20_000.0, 2, &two_sines());
         let mut out = alloc::vec![0.0f32; 2_000];
         bank.render(&mut out[..1_000]);
-        bank.retune(&[Sine {
-            frequency_hz: 90.0,
-            amplitude: 0.2,
-            phase_cycles: 0.0,
-        }]);
+        bank.retune(&[Sine { frequency_hz: 90.0, amplitude: 0.2, phase_cycles: 0.0 }]);
         bank.render(&mut out[1_000..]);
         // Steepest slope: 2π (70·1 + 333.3·0.5) / 20 kHz, plus the ramp's own.
-        let step = out
-            .windows(2)
-            .map(|w| (w[1] - w[0]).abs())
-            .fold(0.0, f32::max);
+        let step = out.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f32::max);
         assert!(step < 0.09, "{step}");
         // All oscillators of the bank; whole periods of both sines up to a thousandth.
         bank.retune(&two_sines());

@@ -20,11 +20,7 @@ pub struct WrongLength {
 
 impl core::fmt::Display for WrongLength {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let Self {
-            what,
-            expected,
-            got,
-        } = self;
+        let Self { what, expected, got } = self;
         write!(f, "{what} has {got} elements, but {expected} are needed")
     }
 }
@@ -52,11 +48,7 @@ pub struct SegmentAnalyzer {
 impl SegmentAnalyzer {
     /// An analyser for segments of `len` samples.
     pub fn new(len: usize) -> Self {
-        Self {
-            window: hann_periodic(len),
-            fft: RealFft::new(len),
-            input: alloc::vec![0.0; len],
-        }
+        Self { window: hann_periodic(len), fft: RealFft::new(len), input: alloc::vec![0.0; len] }
     }
 
     /// A buffer for one spectrum: `len / 2 + 1` bins, from 0 Hz to Nyquist.
@@ -64,7 +56,8 @@ impl SegmentAnalyzer {
         self.fft.make_bins()
     }
 
-    /// Factor from a windowed bin's magnitude to the amplitude of a sinusoid: `2 / Σw`, which is `4 / len`.
+    /// Factor from a windowed bin's magnitude to the amplitude of a sinusoid: `2 / Σw`, which is
+    /// `4 / len`.
     pub fn amplitude_scale(&self) -> f64 {
         2.0 / self.window.iter().sum::<f64>()
     }
@@ -89,7 +82,8 @@ impl SegmentAnalyzer {
         Ok(())
     }
 
-    /// Transforms the segment unchanged: no mean removal, no window. Otherwise as [`Self::analyze`].
+    /// Transforms the segment unchanged: no mean removal, no window. Otherwise as
+    /// [`Self::analyze`].
     ///
     /// # Errors
     /// If `segment` or `bins` has another length than the analyser's.
@@ -105,28 +99,18 @@ impl SegmentAnalyzer {
     }
 
     fn check(&self, what: &'static str, expected: usize, got: usize) -> Result<(), WrongLength> {
-        if expected == got {
-            Ok(())
-        } else {
-            Err(WrongLength {
-                what,
-                expected,
-                got,
-            })
-        }
+        if expected == got { Ok(()) } else { Err(WrongLength { what, expected, got }) }
     }
 }
 
-/// Combines the spectra of several axes: magnitude `sqrt(|X|² + |Y|² + …)`, phase of `X + Y + …` (DFT321,
-/// Landin et al. 2010). Where the sum is zero the phase is 0. A single axis is unchanged; the shortest one
-/// sets the length.
+/// Combines the spectra of several axes: magnitude `sqrt(|X|² + |Y|² + …)`, phase of `X + Y + …`
+/// (DFT321, Landin et al. 2010). Where the sum is zero the phase is 0. A single axis is unchanged;
+/// the shortest one sets the length.
 pub fn dft321(axes: &[Vec<Complex<f64>>]) -> Vec<Complex<f64>> {
     let bins = axes.iter().map(Vec::len).min().unwrap_or(0);
     match axes {
         [axis] => axis.clone(),
-        axes => (0..bins)
-            .map(|k| fold_bin(axes.iter().map(|axis| axis[k])))
-            .collect(),
+        axes => (0..bins).map(|k| fold_bin(axes.iter().map(|axis| axis[k]))).collect(),
     }
 }
 
@@ -134,14 +118,11 @@ fn fold_bin(axes: impl Iterator<Item = Complex<f64>> + Clone) -> Complex<f64> {
     let folded = axes.clone().map(magnitude).fold(0.0, libm::hypot);
     let sum: Complex<f64> = axes.sum();
     let length = magnitude(sum);
-    if length > 0.0 {
-        sum / length * folded
-    } else {
-        Complex::new(folded, 0.0)
-    }
+    if length > 0.0 { sum / length * folded } else { Complex::new(folded, 0.0) }
 }
 
-/// Magnitude of a complex number, with the same bits on every machine, which `Complex::norm` does not have.
+/// Magnitude of a complex number, with the same bits on every machine, which `Complex::norm` does
+/// not have.
 pub fn magnitude(z: Complex<f64>) -> f64 {
     libm::hypot(z.re, z.im)
 }

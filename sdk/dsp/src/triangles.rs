@@ -1,5 +1,5 @@
-//! Banks of overlapping triangular filters over any axis, used by [`MelBank`](crate::mel::MelBank) and
-//! [`BandBank`](crate::bands::BandBank).
+//! Banks of overlapping triangular filters over any axis, used by [`MelBank`](crate::mel::MelBank)
+//! and [`BandBank`](crate::bands::BandBank).
 
 use alloc::vec::Vec;
 
@@ -10,8 +10,8 @@ struct Triangle {
     weights: Vec<f64>,
 }
 
-/// Triangular filters with apex 1. Filter `i` extends from edge `i` to edge `i + 2` with its apex at edge `i
-/// + 1`. A sparse matrix of `rows()` filters by `columns()` frequencies.
+/// Triangular filters with apex 1. Filter `i` extends from edge `i` to edge `i + 2` with its apex
+/// at edge `i + 1`. A sparse matrix of `rows()` filters by `columns()` frequencies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TriangleBank {
     triangles: Vec<Triangle>,
@@ -19,17 +19,13 @@ pub struct TriangleBank {
 }
 
 impl TriangleBank {
-    /// Makes a bank of `edges.len() - 2` filters at the positions `axis`. Both are ascending and in the same
-    /// unit, in which the flanks are linear. A filter between two neighbouring positions is empty.
+    /// Makes a bank of `edges.len() - 2` filters at the positions `axis`. Both are ascending and in
+    /// the same unit, in which the flanks are linear. A filter between two neighbouring positions
+    /// is empty.
     pub fn new(edges: &[f64], axis: &[f64]) -> Self {
-        let triangles = edges
-            .windows(3)
-            .map(|edge| Triangle::new([edge[0], edge[1], edge[2]], axis))
-            .collect();
-        Self {
-            triangles,
-            columns: axis.len(),
-        }
+        let triangles =
+            edges.windows(3).map(|edge| Triangle::new([edge[0], edge[1], edge[2]], axis)).collect();
+        Self { triangles, columns: axis.len() }
     }
 
     /// Number of filters.
@@ -55,14 +51,11 @@ impl TriangleBank {
 
     /// Sum of each filter's weights, 0 for an empty filter.
     pub fn row_sums(&self) -> Vec<f64> {
-        self.triangles
-            .iter()
-            .map(|triangle| triangle.weights.iter().sum())
-            .collect()
+        self.triangles.iter().map(|triangle| triangle.weights.iter().sum()).collect()
     }
 
-    /// `out = bank · values`: `values` has `columns()` elements, `out` has `rows()`. Missing values count as
-    /// zero; surplus elements are ignored.
+    /// `out = bank · values`: `values` has `columns()` elements, `out` has `rows()`. Missing values
+    /// count as zero; surplus elements are ignored.
     pub fn apply(&self, values: &[f64], out: &mut [f64]) {
         for (sum, triangle) in out.iter_mut().zip(&self.triangles) {
             let under = values.get(triangle.first..).unwrap_or(&[]);
@@ -85,16 +78,17 @@ impl Triangle {
     fn new([left, apex, right]: [f64; 3], axis: &[f64]) -> Self {
         let first = axis.partition_point(|&x| x <= left);
         let end = axis.partition_point(|&x| x < right).max(first);
-        let weights = axis[first..end]
-            .iter()
-            .map(|&x| {
-                if x <= apex {
-                    (x - left) / (apex - left)
-                } else {
-                    (right - x) / (right - apex)
-                }
-            })
-            .collect();
+        let weights =
+            axis[first..end]
+                .iter()
+                .map(|&x| {
+                    if x <= apex {
+                        (x - left) / (apex - left)
+                    } else {
+                        (right - x) / (right - apex)
+                    }
+                })
+                .collect();
         Self { first, weights }
     }
 }

@@ -1,10 +1,10 @@
-//! Sines, cosines and tangents of bounded angles: those of `libm`, bit for bit, without its reduction of large arguments, which
-//! takes 2 kB of a WASM module.
+//! Sines, cosines and tangents of bounded angles: those of `libm`, bit for bit, without its
+//! reduction of large arguments, which takes 2 kB of a WASM module.
 //!
-//! The series and the reduction are those of FreeBSD's msun, as in `libm`:
-//! Copyright (C) 1993 by Sun Microsystems, Inc. All rights reserved. Developed at SunPro, a Sun Microsystems, Inc.
-//! business. Permission to use, copy, modify, and distribute this software is freely granted, provided that this notice
-//! is preserved.
+//! The series and the reduction are those of FreeBSD's msun, as in `libm`: Copyright (C) 1993 by
+//! Sun Microsystems, Inc. All rights reserved. Developed at SunPro, a Sun Microsystems, Inc.
+//! business. Permission to use, copy, modify, and distribute this software is freely granted,
+//! provided that this notice is preserved.
 
 use crate::wide::{Work, wide};
 
@@ -59,8 +59,9 @@ pub fn tan(x: f64) -> f64 {
     tangent(y, rest, quarter_turns & 1 == 1)
 }
 
-/// Writes the cosines of angles from 0 to π, each within 3e-16, into an array of the same length. The series has no branches, so that
-/// several angles are computed at a time; the bits are not those of [`cos`].
+/// Writes the cosines of angles from 0 to π, each within 3e-16, into an array of the same length.
+/// The series has no branches, so that several angles are computed at a time; the bits are not
+/// those of [`cos`].
 ///
 /// ```
 /// use htex_dsp::trig::{cos, half_turn_cosines};
@@ -91,17 +92,14 @@ impl Work for HalfTurn<'_> {
             *cosines = quarter_less(*angles);
         }
         let mut rest = [0.0; LANES];
-        rest.iter_mut()
-            .zip(last_angles)
-            .for_each(|(x, angle)| *x = *angle);
+        rest.iter_mut().zip(last_angles).for_each(|(x, angle)| *x = *angle);
         let rest = quarter_less(rest);
-        last.iter_mut()
-            .zip(rest)
-            .for_each(|(cosine, x)| *cosine = x);
+        last.iter_mut().zip(rest).for_each(|(cosine, x)| *cosine = x);
     }
 }
 
-/// Sines of a quarter turn less the angles, by Taylor's series: what follows its last term is below 2e-18.
+/// Sines of a quarter turn less the angles, by Taylor's series: what follows its last term is below
+/// 2e-18.
 #[inline(always)]
 fn quarter_less(angles: [f64; LANES]) -> [f64; LANES] {
     /// `(-1)^k / (2 k + 1)!` for k from 10 down to 1.
@@ -136,7 +134,8 @@ const QUARTER_PI: u32 = 0x3fe9_21fb;
 const TINY: u32 = 0x3e46_a09e;
 /// The high word of 2⁻²⁷, below which the tangent is the angle.
 const TINY_TANGENT: u32 = 0x3e40_0000;
-/// High words of the angles up to which it is by how many quarter turns they are reduced: 3π/4, 5π/4, 7π/4, 9π/4.
+/// High words of the angles up to which it is by how many quarter turns they are reduced: 3π/4,
+/// 5π/4, 7π/4, 9π/4.
 const TURNS: [u32; 4] = [0x4002_d97c, 0x400f_6a7a, 0x4015_fdbc, 0x401c_463b];
 /// High words that whole quarter turns have, where more digits of π/2 are needed: π/2, π, 3π/2, 2π.
 const WHOLE: [u32; 4] = [0x3ff9_21fb, 0x4009_21fb, 0x4012_d97c, 0x4019_21fb];
@@ -288,11 +287,7 @@ mod tests {
             let bits = |(s, c): (f64, f64)| [s.to_bits(), c.to_bits()];
             assert_eq!(bits(found), bits((sine, cosine)), "{x:e}");
             assert_eq!(tan(x).to_bits(), libm::tan(x).to_bits(), "{x:e}");
-            assert_eq!(
-                bits((sin(x), cos(x))),
-                bits((libm::sin(x), libm::cos(x))),
-                "{x:e}"
-            );
+            assert_eq!(bits((sin(x), cos(x))), bits((libm::sin(x), libm::cos(x))), "{x:e}");
         }
     }
 

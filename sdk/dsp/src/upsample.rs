@@ -1,18 +1,19 @@
 //! Sample-rate conversion by an integer factor: the usual case of [`crate::resample`].
 //!
-//! A few source samples are converted to all their outputs at a time. The outputs of one phase are side by
-//! side in vector registers, so no sum runs across the lanes of a register, and the output does not depend on
-//! the block sizes.
+//! A few source samples are converted to all their outputs at a time. The outputs of one phase are
+//! side by side in vector registers, so no sum runs across the lanes of a register, and the output
+//! does not depend on the block sizes.
 //!
-//! Samples are pulled in multiples of eight, so that chains with different stages retune at the same samples.
+//! Samples are pulled in multiples of eight, so that chains with different stages retune at the
+//! same samples.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::wide::{Work, wide};
 
-/// Source samples pulled at a time. Few, as they delay a change of parameters; twice as many where their
-/// duration is half as long.
+/// Source samples pulled at a time. Few, as they delay a change of parameters; twice as many where
+/// their duration is half as long.
 const FEW: usize = 8;
 const MANY: usize = 16;
 const MANY_HZ: f64 = 3_500.0;
@@ -28,8 +29,9 @@ pub(crate) struct Upsampler {
     kernel: Arc<[f32]>,
     /// Index of the only nonzero coefficient, 1, in the row of phase 0, if there is one.
     copies: Option<usize>,
-    /// The samples covered by `steps` windows of `taps`, preceded by as many as make the length of a pull a
-    /// multiple of `steps`, so that an intermediate stage that pulls in the same way never runs ahead.
+    /// The samples covered by `steps` windows of `taps`, preceded by as many as make the length of
+    /// a pull a multiple of `steps`, so that an intermediate stage that pulls in the same way never
+    /// runs ahead.
     history: Vec<f32>,
     primed: bool,
     ready: Vec<f32>,
@@ -112,8 +114,8 @@ impl<const STEPS: usize> Work for Outputs<'_, STEPS> {
     }
 }
 
-/// Applies a row at `STEPS` neighbouring positions. The sum is split into parts: a long single-precision sum
-/// would lose precision, and the parts are independent of each other.
+/// Applies a row at `STEPS` neighbouring positions. The sum is split into parts: a long
+/// single-precision sum would lose precision, and the parts are independent of each other.
 #[inline(always)]
 fn filter<const STEPS: usize>(row: &[f32], history: &[f32]) -> [f32; STEPS] {
     let mut sums = [0.0f32; STEPS];
@@ -136,8 +138,5 @@ fn filter<const STEPS: usize>(row: &[f32], history: &[f32]) -> [f32; STEPS] {
 fn only_one(row: &[f32]) -> Option<usize> {
     let one = row.iter().position(|x| (x - 1.0).abs() < 1e-7)?;
     let others = row.iter().enumerate().filter(|(i, _)| *i != one);
-    others
-        .map(|(_, x)| x.abs())
-        .all(|x| x < 1e-9)
-        .then_some(one)
+    others.map(|(_, x)| x.abs()).all(|x| x < 1e-9).then_some(one)
 }

@@ -1,9 +1,11 @@
-//! Variable-rate playback of a stream: reads it faster or slower at a ratio that may change at any sample.
+//! Variable-rate playback of a stream: reads it faster or slower at a ratio that may change at any
+//! sample.
 //!
-//! A texture is read faster after its resampler, at a cost only once the motion leaves the one for which the voice was
-//! created, whose ratio is part of the resampler's: until then samples pass through bit by bit ([`Warp::when_needed`]).
-//! The source is pulled, so reading ahead causes no delay. The reader has as many taps as the gap between the source's
-//! top frequency and its image requires, 8 to 32.
+//! A texture is read faster after its resampler, at a cost only once the motion leaves the one for
+//! which the voice was created, whose ratio is part of the resampler's: until then samples pass
+//! through bit by bit ([`Warp::when_needed`]). The source is pulled, so reading ahead causes no
+//! delay. The reader has as many taps as the gap between the source's top frequency and its image
+//! requires, 8 to 32.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -11,17 +13,19 @@ use alloc::vec::Vec;
 use crate::kernels::{self, kaiser_length};
 use crate::wide::{Work, wide};
 
-/// Maximum number of source samples per output; the stop-band attenuation is about 60 dB from the source's
-/// Nyquist frequency on.
+/// Maximum number of source samples per output; the stop-band attenuation is about 60 dB from the
+/// source's Nyquist frequency on.
 const MOST_TAPS: usize = 32;
 /// The number of taps is a multiple of this.
 const LANES: usize = 8;
-/// Bits of a position that select the row of the kernel table; between two rows the kernel is interpolated.
+/// Bits of a position that select the row of the kernel table; between two rows the kernel is
+/// interpolated.
 const PHASE_BITS: u32 = 8;
 /// Maximum number of outputs read at a time.
 const CHUNK: usize = 64;
-/// Row bits of a reader that starts on demand. The interpolation error between its rows is -60 dB at 0.4 of
-/// the source's rate and -98 dB at 0.05, and the table takes an eighth of the time to compute.
+/// Row bits of a reader that starts on demand. The interpolation error between its rows is -60 dB
+/// at 0.4 of the source's rate and -98 dB at 0.05, and the table takes an eighth of the time to
+/// compute.
 const FEW_PHASE_BITS: u32 = 5;
 
 /// Reads its source at a variable ratio by windowed-sinc interpolation. Pull-based like
@@ -51,8 +55,8 @@ pub struct Warp {
 }
 
 impl Warp {
-    /// Makes a reader for a source without content above `top` times its rate (0 to 0.5). A change of ratio
-    /// takes effect with a delay of half a kernel (4 to 16 source samples).
+    /// Makes a reader for a source without content above `top` times its rate (0 to 0.5). A change
+    /// of ratio takes effect with a delay of half a kernel (4 to 16 source samples).
     pub fn new(top: f64) -> Self {
         Self::of(taps(top), PHASE_BITS)
     }
@@ -62,9 +66,9 @@ impl Warp {
         Self::of(1, 0)
     }
 
-    /// Makes a reader that passes its source through, bit-identical and without delay, while the ratio is 1.
-    /// From the first other ratio on it interpolates, as [`Self::new`] does, starting at the current
-    /// position.
+    /// Makes a reader that passes its source through, bit-identical and without delay, while the
+    /// ratio is 1. From the first other ratio on it interpolates, as [`Self::new`] does, starting
+    /// at the current position.
     pub fn when_needed(top: f64) -> Self {
         let mut warp = Self::of(taps(top), FEW_PHASE_BITS);
         warp.filled = warp.before();
@@ -90,9 +94,9 @@ impl Warp {
         self.taps / 2 - 1
     }
 
-    /// Fills `out`; each sample is `ratio` source samples (0 to 1,000) after the one before. A `ratio` above
-    /// 1 aliases source content above the output's Nyquist frequency. Pulls no more than `out` needs. Does
-    /// not allocate.
+    /// Fills `out`; each sample is `ratio` source samples (0 to 1,000) after the one before. A
+    /// `ratio` above 1 aliases source content above the output's Nyquist frequency. Pulls no more
+    /// than `out` needs. Does not allocate.
     pub fn process(&mut self, ratio: f64, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         if !self.reads {
             if ratio == 1.0 {
@@ -103,10 +107,7 @@ impl Warp {
         }
         let whole = ratio as usize;
         // In units of 2⁻⁶⁴; below 1 the product cannot round up to 2⁶⁴.
-        let step = (
-            whole,
-            ((ratio - whole as f64) * 18_446_744_073_709_551_616.0) as u64,
-        );
+        let step = (whole, ((ratio - whole as f64) * 18_446_744_073_709_551_616.0) as u64);
         let mut rest = out;
         while !rest.is_empty() {
             let done = self.piece(step, rest, source);
@@ -129,21 +130,14 @@ impl Warp {
                 break;
             }
             last = self.start;
-            *place = ReadPosition {
-                start: last,
-                between: self.place,
-            };
+            *place = ReadPosition { start: last, between: self.place };
             count += 1;
             let carry;
             (self.place, carry) = self.place.overflowing_add(part);
             self.start += whole + usize::from(carry);
         }
         self.pull(last + self.taps, source);
-        wide(Windows {
-            warp: self,
-            places: &places[..count],
-            out: &mut out[..count],
-        });
+        wide(Windows { warp: self, places: &places[..count], out: &mut out[..count] });
         count
     }
 
@@ -175,13 +169,15 @@ impl Warp {
     }
 }
 
-/// Window length for a source without content above `top` of its rate: its images begin at `1 - top`.
+/// Window length for a source without content above `top` of its rate: its images begin at
+/// `1 - top`.
 fn taps(top: f64) -> usize {
     let taps = kaiser_length((1.0 - 2.0 * top).max(1e-6)).next_multiple_of(LANES);
     taps.min(MOST_TAPS)
 }
 
-/// Position of a sample: start of its window in the history, and the fraction of the way to the next sample.
+/// Position of a sample: start of its window in the history, and the fraction of the way to the
+/// next sample.
 #[derive(Debug, Clone, Copy, Default)]
 struct ReadPosition {
     start: usize,

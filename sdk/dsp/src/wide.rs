@@ -1,15 +1,17 @@
 //! Run-time selection of AVX2 and AVX-512 code on x86-64.
 //!
-//! Inner loops are compiled for 128 and 256 bits, and noise for 512 as well. The operations and their order are the
-//! same, so the results are bit-identical. The calls into these versions are the only unsafe code of this crate.
+//! Inner loops are compiled for 128 and 256 bits, and noise for 512 as well. The operations and
+//! their order are the same, so the results are bit-identical. The calls into these versions are
+//! the only unsafe code of this crate.
 
 /// A computation that is compiled for several register widths; `run` is always inlined.
 pub(crate) trait Work {
     fn run(self);
 }
 
-/// Runs `work` compiled for AVX2 (256-bit registers) if the processor has it, else as compiled for the
-/// target. The result is bit-identical: the same operations in the same order, on several numbers at a time.
+/// Runs `work` compiled for AVX2 (256-bit registers) if the processor has it, else as compiled for
+/// the target. The result is bit-identical: the same operations in the same order, on several
+/// numbers at a time.
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[inline]
 #[allow(unsafe_code)]
@@ -32,8 +34,8 @@ pub(crate) fn wide(work: impl Work) {
     work.run();
 }
 
-/// Runs `work` compiled for AVX-512 (512-bit registers) if the processor has it, else returns it: work of
-/// that width is faster as two halves then.
+/// Runs `work` compiled for AVX-512 (512-bit registers) if the processor has it, else returns it:
+/// work of that width is faster as two halves then.
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[inline]
 #[allow(unsafe_code)]

@@ -55,12 +55,7 @@ impl Case {
         let expected = numbers(&self.0["expected"][field]);
         let (rtol, atol) = (self.0["rtol"].as_f64(), self.0["atol"].as_f64());
         let (rtol, atol) = (rtol.unwrap(), atol.unwrap());
-        assert_eq!(
-            got.len(),
-            expected.len(),
-            "{}: length of {field}",
-            self.name()
-        );
+        assert_eq!(got.len(), expected.len(), "{}: length of {field}", self.name());
         for (i, (got, expected)) in got.iter().zip(&expected).enumerate() {
             let error = (got - expected).abs();
             assert!(
@@ -85,13 +80,8 @@ fn cases(file: &str, prefixes: &[&str]) -> Vec<Case> {
     let text = std::fs::read_to_string(format!("{folder}/{file}.json")).unwrap();
     let root: Value = serde_json::from_str(&text).unwrap();
     let all = root["cases"].as_array().unwrap().iter().cloned().map(Case);
-    let chosen: Vec<Case> = all
-        .filter(|case| {
-            prefixes
-                .iter()
-                .any(|prefix| case.name().starts_with(prefix))
-        })
-        .collect();
+    let chosen: Vec<Case> =
+        all.filter(|case| prefixes.iter().any(|prefix| case.name().starts_with(prefix))).collect();
     assert!(!chosen.is_empty(), "{file}: no case {prefixes:?}");
     chosen
 }
@@ -106,9 +96,7 @@ fn smooth_spectrum() -> Vec<f64> {
 
 fn column(bank: &TriangleBank, f_hz: f64) -> Vec<f64> {
     let column = (f_hz / GRID_HZ) as usize - Band::TACTILE.first_bin();
-    (0..bank.rows())
-        .map(|row| bank.weight(row, column))
-        .collect()
+    (0..bank.rows()).map(|row| bank.weight(row, column)).collect()
 }
 
 #[test]
@@ -116,11 +104,8 @@ fn windows() {
     let periodic = |case: &Case| case.text("kind") == "periodic";
     for case in cases("window", &["hann"]).into_iter().filter(periodic) {
         let window = hann_periodic(case.count("n"));
-        let at_index: Vec<f64> = case
-            .numbers("index")
-            .iter()
-            .map(|&i| window[i as usize])
-            .collect();
+        let at_index: Vec<f64> =
+            case.numbers("index").iter().map(|&i| window[i as usize]).collect();
         case.check("w", &at_index);
         case.check("sum", &[window.iter().sum()]);
         case.check("sum_sq", &[window.iter().map(|w| w * w).sum()]);
@@ -226,12 +211,8 @@ fn band_comparison() {
     };
     // Weighted absolute difference of the power, bin by bin.
     let mut difference = vec![0.0; 9];
-    let power = reference
-        .iter()
-        .zip(&model)
-        .map(|(r, m)| ((m * gain).powi(2) - r * r).abs());
-    bank.filters()
-        .apply(&power.collect::<Vec<_>>(), &mut difference);
+    let power = reference.iter().zip(&model).map(|(r, m)| ((m * gain).powi(2) - r * r).abs());
+    bank.filters().apply(&power.collect::<Vec<_>>(), &mut difference);
     for case in cases("bands", &["compare"]) {
         case.check("corr", &[pearson_correlation(&reference, &model)]);
         case.check("gain_energy_match", &[gain]);
@@ -286,8 +267,8 @@ fn cepstra_there_and_back() {
         let mut back = vec![0.0; spectrum.len()];
         inverse.apply(&energies, &mut back);
         back.iter_mut().for_each(|p| *p = p.max(0.0).sqrt());
-        // At the band's two ends every weight is zero, and so is the result; the golden vector has the square
-        // root of the rounding error of its edges there, 2e-10.
+        // At the band's two ends every weight is zero, and so is the result; the golden vector has
+        // the square root of the rounding error of its edges there, 2e-10.
         let ends = [0, spectrum.len() - 1];
         let mut with_ends = back.clone();
         for i in ends {
@@ -335,11 +316,7 @@ fn beta_density() {
 /// The complete fit, a difficult problem for the simplex search.
 #[test]
 fn beta_fits() {
-    let options = Options {
-        x_tolerance: 1e-10,
-        f_tolerance: 1e-16,
-        ..Options::default()
-    };
+    let options = Options { x_tolerance: 1e-10, f_tolerance: 1e-16, ..Options::default() };
     for case in cases("sbeta", &["fit"]) {
         let low = case.number("lower_bound");
         let unit = |f: &f64| log_unit(*f, Band::TACTILE);
@@ -375,20 +352,9 @@ fn peaks() {
     let frequencies = Band::TACTILE.grid_hz();
     for case in cases("speak", &["rippled", "few_peaks"]) {
         let magnitude = case.numbers("mag");
-        let peaks = select_peaks(
-            &frequencies,
-            &magnitude,
-            case.count("n"),
-            case.number("jnd"),
-        );
-        case.check(
-            "f_hz",
-            &peaks.iter().map(|p| p.frequency_hz).collect::<Vec<_>>(),
-        );
-        case.check(
-            "amp",
-            &peaks.iter().map(|p| p.magnitude).collect::<Vec<_>>(),
-        );
+        let peaks = select_peaks(&frequencies, &magnitude, case.count("n"), case.number("jnd"));
+        case.check("f_hz", &peaks.iter().map(|p| p.frequency_hz).collect::<Vec<_>>());
+        case.check("amp", &peaks.iter().map(|p| p.magnitude).collect::<Vec<_>>());
         case.check("n_local_maxima", &[local_maxima(&magnitude).len() as f64]);
     }
 }
@@ -412,15 +378,9 @@ fn butterworth_filters() {
             butterworth::analog_low_pass_magnitude(fc / f, high as f64)
                 * butterworth::analog_low_pass_magnitude(f / fc, low as f64)
         };
-        case.check(
-            "mag_analog",
-            &frequencies.iter().map(analog).collect::<Vec<_>>(),
-        );
+        case.check("mag_analog", &frequencies.iter().map(analog).collect::<Vec<_>>());
         let digital = |f: &f64| cascade.magnitude(*f, rate);
-        case.check(
-            "mag_digital",
-            &frequencies.iter().map(digital).collect::<Vec<_>>(),
-        );
+        case.check("mag_digital", &frequencies.iter().map(digital).collect::<Vec<_>>());
         let mut impulse = [0.0; 8];
         impulse[0] = 1.0;
         cascade.process(&mut impulse);

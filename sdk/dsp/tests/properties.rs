@@ -16,41 +16,26 @@ use proptest::prelude::*;
 
 fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
-    a.iter()
-        .zip(b)
-        .map(|(x, y)| (x - y).abs())
-        .fold(0.0, f64::max)
+    a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
 }
 
 /// Power spectra with zeros, lines and 200 dB of dynamic range.
 fn power_spectrum() -> impl Strategy<Value = Vec<f64>> {
-    let bin = prop_oneof![
-        Just(0.0),
-        (-20.0..0.0_f64).prop_map(|e| 10f64.powf(e)),
-        0.0..1.0
-    ];
+    let bin = prop_oneof![Just(0.0), (-20.0..0.0_f64).prop_map(|e| 10f64.powf(e)), 0.0..1.0];
     vec(bin, 2..300)
 }
 
-/// Autocorrelation lags `0..=order` from the power in equally spaced bins from 0 Hz to Nyquist inclusive:
-/// `r[m] = Σ P_k cos(π k m / (bins - 1))`.
+/// Autocorrelation lags `0..=order` from the power in equally spaced bins from 0 Hz to Nyquist
+/// inclusive: `r[m] = Σ P_k cos(π k m / (bins - 1))`.
 ///
-/// The power is one-sided (a bin includes the power of its negative frequency), so `r[0]` is the total power.
-/// Bins outside the band have zero power, and the model approximates zero there.
+/// The power is one-sided (a bin includes the power of its negative frequency), so `r[0]` is the
+/// total power. Bins outside the band have zero power, and the model approximates zero there.
 fn autocorrelation_from_power(power: &[f64], order: usize) -> Vec<f64> {
     let nyquist = power.len().saturating_sub(1).max(1);
     let cosine = |turn: usize| {
         f64::cos(std::f64::consts::PI * (turn % (2 * nyquist)) as f64 / nyquist as f64)
     };
-    (0..=order)
-        .map(|m| {
-            power
-                .iter()
-                .enumerate()
-                .map(|(k, p)| p * cosine(k * m))
-                .sum()
-        })
-        .collect()
+    (0..=order).map(|m| power.iter().enumerate().map(|(k, p)| p * cosine(k * m)).sum()).collect()
 }
 
 proptest! {

@@ -1,4 +1,5 @@
-//! The time of a sample of an imported texture that follows a finger: cargo run --release -p htex-exchange --example live FILE.xml
+//! The time of a sample of an imported texture that follows a finger: cargo run --release -p
+//! htex-exchange --example live FILE.xml
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -24,10 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for _ in 0..RUNS {
             least = least.min(run_s(&asset, samples, moves)?);
         }
-        println!(
-            "{what}: {:.1} ns a sample at 20 kHz",
-            1e9 * least / SAMPLES as f64
-        );
+        println!("{what}: {:.1} ns a sample at 20 kHz", 1e9 * least / SAMPLES as f64);
     }
     Ok(())
 }

@@ -1,9 +1,12 @@
-//! Android's `VibrationEffect`: a waveform of levels, and the envelopes of API 36, as JSON and as Kotlin.
+//! Android's `VibrationEffect`: a waveform of levels, and the envelopes of API 36, as JSON and as
+//! Kotlin.
 //!
-//! Rules of the documentation: a waveform has timings of milliseconds and amplitudes of 0 to 255; a control point of an envelope has at
-//! least the duration and an envelope at most the points that `VibratorEnvelopeEffectInfo` says, which guarantees 16 points of 20 ms to 1 s; an
-//! envelope of `BasicEnvelopeBuilder` ends at the intensity 0. The amplitude of `WaveformEnvelopeBuilder` is the part of the strongest vibration at
-//! the frequency. The JSON is this project's own: Android has no file of an effect.
+//! Rules of the documentation: a waveform has timings of milliseconds and amplitudes of 0 to 255; a
+//! control point of an envelope has at least the duration and an envelope at most the points that
+//! `VibratorEnvelopeEffectInfo` says, which guarantees 16 points of 20 ms to 1 s; an envelope of
+//! `BasicEnvelopeBuilder` ends at the intensity 0. The amplitude of `WaveformEnvelopeBuilder` is
+//! the part of the strongest vibration at the frequency. The JSON is this project's own: Android
+//! has no file of an effect.
 
 use htex_format::Rights;
 use serde::{Deserialize, Serialize};
@@ -102,7 +105,8 @@ impl Android {
     /// Reads the JSON of an effect.
     ///
     /// # Errors
-    /// When it is no JSON, has another shape, or breaks a rule of Android's builders; with the place.
+    /// When it is no JSON, has another shape, or breaks a rule of Android's builders; with the
+    /// place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let effect: Self = json::read(bytes)?;
         if effect.format != FORMAT {
@@ -145,10 +149,7 @@ impl Android {
         let waveform = self.waveform_envelope.control_points.iter();
         let basic = self.basic_envelope.control_points.iter();
         let envelopes: [(&str, Vec<u64>); 2] = [
-            (
-                "waveform_envelope",
-                waveform.map(|p| p.duration_ms).collect(),
-            ),
+            ("waveform_envelope", waveform.map(|p| p.duration_ms).collect()),
             ("basic_envelope", basic.map(|p| p.duration_ms).collect()),
         ];
         let (most, least) = (profile.most_points.value, profile.shortest_point_ms.value);
@@ -158,12 +159,7 @@ impl Android {
             within(|| at.clone(), "the number of points", count, 1.0..=most)?;
             for (index, ms) in durations_ms.into_iter().enumerate() {
                 let of = || format!("{at}/{index}/duration_ms");
-                within(
-                    of,
-                    "the duration",
-                    ms as f64,
-                    least..=LONGEST_POINT_MS as f64,
-                )?;
+                within(of, "the duration", ms as f64, least..=LONGEST_POINT_MS as f64)?;
             }
         }
         Ok(())
@@ -191,7 +187,8 @@ impl Android {
         }
     }
 
-    /// Writes three functions of Kotlin that make the effect; `name` of the texture becomes a part of theirs.
+    /// Writes three functions of Kotlin that make the effect; `name` of the texture becomes a part
+    /// of theirs.
     #[must_use]
     pub fn to_kotlin(&self, name: &str) -> Vec<u8> {
         let name = identifier(name);
@@ -216,16 +213,8 @@ impl Android {
             points.map(|p| (p.intensity, p.sharpness, p.duration_ms)),
         );
         let functions = [
-            (
-                "every device with amplitude control (API 26)",
-                "Waveform",
-                waveform,
-            ),
-            (
-                "devices with envelopes and a frequency profile (API 36)",
-                "Envelope",
-                envelope,
-            ),
+            ("every device with amplitude control (API 26)", "Waveform", waveform),
+            ("devices with envelopes and a frequency profile (API 36)", "Envelope", envelope),
             ("devices with envelopes (API 36)", "BasicEnvelope", basic),
         ];
         let function = |(devices, kind, body): (&str, &str, String)| {
@@ -260,18 +249,8 @@ impl Waveform {
 impl WaveformPoint {
     fn check(&self, at: &str) -> Result<(), Fault> {
         let of = |key: &str| format!("{at}/{key}");
-        within(
-            || of("amplitude"),
-            "the amplitude",
-            self.amplitude,
-            0.0..=1.0,
-        )?;
-        within(
-            || of("frequency_hz"),
-            "the frequency",
-            self.frequency_hz,
-            1.0..=1e4,
-        )?;
+        within(|| of("amplitude"), "the amplitude", self.amplitude, 0.0..=1.0)?;
+        within(|| of("frequency_hz"), "the frequency", self.frequency_hz, 1.0..=1e4)?;
         check_duration(at, self.duration_ms)
     }
 }
@@ -279,18 +258,8 @@ impl WaveformPoint {
 impl BasicPoint {
     fn check(&self, at: &str) -> Result<(), Fault> {
         let of = |key: &str| format!("{at}/{key}");
-        within(
-            || of("intensity"),
-            "the intensity",
-            self.intensity,
-            0.0..=1.0,
-        )?;
-        within(
-            || of("sharpness"),
-            "the sharpness",
-            self.sharpness,
-            0.0..=1.0,
-        )?;
+        within(|| of("intensity"), "the intensity", self.intensity, 0.0..=1.0)?;
+        within(|| of("sharpness"), "the sharpness", self.sharpness, 0.0..=1.0)?;
         check_duration(at, self.duration_ms)
     }
 }
@@ -307,9 +276,7 @@ fn joined<T: ToString>(values: impl Iterator<Item = T>) -> String {
 
 /// A name of Kotlin: letters and digits of ASCII, in camel case.
 fn identifier(name: &str) -> String {
-    let words = name
-        .split(|c: char| !c.is_ascii_alphanumeric())
-        .filter(|word| !word.is_empty());
+    let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     let mut identifier = String::new();
     for word in words {
         let (first, rest) = word.split_at(1);

@@ -17,8 +17,8 @@ impl Point {
     }
 }
 
-/// Returns the value of a curve at a time: linear between points, that of the first before it and that of the last after it; at points of
-/// equal time, the last one's. `None` of no points.
+/// Returns the value of a curve at a time: linear between points, that of the first before it and
+/// that of the last after it; at points of equal time, the last one's. `None` of no points.
 ///
 /// ```
 /// use htex_exchange::{Point, value_at};
@@ -63,7 +63,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Leaves out points that lie within `tolerance` of the straight line between those that stay (Ramer 1972; Douglas & Peucker 1973).
+/// Leaves out points that lie within `tolerance` of the straight line between those that stay
+/// (Ramer 1972; Douglas & Peucker 1973).
 #[must_use]
 pub fn simplified(curve: &[Point], tolerance: f64) -> Vec<Point> {
     let mut keeps = vec![false; curve.len()];
@@ -73,11 +74,7 @@ pub fn simplified(curve: &[Point], tolerance: f64) -> Vec<Point> {
         keeps.iter_mut().skip(last).for_each(|keep| *keep = true);
         while let Some((from, to)) = open.pop() {
             if let Some(at) = furthest(curve, from, to, tolerance) {
-                keeps
-                    .iter_mut()
-                    .skip(at)
-                    .take(1)
-                    .for_each(|keep| *keep = true);
+                keeps.iter_mut().skip(at).take(1).for_each(|keep| *keep = true);
                 open.extend([(from, at), (at, to)]);
             }
         }
@@ -101,7 +98,8 @@ fn furthest(curve: &[Point], from: usize, to: usize, tolerance: f64) -> Option<u
     (most > tolerance).then_some(at)
 }
 
-/// The value of a curve from a time on, or just before it, which differ where two points have this time.
+/// The value of a curve from a time on, or just before it, which differ where two points have this
+/// time.
 pub(crate) fn side(curve: &[Point], time_s: f64, before: bool) -> Option<f64> {
     let first_here = curve.partition_point(|point| point.time_s < time_s);
     match curve.get(first_here) {

@@ -22,7 +22,8 @@ fn place_of(place: &str) -> String {
 /// Most characters of a place or a problem, which quote the file.
 const MOST_QUOTED: usize = 500;
 
-/// One line of a text that may quote a file: its beginning, without characters that steer a terminal.
+/// One line of a text that may quote a file: its beginning, without characters that steer a
+/// terminal.
 fn quoted(text: &str) -> String {
     let mut shown: String = text.chars().take(MOST_QUOTED).collect();
     if shown.len() < text.len() {
@@ -33,10 +34,7 @@ fn quoted(text: &str) -> String {
 
 impl Fault {
     pub(crate) fn new(place: impl AsRef<str>, problem: impl AsRef<str>) -> Self {
-        Self {
-            place: quoted(place.as_ref()),
-            problem: quoted(problem.as_ref()),
-        }
+        Self { place: quoted(place.as_ref()), problem: quoted(problem.as_ref()) }
     }
 
     /// Of the whole file.
@@ -61,10 +59,7 @@ pub enum ExchangeError {
     File { file: String, fault: Fault },
     /// The format does not say what an asset needs, and nobody else did.
     #[error("{}", not_said(.format, .missing, &keyword))]
-    Missing {
-        format: &'static str,
-        missing: Vec<Missing>,
-    },
+    Missing { format: &'static str, missing: Vec<Missing> },
     /// A setting that was given means nothing for this format.
     #[error("{}", unused(.format, .way, .setting, .takes, &keyword))]
     Unused {
@@ -107,10 +102,7 @@ pub enum ExchangeError {
     },
     /// The format cannot hold this.
     #[error("{format}: {problem}")]
-    Cannot {
-        format: &'static str,
-        problem: String,
-    },
+    Cannot { format: &'static str, problem: String },
     /// The asset cannot be played.
     #[error(transparent)]
     Play(#[from] htex_play::Error),
@@ -136,7 +128,8 @@ pub struct Missing {
 }
 
 impl ExchangeError {
-    /// Returns the message with its settings as a program names them; it is given a keyword, `full_scale`.
+    /// Returns the message with its settings as a program names them; it is given a keyword,
+    /// `full_scale`.
     ///
     /// ```
     /// use htex_exchange::{Format, Physical};
@@ -149,12 +142,9 @@ impl ExchangeError {
     pub fn told(&self, named: &dyn Fn(&str) -> String) -> String {
         match self {
             Self::Missing { format, missing } => not_said(format, missing, named),
-            Self::Unused {
-                format,
-                way,
-                setting,
-                takes,
-            } => unused(format, way, setting, takes, named),
+            Self::Unused { format, way, setting, takes } => {
+                unused(format, way, setting, takes, named)
+            }
             Self::OutOfRange { name, value, range } => format!("{} {value}: {range}", named(name)),
             Self::Rights { setting, stated } => disagree(setting, stated, named),
             other => other.to_string(),
@@ -188,10 +178,7 @@ fn unused(
 ) -> String {
     let taken = match takes.is_empty() {
         true => String::new(),
-        false => format!(
-            " (it takes {})",
-            list(takes.iter().map(|setting| named(setting)))
-        ),
+        false => format!(" (it takes {})", list(takes.iter().map(|setting| named(setting)))),
     };
     let setting = named(setting);
     format!("{format}: its {way} takes no {setting}; leave it out{taken}")
@@ -208,8 +195,5 @@ pub(crate) fn list(parts: impl Iterator<Item = String>) -> String {
 
 /// The error of a file with a fault.
 pub(crate) fn in_file(file: &str) -> impl Fn(Fault) -> ExchangeError + '_ {
-    move |fault| ExchangeError::File {
-        file: file.to_owned(),
-        fault,
-    }
+    move |fault| ExchangeError::File { file: file.to_owned(), fault }
 }

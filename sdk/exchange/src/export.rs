@@ -21,7 +21,8 @@ const MOST_RATE_HZ: f64 = 192_000.0;
 #[non_exhaustive]
 pub struct Export<'a> {
     pub format: &'static Format,
-    /// The representation, by its model's id or short name; else the one with the smallest nine-band error.
+    /// The representation, by its model's id or short name; else the one with the smallest
+    /// nine-band error.
     pub model: Option<&'a str>,
     pub path: Path,
     /// Else the format's own.
@@ -32,9 +33,11 @@ pub struct Export<'a> {
     pub rate_hz: Option<f64>,
     /// Coding of `.hjif`; else [`Coding::Vectorial`].
     pub coding: Option<Coding>,
-    /// The one of the format's extensions whose kind of file is written: Kotlin or JSON, `.gltf` or `.glb`; else the first.
+    /// The one of the format's extensions whose kind of file is written: Kotlin or JSON, `.gltf` or
+    /// `.glb`; else the first.
     pub extension: Option<&'a str>,
-    /// The asset's file, which an export of the asset itself holds bit for bit; without it, the asset is written anew.
+    /// The asset's file, which an export of the asset itself holds bit for bit; without it, the
+    /// asset is written anew.
     pub file: Option<&'a [u8]>,
     pub seed: u64,
 }
@@ -134,22 +137,19 @@ pub struct Played {
     pub limited: f64,
 }
 
-/// Writes an asset as a file of another format; what is played of it is read again, and what is lost is measured.
+/// Writes an asset as a file of another format; what is played of it is read again, and what is
+/// lost is measured.
 ///
 /// # Errors
-/// When the format is not written, a setting is given that it does not take, a number is out of range, the actuator cannot play such files, or
-/// the asset cannot be played.
+/// When the format is not written, a setting is given that it does not take, a number is out of
+/// range, the actuator cannot play such files, or the asset cannot be played.
 pub fn export(asset: &Asset, export: &Export<'_>) -> Result<Exported, ExchangeError> {
     let format = export.format;
     format.check_export(export.given())?;
     match format.writes {
         Some(Writes::Signal { write, profile, .. }) => {
-            let source = Source::Asset {
-                asset,
-                model: export.model,
-                path: &export.path,
-                seed: export.seed,
-            };
+            let source =
+                Source::Asset { asset, model: export.model, path: &export.path, seed: export.seed };
             let seconds = match &export.path {
                 Path::Condition(_) => export.seconds,
                 Path::Stroke(stroke) => stroke.seconds(),
@@ -200,10 +200,7 @@ pub fn export_scene(
     format.check_export_of_scene(export.given())?;
     match format.writes {
         Some(Writes::Signal { write, profile, .. }) => {
-            let playing = Playing {
-                source: Source::Scene(scene),
-                seconds: scene.seconds,
-            };
+            let playing = Playing { source: Source::Scene(scene), seconds: scene.seconds };
             of_signal(playing, export, write, profile)
         }
         Some(Writes::Asset(_) | Writes::Map) => Err(ExchangeError::Cannot {
@@ -217,10 +214,7 @@ pub fn export_scene(
 fn not_written(format: &Format) -> ExchangeError {
     ExchangeError::Cannot {
         format: format.name,
-        problem: format!(
-            "it is not written; there are {}",
-            crate::exported().join(", ")
-        ),
+        problem: format!("it is not written; there are {}", crate::exported().join(", ")),
     }
 }
 

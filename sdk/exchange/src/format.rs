@@ -34,11 +34,9 @@ pub struct Format {
 /// How a file comes in.
 #[derive(Debug, Clone, Copy)]
 pub enum Reads {
-    /// As a signal within ±1 to fit, whose frequencies are positions in an actuator's range: that of a profile, unless another is given.
-    Positions {
-        read: ReadPositions,
-        profile: &'static str,
-    },
+    /// As a signal within ±1 to fit, whose frequencies are positions in an actuator's range: that
+    /// of a profile, unless another is given.
+    Positions { read: ReadPositions, profile: &'static str },
     /// As a signal within ±1 to fit, whose frequencies are hertz, or waves in a metre.
     Signal(ReadSignal),
     /// As an asset: the file states units, speeds and forces.
@@ -111,16 +109,8 @@ pub struct Held {
 }
 
 /// Settings of imports that are fitted.
-const FITTED: &[&str] = &[
-    "full_scale",
-    "quantity",
-    "speed",
-    "force",
-    "model",
-    "option",
-    "level",
-    "keep_reference",
-];
+const FITTED: &[&str] =
+    &["full_scale", "quantity", "speed", "force", "model", "option", "level", "keep_reference"];
 /// Settings of imports of an image.
 const IMAGED: &[&str] = &["full_scale", "quantity", "speed", "force", "pitch"];
 /// Settings of exports as an image.
@@ -128,9 +118,7 @@ const IMAGED: &[&str] = &["full_scale", "quantity", "speed", "force", "pitch"];
 const PRINTED: &[&str] = &["model", "speed", "force"];
 /// Settings of exports of what an asset plays.
 #[cfg(feature = "export")]
-const PLAYED: &[&str] = &[
-    "model", "speed", "force", "seconds", "stroke", "profile", "seed",
-];
+const PLAYED: &[&str] = &["model", "speed", "force", "seconds", "stroke", "profile", "seed"];
 
 /// Those of them that a scene has itself.
 #[cfg(feature = "export")]
@@ -219,11 +207,7 @@ impl Format {
         &self,
         given: impl IntoIterator<Item = &'a str>,
     ) -> Result<(), ExchangeError> {
-        let mut takes = self
-            .writes
-            .as_ref()
-            .map(Writes::settings)
-            .unwrap_or_default();
+        let mut takes = self.writes.as_ref().map(Writes::settings).unwrap_or_default();
         takes.retain(|setting| !OF_SCENES.contains(setting));
         self.check("export of a scene", takes, given)
     }
@@ -275,10 +259,7 @@ impl Serialize for Format {
         #[cfg(feature = "export")]
         let (export, export_settings) = (
             self.writes.as_ref().map(Writes::kind),
-            self.writes
-                .as_ref()
-                .map(Writes::settings)
-                .unwrap_or_default(),
+            self.writes.as_ref().map(Writes::settings).unwrap_or_default(),
         );
         #[cfg(not(feature = "export"))]
         let (export, export_settings) = (None, Vec::new());

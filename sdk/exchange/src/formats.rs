@@ -23,16 +23,9 @@ pub const FORMATS: &[Format] = &[
         name: "haptic",
         title: "Meta .haptic, version 1",
         extensions: &["haptic"],
-        reads: Some(Reads::Positions {
-            read: haptic::signal,
-            profile: "quest",
-        }),
+        reads: Some(Reads::Positions { read: haptic::signal, profile: "quest" }),
         #[cfg(feature = "export")]
-        writes: Some(Writes::Signal {
-            write: writers::haptic,
-            profile: "quest",
-            settings: &[],
-        }),
+        writes: Some(Writes::Signal { write: writers::haptic, profile: "quest", settings: &[] }),
         rights: rights::HAPTIC,
         keeps: "level and one frequency over time",
         loses: "the spectrum, speed and force, the unit; frequencies are positions in an actuator's range",
@@ -41,16 +34,9 @@ pub const FORMATS: &[Format] = &[
         name: "ahap",
         title: "Apple .ahap, version 1",
         extensions: &["ahap"],
-        reads: Some(Reads::Positions {
-            read: ahap::signal,
-            profile: "iphone",
-        }),
+        reads: Some(Reads::Positions { read: ahap::signal, profile: "iphone" }),
         #[cfg(feature = "export")]
-        writes: Some(Writes::Signal {
-            write: writers::ahap,
-            profile: "iphone",
-            settings: &[],
-        }),
+        writes: Some(Writes::Signal { write: writers::ahap, profile: "iphone", settings: &[] }),
         rights: rights::AHAP,
         keeps: "level and one sharpness over time",
         loses: "the spectrum, speed and force, the unit; how sharp a sharpness is",
@@ -61,11 +47,7 @@ pub const FORMATS: &[Format] = &[
         extensions: &["json", "kt"],
         reads: None,
         #[cfg(feature = "export")]
-        writes: Some(Writes::Signal {
-            write: writers::android,
-            profile: "android",
-            settings: &[],
-        }),
+        writes: Some(Writes::Signal { write: writers::android, profile: "android", settings: &[] }),
         rights: rights::ANDROID,
         keeps: "level and one frequency over time, in as many points as the device takes",
         loses: "the spectrum, speed and force, the unit; what changes faster than the points",
@@ -136,19 +118,14 @@ impl Format {
     /// # Errors
     /// When none that is imported has it; the error lists those that are.
     pub fn of_file(file: &str) -> Result<&'static Self, ExchangeError> {
-        let extension = file
-            .rsplit_once('.')
-            .map_or("", |(_, extension)| extension)
-            .to_ascii_lowercase();
+        let extension =
+            file.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
         let has =
             |format: &&Self| format.reads.is_some() && format.extensions.contains(&&extension[..]);
-        FORMATS
-            .iter()
-            .find(has)
-            .ok_or_else(|| ExchangeError::UnknownFormat {
-                file: file.to_owned(),
-                there: imported(),
-            })
+        FORMATS.iter().find(has).ok_or_else(|| ExchangeError::UnknownFormat {
+            file: file.to_owned(),
+            there: imported(),
+        })
     }
 }
 

@@ -1,8 +1,11 @@
-//! `.haptic` of Meta, version 1: an amplitude and a frequency envelope of numbers from 0 to 1, and emphasis at points of the amplitude.
+//! `.haptic` of Meta, version 1: an amplitude and a frequency envelope of numbers from 0 to 1, and
+//! emphasis at points of the amplitude.
 //!
-//! Read of the published description (*.haptic File Specification 1.0*, resources/haptic-file-spec.md of facebook/meta-haptics-sdk). A
-//! frequency point beyond the end of the amplitude is refused, as it says, but for a last one to which the line across the end leads: earlier
-//! editors wrote it. Frequencies are positions in the range of an actuator, so that a profile says their hertz; without points they are 0.5.
+//! Read of the published description (*.haptic File Specification 1.0*,
+//! resources/haptic-file-spec.md of facebook/meta-haptics-sdk). A frequency point beyond the end of
+//! the amplitude is refused, as it says, but for a last one to which the line across the end leads:
+//! earlier editors wrote it. Frequencies are positions in the range of an actuator, so that a
+//! profile says their hertz; without points they are 0.5.
 
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -104,7 +107,8 @@ impl Haptic {
     /// Reads a file.
     ///
     /// # Errors
-    /// When it is no JSON, has another version or shape, or breaks a rule of the format; with the place.
+    /// When it is no JSON, has another version or shape, or breaks a rule of the format; with the
+    /// place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let haptic: Self = json::read(bytes)?;
         haptic.check()?;
@@ -118,10 +122,7 @@ impl Haptic {
 
     fn check(&self) -> Result<(), Fault> {
         if self.version.major != 1 {
-            let problem = format!(
-                "version {} is not known; version 1 is read",
-                self.version.major
-            );
+            let problem = format!("version {} is not known; version 1 is read", self.version.major);
             return Err(Fault::new("/version/major", problem));
         }
         let (start_s, end_s) = self.check_amplitude()?;
@@ -154,12 +155,7 @@ impl Haptic {
         for (index, point) in points.iter().enumerate() {
             let at = |key: &str| format!("{FREQUENCY}/{index}/{key}");
             check_time(at("time"), point.time, before)?;
-            within(
-                || at("frequency"),
-                "the frequency",
-                point.frequency,
-                0.0..=1.0,
-            )?;
+            within(|| at("frequency"), "the frequency", point.frequency, 0.0..=1.0)?;
             let leads_across = index + 1 == points.len() && index > 0 && before < end_s;
             if point.time < start_s || (point.time > end_s && !leads_across) {
                 let problem = format!(
@@ -207,40 +203,29 @@ impl Haptic {
         Pattern {
             from_s,
             to_s,
-            level: amplitude
-                .iter()
-                .map(|p| Point::new(p.time, p.amplitude))
-                .collect(),
+            level: amplitude.iter().map(|p| Point::new(p.time, p.amplitude)).collect(),
             exponent: 1,
             frequency_hz,
             transients: amplitude.iter().filter_map(transient).collect(),
         }
     }
 
-    /// Makes a file of a vibration whose levels are amplitudes. A transient becomes the emphasis of a point, which is added where there is
-    /// none; one beyond the ends moves to them.
+    /// Makes a file of a vibration whose levels are amplitudes. A transient becomes the emphasis of
+    /// a point, which is added where there is none; one beyond the ends moves to them.
     #[must_use]
     pub fn of(pattern: &Pattern, profile: &Profile, metadata: Metadata) -> Self {
         let mut amplitude: Vec<Amplitude> = pattern.level.iter().map(plain).collect();
         if amplitude.is_empty() {
             let end_s = pattern.end_s();
-            amplitude = [0.0, end_s]
-                .map(|time| plain(&Point::new(time, 0.0)))
-                .to_vec();
+            amplitude = [0.0, end_s].map(|time| plain(&Point::new(time, 0.0))).to_vec();
         }
         for transient in &pattern.transients {
             emphasise(&mut amplitude, transient, profile);
         }
-        let frequency = |p: &Point| Frequency {
-            time: p.time_s,
-            frequency: profile.part_of(p.value),
-        };
+        let frequency =
+            |p: &Point| Frequency { time: p.time_s, frequency: profile.part_of(p.value) };
         Self {
-            version: Version {
-                major: 1,
-                minor: 0,
-                patch: 0,
-            },
+            version: Version { major: 1, minor: 0, patch: 0 },
             metadata,
             signals: Signals {
                 continuous: Continuous {
@@ -258,28 +243,13 @@ impl Haptic {
 impl Amplitude {
     fn check(&self, at: &str) -> Result<(), Fault> {
         let of = |key: &str| format!("{at}/{key}");
-        within(
-            || of("amplitude"),
-            "the amplitude",
-            self.amplitude,
-            0.0..=1.0,
-        )?;
+        within(|| of("amplitude"), "the amplitude", self.amplitude, 0.0..=1.0)?;
         let Some(emphasis) = self.emphasis else {
             return Ok(());
         };
         let range = self.amplitude..=1.0;
-        within(
-            || of("emphasis/amplitude"),
-            "the emphasis",
-            emphasis.amplitude,
-            range,
-        )?;
-        within(
-            || of("emphasis/frequency"),
-            "the frequency",
-            emphasis.frequency,
-            0.0..=1.0,
-        )
+        within(|| of("emphasis/amplitude"), "the emphasis", emphasis.amplitude, range)?;
+        within(|| of("emphasis/frequency"), "the frequency", emphasis.frequency, 0.0..=1.0)
     }
 }
 
@@ -294,11 +264,7 @@ fn check_time(pointer: String, time: f64, before: f64) -> Result<(), Fault> {
 }
 
 fn plain(point: &Point) -> Amplitude {
-    Amplitude {
-        time: point.time_s,
-        amplitude: point.value.clamp(0.0, 1.0),
-        emphasis: None,
-    }
+    Amplitude { time: point.time_s, amplitude: point.value.clamp(0.0, 1.0), emphasis: None }
 }
 
 fn emphasise(points: &mut Vec<Amplitude>, transient: &Transient, profile: &Profile) {
@@ -310,10 +276,8 @@ fn emphasise(points: &mut Vec<Amplitude>, transient: &Transient, profile: &Profi
     let at = match points.iter().rposition(|point| point.time == time) {
         Some(at) => at,
         None => {
-            let curve: Vec<Point> = points
-                .iter()
-                .map(|p| Point::new(p.time, p.amplitude))
-                .collect();
+            let curve: Vec<Point> =
+                points.iter().map(|p| Point::new(p.time, p.amplitude)).collect();
             let amplitude = value_at(&curve, time).unwrap_or(0.0);
             let at = points.partition_point(|point| point.time < time);
             points.insert(at, plain(&Point::new(time, amplitude)));

@@ -1,4 +1,5 @@
-//! What an asset plays at a condition or along a stroke, or a scene: its samples, and its envelope block by block.
+//! What an asset plays at a condition or along a stroke, or a scene: its samples, and its envelope
+//! block by block.
 
 use htex_author::threshold_magnitude;
 use htex_dsp::envelope::Analyser;
@@ -41,12 +42,7 @@ pub struct SceneSound<'a> {
 /// What is played.
 #[derive(Clone, Copy)]
 pub(crate) enum Source<'a> {
-    Asset {
-        asset: &'a Asset,
-        model: Option<&'a str>,
-        path: &'a Path,
-        seed: u64,
-    },
+    Asset { asset: &'a Asset, model: Option<&'a str>, path: &'a Path, seed: u64 },
     Scene(&'a SceneSound<'a>),
 }
 
@@ -124,10 +120,7 @@ impl Source<'_> {
     /// The stroke, if it is one.
     pub(crate) fn stroke(&self) -> Option<&Stroke> {
         match self {
-            Self::Asset {
-                path: Path::Stroke(stroke),
-                ..
-            } => Some(stroke),
+            Self::Asset { path: Path::Stroke(stroke), .. } => Some(stroke),
             _ => None,
         }
     }
@@ -135,16 +128,8 @@ impl Source<'_> {
     /// The speed, if it is always the same and known.
     pub(crate) fn speed_mm_s(&self) -> Option<f64> {
         match self {
-            Self::Asset {
-                path: Path::Condition(Some(motion)),
-                ..
-            } => Some(motion.speed_mm_s),
-            Self::Asset {
-                asset,
-                model,
-                path: Path::Condition(None),
-                ..
-            } => {
+            Self::Asset { path: Path::Condition(Some(motion)), .. } => Some(motion.speed_mm_s),
+            Self::Asset { asset, model, path: Path::Condition(None), .. } => {
                 let default = asset.default_condition(*model).ok()?;
                 asset.manifest().conditions.get(default)?.speed_mm_s
             }
@@ -192,12 +177,7 @@ impl Playing<'_> {
                 samples.resize(len, 0.0);
                 Ok((Vec::new(), samples))
             }
-            Source::Asset {
-                asset,
-                model,
-                path,
-                seed,
-            } => {
+            Source::Asset { asset, model, path, seed } => {
                 let mut options = VoiceOptions::default()
                     .with_rate_hz(rate_hz)
                     .with_seed(seed)
@@ -235,11 +215,7 @@ impl Block {
         let level_rms = analyser.read(&mut powers).level_rms;
         // The level is that of the samples; the bands are of windows that lag.
         let sum: f64 = powers.iter().sum();
-        let scale = if sum > 0.0 {
-            level_rms * level_rms / sum
-        } else {
-            0.0
-        };
+        let scale = if sum > 0.0 { level_rms * level_rms / sum } else { 0.0 };
         powers.iter_mut().for_each(|power| *power *= scale);
         Self { powers }
     }
@@ -249,9 +225,7 @@ impl Heard {
     /// Returns the middle of each band, hertz, in equal ratios from its edges.
     pub(crate) fn middles_hz(&self) -> Vec<f64> {
         let pairs = self.edges_hz.windows(2);
-        pairs
-            .map(|pair| libm::sqrt(pair.iter().product()))
-            .collect()
+        pairs.map(|pair| libm::sqrt(pair.iter().product())).collect()
     }
 
     /// Returns the time of the middle of a block, seconds.
@@ -264,7 +238,8 @@ impl Heard {
     }
 }
 
-/// Acceleration, m/s², that is felt as a sample of 1 of a quantity is, at a frequency: both displace the skin equally.
+/// Acceleration, m/s², that is felt as a sample of 1 of a quantity is, at a frequency: both
+/// displace the skin equally.
 pub(crate) fn acceleration_of(quantity: Quantity, hertz: f64) -> f64 {
     let listener = Listener::default();
     threshold_magnitude(hertz, Quantity::Acceleration, &listener)

@@ -1,8 +1,9 @@
 //! Files of other formats as assets.
 //!
-//! A file that states units, speeds and forces is an asset (HaTT), or has one in it (glTF). The others are signals within ±1 and know no newtons, no speed and no force: a
-//! signal becomes a recording by the full scale that is given, at the condition that is given, and is fitted. A signal that is shorter than some
-//! seconds is repeated, since a texture lasts.
+//! A file that states units, speeds and forces is an asset (HaTT), or has one in it (glTF). The
+//! others are signals within ±1 and know no newtons, no speed and no force: a signal becomes a
+//! recording by the full scale that is given, at the condition that is given, and is fitted. A
+//! signal that is shorter than some seconds is repeated, since a texture lasts.
 
 use htex_author::recording::RecordedFile;
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings, SettingsError};
@@ -39,7 +40,8 @@ pub struct Import<'a> {
     pub profile: Option<&'a Profile>,
     pub fit: FitSettings,
     pub metadata: Metadata,
-    /// The text of the file `NAME.license` beside it, if there is one ([`htex_format::license_file`]).
+    /// The text of the file `NAME.license` beside it, if there is one
+    /// ([`htex_format::license_file`]).
     pub license_file: Option<&'a str>,
     /// Program and version, for the provenance.
     pub tool: &'a str,
@@ -52,9 +54,11 @@ pub struct Imported {
     pub asset: htex_format::Asset,
     /// The asset's file, if the file that came in has it in it and metadata changed nothing.
     held: Option<Vec<u8>>,
-    /// What is felt of the difference from the signal, of each representation at each condition; empty where nothing was fitted.
+    /// What is felt of the difference from the signal, of each representation at each condition;
+    /// empty where nothing was fitted.
     pub felt: Vec<Vec<Option<FeltError>>>,
-    /// Ids of models that could not be fitted, each with its reason; empty where nothing was fitted.
+    /// Ids of models that could not be fitted, each with its reason; empty where nothing was
+    /// fitted.
     pub skipped: Vec<(String, String)>,
     /// What a person should know.
     pub warnings: Vec<Notice>,
@@ -65,8 +69,9 @@ pub struct Imported {
 /// Reads a file as an asset; `file` is its name, by whose extension the format is found.
 ///
 /// # Errors
-/// When no format has the extension, a setting is given that the format does not take, something that it does not say is not given, the file is
-/// not what it says (with the place), or no model can be fitted.
+/// When no format has the extension, a setting is given that the format does not take, something
+/// that it does not say is not given, the file is not what it says (with the place), or no model
+/// can be fitted.
 ///
 /// ```
 /// use htex_author::settings::FitSettings;
@@ -98,25 +103,16 @@ pub fn import(
             fitted(recording, how, registry)?
         }
     };
-    let given = Rights::new(
-        how.metadata.license.as_deref(),
-        how.metadata.author.as_deref(),
-    );
+    let given = Rights::new(how.metadata.license.as_deref(), how.metadata.author.as_deref());
     let stated = Stated::of(format, bytes, how.license_file, &given)?;
     let own = Rights::of(&imported.asset.manifest);
     stated.check(&own, &given)?;
     let mut metadata = how.metadata.clone();
     // What the asset states stays as it is, and so do the bytes of an asset that the file holds.
     let missing = |own: &Option<String>, stated| if own.is_none() { stated } else { None };
-    metadata.license = metadata
-        .license
-        .or(missing(&own.license, stated.rights.license));
-    metadata.author = metadata
-        .author
-        .or(missing(&own.author, stated.rights.author));
-    imported
-        .warnings
-        .extend(stated.left_out.into_iter().map(Into::into));
+    metadata.license = metadata.license.or(missing(&own.license, stated.rights.license));
+    metadata.author = metadata.author.or(missing(&own.author, stated.rights.author));
+    imported.warnings.extend(stated.left_out.into_iter().map(Into::into));
     imported.apply(&metadata);
     if imported.asset.manifest.license.is_none() {
         let asked = Notice::new(UNLICENSED, Hint::new(&["license"]));
@@ -127,10 +123,7 @@ pub fn import(
 
 impl Import<'_> {
     const fn naming(&self) -> Naming<'_> {
-        Naming {
-            name: self.name,
-            tool: self.tool,
-        }
+        Naming { name: self.name, tool: self.tool }
     }
 
     /// The settings that differ from none at all, as keywords.
@@ -139,10 +132,7 @@ impl Import<'_> {
         let is_all = |models: &Vec<String>| models[..] == ["all"];
         let all = [
             ("full_scale", physical.full_scale.is_some()),
-            (
-                "quantity",
-                physical.quantity != htex_format::Quantity::default(),
-            ),
+            ("quantity", physical.quantity != htex_format::Quantity::default()),
             ("speed", physical.speed_mm_s.is_some()),
             ("force", physical.force_n.is_some()),
             ("pitch", physical.pitch_mm.is_some()),
@@ -167,7 +157,8 @@ impl Imported {
         }
     }
 
-    /// Returns the asset's file: bit for bit that which the imported file has in it, else a new one.
+    /// Returns the asset's file: bit for bit that which the imported file has in it, else a new
+    /// one.
     ///
     /// # Errors
     /// When the asset breaks a rule of its format.
@@ -202,10 +193,7 @@ fn mapped(
     let condition = physical.checked(format)?;
     let image = map::read(bytes).map_err(in_file(file))?;
     let Some(pitch_mm) = physical.pitch_mm.or(image.pitch_mm) else {
-        return Err(ExchangeError::Missing {
-            format: format.title,
-            missing: vec![PITCH],
-        });
+        return Err(ExchangeError::Missing { format: format.title, missing: vec![PITCH] });
     };
     let surface = map::Surface {
         pitch_mm,
@@ -221,16 +209,10 @@ fn mapped(
 /// A model file of the Penn Haptic Texture Toolkit.
 pub(crate) fn hatt(bytes: &[u8], naming: &Naming<'_>) -> Result<Held, Fault> {
     let of = |fault: crate::hatt::Fault| {
-        Fault::new(
-            fault.place.to_string().trim_end_matches(": "),
-            fault.problem,
-        )
+        Fault::new(fault.place.to_string().trim_end_matches(": "), fault.problem)
     };
     let texture = crate::hatt::read(bytes).map_err(of)?;
-    let imported = crate::hatt::Imported {
-        name: naming.name,
-        tool: naming.tool,
-    };
+    let imported = crate::hatt::Imported { name: naming.name, tool: naming.tool };
     Ok(Held {
         asset: crate::hatt::asset(&texture, &imported).map_err(of)?,
         bytes: None,
@@ -249,15 +231,8 @@ pub fn recording_of(
     profile: Option<&Profile>,
 ) -> Result<Recording, ExchangeError> {
     let format = Format::of_file(file)?;
-    let Checked {
-        full_scale,
-        speed_mm_s,
-        ..
-    } = physical.checked(format)?;
-    let sampling = Sampling {
-        rate_hz: RATE_HZ,
-        speed_mm_s,
-    };
+    let Checked { full_scale, speed_mm_s, .. } = physical.checked(format)?;
+    let sampling = Sampling { rate_hz: RATE_HZ, speed_mm_s };
     let signal = signal(format, bytes, sampling, profile)?.map_err(in_file(file))?;
     let mut samples: Vec<f64> = signal.samples.iter().map(|x| full_scale * x).collect();
     let mut warnings = signal.left_out;
@@ -278,8 +253,9 @@ pub fn recording_of(
     Ok(recording)
 }
 
-/// Fits an asset to signals ([`recording_of`]): their spectra are read in evenly spaced windows, and provenance keeps the full scale. The
-/// conditions have no repeatability: a file that is rendered, and repeated, says nothing of how far another touch would differ.
+/// Fits an asset to signals ([`recording_of`]): their spectra are read in evenly spaced windows,
+/// and provenance keeps the full scale. The conditions have no repeatability: a file that is
+/// rendered, and repeated, says nothing of how far another touch would differ.
 ///
 /// # Errors
 /// Those of [`fit_asset`].
@@ -288,10 +264,8 @@ pub fn fit_signals(
     mut request: AssetRequest,
     full_scale: Option<f64>,
 ) -> Result<FittedAsset, AuthorError> {
-    request.spectrum = request
-        .spectrum
-        .with_segments(SegmentChoice::Windows)
-        .with_averaging(Averaging::Rms);
+    request.spectrum =
+        request.spectrum.with_segments(SegmentChoice::Windows).with_averaging(Averaging::Rms);
     if let Some(full_scale) = full_scale {
         let options = &mut request.recorded_options;
         options.insert("full-scale".to_owned(), full_scale.to_string());
@@ -311,10 +285,7 @@ fn fitted(
 ) -> Result<Imported, ImportError> {
     let reading = ReadingSettings::default();
     let request = how.fit.request(registry, &reading, how.name, how.tool)?;
-    let given = Exploration {
-        speed_mm_s: how.physical.speed_mm_s,
-        force_n: how.physical.force_n,
-    };
+    let given = Exploration { speed_mm_s: how.physical.speed_mm_s, force_n: how.physical.force_n };
     let takes = [Take { recording, given }];
     let fitted = fit_signals(&takes, request, how.physical.full_scale)?;
     Ok(Imported {

@@ -60,9 +60,7 @@ impl AssetJob<'_> {
             return Ok(Cow::Borrowed(file));
         }
         let written = self.asset.data().to_bytes();
-        written
-            .map(Cow::Owned)
-            .map_err(|error| self.cannot(error.to_string()))
+        written.map(Cow::Owned).map_err(|error| self.cannot(error.to_string()))
     }
 
     pub(crate) fn cannot(&self, problem: String) -> ExchangeError {
@@ -78,9 +76,7 @@ impl Job<'_> {
         let mut values = self.profile.values().into_iter();
         if values.any(|(_, value)| value.is_assumed()) {
             let name = &self.profile.name;
-            notes.push(format!(
-                "Values of the profile {name} are assumed, not measured."
-            ));
+            notes.push(format!("Values of the profile {name} are assumed, not measured."));
         }
         if let Some(stroke) = self.playing.source.stroke() {
             notes.extend(stroke.warnings.iter().cloned());
@@ -88,11 +84,10 @@ impl Job<'_> {
         notes
     }
 
-    /// Seconds between points of an envelope: the shortest that actuator and format take, or longer, so that their number is enough.
+    /// Seconds between points of an envelope: the shortest that actuator and format take, or
+    /// longer, so that their number is enough.
     pub(crate) fn point_s(&self, most_points: usize) -> f64 {
-        let most = (self.profile.most_points.value as usize)
-            .min(most_points)
-            .max(4);
+        let most = (self.profile.most_points.value as usize).min(most_points).max(4);
         // Two more points than blocks.
         let longest = self.playing.seconds / (most - 2) as f64;
         longest.max(self.profile.shortest_point_ms.value / 1e3)

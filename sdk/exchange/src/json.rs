@@ -1,4 +1,5 @@
-//! JSON with places: what is wrong is named by its pointer, or by line and column where the text is no JSON.
+//! JSON with places: what is wrong is named by its pointer, or by line and column where the text is
+//! no JSON.
 
 use htex_finding::escape;
 use htex_format::{JsonError, parse_json};
@@ -15,10 +16,7 @@ pub const MOST_BYTES: u64 = 16 << 20;
 /// Reads a type from a JSON text of at most [`MOST_BYTES`].
 pub(crate) fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Fault> {
     if bytes.len() as u64 > MOST_BYTES {
-        let problem = format!(
-            "it has {} bytes, and at most {MOST_BYTES} are read",
-            bytes.len()
-        );
+        let problem = format!("it has {} bytes, and at most {MOST_BYTES} are read", bytes.len());
         return Err(Fault::whole(problem));
     }
     // A mark of the byte order, which some editors write.
@@ -75,8 +73,5 @@ pub(crate) fn within(
         return Ok(());
     }
     let (least, most) = (range.start(), range.end());
-    Err(Fault::new(
-        pointer(),
-        format!("{what} is {value}; it must be {least} to {most}"),
-    ))
+    Err(Fault::new(pointer(), format!("{what} is {value}; it must be {least} to {most}")))
 }

@@ -1,9 +1,11 @@
 //! Formats of neighbouring systems: what others have comes in, what people own can play it.
 //!
-//! [`FORMATS`] is the table of formats, of which commands, help and documents are made. **In.** [`import`] reads a file as an asset, if it states
-//! units, speeds and forces or has an asset in it, else as a signal to which models are fitted, once it is told what the file does not say. **Out.** [`export`] plays an
-//! asset at a condition or along a stroke, reduces it to what an actuator can do (its [`Profile`]), writes it, reads the file again, plays it
-//! through the profile and compares that with the asset's own samples.
+//! [`FORMATS`] is the table of formats, of which commands, help and documents are made. **In.**
+//! [`import`] reads a file as an asset, if it states units, speeds and forces or has an asset in
+//! it, else as a signal to which models are fitted, once it is told what the file does not say.
+//! **Out.** [`export`] plays an asset at a condition or along a stroke, reduces it to what an
+//! actuator can do (its [`Profile`]), writes it, reads the file again, plays it through the profile
+//! and compares that with the asset's own samples.
 //!
 //! ```no_run
 //! use htex_exchange::{Export, Format, export};
@@ -15,7 +17,8 @@
 //! # Ok::<(), htex_exchange::ExchangeError>(())
 //! ```
 //!
-//! Without the feature `export` (on by default) formats are read alone: their `writes` is not there.
+//! Without the feature `export` (on by default) formats are read alone: their `writes` is not
+//! there.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,5 @@
-//! What is lost: the file that was written is read again and played through the profile, and compared with the asset's own samples.
+//! What is lost: the file that was written is read again and played through the profile, and
+//! compared with the asset's own samples.
 
 use htex_author::{
     AuthorError, Averaging, Difference, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum,
@@ -17,25 +18,22 @@ use crate::profile::{Kind, Profile};
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct Loss {
-    /// What the actuator makes of the file, in the asset's unit as far as it is felt, compared with the asset's own samples.
+    /// What the actuator makes of the file, in the asset's unit as far as it is felt, compared with
+    /// the asset's own samples.
     #[serde(flatten)]
     pub difference: Difference,
     /// Level of that over the asset's, decibels.
     pub level_db: f64,
-    /// Level of what the actuator makes of the file over the detection threshold of a sensitive finger, decibels; 0 or less is felt by
-    /// nobody. `None` where no actuator plays the file.
+    /// Level of what the actuator makes of the file over the detection threshold of a sensitive
+    /// finger, decibels; 0 or less is felt by nobody. `None` where no actuator plays the file.
     #[serde(skip)]
     pub(crate) sensation_db: Option<f64>,
 }
 
 /// Compares what an actuator makes of a drive, at the rate of what was heard, with what was heard.
 pub(crate) fn loss(heard: &Heard, drive: &[f64], profile: &Profile) -> Result<Loss, ExchangeError> {
-    let recording = Recording::of(
-        heard.quantity,
-        "the asset",
-        heard.rate_hz,
-        vec![heard.samples.clone()],
-    )?;
+    let recording =
+        Recording::of(heard.quantity, "the asset", heard.rate_hz, vec![heard.samples.clone()])?;
     let options = SpectrumOptions::default()
         .with_segments(SegmentChoice::Windows)
         .with_averaging(Averaging::Rms);
@@ -52,23 +50,10 @@ pub(crate) fn loss(heard: &Heard, drive: &[f64], profile: &Profile) -> Result<Lo
         };
         drive * strongest / acceleration_of(heard.quantity, *hertz)
     };
-    let magnitude = reference
-        .frequency_hz
-        .iter()
-        .zip(&driven)
-        .map(in_unit)
-        .collect();
-    let other = TextureSpectrum {
-        magnitude,
-        ..reference.clone()
-    };
+    let magnitude = reference.frequency_hz.iter().zip(&driven).map(in_unit).collect();
+    let other = TextureSpectrum { magnitude, ..reference.clone() };
     let listener = Listener::sensitive();
-    let felt = felt(
-        reference.as_ref(),
-        &other.magnitude,
-        heard.quantity,
-        &listener,
-    );
+    let felt = felt(reference.as_ref(), &other.magnitude, heard.quantity, &listener);
     let energy = felt.level_db.iter().map(|db| libm::pow(10.0, db / 10.0));
     let level = |spectrum: &TextureSpectrum| level_rms(&spectrum.magnitude);
     let level_db = 20.0 * libm::log10(level(&other) / level(&reference));

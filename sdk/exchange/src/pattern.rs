@@ -5,15 +5,16 @@ use crate::error::Fault;
 
 /// Longest pattern that is rendered, seconds.
 pub const MOST_S: f64 = 600.0;
-/// Periods of the sine that stands for a transient. Renderers play one or two of a square wave (Meta, *.haptic File Specification 1.0*,
-/// Emphasis Object).
+/// Periods of the sine that stands for a transient. Renderers play one or two of a square wave
+/// (Meta, *.haptic File Specification 1.0*, Emphasis Object).
 const PERIODS: f64 = 2.0;
 
-/// Most samples that the vibrations of a file are added to, counted for each vibration, and points of their curves. At the rate of
-/// imports, a vibration of ten minutes takes 4.8 million.
+/// Most samples that the vibrations of a file are added to, counted for each vibration, and points
+/// of their curves. At the rate of imports, a vibration of ten minutes takes 4.8 million.
 const MOST_WORK: f64 = 3.2e7;
 
-/// Refuses more than [`MOST_WORK`] samples and points at a rate; `at` is where they are in the file.
+/// Refuses more than [`MOST_WORK`] samples and points at a rate; `at` is where they are in the
+/// file.
 pub(crate) fn check_work(
     work: f64,
     rate_hz: f64,
@@ -34,9 +35,11 @@ pub struct Pattern {
     /// When it begins and ends, seconds.
     pub from_s: f64,
     pub to_s: f64,
-    /// Level over time, 0 to 1, whose power `exponent` is the part of the strongest vibration at the frequency.
+    /// Level over time, 0 to 1, whose power `exponent` is the part of the strongest vibration at
+    /// the frequency.
     pub level: Vec<Point>,
-    /// 1 where levels are parts of the strongest vibration, 2 where they are its square root, as in `.ahap`.
+    /// 1 where levels are parts of the strongest vibration, 2 where they are its square root, as in
+    /// `.ahap`.
     pub exponent: i32,
     /// Frequency over time, hertz.
     pub frequency_hz: Vec<Point>,
@@ -61,7 +64,8 @@ impl Pattern {
         ends.fold(self.to_s, f64::max)
     }
 
-    /// Adds the vibration to samples at a rate, from time 0 on; 1 is the strongest that the actuator plays.
+    /// Adds the vibration to samples at a rate, from time 0 on; 1 is the strongest that the
+    /// actuator plays.
     pub fn add_to(&self, samples: &mut [f64], rate_hz: f64) {
         self.add_sine(samples, rate_hz);
         for transient in &self.transients {
@@ -130,7 +134,8 @@ pub(crate) fn rendered_of_file(
     Ok(rendered(patterns, rate_hz))
 }
 
-/// Renders patterns together, held within ±1 as an actuator holds them, from time 0 to the last end.
+/// Renders patterns together, held within ±1 as an actuator holds them, from time 0 to the last
+/// end.
 #[must_use]
 pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
     let end_s = patterns.iter().map(Pattern::end_s).fold(0.0, f64::max);
@@ -143,24 +148,19 @@ pub fn rendered(patterns: &[Pattern], rate_hz: f64) -> Vec<f64> {
     samples
 }
 
-/// Combines patterns to the one that a format of one envelope holds: at each time the strongest, and all transients. The levels' exponent
-/// becomes 1 at the points; between them the lines stay straight.
+/// Combines patterns to the one that a format of one envelope holds: at each time the strongest,
+/// and all transients. The levels' exponent becomes 1 at the points; between them the lines stay
+/// straight.
 #[must_use]
 pub fn combined(patterns: &[Pattern]) -> Pattern {
     let sounding: Vec<&Pattern> = patterns.iter().filter(|p| p.to_s > p.from_s).collect();
     let mut times: Vec<f64> = sounding.iter().flat_map(|p| p.times()).collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
-    let mut all = Pattern {
-        exponent: 1,
-        ..Pattern::default()
-    };
+    let mut all = Pattern { exponent: 1, ..Pattern::default() };
     for &time_s in &times {
         // Before and after a jump.
-        let sides = [
-            strongest(&sounding, time_s, true),
-            strongest(&sounding, time_s, false),
-        ];
+        let sides = [strongest(&sounding, time_s, true), strongest(&sounding, time_s, false)];
         for (level, hertz) in sides.into_iter().flatten() {
             push(&mut all.level, Point::new(time_s, level));
             push(&mut all.frequency_hz, Point::new(time_s, hertz));
@@ -168,10 +168,7 @@ pub fn combined(patterns: &[Pattern]) -> Pattern {
     }
     all.from_s = times.first().copied().unwrap_or(0.0);
     all.to_s = times.last().copied().unwrap_or(0.0);
-    all.transients = patterns
-        .iter()
-        .flat_map(|p| p.transients.iter().copied())
-        .collect();
+    all.transients = patterns.iter().flat_map(|p| p.transients.iter().copied()).collect();
     all.transients.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
     all
 }
@@ -182,35 +179,23 @@ fn push(curve: &mut Vec<Point>, point: Point) {
     }
 }
 
-/// Level and frequency of the strongest pattern just before a time, or from it on; silence where none sounds inside the whole.
+/// Level and frequency of the strongest pattern just before a time, or from it on; silence where
+/// none sounds inside the whole.
 fn strongest(patterns: &[&Pattern], time_s: f64, before: bool) -> Option<(f64, f64)> {
-    let (first, last) = patterns.iter().fold((f64::MAX, f64::MIN), |(a, b), p| {
-        (a.min(p.from_s), b.max(p.to_s))
-    });
-    let is_outside = if before {
-        time_s <= first
-    } else {
-        time_s >= last
-    };
+    let (first, last) =
+        patterns.iter().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p.from_s), b.max(p.to_s)));
+    let is_outside = if before { time_s <= first } else { time_s >= last };
     if is_outside && first < last {
         return None;
     }
     let here = patterns.iter().filter_map(|p| p.side(time_s, before));
-    let silent = || {
-        patterns
-            .first()
-            .and_then(|p| Some((0.0, p.frequency_hz.first()?.value)))
-    };
+    let silent = || patterns.first().and_then(|p| Some((0.0, p.frequency_hz.first()?.value)));
     here.max_by(|a, b| a.0.total_cmp(&b.0)).or_else(silent)
 }
 
 impl Pattern {
     fn times(&self) -> impl Iterator<Item = f64> + '_ {
-        let points = self
-            .level
-            .iter()
-            .chain(&self.frequency_hz)
-            .map(|p| p.time_s);
+        let points = self.level.iter().chain(&self.frequency_hz).map(|p| p.time_s);
         let (from_s, to_s) = (self.from_s, self.to_s);
         let inner = points.filter(move |t| (from_s..=to_s).contains(t));
         [from_s, to_s].into_iter().chain(inner)

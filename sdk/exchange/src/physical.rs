@@ -22,26 +22,16 @@ pub struct Physical {
     pub pitch_mm: Option<f64>,
 }
 
-const FULL_SCALE: Missing = Missing {
-    setting: "full_scale",
-    words: "how strong 1 is",
-};
-const SPEED: Missing = Missing {
-    setting: "speed",
-    words: "at which speed it is felt",
-};
-const FORCE: Missing = Missing {
-    setting: "force",
-    words: "at which force",
-};
-pub(crate) const PITCH: Missing = Missing {
-    setting: "pitch",
-    words: "how far apart its pixels are",
-};
+const FULL_SCALE: Missing = Missing { setting: "full_scale", words: "how strong 1 is" };
+const SPEED: Missing = Missing { setting: "speed", words: "at which speed it is felt" };
+const FORCE: Missing = Missing { setting: "force", words: "at which force" };
+pub(crate) const PITCH: Missing =
+    Missing { setting: "pitch", words: "how far apart its pixels are" };
 /// Largest normal force, newtons.
 const MOST_FORCE_N: f64 = 1e3;
 
-/// Reads a file for what it does not say, and an import has to be given: nothing of one that states an asset. `file` is its name.
+/// Reads a file for what it does not say, and an import has to be given: nothing of one that states
+/// an asset. `file` is its name.
 ///
 /// # Errors
 /// When no format has its extension, or the file is not what it says, with the place.
@@ -68,10 +58,7 @@ pub fn missing(file: &str, bytes: &[u8]) -> Result<Vec<Missing>, ExchangeError> 
         }
         _ => {
             // A file over space is the shorter, the faster it is felt.
-            let sampling = Sampling {
-                rate_hz: RATE_HZ,
-                speed_mm_s: Exploration::MOST_SPEED_MM_S,
-            };
+            let sampling = Sampling { rate_hz: RATE_HZ, speed_mm_s: Exploration::MOST_SPEED_MM_S };
             signal(format, bytes, sampling, None)?.map_err(in_file(file))?;
         }
     }
@@ -79,7 +66,8 @@ pub fn missing(file: &str, bytes: &[u8]) -> Result<Vec<Missing>, ExchangeError> 
 }
 
 impl Reads {
-    /// Returns what its files never say, and an image that does not state the distance of its pixels.
+    /// Returns what its files never say, and an image that does not state the distance of its
+    /// pixels.
     #[must_use]
     pub fn missing(&self) -> Vec<Missing> {
         match self {
@@ -100,11 +88,7 @@ impl Physical {
     }
 
     pub(crate) fn checked(&self, format: &Format) -> Result<Checked, ExchangeError> {
-        let all = [
-            (FULL_SCALE, self.full_scale),
-            (SPEED, self.speed_mm_s),
-            (FORCE, self.force_n),
-        ];
+        let all = [(FULL_SCALE, self.full_scale), (SPEED, self.speed_mm_s), (FORCE, self.force_n)];
         let (Some(full_scale), Some(speed), Some(force)) =
             (self.full_scale, self.speed_mm_s, self.force_n)
         else {
@@ -120,27 +104,13 @@ impl Physical {
         };
         let most_mm_s = Exploration::MOST_SPEED_MM_S;
         above("full_scale", full_scale, 1e6, "more than 0, at most 1e6")?;
-        above(
-            "speed",
-            speed,
-            most_mm_s,
-            "more than 0 mm/s, at most 10,000 mm/s",
-        )?;
-        above(
-            "force",
-            force,
-            MOST_FORCE_N,
-            "more than 0 N, at most 1000 N",
-        )?;
+        above("speed", speed, most_mm_s, "more than 0 mm/s, at most 10,000 mm/s")?;
+        above("force", force, MOST_FORCE_N, "more than 0 N, at most 1000 N")?;
         if let Some(pitch_mm) = self.pitch_mm {
             let most = *map::PITCH_MM.end();
             above("pitch", pitch_mm, most, "more than 0 mm, at most 64 mm")?;
         }
-        Ok(Checked {
-            full_scale,
-            speed_mm_s: speed,
-            force_n: force,
-        })
+        Ok(Checked { full_scale, speed_mm_s: speed, force_n: force })
     }
 }
 

@@ -1,7 +1,8 @@
 //! Profiles of actuators: what they can do, each value with its source.
 //!
-//! They are data (`profiles.toml`) in the crate. A resonant actuator is a driven oscillator: at a frequency `f` it is at most as strong as
-//! `strongest_m_s2` times its response, `1 / sqrt(1 + Q² (f/f₀ − f₀/f)²)`, and plays nothing outside its range. A rotating mass has one
+//! They are data (`profiles.toml`) in the crate. A resonant actuator is a driven oscillator: at a
+//! frequency `f` it is at most as strong as `strongest_m_s2` times its response,
+//! `1 / sqrt(1 + Q² (f/f₀ − f₀/f)²)`, and plays nothing outside its range. A rotating mass has one
 //! number: its acceleration grows with the square of its frequency, which follows its level.
 
 use std::sync::LazyLock;
@@ -101,7 +102,8 @@ impl Profile {
         ]
     }
 
-    /// Returns the part of its strongest acceleration that it reaches at a frequency, 0 to 1; 0 outside its range.
+    /// Returns the part of its strongest acceleration that it reaches at a frequency, 0 to 1; 0
+    /// outside its range.
     #[must_use]
     pub fn response(&self, hertz: f64) -> f64 {
         if !(self.low_hz.value..=self.high_hz.value).contains(&hertz) {
@@ -142,8 +144,8 @@ pub fn profile_names() -> Vec<&'static str> {
     PROFILES.iter().map(|profile| &profile.name[..]).collect()
 }
 
-/// Returns the table of the profiles in Markdown, for documents: a value that somebody published has the number of its source in the list
-/// below the table.
+/// Returns the table of the profiles in Markdown, for documents: a value that somebody published
+/// has the number of its source in the list below the table.
 #[must_use]
 pub fn profiles_table() -> String {
     let mut sources: Vec<&str> = Vec::new();

@@ -1,9 +1,12 @@
 //! From what an asset plays to what an actuator can.
 //!
-//! **One tone.** A block's powers in bands, each over the detection threshold there, add up to what is felt of it; the tone is as far above its own
-//! threshold. Its frequency is the mean of the bands', weighted by what is felt, in the actuator's range. Where the actuator is too weak there, the
-//! frequency moves towards its resonance, no further than it must; where it is too weak everywhere, the tone is the strongest there is, and what is
-//! missing is counted. **Samples** are filtered by the inverse of the actuator's response, which raises no frequency by more than 12 dB.
+//! **One tone.** A block's powers in bands, each over the detection threshold there, add up to what
+//! is felt of it; the tone is as far above its own threshold. Its frequency is the mean of the
+//! bands', weighted by what is felt, in the actuator's range. Where the actuator is too weak there,
+//! the frequency moves towards its resonance, no further than it must; where it is too weak
+//! everywhere, the tone is the strongest there is, and what is missing is counted. **Samples** are
+//! filtered by the inverse of the actuator's response, which raises no frequency by more than 12
+//! dB.
 
 use htex_dsp::fir::Fir;
 use htex_format::Quantity;
@@ -33,11 +36,7 @@ pub(crate) fn one_tone(heard: &Heard, profile: &Profile, fixed: bool) -> Reduced
     let (mut level, mut frequency_hz, mut limited) = (Vec::new(), Vec::new(), 0usize);
     for (index, block) in heard.blocks.iter().enumerate() {
         let (strength, wanted_hz) = felt.of(block);
-        let wanted_hz = if fixed {
-            profile.resonance_hz.value
-        } else {
-            wanted_hz
-        };
+        let wanted_hz = if fixed { profile.resonance_hz.value } else { wanted_hz };
         let tone = match profile.kind {
             Kind::Resonant => resonant(profile, wanted_hz, strength),
             Kind::Rotating => rotating(profile, strength),
@@ -68,10 +67,7 @@ struct Felt {
 impl Felt {
     fn new(quantity: Quantity, middles_hz: Vec<f64>) -> Self {
         Self {
-            thresholds: middles_hz
-                .iter()
-                .map(|hertz| threshold(quantity, *hertz))
-                .collect(),
+            thresholds: middles_hz.iter().map(|hertz| threshold(quantity, *hertz)).collect(),
             middles_hz,
         }
     }
@@ -79,22 +75,15 @@ impl Felt {
     /// Amplitude over the threshold, and mean frequency, weighted by what is felt.
     fn of(&self, block: &Block) -> (f64, f64) {
         let (mut energy, mut moment) = (0.0, 0.0);
-        for ((power, threshold), hertz) in block
-            .powers
-            .iter()
-            .zip(&self.thresholds)
-            .zip(&self.middles_hz)
+        for ((power, threshold), hertz) in
+            block.powers.iter().zip(&self.thresholds).zip(&self.middles_hz)
         {
             // A sine of amplitude A has the mean square A²/2.
             let own = 2.0 * power / (threshold * threshold);
             energy += own;
             moment += own * libm::log(*hertz);
         }
-        let hertz = if energy > 0.0 {
-            libm::exp(moment / energy)
-        } else {
-            0.0
-        };
+        let hertz = if energy > 0.0 { libm::exp(moment / energy) } else { 0.0 };
         (libm::sqrt(energy), hertz)
     }
 }
@@ -119,41 +108,24 @@ fn resonant(profile: &Profile, wanted_hz: f64, strength: f64) -> Tone {
         let hertz = hertz.clamp(profile.low_hz.value, profile.high_hz.value);
         let needed = strength * threshold(Quantity::Acceleration, hertz);
         let part = needed / profile.strongest_at(hertz);
-        Tone {
-            amplitude: part.min(1.0),
-            hertz,
-            is_limited: part > 1.0,
-        }
+        Tone { amplitude: part.min(1.0), hertz, is_limited: part > 1.0 }
     });
     let enough = tones.by_ref().find(|tone| !tone.is_limited);
-    enough.unwrap_or(Tone {
-        amplitude: 1.0,
-        hertz: resonance_hz,
-        is_limited: true,
-    })
+    enough.unwrap_or(Tone { amplitude: 1.0, hertz: resonance_hz, is_limited: true })
 }
 
 /// The least level of a motor at which it is felt as strongly.
 fn rotating(profile: &Profile, strength: f64) -> Tone {
     let (low_hz, high_hz) = (profile.low_hz.value, profile.high_hz.value);
     let felt = |hertz: f64| profile.strongest_at(hertz) / threshold(Quantity::Acceleration, hertz);
-    let tone = |hertz: f64, is_limited: bool| Tone {
-        amplitude: hertz / high_hz,
-        hertz,
-        is_limited,
-    };
+    let tone =
+        |hertz: f64, is_limited: bool| Tone { amplitude: hertz / high_hz, hertz, is_limited };
     if strength < 0.5 * felt(low_hz) {
-        return Tone {
-            amplitude: 0.0,
-            hertz: low_hz,
-            is_limited: false,
-        };
+        return Tone { amplitude: 0.0, hertz: low_hz, is_limited: false };
     }
     let steps =
         (0..=STEPS).map(|step| low_hz * libm::pow(high_hz / low_hz, step as f64 / STEPS as f64));
-    let enough = steps
-        .map(|hertz| hertz.min(high_hz))
-        .find(|hertz| felt(*hertz) >= strength);
+    let enough = steps.map(|hertz| hertz.min(high_hz)).find(|hertz| felt(*hertz) >= strength);
     enough.map_or_else(|| tone(high_hz, true), |hertz| tone(hertz, false))
 }
 
@@ -170,7 +142,8 @@ fn with_ends(mut curve: Vec<Point>, end_s: f64) -> Vec<Point> {
     curve
 }
 
-/// What a file's pattern makes of an actuator: the frequency of a motor follows its level, and its strength the square of that.
+/// What a file's pattern makes of an actuator: the frequency of a motor follows its level, and its
+/// strength the square of that.
 pub(crate) fn played_by(pattern: Pattern, profile: &Profile) -> Pattern {
     if profile.kind == Kind::Resonant {
         return pattern;
@@ -178,31 +151,17 @@ pub(crate) fn played_by(pattern: Pattern, profile: &Profile) -> Pattern {
     let level: Vec<Point> = pattern
         .level
         .iter()
-        .map(|p| {
-            Point::new(
-                p.time_s,
-                libm::pow(p.value, f64::from(pattern.exponent.max(1))),
-            )
-        })
+        .map(|p| Point::new(p.time_s, libm::pow(p.value, f64::from(pattern.exponent.max(1)))))
         .collect();
     let hertz = |p: &Point| Point::new(p.time_s, p.value * profile.high_hz.value);
     let frequency_hz = level.iter().map(hertz).collect();
     let turns = |p: &Point| {
         Point::new(
             p.time_s,
-            if p.value * profile.high_hz.value < profile.low_hz.value {
-                0.0
-            } else {
-                p.value
-            },
+            if p.value * profile.high_hz.value < profile.low_hz.value { 0.0 } else { p.value },
         )
     };
-    Pattern {
-        level: level.iter().map(turns).collect(),
-        exponent: 2,
-        frequency_hz,
-        ..pattern
-    }
+    Pattern { level: level.iter().map(turns).collect(), exponent: 2, frequency_hz, ..pattern }
 }
 
 /// A tone of several, and its amplitude over time.
@@ -211,7 +170,8 @@ pub(crate) struct Several {
     pub(crate) limited: f64,
 }
 
-/// Reduces to a tone in each of some bands. Bands in which the actuator is weak are felt at its resonance.
+/// Reduces to a tone in each of some bands. Bands in which the actuator is weak are felt at its
+/// resonance.
 pub(crate) fn tones(heard: &Heard, profile: &Profile, count: usize) -> Several {
     let felt = Felt::new(heard.quantity, heard.middles_hz());
     let mut sums = vec![0.0f64; heard.blocks.len()];

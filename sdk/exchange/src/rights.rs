@@ -18,10 +18,8 @@ pub struct RightsPlace {
 }
 
 /// Of a format that has no place: the file `NAME.license` beside it.
-pub(crate) const BESIDE: RightsPlace = RightsPlace {
-    place: "FILE.license",
-    read: |_| Rights::default(),
-};
+pub(crate) const BESIDE: RightsPlace =
+    RightsPlace { place: "FILE.license", read: |_| Rights::default() };
 pub(crate) const HAPTIC: RightsPlace = RightsPlace {
     place: "metadata.description, metadata.author",
     read: |bytes| {
@@ -37,26 +35,18 @@ pub(crate) const ANDROID: RightsPlace = RightsPlace {
     place: "rights (JSON), a comment (Kotlin)",
     read: |bytes| Rights::from_text(&String::from_utf8_lossy(bytes)),
 };
-pub(crate) const HJIF: RightsPlace = RightsPlace {
-    place: "description",
-    read: |bytes| of(text(bytes, "description", "")),
-};
-pub(crate) const WAV: RightsPlace = RightsPlace {
-    place: "LIST INFO: ICOP, IART",
-    read: |_| Rights::default(),
-};
-pub(crate) const PNG: RightsPlace = RightsPlace {
-    place: "iTXt: Copyright",
-    read: map::rights,
-};
+pub(crate) const HJIF: RightsPlace =
+    RightsPlace { place: "description", read: |bytes| of(text(bytes, "description", "")) };
+pub(crate) const WAV: RightsPlace =
+    RightsPlace { place: "LIST INFO: ICOP, IART", read: |_| Rights::default() };
+pub(crate) const PNG: RightsPlace = RightsPlace { place: "iTXt: Copyright", read: map::rights };
 pub(crate) const GLTF: RightsPlace = RightsPlace {
     place: "asset.copyright, and the asset",
     read: |bytes| of(gltf::copyright(bytes)),
 };
 
 fn of(text: Option<String>) -> Rights {
-    text.map(|text| Rights::from_text(&text))
-        .unwrap_or_default()
+    text.map(|text| Rights::from_text(&text)).unwrap_or_default()
 }
 
 /// The parts of a JSON file that may hold text for people; the rest is not kept.
@@ -70,7 +60,8 @@ struct Head {
     asset: Value,
 }
 
-/// A string of a JSON file: `description`, or `metadata` or `asset` with a key in it. `None` if it is missing.
+/// A string of a JSON file: `description`, or `metadata` or `asset` with a key in it. `None` if it
+/// is missing.
 pub(crate) fn text(bytes: &[u8], part: &str, key: &str) -> Option<String> {
     let head: Head = serde_json::from_slice(bytes).ok()?;
     let part = match part {
@@ -103,10 +94,7 @@ impl Stated {
         let beside = beside.map(Rights::from_text).unwrap_or_default();
         agree("license", &inside.license, &beside.license, &given.license)?;
         agree("author", &inside.author, &beside.author, &given.author)?;
-        let mut stated = Self {
-            rights: inside.or(beside),
-            left_out: Vec::new(),
-        };
+        let mut stated = Self { rights: inside.or(beside), left_out: Vec::new() };
         if let Some(license) = &stated.rights.license
             && given.license.is_none()
             && matches!(check_license(license), Err(error) if error.rule().code == "LICENSE_INVALID")
@@ -124,12 +112,7 @@ impl Stated {
     /// # Errors
     /// When it states another licence or author, of which none is given.
     pub(crate) fn check(&self, own: &Rights, given: &Rights) -> Result<(), ExchangeError> {
-        agree(
-            "license",
-            &own.license,
-            &self.rights.license,
-            &given.license,
-        )?;
+        agree("license", &own.license, &self.rights.license, &given.license)?;
         agree("author", &own.author, &self.rights.author, &given.author)
     }
 }

@@ -1,4 +1,5 @@
-//! What a person says of the signals of a file, by name: the flags of the command and the keys of recipes.
+//! What a person says of the signals of a file, by name: the flags of the command and the keys of
+//! recipes.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,7 +7,8 @@ use serde::{Deserialize, Serialize};
 #[cfg(feature = "clap")]
 use crate::profile_names;
 
-/// Settings of signals, as `.haptic`, `.ahap` and `.hjif` hold them, and of images; quantity, speed and force are those of recordings.
+/// Settings of signals, as `.haptic`, `.ahap` and `.hjif` hold them, and of images; quantity, speed
+/// and force are those of recordings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
@@ -40,7 +42,8 @@ pub struct SignalSettings {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pitch_mm: Option<f64>,
 
-    /// The actuator whose range the frequencies of haptic signals are positions in, by name; else the format's own.
+    /// The actuator whose range the frequencies of haptic signals are positions in, by name; else
+    /// the format's own.
     #[cfg_attr(feature = "clap", arg(
         long,
         value_name = "NAME",

@@ -19,7 +19,8 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// Reads a CSV of time, speed and force (`t_s`, `speed_mm_s`, `force_n`), or a trace of time, position and force.
+    /// Reads a CSV of time, speed and force (`t_s`, `speed_mm_s`, `force_n`), or a trace of time,
+    /// position and force.
     ///
     /// # Errors
     /// Those of [`htex_author::recording::read_trace`], but that a speed replaces positions.
@@ -39,9 +40,7 @@ impl Stroke {
         let start_s = read.t_s.first().copied().unwrap_or(0.0);
         let curve = |values: &[f64]| -> Vec<Point> {
             let points = read.t_s.iter().zip(values);
-            points
-                .map(|(t, value)| Point::new(t - start_s, *value))
-                .collect()
+            points.map(|(t, value)| Point::new(t - start_s, *value)).collect()
         };
         let speed_mm_s = curve(&read.speed_mm_s);
         let mut way_mm = Vec::with_capacity(speed_mm_s.len());
@@ -55,12 +54,7 @@ impl Stroke {
             before = Some(point);
         }
         let force_n: Vec<f64> = read.force_n.iter().map(|force| force.max(0.0)).collect();
-        Self {
-            force_n: curve(&force_n),
-            way_mm,
-            speed_mm_s,
-            warnings: read.warnings.clone(),
-        }
+        Self { force_n: curve(&force_n), way_mm, speed_mm_s, warnings: read.warnings.clone() }
     }
 
     /// Returns its length, seconds.

@@ -31,7 +31,5 @@ pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Vec<f64>, Fault> {
     let failed = |error: hound::Error| Fault::whole(error.to_string());
     let reader = WavReader::new(bytes).map_err(failed)?;
     let samples = reader.into_samples::<f32>();
-    samples
-        .map(|sample| sample.map(f64::from).map_err(failed))
-        .collect()
+    samples.map(|sample| sample.map(f64::from).map_err(failed)).collect()
 }

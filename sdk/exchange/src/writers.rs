@@ -1,4 +1,5 @@
-//! The writers of the formats: what is heard, reduced to what the actuator can do, and the file read again.
+//! The writers of the formats: what is heard, reduced to what the actuator can do, and the file
+//! read again.
 
 use crate::android::{
     Android, BasicEnvelope, BasicPoint, LONGEST_POINT_MS, Waveform, WaveformEnvelope, WaveformPoint,
@@ -18,7 +19,8 @@ const MANY: usize = 4_000;
 const TONES: usize = 7;
 /// Points of a curve that are within this of the line between others are left out.
 const TOLERANCE: f64 = 1e-3;
-/// Least level of a basic envelope above the threshold, decibels (documentation of `VibrationEffect.BasicEnvelopeBuilder`).
+/// Least level of a basic envelope above the threshold, decibels (documentation of
+/// `VibrationEffect.BasicEnvelopeBuilder`).
 const LEAST_SL_DB: f64 = 10.0;
 
 pub(crate) fn haptic(job: &Job<'_>) -> Result<Written, ExchangeError> {
@@ -30,9 +32,7 @@ pub(crate) fn haptic(job: &Job<'_>) -> Result<Written, ExchangeError> {
         editor: concat!("htex ", env!("CARGO_PKG_VERSION")).to_owned(),
         source: source.name().to_owned(),
         author: source.rights().author.unwrap_or_default(),
-        tags: manifest
-            .map(|manifest| manifest.tags.clone())
-            .unwrap_or_default(),
+        tags: manifest.map(|manifest| manifest.tags.clone()).unwrap_or_default(),
         description: {
             let description = text(|manifest| manifest.description.as_ref());
             source.rights().described(&description)
@@ -66,10 +66,7 @@ fn one_envelope(
     let mut reduced = one_tone(&heard, job.profile, false);
     thin(&mut reduced.pattern);
     let (bytes, patterns) = written(&reduced.pattern)?;
-    let patterns: Vec<Pattern> = patterns
-        .into_iter()
-        .map(|p| played_by(p, job.profile))
-        .collect();
+    let patterns: Vec<Pattern> = patterns.into_iter().map(|p| played_by(p, job.profile)).collect();
     Ok(Written {
         drive: rendered(&patterns, RATE_HZ),
         bytes,
@@ -79,14 +76,11 @@ fn one_envelope(
     })
 }
 
-/// Rounds values to the digits that a file needs, and leaves out points between which nothing bends.
+/// Rounds values to the digits that a file needs, and leaves out points between which nothing
+/// bends.
 fn thin(pattern: &mut Pattern) {
-    let rounded = |p: &Point| {
-        Point::new(
-            libm::round(p.time_s * 1e6) / 1e6,
-            libm::round(p.value * 1e4) / 1e4,
-        )
-    };
+    let rounded =
+        |p: &Point| Point::new(libm::round(p.time_s * 1e6) / 1e6, libm::round(p.value * 1e4) / 1e4);
     for curve in [&mut pattern.level, &mut pattern.frequency_hz] {
         curve.iter_mut().for_each(|p| *p = rounded(p));
     }
@@ -116,8 +110,7 @@ pub(crate) fn android(job: &Job<'_>) -> Result<Written, ExchangeError> {
     let effect = effect.with_rights(&rights);
     let json = effect.to_bytes();
     let read = Android::from_bytes(&json).map_err(|fault| job.own(fault))?;
-    read.check_device(job.profile)
-        .map_err(|fault| job.own(fault))?;
+    read.check_device(job.profile).map_err(|fault| job.own(fault))?;
     let bytes = match job.extension {
         Some("kt") => {
             let kotlin = effect.to_kotlin(job.playing.source.name());
@@ -136,8 +129,8 @@ pub(crate) fn android(job: &Job<'_>) -> Result<Written, ExchangeError> {
     })
 }
 
-/// Durations of points in whole milliseconds, which together last as long as what is heard. A last block that is shorter than the shortest point
-/// lengthens the one before.
+/// Durations of points in whole milliseconds, which together last as long as what is heard. A last
+/// block that is shorter than the shortest point lengthens the one before.
 fn durations_ms(job: &Job<'_>, heard: &Heard) -> Vec<u64> {
     let end_s = |count: usize| (count as f64 * heard.block_s).min(heard.seconds());
     let shortest_ms = (libm::ceil(job.profile.shortest_point_ms.value) as u64).max(1);
@@ -162,11 +155,7 @@ fn as_waveform(job: &Job<'_>, heard: &Heard, fixed: &Pattern) -> Waveform {
         from_ms += ms;
         libm::round(255.0 * value_at(&fixed.level, middle_s).unwrap_or(0.0)) as u8
     };
-    Waveform {
-        amplitudes: timings_ms.iter().map(amplitude).collect(),
-        timings_ms,
-        repeat: -1,
-    }
+    Waveform { amplitudes: timings_ms.iter().map(amplitude).collect(), timings_ms, repeat: -1 }
 }
 
 /// The points at the ends of blocks, and one that ends it.
@@ -178,11 +167,7 @@ fn points(job: &Job<'_>, heard: &Heard, pattern: &Pattern) -> Vec<(f64, f64, u64
     for (index, ms) in durations.into_iter().enumerate() {
         time_s += ms as f64 / 1e3;
         let at = |curve: &[Point]| value_at(curve, time_s).unwrap_or(0.0);
-        let level = if index == last {
-            0.0
-        } else {
-            at(&pattern.level)
-        };
+        let level = if index == last { 0.0 } else { at(&pattern.level) };
         points.push((
             libm::round(level * 1e4) / 1e4,
             libm::round(at(&pattern.frequency_hz) * 10.0) / 10.0,
@@ -194,13 +179,9 @@ fn points(job: &Job<'_>, heard: &Heard, pattern: &Pattern) -> Vec<(f64, f64, u64
 
 fn as_envelope(job: &Job<'_>, heard: &Heard, free: &Pattern) -> WaveformEnvelope {
     let control_points =
-        points(job, heard, free)
-            .into_iter()
-            .map(|(amplitude, frequency_hz, duration_ms)| WaveformPoint {
-                amplitude,
-                frequency_hz,
-                duration_ms,
-            });
+        points(job, heard, free).into_iter().map(|(amplitude, frequency_hz, duration_ms)| {
+            WaveformPoint { amplitude, frequency_hz, duration_ms }
+        });
     WaveformEnvelope {
         initial_frequency_hz: libm::round(
             free.frequency_hz.first().map_or(1.0, |p| p.value) * 10.0,
@@ -209,7 +190,8 @@ fn as_envelope(job: &Job<'_>, heard: &Heard, free: &Pattern) -> WaveformEnvelope
     }
 }
 
-/// An intensity is a part of the strongest sensation in decibels above 10 dB: Android states that 0.5 is felt as half, and no formula.
+/// An intensity is a part of the strongest sensation in decibels above 10 dB: Android states that
+/// 0.5 is felt as half, and no formula.
 fn as_basic(job: &Job<'_>, heard: &Heard, free: &Pattern) -> BasicEnvelope {
     let profile = job.profile;
     let above_db = |hertz: f64, part: f64| {
@@ -217,18 +199,14 @@ fn as_basic(job: &Job<'_>, heard: &Heard, free: &Pattern) -> BasicEnvelope {
         20.0 * libm::log10(over.max(1e-9)) - LEAST_SL_DB
     };
     let range = |step: usize| profile.hertz_of(step as f64 / 64.0);
-    let most_db = (0..=64)
-        .map(|step| above_db(range(step), 1.0))
-        .fold(1.0, f64::max);
+    let most_db = (0..=64).map(|step| above_db(range(step), 1.0)).fold(1.0, f64::max);
     let rounded = |x: f64| libm::round(x * 1e4) / 1e4;
     let control_points =
-        points(job, heard, free)
-            .into_iter()
-            .map(|(amplitude, hertz, duration_ms)| BasicPoint {
-                intensity: rounded((above_db(hertz, amplitude) / most_db).clamp(0.0, 1.0)),
-                sharpness: rounded(profile.part_of(hertz)),
-                duration_ms,
-            });
+        points(job, heard, free).into_iter().map(|(amplitude, hertz, duration_ms)| BasicPoint {
+            intensity: rounded((above_db(hertz, amplitude) / most_db).clamp(0.0, 1.0)),
+            sharpness: rounded(profile.part_of(hertz)),
+            duration_ms,
+        });
     BasicEnvelope {
         initial_sharpness: rounded(
             profile.part_of(free.frequency_hz.first().map_or(1.0, |p| p.value)),
@@ -240,9 +218,7 @@ fn as_basic(job: &Job<'_>, heard: &Heard, free: &Pattern) -> BasicEnvelope {
 /// Over space at a condition, over time along a stroke and in a scene.
 fn space(job: &Job<'_>) -> Space {
     let speed = job.playing.source.speed_mm_s();
-    Space {
-        speed_mm_s: speed.filter(|speed| *speed > 0.0),
-    }
+    Space { speed_mm_s: speed.filter(|speed| *speed > 0.0) }
 }
 
 pub(crate) fn hjif(job: &Job<'_>) -> Result<Written, ExchangeError> {
@@ -255,9 +231,7 @@ pub(crate) fn hjif(job: &Job<'_>) -> Result<Written, ExchangeError> {
     let bytes = file.to_bytes();
     let read = Hjif::from_bytes(&bytes).map_err(|fault| job.own(fault))?;
     let speed = space.speed_mm_s.unwrap_or(1.0);
-    let drive = read
-        .rendered(heard.rate_hz, speed)
-        .map_err(|fault| job.own(fault))?;
+    let drive = read.rendered(heard.rate_hz, speed).map_err(|fault| job.own(fault))?;
     let over_way = |speed: f64| {
         format!(
             "It lies over the way of the finger, and is felt as the asset at {speed} mm/s alone."
@@ -286,18 +260,11 @@ fn vectorial_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
     let rounded = |p: &Point| Point::new(p.time_s, libm::round(p.value * 1e4) / 1e4);
     let tone = |(hertz, amplitude): (f64, Vec<Point>)| Tone {
         hertz,
-        amplitude: simplified(&amplitude, TOLERANCE)
-            .iter()
-            .map(rounded)
-            .collect(),
+        amplitude: simplified(&amplitude, TOLERANCE).iter().map(rounded).collect(),
     };
     let all: Vec<Tone> = several.tones.into_iter().map(tone).collect();
     let description = described(job);
-    Ok((
-        vectorial(&all, job.profile, space, &description),
-        heard,
-        several.limited,
-    ))
+    Ok((vectorial(&all, job.profile, space, &description), heard, several.limited))
 }
 
 fn wavelet_file(job: &Job<'_>, space: Space) -> Result<Coded, ExchangeError> {
@@ -326,11 +293,5 @@ pub(crate) fn wav(job: &Job<'_>) -> Result<Written, ExchangeError> {
     let bytes = crate::wav::to_bytes(&samples, rate_hz as u32, &rights);
     let bytes = bytes.map_err(|fault| job.own(fault))?;
     let drive = crate::wav::from_bytes(&bytes).map_err(|fault| job.own(fault))?;
-    Ok(Written {
-        bytes,
-        heard,
-        drive,
-        limited,
-        notes: Vec::new(),
-    })
+    Ok(Written { bytes, heard, drive, limited, notes: Vec::new() })
 }

@@ -66,7 +66,8 @@ fn said(name: &str, bytes: &[u8]) -> String {
     read.map_or_else(|error| error.to_string(), |_| "it is read".to_owned())
 }
 
-/// What is said of a file in which the value at a pointer is replaced, or taken away where it is null.
+/// What is said of a file in which the value at a pointer is replaced, or taken away where it is
+/// null.
 fn changed(name: &str, file: &Value, pointer: &str, to: Value) -> String {
     let mut file = file.clone();
     let (parent, key) = pointer.rsplit_once('/').unwrap();
@@ -81,16 +82,8 @@ fn changed(name: &str, file: &Value, pointer: &str, to: Value) -> String {
 
 #[test]
 fn whole_files_are_read() {
-    for (name, file) in [
-        ("a.haptic", haptic()),
-        ("a.ahap", ahap()),
-        ("a.hjif", hjif()),
-    ] {
-        assert_eq!(
-            said(name, file.to_string().as_bytes()),
-            "it is read",
-            "{name}"
-        );
+    for (name, file) in [("a.haptic", haptic()), ("a.ahap", ahap()), ("a.hjif", hjif())] {
+        assert_eq!(said(name, file.to_string().as_bytes()), "it is read", "{name}");
         // With a mark of the byte order.
         let marked = format!("\u{feff}{file}");
         assert_eq!(said(name, marked.as_bytes()), "it is read", "{name}");
@@ -100,17 +93,12 @@ fn whole_files_are_read() {
         .replace("channels", "tracks")
         .replace("mixing_coefficient", "mixing_weight");
     assert_eq!(said("a.hjif", draft.as_bytes()), "it is read");
-    // Of Meta's legacy files: a last point to which the line across the end leads. Null and absent are none.
+    // Of Meta's legacy files: a last point to which the line across the end leads. Null and absent
+    // are none.
     let frequency = "/signals/continuous/envelopes/frequency";
     let across = json!([{"time": 0, "frequency": 0.5}, {"time": 1.5, "frequency": 1}]);
-    assert_eq!(
-        changed("a.haptic", &haptic(), frequency, across),
-        "it is read"
-    );
-    assert_eq!(
-        changed("a.haptic", &haptic(), frequency, Value::Null),
-        "it is read"
-    );
+    assert_eq!(changed("a.haptic", &haptic(), frequency, across), "it is read");
+    assert_eq!(changed("a.haptic", &haptic(), frequency, Value::Null), "it is read");
     let null = haptic().to_string().replace(
         r#""frequency":[{"frequency":0.5,"time":0},{"frequency":0.6,"time":1}]"#,
         r#""frequency":null"#,
@@ -122,21 +110,13 @@ fn whole_files_are_read() {
 #[test]
 fn what_a_file_does_not_say_is_told_of_whole_files_alone() {
     let told = |name: &str, bytes: &[u8]| match missing(name, bytes) {
-        Ok(all) => all
-            .iter()
-            .map(|one| one.setting)
-            .collect::<Vec<_>>()
-            .join(", "),
+        Ok(all) => all.iter().map(|one| one.setting).collect::<Vec<_>>().join(", "),
         Err(error) => error.to_string(),
     };
     let hatt = include_bytes!("felt.xml");
     assert_eq!(told("felt.xml", hatt), "");
     assert!(told("felt.xml", &hatt[..500]).starts_with("felt.xml: line "));
-    for (name, file) in [
-        ("a.haptic", haptic()),
-        ("a.ahap", ahap()),
-        ("a.hjif", hjif()),
-    ] {
+    for (name, file) in [("a.haptic", haptic()), ("a.ahap", ahap()), ("a.hjif", hjif())] {
         let text = file.to_string();
         assert_eq!(told(name, text.as_bytes()), "full_scale, speed, force");
         let torn = told(name, &text.as_bytes()[..text.len() / 2]);
@@ -150,77 +130,33 @@ fn damaged_haptic_files_are_named_with_place() {
     let envelopes = "/signals/continuous/envelopes";
     let at = |rest: &str| format!("{envelopes}{rest}");
     for (pointer, to, expected) in [
-        (
-            "/version/major".to_owned(),
-            json!(2),
-            "version 2 is not known",
-        ),
-        (
-            "/version".to_owned(),
-            Value::Null,
-            "missing field `version`",
-        ),
-        (
-            "/signals".to_owned(),
-            Value::Null,
-            "missing field `signals`",
-        ),
-        (
-            at("/amplitude"),
-            json!([]),
-            "it has 0 points; it needs two or more",
-        ),
-        (
-            at("/amplitude"),
-            json!([{"time": 0, "amplitude": 1}]),
-            "it has 1 points",
-        ),
+        ("/version/major".to_owned(), json!(2), "version 2 is not known"),
+        ("/version".to_owned(), Value::Null, "missing field `version`"),
+        ("/signals".to_owned(), Value::Null, "missing field `signals`"),
+        (at("/amplitude"), json!([]), "it has 0 points; it needs two or more"),
+        (at("/amplitude"), json!([{"time": 0, "amplitude": 1}]), "it has 1 points"),
         (
             at("/amplitude"),
             json!([{"time": 0, "amplitude": 1}, {"time": 0, "amplitude": 1}]),
             "it has no duration",
         ),
-        (
-            at("/amplitude/1/time"),
-            json!(1.5),
-            "1 s is before the 1.5 s of the point before",
-        ),
-        (
-            at("/amplitude/0/time"),
-            json!(-1),
-            "/amplitude/0/time: the time is -1",
-        ),
-        (
-            at("/amplitude/2/time"),
-            json!(1e9),
-            "the time is 1000000000",
-        ),
+        (at("/amplitude/1/time"), json!(1.5), "1 s is before the 1.5 s of the point before"),
+        (at("/amplitude/0/time"), json!(-1), "/amplitude/0/time: the time is -1"),
+        (at("/amplitude/2/time"), json!(1e9), "the time is 1000000000"),
         (
             at("/amplitude/0/amplitude"),
             json!(1.1),
             "/amplitude/0/amplitude: the amplitude is 1.1; it must be 0 to 1",
         ),
-        (
-            at("/amplitude/0/amplitude"),
-            json!("loud"),
-            "/amplitude/0/amplitude: invalid type",
-        ),
+        (at("/amplitude/0/amplitude"), json!("loud"), "/amplitude/0/amplitude: invalid type"),
         (
             at("/amplitude/1/emphasis/amplitude"),
             json!(0.3),
             "the emphasis is 0.3; it must be 0.4 to 1",
         ),
-        (
-            at("/amplitude/1/emphasis/frequency"),
-            json!(2),
-            "/amplitude/1/emphasis/frequency",
-        ),
+        (at("/amplitude/1/emphasis/frequency"), json!(2), "/amplitude/1/emphasis/frequency"),
         (at("/frequency/1/time"), json!(-0.5), "/frequency/1/time"),
-        (
-            at("/frequency/0/frequency"),
-            json!(-0.1),
-            "/frequency/0/frequency",
-        ),
+        (at("/frequency/0/frequency"), json!(-0.1), "/frequency/0/frequency"),
         (
             at("/frequency"),
             json!([{"time": 1, "frequency": 0}, {"time": 1.5, "frequency": 0}]),
@@ -228,10 +164,7 @@ fn damaged_haptic_files_are_named_with_place() {
         ),
     ] {
         let said = changed("a.haptic", &haptic(), &pointer, to);
-        assert!(
-            said.starts_with("a.haptic: ") && said.contains(expected),
-            "{pointer}: {said}"
-        );
+        assert!(said.starts_with("a.haptic: ") && said.contains(expected), "{pointer}: {said}");
     }
 }
 
@@ -245,11 +178,7 @@ fn damaged_ahap_files_are_named_with_place() {
             json!({"ParameterCurves": {}}),
             "/Pattern/0: unknown variant `ParameterCurves`",
         ),
-        (
-            "/Pattern/0/Event/EventType",
-            json!("Loud"),
-            "/Pattern/0/Event/EventType",
-        ),
+        ("/Pattern/0/Event/EventType", json!("Loud"), "/Pattern/0/Event/EventType"),
         (
             "/Pattern/0/Event/EventDuration",
             Value::Null,
@@ -276,22 +205,11 @@ fn damaged_ahap_files_are_named_with_place() {
             json!(2),
             "ParameterCurveControlPoints/1/Time: 1 s is before",
         ),
-        (
-            "/Pattern/2/ParameterCurve/Time",
-            json!("now"),
-            "/Pattern/2/ParameterCurve/Time",
-        ),
-        (
-            "/Pattern/3/Parameter/ParameterValue",
-            json!(9),
-            "/Pattern/3/Parameter/ParameterValue",
-        ),
+        ("/Pattern/2/ParameterCurve/Time", json!("now"), "/Pattern/2/ParameterCurve/Time"),
+        ("/Pattern/3/Parameter/ParameterValue", json!(9), "/Pattern/3/Parameter/ParameterValue"),
     ] {
         let said = changed("a.ahap", &ahap(), pointer, to);
-        assert!(
-            said.starts_with("a.ahap: ") && said.contains(expected),
-            "{pointer}: {said}"
-        );
+        assert!(said.starts_with("a.ahap: ") && said.contains(expected), "{pointer}: {said}");
     }
 }
 
@@ -303,11 +221,7 @@ fn damaged_hjif_files_are_named_with_place() {
     let block = json!([{"amplitude_modulation": 1}, {"amplitude_modulation": 1}]);
     for (rest, to, expected) in [
         ("", json!([]), "/perceptions: there is no perception"),
-        (
-            "",
-            json!([perception, perception]),
-            "/perceptions/1/id: another one has the id 0",
-        ),
+        ("", json!([perception, perception]), "/perceptions/1/id: another one has the id 0"),
         (
             "/0/perception_modality",
             json!("Temperature"),
@@ -315,11 +229,7 @@ fn damaged_hjif_files_are_named_with_place() {
         ),
         ("/0/unit_exponent", json!(9), "/perceptions/0/unit_exponent"),
         ("/0/channels", Value::Null, "missing field `channels`"),
-        (
-            "/0/channels/0/gain",
-            json!(1e9),
-            "/perceptions/0/channels/0/gain",
-        ),
+        ("/0/channels/0/gain", json!(1e9), "/perceptions/0/channels/0/gain"),
         (
             "/0/channels/0/reference_device_id",
             json!(4),
@@ -330,26 +240,10 @@ fn damaged_hjif_files_are_named_with_place() {
             json!(50),
             "maximum_frequency: the frequency is 50; it must be 60",
         ),
-        (
-            "/0/channels/0/bands",
-            many,
-            "bands: the number of bands is 8; it must be 0 to 7",
-        ),
-        (
-            "/0/channels/0/bands/0/band_type",
-            json!("Noise"),
-            "bands/0/band_type",
-        ),
-        (
-            "/0/channels/0/bands/0/upper_frequency_limit",
-            json!(-1),
-            "bands/0/upper_frequency_limit",
-        ),
-        (
-            "/0/channels/0/bands/0/curve_type",
-            json!("Cubic"),
-            "curve_type: only bands of curves",
-        ),
+        ("/0/channels/0/bands", many, "bands: the number of bands is 8; it must be 0 to 7"),
+        ("/0/channels/0/bands/0/band_type", json!("Noise"), "bands/0/band_type"),
+        ("/0/channels/0/bands/0/upper_frequency_limit", json!(-1), "bands/0/upper_frequency_limit"),
+        ("/0/channels/0/bands/0/curve_type", json!("Cubic"), "curve_type: only bands of curves"),
         (
             "/0/channels/0/bands/0/effects/1/id",
             json!(8),
@@ -360,11 +254,7 @@ fn damaged_hjif_files_are_named_with_place() {
             json!("Composite"),
             "composite effects are not read",
         ),
-        (
-            "/0/channels/0/bands/0/effects/0/position",
-            json!(-1),
-            "effects/0/position",
-        ),
+        ("/0/channels/0/bands/0/effects/0/position", json!(-1), "effects/0/position"),
         (
             "/0/channels/0/bands/0/effects/0/keyframes/0/relative_position",
             json!(1000),
@@ -387,10 +277,7 @@ fn damaged_hjif_files_are_named_with_place() {
         ),
     ] {
         let said = changed("a.hjif", &hjif(), &format!("/perceptions{rest}"), to);
-        assert!(
-            said.starts_with("a.hjif: ") && said.contains(expected),
-            "{rest}: {said}"
-        );
+        assert!(said.starts_with("a.hjif: ") && said.contains(expected), "{rest}: {said}");
     }
     let wavelet = hjif().to_string().replace("VectorialWave", "WaveletWave");
     assert!(
@@ -399,11 +286,7 @@ fn damaged_hjif_files_are_named_with_place() {
     );
     for (pointer, to, expected) in [
         ("/timescale", json!(0), "/timescale: the timescale is 0"),
-        (
-            "/profile",
-            json!("Basic"),
-            "/profile: there is no profile \"Basic\"",
-        ),
+        ("/profile", json!("Basic"), "/profile: there is no profile \"Basic\""),
         ("/level", json!(3), "/level: the level is 3"),
     ] {
         let said = changed("a.hjif", &hjif(), pointer, to);
@@ -413,24 +296,14 @@ fn damaged_hjif_files_are_named_with_place() {
 
 #[test]
 fn files_that_end_anywhere_or_repeat_a_key_are_named_with_place() {
-    for (name, file) in [
-        ("a.haptic", haptic()),
-        ("a.ahap", ahap()),
-        ("a.hjif", hjif()),
-    ] {
+    for (name, file) in [("a.haptic", haptic()), ("a.ahap", ahap()), ("a.hjif", hjif())] {
         let text = serde_json::to_string_pretty(&file).unwrap();
         for end in (0..text.len() - 1).step_by(37) {
             let said = said(name, &text.as_bytes()[..end]);
-            assert!(
-                said.contains("line ") && said.contains("it is not JSON"),
-                "{end}: {said}"
-            );
+            assert!(said.contains("line ") && said.contains("it is not JSON"), "{end}: {said}");
         }
         let twice = text.replacen('{', "{\"version\": 1, \"version\": 1,", 1);
-        assert!(
-            said(name, twice.as_bytes()).contains("/version: the key appears twice"),
-            "{name}"
-        );
+        assert!(said(name, twice.as_bytes()).contains("/version: the key appears twice"), "{name}");
         assert!(said(name, b"\xff\xfe").contains("it is not JSON"), "{name}");
         assert!(said(name, b"").contains("it is not JSON"), "{name}");
     }
@@ -445,16 +318,11 @@ fn sizes_are_limited() {
             "a.xml" => {
                 let none = htex_exchange::Import::default();
                 let registry = htex_play::Registry::builtin();
-                htex_exchange::import(name, &large, &none, &registry)
-                    .unwrap_err()
-                    .to_string()
+                htex_exchange::import(name, &large, &none, &registry).unwrap_err().to_string()
             }
             _ => said(name, &large),
         };
-        assert!(
-            said.contains("the most") || said.contains("at most 16777216 are read"),
-            "{said}"
-        );
+        assert!(said.contains("the most") || said.contains("at most 16777216 are read"), "{said}");
         assert!(start.elapsed() < Duration::from_secs(5));
     }
 }
@@ -469,19 +337,10 @@ fn work_is_limited() {
     let crossed = |events: usize| {
         let mut pattern = vec![event.clone(); events];
         pattern.push(curve.clone());
-        said(
-            "a.ahap",
-            json!({"Version": 1, "Pattern": pattern})
-                .to_string()
-                .as_bytes(),
-        )
+        said("a.ahap", json!({"Version": 1, "Pattern": pattern}).to_string().as_bytes())
     };
     assert_eq!(crossed(100), "it is read");
-    assert!(
-        crossed(1_100).contains("/Pattern: its events have"),
-        "{}",
-        crossed(1_100)
-    );
+    assert!(crossed(1_100).contains("/Pattern: its events have"), "{}", crossed(1_100));
     let long = json!({"Event": {"Time": 0, "EventType": "HapticContinuous", "EventDuration": 600}});
     let long = json!({"Version": 1, "Pattern": vec![long; 7]});
     assert!(
@@ -496,15 +355,12 @@ fn work_is_limited() {
     file["perceptions"][0]["channels"][0]["bands"][0]["effects"] = json!(vec![reference; 2_000]);
     let start = Busy::start();
     let said = said("a.hjif", file.to_string().as_bytes());
-    assert!(
-        said.contains("samples and keyframes at 8000 Hz; leave some out"),
-        "{said}"
-    );
+    assert!(said.contains("samples and keyframes at 8000 Hz; leave some out"), "{said}");
     assert!(start.elapsed() < Duration::from_secs(10));
 }
 
-/// Files whose work grew with a product that nothing counted: pulses of a referenced effect, pulses of a low frequency, points of
-/// curves by parameters of their event, channels by devices.
+/// Files whose work grew with a product that nothing counted: pulses of a referenced effect, pulses
+/// of a low frequency, points of curves by parameters of their event, channels by devices.
 #[test]
 fn no_work_is_left_out_of_the_count() {
     let start = Busy::start();

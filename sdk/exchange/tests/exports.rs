@@ -122,10 +122,7 @@ fn what_is_too_strong_is_counted() {
     let asset = texture(Surface::Sandpaper);
     let lra = Profile::find("lra-175").unwrap();
     let weak = Profile {
-        strongest_m_s2: htex_exchange::Sourced {
-            value: 0.1,
-            source: "assumed".to_owned(),
-        },
+        strongest_m_s2: htex_exchange::Sourced { value: 0.1, source: "assumed".to_owned() },
         ..lra.clone()
     };
     for format in ["haptic", "ahap", "hjif", "wav"] {
@@ -149,32 +146,17 @@ fn numbers_that_cannot_be_are_refused() {
     for rate in [100.0, 1e6, f64::NAN] {
         let mut how = of("wav");
         how.rate_hz = Some(rate);
-        assert!(
-            said(&how).contains("twice the texture's highest frequency"),
-            "{rate}"
-        );
+        assert!(said(&how).contains("twice the texture's highest frequency"), "{rate}");
     }
     let mut long = of("android");
     long.seconds = 60.0;
-    assert!(
-        said(&long).contains("export a shorter part"),
-        "{}",
-        said(&long)
-    );
+    assert!(said(&long).contains("export a shorter part"), "{}", said(&long));
     let erm = of("wav").with_profile(Profile::find("erm").unwrap());
-    assert!(
-        said(&erm).contains("choose haptic, ahap or android"),
-        "{}",
-        said(&erm)
-    );
+    assert!(said(&erm).contains("choose haptic, ahap or android"), "{}", said(&erm));
     let slow = of("hjif")
         .with_coding(Coding::Wavelet)
         .with_path(Path::Condition(Some(Motion::new(0.1, 0.4))));
-    assert!(
-        said(&slow).contains("choose a higher speed"),
-        "{}",
-        said(&slow)
-    );
+    assert!(said(&slow).contains("choose a higher speed"), "{}", said(&slow));
 }
 
 /// Kotlin has the numbers of the JSON.
@@ -186,27 +168,16 @@ fn kotlin_has_the_points_of_the_envelope() {
     how.extension = Some("kt");
     let kotlin = String::from_utf8(export(&asset, &how).unwrap().bytes).unwrap();
     for name in ["vinylWaveform", "vinylEnvelope", "vinylBasicEnvelope"] {
-        assert!(
-            kotlin.contains(&format!("fun {name}(): VibrationEffect =")),
-            "{kotlin}"
-        );
+        assert!(kotlin.contains(&format!("fun {name}(): VibrationEffect =")), "{kotlin}");
     }
-    let points = json["waveform_envelope"]["control_points"]
-        .as_array()
-        .unwrap();
+    let points = json["waveform_envelope"]["control_points"].as_array().unwrap();
     let line = |p: &Value| {
         let number = |key: &str| p[key].as_f64().unwrap();
         let (amplitude, hertz) = (number("amplitude"), number("frequency_hz"));
-        format!(
-            ".addControlPoint({amplitude}f, {hertz}f, {}L)",
-            p["duration_ms"]
-        )
+        format!(".addControlPoint({amplitude}f, {hertz}f, {}L)", p["duration_ms"])
     };
     assert!(points.iter().all(|p| kotlin.contains(&line(p))), "{kotlin}");
-    assert_eq!(
-        kotlin.matches(".addControlPoint(").count(),
-        2 * points.len()
-    );
+    assert_eq!(kotlin.matches(".addControlPoint(").count(), 2 * points.len());
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! glTF files that carry an asset: there and back bit for bit, and what is wrong named with its place.
+//! glTF files that carry an asset: there and back bit for bit, and what is wrong named with its
+//! place.
 #![allow(clippy::unwrap_used)] // Test code: a failed unwrap is a failed test.
 
 mod textures;
@@ -41,23 +42,11 @@ fn glb(chunks: &[(&[u8; 4], Vec<u8>)]) -> Vec<u8> {
 /// JSON and bytes of a container, as its header says.
 fn parts(file: &[u8]) -> (Value, Vec<u8>) {
     let number = |at: usize| u32::from_le_bytes(*file[at..].first_chunk().unwrap()) as usize;
-    assert_eq!(
-        (&file[..4], number(4), number(8)),
-        (&b"glTF"[..], 2, file.len())
-    );
+    assert_eq!((&file[..4], number(4), number(8)), (&b"glTF"[..], 2, file.len()));
     let end = 20 + number(12);
-    assert_eq!(
-        (&file[16..20], &file[end + 4..end + 8]),
-        (&b"JSON"[..], &b"BIN\0"[..])
-    );
-    assert_eq!(
-        (end % 4, number(end) % 4, end + 8 + number(end)),
-        (0, 0, file.len())
-    );
-    (
-        serde_json::from_slice(&file[20..end]).unwrap(),
-        file[end + 8..].to_vec(),
-    )
+    assert_eq!((&file[16..20], &file[end + 4..end + 8]), (&b"JSON"[..], &b"BIN\0"[..]));
+    assert_eq!((end % 4, number(end) % 4, end + 8 + number(end)), (0, 0, file.len()));
+    (serde_json::from_slice(&file[20..end]).unwrap(), file[end + 8..].to_vec())
 }
 
 fn with(json: &Value, bytes: Vec<u8>) -> Vec<u8> {
@@ -98,10 +87,7 @@ fn the_asset_comes_back_bit_for_bit() {
 /// A file that htex would write differently: its entries are not compressed.
 #[test]
 fn a_file_that_would_be_written_differently_comes_back_too() {
-    let seed = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../fuzz/seeds/open_asset/bands-stored"
-    );
+    let seed = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/open_asset/bands-stored");
     let file = std::fs::read(seed).unwrap();
     let asset = Asset::from_bytes(&file).unwrap();
     assert_ne!(asset.data().to_bytes().unwrap(), file);
@@ -153,7 +139,8 @@ fn an_export_says_that_nothing_is_lost_and_takes_no_setting() {
     assert!(error.contains("at most 16777216 are read"), "{error}");
 }
 
-/// The mesh: a rectangle of the size that the material states, wound against the clock, whose texture coordinates go right and down.
+/// The mesh: a rectangle of the size that the material states, wound against the clock, whose
+/// texture coordinates go right and down.
 #[test]
 fn the_rectangle_has_the_size_that_is_stated() {
     let (json, bytes) = parts(&written("glb", &FILE));
@@ -206,11 +193,7 @@ fn what_is_written_and_what_is_read_is_what_the_schema_says() {
     ] {
         let mut texture = texture.clone();
         texture[key] = value.clone();
-        assert_eq!(
-            schema.violations(&texture).is_empty(),
-            is_valid,
-            "{texture}"
-        );
+        assert_eq!(schema.violations(&texture).is_empty(), is_valid, "{texture}");
         let mut json = json.clone();
         json["materials"][0]["extensions"]["HTEX_texture"] = texture;
         let said = said(&with(&json, bytes.clone()));
@@ -233,27 +216,11 @@ fn what_is_wrong_in_the_json_is_named_with_its_pointer() {
     let (json, _) = parts(&written("glb", &FILE));
     let first = json["materials"][0].clone();
     for (pointer, value, expected) in [
-        (
-            "/asset/version",
-            json!("1.0"),
-            "/asset/version: this is glTF 1.0, and 2.0 is read",
-        ),
-        (
-            "/asset/minVersion",
-            json!("2.1"),
-            "/asset/minVersion: this is glTF 2.1",
-        ),
+        ("/asset/version", json!("1.0"), "/asset/version: this is glTF 1.0, and 2.0 is read"),
+        ("/asset/minVersion", json!("2.1"), "/asset/minVersion: this is glTF 2.1"),
         ("/asset/version", json!(2), "/asset/version: "),
-        (
-            "/materials",
-            json!([]),
-            "/materials: no material has the extension HTEX_texture",
-        ),
-        (
-            "/materials",
-            json!([{"name": "plain"}]),
-            "/materials: no material has the extension",
-        ),
+        ("/materials", json!([]), "/materials: no material has the extension HTEX_texture"),
+        ("/materials", json!([{"name": "plain"}]), "/materials: no material has the extension"),
         (
             "/materials",
             json!([first, {}, other]),
@@ -280,31 +247,15 @@ fn what_is_wrong_in_the_json_is_named_with_its_pointer() {
             json!(10_000_000),
             "/bufferViews/4/byteLength: 10000000 bytes from 140 on reach over the end of buffer 0",
         ),
-        (
-            "/bufferViews/4/byteOffset",
-            json!(u64::MAX),
-            "/bufferViews/4/byteLength: ",
-        ),
-        (
-            "/bufferViews/4/byteLength",
-            json!(-1),
-            "/bufferViews/4/byteLength: ",
-        ),
+        ("/bufferViews/4/byteOffset", json!(u64::MAX), "/bufferViews/4/byteLength: "),
+        ("/bufferViews/4/byteLength", json!(-1), "/bufferViews/4/byteLength: "),
         (
             "/bufferViews/4/byteStride",
             json!(4),
             "/bufferViews/4/byteStride: only vertices have a stride",
         ),
-        (
-            "/bufferViews/4/byteLength",
-            json!(10),
-            "/bufferViews/4: not a valid asset: ",
-        ),
-        (
-            "/bufferViews/4/byteOffset",
-            json!(0),
-            "/bufferViews/4: not a valid asset: ",
-        ),
+        ("/bufferViews/4/byteLength", json!(10), "/bufferViews/4: not a valid asset: "),
+        ("/bufferViews/4/byteOffset", json!(0), "/bufferViews/4: not a valid asset: "),
         (
             "/buffers/0/byteLength",
             json!(10_000_000),
@@ -368,14 +319,9 @@ fn a_text_has_no_second_chunk_and_may_hold_its_buffer() {
     };
     assert_eq!(of(json!(octets)), "it is read");
     let said_of_none = of(Value::Null);
-    assert!(
-        said_of_none.starts_with("a.glb: /buffers/0: it has no `uri`"),
-        "{said_of_none}"
-    );
+    assert!(said_of_none.starts_with("a.glb: /buffers/0: it has no `uri`"), "{said_of_none}");
     let twice =
-        String::from_utf8(text)
-            .unwrap()
-            .replacen('{', "{\"asset\": {\"version\": \"2.0\"},", 1);
+        String::from_utf8(text).unwrap().replacen('{', "{\"asset\": {\"version\": \"2.0\"},", 1);
     assert!(
         said(twice.as_bytes()).contains("/asset: the key appears twice"),
         "{}",
@@ -391,30 +337,18 @@ fn what_is_wrong_in_the_container_is_named_with_its_byte() {
     other[4] = 1;
     assert!(said(&other).starts_with("a.glb: byte 4: the container has version 1"));
     let end = said(&whole[..whole.len() - 4]);
-    assert!(
-        end.starts_with("a.glb: byte 8: the header states "),
-        "{end}"
-    );
+    assert!(end.starts_with("a.glb: byte 8: the header states "), "{end}");
     let text = json.to_string().into_bytes();
     for (chunks, expected) in [
-        (
-            vec![(b"BIN\0", bytes.clone())],
-            "byte 16: the first chunk is not JSON",
-        ),
+        (vec![(b"BIN\0", bytes.clone())], "byte 16: the first chunk is not JSON"),
         (
             vec![(b"JSON", b"{}".to_vec())],
             "byte 12: the chunk has 2 bytes; it must be a multiple of 4",
         ),
-        (
-            vec![(b"JSON", b"{] ,".to_vec())],
-            "line 1 column 2: it is not JSON",
-        ),
+        (vec![(b"JSON", b"{] ,".to_vec())], "line 1 column 2: it is not JSON"),
         (
             vec![
-                (
-                    b"JSON",
-                    [text.clone(), b"    "[..(4 - text.len() % 4) % 4].to_vec()].concat(),
-                ),
+                (b"JSON", [text.clone(), b"    "[..(4 - text.len() % 4) % 4].to_vec()].concat()),
                 (b"what", bytes),
             ],
             "/buffers/0: it has no `uri`, and only the first buffer of a .glb is in its second chunk",

@@ -25,7 +25,8 @@ fn imported(text: &str) -> Asset {
     Asset::from_bytes(&made.to_bytes().unwrap()).unwrap()
 }
 
-/// The magnitude of a model at its rate of 1 kHz, by its definition: the amplitude that a Hann window of 0.2 s reads of its density.
+/// The magnitude of a model at its rate of 1 kHz, by its definition: the amplitude that a Hann
+/// window of 0.2 s reads of its density.
 fn magnitude(model: &Model, hz: f64) -> f64 {
     let response = |coefficients: &[f64]| {
         let terms = coefficients.iter().enumerate().map(|(i, b)| {
@@ -40,7 +41,8 @@ fn magnitude(model: &Model, hz: f64) -> f64 {
     gain * (2.0 * density * 1.5 * 5.0).sqrt()
 }
 
-/// The largest difference at any audible model from 20 to 490 Hz, decibels; silent ones must be silent.
+/// The largest difference at any audible model from 20 to 490 Hz, decibels; silent ones must be
+/// silent.
 fn largest_error_db(models: &[Model], asset: &Asset) -> f64 {
     let grid: Vec<f64> = (4..=98).map(|bin| 5.0 * f64::from(bin)).collect();
     let mut worst = 0.0f64;
@@ -113,10 +115,7 @@ fn the_asset_says_what_it_is() {
     let asset = imported(&file(&draw(1, 6, 4)));
     let manifest = asset.manifest();
     assert_eq!(manifest.name, "Velvet & Co");
-    assert_eq!(
-        (manifest.unit.as_str(), manifest.contact.name()),
-        ("m/s2", "tool")
-    );
+    assert_eq!((manifest.unit.as_str(), manifest.contact.name()), ("m/s2", "tool"));
     assert_eq!((manifest.band.low_hz, manifest.band.high_hz), (20.0, 500.0));
     assert_eq!(manifest.law().frequency_speed.exponent, 0.0);
     assert_eq!(manifest.representations[0].triangles.len(), 56);
@@ -141,36 +140,12 @@ fn said(from: &str, to: &str) -> String {
 fn damaged_files_are_named_with_place() {
     for (from, to, expected) in [
         ("<modelSet", "<set", "line 310, set: this is no XML"),
-        (
-            "<SampleRate>1000",
-            "<SampleRate>fast",
-            "line 6, SampleRate: \"fast\" is no number",
-        ),
-        (
-            "<SampleRate>1000",
-            "<SampleRate>1e400",
-            "line 6, SampleRate: \"1e400\" is no number",
-        ),
-        (
-            "<SampleRate>1000",
-            "<SampleRate>5",
-            "line 6, SampleRate: 5 is none from 100",
-        ),
-        (
-            "<AccelUnits>m/s^2",
-            "<AccelUnits>g",
-            "line 3, AccelUnits: \"g\" is not m/s^2",
-        ),
-        (
-            "<numMod>40",
-            "<numMod>41",
-            "line 8, numMod: \"41\" are stated and there are 40",
-        ),
-        (
-            "<numTri>56",
-            "<numTri>57",
-            "numTri: \"57\" are stated and there are 56",
-        ),
+        ("<SampleRate>1000", "<SampleRate>fast", "line 6, SampleRate: \"fast\" is no number"),
+        ("<SampleRate>1000", "<SampleRate>1e400", "line 6, SampleRate: \"1e400\" is no number"),
+        ("<SampleRate>1000", "<SampleRate>5", "line 6, SampleRate: 5 is none from 100"),
+        ("<AccelUnits>m/s^2", "<AccelUnits>g", "line 3, AccelUnits: \"g\" is not m/s^2"),
+        ("<numMod>40", "<numMod>41", "line 8, numMod: \"41\" are stated and there are 40"),
+        ("<numTri>56", "<numTri>57", "numTri: \"57\" are stated and there are 56"),
         (
             "<tri type=\"array\"><value>1<",
             "<tri type=\"array\"><value>0<",
@@ -181,11 +156,7 @@ fn damaged_files_are_named_with_place() {
             "<tri type=\"array\">",
             "tri: 2 corners; a triangle has three",
         ),
-        (
-            "<ARcoeff><value>1.0",
-            "<ARcoeff><value>2.0",
-            "ARcoeff: the first coefficient is 2",
-        ),
+        ("<ARcoeff><value>1.0", "<ARcoeff><value>2.0", "ARcoeff: the first coefficient is 2"),
         (
             "<ARlsf><value>",
             "<ARlsf><value>0</value><value>",
@@ -195,34 +166,21 @@ fn damaged_files_are_named_with_place() {
         ("<speedMod>", "<speed>", "speed"),
         ("</model>", "", "line"),
         ("<gain>", "<gain>1</gain><gain>", "gain: it is there twice"),
-        (
-            "<speedList><value>0",
-            "<speedList><value>5",
-            "speedList: value 1 is 5",
-        ),
+        ("<speedList><value>0", "<speedList><value>5", "speedList: value 1 is 5"),
     ] {
         let said = said(from, to);
-        assert!(
-            said.contains(expected) && said.starts_with("line "),
-            "{from}: {said}"
-        );
+        assert!(said.contains(expected) && said.starts_with("line "), "{from}: {said}");
     }
     // An unstable filter, and a file that ends anywhere.
     let unstable = said("<ARcoeff><value>1.0", "<ARcoeff><value>1.0</value><value>9");
     assert!(unstable.contains("ARcoeff: "), "{unstable}");
     let text = file(&draw(1, 6, 4));
     assert!(
-        read(b"<set>\n</set>")
-            .unwrap_err()
-            .to_string()
-            .starts_with("line 1, set: a model file")
+        read(b"<set>\n</set>").unwrap_err().to_string().starts_with("line 1, set: a model file")
     );
     for end in (0..text.len()).step_by(997) {
         let fault = read(&text.as_bytes()[..end]).unwrap_err();
-        assert!(
-            !fault.problem.is_empty() && (end < 60 || fault.place.line > 0),
-            "{end}: {fault}"
-        );
+        assert!(!fault.problem.is_empty() && (end < 60 || fault.place.line > 0), "{end}: {fault}");
     }
 }
 
@@ -236,12 +194,7 @@ fn entities_and_sizes_are_refused() {
     let many = format!("<modelSet>{}</modelSet>", "<a/>".repeat(200_001));
     assert!(of(&many).contains("more than 200000 elements"));
     assert!(of(&format!("<a>{}</a>", "x".repeat(5_000))).contains("more than 4096 bytes"));
-    assert!(
-        read(&vec![b' '; MOST_BYTES + 1])
-            .unwrap_err()
-            .to_string()
-            .contains("the most")
-    );
+    assert!(read(&vec![b' '; MOST_BYTES + 1]).unwrap_err().to_string().contains("the most"));
     assert!(
         read(b"<modelSet>\n\xff</modelSet>")
             .unwrap_err()
@@ -277,10 +230,7 @@ fn no_file_takes_more_than_seconds() {
             numerator[i + 2] += radius * radius * b;
         }
     }
-    let values: String = numerator
-        .iter()
-        .map(|b| format!("<value>{b:e}</value>"))
-        .collect();
+    let values: String = numerator.iter().map(|b| format!("<value>{b:e}</value>")).collect();
     let model = |i: usize| {
         format!(
             "<model><ARcoeff><value>1</value><value>-0.5</value></ARcoeff><MAcoeff>{values}</MAcoeff>\
@@ -288,10 +238,8 @@ fn no_file_takes_more_than_seconds() {
         )
     };
     let models: String = (0..4_000).map(model).collect();
-    let refused = of(&format!(
-        "<modelSet><SampleRate>1000</SampleRate>{models}</modelSet>"
-    ))
-    .unwrap_err();
+    let refused =
+        of(&format!("<modelSet><SampleRate>1000</SampleRate>{models}</modelSet>")).unwrap_err();
     assert!(refused.contains("take too much work"), "{refused}");
     assert!(start.elapsed() < Duration::from_secs(10));
 }
@@ -304,15 +252,6 @@ fn triangles_that_leave_a_gap_are_left_out() {
     let to = from + text[from..].find('\n').unwrap();
     let texture = read([&text[..from], &text[to..]].concat().as_bytes()).unwrap();
     assert!(texture.triangles.is_empty());
-    assert!(
-        texture.notes[0].contains("the triangles are left out"),
-        "{:?}",
-        texture.notes
-    );
-    assert!(
-        asset(&texture, &Imported::default())
-            .unwrap()
-            .to_bytes()
-            .is_ok()
-    );
+    assert!(texture.notes[0].contains("the triangles are left out"), "{:?}", texture.notes);
+    assert!(asset(&texture, &Imported::default()).unwrap().to_bytes().is_ok());
 }

@@ -16,15 +16,8 @@ fn stated(text: &str) -> Vec<Vec<f64>> {
     let texture = read(text.as_bytes()).unwrap();
     let made = asset(&texture, &Imported::default()).unwrap();
     let asset = Asset::from_bytes(&made.to_bytes().unwrap()).unwrap();
-    let motions = texture
-        .nodes
-        .iter()
-        .map(|node| Motion::new(node.speed_mm_s, node.force_n));
-    let of = |motion| {
-        asset
-            .recorded_magnitude(Some("arma"), Some(motion), &grid)
-            .unwrap()
-    };
+    let motions = texture.nodes.iter().map(|node| Motion::new(node.speed_mm_s, node.force_n));
+    let of = |motion| asset.recorded_magnitude(Some("arma"), Some(motion), &grid).unwrap();
     motions.map(of).collect()
 }
 
@@ -42,19 +35,9 @@ fn scipy_has_the_same_magnitudes_at_each_node() {
         std::fs::write(&xml, &text).unwrap();
         std::fs::write(&told, serde_json::to_vec(&stated(&text)).unwrap()).unwrap();
         let mut compare = Command::new(python.as_ref().unwrap());
-        let output = compare
-            .arg(&script)
-            .arg("--told")
-            .args([&xml, &told])
-            .output()
-            .unwrap();
-        let said = [&output.stdout[..], &output.stderr]
-            .map(String::from_utf8_lossy)
-            .concat();
+        let output = compare.arg(&script).arg("--told").args([&xml, &told]).output().unwrap();
+        let said = [&output.stdout[..], &output.stderr].map(String::from_utf8_lossy).concat();
         println!("{poles} poles, {zeros} zeros: {said}");
-        assert!(
-            output.status.success(),
-            "{poles} poles, {zeros} zeros: {said}"
-        );
+        assert!(output.status.success(), "{poles} poles, {zeros} zeros: {said}");
     }
 }

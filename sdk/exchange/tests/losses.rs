@@ -1,4 +1,5 @@
-//! The generated parts of `docs/exchange.md`: the formats, the profiles, and what is lost of five textures.
+//! The generated parts of `docs/exchange.md`: the formats, the profiles, and what is lost of five
+//! textures.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
 mod textures;

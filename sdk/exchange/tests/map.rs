@@ -99,17 +99,9 @@ proptest! {
 fn the_same_pixels_are_read_of_each_kind_of_grey() {
     let grey = ridges(8, 4, 4.0);
     let of = |color| png(8, &expanded(&grey, color), color, Some([10_000; 2]));
-    let whole = Image {
-        width: 8,
-        grey: grey.clone(),
-        pitch_mm: Some(0.1),
-    };
-    for color in [
-        ColorType::Grayscale,
-        ColorType::GrayscaleAlpha,
-        ColorType::Rgb,
-        ColorType::Rgba,
-    ] {
+    let whole = Image { width: 8, grey: grey.clone(), pitch_mm: Some(0.1) };
+    for color in [ColorType::Grayscale, ColorType::GrayscaleAlpha, ColorType::Rgb, ColorType::Rgba]
+    {
         assert_eq!(read(&of(color)).unwrap(), whole, "{color:?}");
     }
 }
@@ -137,14 +129,7 @@ fn what_is_no_map_is_refused_with_its_place() {
     let mut writer = encoder.write_header().unwrap();
     writer.write_image_data(&[0, 0]).unwrap();
     writer.finish().unwrap();
-    let one = |width, in_metre| {
-        png(
-            width,
-            &ridges(width, 2, 8.0),
-            ColorType::Grayscale,
-            in_metre,
-        )
-    };
+    let one = |width, in_metre| png(width, &ridges(width, 2, 8.0), ColorType::Grayscale, in_metre);
     let flat = png(16, &[7; 64], ColorType::Grayscale, None);
     for (bytes, words) in [
         (
@@ -156,26 +141,11 @@ fn what_is_no_map_is_refused_with_its_place() {
             "map.png: row 1, column 6: the pixel is transparent",
         ),
         (sixteen, "map.png: IHDR: it has 16 bits a channel"),
-        (
-            one(256, None),
-            "map.png: IHDR: it has 256 x 2 pixels, and a map has at most 255 x 255",
-        ),
-        (
-            one(16, Some([1_000, 1_001])),
-            "map.png: pHYs: its pixels are no squares",
-        ),
-        (
-            one(16, Some([1; 2])),
-            "map.png: pHYs: 1 pixels in a metre are out of the range",
-        ),
-        (
-            one(16, Some([0; 2])),
-            "map.png: pHYs: 0 pixels in a metre are out of the range",
-        ),
-        (
-            flat,
-            "map.png: along its rows at 80 mm/s the map has nothing between 20 and 1000 Hz",
-        ),
+        (one(256, None), "map.png: IHDR: it has 256 x 2 pixels, and a map has at most 255 x 255"),
+        (one(16, Some([1_000, 1_001])), "map.png: pHYs: its pixels are no squares"),
+        (one(16, Some([1; 2])), "map.png: pHYs: 1 pixels in a metre are out of the range"),
+        (one(16, Some([0; 2])), "map.png: pHYs: 0 pixels in a metre are out of the range"),
+        (flat, "map.png: along its rows at 80 mm/s the map has nothing between 20 and 1000 Hz"),
         (b"GIF89a".to_vec(), "map.png: it is no PNG that can be read"),
         (vec![0; 1 << 21], "map.png: it has 2097152 bytes"),
     ] {
@@ -183,10 +153,7 @@ fn what_is_no_map_is_refused_with_its_place() {
         assert!(error.contains(words), "{error}");
     }
     let error = refusal(&one(16, None), None);
-    assert!(
-        error.contains("how far apart its pixels are; give `pitch`"),
-        "{error}"
-    );
+    assert!(error.contains("how far apart its pixels are; give `pitch`"), "{error}");
     let error = refusal(&one(16, None), Some(65.0));
     assert!(error.contains("at most 64 mm"), "{error}");
     let whole = one(16, Some([10_000; 2]));
@@ -196,51 +163,36 @@ fn what_is_no_map_is_refused_with_its_place() {
     }
 }
 
-/// Ridges 1 mm apart are felt at as many hertz as the finger has mm/s across them, and not along them.
+/// Ridges 1 mm apart are felt at as many hertz as the finger has mm/s across them, and not along
+/// them.
 #[test]
 fn what_is_felt_follows_the_place() {
-    let file = png(
-        100,
-        &ridges(100, 3, 10.0),
-        ColorType::Grayscale,
-        Some([10_000; 2]),
-    );
+    let file = png(100, &ridges(100, 3, 10.0), ColorType::Grayscale, Some([10_000; 2]));
     let asset = opened(&imported(&file, None));
     let amplitude = |velocity: [f64; 2], force_n: f64, hz: f64| {
         let samples = stroke(&asset, velocity, force_n);
         let late = &samples[4_000..];
         let turn = |n: usize| TAU * hz * n as f64 / 8_000.0;
         let part = |f: fn(f64) -> f64| -> f64 {
-            late.iter()
-                .enumerate()
-                .map(|(n, x)| f64::from(*x) * f(turn(n)))
-                .sum()
+            late.iter().enumerate().map(|(n, x)| f64::from(*x) * f(turn(n))).sum()
         };
         2.0 * part(f64::cos).hypot(part(f64::sin)) / late.len() as f64
     };
     let there = FULL_SCALE * 100.0 / 255.0;
-    for (velocity, hz) in [
-        ([80.0, 0.0], 80.0),
-        ([160.0, 0.0], 160.0),
-        ([48.0, 36.0], 48.0),
-    ] {
+    for (velocity, hz) in [([80.0, 0.0], 80.0), ([160.0, 0.0], 160.0), ([48.0, 36.0], 48.0)] {
         let felt = amplitude(velocity, FORCE_N, hz);
         assert!((felt / there - 1.0).abs() < 0.05, "{velocity:?}: {felt} N");
     }
     let pressed = amplitude([80.0, 0.0], 2.0 * FORCE_N, 80.0);
     assert!((pressed / there / 2.0 - 1.0).abs() < 0.05, "{pressed} N");
     let along = stroke(&asset, [0.0, 80.0], FORCE_N);
-    let most = along[4_000..]
-        .iter()
-        .fold(0.0f32, |most, x| most.max(x.abs()));
+    let most = along[4_000..].iter().fold(0.0f32, |most, x| most.max(x.abs()));
     assert!(f64::from(most) < 1e-3 * there, "{most} N");
 }
 
 /// Two seconds of a straight stroke at 8 kHz.
 fn stroke(asset: &Asset, [dx, dy]: [f64; 2], force_n: f64) -> Vec<f32> {
-    let mut voice = asset
-        .voice(&VoiceOptions::default().with_rate_hz(8_000.0))
-        .unwrap();
+    let mut voice = asset.voice(&VoiceOptions::default().with_rate_hz(8_000.0)).unwrap();
     let mut samples = vec![0.0; 16_000];
     for (block, samples) in samples.chunks_mut(40).enumerate() {
         let time_s = block as f64 * 0.005;
@@ -251,7 +203,8 @@ fn stroke(asset: &Asset, [dx, dy]: [f64; 2], force_n: f64) -> Vec<f32> {
     samples
 }
 
-/// A texture that is no map goes out as a row, which plays its level and its third octaves at the speed, as far as 255 pixels hold them.
+/// A texture that is no map goes out as a row, which plays its level and its third octaves at the
+/// speed, as far as 255 pixels hold them.
 #[test]
 fn a_texture_without_places_goes_out_as_a_row() {
     let file = br#"{"version": {"major": 1}, "signals": {"continuous": {"envelopes": {
@@ -267,12 +220,7 @@ fn a_texture_without_places_goes_out_as_a_row() {
     let lost = row.lost.unwrap();
     assert!(lost.level_db.abs() < 0.2, "{} dB", lost.level_db);
     assert_eq!(read(&row.bytes).unwrap().grey.len(), 255);
-    let white: f64 = row.notes[0]
-        .split_whitespace()
-        .nth(2)
-        .unwrap()
-        .parse()
-        .unwrap();
+    let white: f64 = row.notes[0].split_whitespace().nth(2).unwrap().parse().unwrap();
     let mut back = how(None);
     back.physical.full_scale = Some(white);
     back.physical.speed_mm_s = Some(120.0);

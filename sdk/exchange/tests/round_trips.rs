@@ -51,7 +51,8 @@ fn back(pattern: &Pattern) -> Pattern {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// `.ahap` to `.haptic` to `.ahap`: at each point the level and the frequency, and the transient.
+    /// `.ahap` to `.haptic` to `.ahap`: at each point the level and the frequency, and the
+    /// transient.
     #[test]
     fn ahap_to_haptic_and_back(
         (steps, values, hertz) in (2usize..40).prop_flat_map(|count| (
@@ -79,7 +80,8 @@ proptest! {
         prop_assert!((was.frequency_hz - is.frequency_hz).abs() < 1e-6);
     }
 
-    /// `.hjif` there and back: samples as wavelets, within the resolution of their coefficients; and the file itself, exactly.
+    /// `.hjif` there and back: samples as wavelets, within the resolution of their coefficients;
+    /// and the file itself, exactly.
     #[test]
     fn samples_to_hjif_and_back(samples in vec(-1.0f64..=1.0, 1..3_000), speed in prop::option::of(20.0f64..400.0)) {
         let space = Space { speed_mm_s: speed };
@@ -137,7 +139,8 @@ fn a_tone_over_way_follows_the_speed() {
     }
 }
 
-/// A transient of an `.ahap` before any curve keeps its strength; one under a curve is changed by it.
+/// A transient of an `.ahap` before any curve keeps its strength; one under a curve is changed by
+/// it.
 #[test]
 fn controls_change_transients_from_their_first_point_on() {
     let text = |time: f64| {
@@ -151,9 +154,7 @@ fn controls_change_transients_from_their_first_point_on() {
         )
     };
     for (time, intensity) in [(0.5, 0.8), (1.0, 0.4), (1.5, 0.6), (3.0, 0.8)] {
-        let patterns = Ahap::from_bytes(text(time).as_bytes())
-            .unwrap()
-            .patterns(profile());
+        let patterns = Ahap::from_bytes(text(time).as_bytes()).unwrap().patterns(profile());
         let amplitude = patterns[0].transients[0].amplitude;
         assert!((amplitude - intensity * intensity).abs() < 1e-12, "{time}");
     }

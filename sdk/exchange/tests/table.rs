@@ -15,26 +15,16 @@ fn names_and_extensions_lead_to_one_format() {
     let mut extensions = BTreeSet::new();
     for format in FORMATS {
         assert_eq!(Format::named(format.name).unwrap().title, format.title);
-        assert!(
-            format.reads.is_some() || format.writes.is_some(),
-            "{}",
-            format.name
-        );
+        assert!(format.reads.is_some() || format.writes.is_some(), "{}", format.name);
         for extension in format.extensions.iter().filter(|_| format.reads.is_some()) {
             assert!(extensions.insert(*extension), "{extension}");
             let found = Format::of_file(&format!("a.b.{}", extension.to_uppercase())).unwrap();
             assert_eq!(found.name, format.name);
         }
     }
-    assert_eq!(
-        extensions,
-        BTreeSet::from(["ahap", "glb", "gltf", "haptic", "hjif", "png", "xml"])
-    );
+    assert_eq!(extensions, BTreeSet::from(["ahap", "glb", "gltf", "haptic", "hjif", "png", "xml"]));
     let error = Format::of_file("texture.wav").unwrap_err().to_string();
-    assert!(
-        error.contains(".xml, .haptic, .ahap, .hjif, .png, .glb and .gltf"),
-        "{error}"
-    );
+    assert!(error.contains(".xml, .haptic, .ahap, .hjif, .png, .glb and .gltf"), "{error}");
     assert!(Format::of_file("haptic").is_err());
 }
 
@@ -44,17 +34,9 @@ fn each_profile_is_whole_and_says_where_its_values_are_from() {
     for profile in PROFILES.iter() {
         assert_eq!(Profile::find(&profile.name).unwrap(), profile);
         let (low, high) = (profile.low_hz.value, profile.high_hz.value);
-        assert!(
-            (low..=high).contains(&profile.resonance_hz.value),
-            "{}",
-            profile.name
-        );
+        assert!((low..=high).contains(&profile.resonance_hz.value), "{}", profile.name);
         for (name, value) in profile.values() {
-            assert!(
-                value.value > 0.0 && !value.source.is_empty(),
-                "{} {name}",
-                profile.name
-            );
+            assert!(value.value > 0.0 && !value.source.is_empty(), "{} {name}", profile.name);
         }
         assert_eq!(profile.response(0.9 * low), 0.0);
         assert!((profile.response(profile.resonance_hz.value) - 1.0).abs() < 1e-12);
@@ -93,10 +75,7 @@ fn a_setting_that_means_nothing_is_refused() {
 
     // The functions refuse what their settings have.
     let how = Import {
-        physical: Physical {
-            speed_mm_s: Some(80.0),
-            ..Physical::default()
-        },
+        physical: Physical { speed_mm_s: Some(80.0), ..Physical::default() },
         ..Import::default()
     };
     let error = import("cork.xml", b"<modelSet/>", &how, &Registry::builtin()).unwrap_err();
@@ -107,13 +86,8 @@ fn a_setting_that_means_nothing_is_refused() {
     let error = htex_exchange::export(&asset, &how).unwrap_err().to_string();
     assert!(error.contains("takes no `rate`"), "{error}");
     let not_written = Export::new(Format::named("hatt").unwrap());
-    let error = htex_exchange::export(&asset, &not_written)
-        .unwrap_err()
-        .to_string();
-    assert!(
-        error.contains("it is not written; there are haptic, ahap"),
-        "{error}"
-    );
+    let error = htex_exchange::export(&asset, &not_written).unwrap_err().to_string();
+    assert!(error.contains("it is not written; there are haptic, ahap"), "{error}");
 }
 
 fn made() -> htex_play::Asset {
@@ -156,10 +130,7 @@ fn what_a_file_does_not_say_is_asked_for_and_kept() {
     let level = asset.level_rms(None, None).unwrap();
     assert!((level - 0.05 / 2f64.sqrt()).abs() < 0.001, "{level}");
     let warnings = &manifest.provenance.warnings;
-    assert!(
-        warnings.iter().any(|w| w.contains("are repeated 4 times")),
-        "{warnings:?}"
-    );
+    assert!(warnings.iter().any(|w| w.contains("are repeated 4 times")), "{warnings:?}");
 }
 
 #[test]

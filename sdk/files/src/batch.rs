@@ -1,7 +1,9 @@
-//! Many files at once: each is whole or not there, as one that is written alone, and the disk is waited for once for all of a group.
+//! Many files at once: each is whole or not there, as one that is written alone, and the disk is
+//! waited for once for all of a group.
 //!
-//! A flush takes the disk some milliseconds: two for each file are minutes for 100,000. Files are written beside their targets, then
-//! the file system is flushed (on Linux; elsewhere each file), then all are renamed.
+//! A flush takes the disk some milliseconds: two for each file are minutes for 100,000. Files are
+//! written beside their targets, then the file system is flushed (on Linux; elsewhere each file),
+//! then all are renamed.
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};
@@ -14,7 +16,8 @@ use crate::{Readers, Target, folder, sync_folder, unfinished};
 /// Files of a group.
 const GROUP: usize = 32_768;
 
-/// Files that are being written. Dropping it before [`Self::finish`] removes those that are not in their places yet.
+/// Files that are being written. Dropping it before [`Self::finish`] removes those that are not in
+/// their places yet.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -85,7 +88,8 @@ impl Batch {
     fn keep(&mut self) -> io::Result<()> {
         flush(&self.written, &self.folders)?;
         for (mut beside, path) in self.written.drain(..) {
-            // Renamed while the set is locked: whoever ends the process has removed the file before, or finds it complete.
+            // Renamed while the set is locked: whoever ends the process has removed the file
+            // before, or finds it complete.
             unfinished(|all| {
                 std::fs::rename(&beside, &path)?;
                 all.remove(&*beside);
@@ -93,9 +97,7 @@ impl Batch {
             })?;
             beside.disable_cleanup(true);
         }
-        std::mem::take(&mut self.folders)
-            .iter()
-            .try_for_each(|folder| sync_folder(folder))
+        std::mem::take(&mut self.folders).iter().try_for_each(|folder| sync_folder(folder))
     }
 }
 
@@ -125,10 +127,7 @@ fn flush(_: &[(TempPath, PathBuf)], folders: &BTreeSet<PathBuf>) -> io::Result<(
 
 #[cfg(not(target_os = "linux"))]
 fn flush(written: &[(TempPath, PathBuf)], _: &BTreeSet<PathBuf>) -> io::Result<()> {
-    written.iter().try_for_each(|(beside, _)| {
-        std::fs::File::options()
-            .write(true)
-            .open(beside)?
-            .sync_all()
-    })
+    written
+        .iter()
+        .try_for_each(|(beside, _)| std::fs::File::options().write(true).open(beside)?.sync_all())
 }

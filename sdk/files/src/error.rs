@@ -37,11 +37,7 @@ impl FileError {
 
     fn new(file: &Path, is_output: bool, error: io::Error) -> Self {
         let file = file.to_owned();
-        Self {
-            file,
-            is_output,
-            error,
-        }
+        Self { file, is_output, error }
     }
 }
 
@@ -77,10 +73,7 @@ pub struct ContentError {
 impl ContentError {
     /// A file with this problem.
     pub fn new(file: impl AsRef<Path>, problem: impl fmt::Display) -> Self {
-        Self {
-            file: file.as_ref().to_owned(),
-            problem: problem.to_string(),
-        }
+        Self { file: file.as_ref().to_owned(), problem: problem.to_string() }
     }
 }
 

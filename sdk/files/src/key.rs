@@ -8,8 +8,8 @@ use crate::private;
 
 /// A secret key of this user.
 ///
-/// What is kept in a folder that others may have filled begins with a keyed hash of its name and content: what this user has not made is
-/// not used.
+/// What is kept in a folder that others may have filled begins with a keyed hash of its name and
+/// content: what this user has not made is not used.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -26,7 +26,8 @@ impl Key {
     /// Reads the key of this name in a folder; creates a random one if there is none.
     ///
     /// # Errors
-    /// When the folder is another user's or writable by others, or the file is another user's or not private; those of the system.
+    /// When the folder is another user's or writable by others, or the file is another user's or
+    /// not private; those of the system.
     pub fn of(folder: &Path, name: &str) -> io::Result<Self> {
         private::folder(folder)?;
         let path = folder.join(name);
@@ -56,7 +57,8 @@ impl Key {
     }
 }
 
-/// Writes a new key to a temporary file and links it to its path, unless another process has created one.
+/// Writes a new key to a temporary file and links it to its path, unless another process has
+/// created one.
 fn make(folder: &Path, path: &Path) -> io::Result<()> {
     let key = random()?;
     let mut beside = path.as_os_str().to_owned();

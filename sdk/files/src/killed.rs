@@ -1,8 +1,9 @@
 //! Unfinished files of processes that were killed, which could not remove them.
 //!
-//! The name of an unfinished file tells its process: `.htex-MACHINE-PID-RANDOM.part`. `MACHINE` is a hash of what tells this system's
-//! process numbers from the numbers of other systems: a folder may be shared with other machines and containers, whose processes
-//! cannot be seen from here. Their files are removed when they are old.
+//! The name of an unfinished file tells its process: `.htex-MACHINE-PID-RANDOM.part`. `MACHINE` is
+//! a hash of what tells this system's process numbers from the numbers of other systems: a folder
+//! may be shared with other machines and containers, whose processes cannot be seen from here.
+//! Their files are removed when they are old.
 
 use std::collections::BTreeSet;
 use std::fs::Metadata;
@@ -13,7 +14,8 @@ use std::time::Duration;
 /// Beginning and ending of the name of an unfinished file.
 pub(crate) const BEGINNING: &str = ".htex-";
 pub(crate) const ENDING: &str = ".part";
-/// After this long without a change, a file is no process's any more: the longest commands write at least once an hour.
+/// After this long without a change, a file is no process's any more: the longest commands write at
+/// least once an hour.
 const OLD: Duration = Duration::from_secs(2 * 24 * 3600);
 
 /// Folders that this process has looked through.
@@ -34,8 +36,9 @@ static MACHINE: LazyLock<String> = LazyLock::new(|| {
     format!("{hash:016x}")
 });
 
-/// Removes the unfinished files in a folder whose process has ended, or that are old; `own` is a file of this process there, whose
-/// owner they have. The first call for each folder does so. A file that cannot be removed is no error.
+/// Removes the unfinished files in a folder whose process has ended, or that are old; `own` is a
+/// file of this process there, whose owner they have. The first call for each folder does so. A
+/// file that cannot be removed is no error.
 pub(crate) fn remove_from(folder: &Path, own: &Metadata) {
     let mut done = DONE.lock().unwrap_or_else(PoisonError::into_inner);
     if !done.insert(folder.to_owned()) {
@@ -95,7 +98,8 @@ mod tests {
     use super::*;
     use std::fs;
 
-    /// What a killed process left goes with the next write to its folder; files in use, of other systems and of other kinds stay.
+    /// What a killed process left goes with the next write to its folder; files in use, of other
+    /// systems and of other kinds stay.
     #[test]
     fn unfinished_files_of_ended_processes_are_removed() -> Result<(), Box<dyn std::error::Error>> {
         let folder = tempfile::tempdir()?;
@@ -120,9 +124,7 @@ mod tests {
         fs::create_dir(folder.path().join(of(here, ended.id() ^ 1 << 30)))?;
         let target = folder.path().join("target");
         fs::write(&target, "mine")?;
-        let link = folder
-            .path()
-            .join(format!(".htex-{here}-{}-x.part", ended.id()));
+        let link = folder.path().join(format!(".htex-{here}-{}-x.part", ended.id()));
         std::os::unix::fs::symlink(&target, &link)?;
 
         crate::write_file(&folder.path().join("a.htex"), b"whole")?;

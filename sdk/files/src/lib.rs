@@ -1,13 +1,15 @@
-//! Files of others and of one's own: what is read of a file that somebody else names is regular and bounded ([`read_regular`]), a folder
-//! that somebody else may have filled is written without following links ([`OwnFolder`]), what is kept in one is authenticated (`Key`),
-//! and files are written whole.
+//! Files of others and of one's own: what is read of a file that somebody else names is regular and
+//! bounded ([`read_regular`]), a folder that somebody else may have filled is written without
+//! following links ([`OwnFolder`]), what is kept in one is authenticated (`Key`), and files are
+//! written whole.
 //!
-//! Atomic writing: a file is written beside its target and renamed into place, so that readers see it
-//! complete or not at all.
+//! Atomic writing: a file is written beside its target and renamed into place, so that readers see
+//! it complete or not at all.
 //!
-//! A symbolic link is followed, and its target is replaced with the permissions that it had. A device or a pipe is
-//! written to directly. A process that is asked to end removes its unfinished files with
-//! [`remove_unfinished`]. Files of a process that was killed are removed by the next process that writes to their folder.
+//! A symbolic link is followed, and its target is replaced with the permissions that it had. A
+//! device or a pipe is written to directly. A process that is asked to end removes its unfinished
+//! files with [`remove_unfinished`]. Files of a process that was killed are removed by the next
+//! process that writes to their folder.
 //!
 //! ```
 //! let folder = tempfile::tempdir()?;
@@ -49,8 +51,8 @@ pub use regular::{check_regular_at, open_regular, read_regular, read_regular_tex
 /// Files that this process is writing.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// Removes the files that this process is writing; a signal handler calls it before the process ends. Afterwards no
-/// unfinished file can be completed.
+/// Removes the files that this process is writing; a signal handler calls it before the process
+/// ends. Afterwards no unfinished file can be completed.
 pub fn remove_unfinished() {
     let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
     for path in unfinished.iter() {
@@ -63,8 +65,8 @@ fn unfinished<T>(run: impl FnOnce(&mut BTreeSet<PathBuf>) -> T) -> T {
     run(&mut UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// A file that is being written. Dropping it before [`Self::keep`] removes it; data written to a pipe or
-/// device cannot be removed.
+/// A file that is being written. Dropping it before [`Self::keep`] removes it; data written to a
+/// pipe or device cannot be removed.
 #[derive(Debug)]
 pub struct Unfinished(Target);
 
@@ -127,12 +129,14 @@ impl Unfinished {
     /// Creates the temporary file for the target `path`.
     ///
     /// # Errors
-    /// When `path` is a folder or a dangling link, its folder does not exist, or the system reports an error.
+    /// When `path` is a folder or a dangling link, its folder does not exist, or the system reports
+    /// an error.
     pub fn create(path: &Path) -> io::Result<Self> {
         Target::of(path, Readers::All).map(Self)
     }
 
-    /// As [`Self::create`], for a file that only this user may read. One that is there keeps its permissions.
+    /// As [`Self::create`], for a file that only this user may read. One that is there keeps its
+    /// permissions.
     ///
     /// # Errors
     /// As [`Self::create`].
@@ -140,7 +144,8 @@ impl Unfinished {
         Target::of(path, Readers::User).map(Self)
     }
 
-    /// Creates the temporary file for the place of `path`, in which a link is replaced and not followed.
+    /// Creates the temporary file for the place of `path`, in which a link is replaced and not
+    /// followed.
     fn in_place_of(path: PathBuf, readable_by: Readers) -> io::Result<Self> {
         Target::in_place_of(path, readable_by).map(Self)
     }
@@ -153,8 +158,8 @@ impl Unfinished {
         }
     }
 
-    /// Flushes the file to disk and renames it to its target: a reader sees the old file or the new one, never a part,
-    /// also after a crash.
+    /// Flushes the file to disk and renames it to its target: a reader sees the old file or the new
+    /// one, never a part, also after a crash.
     ///
     /// # Errors
     /// Those of the system; the target is then unchanged.
@@ -164,7 +169,8 @@ impl Unfinished {
             return Ok(());
         };
         beside.as_file().sync_all()?;
-        // Renamed while the set is locked: whoever ends the process has removed the file before, or finds it complete.
+        // Renamed while the set is locked: whoever ends the process has removed the file before, or
+        // finds it complete.
         unfinished(|all| {
             std::fs::rename(beside.path(), &*path)?;
             all.remove(beside.path());
@@ -188,8 +194,8 @@ impl Drop for Unfinished {
 pub struct Scratch(NamedTempFile);
 
 impl Scratch {
-    /// Creates a file beside `path`, where there is as much space as for the result; in the system's folder of temporary files
-    /// when `path` is a pipe or a device.
+    /// Creates a file beside `path`, where there is as much space as for the result; in the
+    /// system's folder of temporary files when `path` is a pipe or a device.
     ///
     /// # Errors
     /// When the folder does not exist, or the system reports an error.
@@ -278,8 +284,8 @@ enum Readers {
     User,
 }
 
-/// Returns a builder of temporary files with the permissions of an ordinary file, readable and writable by all, less the
-/// process' mask; or with those of the library, for this user alone.
+/// Returns a builder of temporary files with the permissions of an ordinary file, readable and
+/// writable by all, less the process' mask; or with those of the library, for this user alone.
 fn builder(readable_by: Readers) -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(&killed::OWN[..]).suffix(killed::ENDING);
@@ -393,20 +399,12 @@ mod tests {
         write_file(&at("link"), b"new")?;
         assert!(at("link").symlink_metadata()?.is_symlink());
         assert_eq!(fs::read(at("secret"))?, b"new");
-        assert_eq!(
-            fs::metadata(at("secret"))?.permissions().mode() & 0o777,
-            0o600
-        );
+        assert_eq!(fs::metadata(at("secret"))?.permissions().mode() & 0o777, 0o600);
         symlink("nothing", at("lost"))?;
         assert!(write_file(&at("lost"), b"x").is_err());
         assert!(!at("nothing").exists());
         let pipe = at("pipe");
-        assert!(
-            std::process::Command::new("mkfifo")
-                .arg(&pipe)
-                .status()?
-                .success()
-        );
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status()?.success());
         let reader = std::thread::spawn({
             let pipe = pipe.clone();
             move || fs::read(pipe)

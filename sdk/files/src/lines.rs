@@ -1,9 +1,10 @@
-//! Lines of a pipe, a port or a file, of a bounded length: what has no line break is no line, and would fill the memory.
+//! Lines of a pipe, a port or a file, of a bounded length: what has no line break is no line, and
+//! would fill the memory.
 
 use std::io::{self, BufRead, Read};
 
-/// Returns the lines of an input, without their breaks. The first one of more than `most_bytes`, or that is not UTF-8, is an error, after
-/// which there are no more.
+/// Returns the lines of an input, without their breaks. The first one of more than `most_bytes`, or
+/// that is not UTF-8, is an error, after which there are no more.
 ///
 /// ```
 /// let lines: Vec<_> = htex_files::bounded_lines(&b"1 2\r\n3 4\n12345678"[..], 5).collect();
@@ -14,11 +15,7 @@ pub fn bounded_lines<R: BufRead>(
     input: R,
     most_bytes: usize,
 ) -> impl Iterator<Item = io::Result<String>> {
-    Lines {
-        input,
-        most_bytes,
-        has_ended: false,
-    }
+    Lines { input, most_bytes, has_ended: false }
 }
 
 struct Lines<R> {

@@ -1,9 +1,11 @@
-//! A folder that a program fills and that may come from somebody else: the results of an earlier build, unpacked from an archive.
+//! A folder that a program fills and that may come from somebody else: the results of an earlier
+//! build, unpacked from an archive.
 //!
-//! Whoever made it may have put links where the program writes and removes. Nothing in it is followed: below the folder itself, which
-//! a person names, a link is an error, a file is written to a new one and renamed, and what is removed is an entry, never what it
-//! leads to. The checks are made before each access. They hold against what is in the folder, not against a process that changes it
-//! at the same time.
+//! Whoever made it may have put links where the program writes and removes. Nothing in it is
+//! followed: below the folder itself, which a person names, a link is an error, a file is written
+//! to a new one and renamed, and what is removed is an entry, never what it leads to. The checks
+//! are made before each access. They hold against what is in the folder, not against a process that
+//! changes it at the same time.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
@@ -29,21 +31,17 @@ pub struct OwnFolder {
 impl OwnFolder {
     /// The folder at this path, which may itself be a link: a person named it.
     pub fn new(folder: &Path) -> Self {
-        Self {
-            folder: folder.to_owned(),
-            readable_by: Readers::All,
-        }
+        Self { folder: folder.to_owned(), readable_by: Readers::All }
     }
 
-    /// As [`Self::new`]; only this user may read the folders and files that are made in it, and the folder itself if it is made.
+    /// As [`Self::new`]; only this user may read the folders and files that are made in it, and the
+    /// folder itself if it is made.
     pub fn private(folder: &Path) -> Self {
-        Self {
-            folder: folder.to_owned(),
-            readable_by: Readers::User,
-        }
+        Self { folder: folder.to_owned(), readable_by: Readers::User }
     }
 
-    /// The folder of a file that the user named, for the files that a command writes beside that one; and the file's name in it.
+    /// The folder of a file that the user named, for the files that a command writes beside that
+    /// one; and the file's name in it.
     ///
     /// # Errors
     /// When the path ends in no name.
@@ -58,7 +56,8 @@ impl OwnFolder {
         &self.folder
     }
 
-    /// Returns the path of an entry, or the folder itself for an empty path, after a check that nothing above it is a link.
+    /// Returns the path of an entry, or the folder itself for an empty path, after a check that
+    /// nothing above it is a link.
     ///
     /// # Errors
     /// When a part above it is a link or no folder, or the path leads out of the folder.
@@ -112,8 +111,8 @@ impl OwnFolder {
         self.open_with(inside, OpenOptions::new().read(true).append(true))
     }
 
-    /// Creates a file that must not be there, to write to it at once; most files are written by [`Self::replace`]. The folders above it are
-    /// made.
+    /// Creates a file that must not be there, to write to it at once; most files are written by
+    /// [`Self::replace`]. The folders above it are made.
     ///
     /// # Errors
     /// As [`Self::make_folder`], and when there is something in its place.
@@ -127,11 +126,12 @@ impl OwnFolder {
         options.write(true).create_new(true).open(path)
     }
 
-    /// Writes a file whole: a new one beside it, which is flushed to disk and renamed into place. A link in its place is replaced. The
-    /// folders above it are made.
+    /// Writes a file whole: a new one beside it, which is flushed to disk and renamed into place. A
+    /// link in its place is replaced. The folders above it are made.
     ///
     /// # Errors
-    /// Errors of `write` and of the system, as [`Self::make_folder`], and when a folder is in its place. The previous file then stays.
+    /// Errors of `write` and of the system, as [`Self::make_folder`], and when a folder is in its
+    /// place. The previous file then stays.
     pub fn replace(
         &self,
         inside: &Path,
@@ -143,7 +143,8 @@ impl OwnFolder {
         unfinished.keep()
     }
 
-    /// Writes a file as [`Self::replace`] does, with others: it is in its place after [`Batch::finish`].
+    /// Writes a file as [`Self::replace`] does, with others: it is in its place after
+    /// [`Batch::finish`].
     ///
     /// # Errors
     /// As [`Self::replace`], and as [`Batch::write`].
@@ -151,7 +152,8 @@ impl OwnFolder {
         batch.write_in_place_of(self.entry(inside)?, self.readable_by, bytes)
     }
 
-    /// The path of a file for a writer that knows only paths, such as a device. The folders above it are made.
+    /// The path of a file for a writer that knows only paths, such as a device. The folders above
+    /// it are made.
     ///
     /// # Errors
     /// As [`Self::make_folder`], and when a link, or anything but a regular file, is in its place.
@@ -194,8 +196,8 @@ impl OwnFolder {
         options.open(&path)
     }
 
-    /// Writes a file: a new one in the same folder, which is renamed into place. The folders above it are made. It is not flushed to
-    /// disk.
+    /// Writes a file: a new one in the same folder, which is renamed into place. The folders above
+    /// it are made. It is not flushed to disk.
     ///
     /// # Errors
     /// As [`Self::make_folder`], when a folder is in its place, and those of the system.
@@ -230,7 +232,8 @@ impl OwnFolder {
         fs::rename(from, self.entry(to)?)
     }
 
-    /// Removes a file or a link, and then the folders above it that are empty; it is no error when there is none.
+    /// Removes a file or a link, and then the folders above it that are empty; it is no error when
+    /// there is none.
     ///
     /// # Errors
     /// As [`Self::at`], when it is a folder, and those of the system.
@@ -276,7 +279,8 @@ impl OwnFolder {
         Ok(names)
     }
 
-    /// Removes a folder with everything in it; links in it are removed and not followed. It is no error when there is none.
+    /// Removes a folder with everything in it; links in it are removed and not followed. It is no
+    /// error when there is none.
     ///
     /// # Errors
     /// As [`Self::at`], when it is a link or no folder, and those of the system.
@@ -390,13 +394,7 @@ mod tests {
         symlink(&victim, inside.path().join("new.part"))?;
         let own = OwnFolder::new(inside.path());
         let mut batch = Batch::default();
-        for name in [
-            "folder/victim",
-            "folder/new",
-            "folder/deep/new",
-            "../victim",
-            "/victim",
-        ] {
+        for name in ["folder/victim", "folder/new", "folder/deep/new", "../victim", "/victim"] {
             let name = Path::new(name);
             assert!(own.write(name, b"x").is_err(), "{}", name.display());
             assert!(own.read(name, 100).is_err() && own.open_lock(name).is_err());

@@ -4,7 +4,8 @@ use std::fs::{DirBuilder, File, Metadata};
 use std::io;
 use std::path::Path;
 
-/// Creates a folder for this user alone, or checks that an existing one is this user's and not writable by others.
+/// Creates a folder for this user alone, or checks that an existing one is this user's and not
+/// writable by others.
 ///
 /// # Errors
 /// When the folder cannot be created, belongs to another user, or is writable by others.

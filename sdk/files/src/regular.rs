@@ -1,7 +1,9 @@
-//! Reading of files that somebody else names: a recipe, a table, a scene, the JSON beside a recording.
+//! Reading of files that somebody else names: a recipe, a table, a scene, the JSON beside a
+//! recording.
 //!
-//! Such a name may lead to a pipe that never ends, to a device, or to a file that fills the memory. This is the one reader of them:
-//! regular files alone, up to a length. A file that a person names as an argument may be a pipe, and is opened by its own reader.
+//! Such a name may lead to a pipe that never ends, to a device, or to a file that fills the memory.
+//! This is the one reader of them: regular files alone, up to a length. A file that a person names
+//! as an argument may be a pipe, and is opened by its own reader.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Read};
@@ -10,7 +12,8 @@ use std::path::Path;
 /// Opens a regular file, through links, without waiting for the writer of a pipe.
 ///
 /// # Errors
-/// When there is no such file, it is a folder, a pipe, a socket or a device, or the system reports an error.
+/// When there is no such file, it is a folder, a pipe, a socket or a device, or the system reports
+/// an error.
 pub fn open_regular(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
@@ -51,8 +54,7 @@ pub fn read_regular(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
         return Err(too_long());
     }
     let mut bytes = Vec::new();
-    file.take(most_bytes.saturating_add(1))
-        .read_to_end(&mut bytes)?;
+    file.take(most_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
     match bytes.len() as u64 > most_bytes {
         true => Err(too_long()),
         false => Ok(bytes),
@@ -99,12 +101,7 @@ mod tests {
     {
         let folder = tempfile::tempdir()?;
         let pipe = folder.path().join("pipe");
-        assert!(
-            std::process::Command::new("mkfifo")
-                .arg(&pipe)
-                .status()?
-                .success()
-        );
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status()?.success());
         for path in [&pipe, Path::new("/dev/zero"), folder.path()] {
             assert!(read_regular(path, 10).is_err(), "{}", path.display());
             assert!(open_regular(path).is_err() && check_regular_at(path).is_err());

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-/// Returns text for a cell. What a spreadsheet would take for a formula, which may open an address or run a program, gets an apostrophe in
-/// front, which marks text.
+/// Returns text for a cell. What a spreadsheet would take for a formula, which may open an address
+/// or run a program, gets an apostrophe in front, which marks text.
 ///
 /// ```
 /// assert_eq!(htex_finding::as_text("=HYPERLINK(1)"), "'=HYPERLINK(1)");

@@ -46,8 +46,8 @@ pub struct Finding {
     pub pointer: String,
     /// What is wrong, where, and what to do.
     pub message: String,
-    /// The keyword of a JSON Schema that the document breaks: the schema's file, `#` and a JSON pointer into
-    /// it. Only validators that check documents against schemas set it.
+    /// The keyword of a JSON Schema that the document breaks: the schema's file, `#` and a JSON
+    /// pointer into it. Only validators that check documents against schemas set it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "#"))]
     pub schema_rule: Option<String>,

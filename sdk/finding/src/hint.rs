@@ -5,8 +5,9 @@ use std::ops::Deref;
 
 use serde::{Serialize, Serializer};
 
-/// The settings that help against a problem, by the names that flags, recipes and keywords share: `map`, `most_numbers`, or one
-/// with a value, `segments windows`. Messages describe a setting in words, so that each program can name its own.
+/// The settings that help against a problem, by the names that flags, recipes and keywords share:
+/// `map`, `most_numbers`, or one with a value, `segments windows`. Messages describe a setting in
+/// words, so that each program can name its own.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Hint(&'static [&'static str]);
 

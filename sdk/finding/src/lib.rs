@@ -1,5 +1,5 @@
-//! What validation finds: rules with stable codes, findings, reports and hints. Every kind of file has a table of rules in its
-//! crate; this one knows no file.
+//! What validation finds: rules with stable codes, findings, reports and hints. Every kind of file
+//! has a table of rules in its crate; this one knows no file.
 //!
 //! ```
 //! use htex_finding::{Findings, Severity};

@@ -10,10 +10,7 @@ pub fn rules_page(head: &str, rules: &[Rule]) -> String {
     for rule in rules {
         let anchor = rule.code.to_ascii_lowercase();
         let (code, severity, summary) = (rule.code, rule.severity, rule.summary);
-        push(
-            &mut page,
-            format_args!("| [{code}](#{anchor}) | {severity} | {summary} |\n"),
-        );
+        push(&mut page, format_args!("| [{code}](#{anchor}) | {severity} | {summary} |\n"));
     }
     for rule in rules {
         push(

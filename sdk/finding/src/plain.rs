@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
-/// Escapes control characters and invisible formatting characters (direction marks, zero-width characters, tags, other
-/// line ends) as `\u{1b}`: a message that quotes a file must neither control the terminal nor show text that is not in
-/// the file.
+/// Escapes control characters and invisible formatting characters (direction marks, zero-width
+/// characters, tags, other line ends) as `\u{1b}`: a message that quotes a file must neither
+/// control the terminal nor show text that is not in the file.
 ///
 /// ```
 /// assert_eq!(htex_finding::plain("a\tb\x1b[2J"), r"a\tb\u{1b}[2J");
@@ -15,18 +15,16 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     }
     let mut plain = String::with_capacity(text.len() + 8);
     for c in text.chars() {
-        if steers(c) {
-            plain.extend(c.escape_default())
-        } else {
-            plain.push(c)
-        }
+        if steers(c) { plain.extend(c.escape_default()) } else { plain.push(c) }
     }
     Cow::Owned(plain)
 }
 
-/// Whether [`plain`] escapes a character: a control character, or an invisible one that changes the text around it.
+/// Whether [`plain`] escapes a character: a control character, or an invisible one that changes the
+/// text around it.
 pub fn steers(c: char) -> bool {
-    // All of Unicode's format characters (Cf) except the visible ones, and the plane of tags and selectors.
+    // All of Unicode's format characters (Cf) except the visible ones, and the plane of tags and
+    // selectors.
     let is_mark = matches!(c, '\u{00ad}' | '\u{061c}' | '\u{180e}' | '\u{feff}')
         || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}')
         || matches!(c, '\u{fff9}'..='\u{fffb}' | '\u{1bca0}'..='\u{1bca3}' | '\u{1d173}'..='\u{1d17a}')

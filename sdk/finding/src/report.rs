@@ -38,10 +38,7 @@ impl Report {
     /// A report of these findings; it is valid when none is an error.
     pub fn new(findings: Vec<Finding>) -> Self {
         let is_error = |finding: &Finding| finding.severity == Severity::Error;
-        Self {
-            valid: !findings.iter().any(is_error),
-            findings,
-        }
+        Self { valid: !findings.iter().any(is_error), findings }
     }
 
     /// Adds the name of the file.
@@ -73,17 +70,14 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// Adds a finding: the broken rule, a JSON pointer (empty for the whole document), and a message that says
-    /// what is wrong, where, and what to do.
+    /// Adds a finding: the broken rule, a JSON pointer (empty for the whole document), and a
+    /// message that says what is wrong, where, and what to do.
     pub fn add(&mut self, rule: &Rule, pointer: impl Into<String>, message: impl Into<Notice>) {
         self.errors |= rule.severity == Severity::Error;
         if self.kept.len() < KEPT {
             let Notice { text, hint } = message.into();
             let finding = Finding::new(rule, pointer, &text);
-            self.kept.push(Finding {
-                hint: finding.hint.or(hint),
-                ..finding
-            });
+            self.kept.push(Finding { hint: finding.hint.or(hint), ..finding });
         } else {
             self.dropped += 1;
         }
@@ -110,8 +104,7 @@ impl Findings {
     pub fn into_list(mut self) -> Vec<Finding> {
         if self.dropped > 0 {
             let message = format!("{} more findings are not shown", self.dropped);
-            self.kept
-                .push(Finding::new(FINDINGS_TRUNCATED, "", &message));
+            self.kept.push(Finding::new(FINDINGS_TRUNCATED, "", &message));
         }
         self.kept
     }

@@ -32,10 +32,8 @@ pub struct Stage {
 }
 
 /// The stage of counting what is beyond the first hundred findings.
-pub const COUNT: Stage = Stage {
-    of: "the count of findings beyond the first hundred",
-    ends: false,
-};
+pub const COUNT: Stage =
+    Stage { of: "the count of findings beyond the first hundred", ends: false };
 
 /// The rule that every report of more than a hundred findings ends with.
 pub const FINDINGS_TRUNCATED: &Rule = &Rule {
@@ -49,9 +47,10 @@ pub const FINDINGS_TRUNCATED: &Rule = &Rule {
     fix: "Correct those and validate again.",
 };
 
-/// Defines a table of rules: a constant for each, and `RULES` with all of them in order. After the severity stand, where there
-/// are any, the stages in `[]`, the settings that help in `()`, and the setting that turns the rule on after `by`. A last line
-/// `+ RULE;` adds a rule that is defined elsewhere.
+/// Defines a table of rules: a constant for each, and `RULES` with all of them in order. After the
+/// severity stand, where there are any, the stages in `[]`, the settings that help in `()`, and the
+/// setting that turns the rule on after `by`. A last line `+ RULE;` adds a rule that is defined
+/// elsewhere.
 ///
 /// ```
 /// htex_finding::rule_table! {

@@ -1,8 +1,8 @@
 //! Strict reader of the ZIP archive: checks all records first, then unpacks every entry.
 //!
 //! The ZIP format allows files in which two programs see different archives. An asset's archive is
-//! unambiguous: entries without gaps from byte 0, then the directory in the same order, then the end
-//! record; directory and local headers state the same names and sizes.
+//! unambiguous: entries without gaps from byte 0, then the directory in the same order, then the
+//! end record; directory and local headers state the same names and sizes.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -42,11 +42,7 @@ impl<'a> Archive<'a> {
     /// Checks the records and unpacks all entries. Returns `None` when a finding is an error.
     pub(crate) fn open(bytes: &'a [u8], limits: &Limits, findings: &mut Findings) -> Option<Self> {
         if bytes.len() as u64 > limits.file_bytes {
-            findings.add(
-                rule::FILE_TOO_LARGE,
-                "",
-                too_large(bytes.len() as u64, limits),
-            );
+            findings.add(rule::FILE_TOO_LARGE, "", too_large(bytes.len() as u64, limits));
             return None;
         }
         let end = end_record(bytes, limits, findings)?;
@@ -69,11 +65,7 @@ impl<'a> Packed<'a> {
     fn unpack(self, findings: &mut Findings) -> Option<Entry<'a>> {
         let (name, method) = (self.name, self.common.method);
         match unpack(self.data, &self.common) {
-            Ok(bytes) => Some(Entry {
-                name,
-                method,
-                bytes,
-            }),
+            Ok(bytes) => Some(Entry { name, method, bytes }),
             Err(problem) => {
                 let message = format!("{name} is damaged: {problem}; get the file again");
                 findings.add(rule::ENTRY_CORRUPT, "", message);
@@ -161,11 +153,7 @@ fn directory<'a>(
         total += u64::from(central.common.size);
         let data = check_local(bytes, &central, &name, expected_local, findings)?;
         expected_local = data.end;
-        entries.push(Packed {
-            name,
-            common: central.common,
-            data: bytes.get(data)?,
-        });
+        entries.push(Packed { name, common: central.common, data: bytes.get(data)? });
     }
     check_ends(end, at, expected_local, findings);
     if total > limits.total_bytes {
@@ -176,7 +164,8 @@ fn directory<'a>(
     Some(entries)
 }
 
-/// Checks that the entries end where the directory starts, and the directory where the end record starts.
+/// Checks that the entries end where the directory starts, and the directory where the end record
+/// starts.
 fn check_ends(end: &End, directory_end: usize, entries_end: usize, findings: &mut Findings) {
     if directory_end != end.at {
         let message = "the directory is longer or shorter than the end record says".to_owned();
@@ -188,9 +177,7 @@ fn check_ends(end: &End, directory_end: usize, entries_end: usize, findings: &mu
 }
 
 fn check_name(raw: &[u8], name: &str, findings: &mut Findings) {
-    let plain = raw
-        .iter()
-        .all(|&b| (b' '..=b'~').contains(&b) && b != b'\\' && b != b':');
+    let plain = raw.iter().all(|&b| (b' '..=b'~').contains(&b) && b != b'\\' && b != b':');
     let parts = name.split('/').all(|part| !matches!(part, "" | "." | ".."));
     if !plain || !parts {
         let message =
@@ -225,10 +212,7 @@ fn check_record(central: &Central<'_>, name: &str, findings: &mut Findings) {
 }
 
 fn check_sizes(central: &Central<'_>, name: &str, limits: &Limits, findings: &mut Findings) {
-    let (size, packed) = (
-        u64::from(central.common.size),
-        u64::from(central.common.packed),
-    );
+    let (size, packed) = (u64::from(central.common.size), u64::from(central.common.packed));
     let (most, ratio) = (limits.entry_bytes, limits.ratio);
     if size > most {
         let message = format!("{name} unpacks to {size} bytes and the limit is {most}");
@@ -242,7 +226,8 @@ fn check_sizes(central: &Central<'_>, name: &str, limits: &Limits, findings: &mu
     }
 }
 
-/// Compares the local header with the directory. Returns the range of the entry's data, or `None` when it cannot be found.
+/// Compares the local header with the directory. Returns the range of the entry's data, or `None`
+/// when it cannot be found.
 fn check_local(
     bytes: &[u8],
     central: &Central<'_>,

@@ -1,8 +1,8 @@
 //! Encoder and decoder of parameter blocks.
 //!
-//! A block holds, for each condition and each field, the stored values: fixed width, little endian; a
-//! list is preceded by its length as bincode's variable-length integer. The layout is given by the
-//! manifest's fields alone. This is the only module that uses bincode.
+//! A block holds, for each condition and each field, the stored values: fixed width, little endian;
+//! a list is preceded by its length as bincode's variable-length integer. The layout is given by
+//! the manifest's fields alone. This is the only module that uses bincode.
 
 use bincode::config::{Configuration, standard};
 use bincode::{Decode, Encode};
@@ -28,11 +28,7 @@ pub(crate) enum BlockError {
     #[error("{0} bytes follow the last value")]
     Trailing(usize),
     #[error("{field}[{index}] of condition {condition} is not a finite number")]
-    NotFinite {
-        field: String,
-        condition: usize,
-        index: usize,
-    },
+    NotFinite { field: String, condition: usize, index: usize },
     #[error("there are more numbers than the limit of {0}")]
     TooMany(usize),
 }
@@ -60,18 +56,15 @@ pub(crate) fn encode(
     Ok(out)
 }
 
-/// Decodes a block into flat arrays. `values` is the number of values that may still be read; it is decremented.
+/// Decodes a block into flat arrays. `values` is the number of values that may still be read; it is
+/// decremented.
 pub(crate) fn decode(
     fields: &[StoredField],
     conditions: usize,
     bytes: &[u8],
     values: &mut usize,
 ) -> Result<Vec<Vec<f64>>, BlockError> {
-    let mut reader = Reader {
-        bytes,
-        limit: *values,
-        left: *values,
-    };
+    let mut reader = Reader { bytes, limit: *values, left: *values };
     let flats = (0..conditions)
         .map(|condition| reader.condition(fields, condition))
         .collect::<Result<_, _>>()?;
@@ -141,12 +134,14 @@ pub fn round_parameters(fields: &[StoredField], flat: &[f64]) -> Result<Vec<f64>
     Ok(rounded)
 }
 
-/// As [`round_parameters`], of parameters for a model: a value in its field's range stays in it. Where the nearest stored value is
-/// outside, the next one inside is taken: 0.2, a field's maximum, is 0.200000003 in 32 bits, which the model refuses, and becomes
-/// 0.199999988. Every writer of a model's parameters rounds here.
+/// As [`round_parameters`], of parameters for a model: a value in its field's range stays in it.
+/// Where the nearest stored value is outside, the next one inside is taken: 0.2, a field's maximum,
+/// is 0.200000003 in 32 bits, which the model refuses, and becomes 0.199999988. Every writer of a
+/// model's parameters rounds here.
 ///
 /// # Errors
-/// As [`round_parameters`], and [`WriteError::OutOfRange`] where the store has no value in the field's range.
+/// As [`round_parameters`], and [`WriteError::OutOfRange`] where the store has no value in the
+/// field's range.
 pub fn round_within(
     fields: &[StoredField],
     model: &Descriptor,
@@ -179,7 +174,8 @@ pub fn round_within(
     Ok(rounded)
 }
 
-/// Returns the value of a number or of the next one in the direction of a range; `None` if both are outside.
+/// Returns the value of a number or of the next one in the direction of a range; `None` if both are
+/// outside.
 fn inside(nearest: Number, store: StoredAs, min: f64, max: f64) -> Option<f64> {
     let value = value_of(nearest, store);
     let next = match value {
@@ -249,9 +245,7 @@ fn quantise(field: &StoredField, index: usize, value: f64) -> Result<Number, Wri
     let (number, low, high) = match field.store {
         StoredAs::F64 => (Some(Number::F64(value)), f64::MIN, f64::MAX),
         StoredAs::F32 => {
-            let inside = (value as f32)
-                .is_finite()
-                .then_some(Number::F32(value as f32));
+            let inside = (value as f32).is_finite().then_some(Number::F32(value as f32));
             (inside, f64::from(f32::MIN), f64::from(f32::MAX))
         }
         StoredAs::U16(steps) => {
@@ -267,17 +261,12 @@ fn quantise(field: &StoredField, index: usize, value: f64) -> Result<Number, Wri
         Some(number) if value.is_finite() && value_of(number, field.store).is_finite() => {
             Ok(number)
         }
-        _ => Err(WriteError::OutOfRange {
-            field: field.name.clone(),
-            index,
-            value,
-            low,
-            high,
-        }),
+        _ => Err(WriteError::OutOfRange { field: field.name.clone(), index, value, low, high }),
     }
 }
 
-/// Returns the nearest step, halves rounded away from zero; `None` when it is below 0 or above `last`.
+/// Returns the nearest step, halves rounded away from zero; `None` when it is below 0 or above
+/// `last`.
 fn step(steps: Steps, value: f64, last: f64) -> Option<f64> {
     let x = if steps.log { libm::log(value) } else { value };
     let q = libm::round((x - steps.offset) / steps.scale);
@@ -316,9 +305,7 @@ fn put_number(out: &mut Vec<u8>, number: Number) -> Result<(), WriteError> {
 fn put(out: &mut Vec<u8>, value: impl Encode) -> Result<(), WriteError> {
     match bincode::encode_into_std_write(value, out, CONFIGURATION) {
         Ok(_) => Ok(()),
-        Err(error) => Err(WriteError::Archive {
-            problem: error.to_string(),
-        }),
+        Err(error) => Err(WriteError::Archive { problem: error.to_string() }),
     }
 }
 
@@ -336,27 +323,18 @@ impl Reader<'_> {
     ) -> Result<Vec<f64>, BlockError> {
         let mut flat = Vec::new();
         for field in fields {
-            let count = if field.list {
-                self.length(field, condition)?
-            } else {
-                1
-            };
+            let count = if field.list { self.length(field, condition)? } else { 1 };
             if field.list {
                 flat.push(count as f64);
             }
-            self.left = self
-                .left
-                .checked_sub(count)
-                .ok_or(BlockError::TooMany(self.limit))?;
+            self.left = self.left.checked_sub(count).ok_or(BlockError::TooMany(self.limit))?;
             if let StoredAs::Packed(steps) = field.store {
                 let all = self.steps(field, condition, count)?;
                 flat.extend(all.into_iter().map(|q| steps.value(q.into())));
                 continue;
             }
             for index in 0..count {
-                let value = self
-                    .number(field.store)
-                    .ok_or_else(|| truncated(field, condition))?;
+                let value = self.number(field.store).ok_or_else(|| truncated(field, condition))?;
                 if !value.is_finite() {
                     return Err(BlockError::NotFinite {
                         field: field.name.clone(),
@@ -370,17 +348,16 @@ impl Reader<'_> {
         Ok(flat)
     }
 
-    /// Reads the steps of a packed list. The manifest check has made sure that every step's value is finite.
+    /// Reads the steps of a packed list. The manifest check has made sure that every step's value
+    /// is finite.
     fn steps(
         &mut self,
         field: &StoredField,
         condition: usize,
         count: usize,
     ) -> Result<Vec<u8>, BlockError> {
-        let (steps, used) = unpack(self.bytes, count).ok_or_else(|| BlockError::Packed {
-            field: field.name.clone(),
-            condition,
-        })?;
+        let (steps, used) = unpack(self.bytes, count)
+            .ok_or_else(|| BlockError::Packed { field: field.name.clone(), condition })?;
         self.bytes = &self.bytes[used..];
         Ok(steps)
     }
@@ -388,14 +365,9 @@ impl Reader<'_> {
     /// Reads a list's length, at most what the remaining bytes can hold.
     fn length(&mut self, field: &StoredField, condition: usize) -> Result<usize, BlockError> {
         let before = self.bytes.len();
-        let length = self
-            .take::<u64>()
-            .ok_or_else(|| truncated(field, condition))?;
+        let length = self.take::<u64>().ok_or_else(|| truncated(field, condition))?;
         if before - self.bytes.len() != shortest(length) {
-            return Err(BlockError::Length {
-                field: field.name.clone(),
-                condition,
-            });
+            return Err(BlockError::Length { field: field.name.clone(), condition });
         }
         let most = match field.store {
             StoredAs::Packed(_) => most_steps(self.bytes.len()),
@@ -447,10 +419,7 @@ fn shortest(length: u64) -> usize {
 }
 
 fn truncated(field: &StoredField, condition: usize) -> BlockError {
-    BlockError::Truncated {
-        field: field.name.clone(),
-        condition,
-    }
+    BlockError::Truncated { field: field.name.clone(), condition }
 }
 
 #[cfg(test)]

@@ -17,7 +17,8 @@ use htex_finding::escape;
 /// Highest upper edge of a band, hertz.
 const HIGHEST_HZ: f64 = 20_000.0;
 
-/// Counts the multiples of 5 Hz in the band, edges included: 197 for 20 to 1000 Hz. Returns `None` for an invalid band.
+/// Counts the multiples of 5 Hz in the band, edges included: 197 for 20 to 1000 Hz. Returns `None`
+/// for an invalid band.
 pub(crate) fn grid_points(band: Band) -> Option<usize> {
     // Only valid bands are counted: one up to 1e300 Hz has more points than `usize` holds.
     let valid = 0.0 < band.low_hz && band.low_hz < band.high_hz && band.high_hz <= HIGHEST_HZ;
@@ -28,17 +29,9 @@ pub(crate) fn grid_points(band: Band) -> Option<usize> {
 pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
     check_words(manifest, findings);
     let band = manifest.band;
-    findings.require(
-        grid_points(band).is_some(),
-        rule::BAND_INVALID,
-        "/band",
-        || {
-            format!(
-                "{} to {} Hz is not a valid band; write 20 to 1000",
-                band.low_hz, band.high_hz
-            )
-        },
-    );
+    findings.require(grid_points(band).is_some(), rule::BAND_INVALID, "/band", || {
+        format!("{} to {} Hz is not a valid band; write 20 to 1000", band.low_hz, band.high_hz)
+    });
     check_sources(manifest, findings);
     check_made(manifest, findings);
     check_conditions(&manifest.conditions, findings);
@@ -50,15 +43,11 @@ pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
 
 fn check_words(manifest: &Manifest, findings: &mut Findings) {
     let named = !manifest.name.trim().is_empty();
-    findings.require(named, rule::NAME_EMPTY, "/name", || {
-        "the name is empty; write one".to_owned()
+    findings
+        .require(named, rule::NAME_EMPTY, "/name", || "the name is empty; write one".to_owned());
+    findings.require(manifest.license.is_some(), rule::LICENSE_MISSING, "", || {
+        "there is no license; add an SPDX expression".to_owned()
     });
-    findings.require(
-        manifest.license.is_some(),
-        rule::LICENSE_MISSING,
-        "",
-        || "there is no license; add an SPDX expression".to_owned(),
-    );
     if let Some(Err(error)) = manifest.license.as_deref().map(check_license) {
         findings.add(error.rule(), "/license", error.to_string());
     }
@@ -67,10 +56,7 @@ fn check_words(manifest: &Manifest, findings: &mut Findings) {
     }
     let (unit, wanted) = (&manifest.unit, manifest.quantity.unit());
     findings.require(unit == wanted, rule::UNIT_UNKNOWN, "/unit", || {
-        format!(
-            "{unit:?} is not the unit of {}; write {wanted}",
-            manifest.quantity
-        )
+        format!("{unit:?} is not the unit of {}; write {wanted}", manifest.quantity)
     });
 }
 
@@ -79,12 +65,9 @@ fn check_sources(manifest: &Manifest, findings: &mut Findings) {
         let at = format_args!("/provenance/recordings/{i}");
         let rate = source.rate_hz;
         let positive = rate.is_finite() && rate > 0.0;
-        findings.require(
-            positive,
-            rule::SOURCE_INVALID,
-            format_args!("{at}/rate_hz"),
-            || format!("{rate} Hz is not a valid sampling rate; write the recording's rate"),
-        );
+        findings.require(positive, rule::SOURCE_INVALID, format_args!("{at}/rate_hz"), || {
+            format!("{rate} Hz is not a valid sampling rate; write the recording's rate")
+        });
         let hash = source.blake3.as_deref();
         findings.require(
             hash.is_none_or(is_hash),
@@ -94,10 +77,7 @@ fn check_sources(manifest: &Manifest, findings: &mut Findings) {
         );
         let plain = !source.file.contains(['/', '\\']);
         findings.require(plain, rule::SOURCE_PATH, format_args!("{at}/file"), || {
-            format!(
-                "{:?} contains a folder; write only the file name",
-                source.file
-            )
+            format!("{:?} contains a folder; write only the file name", source.file)
         });
     }
 }
@@ -132,12 +112,9 @@ fn not_a_hash(text: &str) -> String {
 }
 
 fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
-    findings.require(
-        !conditions.is_empty(),
-        rule::CONDITIONS_EMPTY,
-        "/conditions",
-        || "there is no condition; add one, or {} when speed and force are not known".to_owned(),
-    );
+    findings.require(!conditions.is_empty(), rule::CONDITIONS_EMPTY, "/conditions", || {
+        "there is no condition; add one, or {} when speed and force are not known".to_owned()
+    });
     let mut seen = BTreeSet::new();
     for (i, condition) in conditions.iter().enumerate() {
         let at = format_args!("/conditions/{i}");
@@ -153,7 +130,8 @@ fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
                 findings.add(rule::CONDITION_INVALID, format!("{at}/{key}"), message);
             }
         }
-        // An absent value counts as 0 where motions are compared. Adding zero makes -0 the same as 0.
+        // An absent value counts as 0 where motions are compared. Adding zero makes -0 the same as
+        // 0.
         let bits = |number: Option<f64>| (number.unwrap_or(0.0) + 0.0).to_bits();
         let new = seen.insert((bits(condition.speed_mm_s), bits(condition.force_n)));
         findings.require(new, rule::CONDITION_DUPLICATE, at, || {
@@ -177,12 +155,9 @@ fn check_law(manifest: &Manifest, findings: &mut Findings) {
 fn check_extensions(manifest: &Manifest, findings: &mut Findings) {
     for name in manifest.extensions.keys() {
         let pointer = format_args!("/extensions/{}", escape(name));
-        findings.require(
-            is_extension_name(name),
-            rule::EXTENSION_NAME_INVALID,
-            pointer,
-            || format!("{name:?} is not of the form com.vendor.NAME/REVISION"),
-        );
+        findings.require(is_extension_name(name), rule::EXTENSION_NAME_INVALID, pointer, || {
+            format!("{name:?} is not of the form com.vendor.NAME/REVISION")
+        });
     }
     for (i, name) in manifest.extensions_required.iter().enumerate() {
         let pointer = format!("/extensions_required/{i}");

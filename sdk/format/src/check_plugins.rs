@@ -20,10 +20,7 @@ pub(crate) fn check_plugins(manifest: &Manifest, findings: &mut Findings) {
         findings.require(new, rule::PLUGIN_DUPLICATE, model, || {
             format!("{} has two modules; keep one", plugin.model)
         });
-        let used = manifest
-            .representations
-            .iter()
-            .any(|r| r.model == plugin.model);
+        let used = manifest.representations.iter().any(|r| r.model == plugin.model);
         findings.require(used, rule::PLUGIN_UNUSED, model, || {
             format!("no representation uses {}; remove its module", plugin.model)
         });
@@ -40,11 +37,7 @@ fn check_words(plugin: &Plugin, at: Arguments<'_>, findings: &mut Findings) {
     let hash = plugin.blake3.len() == 64 && plugin.blake3.bytes().all(digit);
     let words = [
         ("model", is_model_id(&plugin.model), "a reverse-DNS id"),
-        (
-            "version",
-            semver::Version::parse(&plugin.version).is_ok(),
-            "a semantic version",
-        ),
+        ("version", semver::Version::parse(&plugin.version).is_ok(), "a semantic version"),
         (
             "file",
             plugin.file == Plugin::file_of(&plugin.model),
@@ -53,11 +46,8 @@ fn check_words(plugin: &Plugin, at: Arguments<'_>, findings: &mut Findings) {
         ("blake3", hash, "64 lower-case hexadecimal digits"),
     ];
     for (key, holds, form) in words {
-        findings.require(
-            holds,
-            rule::PLUGIN_INVALID,
-            format_args!("{at}/{key}"),
-            || format!("`{key}` is not {form}; embed the module again"),
-        );
+        findings.require(holds, rule::PLUGIN_INVALID, format_args!("{at}/{key}"), || {
+            format!("`{key}` is not {form}; embed the module again")
+        });
     }
 }

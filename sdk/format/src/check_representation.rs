@@ -13,17 +13,15 @@ use crate::rules as rule;
 use crate::triangles::{TrianglesError, check_corners, check_triangles};
 use htex_finding::Findings;
 
-/// Smallest ratio of a step to the largest magnitude it is added to; below it, rounding can change the step.
+/// Smallest ratio of a step to the largest magnitude it is added to; below it, rounding can change
+/// the step.
 const FINEST: f64 = 4.0 * f64::EPSILON;
 
 pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings) {
     let some = !manifest.representations.is_empty();
-    findings.require(
-        some,
-        rule::REPRESENTATIONS_EMPTY,
-        "/representations",
-        || "there is no representation; fit a model".to_owned(),
-    );
+    findings.require(some, rule::REPRESENTATIONS_EMPTY, "/representations", || {
+        "there is no representation; fit a model".to_owned()
+    });
     let mut models = BTreeSet::new();
     for (i, representation) in manifest.representations.iter().enumerate() {
         let at = format_args!("/representations/{i}");
@@ -38,10 +36,7 @@ pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings
         check_fields(representation, at, findings);
         check_conditions(representation, manifest, at, findings);
         if let Err(error) = check_triangles_of(representation, &manifest.conditions) {
-            let triangle = error
-                .triangle()
-                .map(|i| format!("/{i}"))
-                .unwrap_or_default();
+            let triangle = error.triangle().map(|i| format!("/{i}")).unwrap_or_default();
             let pointer = format!("{at}/triangles{triangle}");
             findings.add(rule::TRIANGLES_INVALID, pointer, error.to_string());
         }
@@ -75,11 +70,7 @@ fn check_triangles_of(
 }
 
 fn check_model(representation: &Representation, at: Arguments<'_>, findings: &mut Findings) {
-    let Representation {
-        model,
-        model_version,
-        ..
-    } = representation;
+    let Representation { model, model_version, .. } = representation;
     findings.require(
         is_model_id(model),
         rule::MODEL_ID_INVALID,
@@ -134,11 +125,7 @@ impl Steps {
             // The absolute error of a logarithm is at least the relative error of its argument.
             furthest = furthest.max(1.0);
         }
-        let least = if self.log {
-            f64::MIN_POSITIVE
-        } else {
-            f64::MIN
-        };
+        let least = if self.log { f64::MIN_POSITIVE } else { f64::MIN };
         positive
             && self.value(last).is_finite()
             && self.value(0) >= least
@@ -164,18 +151,12 @@ fn check_conditions(
         let at = format_args!("{at}/at/{i}");
         let index = fitted.condition;
         let pointer = format_args!("{at}/condition");
-        findings.require(
-            index < conditions,
-            rule::CONDITION_INDEX_INVALID,
-            pointer,
-            || format!("there is no condition {index}; there are {conditions}, counted from 0"),
-        );
-        findings.require(
-            seen.insert(index),
-            rule::CONDITION_INDEX_DUPLICATE,
-            pointer,
-            || format!("condition {index} is listed twice; keep one"),
-        );
+        findings.require(index < conditions, rule::CONDITION_INDEX_INVALID, pointer, || {
+            format!("there is no condition {index}; there are {conditions}, counted from 0")
+        });
+        findings.require(seen.insert(index), rule::CONDITION_INDEX_DUPLICATE, pointer, || {
+            format!("condition {index} is listed twice; keep one")
+        });
         check_fit(fitted, manifest.quantity, at, findings);
     }
 }
@@ -207,10 +188,9 @@ fn check_entries(
 ) {
     for Entry { key, content, .. } in object.entries() {
         let message = match content {
-            Content::Bands(errors) if !are_bands(errors) => format!(
-                "there are {} band errors; write {BAND_COUNT} finite numbers",
-                errors.len()
-            ),
+            Content::Bands(errors) if !are_bands(errors) => {
+                format!("there are {} band errors; write {BAND_COUNT} finite numbers", errors.len())
+            }
             Content::Number(Some(number), judged) if !judged.accepts(number) => match judged {
                 Judged::Correlation => {
                     format!("{number} is not a valid correlation; write a value from -1 to 1")

@@ -49,10 +49,7 @@ impl Asset {
 
 /// Reads a file, and no more of it than the limit.
 fn read_capped(path: &Path, limits: &Limits) -> Result<Vec<u8>, ReadError> {
-    let failed = |error| ReadError::Io {
-        path: path.to_owned(),
-        error,
-    };
+    let failed = |error| ReadError::Io { path: path.to_owned(), error };
     let file = File::open(path).map_err(failed)?;
     let stated = file.metadata().map_err(failed)?.len();
     let mut bytes = Vec::new();

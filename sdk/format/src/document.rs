@@ -56,7 +56,8 @@ pub struct Opened {
 }
 
 impl Document {
-    /// Parses a text that nests at most `max_depth` deep. Returns `None` after adding a finding that says why.
+    /// Parses a text that nests at most `max_depth` deep. Returns `None` after adding a finding
+    /// that says why.
     pub fn open(&self, bytes: &[u8], max_depth: usize, findings: &mut Findings) -> Option<Opened> {
         let (rules, text) = (&self.rules, self.text);
         let depth = depth(bytes);
@@ -67,10 +68,7 @@ impl Document {
         }
         let value = self.value(bytes, findings)?;
         let minor = self.check_version(&value, findings)?;
-        Some(Opened {
-            value,
-            newer: minor > self.minor,
-        })
+        Some(Opened { value, newer: minor > self.minor })
     }
 
     fn value(&self, bytes: &[u8], findings: &mut Findings) -> Option<Value> {
@@ -124,8 +122,8 @@ impl Document {
         Some(minor)
     }
 
-    /// Converts the document to a `T` and returns it with pointers to the keys that no type knows. Returns
-    /// `None` after adding a finding that says why.
+    /// Converts the document to a `T` and returns it with pointers to the keys that no type knows.
+    /// Returns `None` after adding a finding that says why.
     pub fn typed<T: DeserializeOwned>(
         &self,
         opened: &Opened,

@@ -1,4 +1,5 @@
-//! Where the entries of an archive are, for programs that store equal entries of several assets once.
+//! Where the entries of an archive are, for programs that store equal entries of several assets
+//! once.
 
 use std::ops::Range;
 
@@ -21,7 +22,8 @@ pub struct EntryRange {
     pub data: Range<usize>,
 }
 
-/// Returns the entries of a valid asset in the order of the file; of other bytes, those that can be found.
+/// Returns the entries of a valid asset in the order of the file; of other bytes, those that can be
+/// found.
 pub fn entry_ranges(bytes: &[u8]) -> Vec<EntryRange> {
     let Some(end) = zip_records::find_end(bytes) else {
         return Vec::new();

@@ -1,7 +1,7 @@
 //! Matching of stored fields to a model's fields, by name.
 //!
-//! Playing, scenes, `info` and `validate` match fields here. An asset may store fields in any order; the model gets
-//! them in its own.
+//! Playing, scenes, `info` and `validate` match fields here. An asset may store fields in any
+//! order; the model gets them in its own.
 
 use htex_model::{Descriptor, Kind};
 use semver::Version;
@@ -84,7 +84,8 @@ impl FieldMismatch {
     }
 }
 
-/// The order in which a model's fields are taken from the parameters of an asset; [`match_fields`] returns it.
+/// The order in which a model's fields are taken from the parameters of an asset; [`match_fields`]
+/// returns it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldOrder<'a> {
     stored: &'a [StoredField],
@@ -108,17 +109,14 @@ pub fn match_fields<'a>(
     model: &Descriptor,
 ) -> Result<FieldOrder<'a>, Vec<FieldMismatch>> {
     let all = stored.iter().enumerate();
-    let mut mismatches: Vec<FieldMismatch> = all
-        .filter_map(|(index, field)| mismatch(index, field, model))
-        .collect();
+    let mut mismatches: Vec<FieldMismatch> =
+        all.filter_map(|(index, field)| mismatch(index, field, model)).collect();
     let mut parts = Vec::with_capacity(model.fields.len());
     for field in &model.fields {
         let place = stored.iter().position(|s| s.name == field.name);
         match place.map(Part::Stored).or(field.default.map(Part::Default)) {
             Some(part) => parts.push(part),
-            None => mismatches.push(FieldMismatch::Missing {
-                name: field.name.clone(),
-            }),
+            None => mismatches.push(FieldMismatch::Missing { name: field.name.clone() }),
         }
     }
     if mismatches.is_empty() {
@@ -138,12 +136,7 @@ fn mismatch(index: usize, stored: &StoredField, model: &Descriptor) -> Option<Fi
     let list = matches!(field.kind, Kind::List { .. });
     if list != stored.list {
         let (name, [stored, wanted]) = (name(), [stored.list, list].map(kind));
-        return Some(FieldMismatch::Kind {
-            index,
-            name,
-            stored,
-            wanted,
-        });
+        return Some(FieldMismatch::Kind { index, name, stored, wanted });
     }
     let wanted = stored_unit(&field.unit);
     (wanted != stored.unit).then(|| FieldMismatch::Unit {
@@ -214,7 +207,8 @@ pub(crate) fn check_fields(manifest: &Manifest, known: KnownModel<'_>, findings:
     }
 }
 
-/// Whether an asset was fitted by a newer version of a model than the known one, which may have more fields.
+/// Whether an asset was fitted by a newer version of a model than the known one, which may have
+/// more fields.
 fn is_newer(fitted: &str, known: &str) -> bool {
     let [fitted, known] = [fitted, known].map(|version| Version::parse(version).ok());
     fitted > known

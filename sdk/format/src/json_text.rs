@@ -9,8 +9,8 @@ use serde_json::{Map, Number, Value};
 
 use htex_finding::Place;
 
-/// Parses a JSON text that nests at most 128 deep, the parser's own limit. Programs differ in which of two equal keys they
-/// use, so duplicates are refused.
+/// Parses a JSON text that nests at most 128 deep, the parser's own limit. Programs differ in which
+/// of two equal keys they use, so duplicates are refused.
 ///
 /// # Errors
 /// When the text is not JSON or a key appears twice in an object.
@@ -22,10 +22,7 @@ use htex_finding::Place;
 pub fn parse_json(bytes: &[u8]) -> Result<Value, JsonError> {
     let twice = RefCell::new(None);
     let mut json = serde_json::Deserializer::from_slice(bytes);
-    let strict = Strict {
-        place: &Place::Root,
-        twice: &twice,
-    };
+    let strict = Strict { place: &Place::Root, twice: &twice };
     let parsed = strict.deserialize(&mut json);
     let parsed = parsed.and_then(|value| json.end().map(|()| value));
     parsed.map_err(|error| match twice.take() {
@@ -86,9 +83,7 @@ impl<'de> Visitor<'de> for Strict<'_> {
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
         let number = Number::from_f64(value);
-        number
-            .map(Value::Number)
-            .ok_or_else(|| E::custom("number out of range"))
+        number.map(Value::Number).ok_or_else(|| E::custom("number out of range"))
     }
 
     fn visit_str<E>(self, value: &str) -> Result<Value, E> {

@@ -1,8 +1,9 @@
 //! The law of a texture: how its frequencies and its level follow a motion that was not recorded.
 //!
-//! From the nearest recorded motion (v0, F0) to a motion (v, F), frequencies are multiplied by `(v / v0)^a` and the level by
-//! `(v / v0)^b (F / F0)^c`. Exponents that are neither measured nor given are assumed for what slid over the surface and the
-//! quantity of the samples ([`Law::assumed`]).
+//! From the nearest recorded motion (v0, F0) to a motion (v, F), frequencies are multiplied by
+//! `(v / v0)^a` and the level by `(v / v0)^b (F / F0)^c`. Exponents that are neither measured nor
+//! given are assumed for what slid over the surface and the quantity of the samples
+//! ([`Law::assumed`]).
 
 use std::fmt;
 
@@ -45,10 +46,7 @@ impl Contact {
     /// assert_eq!(htex_format::Contact::from_name("tool"), Some(htex_format::Contact::Tool));
     /// ```
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL
-            .iter()
-            .copied()
-            .find(|contact| contact.name() == name)
+        Self::ALL.iter().copied().find(|contact| contact.name() == name)
     }
 
     /// Returns whether it is not known.
@@ -127,7 +125,8 @@ impl ExponentSource {
 
 /// Least weight of a measured exponent beside the assumed one.
 const LEAST_WEIGHT: f64 = 0.1;
-/// How much the exponents of surfaces differ, as standard deviations: frequency over speed, level over speed, level over force.
+/// How much the exponents of surfaces differ, as standard deviations: frequency over speed, level
+/// over speed, level over force.
 const SPREAD: [f64; 3] = [0.5, 0.15, 0.3];
 /// Largest magnitude of an exponent.
 pub const MOST_EXPONENT: f64 = 4.0;
@@ -138,9 +137,10 @@ impl Exponent {
         Self::new(exponent, ExponentSource::Assumed)
     }
 
-    /// Makes an exponent of a measurement with its standard error, drawn to the assumed one: the mean of both, weighted by
-    /// the inverse squares of the error and of `spread`, by which surfaces differ, within `bounds`. A measurement that would
-    /// have less than a tenth of the weight is not used.
+    /// Makes an exponent of a measurement with its standard error, drawn to the assumed one: the
+    /// mean of both, weighted by the inverse squares of the error and of `spread`, by which
+    /// surfaces differ, within `bounds`. A measurement that would have less than a tenth of the
+    /// weight is not used.
     ///
     /// ```
     /// use htex_format::{Exponent, ExponentSource};
@@ -178,20 +178,13 @@ impl Exponent {
     }
 
     const fn new(exponent: f64, source: ExponentSource) -> Self {
-        Self {
-            exponent,
-            source,
-            estimate: None,
-            standard_error: None,
-        }
+        Self { exponent, source, estimate: None, standard_error: None }
     }
 
     /// Returns whether its numbers are in range.
     pub(crate) fn is_valid(&self) -> bool {
         let finite = self.estimate.is_none_or(f64::is_finite);
-        let error = self
-            .standard_error
-            .is_none_or(|e| e.is_finite() && e >= 0.0);
+        let error = self.standard_error.is_none_or(|e| e.is_finite() && e >= 0.0);
         self.exponent.abs() <= MOST_EXPONENT && finite && error
     }
 }
@@ -199,12 +192,15 @@ impl Exponent {
 impl Law {
     /// The law that is usual for a quantity and a contact.
     ///
-    /// A tool: frequencies stay, as of 81 materials of the Penn Haptic Texture Toolkit (H. Culbertson, J. J. Lopez Delgado,
-    /// K. J. Kuchenbecker 2014), whose levels rise with `v^0.43 F^0.07` (medians). A bare finger: vibrations scale in time
-    /// with the speed (C. M. Greenspon, K. R. McLellan, J. D. Lieber, S. J. Bensmaia 2020; B. Delhaye, V. Hayward, P. Lefèvre,
-    /// J.-L. Thonnard 2012), so that velocity and acceleration rise with it and its square, and the friction force with the
-    /// normal force. Unknown: medians of recorded strokes of two materials, `v^0.75`, and half a power of the force. With another
-    /// exponent of frequencies, measured or given, the levels lie between those of a relief and of what keeps its frequencies.
+    /// A tool: frequencies stay, as of 81 materials of the Penn Haptic Texture Toolkit (H.
+    /// Culbertson, J. J. Lopez Delgado, K. J. Kuchenbecker 2014), whose levels rise with
+    /// `v^0.43 F^0.07` (medians). A bare finger: vibrations scale in time with the speed (C. M.
+    /// Greenspon, K. R. McLellan, J. D. Lieber, S. J. Bensmaia 2020; B. Delhaye, V. Hayward, P.
+    /// Lefèvre, J.-L. Thonnard 2012), so that velocity and acceleration rise with it and its
+    /// square, and the friction force with the normal force. Unknown: medians of recorded strokes
+    /// of two materials, `v^0.75`, and half a power of the force. With another exponent of
+    /// frequencies, measured or given, the levels lie between those of a relief and of what keeps
+    /// its frequencies.
     pub const fn assumed(quantity: Quantity, contact: Contact) -> Self {
         let a = match contact {
             Contact::Finger => 1.0,
@@ -218,11 +214,12 @@ impl Law {
         }
     }
 
-    /// Returns this law for another quantity or contact: what is assumed is assumed anew, what is measured is drawn to it, and
-    /// what is given stays.
+    /// Returns this law for another quantity or contact: what is assumed is assumed anew, what is
+    /// measured is drawn to it, and what is given stays.
     ///
-    /// The levels that are assumed are those of the frequencies that the law has: a surface that is measured to be read as a relief has
-    /// the level of one, whatever slid over it, and one whose frequencies stay does not.
+    /// The levels that are assumed are those of the frequencies that the law has: a surface that is
+    /// measured to be read as a relief has the level of one, whatever slid over it, and one whose
+    /// frequencies stay does not.
     #[must_use]
     pub fn reassumed(&self, quantity: Quantity, contact: Contact) -> Self {
         let mut assumed = Self::assumed(quantity, contact);
@@ -269,7 +266,8 @@ impl Law {
     }
 }
 
-/// As people read it: `frequency over speed ^1.00 (assumed), level over speed ^0.43 (measured, 0.40 ± 0.10), ...`.
+/// As people read it:
+/// `frequency over speed ^1.00 (assumed), level over speed ^0.43 (measured, 0.40 ± 0.10), ...`.
 impl fmt::Display for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, (key, exponent)) in self.exponents().into_iter().enumerate() {
@@ -285,8 +283,8 @@ impl fmt::Display for Law {
     }
 }
 
-/// The exponents of the level that are assumed, over speed and force: those of surfaces whose frequencies stay, and those of a relief,
-/// mixed by the exponent of frequencies, 0 to 1.
+/// The exponents of the level that are assumed, over speed and force: those of surfaces whose
+/// frequencies stay, and those of a relief, mixed by the exponent of frequencies, 0 to 1.
 const fn assumed_levels(frequency_speed: f64, quantity: Quantity, contact: Contact) -> [f64; 2] {
     let stays = match contact {
         Contact::Tool => [0.43, 0.07],
@@ -298,10 +296,7 @@ const fn assumed_levels(frequency_speed: f64, quantity: Quantity, contact: Conta
         _ => [0.0, 1.0],
     };
     let part = frequency_speed.clamp(0.0, 1.0);
-    [
-        stays[0] + part * (relief[0] - stays[0]),
-        stays[1] + part * (relief[1] - stays[1]),
-    ]
+    [stays[0] + part * (relief[0] - stays[0]), stays[1] + part * (relief[1] - stays[1])]
 }
 
 /// `x^exponent`, exactly x for an exponent of 1, and 1 for one of 0.

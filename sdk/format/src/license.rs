@@ -46,9 +46,8 @@ pub fn check_license(license: &str) -> Result<(), LicenseError> {
     match expression::check(license) {
         Ok(None) => Ok(()),
         Ok(Some(id)) => Err(LicenseError::Unlisted { id: id.to_owned() }),
-        Err(reason) => Err(LicenseError::Syntax {
-            license: license.to_owned(),
-            reason: reason.to_owned(),
-        }),
+        Err(reason) => {
+            Err(LicenseError::Syntax { license: license.to_owned(), reason: reason.to_owned() })
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! `manifest.json`: the metadata of an asset.
 //!
-//! Absent and empty keys are left out when the manifest is written. Keys that this version does not know are
-//! kept and written back ([`Manifest::other`]).
+//! Absent and empty keys are left out when the manifest is written. Keys that this version does not
+//! know are kept and written back ([`Manifest::other`]).
 
 use std::collections::BTreeMap;
 
@@ -82,7 +82,8 @@ pub struct Manifest {
     /// The conditions (speed and force) at which the texture was recorded.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub conditions: Vec<Condition>,
-    /// How frequencies and level follow a motion outside the conditions; else what is usual for `contact` and `quantity`.
+    /// How frequencies and level follow a motion outside the conditions; else what is usual for
+    /// `contact` and `quantity`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub law: Option<Law>,
     /// The texture's spectrum, once per model.
@@ -108,7 +109,8 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// Returns the law that is stated, else the one that is assumed for the quantity and the contact.
+    /// Returns the law that is stated, else the one that is assumed for the quantity and the
+    /// contact.
     pub fn law(&self) -> Law {
         let assumed = || Law::assumed(self.quantity, self.contact);
         self.law.unwrap_or_else(assumed)
@@ -200,7 +202,8 @@ pub struct Source {
     pub rate_hz: f64,
     /// Number of segments that were averaged.
     pub segments: u64,
-    /// BLAKE3 of the recording's file, 64 hexadecimal digits, by which recordings of one name are told apart.
+    /// BLAKE3 of the recording's file, 64 hexadecimal digits, by which recordings of one name are
+    /// told apart.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "^[0-9A-Fa-f]{64}$"))]
     pub blake3: Option<String>,
@@ -222,22 +225,24 @@ pub struct Condition {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub force_n: Option<f64>,
-    /// RMS over nine bands of the difference between odd and even blocks of time, over √2, decibels: by how much two recordings like
-    /// this one differ.
+    /// RMS over nine bands of the difference between odd and even blocks of time, over √2,
+    /// decibels: by how much two recordings like this one differ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub repeatability_rms_db: Option<f64>,
-    /// Number of segments that were averaged at this condition; 0 for one that was computed between recorded ones.
+    /// Number of segments that were averaged at this condition; 0 for one that was computed between
+    /// recorded ones.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segments: Option<u64>,
 }
 
-/// Largest relative difference of two speeds, or two forces, that count as the same: a hand asked to keep a speed
-/// or a force is no more accurate.
+/// Largest relative difference of two speeds, or two forces, that count as the same: a hand asked
+/// to keep a speed or a force is no more accurate.
 pub const SAME_CONDITION: f64 = 0.05;
 
 impl Condition {
-    /// Whether two speeds, or two forces, are the same within [`SAME_CONDITION`]. Both must not be negative.
+    /// Whether two speeds, or two forces, are the same within [`SAME_CONDITION`]. Both must not be
+    /// negative.
     pub fn is_same(a: f64, b: f64) -> bool {
         (a - b).abs() <= SAME_CONDITION * a.max(b)
     }
@@ -266,8 +271,8 @@ pub struct Representation {
     /// The conditions at which the model is fitted, in the order of the parameter block.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub at: Vec<AtCondition>,
-    /// The triangles between conditions that a player interpolates in, by indices into `at`; none for those of the specification's
-    /// rules. [`crate::check_triangles`] says which are valid.
+    /// The triangles between conditions that a player interpolates in, by indices into `at`; none
+    /// for those of the specification's rules. [`crate::check_triangles`] says which are valid.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub triangles: Vec<Triangle>,
     /// Archive entry that holds the parameter block.
@@ -338,9 +343,10 @@ fn is_zero(x: &f64) -> bool {
 }
 
 impl Representation {
-    /// Returns the error by a measure, decibels, by which a program chooses among the representations of an asset: the error at the
-    /// first condition, with which a voice starts. Where that one was not measured, for example since it was computed between
-    /// recorded ones, it is [`Self::largest_error_db`]. `None` if no condition was measured.
+    /// Returns the error by a measure, decibels, by which a program chooses among the
+    /// representations of an asset: the error at the first condition, with which a voice starts.
+    /// Where that one was not measured, for example since it was computed between recorded ones, it
+    /// is [`Self::largest_error_db`]. `None` if no condition was measured.
     ///
     /// ```no_run
     /// # use htex_format::ErrorMeasure;
@@ -355,7 +361,8 @@ impl Representation {
         first.or_else(|| self.largest_error_db(measure))
     }
 
-    /// Returns the largest error by a measure over the conditions that were measured, decibels; `None` if no condition was.
+    /// Returns the largest error by a measure over the conditions that were measured, decibels;
+    /// `None` if no condition was.
     pub fn largest_error_db(&self, measure: ErrorMeasure) -> Option<f64> {
         let measured = self.at.iter().filter_map(|at| at.error_db(measure));
         measured.max_by(f64::total_cmp)
@@ -364,9 +371,7 @@ impl Representation {
 
 impl AtCondition {
     fn error_db(&self, measure: ErrorMeasure) -> Option<f64> {
-        self.quality
-            .as_ref()
-            .and_then(|quality| measure.of(quality))
+        self.quality.as_ref().and_then(|quality| measure.of(quality))
     }
 }
 
@@ -384,8 +389,8 @@ impl AtCondition {
 pub struct AtCondition {
     /// Index into the asset's conditions.
     pub condition: usize,
-    /// RMS of the fitted spectrum in the band, in the asset's unit; the parameters describe a shape of
-    /// unit RMS.
+    /// RMS of the fitted spectrum in the band, in the asset's unit; the parameters describe a shape
+    /// of unit RMS.
     #[schemars(range(min = 0))]
     pub level_rms: f64,
     /// Agreement with the recording.

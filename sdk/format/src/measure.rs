@@ -1,5 +1,6 @@
-//! The measures of the agreement of a spectrum with a recorded one, a row each. The keys of `quality` with their checks, schema and
-//! rounding, the columns of tables and reports, and the documents come from these rows; `htex-author` has the function of each.
+//! The measures of the agreement of a spectrum with a recorded one, a row each. The keys of
+//! `quality` with their checks, schema and rounding, the columns of tables and reports, and the
+//! documents come from these rows; `htex-author` has the function of each.
 
 use std::fmt;
 
@@ -184,7 +185,8 @@ measures! {
         judged: Judged::Difference,
         stored: false,
     }
-    /// RMS over third-octave bands of the difference of what is above a fingertip's detection threshold, decibels.
+    /// RMS over third-octave bands of the difference of what is above a fingertip's detection
+    /// threshold, decibels.
     Felt {
         key: "felt_error_rms_db",
         of_samples: Some("Felt difference of rendered samples, decibels."),
@@ -209,9 +211,7 @@ impl Measure {
 
     /// Returns the measures that are taken of magnitudes and of rendered samples.
     pub fn of_both() -> impl Iterator<Item = Self> + Clone {
-        Self::ALL
-            .into_iter()
-            .filter(|m| m.row().of_samples.is_some())
+        Self::ALL.into_iter().filter(|m| m.row().of_samples.is_some())
     }
 
     /// Returns the key in JSON.
@@ -225,9 +225,7 @@ impl Measure {
     /// Returns the heading of a column with a unit, `third octaves / dB`.
     pub fn heading(self) -> String {
         match self.row() {
-            MeasureRow {
-                short, unit: "", ..
-            } => (*short).to_owned(),
+            MeasureRow { short, unit: "", .. } => (*short).to_owned(),
             MeasureRow { short, unit, .. } => format!("{short} / {unit}"),
         }
     }
@@ -261,7 +259,8 @@ impl ErrorMeasure {
         }
     }
 
-    /// Returns the error by this measure, from the model's magnitudes; `None` if it was not measured.
+    /// Returns the error by this measure, from the model's magnitudes; `None` if it was not
+    /// measured.
     pub fn of(self, quality: &Quality) -> Option<f64> {
         quality.get(self.measure())
     }

@@ -39,8 +39,8 @@ pub(crate) fn pack(steps: &[u8]) -> Vec<u8> {
     out.bytes
 }
 
-/// Unpacks `count` steps from the start of `bytes` and returns them with the bytes they take. Returns `None` when
-/// the bytes end too early or differ from what [`pack`] writes.
+/// Unpacks `count` steps from the start of `bytes` and returns them with the bytes they take.
+/// Returns `None` when the bytes end too early or differ from what [`pack`] writes.
 pub(crate) fn unpack(bytes: &[u8], count: usize) -> Option<(Vec<u8>, usize)> {
     if count == 0 {
         return Some((Vec::new(), 0));
@@ -146,7 +146,8 @@ mod tests {
 
     #[test]
     fn the_bits_are_those_of_the_specification() {
-        // k = 1 and 40; then -1, 0, 1 and 3 as 1, 0, 2 and 6: 001 00101000 01 00 100 11100, and one zero.
+        // k = 1 and 40; then -1, 0, 1 and 3 as 1, 0, 2 and 6: 001 00101000 01 00 100 11100, and one
+        // zero.
         let steps = [40, 39, 39, 40, 43];
         assert_eq!(pack(&steps), [0b0010_0101, 0b0000_1001, 0b0011_1000]);
         assert_eq!(unpack(&pack(&steps), 5).unwrap(), (steps.to_vec(), 3));

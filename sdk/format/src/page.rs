@@ -27,9 +27,7 @@ pub fn validation_page() -> String {
     let mut head = format!("{HEAD}| stage | findings | errors end the reading |\n|---|---|---|\n");
     for stage in STAGES {
         let ends = if stage.ends { "yes" } else { "no" };
-        let codes: Vec<String> = rules_of(*stage)
-            .map(|rule| format!("`{}`", rule.code))
-            .collect();
+        let codes: Vec<String> = rules_of(*stage).map(|rule| format!("`{}`", rule.code)).collect();
         head += &format!("| {} | {} | {ends} |\n", stage.of, codes.join(", "));
     }
     head += "\n## Codes\n";

@@ -48,7 +48,8 @@ impl Plugin {
             .is_some_and(|(key, made)| key.verify_strict(&self.signed_text(), &made).is_ok())
     }
 
-    /// Returns the signed text: `htex plugin 1`, the model, the version and the hash, each followed by a zero byte.
+    /// Returns the signed text: `htex plugin 1`, the model, the version and the hash, each followed
+    /// by a zero byte.
     fn signed_text(&self) -> Vec<u8> {
         let mut text = DOMAIN.to_vec();
         for part in [&self.model, &self.version, &self.blake3] {

@@ -1,4 +1,5 @@
-//! Agreement of a representation with the recorded spectrum: `quality` and `left_out`. Their JSON is in [`crate::quality_json`].
+//! Agreement of a representation with the recorded spectrum: `quality` and `left_out`. Their JSON
+//! is in [`crate::quality_json`].
 
 use std::collections::BTreeMap;
 
@@ -106,7 +107,8 @@ pub struct Quality {
     pub by_samples: Measures,
     /// Energy relative to the recording's in nine bands, decibels.
     pub band_error_db: Vec<f64>,
-    /// Nine-band RMS difference between the spectra of the fitted and of the stored parameters, decibels.
+    /// Nine-band RMS difference between the spectra of the fitted and of the stored parameters,
+    /// decibels.
     pub rounding_error_db: Option<f64>,
 }
 
@@ -122,8 +124,8 @@ impl Quality {
     }
 }
 
-/// Left-out error: agreement of blocks of time, near a condition, with what a player plays of a fit without them, by the measures whose row
-/// has `left_out`.
+/// Left-out error: agreement of blocks of time, near a condition, with what a player plays of a fit
+/// without them, by the measures whose row has `left_out`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeftOut(pub Measures);
 

@@ -1,4 +1,5 @@
-//! `quality` and `left_out` in JSON: their keys, from the table of measures, with which they are read, written, checked and described.
+//! `quality` and `left_out` in JSON: their keys, from the table of measures, with which they are
+//! read, written, checked and described.
 
 use std::borrow::Cow;
 use std::fmt;

@@ -87,7 +87,8 @@ impl Quantity {
         }
     }
 
-    /// Formats a value with its unit and an SI prefix that leaves one to three digits before the point.
+    /// Formats a value with its unit and an SI prefix that leaves one to three digits before the
+    /// point.
     ///
     /// ```
     /// use htex_format::Quantity;
@@ -97,10 +98,8 @@ impl Quantity {
     /// ```
     pub fn text(self, value: f64) -> String {
         let prefixes = [(1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n")];
-        let (size, prefix) = prefixes
-            .into_iter()
-            .find(|(size, _)| value.abs() >= *size)
-            .unwrap_or((1.0, ""));
+        let (size, prefix) =
+            prefixes.into_iter().find(|(size, _)| value.abs() >= *size).unwrap_or((1.0, ""));
         let number = value / size;
         let digits = match number.abs() {
             large if large >= 100.0 => 1,
@@ -110,9 +109,9 @@ impl Quantity {
         format!("{number:.digits$} {prefix}{}", self.unit())
     }
 
-    /// Returns the largest level (RMS) of an asset, in the unit: a limit that keeps samples within 32-bit floats in
-    /// any scene. The limits of velocity and displacement are those of a vibration of the largest acceleration at
-    /// 20 Hz (8.0e3 m/s and 63 m), rounded up to powers of ten.
+    /// Returns the largest level (RMS) of an asset, in the unit: a limit that keeps samples within
+    /// 32-bit floats in any scene. The limits of velocity and displacement are those of a vibration
+    /// of the largest acceleration at 20 Hz (8.0e3 m/s and 63 m), rounded up to powers of ten.
     pub const fn largest_level(self) -> f64 {
         match self {
             Self::LateralForce | Self::NormalForce | Self::Acceleration => 1e6,

@@ -1,5 +1,5 @@
-//! The licence and the author of a texture as text, for files that are made of it: two lines of REUSE (<https://reuse.software>), which
-//! are read out of any comment or description.
+//! The licence and the author of a texture as text, for files that are made of it: two lines of
+//! REUSE (<https://reuse.software>), which are read out of any comment or description.
 //!
 //! Every way out of an asset takes its text from here, so that all carry the same words.
 
@@ -43,10 +43,7 @@ impl Rights {
     /// Rights of these words; an empty word counts as missing.
     #[must_use]
     pub fn new(license: Option<&str>, author: Option<&str>) -> Self {
-        Self {
-            license: license.and_then(line),
-            author: author.and_then(line),
-        }
+        Self { license: license.and_then(line), author: author.and_then(line) }
     }
 
     /// The rights that an asset states.
@@ -55,7 +52,8 @@ impl Rights {
         Self::new(manifest.license.as_deref(), manifest.author.as_deref())
     }
 
-    /// The rights of what several assets are played in: all licences apply, and all authors are named.
+    /// The rights of what several assets are played in: all licences apply, and all authors are
+    /// named.
     ///
     /// ```
     /// use htex_format::Rights;
@@ -106,9 +104,7 @@ impl Rights {
     #[must_use]
     pub fn commented(&self, before: &str) -> String {
         let text = self.to_text();
-        text.lines()
-            .map(|line| format!("{before}{line}\n"))
-            .collect()
+        text.lines().map(|line| format!("{before}{line}\n")).collect()
     }
 
     /// Reads the first licence and the first author in a text.
@@ -120,21 +116,16 @@ impl Rights {
     /// The words of this, completed by the words of another.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
-        Self {
-            license: self.license.or(other.license),
-            author: self.author.or(other.author),
-        }
+        Self { license: self.license.or(other.license), author: self.author.or(other.author) }
     }
 
-    /// Its chunk of a WAV file: `LIST` of `INFO`, with the licence as copyright (`ICOP`) and the author as artist (`IART`); empty if nothing is stated.
+    /// Its chunk of a WAV file: `LIST` of `INFO`, with the licence as copyright (`ICOP`) and the
+    /// author as artist (`IART`); empty if nothing is stated.
     #[must_use]
     pub fn riff(&self) -> Vec<u8> {
         let mut list = b"INFO".to_vec();
         let author = self.author.as_ref().map(|own| (b"IART", own.clone()));
-        let license = self
-            .license
-            .as_ref()
-            .map(|own| (b"ICOP", format!("{LICENSE}{own}")));
+        let license = self.license.as_ref().map(|own| (b"ICOP", format!("{LICENSE}{own}")));
         for (id, text) in author.into_iter().chain(license) {
             list.extend(chunk(id, &[text.as_bytes(), &[0]].concat()));
         }
@@ -144,7 +135,8 @@ impl Rights {
         }
     }
 
-    /// Adds the chunk to the end of a WAV file; the samples stay as they are. A file that would have more than 4 GiB stays as it is.
+    /// Adds the chunk to the end of a WAV file; the samples stay as they are. A file that would
+    /// have more than 4 GiB stays as it is.
     ///
     /// # Errors
     /// When the file cannot be written.
@@ -165,8 +157,8 @@ impl Rights {
         wav.seek(SeekFrom::End(0)).map(drop)
     }
 
-    /// Adds the rights to a file that is written: the chunk to a WAV, else [`license_file`] beside it. The file is replaced when it is
-    /// complete. A device or a pipe has none.
+    /// Adds the rights to a file that is written: the chunk to a WAV, else [`license_file`] beside
+    /// it. The file is replaced when it is complete. A device or a pipe has none.
     ///
     /// # Errors
     /// When a file cannot be read or written.
@@ -227,12 +219,10 @@ fn after<'a>(tag: &str, text: &'a str) -> Option<&'a str> {
     rest.get(..end.unwrap_or(rest.len()))
 }
 
-/// One line without control characters and without what would end a comment; `None` if nothing is left.
+/// One line without control characters and without what would end a comment; `None` if nothing is
+/// left.
 fn line(words: &str) -> Option<String> {
-    let mut plain: String = words
-        .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
+    let mut plain: String = words.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     for end in ENDS {
         plain = plain.replace(end, " ");
     }

@@ -4,8 +4,8 @@ use crate::manifest::AtCondition;
 use crate::{Manifest, Quality};
 
 impl Manifest {
-    /// Returns the manifest as it is read back: agreement and repeatability to four decimals, levels to
-    /// nine significant digits. Rounding again changes nothing.
+    /// Returns the manifest as it is read back: agreement and repeatability to four decimals,
+    /// levels to nine significant digits. Rounding again changes nothing.
     pub fn rounded(&self) -> Self {
         let mut rounded = self.clone();
         for condition in &mut rounded.conditions {

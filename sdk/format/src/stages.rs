@@ -15,20 +15,13 @@ pub(crate) const HEADERS: Stage = stage(
              record or a local header at a wrong position, no further one is checked",
     true,
 );
-pub(crate) const DATA: Stage = stage(
-    "the entries' data, unpacked, in the directory's order",
-    true,
-);
+pub(crate) const DATA: Stage = stage("the entries' data, unpacked, in the directory's order", true);
 pub(crate) const MIMETYPE: Stage = stage("`mimetype`", false);
-pub(crate) const MANIFEST: Stage = stage(
-    "the manifest as JSON, its version and its quantity; the first error only",
-    true,
-);
+pub(crate) const MANIFEST: Stage =
+    stage("the manifest as JSON, its version and its quantity; the first error only", true);
 pub(crate) const UNKNOWN_KEYS: Stage = stage("unknown keys, sorted by pointer", false);
-pub(crate) const TEXTURE: Stage = stage(
-    "the whole texture: its name, licence (one finding), DOI, unit and band",
-    false,
-);
+pub(crate) const TEXTURE: Stage =
+    stage("the whole texture: its name, licence (one finding), DOI, unit and band", false);
 pub(crate) const RECORDINGS: Stage = stage(
     "recordings, in their order, of each its rate, its hash and then its name; then the parts of a mixture",
     false,
@@ -39,10 +32,8 @@ pub(crate) const REPRESENTATIONS: Stage = stage(
     false,
 );
 pub(crate) const PLUGINS: Stage = stage("plugins, in their order", false);
-pub(crate) const EXTENSIONS: Stage = stage(
-    "extensions by name, and those required in their order",
-    false,
-);
+pub(crate) const EXTENSIONS: Stage =
+    stage("extensions by name, and those required in their order", false);
 pub(crate) const FIELDS: Stage = stage(
     "fields, compared with those of models that the reader has: stored fields, then absent ones",
     false,
@@ -57,16 +48,12 @@ pub(crate) const REFERENCE: Stage = stage(
              entry if the band is invalid",
     false,
 );
-pub(crate) const MODULES: Stage = stage(
-    "the plugins' modules, in their order, their entries as above",
-    false,
-);
+pub(crate) const MODULES: Stage =
+    stage("the plugins' modules, in their order, their entries as above", false);
 pub(crate) const UNREFERENCED: Stage =
     stage("unreferenced entries, in the directory's order", false);
-pub(crate) const SCHEMAS: Stage = stage(
-    "JSON Schemas, in validators that check documents against them",
-    false,
-);
+pub(crate) const SCHEMAS: Stage =
+    stage("JSON Schemas, in validators that check documents against them", false);
 
 /// All stages of reading an asset, in order.
 pub const STAGES: &[Stage] = &[
@@ -93,7 +80,5 @@ pub const STAGES: &[Stage] = &[
 
 /// The rules of a stage; a few belong to several.
 pub fn rules_of(stage: Stage) -> impl Iterator<Item = &'static Rule> {
-    RULES
-        .iter()
-        .filter(move |rule| rule.stages.contains(&stage))
+    RULES.iter().filter(move |rule| rule.stages.contains(&stage))
 }

@@ -1,11 +1,13 @@
 //! Triangles that a representation stores: which of them a player can interpolate in.
 //!
-//! A mix is continuous in the motion if the triangles cover the convex hull of the conditions once: then no motion has two mixes, and
-//! outside of them the nearest point is one point. Tests of all pairs of triangles would take time proportional to the square of
-//! their number. What is tested here takes little more time than to sort them: of triangles that all turn counterclockwise, each
-//! directed edge belongs to one; the edges without a neighbour are one outline; it turns left at each corner, once around. The
-//! triangles at a point are as many as the outline's turns around it, because the edges between two triangles cancel, so there is
-//! one at each point inside and none outside.
+//! A mix is continuous in the motion if the triangles cover the convex hull of the conditions once:
+//! then no motion has two mixes, and outside of them the nearest point is one point. Tests of all
+//! pairs of triangles would take time proportional to the square of their number. What is tested
+//! here takes little more time than to sort them: of triangles that all turn counterclockwise, each
+//! directed edge belongs to one; the edges without a neighbour are one outline; it turns left at
+//! each corner, once around. The triangles at a point are as many as the outline's turns around it,
+//! because the edges between two triangles cancel, so there is one at each point inside and none
+//! outside.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -20,11 +22,7 @@ pub type Triangle = [usize; 3];
 pub enum TrianglesError {
     /// A corner is no element of `at`.
     #[error("corner {corner} does not exist; `at` has {conditions} elements, counted from 0")]
-    Corner {
-        triangle: usize,
-        corner: usize,
-        conditions: usize,
-    },
+    Corner { triangle: usize, corner: usize, conditions: usize },
     /// A triangle has a corner twice.
     #[error("corner {corner} is there twice; a triangle has three different corners")]
     Twice { triangle: usize, corner: usize },
@@ -40,12 +38,7 @@ pub enum TrianglesError {
     #[error(
         "the triangle overlaps triangle {other}, on the same side of the edge from {from} to {to}; remove one of them"
     )]
-    Edge {
-        triangle: usize,
-        other: usize,
-        from: usize,
-        to: usize,
-    },
+    Edge { triangle: usize, other: usize, from: usize, to: usize },
     /// A condition is a corner of no triangle.
     #[error(
         "element {condition} of `at` is the corner of no triangle; add triangles to it, or remove it"
@@ -72,11 +65,12 @@ impl TrianglesError {
     }
 }
 
-/// Largest ratio of twice a triangle's area to the square of its longest side at which its corners count as on a line.
+/// Largest ratio of twice a triangle's area to the square of its longest side at which its corners
+/// count as on a line.
 const FLAT: f64 = 1e-9;
 
-/// Checks triangles between conditions, each a speed, mm/s, and a force, newtons, finite and not negative. No triangles are
-/// valid: then none are stored.
+/// Checks triangles between conditions, each a speed, mm/s, and a force, newtons, finite and not
+/// negative. No triangles are valid: then none are stored.
 ///
 /// ```
 /// use htex_format::check_triangles;
@@ -88,7 +82,8 @@ const FLAT: f64 = 1e-9;
 /// ```
 ///
 /// # Errors
-/// The first rule of section 2 of the specification that the triangles break, in the order of that text.
+/// The first rule of section 2 of the specification that the triangles break, in the order of that
+/// text.
 pub fn check_triangles(
     conditions: &[[f64; 2]],
     triangles: &[Triangle],
@@ -116,11 +111,7 @@ pub(crate) fn check_corners(
     for (triangle, corners) in triangles.iter().enumerate() {
         let [a, b, c] = *corners;
         if let Some(corner) = corners.iter().copied().find(|i| *i >= conditions) {
-            return Err(TrianglesError::Corner {
-                triangle,
-                corner,
-                conditions,
-            });
+            return Err(TrianglesError::Corner { triangle, corner, conditions });
         }
         if a == b || b == c || c == a {
             let corner = if a == b { a } else { c };
@@ -164,7 +155,8 @@ impl Turn {
     fn of([a, b, c]: [[f64; 2]; 3]) -> Self {
         let longest2 = distance2(a, b).max(distance2(b, c)).max(distance2(c, a));
         let area = cross(between(a, b), between(a, c));
-        // Not flat only if the area is known to be larger: two equal points, or numbers too small to multiply, are.
+        // Not flat only if the area is known to be larger: two equal points, or numbers too small
+        // to multiply, are.
         if area > FLAT * longest2 {
             Self::Left
         } else if -area > FLAT * longest2 {
@@ -195,19 +187,12 @@ fn outline(upright: &[Triangle]) -> Result<BTreeMap<usize, usize>, TrianglesErro
         for edge in [[*a, *b], [*b, *c], [*c, *a]] {
             if let Some(other) = owners.insert(edge, triangle) {
                 let [from, to] = edge;
-                return Err(TrianglesError::Edge {
-                    triangle,
-                    other,
-                    from,
-                    to,
-                });
+                return Err(TrianglesError::Edge { triangle, other, from, to });
             }
         }
     }
     let mut outline = BTreeMap::new();
-    let outer = owners
-        .keys()
-        .filter(|[from, to]| !owners.contains_key(&[*to, *from]));
+    let outer = owners.keys().filter(|[from, to]| !owners.contains_key(&[*to, *from]));
     for [from, to] in outer {
         if outline.insert(*from, *to).is_some() {
             return Err(TrianglesError::Outline { condition: *from });
@@ -237,10 +222,7 @@ fn check_outline(
         corner = next(corner);
     }
     // A second outline, as of a gap or a separate part, or one that turns around twice.
-    let apart = outline
-        .keys()
-        .copied()
-        .find(|other| !passed.contains(other));
+    let apart = outline.keys().copied().find(|other| !passed.contains(other));
     match apart.or_else(|| (around > 1.5 * TAU).then_some(first)) {
         Some(condition) => Err(TrianglesError::Outline { condition }),
         None => Ok(()),

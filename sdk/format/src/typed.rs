@@ -1,14 +1,16 @@
 //! Deserializer from JSON values to types, stricter than serde's: an array is not accepted for an
 //! object, an object not for a string variant, and `null` not for a key of a type.
 //!
-//! JSON is parsed once: a text becomes a value without duplicate keys, and the value becomes a type. JSON pointers come
-//! from the same traversal.
+//! JSON is parsed once: a text becomes a value without duplicate keys, and the value becomes a
+//! type. JSON pointers come from the same traversal.
 //!
-//! The crates `serde_path_to_error` and `serde_ignored` do not replace it. Over serde_json's deserializer they change ten
-//! reports of `spec/conformance`: seven `json_type…`, `json_unknown_key_store`, `valid_newer_store`,
-//! `valid_whole_numbers`. Over this deserializer without its pointers they change three: `json_type_object_as_word` and
-//! `json_type_word_as_object`, whose pointer becomes the variant's, and `json_unknown_key_store`, which gets no finding,
-//! because `serde_ignored` sees no keys beside a variant's key, and leaves the variant out of the pointers inside it.
+//! The crates `serde_path_to_error` and `serde_ignored` do not replace it. Over serde_json's
+//! deserializer they change ten reports of `spec/conformance`: seven `json_type…`,
+//! `json_unknown_key_store`, `valid_newer_store`, `valid_whole_numbers`. Over this deserializer
+//! without its pointers they change three: `json_type_object_as_word` and
+//! `json_type_word_as_object`, whose pointer becomes the variant's, and `json_unknown_key_store`,
+//! which gets no finding, because `serde_ignored` sees no keys beside a variant's key, and leaves
+//! the variant out of the pointers inside it.
 
 use std::cell::RefCell;
 use std::fmt::{self, Write};
@@ -50,9 +52,10 @@ pub(crate) fn typed<T: DeserializeOwned>(value: &Value) -> Result<(T, Vec<String
 /// The traversal of a value.
 #[derive(Default)]
 struct Walk<'de> {
-    /// Way to the value that is being read: the last child that was taken, or the parent once there are no more. After an
-    /// error it stays at the value that has it. It is written as a pointer only where one is asked for: written at each
-    /// key, a manifest of 1 kB took 4.0 instead of 2.2 us.
+    /// Way to the value that is being read: the last child that was taken, or the parent once there
+    /// are no more. After an error it stays at the value that has it. It is written as a pointer
+    /// only where one is asked for: written at each key, a manifest of 1 kB took 4.0 instead of 2.2
+    /// us.
     way: RefCell<Vec<Step<'de>>>,
     /// Pointers to the unknown keys so far.
     unknown: RefCell<Vec<String>>,
@@ -106,10 +109,7 @@ struct Typed<'de, 'w> {
 impl<'de> Typed<'de, '_> {
     /// Deserializes an integer up to 2^53, also if it is written as `1.0` or `1e0`.
     fn whole<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
-        let size = self
-            .value
-            .as_u64()
-            .or(self.value.as_i64().map(i64::unsigned_abs));
+        let size = self.value.as_u64().or(self.value.as_i64().map(i64::unsigned_abs));
         if let Some(size) = size.filter(|size| *size > EXACT as u64) {
             let got = Unexpected::Unsigned(size);
             return Err(de::Error::invalid_type(got, &"a whole number up to 2^53"));
@@ -236,7 +236,8 @@ impl<'de> Deserializer<'de> for Typed<'de, '_> {
         self.deserialize_any(visitor)
     }
 
-    /// Deserializes a string, or an object with a variant's key; other keys beside it are unknown keys.
+    /// Deserializes a string, or an object with a variant's key; other keys beside it are unknown
+    /// keys.
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         _name: &'static str,
@@ -327,9 +328,9 @@ impl<'de> VariantAccess<'de> for Variant<'de, '_> {
         let word = self.word;
         match self.value {
             None => Ok(()),
-            Some(_) => Err(de::Error::custom(format!(
-                "{word:?} has no value; write {word:?} as a string"
-            ))),
+            Some(_) => {
+                Err(de::Error::custom(format!("{word:?} has no value; write {word:?} as a string")))
+            }
         }
     }
 
@@ -373,10 +374,7 @@ impl de::Error for TypeError {
     }
 
     fn custom<T: fmt::Display>(message: T) -> Self {
-        Self {
-            pointer: String::new(),
-            message: message.to_string(),
-        }
+        Self { pointer: String::new(), message: message.to_string() }
     }
 }
 

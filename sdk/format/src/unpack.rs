@@ -1,7 +1,7 @@
 //! Unpacking of an entry, with checks of its checksum and the end of its stream.
 //!
-//! Every entry is unpacked and checked before the manifest is read, by the inflater itself: the crate `zip` does not
-//! report whether bytes follow the end of a stream.
+//! Every entry is unpacked and checked before the manifest is read, by the inflater itself: the
+//! crate `zip` does not report whether bytes follow the end of a stream.
 
 use std::borrow::Cow;
 
@@ -42,10 +42,7 @@ pub(crate) fn unpack<'a>(data: &'a [u8], common: &Common) -> Result<Cow<'a, [u8]
     if crc == common.crc {
         return Ok(bytes);
     }
-    Err(Damage::Checksum {
-        found: crc,
-        stated: common.crc,
-    })
+    Err(Damage::Checksum { found: crc, stated: common.crc })
 }
 
 /// The checksum of ZIP, of the inflater: its tables are in every program that reads an asset.
@@ -64,17 +61,10 @@ fn inflate(data: &[u8], size: usize) -> Result<Vec<u8>, Damage> {
         .map_err(|_| Damage::Invalid)?;
     let (used, unpacked) = (stream.total_in(), stream.total_out());
     if status != Status::StreamEnd {
-        return Err(if unpacked > size as u64 {
-            Damage::TooLong(size)
-        } else {
-            Damage::Endless
-        });
+        return Err(if unpacked > size as u64 { Damage::TooLong(size) } else { Damage::Endless });
     }
     if unpacked != size as u64 {
-        return Err(Damage::Length {
-            found: unpacked,
-            stated: size,
-        });
+        return Err(Damage::Length { found: unpacked, stated: size });
     }
     let behind = data.len() as u64 - used;
     if behind > 0 {

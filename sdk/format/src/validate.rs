@@ -29,13 +29,11 @@ pub fn validate(bytes: &[u8], limits: &Limits) -> Report {
 /// Validates as [`validate`] does, and compares fields with those of the known models.
 pub fn validate_with(bytes: &[u8], limits: &Limits, known: KnownModel<'_>) -> Report {
     let (asset, findings) = inspect(bytes, limits, known);
-    Report {
-        valid: asset.is_some(),
-        findings,
-    }
+    Report { valid: asset.is_some(), findings }
 }
 
-/// Returns the manifest of an asset as JSON, valid or not; `None` when it cannot be unpacked or is not JSON.
+/// Returns the manifest of an asset as JSON, valid or not; `None` when it cannot be unpacked or is
+/// not JSON.
 pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
     let mut findings = Findings::default();
     let archive = Archive::open(bytes, limits, &mut findings)?;
@@ -52,11 +50,7 @@ pub(crate) fn inspect(
     let mut findings = Findings::default();
     let asset = read(bytes, limits, known, &mut findings).filter(|_| !findings.has_errors());
     let findings = findings.into_list();
-    let notes = findings
-        .iter()
-        .filter(|f| f.severity == Severity::Info)
-        .cloned()
-        .collect();
+    let notes = findings.iter().filter(|f| f.severity == Severity::Info).cloned().collect();
     let asset = asset.map(|asset| Asset { notes, ..asset });
     (asset, findings)
 }
@@ -88,13 +82,7 @@ fn read(
     let reference = payload.reference(&manifest);
     let plugins = payload.plugins(&manifest);
     payload.check_unreferenced();
-    Some(Asset {
-        manifest,
-        parameters,
-        reference,
-        plugins,
-        notes: Vec::new(),
-    })
+    Some(Asset { manifest, parameters, reference, plugins, notes: Vec::new() })
 }
 
 fn check_mimetype(archive: &Archive<'_>, findings: &mut Findings) {
@@ -107,12 +95,9 @@ fn check_mimetype(archive: &Archive<'_>, findings: &mut Findings) {
         format!("{MIMETYPE} is entry {index}, counted from 0; write it first")
     });
     let entry = &archive.entries[index];
-    findings.require(
-        entry.method == STORED,
-        rule::MIMETYPE_COMPRESSED,
-        "",
-        || format!("{MIMETYPE} is compressed; store it"),
-    );
+    findings.require(entry.method == STORED, rule::MIMETYPE_COMPRESSED, "", || {
+        format!("{MIMETYPE} is compressed; store it")
+    });
     let right = *entry.bytes == *MEDIA_TYPE.as_bytes();
     findings.require(right, rule::MIMETYPE_WRONG, "", || {
         format!("{MIMETYPE} is not {MEDIA_TYPE}, byte for byte")
@@ -131,8 +116,7 @@ impl<'a> Payload<'a, '_> {
     fn parameters(&mut self, manifest: &Manifest) -> Vec<Vec<Vec<f64>>> {
         let all = manifest.representations.iter().enumerate();
         all.map(|(i, representation)| {
-            self.block(representation, format_args!("/representations/{i}"))
-                .unwrap_or_default()
+            self.block(representation, format_args!("/representations/{i}")).unwrap_or_default()
         })
         .collect()
     }
@@ -152,10 +136,8 @@ impl<'a> Payload<'a, '_> {
                     BlockError::TooMany(_) => rule::VALUES_TOO_MANY,
                     _ => rule::PARAMETERS_INVALID,
                 };
-                let message = format!(
-                    "{}: {error}; write the asset again",
-                    representation.parameters
-                );
+                let message =
+                    format!("{}: {error}; write the asset again", representation.parameters);
                 self.findings.add(rule, format!("{at}/parameters"), message);
                 None
             }
@@ -167,14 +149,12 @@ impl<'a> Payload<'a, '_> {
         let Some(index) = self.archive.index(name) else {
             let message =
                 format!("there is no entry {name:?}; add it or remove the reference to it");
-            self.findings
-                .add(rule::ENTRY_MISSING, pointer.to_string(), message);
+            self.findings.add(rule::ENTRY_MISSING, pointer.to_string(), message);
             return None;
         };
         if !self.claimed.insert(name.to_owned()) {
             let message = format!("{name} is already used; use a separate entry");
-            self.findings
-                .add(rule::PARAMETERS_ENTRY_INVALID, pointer.to_string(), message);
+            self.findings.add(rule::PARAMETERS_ENTRY_INVALID, pointer.to_string(), message);
             return None;
         }
         Some(std::mem::take(&mut self.archive.entries[index].bytes))
@@ -192,66 +172,49 @@ impl<'a> Payload<'a, '_> {
                 reference.file,
                 bytes.len()
             );
-            self.findings
-                .add(rule::REFERENCE_LENGTH, "/reference/file", message);
+            self.findings.add(rule::REFERENCE_LENGTH, "/reference/file", message);
             return None;
         }
         if values > self.values_left {
             let message = format!("the reference's {values} numbers exceed the limit");
-            self.findings
-                .add(rule::VALUES_TOO_MANY, "/reference/file", message);
+            self.findings.add(rule::VALUES_TOO_MANY, "/reference/file", message);
             return None;
         }
         let magnitudes: Vec<f32> = bytes
             .chunks_exact(size_of::<f32>())
             .map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]))
             .collect();
-        let bad = magnitudes
-            .iter()
-            .position(|m| !(m.is_finite() && *m >= 0.0));
+        let bad = magnitudes.iter().position(|m| !(m.is_finite() && *m >= 0.0));
         if let Some(bad) = bad {
             let message = format!(
                 "magnitude {bad} is {}; write one that is finite and not negative",
                 magnitudes[bad]
             );
-            self.findings
-                .add(rule::REFERENCE_INVALID, "/reference/file", message);
+            self.findings.add(rule::REFERENCE_INVALID, "/reference/file", message);
         }
         Some(magnitudes.chunks(points).map(<[f32]>::to_vec).collect())
     }
 
     fn plugins(&mut self, manifest: &Manifest) -> Vec<Vec<u8>> {
         let all = manifest.plugins.iter().enumerate();
-        all.map(|(i, plugin)| {
-            self.module(plugin, format_args!("/plugins/{i}"))
-                .unwrap_or_default()
-        })
-        .collect()
+        all.map(|(i, plugin)| self.module(plugin, format_args!("/plugins/{i}")).unwrap_or_default())
+            .collect()
     }
 
     fn module(&mut self, plugin: &Plugin, at: Arguments<'_>) -> Option<Vec<u8>> {
         let bytes = self.entry(&plugin.file, format_args!("{at}/file"))?;
         let is_wasm = bytes.starts_with(WASM_MAGIC);
         let pointer = format_args!("{at}/file");
-        self.findings
-            .require(is_wasm, rule::PLUGIN_NOT_WASM, pointer, || {
-                format!(
-                    "{} is not a WASM module; embed the model's .wasm",
-                    plugin.file
-                )
-            });
+        self.findings.require(is_wasm, rule::PLUGIN_NOT_WASM, pointer, || {
+            format!("{} is not a WASM module; embed the model's .wasm", plugin.file)
+        });
         let hash = blake3::hash(&bytes).to_hex();
         let pointer = format_args!("{at}/blake3");
         self.findings.require(
             hash.as_str() == plugin.blake3,
             rule::PLUGIN_HASH_MISMATCH,
             pointer,
-            || {
-                format!(
-                    "{} has the hash {hash}; embed the module again",
-                    plugin.file
-                )
-            },
+            || format!("{} has the hash {hash}; embed the module again", plugin.file),
         );
         Some(bytes.into_owned())
     }
@@ -262,12 +225,7 @@ impl<'a> Payload<'a, '_> {
                 self.claimed.contains(&entry.name),
                 rule::ENTRY_UNREFERENCED,
                 "",
-                || {
-                    format!(
-                        "the manifest does not refer to the entry {}; remove it",
-                        entry.name
-                    )
-                },
+                || format!("the manifest does not refer to the entry {}; remove it", entry.name),
             );
         }
     }

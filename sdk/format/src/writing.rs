@@ -55,28 +55,19 @@ impl Asset {
     /// [`WriteError::Io`] when the file cannot be written, else as [`Self::to_bytes`].
     #[allow(clippy::disallowed_methods, reason = "the user named this file")]
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
-        write_file(path, &self.to_bytes()?).map_err(|error| WriteError::Io {
-            path: path.to_owned(),
-            error,
-        })
+        write_file(path, &self.to_bytes()?)
+            .map_err(|error| WriteError::Io { path: path.to_owned(), error })
     }
 
     fn blocks(&self) -> Result<Vec<(&str, Vec<u8>)>, WriteError> {
         let stored = &self.manifest.representations;
-        count(
-            "parameters by representation",
-            stored.len(),
-            self.parameters.len(),
-        )?;
+        count("parameters by representation", stored.len(), self.parameters.len())?;
         let pairs = stored.iter().zip(&self.parameters);
         pairs
             .map(|(stored, flats)| {
                 let what = format!("parameters of {} by condition", stored.model);
                 count(&what, stored.at.len(), flats.len())?;
-                Ok((
-                    stored.parameters.as_str(),
-                    block::encode(&stored.fields, flats)?,
-                ))
+                Ok((stored.parameters.as_str(), block::encode(&stored.fields, flats)?))
             })
             .collect()
     }
@@ -88,20 +79,12 @@ impl Asset {
         let Some((named, spectra)) = named.zip(given) else {
             return Ok(None);
         };
-        count(
-            "reference spectra by condition",
-            self.manifest.conditions.len(),
-            spectra.len(),
-        )?;
+        count("reference spectra by condition", self.manifest.conditions.len(), spectra.len())?;
         let points = grid_points(self.manifest.band).unwrap_or(0);
         for spectrum in spectra {
             count("magnitudes of a reference spectrum", points, spectrum.len())?;
         }
-        let bytes = spectra
-            .iter()
-            .flatten()
-            .flat_map(|m| m.to_le_bytes())
-            .collect();
+        let bytes = spectra.iter().flatten().flat_map(|m| m.to_le_bytes()).collect();
         Ok(Some((&named.file, bytes)))
     }
 }
@@ -118,15 +101,9 @@ fn count(what: &str, expected: usize, got: usize) -> Result<(), WriteError> {
     if expected == got {
         return Ok(());
     }
-    Err(WriteError::Count {
-        what: what.to_owned(),
-        expected,
-        got,
-    })
+    Err(WriteError::Count { what: what.to_owned(), expected, got })
 }
 
 fn archive_error(error: impl std::fmt::Display) -> WriteError {
-    WriteError::Archive {
-        problem: error.to_string(),
-    }
+    WriteError::Archive { problem: error.to_string() }
 }

@@ -59,9 +59,7 @@ pub(crate) struct Local<'a> {
 pub(crate) fn find_end(bytes: &[u8]) -> Option<End> {
     let last = bytes.len().checked_sub(END_BYTES)?;
     let first = last.saturating_sub(usize::from(u16::MAX));
-    let at = (first..=last)
-        .rev()
-        .find(|&at| u32_at(bytes, at) == Some(END))?;
+    let at = (first..=last).rev().find(|&at| u32_at(bytes, at) == Some(END))?;
     let u16_at = |offset: usize| u16_at(bytes, at + offset);
     let locator = at.checked_sub(ZIP64_LOCATOR_BYTES);
     Some(End {
@@ -109,12 +107,7 @@ pub(crate) fn local(bytes: &[u8], at: usize, packed: u32) -> Option<Local<'_>> {
     let end = data_at.checked_add(usize::try_from(packed).ok()?)?;
     let data = data_at..end;
     bytes.get(data.clone())?;
-    Some(Local {
-        common,
-        name,
-        extra,
-        data,
-    })
+    Some(Local { common, name, extra, data })
 }
 
 fn common(bytes: &[u8], at: usize) -> Option<Common> {

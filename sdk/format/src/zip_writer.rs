@@ -1,4 +1,5 @@
-//! Writer of the archive: the one form of ZIP that `archive` accepts, with the same bytes on every machine.
+//! Writer of the archive: the one form of ZIP that `archive` accepts, with the same bytes on every
+//! machine.
 
 use std::io::{self, Write};
 
@@ -8,8 +9,8 @@ use flate2::write::DeflateEncoder;
 use crate::unpack::{DEFLATED, STORED, crc32};
 use crate::zip_records::{CENTRAL, Common, END, LOCAL};
 
-/// zlib-rs chooses the same matches on every processor, so the bytes are the same everywhere. Zopfli takes 100 ms for an asset and saves
-/// five bytes.
+/// zlib-rs chooses the same matches on every processor, so the bytes are the same everywhere.
+/// Zopfli takes 100 ms for an asset and saves five bytes.
 const DEFLATE_LEVEL: u32 = 9;
 
 /// 1 January 1980, 0:00, the first time of the format.
@@ -56,13 +57,7 @@ impl ZipWriter {
         let local_at = small(self.bytes.len())?;
         put_local(&mut self.bytes, &common, short(name.len())?, name);
         self.bytes.extend_from_slice(packed);
-        put_central(
-            &mut self.directory,
-            &common,
-            short(name.len())?,
-            name,
-            local_at,
-        );
+        put_central(&mut self.directory, &common, short(name.len())?, name, local_at);
         self.entries += 1;
         Ok(())
     }
@@ -72,12 +67,7 @@ impl ZipWriter {
         let directory_at = small(self.bytes.len())?;
         let directory_bytes = small(self.directory.len())?;
         self.bytes.append(&mut self.directory);
-        put_end(
-            &mut self.bytes,
-            short(self.entries)?,
-            directory_bytes,
-            directory_at,
-        );
+        put_end(&mut self.bytes, short(self.entries)?, directory_bytes, directory_at);
         Ok(self.bytes)
     }
 }

@@ -13,12 +13,8 @@ use htex_format::{
 use xtask::generated::{file, file_with, folder};
 
 /// Codes that only `htex validate` reports, with JSON Schemas and by loading models.
-const WITHOUT_FILE: [&str; 4] = [
-    "PLUGIN_UNUSABLE",
-    "SCHEMA_BROKEN",
-    "EXTENSION_SCHEMA_BROKEN",
-    "DESCRIPTOR_INVALID",
-];
+const WITHOUT_FILE: [&str; 4] =
+    ["PLUGIN_UNUSABLE", "SCHEMA_BROKEN", "EXTENSION_SCHEMA_BROKEN", "DESCRIPTOR_INVALID"];
 
 #[test]
 fn generated_files_and_their_reports_are_fresh() {
@@ -40,22 +36,10 @@ fn a_file_is_named_after_the_rule_it_breaks_and_every_rule_has_one() {
         let name = case.name.to_uppercase();
         let named = codes.iter().any(|code| name.starts_with(code.as_str()));
         assert!(named || name.starts_with("VALID"), "{name} gets {codes:?}");
-        assert!(
-            report.valid || !name.starts_with("VALID"),
-            "{name}: {:?}",
-            report.findings
-        );
+        assert!(report.valid || !name.starts_with("VALID"), "{name}: {:?}", report.findings);
         // A reader without models cannot detect wrong fields.
-        let by_model = [
-            "FIELD_UNKNOWN",
-            "FIELD_MISSING",
-            "FIELD_KIND_WRONG",
-            "FIELD_UNIT_WRONG",
-        ];
-        let mut errors = report
-            .findings
-            .iter()
-            .filter(|f| f.severity == Severity::Error);
+        let by_model = ["FIELD_UNKNOWN", "FIELD_MISSING", "FIELD_KIND_WRONG", "FIELD_UNIT_WRONG"];
+        let mut errors = report.findings.iter().filter(|f| f.severity == Severity::Error);
         assert_eq!(
             Asset::from_bytes_with(&case.bytes, &case.limits).is_ok(),
             errors.all(|f| by_model.contains(&f.code.as_str()))
@@ -70,10 +54,7 @@ fn a_file_is_named_after_the_rule_it_breaks_and_every_rule_has_one() {
 #[test]
 fn generated_page_and_schemas_are_fresh() {
     file("spec/validation.md", validation_page().as_bytes());
-    for (name, schema) in [
-        ("manifest-1", manifest_schema()),
-        ("report-1", report_schema()),
-    ] {
+    for (name, schema) in [("manifest-1", manifest_schema()), ("report-1", report_schema())] {
         let text = serde_json::to_string_pretty(&schema).unwrap() + "\n";
         let path = format!("spec/schemas/{name}.json");
         file_with(path, text.as_bytes(), |kept| {
@@ -84,17 +65,11 @@ fn generated_page_and_schemas_are_fresh() {
 
 #[test]
 fn a_newer_minor_version_is_noted_and_kept() {
-    let newer = cases()
-        .into_iter()
-        .find(|c| c.name == "valid_newer_minor")
-        .unwrap();
+    let newer = cases().into_iter().find(|c| c.name == "valid_newer_minor").unwrap();
     let asset = Asset::from_bytes(&newer.bytes).unwrap();
     assert_eq!(asset.notes[0].code, "VERSION_NEWER");
     assert!(asset.manifest.other.contains_key("friction"));
-    assert_eq!(
-        Asset::from_bytes(&asset.to_bytes().unwrap()).unwrap(),
-        asset
-    );
+    assert_eq!(Asset::from_bytes(&asset.to_bytes().unwrap()).unwrap(), asset);
 }
 
 /// Stages of the findings' codes: each at or after that of the finding before it.
@@ -120,11 +95,7 @@ fn findings_stand_in_the_order_of_the_stages_and_end_where_a_stage_ends() {
         let mut errors = (0..findings.len()).filter(error);
         let ends = errors.find(|i| STAGES[stages[*i]].ends);
         let last = *stages.last().unwrap_or(&0);
-        assert!(
-            ends.is_none_or(|i| stages[i] == last),
-            "{}: {findings:?}",
-            case.name
-        );
+        assert!(ends.is_none_or(|i| stages[i] == last), "{}: {findings:?}", case.name);
     }
     let staged = |rule: &&Rule| rule.stages.iter().any(|stage| STAGES.contains(stage));
     assert!(RULES.iter().all(|rule| staged(&rule)));

@@ -27,11 +27,7 @@ impl Random {
 
     fn byte(&mut self) -> u8 {
         let telling = *b"\0\xFF\x7F\x80{}[]\",:-.09eE\\/";
-        if self.below(2) == 0 {
-            telling[self.below(telling.len())]
-        } else {
-            self.below(256) as u8
-        }
+        if self.below(2) == 0 { telling[self.below(telling.len())] } else { self.below(256) as u8 }
     }
 
     fn mutate(&mut self, bytes: &mut Vec<u8>, other: &[u8]) {
@@ -57,10 +53,7 @@ fn no_mutation_makes_validation_panic_or_hang() {
     let mut random = Random(0x6874_6578);
     let mut whole: Vec<Vec<u8>> = cases().into_iter().map(|case| case.bytes).collect();
     whole.push(asset(2, five(2)).to_bytes().unwrap());
-    let (json, block) = (
-        manifest().to_string().into_bytes(),
-        vec![0, 0, 192, 63, 0, 0, 32, 64],
-    );
+    let (json, block) = (manifest().to_string().into_bytes(), vec![0, 0, 192, 63, 0, 0, 32, 64]);
     let (start, mut slowest, mut valid) = (Instant::now(), Duration::ZERO, 0);
     for i in 0..MUTATIONS {
         let (mut json, mut block) = (json.clone(), block.clone());

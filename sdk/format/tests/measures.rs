@@ -1,4 +1,5 @@
-//! What comes from the table of measures outside this crate: tables of the documents, and a module of the Python package.
+//! What comes from the table of measures outside this crate: tables of the documents, and a module
+//! of the Python package.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::fmt::Write;
@@ -28,11 +29,7 @@ fn row(by: By, measure: Measure, definition: &str) -> String {
         Judged::Difference => "a number",
     };
     let mark = if required { " *" } else { "" };
-    format!(
-        "| `{}`{mark} | {range} | {} |\n",
-        measure.key(by),
-        cell(definition)
-    )
+    format!("| `{}`{mark} | {range} | {} |\n", measure.key(by), cell(definition))
 }
 
 fn quality() -> String {
@@ -53,19 +50,13 @@ fn quality() -> String {
 
 fn left_out() -> String {
     let rows = LeftOut::measures().map(|m| row(By::Magnitude, m, m.row().meaning));
-    format!(
-        "| key | range | meaning |\n|---|---|---|\n{}",
-        rows.collect::<String>()
-    )
+    format!("| key | range | meaning |\n|---|---|---|\n{}", rows.collect::<String>())
 }
 
 fn columns() -> String {
     let mut table = String::from("| column | meaning |\n|---|---|\n");
     for row in Measure::ALL.map(Measure::row) {
-        for (column, text) in [
-            (row.column, Some(row.meaning)),
-            (row.played, row.of_samples),
-        ] {
+        for (column, text) in [(row.column, Some(row.meaning)), (row.played, row.of_samples)] {
             if let Some((column, text)) = column.zip(text) {
                 writeln!(table, "| `{column}` | {} |", cell(text)).unwrap();
             }

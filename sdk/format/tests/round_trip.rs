@@ -12,23 +12,14 @@ use htex_model::{Descriptor, Kind, StaticDescriptor, StaticField, Store};
 use proptest::prelude::*;
 
 fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        -1e3..1e3,
-        any::<f64>().prop_filter("finite", |x| x.is_finite())
-    ]
+    prop_oneof![-1e3..1e3, any::<f64>().prop_filter("finite", |x| x.is_finite())]
 }
 
 fn store() -> impl Strategy<Value = StoredAs> {
-    let steps = (1e-6..1e3, -1e3..1e3).prop_map(|(scale, offset)| Steps {
-        scale,
-        offset,
-        log: false,
-    });
-    let log = (1e-6..1e-3, -5.0..5.0).prop_map(|(scale, offset)| Steps {
-        scale,
-        offset,
-        log: true,
-    });
+    let steps =
+        (1e-6..1e3, -1e3..1e3).prop_map(|(scale, offset)| Steps { scale, offset, log: false });
+    let log =
+        (1e-6..1e-3, -5.0..5.0).prop_map(|(scale, offset)| Steps { scale, offset, log: true });
     prop_oneof![
         Just(StoredAs::F64),
         Just(StoredAs::F32),
@@ -46,9 +37,8 @@ fn representation(i: usize, conditions: usize) -> impl Strategy<Value = Fitted> 
     prop::collection::vec(field, 0..4).prop_map(move |fields| {
         let names = ["a", "b", "c", "d"];
         let numbered = fields.iter().zip(names);
-        let shapes: Vec<_> = numbered
-            .map(|(&(_, length, _), name)| (name, "Hz", length, StoredAs::F64))
-            .collect();
+        let shapes: Vec<_> =
+            numbered.map(|(&(_, length, _), name)| (name, "Hz", length, StoredAs::F64)).collect();
         let (mut representation, mut flats) = fitted(&format!("m{i}"), conditions, &shapes);
         for (field, (store, ..)) in representation.fields.iter_mut().zip(&fields) {
             field.store = match *store {
@@ -82,12 +72,7 @@ fn inside(store: StoredAs, place: f64, otherwise: f64) -> f64 {
 }
 
 fn any_asset() -> impl Strategy<Value = Asset> {
-    let words = (
-        "\\PC{1,40}",
-        prop::option::of("\\PC{0,40}"),
-        "\\PC{0,20}",
-        "[a-z]{1,9}",
-    );
+    let words = ("\\PC{1,40}", prop::option::of("\\PC{0,40}"), "\\PC{0,20}", "[a-z]{1,9}");
     let numbers = (0.0..1e4f64, number(), 0..=1u64 << 53, any::<bool>());
     let parts =
         (1usize..4).prop_flat_map(|c| (Just(c), representation(0, c), representation(1, c)));
@@ -102,17 +87,14 @@ fn any_asset() -> impl Strategy<Value = Asset> {
         manifest.provenance.simulated = extra;
         manifest.provenance.recordings[0].segments = segments;
         manifest.provenance.options.insert(key.clone(), tag);
-        manifest.extensions.insert(
-            format!("com.example.{key}/2"),
-            serde_json::json!([error, null]),
-        );
+        manifest
+            .extensions
+            .insert(format!("com.example.{key}/2"), serde_json::json!([error, null]));
         let at = &mut manifest.representations[0].at[0];
         at.level_rms = level;
         at.quality.as_mut().unwrap().band_error_db[3] = error;
         if extra {
-            manifest.reference = Some(Reference {
-                file: "reference.bin".to_owned(),
-            });
+            manifest.reference = Some(Reference { file: "reference.bin".to_owned() });
             asset.reference = Some(reference(conditions));
         }
         asset.manifest = asset.manifest.rounded();
@@ -154,18 +136,9 @@ fn a_value_in_its_range_is_stored_in_it() {
     let stores = [
         (Store::F64, StoredAs::F64),
         (Store::F32, StoredAs::F32),
-        stores(
-            |scale, offset, log| Store::U16 { scale, offset, log },
-            StoredAs::U16,
-        ),
-        stores(
-            |scale, offset, log| Store::U8 { scale, offset, log },
-            StoredAs::U8,
-        ),
-        stores(
-            |scale, offset, log| Store::Packed { scale, offset, log },
-            StoredAs::Packed,
-        ),
+        stores(|scale, offset, log| Store::U16 { scale, offset, log }, StoredAs::U16),
+        stores(|scale, offset, log| Store::U8 { scale, offset, log }, StoredAs::U8),
+        stores(|scale, offset, log| Store::Packed { scale, offset, log }, StoredAs::Packed),
     ];
     for (store, stored_as) in stores {
         for (min, max) in [(-0.1, 0.2), (0.1, 0.7), (0.012, 1.2), (-0.3, -0.1)] {
@@ -177,29 +150,15 @@ fn a_value_in_its_range_is_stored_in_it() {
             let mut model = model();
             let field = &mut model.fields[0];
             (field.kind, field.min, field.max, field.store) = (kind, min, max, store);
-            let fields = [StoredField {
-                name: "a".to_owned(),
-                unit: String::new(),
-                list,
-                store: stored_as,
-            }];
+            let fields =
+                [StoredField { name: "a".to_owned(), unit: String::new(), list, store: stored_as }];
             for part in [0.0, 0.001, 0.3, 0.999, 1.0] {
-                let value = if part == 1.0 {
-                    max
-                } else {
-                    min + part * (max - min)
-                };
+                let value = if part == 1.0 { max } else { min + part * (max - min) };
                 let flat = if list { vec![1.0, value] } else { vec![value] };
                 let rounded = round_within(&fields, &model, &flat).unwrap();
                 let own = *rounded.last().unwrap();
-                assert!(
-                    min <= own && own <= max,
-                    "{stored_as:?}: {value} became {own}"
-                );
-                assert!(
-                    (own - value).abs() <= 0.011,
-                    "{stored_as:?}: {value} became {own}"
-                );
+                assert!(min <= own && own <= max, "{stored_as:?}: {value} became {own}");
+                assert!((own - value).abs() <= 0.011, "{stored_as:?}: {value} became {own}");
                 // A file is read as it was rounded.
                 assert_eq!(round_parameters(&fields, &rounded).unwrap(), rounded);
             }
@@ -235,41 +194,24 @@ fn stores(
     stored_as: fn(Steps) -> StoredAs,
 ) -> (Store, StoredAs) {
     let (scale, offset) = (0.01, -0.994);
-    let steps = Steps {
-        scale,
-        offset,
-        log: false,
-    };
+    let steps = Steps { scale, offset, log: false };
     (store(scale, offset, false), stored_as(steps))
 }
 
 #[test]
 fn a_value_outside_its_store_is_named_with_its_range() {
-    let fields = fitted("m", 1, &[("peak_hz", "Hz", 2, StoredAs::F64)])
-        .0
-        .fields;
-    let stored = |store| {
-        vec![htex_format::StoredField {
-            store,
-            ..fields[0].clone()
-        }]
-    };
+    let fields = fitted("m", 1, &[("peak_hz", "Hz", 2, StoredAs::F64)]).0.fields;
+    let stored = |store| vec![htex_format::StoredField { store, ..fields[0].clone() }];
     let message = |store, value| match round_parameters(&stored(store), &[2.0, 1.0, value]) {
         Err(error @ WriteError::OutOfRange { .. }) => error.to_string(),
         other => format!("{other:?}"),
     };
     let text = message(StoredAs::U8(steps(0.5)), 128.0);
-    assert!(
-        text.contains("peak_hz[1] is 128") && text.contains("0 to 127.5"),
-        "{text}"
-    );
+    assert!(text.contains("peak_hz[1] is 128") && text.contains("0 to 127.5"), "{text}");
     assert!(message(StoredAs::U16(steps(1.0)), -1.0).contains("0 to 65535"));
     assert!(message(StoredAs::F32, 1e300).contains("peak_hz[1]"));
     assert!(message(StoredAs::F64, f64::NAN).contains("is NaN"));
-    assert!(matches!(
-        round_parameters(&fields, &[3.0, 1.0, 2.0]),
-        Err(WriteError::Layout { .. })
-    ));
+    assert!(matches!(round_parameters(&fields, &[3.0, 1.0, 2.0]), Err(WriteError::Layout { .. })));
 }
 
 #[test]
@@ -280,10 +222,7 @@ fn a_broken_asset_is_not_written() {
     let mut short = asset(1, common::five(1));
     short.parameters.pop();
     let text = short.to_bytes().unwrap_err().to_string();
-    assert!(
-        text.contains("parameters by representation: 4 given"),
-        "{text}"
-    );
+    assert!(text.contains("parameters by representation: 4 given"), "{text}");
 }
 
 #[test]
@@ -293,10 +232,7 @@ fn a_file_is_written_whole_and_opened_within_the_limit() {
     let asset = asset(1, common::five(1));
     asset.write(&path).unwrap();
     assert_eq!(Asset::open(&path).unwrap(), asset);
-    std::fs::File::create(&path)
-        .unwrap()
-        .set_len(17 << 20)
-        .unwrap();
+    std::fs::File::create(&path).unwrap().set_len(17 << 20).unwrap();
     let text = Asset::open(&path).unwrap_err().to_string();
     assert!(text.contains("FILE_TOO_LARGE"), "{text}");
 }

@@ -14,10 +14,7 @@ fn example() -> Vec<u8> {
     let (_, rest) = TEXT.split_once("```hex\n").unwrap();
     let (block, _) = rest.split_once("```").unwrap();
     let bytes = block.lines().map(|line| line.split('#').next().unwrap());
-    bytes
-        .flat_map(str::split_whitespace)
-        .map(|b| u8::from_str_radix(b, 16).unwrap())
-        .collect()
+    bytes.flat_map(str::split_whitespace).map(|b| u8::from_str_radix(b, 16).unwrap()).collect()
 }
 
 #[test]
@@ -30,14 +27,9 @@ fn the_worked_block_is_what_the_code_writes_and_reads() {
     ];
     let (representation, _) = fitted("example", 1, &fields);
     let flat = vec![2.0, 0.5, -0.25, 100.2, 0.135];
-    let bytes = asset(1, vec![(representation, vec![flat])])
-        .to_bytes()
-        .unwrap();
+    let bytes = asset(1, vec![(representation, vec![flat])]).to_bytes().unwrap();
     let block = example();
-    assert!(
-        bytes.windows(block.len()).any(|w| w == block),
-        "not in the file: {block:02x?}"
-    );
+    assert!(bytes.windows(block.len()).any(|w| w == block), "not in the file: {block:02x?}");
     let read = &Asset::from_bytes(&bytes).unwrap().parameters[0][0];
     assert_eq!(read[..4], [2.0, 0.5, -0.25, 100.0]);
     assert!((read[4] - (-2.0f64).exp()).abs() < 1e-15);
@@ -56,21 +48,14 @@ fn the_text_names_every_limit_and_its_default() {
         ("values", limits.values as u64),
     ];
     for (name, value) in rows {
-        assert!(
-            TEXT.contains(&format!("| `{name}` | {value} |")),
-            "{name} {value}"
-        );
+        assert!(TEXT.contains(&format!("| `{name}` | {value} |")), "{name} {value}");
     }
 }
 
 /// What the text says of licences.
 #[test]
 fn licences_have_the_grammar_of_the_text() {
-    let code = |license: &str| {
-        htex_format::check_license(license)
-            .err()
-            .map(|e| e.rule().code)
-    };
+    let code = |license: &str| htex_format::check_license(license).err().map(|e| e.rule().code);
     let valid = [
         "MIT AND Apache-2.0",
         "MIT and (Apache-2.0 or 0BSD)",
@@ -84,16 +69,9 @@ fn licences_have_the_grammar_of_the_text() {
     for unlisted in ["mit", "Foo-1.0", "MIT OR Foo-1.0 OR Bar", "MIT WITH Foo"] {
         assert_eq!(code(unlisted), Some("LICENSE_UNKNOWN"), "{unlisted}");
     }
-    for invalid in [
-        "",
-        "MIT And 0BSD",
-        "Apache-2.0 +",
-        "GPL-2.0+",
-        "Foo-1.0+",
-        "a_b",
-        "MIT Foo",
-        "AND",
-    ] {
+    for invalid in
+        ["", "MIT And 0BSD", "Apache-2.0 +", "GPL-2.0+", "Foo-1.0+", "a_b", "MIT Foo", "AND"]
+    {
         assert_eq!(code(invalid), Some("LICENSE_INVALID"), "{invalid}");
     }
 }
@@ -103,29 +81,15 @@ fn licences_have_the_grammar_of_the_text() {
 fn whole_numbers_are_compared_as_the_text_says() {
     let codes = |number: &str| {
         let segments = format!("\"segments\":{number}");
-        let text = manifest()
-            .to_string()
-            .replacen("\"segments\":48", &segments, 1);
+        let text = manifest().to_string().replacen("\"segments\":48", &segments, 1);
         assert!(text.contains(number));
         let report = validate(&with_text(text.as_bytes()), &Limits::default());
-        report
-            .findings
-            .into_iter()
-            .map(|f| f.code)
-            .collect::<Vec<_>>()
+        report.findings.into_iter().map(|f| f.code).collect::<Vec<_>>()
     };
-    for valid in [
-        "9007199254740992",
-        "9007199254740993.0",
-        "9007199254740993e0",
-    ] {
+    for valid in ["9007199254740992", "9007199254740993.0", "9007199254740993e0"] {
         assert_eq!(codes(valid), [""; 0], "{valid}");
     }
-    for refused in [
-        "9007199254740993",
-        "9007199254740995.0",
-        "18446744073709551616",
-    ] {
+    for refused in ["9007199254740993", "9007199254740995.0", "18446744073709551616"] {
         assert_eq!(codes(refused), ["JSON_TYPE"], "{refused}");
     }
 }

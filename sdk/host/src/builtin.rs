@@ -18,7 +18,8 @@ pub(crate) fn models() -> &'static [LoadedModel] {
     &MODELS
 }
 
-/// What renders several voices of a model in one call, as large scenes do. Pages have few voices, and would download it for nothing.
+/// What renders several voices of a model in one call, as large scenes do. Pages have few voices,
+/// and would download it for nothing.
 #[cfg(not(target_family = "wasm"))]
 macro_rules! voices {
     ($model:ident) => {
@@ -32,8 +33,8 @@ macro_rules! voices {
     };
 }
 
-/// The table of a model's crate, and any of `knobs`, `usual` and `motion`; with the fit only in programs that fit: otherwise nothing links it, nor
-/// what it computes with.
+/// The table of a model's crate, and any of `knobs`, `usual` and `motion`; with the fit only in
+/// programs that fit: otherwise nothing links it, nor what it computes with.
 macro_rules! model {
     ($model:ident $(, $part:ident)*) => {{
         #[cfg(feature = "fit")]
@@ -65,16 +66,14 @@ macro_rules! part {
         #[cfg(feature = "fit")]
         static MOTION: &MotionTable = &$model::MOTION;
         #[cfg(not(feature = "fit"))]
-        static MOTION: &MotionTable = &MotionTable {
-            fit: without_fits_at,
-            ..$model::MOTION
-        };
+        static MOTION: &MotionTable = &MotionTable { fit: without_fits_at, ..$model::MOTION };
         $table.with_motion(MOTION)
     }};
 }
 
-/// The models. One that is added here is in every program that links this crate. `usual` are the ranges of its parameters' sliders, which a test
-/// asks for; without `knobs` a sweep spans the ranges of its options; with `motion` it has the extension `htex.motion/1`. One that is
+/// The models. One that is added here is in every program that links this crate. `usual` are the
+/// ranges of its parameters' sliders, which a test asks for; without `knobs` a sweep spans the
+/// ranges of its options; with `motion` it has the extension `htex.motion/1`. One that is
 /// `only_named` is fitted where it is named, and is none of those that a program takes by itself.
 fn tables() -> Vec<TableModel> {
     vec![

@@ -3,7 +3,8 @@
 #[cfg(not(target_family = "wasm"))]
 pub use std::time::Instant;
 
-/// A time of the browser, which the standard library cannot read; elsewhere it is that of the standard library.
+/// A time of the browser, which the standard library cannot read; elsewhere it is that of the
+/// standard library.
 #[cfg(target_family = "wasm")]
 #[derive(Debug, Clone, Copy)]
 pub struct Instant {
@@ -25,9 +26,7 @@ impl Instant {
     /// The time now.
     #[must_use]
     pub fn now() -> Self {
-        Self {
-            ms: imported::now_ms(),
-        }
+        Self { ms: imported::now_ms() }
     }
 
     /// The time since then.

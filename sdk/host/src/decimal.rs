@@ -1,7 +1,7 @@
 //! Decimal numbers in texts.
 //!
-//! They are read by the reader of JSON, which every program has that opens an asset: the reader of the standard library has a table of its own,
-//! 13 kB of the compressed library of the npm package.
+//! They are read by the reader of JSON, which every program has that opens an asset: the reader of
+//! the standard library has a table of its own, 13 kB of the compressed library of the npm package.
 
 /// Reads a number such as `1.5`, `.5` or `2e-3`.
 ///

@@ -52,10 +52,8 @@ pub enum DescriptorError {
 /// # Errors
 /// [`DescriptorError`] when the text is not the descriptor of a model that can be called.
 pub fn read_descriptor(json: &str) -> Result<Descriptor, DescriptorError> {
-    let descriptor: Descriptor =
-        serde_json::from_str(json).map_err(|error| DescriptorError::Json {
-            what: plain(&error.to_string()),
-        })?;
+    let descriptor: Descriptor = serde_json::from_str(json)
+        .map_err(|error| DescriptorError::Json { what: plain(&error.to_string()) })?;
     check_descriptor(&descriptor)?;
     Ok(descriptor)
 }
@@ -97,9 +95,7 @@ fn check_descriptor(descriptor: &Descriptor) -> Result<(), DescriptorError> {
     let mut names: Vec<&str> = descriptor.fields.iter().map(|f| f.name.as_str()).collect();
     htex_dsp::order::sort(&mut names);
     match names.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(DescriptorError::SameName {
-            name: plain(pair[0]),
-        }),
+        Some(pair) => Err(DescriptorError::SameName { name: plain(pair[0]) }),
         None => Ok(()),
     }
 }

@@ -8,8 +8,8 @@ use htex_model::Status;
 /// Most bytes of a model's text that a message shows.
 const LONGEST_SHOWN: usize = 4096;
 
-/// Returns a model's text for a message: control characters are escaped, so that the text cannot control a
-/// terminal, and a long text is cut.
+/// Returns a model's text for a message: control characters are escaped, so that the text cannot
+/// control a terminal, and a long text is cut.
 pub(crate) fn plain(text: &str) -> String {
     let mut plain = String::with_capacity(text.len().min(LONGEST_SHOWN));
     for c in text.chars() {
@@ -116,10 +116,7 @@ pub(crate) trait Loading<T> {
 
 impl<T, E: Display> Loading<T> for Result<T, E> {
     fn loading(self, origin: impl Display) -> Result<T, HostError> {
-        self.map_err(|error| HostError::Load {
-            path: origin.to_string(),
-            what: error.to_string(),
-        })
+        self.map_err(|error| HostError::Load { path: origin.to_string(), what: error.to_string() })
     }
 }
 

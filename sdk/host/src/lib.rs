@@ -1,8 +1,10 @@
-//! Finds and calls texture models: one registry and one calling interface for models of all origins.
+//! Finds and calls texture models: one registry and one calling interface for models of all
+//! origins.
 //!
-//! A model is built in, a native library, or a WASM module in a sandbox ([`Origin`]); [`Search`] lists
-//! the places that are searched. Every model is called through the flat functions of the model ABI, the built-in ones
-//! too. The results of each call are checked here, so that an invalid result is an error of that call only.
+//! A model is built in, a native library, or a WASM module in a sandbox ([`Origin`]); [`Search`]
+//! lists the places that are searched. Every model is called through the flat functions of the
+//! model ABI, the built-in ones too. The results of each call are checked here, so that an invalid
+//! result is an error of that call only.
 //!
 //! ```
 //! use htex_host::{Band, Registry};
@@ -79,5 +81,6 @@ pub use voice::ModelVoice;
 #[cfg(feature = "wasm")]
 pub use wasm::{CompilerError, end_wasm_clocks, serve_compiler};
 
-/// Whether this build runs WASM modules: by the engine of the feature `wasm`, or by the browser it runs in.
+/// Whether this build runs WASM modules: by the engine of the feature `wasm`, or by the browser it
+/// runs in.
 pub const RUNS_WASM: bool = cfg!(any(feature = "wasm", target_family = "wasm"));

@@ -1,7 +1,8 @@
 //! Limits of WASM models.
 //!
-//! Limited are memory, tables, stack, voices, time, the cost of compilation, the total of all modules, and on request
-//! instructions. Each limit has a test in `sdk/host/tests/limits.rs` in which it bites.
+//! Limited are memory, tables, stack, voices, time, the cost of compilation, the total of all
+//! modules, and on request instructions. Each limit has a test in `sdk/host/tests/limits.rs` in
+//! which it bites.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -32,36 +33,38 @@ pub struct WasmLimits {
     pub voices: usize,
     /// Longest time of one call that does not render, and of the module's start. Default 5 s.
     pub call: Duration,
-    /// Longest time of rendering 8,192 samples, or of one retune. Default 0.5 s: much longer than any
-    /// device waits, and short enough to end an endless loop.
+    /// Longest time of rendering 8,192 samples, or of one retune. Default 0.5 s: much longer than
+    /// any device waits, and short enough to end an endless loop.
     pub render: Duration,
     /// Most WASM instructions of one call, if given: unlike time, equal on every machine.
     /// Default none: the time limits suffice, and counting takes up to a tenth more time.
     pub fuel: Option<u64>,
-    /// Longest time of compiling the module. Default 5 s. The time is estimated before compilation: a module that might
-    /// exceed it is compiled without optimisation, and refused if that might exceed it too.
+    /// Longest time of compiling the module. Default 5 s. The time is estimated before compilation:
+    /// a module that might exceed it is compiled without optimisation, and refused if that might
+    /// exceed it too.
     pub compile: Duration,
-    /// Most memory of compiling a module, bytes, if [`WasmCompiler::Program`] compiles. Default 512 MiB; modules within
-    /// the estimated `compile` time need less.
+    /// Most memory of compiling a module, bytes, if [`WasmCompiler::Program`] compiles. Default 512
+    /// MiB; modules within the estimated `compile` time need less.
     pub compile_bytes: usize,
     /// The compiler of modules. Default [`WasmCompiler::Here`].
     pub compiler: WasmCompiler,
     /// Total of all modules of one asset. Default 10 s, 512 MiB, 512 instances.
     pub asset: WasmTotal,
-    /// Total of all modules of one registry and its clones, including those of assets. Default 30 s,
-    /// 1 GiB, 2,048 instances.
+    /// Total of all modules of one registry and its clones, including those of assets. Default 30
+    /// s, 1 GiB, 2,048 instances.
     pub all: WasmTotal,
     /// Cache of compiled modules. Default [`WasmCache::User`].
     pub cache: WasmCache,
     /// The engine that runs modules. Default [`WasmEngine::Signals`].
     pub engine: WasmEngine,
-    /// For checkers of models: whether a call that writes beyond its arrays, within the module's own memory, fails. Default no: it
-    /// harms the module only.
+    /// For checkers of models: whether a call that writes beyond its arrays, within the module's
+    /// own memory, fails. Default no: it harms the module only.
     pub guards: bool,
 }
 
-/// The engine that runs modules, by what it takes from the process. While a module is loaded, each engine has one thread that stops
-/// calls at their time limit; browsers have their own engine, which is only on or off.
+/// The engine that runs modules, by what it takes from the process. While a module is loaded, each
+/// engine has one thread that stops calls at their time limit; browsers have their own engine,
+/// which is only on or off.
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmEngine, WasmLimits};
@@ -75,11 +78,11 @@ pub struct WasmLimits {
 pub enum WasmEngine {
     /// Loading a module is an error: no thread, file or handler is made.
     Off,
-    /// Modules run without handlers for signals: each access to memory is compared with its bound. The measures against
-    /// speculative execution that rely on such handlers are off.
+    /// Modules run without handlers for signals: each access to memory is compared with its bound.
+    /// The measures against speculative execution that rely on such handlers are off.
     Checked,
-    /// Modules run with handlers of the process for SIGSEGV, SIGILL, SIGFPE and SIGBUS, which pass on what is not of a module
-    /// to the handlers that were there.
+    /// Modules run with handlers of the process for SIGSEGV, SIGILL, SIGFPE and SIGBUS, which pass
+    /// on what is not of a module to the handlers that were there.
     Signals,
 }
 
@@ -94,8 +97,9 @@ pub enum WasmEngine {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct WasmTotal {
-    /// Time of compilation and of all calls except those of voices. A tenth of the elapsed time is added to it. A
-    /// voice has a separate time: one second, and ten times the duration of its samples.
+    /// Time of compilation and of all calls except those of voices. A tenth of the elapsed time is
+    /// added to it. A voice has a separate time: one second, and ten times the duration of its
+    /// samples.
     pub time: Duration,
     /// Memory of all live instances, bytes.
     pub memory_bytes: usize,
@@ -106,11 +110,7 @@ pub struct WasmTotal {
 impl WasmTotal {
     /// Limits of time, memory in bytes, and instances.
     pub const fn new(time: Duration, memory_bytes: usize, instances: usize) -> Self {
-        Self {
-            time,
-            memory_bytes,
-            instances,
-        }
+        Self { time, memory_bytes, instances }
     }
 
     #[must_use]
@@ -121,10 +121,7 @@ impl WasmTotal {
     /// Sets the memory of all live instances, bytes.
     #[must_use]
     pub const fn with_memory_bytes(self, memory_bytes: usize) -> Self {
-        Self {
-            memory_bytes,
-            ..self
-        }
+        Self { memory_bytes, ..self }
     }
 
     /// Sets the number of live instances.
@@ -150,8 +147,8 @@ pub enum WasmCompiler {
     /// This process. The limits `compile` and `compile_bytes` are applied to an estimate only.
     #[default]
     Here,
-    /// Another process, which is stopped if it exceeds the limits of time or memory: a program that calls
-    /// `htex_host::serve_compiler` when it is started with these arguments.
+    /// Another process, which is stopped if it exceeds the limits of time or memory: a program that
+    /// calls `htex_host::serve_compiler` when it is started with these arguments.
     Program(PathBuf, Vec<String>),
 }
 
@@ -292,10 +289,11 @@ impl WasmLimits {
 
 /// Cache of compiled modules on disk.
 ///
-/// A cached file is machine code that this program runs. The folder is therefore created with permissions for this user
-/// alone (mode 0700); a folder of another user, or one that others may write to, is not used; and each file is
-/// authenticated with a key that only this user can read (`wasm.key` in the user's configuration folder). A file that is
-/// damaged, or was made by another version, is compiled again.
+/// A cached file is machine code that this program runs. The folder is therefore created with
+/// permissions for this user alone (mode 0700); a folder of another user, or one that others may
+/// write to, is not used; and each file is authenticated with a key that only this user can read
+/// (`wasm.key` in the user's configuration folder). A file that is damaged, or was made by another
+/// version, is compiled again.
 ///
 /// ```
 /// use htex_host::{Search, WasmCache, WasmLimits};

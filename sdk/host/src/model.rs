@@ -78,9 +78,7 @@ pub struct LoadedModel {
 
 impl std::fmt::Debug for LoadedModel {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_tuple("LoadedModel")
-            .field(&self.descriptor.id)
-            .finish()
+        f.debug_tuple("LoadedModel").field(&self.descriptor.id).finish()
     }
 }
 
@@ -88,11 +86,7 @@ impl LoadedModel {
     /// Checks the marker and reads the descriptor of a model.
     pub(crate) fn new(origin: Origin, raw: Arc<dyn RawModel>) -> Result<Self, HostError> {
         let name = origin.to_string();
-        let broken = |call, what| HostError::Broken {
-            model: name.clone(),
-            call,
-            what,
-        };
+        let broken = |call, what| HostError::Broken { model: name.clone(), call, what };
         check_marker(&name, raw.abi_version())?;
         let call = "htex_model_descriptor";
         let json = text(|out| raw.descriptor(out)).map_err(|error| match error {
@@ -105,11 +99,7 @@ impl LoadedModel {
             TextError::Broken(what) => broken(call, what),
         })?;
         let descriptor = read_descriptor(&json).map_err(|error| broken(call, error.to_string()))?;
-        Ok(Self {
-            descriptor: Arc::new(descriptor),
-            origin: Arc::new(origin),
-            raw,
-        })
+        Ok(Self { descriptor: Arc::new(descriptor), origin: Arc::new(origin), raw })
     }
 
     /// Loads a model from a file: a WASM module (`.wasm`), which runs in a sandbox with the default
@@ -131,23 +121,18 @@ impl LoadedModel {
 
     /// As [`Self::from_file`], in a sandbox that other models may share.
     pub(crate) fn from_file_in(path: &Path, sandbox: &Sandbox) -> Result<Self, HostError> {
-        if path
-            .extension()
-            .is_some_and(|extension| extension == "wasm")
-        {
+        if path.extension().is_some_and(|extension| extension == "wasm") {
             return Self::from_wasm_file(path, sandbox);
         }
         let raw = crate::native::load(path)?;
         Self::new(Origin::Native(path.to_owned()), Arc::new(raw))
     }
 
-    /// Loads a model from a file that somebody else names, which is a WASM module whatever it is called: this is the one place that
-    /// decides what may be loaded for a file's word.
+    /// Loads a model from a file that somebody else names, which is a WASM module whatever it is
+    /// called: this is the one place that decides what may be loaded for a file's word.
     pub(crate) fn from_module_in(path: &Path, sandbox: &Sandbox) -> Result<Self, HostError> {
         if !is_module(path).loading(path.display())? {
-            return Err(HostError::NotModule {
-                path: path.display().to_string(),
-            });
+            return Err(HostError::NotModule { path: path.display().to_string() });
         }
         Self::from_wasm_file(path, sandbox)
     }
@@ -165,11 +150,12 @@ impl LoadedModel {
         Err(no_wasm(&path.display().to_string()))
     }
 
-    /// Loads a model from the bytes of a WASM module; messages name `name`, the asset or file that contains it.
+    /// Loads a model from the bytes of a WASM module; messages name `name`, the asset or file that
+    /// contains it.
     ///
     /// # Errors
-    /// When the bytes are not a module, its model violates the ABI, or this program was built without the `wasm`
-    /// feature.
+    /// When the bytes are not a module, its model violates the ABI, or this program was built
+    /// without the `wasm` feature.
     pub fn from_wasm_bytes(
         name: &str,
         bytes: &[u8],
@@ -221,19 +207,20 @@ impl LoadedModel {
         id.rsplit('.').next().unwrap_or(id)
     }
 
-    /// Returns the values of the fit options in a sweep; `None` for a model that is not built in or chooses none, and without the
-    /// feature `fit`.
+    /// Returns the values of the fit options in a sweep; `None` for a model that is not built in or
+    /// chooses none, and without the feature `fit`.
     pub fn knobs(&self) -> Option<&'static Knobs> {
         self.raw.knobs()
     }
 
-    /// Returns the usual ranges of the parameters, for sliders; empty for a model that is not built in or states none, and without the
-    /// feature `fit`.
+    /// Returns the usual ranges of the parameters, for sliders; empty for a model that is not built
+    /// in or states none, and without the feature `fit`.
     pub fn usual(&self) -> &'static [Usual] {
         self.raw.usual()
     }
 
-    /// Returns whether a program takes the model only where it is named ([`Registry::by_default`](crate::Registry::by_default)).
+    /// Returns whether a program takes the model only where it is named
+    /// ([`Registry::by_default`](crate::Registry::by_default)).
     pub fn is_only_named(&self) -> bool {
         self.raw.is_only_named()
     }
@@ -247,11 +234,12 @@ impl LoadedModel {
         self.fit_at(request, FitCondition::default())
     }
 
-    /// As [`Self::fit`], of a recording at a motion. Models that follow the motion ([`Self::follows_motion`]) receive
-    /// it; others ignore it.
+    /// As [`Self::fit`], of a recording at a motion. Models that follow the motion
+    /// ([`Self::follows_motion`]) receive it; others ignore it.
     ///
     /// # Errors
-    /// As [`Self::fit`]; for a model that follows the motion also when a speed or force is negative or not finite.
+    /// As [`Self::fit`]; for a model that follows the motion also when a speed or force is negative
+    /// or not finite.
     #[cfg(feature = "fit")]
     pub fn fit_at(
         &self,
@@ -273,16 +261,14 @@ impl LoadedModel {
         if !level_rms.is_finite() || level_rms < 0.0 {
             return Err(self.broken(call, format!("the level is {level_rms}")));
         }
-        Ok(Fit {
-            parameters,
-            level_rms,
-        })
+        Ok(Fit { parameters, level_rms })
     }
 
     /// Returns the shape's magnitude at `frequency_hz`, of unit RMS on the 5 Hz grid in the band.
     ///
     /// # Errors
-    /// [`HostError::Call`] with the model's reason; [`HostError::Broken`] if a magnitude is not finite or negative.
+    /// [`HostError::Call`] with the model's reason; [`HostError::Broken`] if a magnitude is not
+    /// finite or negative.
     pub fn magnitude(
         &self,
         parameters: &[f64],
@@ -351,7 +337,8 @@ impl LoadedModel {
         Err(self.broken("voice_rate", format!("a rate of {rate_hz} Hz")))
     }
 
-    /// Returns whether a voice that renders at `rate_hz` has this rate of its own, since it would have it at a high rate too.
+    /// Returns whether a voice that renders at `rate_hz` has this rate of its own, since it would
+    /// have it at a high rate too.
     ///
     /// # Errors
     /// As [`Self::voice_rate_hz`].
@@ -398,7 +385,8 @@ impl LoadedModel {
     }
 
     /// Returns whether the model has the extension `htex.motion/1`: its voices receive the motion
-    /// ([`ModelVoice::set_motion`]) and follow it themselves, and its fits receive the recording's motion.
+    /// ([`ModelVoice::set_motion`]) and follow it themselves, and its fits receive the recording's
+    /// motion.
     pub fn follows_motion(&self) -> bool {
         self.raw.follows_motion()
     }
@@ -433,8 +421,8 @@ impl LoadedModel {
         self.error(call, Status::from_code(status), reason(last_error))
     }
 
-    /// Calls with a buffer of the usual size, and again if that is too small. The result must be one parameter set that
-    /// fits the descriptor.
+    /// Calls with a buffer of the usual size, and again if that is too small. The result must be
+    /// one parameter set that fits the descriptor.
     fn numbers(
         &self,
         call: &'static str,
@@ -456,20 +444,11 @@ impl LoadedModel {
     }
 
     pub(crate) fn error(&self, call: &'static str, status: Status, message: String) -> HostError {
-        HostError::Call {
-            model: self.id().to_owned(),
-            call,
-            status,
-            message,
-        }
+        HostError::Call { model: self.id().to_owned(), call, status, message }
     }
 
     pub(crate) fn broken(&self, call: &'static str, what: String) -> HostError {
-        HostError::Broken {
-            model: self.id().to_owned(),
-            call,
-            what,
-        }
+        HostError::Broken { model: self.id().to_owned(), call, what }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Models in native libraries (`.so`, `.dylib`, `.dll`).
 //!
-//! A native library runs with all rights of this program, so only libraries that the user chose are loaded. They
-//! are loaded once and never unloaded, because voices and tables point into them.
+//! A native library runs with all rights of this program, so only libraries that the user chose are
+//! loaded. They are loaded once and never unloaded, because voices and tables point into them.
 
 use std::path::Path;
 
@@ -20,18 +20,12 @@ use crate::table::TableModel;
 /// When the file is not a library for this machine, or lacks a symbol of the model ABI.
 pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
     let origin = path.display().to_string();
-    let error = |what: String| HostError::Load {
-        path: origin.clone(),
-        what,
-    };
+    let error = |what: String| HostError::Load { path: origin.clone(), what };
     // SAFETY: the user allowed the library's initialisers to run by naming the file or its folder.
     let library = unsafe { Library::from_file(path) }.map_err(|e| error(e.to_string()))?;
     let symbols = Symbols {
         library,
-        missing: &|name| HostError::NoFunction {
-            path: origin.clone(),
-            name: name.to_owned(),
-        },
+        missing: &|name| HostError::NoFunction { path: origin.clone(), name: name.to_owned() },
     };
     // SAFETY: every version of the ABI has this function with this type.
     let abi_version: AbiVersion = unsafe { symbols.get("htex_model_abi_version")? };

@@ -51,10 +51,9 @@ impl std::fmt::Display for Note {
                 "{id} {} ({}) is used in place of {} ({})",
                 used.0, used.1, shadowed.0, shadowed.1
             ),
-            Self::SameName { name, means, other } => write!(
-                f,
-                "`{name}` means {means}; write `{other}` in full for the other one"
-            ),
+            Self::SameName { name, means, other } => {
+                write!(f, "`{name}` means {means}; write `{other}` in full for the other one")
+            }
             Self::Broken { path, error } => {
                 write!(f, "plugin {} is left out: {error}", path.display())
             }

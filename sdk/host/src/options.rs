@@ -5,16 +5,14 @@ use htex_model::FitOption;
 use crate::{HostError, LoadedModel, OptionError};
 
 impl LoadedModel {
-    /// Returns one value for each of the model's options: the value given as `(name, text)`, else the default.
-    /// A choice is given by its name.
+    /// Returns one value for each of the model's options: the value given as `(name, text)`, else
+    /// the default. A choice is given by its name.
     ///
     /// # Errors
     /// [`HostError::Option`] with the allowed values.
     pub fn options(&self, given: &[(&str, &str)]) -> Result<Vec<f64>, HostError> {
-        let in_model = |error| HostError::Option {
-            model: self.id().to_owned(),
-            error: Box::new(error),
-        };
+        let in_model =
+            |error| HostError::Option { model: self.id().to_owned(), error: Box::new(error) };
         let options = &self.descriptor().options;
         let mut values = self.descriptor().default_options();
         for (name, text) in given {
@@ -32,11 +30,8 @@ impl LoadedModel {
 }
 
 fn parse(option: &FitOption, text: &str) -> Result<f64, OptionError> {
-    let wrong = |takes| OptionError::Value {
-        name: option.name.clone(),
-        text: text.to_owned(),
-        takes,
-    };
+    let wrong =
+        |takes| OptionError::Value { name: option.name.clone(), text: text.to_owned(), takes };
     if !option.choices.is_empty() {
         let choice = option.choices.iter().position(|c| c == text);
         return choice
@@ -48,11 +43,7 @@ fn parse(option: &FitOption, text: &str) -> Result<f64, OptionError> {
         .filter(|v| (option.min..=option.max).contains(v))
         .filter(|v| !option.integer || v.fract() == 0.0)
         .ok_or_else(|| {
-            let kind = if option.integer {
-                "a whole number"
-            } else {
-                "a number"
-            };
+            let kind = if option.integer { "a whole number" } else { "a number" };
             let FitOption { min, max, unit, .. } = option;
             wrong(format!("{kind} from {min} to {max} {unit}"))
         })

@@ -1,4 +1,5 @@
-//! For checkers of models: calls with the caller's own arrays, and with arrays that a host never passes. An app has no use for them.
+//! For checkers of models: calls with the caller's own arrays, and with arrays that a host never
+//! passes. An app has no use for them.
 //!
 //! Results are checked as little as they can be: a negative answer is an error.
 
@@ -42,7 +43,8 @@ pub struct Unusable {
 }
 
 impl LoadedModel {
-    /// Writes a fit to `parameters`, which may be shorter than it, and its level; returns the fit's length.
+    /// Writes a fit to `parameters`, which may be shorter than it, and its level; returns the fit's
+    /// length.
     ///
     /// # Errors
     /// When the model refuses it.
@@ -70,13 +72,11 @@ impl LoadedModel {
         magnitude: &mut [f64],
     ) -> Result<usize, HostError> {
         let raw = self.raw();
-        self.check(
-            "magnitude",
-            raw.magnitude(parameters, band, frequency_hz, magnitude),
-        )
+        self.check("magnitude", raw.magnitude(parameters, band, frequency_hz, magnitude))
     }
 
-    /// Writes a mix of parameter sets, which stand one behind the other, to `parameters`, which may be shorter than it.
+    /// Writes a mix of parameter sets, which stand one behind the other, to `parameters`, which may
+    /// be shorter than it.
     ///
     /// # Errors
     /// When the model refuses it.
@@ -98,7 +98,8 @@ impl LoadedModel {
         self.check("descriptor", self.raw().descriptor(out))
     }
 
-    /// Calls each function with null and misaligned arrays; `None` for a module, whose pointers are indices.
+    /// Calls each function with null and misaligned arrays; `None` for a module, whose pointers are
+    /// indices.
     pub fn unusable_arrays(&self, arguments: &ProbeArguments<'_>) -> Option<Vec<Unusable>> {
         self.raw().unusable_arrays(arguments)
     }
@@ -114,7 +115,8 @@ impl ModelVoice {
         self.done("voice_render", answer)
     }
 
-    /// Calls `htex_voices_1_render` with the voices of these numbers, which may come twice or not exist; `None` without the extension.
+    /// Calls `htex_voices_1_render` with the voices of these numbers, which may come twice or not
+    /// exist; `None` without the extension.
     pub fn render_any_together(
         voices: &mut [Self],
         numbers: &[usize],
@@ -130,7 +132,8 @@ impl ModelVoice {
         if out.len() < handles.len() * frames {
             return None;
         }
-        // SAFETY: live slices, with `frames` samples for each handle; the exclusive reference keeps the voices to this thread.
+        // SAFETY: live slices, with `frames` samples for each handle; the exclusive reference keeps
+        // the voices to this thread.
         Some(unsafe { render(handles.as_ptr(), handles.len(), out.as_mut_ptr(), frames) })
     }
 }
@@ -155,8 +158,8 @@ impl Answers {
     }
 }
 
-/// The functions of a table with arrays that are not usable. A misaligned array has a live one behind it, so that a model that uses it
-/// reads and writes nothing else.
+/// The functions of a table with arrays that are not usable. A misaligned array has a live one
+/// behind it, so that a model that uses it reads and writes nothing else.
 impl TableModel {
     pub(crate) fn probe(&self, a: &ProbeArguments<'_>) -> Vec<Unusable> {
         let mut answers = Answers(Vec::new());
@@ -171,13 +174,9 @@ impl TableModel {
     fn probe_texts(&self, answers: &mut Answers) {
         let (table, null) = (self.table(), std::ptr::null_mut());
         // SAFETY: null, which must be refused.
-        answers.add("descriptor", "null `out`", unsafe {
-            (table.descriptor)(null, LEN)
-        });
+        answers.add("descriptor", "null `out`", unsafe { (table.descriptor)(null, LEN) });
         // SAFETY: null, which must be refused.
-        answers.add("last_error", "null `out`", unsafe {
-            (table.last_error)(null, LEN)
-        });
+        answers.add("last_error", "null `out`", unsafe { (table.last_error)(null, LEN) });
         answers.0.push(Unusable {
             what: "`extension` with null `id`".to_owned(),
             // SAFETY: null, which is no extension.
@@ -187,11 +186,7 @@ impl TableModel {
     }
 
     fn probe_fit(&self, a: &ProbeArguments<'_>, answers: &mut Answers) {
-        let (hz, m, none) = (
-            a.frequency_hz.as_ptr(),
-            a.magnitude.as_ptr(),
-            std::ptr::null(),
-        );
+        let (hz, m, none) = (a.frequency_hz.as_ptr(), a.magnitude.as_ptr(), std::ptr::null());
         let mut out = vec![0.0; a.parameters.len() + 1];
         let (mut numbers, mut level) = (a.frequency_hz.to_vec(), 0.0);
         numbers.push(0.0);
@@ -215,25 +210,13 @@ impl TableModel {
         fit("misaligned `frequency_hz`", crooked, m, none, 0, to, level);
         fit("null `magnitude`", hz, none, none, 0, to, level);
         fit("null `signal`", hz, m, none, LEN, to, level);
-        fit(
-            "null `parameters`",
-            hz,
-            m,
-            none,
-            0,
-            std::ptr::null_mut(),
-            level,
-        );
+        fit("null `parameters`", hz, m, none, 0, std::ptr::null_mut(), level);
         fit("null `level_rms`", hz, m, none, 0, to, std::ptr::null_mut());
     }
 
     fn probe_magnitude(&self, a: &ProbeArguments<'_>, answers: &mut Answers) {
         let (mut out, none) = (vec![0.0; a.frequency_hz.len() + 1], std::ptr::null());
-        let (p, hz, to) = (
-            a.parameters.as_ptr(),
-            a.frequency_hz.as_ptr(),
-            out.as_mut_ptr(),
-        );
+        let (p, hz, to) = (a.parameters.as_ptr(), a.frequency_hz.as_ptr(), out.as_mut_ptr());
         let crooked = misaligned(&mut out);
         for (array, p, hz, to) in [
             ("null `parameters`", none, hz, to),
@@ -259,12 +242,8 @@ impl TableModel {
 
     fn probe_interpolate(&self, a: &ProbeArguments<'_>, answers: &mut Answers) {
         let (mut out, weights) = (vec![0.0; a.parameters.len()], [1.0]);
-        let (sets, one, none, to) = (
-            a.parameters.as_ptr(),
-            weights.as_ptr(),
-            std::ptr::null(),
-            out.as_mut_ptr(),
-        );
+        let (sets, one, none, to) =
+            (a.parameters.as_ptr(), weights.as_ptr(), std::ptr::null(), out.as_mut_ptr());
         for (array, sets, weights, to) in [
             ("null `sets`", none, one, to),
             ("null `weights`", sets, none, to),
@@ -295,14 +274,12 @@ impl TableModel {
         answers.add("voice_retune", "null `parameters`", unsafe {
             (table.voice_retune)(voice, null, len)
         });
-        for (array, to) in [
-            ("null `out`", std::ptr::null_mut()),
-            ("misaligned `out`", misaligned(&mut out)),
-        ] {
-            // SAFETY: a pointer that must be refused; the misaligned one has live samples behind it.
-            answers.add("voice_render", array, unsafe {
-                (table.voice_render)(voice, to, LEN)
-            });
+        for (array, to) in
+            [("null `out`", std::ptr::null_mut()), ("misaligned `out`", misaligned(&mut out))]
+        {
+            // SAFETY: a pointer that must be refused; the misaligned one has live samples behind
+            // it.
+            answers.add("voice_render", array, unsafe { (table.voice_render)(voice, to, LEN) });
         }
         (table.voice_free)(voice);
     }

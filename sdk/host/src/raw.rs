@@ -1,7 +1,8 @@
 //! The flat calls of the model ABI with slices, which each loader implements.
 //!
-//! Every model is called through one table of C functions, the built-in ones too, so that the code above does not
-//! depend on the loader: [`crate::table`] serves built-in models and native libraries, `wasm` serves modules.
+//! Every model is called through one table of C functions, the built-in ones too, so that the code
+//! above does not depend on the loader: [`crate::table`] serves built-in models and native
+//! libraries, `wasm` serves modules.
 
 use htex_model::abi::ModelTable;
 use htex_model::voices_1::VoicesRenderFn;
@@ -38,7 +39,8 @@ impl<'a> RawFit<'a> {
     }
 }
 
-/// The functions of one model. Returned numbers are those of `htex_model::abi`: a length or a status.
+/// The functions of one model. Returned numbers are those of `htex_model::abi`: a length or a
+/// status.
 pub(crate) trait RawModel: Send + Sync {
     fn abi_version(&self) -> u32;
     fn descriptor(&self, out: &mut [u8]) -> i64;
@@ -89,10 +91,11 @@ pub(crate) trait RawVoice: Send {
     fn set_motion(&mut self, motion: Motion) -> i64;
     /// Calls the model's `interpolate` in this voice's thread, without a lock.
     fn interpolate(&mut self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64;
-    /// Frees the voice in the model and keeps the handle: later calls reach the model, which returns `BadHandle`, and
-    /// dropping does not free again.
+    /// Frees the voice in the model and keeps the handle: later calls reach the model, which
+    /// returns `BadHandle`, and dropping does not free again.
     fn free(&mut self) -> i64;
-    /// Returns the data to render this voice in one call with others, if its model has `htex.voices/1`.
+    /// Returns the data to render this voice in one call with others, if its model has
+    /// `htex.voices/1`.
     fn together(&self) -> Option<Together> {
         None
     }

@@ -16,19 +16,20 @@ const BESIDE_EDGE_BINS: f64 = 0.5;
 const BELOW_OWN_RATE: f64 = 0.49;
 
 impl LoadedModel {
-    /// Returns whether magnitudes are what a window reads of lines, and no density: those of sinusoids, and of models that follow the motion, whose
-    /// surface a finger crosses again.
+    /// Returns whether magnitudes are what a window reads of lines, and no density: those of
+    /// sinusoids, and of models that follow the motion, whose surface a finger crosses again.
     pub fn has_lines(&self) -> bool {
         self.descriptor().is_sum_of_sines() || self.follows_motion()
     }
 
-    /// Returns the magnitude on the band's grid, of unit RMS, that a recording of the voice reads through a Hann window of 0.2 s: bins next to
-    /// steep flanks read the flank, and those at the band's edges read what is played half a bin beyond and nothing further. A model with a
-    /// rate of its own is read as it is played at high rates: the RMS is then [`Self::played_part`].
+    /// Returns the magnitude on the band's grid, of unit RMS, that a recording of the voice reads
+    /// through a Hann window of 0.2 s: bins next to steep flanks read the flank, and those at the
+    /// band's edges read what is played half a bin beyond and nothing further. A model with a rate
+    /// of its own is read as it is played at high rates: the RMS is then [`Self::played_part`].
     ///
     /// A voice plays its model's magnitude as a density; that of a model that keeps energies
-    /// ([`keeps_level`](htex_model::Descriptor::keeps_level)) plays it [sharpened](sharpen). The magnitude of sinusoids is already what is
-    /// read, as far as the window's main lobe goes.
+    /// ([`keeps_level`](htex_model::Descriptor::keeps_level)) plays it [sharpened](sharpen). The
+    /// magnitude of sinusoids is already what is read, as far as the window's main lobe goes.
     ///
     /// # Errors
     /// As [`Self::magnitude`].
@@ -62,8 +63,9 @@ impl LoadedModel {
         Ok(read)
     }
 
-    /// Returns the part of its level that a voice is played at, as the bins of the band read it: below 1 where the model has a rate of its
-    /// own and the conversion to the player's rate takes away power near half of it (about 0.7 where all of it lies there).
+    /// Returns the part of its level that a voice is played at, as the bins of the band read it:
+    /// below 1 where the model has a rate of its own and the conversion to the player's rate takes
+    /// away power near half of it (about 0.7 where all of it lies there).
     ///
     /// # Errors
     /// As [`Self::magnitude`].
@@ -75,14 +77,16 @@ impl LoadedModel {
         Ok(if part > 0.0 { part } else { 1.0 })
     }
 
-    /// What is passed of a voice with a rate of its own, where its band reaches up to half that rate.
+    /// What is passed of a voice with a rate of its own, where its band reaches up to half that
+    /// rate.
     fn own_rate(&self, parameters: &[f64], band: Band) -> Result<Option<OwnRate>, HostError> {
         let rate_hz = self.voice_rate_hz(parameters, band, HIGH_RATE_HZ)?;
         Ok(OwnRate::new(rate_hz, band.high_hz))
     }
 
-    /// Reads a voice's density through the window, at each bin: of what has `amplitude` at a frequency, hertz. Above `half_hz`, half of the
-    /// voice's own rate, is the image of what is below.
+    /// Reads a voice's density through the window, at each bin: of what has `amplitude` at a
+    /// frequency, hertz. Above `half_hz`, half of the voice's own rate, is the image of what is
+    /// below.
     fn read(
         &self,
         parameters: &[f64],
@@ -96,18 +100,13 @@ impl LoadedModel {
         let lobe: Vec<(f64, f64)> = (-2 * IN_BIN..=2 * IN_BIN)
             .map(|i| (place(i), hann_main_lobe(place(i)).powi(2)))
             .collect();
-        let places: Vec<f64> = grid
-            .iter()
-            .flat_map(|hz| lobe.iter().map(move |(d, _)| hz + d * GRID_HZ))
-            .collect();
+        let places: Vec<f64> =
+            grid.iter().flat_map(|hz| lobe.iter().map(move |(d, _)| hz + d * GRID_HZ)).collect();
         let source_hz = |hz: &f64| match *hz > half_hz {
             true => 2.0 * half_hz - hz,
             false => *hz,
         };
-        let dense: Vec<f64> = places
-            .iter()
-            .map(|hz| played_at(band, source_hz(hz)))
-            .collect();
+        let dense: Vec<f64> = places.iter().map(|hz| played_at(band, source_hz(hz))).collect();
         let mut density = match self.descriptor().keeps_level {
             true => sharpened(&self.magnitude(parameters, band, grid)?, band, &dense),
             false => self.magnitude(parameters, band, &dense)?,
@@ -115,10 +114,7 @@ impl LoadedModel {
         let all = density.iter_mut().zip(&places);
         all.for_each(|(m, hz)| *m *= amplitude(*hz));
         let power = |part: &[f64]| -> f64 {
-            let weighed = part
-                .iter()
-                .zip(&lobe)
-                .map(|(m, (_, weight))| weight * m * m);
+            let weighed = part.iter().zip(&lobe).map(|(m, (_, weight))| weight * m * m);
             weighed.sum()
         };
         let powers = density.chunks(lobe.len()).map(power);
@@ -126,7 +122,8 @@ impl LoadedModel {
     }
 }
 
-/// Returns the frequency in the band that is played at a frequency: beyond an edge, that of the edge for half a bin.
+/// Returns the frequency in the band that is played at a frequency: beyond an edge, that of the
+/// edge for half a bin.
 fn played_at(band: Band, hz: f64) -> f64 {
     let edge_hz = hz.clamp(band.low_hz, band.high_hz);
     match (hz - edge_hz).abs() <= BESIDE_EDGE_BINS * GRID_HZ {
@@ -135,7 +132,8 @@ fn played_at(band: Band, hz: f64) -> f64 {
     }
 }
 
-/// Returns the density of a sharpened magnitude, given on the band's grid, at frequencies in hertz: linear between bins, 0 outside the band.
+/// Returns the density of a sharpened magnitude, given on the band's grid, at frequencies in hertz:
+/// linear between bins, 0 outside the band.
 fn sharpened(magnitude: &[f64], band: Band, hertz: &[f64]) -> Vec<f64> {
     let power: Vec<f64> = magnitude.iter().map(|m| m * m).collect();
     let (mut before, mut sharp) = (power.clone(), power.clone());

@@ -13,10 +13,12 @@ use crate::{builtin, own};
 
 /// Models by id. Several models may have one id:
 ///
-/// - A model that was named by its file or added by the program precedes the others, in the order in which they came.
-/// - Of the installed ones and the built-in one, the newest of each major version is used, wherever it was found; of equal
-///   versions the one that comes first in the order of [`Search`]. Major versions are in the order of the first place that has
-///   them (the folders of plugins, the user's folder, this program), the newest first within one place.
+/// - A model that was named by its file or added by the program precedes the others, in the order
+///   in which they came.
+/// - Of the installed ones and the built-in one, the newest of each major version is used, wherever
+///   it was found; of equal versions the one that comes first in the order of [`Search`]. Major
+///   versions are in the order of the first place that has them (the folders of plugins, the user's
+///   folder, this program), the newest first within one place.
 ///
 /// The others are returned only for requests of their version.
 ///
@@ -57,7 +59,8 @@ pub(crate) enum Rank {
 }
 
 impl Rank {
-    /// Returns whether the user or a program named this model itself, not only a folder that has it.
+    /// Returns whether the user or a program named this model itself, not only a folder that has
+    /// it.
     fn is_chosen(self) -> bool {
         matches!(self, Self::File | Self::Embedded)
     }
@@ -73,14 +76,12 @@ impl Candidate {
     }
 }
 
-/// Sorts models of one id, in the order in which they came, by the precedence that [`Registry`] describes.
+/// Sorts models of one id, in the order in which they came, by the precedence that [`Registry`]
+/// describes.
 fn by_precedence(all: &mut [Candidate]) {
     let first_place = |major: Option<u64>| {
         let installed = all.iter().filter(|one| !one.rank.is_chosen());
-        installed
-            .filter(|one| one.major() == major)
-            .map(|one| one.rank)
-            .min()
+        installed.filter(|one| one.major() == major).map(|one| one.rank).min()
     };
     let places: Vec<_> = all.iter().map(|one| first_place(one.major())).collect();
     let mut keyed: Vec<_> = places.into_iter().zip(all.iter().cloned()).collect();
@@ -107,7 +108,8 @@ impl Registry {
         models.map(LoadedModel::short_name).collect()
     }
 
-    /// Returns the short names of those among them whose sound is the same at each place: all but models that follow the motion.
+    /// Returns the short names of those among them whose sound is the same at each place: all but
+    /// models that follow the motion.
     pub fn placeless_names() -> Vec<&'static str> {
         let models = builtin::models().iter();
         let placeless = models.filter(|model| !model.follows_motion());
@@ -132,14 +134,11 @@ impl Registry {
         }
     }
 
-    /// Returns the registry of one asset: modules that are added to it share the limits [`WasmLimits::asset`], within
-    /// those of all modules of this registry.
+    /// Returns the registry of one asset: modules that are added to it share the limits
+    /// [`WasmLimits::asset`], within those of all modules of this registry.
     #[must_use]
     pub fn of_asset(self) -> Self {
-        Self {
-            sandbox: self.sandbox.of_asset(),
-            ..self
-        }
+        Self { sandbox: self.sandbox.of_asset(), ..self }
     }
 
     pub(crate) fn sandbox(&self) -> &Sandbox {
@@ -152,8 +151,8 @@ impl Registry {
         }
     }
 
-    /// Adds a model of this program: a type that implements the trait. It precedes all other models of its id except
-    /// those that were named or registered before.
+    /// Adds a model of this program: a type that implements the trait. It precedes all other models
+    /// of its id except those that were named or registered before.
     ///
     /// ```
     /// use htex_host::Registry;
@@ -202,7 +201,8 @@ impl Registry {
         self.add_described(Origin::Own, own::model::<M>()?)
     }
 
-    /// As [`Self::add_model`], for a model that follows the motion itself (the extension `htex.motion/1`).
+    /// As [`Self::add_model`], for a model that follows the motion itself (the extension
+    /// `htex.motion/1`).
     ///
     /// # Errors
     /// As [`Self::add_model`].
@@ -215,8 +215,8 @@ impl Registry {
         Ok(())
     }
 
-    /// Adds a model that is described while the program runs. `written_in` is its [`Origin::Runtime`]. It precedes other
-    /// models as [`Self::add_model`] says.
+    /// Adds a model that is described while the program runs. `written_in` is its
+    /// [`Origin::Runtime`]. It precedes other models as [`Self::add_model`] says.
     ///
     /// # Errors
     /// When the descriptor is invalid, or longer than 1 MiB in JSON.
@@ -230,8 +230,8 @@ impl Registry {
         self.add_described(origin, Described::new(descriptor, model)?)
     }
 
-    /// Adds the WASM model of a container `name`, such as an asset, after plugins named by their files and before all
-    /// others. A native library cannot be added in this way.
+    /// Adds the WASM model of a container `name`, such as an asset, after plugins named by their
+    /// files and before all others. A native library cannot be added in this way.
     ///
     /// # Errors
     /// When the bytes are not a module, or its model violates the ABI.
@@ -241,7 +241,8 @@ impl Registry {
         Ok(())
     }
 
-    /// As [`Self::add_wasm_bytes`], for a declared id and version: a module with another id or version is not added.
+    /// As [`Self::add_wasm_bytes`], for a declared id and version: a module with another id or
+    /// version is not added.
     ///
     /// # Errors
     /// As [`Self::add_wasm_bytes`], and [`HostError::OtherModel`].
@@ -274,13 +275,9 @@ impl Registry {
             self.note_same_name(at, &new.model);
             return self.insert(at, new);
         };
-        let old = Candidate {
-            rank: self.ranks.remove(used),
-            model: self.models.remove(used),
-        };
-        let (mut same, others): (Vec<_>, Vec<_>) = std::mem::take(&mut self.shadowed)
-            .into_iter()
-            .partition(|one| one.model.id() == id);
+        let old = Candidate { rank: self.ranks.remove(used), model: self.models.remove(used) };
+        let (mut same, others): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.shadowed).into_iter().partition(|one| one.model.id() == id);
         same.insert(0, old.clone());
         same.push(new.clone());
         by_precedence(&mut same);
@@ -343,8 +340,8 @@ impl Registry {
         &self.models
     }
 
-    /// Returns the models that a program fits where none is named: all but those that are fitted only by name
-    /// ([`LoadedModel::is_only_named`]).
+    /// Returns the models that a program fits where none is named: all but those that are fitted
+    /// only by name ([`LoadedModel::is_only_named`]).
     pub fn by_default(&self) -> impl Iterator<Item = &LoadedModel> {
         self.models.iter().filter(|model| !model.is_only_named())
     }
@@ -354,23 +351,18 @@ impl Registry {
         &self.notes
     }
 
-    /// Returns a model by its id or its short name (`org.htex.sbeta` or `sbeta`; short names ignore case).
+    /// Returns a model by its id or its short name (`org.htex.sbeta` or `sbeta`; short names ignore
+    /// case).
     ///
     /// # Errors
     /// [`HostError::UnknownModel`] with the known names.
     pub fn find(&self, name: &str) -> Result<&LoadedModel, HostError> {
         let by_id = self.models.iter().find(|m| m.id() == name);
-        let by_name = || {
-            self.models
-                .iter()
-                .find(|m| m.short_name().eq_ignore_ascii_case(name))
-        };
-        by_id
-            .or_else(by_name)
-            .ok_or_else(|| HostError::UnknownModel {
-                wanted: name.to_owned(),
-                known: self.known(|m| m.short_name().to_owned()),
-            })
+        let by_name = || self.models.iter().find(|m| m.short_name().eq_ignore_ascii_case(name));
+        by_id.or_else(by_name).ok_or_else(|| HostError::UnknownModel {
+            wanted: name.to_owned(),
+            known: self.known(|m| m.short_name().to_owned()),
+        })
     }
 
     /// Returns the first model of this id whose version matches `wanted`, including shadowed ones.
@@ -382,12 +374,10 @@ impl Registry {
             let version = Version::parse(&m.descriptor().version);
             m.id() == id && version.is_ok_and(|version| wanted.matches(&version))
         };
-        self.every()
-            .find(matches)
-            .ok_or_else(|| HostError::UnknownModel {
-                wanted: format!("{id} {wanted}"),
-                known: self.known(|m| format!("{} {}", m.id(), m.descriptor().version)),
-            })
+        self.every().find(matches).ok_or_else(|| HostError::UnknownModel {
+            wanted: format!("{id} {wanted}"),
+            known: self.known(|m| format!("{} {}", m.id(), m.descriptor().version)),
+        })
     }
 
     fn known(&self, name: impl Fn(&LoadedModel) -> String) -> String {

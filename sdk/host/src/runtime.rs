@@ -1,4 +1,5 @@
-//! Models that are described while the program runs: objects instead of types, such as models of a scripting language.
+//! Models that are described while the program runs: objects instead of types, such as models of a
+//! scripting language.
 
 use std::sync::Arc;
 
@@ -12,8 +13,8 @@ use htex_model::{
 use crate::raw::{RawFit, RawModel, RawVoice};
 use crate::{HostError, MOTION_EXTENSION};
 
-/// A model that is an object. Units and arguments are those of [`htex_model::Model`], and arguments are checked before
-/// each call in the same way; panics become errors.
+/// A model that is an object. Units and arguments are those of [`htex_model::Model`], and arguments
+/// are checked before each call in the same way; panics become errors.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -151,13 +152,7 @@ impl Described {
             call: "htex_model_descriptor",
             what: error.to_string(),
         })?;
-        Ok(Self {
-            shared: Arc::new(Shared {
-                descriptor,
-                json,
-                model,
-            }),
-        })
+        Ok(Self { shared: Arc::new(Shared { descriptor, json, model }) })
     }
 }
 
@@ -273,10 +268,7 @@ impl RawModel for Described {
             Ok(0)
         });
         match voice {
-            Some(_) => Ok(Box::new(DescribedVoice {
-                shared: self.shared.clone(),
-                voice,
-            })),
+            Some(_) => Ok(Box::new(DescribedVoice { shared: self.shared.clone(), voice })),
             None => Err(status),
         }
     }

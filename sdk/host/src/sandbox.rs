@@ -1,7 +1,8 @@
 //! The sandbox of modules: the limits of each, and the budget that several share.
 //!
-//! A registry has one budget, and within it each asset has one ([`crate::Registry::of_asset`]). Voices are not counted
-//! there, so that rendering takes no lock: each has an allowance that grows with what it renders.
+//! A registry has one budget, and within it each asset has one ([`crate::Registry::of_asset`]).
+//! Voices are not counted there, so that rendering takes no lock: each has an allowance that grows
+//! with what it renders.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -35,11 +36,7 @@ impl Sandbox {
         let outer = Some(Arc::clone(&self.budget));
         Self {
             limits: self.limits.clone(),
-            budget: Arc::new(Budget::new(
-                "the modules of this asset",
-                self.limits.asset,
-                outer,
-            )),
+            budget: Arc::new(Budget::new("the modules of this asset", self.limits.asset, outer)),
         }
     }
 }
@@ -52,10 +49,7 @@ pub(crate) enum BudgetError {
     #[error(
         "{owner} may have {instances} instances at a time, one per model and one per voice; free some voices"
     )]
-    Instances {
-        owner: &'static str,
-        instances: usize,
-    },
+    Instances { owner: &'static str, instances: usize },
     #[error("{owner} have used up the {ms} ms that they have together")]
     Time { owner: &'static str, ms: u128 },
 }
@@ -86,10 +80,7 @@ impl Budget {
             total,
             memory_bytes: AtomicUsize::new(0),
             instances: AtomicUsize::new(0),
-            time: Mutex::new(Time {
-                left: total.time,
-                at: Instant::now(),
-            }),
+            time: Mutex::new(Time { left: total.time, at: Instant::now() }),
             outer,
         }
     }
@@ -102,10 +93,7 @@ impl Budget {
     /// Takes memory; takes none on error.
     pub(crate) fn take_memory(&self, bytes: usize) -> Result<(), BudgetError> {
         self.take(bytes, |b| (&b.memory_bytes, b.total.memory_bytes))
-            .map_err(|b| BudgetError::Memory {
-                owner: b.owner,
-                bytes: b.total.memory_bytes,
-            })
+            .map_err(|b| BudgetError::Memory { owner: b.owner, bytes: b.total.memory_bytes })
     }
 
     pub(crate) fn give_memory(&self, bytes: usize) {
@@ -117,10 +105,7 @@ impl Budget {
     /// Counts one more instance; counts none on error.
     pub(crate) fn take_instance(&self) -> Result<(), BudgetError> {
         self.take(1, |b| (&b.instances, b.total.instances))
-            .map_err(|b| BudgetError::Instances {
-                owner: b.owner,
-                instances: b.total.instances,
-            })
+            .map_err(|b| BudgetError::Instances { owner: b.owner, instances: b.total.instances })
     }
 
     pub(crate) fn give_instance(&self) {
@@ -129,16 +114,13 @@ impl Budget {
         }
     }
 
-    /// Adds to a count of this budget and of those that contain it. On error adds to none, and returns the budget whose
-    /// limit would be exceeded.
+    /// Adds to a count of this budget and of those that contain it. On error adds to none, and
+    /// returns the budget whose limit would be exceeded.
     fn take(&self, n: usize, count: impl Fn(&Self) -> (&AtomicUsize, usize)) -> Result<(), &Self> {
         for (taken, budget) in self.all().enumerate() {
             let (used, most) = count(budget);
             let add = |used: usize| used.checked_add(n).filter(|sum| *sum <= most);
-            if used
-                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, add)
-                .is_err()
-            {
+            if used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add).is_err() {
                 for other in self.all().take(taken) {
                     count(other).0.fetch_sub(n, Ordering::Relaxed);
                 }
@@ -153,7 +135,8 @@ impl Budget {
         let mut least = Duration::MAX;
         for budget in self.all() {
             let left = budget.update(Duration::ZERO);
-            // After time is used up, calls are refused until a hundredth of the total has been added.
+            // After time is used up, calls are refused until a hundredth of the total has been
+            // added.
             if left < budget.total.time / 100 {
                 return Err(BudgetError::Time {
                     owner: budget.owner,
@@ -176,9 +159,7 @@ impl Budget {
         let mut time = self.time.lock().unwrap_or_else(PoisonError::into_inner);
         let now = Instant::now();
         let back = now.saturating_duration_since(time.at).mul_f64(REFILL);
-        time.left = (time.left + back)
-            .min(self.total.time)
-            .saturating_sub(spent);
+        time.left = (time.left + back).min(self.total.time).saturating_sub(spent);
         time.at = now;
         time.left
     }

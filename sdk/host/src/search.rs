@@ -13,9 +13,9 @@ const VARIABLE: &str = "HTEX_PLUGIN_PATH";
 /// The user's folder of plugins, in the data folder.
 const FOLDER: &str = "htex/plugins";
 
-/// The places that are searched for models, in order of precedence: `files`, models embedded in an asset, `dirs`,
-/// `HTEX_PLUGIN_PATH`, the user's folder, built-in models. From `dirs` on, a newer version of the same major version
-/// precedes an older one, wherever each was found ([`Registry`]).
+/// The places that are searched for models, in order of precedence: `files`, models embedded in an
+/// asset, `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, built-in models. From `dirs` on, a newer
+/// version of the same major version precedes an older one, wherever each was found ([`Registry`]).
 ///
 /// ```
 /// use htex_host::{Registry, Search, WasmLimits};
@@ -29,8 +29,9 @@ const FOLDER: &str = "htex/plugins";
 pub struct Search {
     /// Files of plugins; a file that cannot be loaded is an error.
     pub files: Vec<PathBuf>,
-    /// Files that somebody else names, such as a recipe: WASM modules, which run in a sandbox. Anything else is an error and is not
-    /// loaded, since a native library runs with all rights of its user: a person names it in `files`, which precede these.
+    /// Files that somebody else names, such as a recipe: WASM modules, which run in a sandbox.
+    /// Anything else is an error and is not loaded, since a native library runs with all rights of
+    /// its user: a person names it in `files`, which precede these.
     pub modules: Vec<PathBuf>,
     /// Folders of plugins; a folder that cannot be read is an error, a plugin in it that cannot be
     /// loaded is a [`Note`].
@@ -63,11 +64,7 @@ impl Default for Search {
 impl Search {
     /// Only the models linked into this program.
     pub fn builtin() -> Self {
-        Self {
-            env: false,
-            user_dir: false,
-            ..Self::default()
-        }
+        Self { env: false, user_dir: false, ..Self::default() }
     }
 
     /// Sets the files of plugins.
@@ -151,10 +148,9 @@ impl Search {
     fn add_folder(&self, registry: &mut Registry, rank: Rank, dir: &Path) {
         match libraries_in(dir, Some("wasm")) {
             Ok(files) => self.add_all(registry, rank, files),
-            Err(error) => registry.note(Note::Folder {
-                path: dir.to_owned(),
-                what: error.to_string(),
-            }),
+            Err(error) => {
+                registry.note(Note::Folder { path: dir.to_owned(), what: error.to_string() })
+            }
         }
     }
 

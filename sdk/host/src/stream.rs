@@ -5,7 +5,8 @@ use htex_dsp::resample::Resampler;
 
 use crate::{HostError, LoadedModel, ModelVoice};
 
-/// Samples at a requested rate: a source at its own rate, such as a voice, and a resampler if the rates differ.
+/// Samples at a requested rate: a source at its own rate, such as a voice, and a resampler if the
+/// rates differ.
 ///
 /// ```
 /// use htex_host::{Band, Registry, Stream};
@@ -23,8 +24,9 @@ pub struct Stream<S = ModelVoice> {
 }
 
 impl<S> Stream<S> {
-    /// Makes a stream at `rate_hz` of a source with samples at `source_rate_hz` and frequencies up to `top_hz`. `own_rate`: it has this
-    /// rate whichever is wanted ([`LoadedModel::has_own_rate`]).
+    /// Makes a stream at `rate_hz` of a source with samples at `source_rate_hz` and frequencies up
+    /// to `top_hz`. `own_rate`: it has this rate whichever is wanted
+    /// ([`LoadedModel::has_own_rate`]).
     ///
     /// # Errors
     /// When the one rate cannot be converted to the other.
@@ -39,11 +41,7 @@ impl<S> Stream<S> {
             true => Resampler::of_own_rate(source_rate_hz, rate_hz, top_hz)?,
             false => Resampler::new(source_rate_hz, rate_hz, top_hz)?,
         };
-        Ok(Self {
-            resampler,
-            source,
-            source_rate_hz,
-        })
+        Ok(Self { resampler, source, source_rate_hz })
     }
 
     pub fn source(&self) -> &S {
@@ -54,7 +52,8 @@ impl<S> Stream<S> {
         &mut self.source
     }
 
-    /// Fills `out` with the next samples; `render` fills a block with those of the source. Does not allocate.
+    /// Fills `out` with the next samples; `render` fills a block with those of the source. Does not
+    /// allocate.
     ///
     /// # Errors
     /// The last error of `render`.
@@ -80,7 +79,8 @@ impl Stream {
     /// Makes a voice of `model`, and a resampler to `rate_hz` if needed.
     ///
     /// # Errors
-    /// When the model refuses the parameters or the rate, or its own rate cannot be converted to `rate_hz`.
+    /// When the model refuses the parameters or the rate, or its own rate cannot be converted to
+    /// `rate_hz`.
     pub fn new(
         model: &LoadedModel,
         parameters: &[f64],

@@ -26,7 +26,8 @@ const FADE_S: f64 = 0.1;
 /// The start of a voice and its resampler that is left out of a loop, seconds.
 const RUN_IN_S: f64 = 0.1;
 
-/// Method of synthesis. Its text is `streamed`, `loop:SECONDS` or `filter:TAPS`; the number is optional.
+/// Method of synthesis. Its text is `streamed`, `loop:SECONDS` or `filter:TAPS`; the number is
+/// optional.
 ///
 /// ```
 /// use htex_host::Synthesis;
@@ -40,15 +41,16 @@ pub enum Synthesis {
     /// The model's voice. It does not repeat, and its spectrum follows the motion.
     #[default]
     Streamed,
-    /// A part of the voice, 0.1 to 60 s long, rendered once and repeated with a cross-fade of constant power. It has the
-    /// least computation per sample and needs four bytes of memory per sample; the spectrum is that of one section of
-    /// noise and does not change.
+    /// A part of the voice, 0.1 to 60 s long, rendered once and repeated with a cross-fade of
+    /// constant power. It has the least computation per sample and needs four bytes of memory per
+    /// sample; the spectrum is that of one section of noise and does not change.
     Loop {
         /// Length of the loop, seconds.
         seconds: f64,
     },
-    /// White noise through a linear-phase filter with the model's magnitude, of 15 to 4095 taps at the rate of noise
-    /// models. Its resolution in hertz is four times that rate divided by the taps; the spectrum does not change.
+    /// White noise through a linear-phase filter with the model's magnitude, of 15 to 4095 taps at
+    /// the rate of noise models. Its resolution in hertz is four times that rate divided by the
+    /// taps; the spectrum does not change.
     Filter {
         /// Coefficients of the filter.
         taps: usize,
@@ -81,9 +83,7 @@ impl FromStr for Synthesis {
             ("filter", Some(n)) => n.parse().ok().map(|taps| Self::Filter { taps }),
             _ => None,
         };
-        let wrong = || HostError::Synthesis {
-            text: text.chars().take(40).collect(),
-        };
+        let wrong = || HostError::Synthesis { text: text.chars().take(40).collect() };
         synthesis.filter(Self::is_possible).ok_or_else(wrong)
     }
 }
@@ -219,11 +219,7 @@ impl FilteredNoise {
         let energy: f64 = response.iter().map(|&x| f64::from(x) * f64::from(x)).sum();
         Ok(Self {
             noise: GaussianNoise::new(seed),
-            gain: if energy > 0.0 {
-                1.0 / energy.sqrt()
-            } else {
-                0.0
-            } as f32,
+            gain: if energy > 0.0 { 1.0 / energy.sqrt() } else { 0.0 } as f32,
             fir,
             taps,
             resampler: Resampler::new(noise_hz, rate_hz, band.high_hz)?,

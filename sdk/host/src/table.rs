@@ -1,4 +1,5 @@
-//! Models that are called through a table of native functions: built-in models and native libraries.
+//! Models that are called through a table of native functions: built-in models and native
+//! libraries.
 
 use htex_model::abi::ModelTable;
 use htex_model::motion_1::MotionTable;
@@ -23,30 +24,17 @@ pub(crate) struct TableModel {
 
 impl TableModel {
     pub(crate) fn new(table: &'static ModelTable, voices: Option<&'static VoicesTable>) -> Self {
-        Self {
-            table,
-            voices,
-            motion: None,
-            knobs: None,
-            usual: &[],
-            is_only_named: false,
-        }
+        Self { table, voices, motion: None, knobs: None, usual: &[], is_only_named: false }
     }
 
     /// Takes the model out of those that a program takes by itself.
     pub(crate) fn only_named(self) -> Self {
-        Self {
-            is_only_named: true,
-            ..self
-        }
+        Self { is_only_named: true, ..self }
     }
 
     /// Adds the extension `htex.motion/1`.
     pub(crate) fn with_motion(self, motion: &'static MotionTable) -> Self {
-        Self {
-            motion: Some(motion),
-            ..self
-        }
+        Self { motion: Some(motion), ..self }
     }
 
     pub(crate) fn table(&self) -> &'static ModelTable {
@@ -55,10 +43,7 @@ impl TableModel {
 
     #[cfg(feature = "fit")]
     pub(crate) fn with_knobs(self, knobs: &'static Knobs) -> Self {
-        Self {
-            knobs: Some(knobs),
-            ..self
-        }
+        Self { knobs: Some(knobs), ..self }
     }
 
     #[cfg(feature = "fit")]
@@ -67,8 +52,8 @@ impl TableModel {
     }
 }
 
-// Each call below passes slices that are readable or writable for their whole length during the call, as the ABI
-// requires; no value but its `TableVoice` holds a voice's handle.
+// Each call below passes slices that are readable or writable for their whole length during the
+// call, as the ABI requires; no value but its `TableVoice` holds a voice's handle.
 impl RawModel for TableModel {
     fn abi_version(&self) -> u32 {
         (self.table.abi_version)()
@@ -207,23 +192,12 @@ impl RawModel for TableModel {
         let (low, high) = band.edges();
         // SAFETY: a live slice.
         let handle = unsafe {
-            (self.table.voice_new)(
-                parameters.as_ptr(),
-                parameters.len(),
-                low,
-                high,
-                rate_hz,
-                seed,
-            )
+            (self.table.voice_new)(parameters.as_ptr(), parameters.len(), low, high, rate_hz, seed)
         };
         if handle <= 0 {
             return Err(handle);
         }
-        Ok(Box::new(TableVoice {
-            model: *self,
-            handle,
-            freed: false,
-        }))
+        Ok(Box::new(TableVoice { model: *self, handle, freed: false }))
     }
 }
 
@@ -317,9 +291,8 @@ mod tests {
     impl Model for Ruler {
         type Voice = Finger;
         const DESCRIPTOR: StaticDescriptor =
-            StaticDescriptor::new("org.example.ruler", "Ruler", "1.0.0", "Positions.").fields(&[
-                StaticField::scalar("speed_mm_s", "mm/s", (0.0, 1e3), "Speed."),
-            ]);
+            StaticDescriptor::new("org.example.ruler", "Ruler", "1.0.0", "Positions.")
+                .fields(&[StaticField::scalar("speed_mm_s", "mm/s", (0.0, 1e3), "Speed.")]);
 
         fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
             Ok(Fit {
@@ -362,17 +335,9 @@ mod tests {
     #[test]
     fn a_built_in_model_receives_the_motion_if_its_table_has_the_extension() {
         let plain = TableModel::new(&TABLE, Some(&VOICES));
-        let motion = Motion {
-            speed_mm_s: 80.0,
-            force_n: 0.4,
-            position_mm: 12.0,
-            x_mm: 12.0,
-            y_mm: 0.0,
-        };
-        let condition = FitCondition {
-            speed_mm_s: Some(80.0),
-            force_n: Some(0.4),
-        };
+        let motion =
+            Motion { speed_mm_s: 80.0, force_n: 0.4, position_mm: 12.0, x_mm: 12.0, y_mm: 0.0 };
+        let condition = FitCondition { speed_mm_s: Some(80.0), force_n: Some(0.4) };
         for (table, follows) in [(plain.with_motion(&MOTION), true), (plain, false)] {
             let model = LoadedModel::new(Origin::Builtin, Arc::new(table)).unwrap();
             assert_eq!(model.follows_motion(), follows);

@@ -1,6 +1,7 @@
 //! Rendering of several voices in as few calls as their models allow.
 //!
-//! Neighbours with the same model are grouped; a model without an own version for several voices is called in a loop.
+//! Neighbours with the same model are grouped; a model without an own version for several voices is
+//! called in a loop.
 
 use htex_model::voices_1::{MAX_VOICES, VoicesTable};
 
@@ -9,12 +10,13 @@ use crate::{HostError, ModelVoice};
 /// The extension of models that render several voices in one call.
 pub const VOICES_EXTENSION: &str = VoicesTable::ID;
 
-/// Fills `out` with the next `frames` samples of each voice, one voice after another, bit-identical to
-/// [`ModelVoice::render`] of each. Neighbours with the same model are rendered in one call if the model has the extension
-/// `htex.voices/1`, as the built-in models have. AR then takes about six tenths of the time in blocks of 256 frames
-/// (`cargo xtask bench`); below 64 frames, and for other models, voices are rendered separately. If `out` is too short,
-/// the remaining voices are not advanced; if it is too long, the rest is filled with zeros. Does not allocate, lock or
-/// block if the models keep to the ABI.
+/// Fills `out` with the next `frames` samples of each voice, one voice after another, bit-identical
+/// to [`ModelVoice::render`] of each. Neighbours with the same model are rendered in one call if
+/// the model has the extension `htex.voices/1`, as the built-in models have. AR then takes about
+/// six tenths of the time in blocks of 256 frames (`cargo xtask bench`); below 64 frames, and for
+/// other models, voices are rendered separately. If `out` is too short, the remaining voices are
+/// not advanced; if it is too long, the rest is filled with zeros. Does not allocate, lock or block
+/// if the models keep to the ABI.
 ///
 /// ```
 /// use htex_host::{Band, Registry, render_together};
@@ -110,12 +112,10 @@ fn call(
     let (Some(render), Some(Some(first))) = (render, voices.first()) else {
         return Ok(());
     };
-    // SAFETY: live slices, with one row of `out` per handle. Only its voice holds a handle, and the references to the
-    // voices are exclusive, so no other thread uses it.
+    // SAFETY: live slices, with one row of `out` per handle. Only its voice holds a handle, and the
+    // references to the voices are exclusive, so no other thread uses it.
     let status = unsafe { render(handles.as_ptr(), count, out.as_mut_ptr(), frames) };
-    first
-        .done("htex_voices_1_render", status)
-        .inspect_err(|_| out.fill(0.0))?;
+    first.done("htex_voices_1_render", status).inspect_err(|_| out.fill(0.0))?;
     let mut result = Ok(());
     for (voice, row) in voices.iter().flatten().zip(out.chunks_exact_mut(frames)) {
         let finite = voice.check_finite(row);

@@ -1,10 +1,10 @@
 //! A voice of a model.
 //!
-//! Samples are checked for NaN and infinity here, once for every loader, in place of a WASM compiler that canonicalises
-//! NaNs in every operation.
+//! Samples are checked for NaN and infinity here, once for every loader, in place of a WASM
+//! compiler that canonicalises NaNs in every operation.
 //!
-//! A voice mixes the parameters of its conditions itself: in its own instance if it is WASM, in buffers that were
-//! allocated with the voice. Following a finger neither allocates nor locks.
+//! A voice mixes the parameters of its conditions itself: in its own instance if it is WASM, in
+//! buffers that were allocated with the voice. Following a finger neither allocates nor locks.
 
 use htex_model::{Motion, Status};
 
@@ -32,9 +32,7 @@ pub struct ModelVoice {
 
 impl std::fmt::Debug for ModelVoice {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("ModelVoice")
-            .field("model", &self.model)
-            .finish_non_exhaustive()
+        f.debug_struct("ModelVoice").field("model", &self.model).finish_non_exhaustive()
     }
 }
 
@@ -43,7 +41,8 @@ impl ModelVoice {
         Self { model, raw }
     }
 
-    /// Fills `out` with the next samples. Does not allocate, lock or block if the model keeps to the ABI.
+    /// Fills `out` with the next samples. Does not allocate, lock or block if the model keeps to
+    /// the ABI.
     ///
     /// # Errors
     /// When the model fails; `out` is then filled with zeros.
@@ -58,7 +57,8 @@ impl ModelVoice {
         self.raw.as_mut()
     }
 
-    /// Returns the data to render the voice in one call with others, if its model has `htex.voices/1`.
+    /// Returns the data to render the voice in one call with others, if its model has
+    /// `htex.voices/1`.
     pub(crate) fn together(&self) -> Option<Together> {
         self.raw.together()
     }
@@ -89,12 +89,14 @@ impl ModelVoice {
         self.done("voice_retune", status)
     }
 
-    /// Changes to interpolated parameters. `sets` are concatenated; `buffer` receives the interpolated set, which has at
-    /// most [`LoadedModel::most_parameters`] numbers. The voice interpolates in its own instance: without a lock, and
-    /// without allocation if the model keeps to the ABI.
+    /// Changes to interpolated parameters. `sets` are concatenated; `buffer` receives the
+    /// interpolated set, which has at most [`LoadedModel::most_parameters`] numbers. The voice
+    /// interpolates in its own instance: without a lock, and without allocation if the model keeps
+    /// to the ABI.
     ///
     /// # Errors
-    /// When the model cannot interpolate, or `buffer` is too short; the voice then continues unchanged.
+    /// When the model cannot interpolate, or `buffer` is too short; the voice then continues
+    /// unchanged.
     pub fn retune_mix(
         &mut self,
         sets: &[f64],
@@ -112,11 +114,13 @@ impl ModelVoice {
         }
     }
 
-    /// Sets the motion at the next sample of a voice whose model follows it ([`LoadedModel::follows_motion`]); does
-    /// nothing for others. Does not allocate, lock or block if the model keeps to the ABI.
+    /// Sets the motion at the next sample of a voice whose model follows it
+    /// ([`LoadedModel::follows_motion`]); does nothing for others. Does not allocate, lock or block
+    /// if the model keeps to the ABI.
     ///
     /// # Errors
-    /// When a number is not finite or out of range, or the model refuses it; the voice then continues unchanged.
+    /// When a number is not finite or out of range, or the model refuses it; the voice then
+    /// continues unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), HostError> {
         let call = "motion_1_set";
         let refused =
@@ -125,8 +129,8 @@ impl ModelVoice {
         self.set_any_motion(motion)
     }
 
-    /// For checkers of models: as [`Self::set_motion`], without a check of the numbers, to test which ones the model
-    /// refuses.
+    /// For checkers of models: as [`Self::set_motion`], without a check of the numbers, to test
+    /// which ones the model refuses.
     ///
     /// # Errors
     /// What the model returns.
@@ -135,14 +139,14 @@ impl ModelVoice {
         self.done("motion_1_set", status)
     }
 
-    /// For checkers of models: returns the size of this voice's separate WASM memory, bytes; `None` for a native
-    /// voice, which uses the memory of the process.
+    /// For checkers of models: returns the size of this voice's separate WASM memory, bytes; `None`
+    /// for a native voice, which uses the memory of the process.
     pub fn memory_bytes(&self) -> Option<usize> {
         self.raw.memory_bytes()
     }
 
-    /// For checkers of models: frees the voice and keeps its handle, to test whether the model refuses a freed handle
-    /// in later calls. An app drops the voice instead.
+    /// For checkers of models: frees the voice and keeps its handle, to test whether the model
+    /// refuses a freed handle in later calls. An app drops the voice instead.
     ///
     /// # Errors
     /// The model's error; in a second call that the handle is unknown.
@@ -162,8 +166,6 @@ impl ModelVoice {
         if answer >= 0 {
             return Ok(());
         }
-        Err(self
-            .model
-            .call_error(call, answer, |out| self.raw.last_error(out)))
+        Err(self.model.call_error(call, answer, |out| self.raw.last_error(out)))
     }
 }

@@ -12,7 +12,8 @@ const SAYS_YES: (&str, &str) = (
     "extension",
     "(i64.extend_i32_u (i32.eq (i32.load8_u offset=5 (local.get 0)) (i32.const 0x6d)))",
 );
-/// The first sample of a block is the position plus x and twice y; above 100 mm an error is returned.
+/// The first sample of a block is the position plus x and twice y; above 100 mm an error is
+/// returned.
 const SET: &str = "(global $position (mut f64) (f64.const 7))
     (func (export \"htex_motion_1_set\") (param i64 f64 f64 f64 f64 f64) (result i64)
       (if (f64.gt (local.get 3) (f64.const 100)) (then (return (i64.const -1))))
@@ -38,13 +39,7 @@ fn following() -> LoadedModel {
 }
 
 fn at(position_mm: f64) -> Motion {
-    Motion {
-        speed_mm_s: -80.0,
-        force_n: 0.4,
-        position_mm,
-        x_mm: 0.0,
-        y_mm: 0.0,
-    }
+    Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm, x_mm: 0.0, y_mm: 0.0 }
 }
 
 #[test]
@@ -59,21 +54,16 @@ fn a_voice_is_told_where_the_finger_is() {
         out[0]
     };
     assert_eq!([next(0), next(1)], [42.0, 7.0], "each voice has its own");
-    let place = Motion {
-        x_mm: 10.0,
-        y_mm: -4.0,
-        ..at(42.0)
-    };
+    let place = Motion { x_mm: 10.0, y_mm: -4.0, ..at(42.0) };
     voices[0].set_motion(place).unwrap();
     let mut out = [0.0];
     voices[0].render(&mut out).unwrap();
     assert_eq!(out[0], 44.0, "and in which place");
     voices[0].set_motion(at(42.0)).unwrap();
-    // The host refuses motions outside the ranges of the extension, and the model those that it does not accept.
+    // The host refuses motions outside the ranges of the extension, and the model those that it
+    // does not accept.
     let refused = |error: HostError, words: &str| match error {
-        HostError::Call {
-            status, message, ..
-        } => {
+        HostError::Call { status, message, .. } => {
             assert_eq!(status, Status::InvalidArgument);
             assert!(message.contains(words), "{message}");
         }
@@ -81,16 +71,10 @@ fn a_voice_is_told_where_the_finger_is() {
     };
     for x in [f64::NAN, f64::INFINITY, 1e13] {
         refused(voices[0].set_motion(at(x)).unwrap_err(), "`position_mm` is");
-        let aside = Motion {
-            y_mm: x,
-            ..at(42.0)
-        };
+        let aside = Motion { y_mm: x, ..at(42.0) };
         refused(voices[0].set_motion(aside).unwrap_err(), "`y_mm` is");
     }
-    refused(
-        voices[0].set_motion(at(101.0)).unwrap_err(),
-        "no reason given",
-    );
+    refused(voices[0].set_motion(at(101.0)).unwrap_err(), "no reason given");
     voices[0].render(&mut out).unwrap();
     assert_eq!(out[0], 42.0, "it plays on as before");
 }
@@ -107,10 +91,7 @@ fn a_fit_is_told_what_is_known_of_the_recording() {
             signal_rate_hz: 20_000.0,
             options: &[],
         };
-        let condition = FitCondition {
-            speed_mm_s,
-            force_n,
-        };
+        let condition = FitCondition { speed_mm_s, force_n };
         let fit = model.fit_at(&request, condition).unwrap();
         (fit.level_rms, fit.parameters[0])
     };
@@ -136,19 +117,15 @@ fn a_model_without_it_hears_of_no_motion() {
 
 #[test]
 fn a_module_that_says_yes_must_have_all_of_it() {
-    for (there, missing) in [
-        (SET, "htex_motion_1_fit"),
-        (FIT, "htex_motion_1_set"),
-        ("", "htex_motion_1_set"),
-    ] {
+    for (there, missing) in
+        [(SET, "htex_motion_1_fit"), (FIT, "htex_motion_1_set"), ("", "htex_motion_1_set")]
+    {
         let wat = text("1.0.0", &[SAYS_YES], there);
         let error = load_within(&wat, &limits()).unwrap_err().to_string();
         assert!(error.contains(missing), "{error}");
     }
-    let wrong = SET.replace(
-        "(param i64 f64 f64 f64 f64 f64)",
-        "(param i64 f64 f64 f64 f64 f64 f64)",
-    );
+    let wrong =
+        SET.replace("(param i64 f64 f64 f64 f64 f64)", "(param i64 f64 f64 f64 f64 f64 f64)");
     let wat = text("1.0.0", &[SAYS_YES], &format!("{wrong} {FIT}"));
     let error = load_within(&wat, &limits()).unwrap_err().to_string();
     assert!(error.contains("does not have the arguments"), "{error}");

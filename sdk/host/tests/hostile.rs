@@ -1,5 +1,5 @@
-//! Hostile WASM models: each fault is an error of its call that names model, call and reason, within the time limit;
-//! the host, the model's other voices and its later calls continue.
+//! Hostile WASM models: each fault is an error of its call that names model, call and reason,
+//! within the time limit; the host, the model's other voices and its later calls continue.
 #![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -68,18 +68,9 @@ const CALLS: [&str; 9] = [
 const HARM: [(&str, &str); 5] = [
     ("(loop $l (br $l)) unreachable", "ran longer than"),
     ("unreachable", "panicked"),
-    (
-        "(drop (i32.load (i32.const -4))) unreachable",
-        "out of bounds memory access",
-    ),
-    (
-        "(drop (memory.grow (i32.const 60000))) unreachable",
-        "67108864 bytes",
-    ),
-    (
-        "(drop (call $deep (i32.const -1))) unreachable",
-        "bytes of stack",
-    ),
+    ("(drop (i32.load (i32.const -4))) unreachable", "out of bounds memory access"),
+    ("(drop (memory.grow (i32.const 60000))) unreachable", "67108864 bytes"),
+    ("(drop (call $deep (i32.const -1))) unreachable", "bytes of stack"),
 ];
 
 #[test]
@@ -91,10 +82,7 @@ fn harm_in_any_call_is_an_error_of_that_call() {
             let start = Instant::now();
             let error = make(call, &model).unwrap_err().to_string();
             let time = start.elapsed();
-            assert!(
-                time < Duration::from_millis(1200),
-                "{call}: {body}: {time:?}"
-            );
+            assert!(time < Duration::from_millis(1200), "{call}: {body}: {time:?}");
             assert!(
                 error.contains(ID) && error.contains(call) && error.contains(reason),
                 "{call}: {body}: {error}"
@@ -102,11 +90,7 @@ fn harm_in_any_call_is_an_error_of_that_call() {
             other.as_mut().map_or(Ok(()), render).unwrap();
             // Other calls continue with a new shared instance.
             for fine in ["fit", "magnitude", "extension"] {
-                assert_eq!(
-                    make(fine, &model).is_ok(),
-                    fine != call,
-                    "{fine} after {call}"
-                );
+                assert_eq!(make(fine, &model).is_ok(), fine != call, "{fine} after {call}");
             }
         }
     }
@@ -140,12 +124,7 @@ fn a_voice_that_traps_leaves_the_others_alone() {
     let (mut bad, mut good) = (voice(&model).unwrap(), voice(&model).unwrap());
     bad.retune(&[1.0]).unwrap();
     for _ in 0..3 {
-        assert!(
-            render(&mut bad)
-                .unwrap_err()
-                .to_string()
-                .contains("panicked")
-        );
+        assert!(render(&mut bad).unwrap_err().to_string().contains("panicked"));
         render(&mut good).unwrap();
     }
     // The voice is not called again: the state of its memory is unknown.
@@ -155,10 +134,8 @@ fn a_voice_that_traps_leaves_the_others_alone() {
 
 #[test]
 fn harm_before_the_first_call_is_an_error_of_loading() {
-    let cases = [
-        ("abi_version", "htex_model_abi_version"),
-        ("descriptor", "htex_model_descriptor"),
-    ];
+    let cases =
+        [("abi_version", "htex_model_abi_version"), ("descriptor", "htex_model_descriptor")];
     for (function, named) in cases {
         for (body, reason) in HARM {
             let error = load(&[(function, body)]).unwrap_err().to_string();
@@ -171,26 +148,16 @@ fn harm_before_the_first_call_is_an_error_of_loading() {
     for (body, reason) in HARM {
         let start = format!("(func $start {body}) (start $start)");
         let begun = Instant::now();
-        let error = load_within(&text("1.0.0", &[], &start), &limits())
-            .unwrap_err()
-            .to_string();
+        let error = load_within(&text("1.0.0", &[], &start), &limits()).unwrap_err().to_string();
         assert!(begun.elapsed() < Duration::from_millis(1500));
         assert!(
             error.contains("test.htex") && error.contains("start") && error.contains(reason),
             "{error}"
         );
     }
-    for body in [
-        "(i32.const -16)",
-        "(i32.const 524272)",
-        "(i32.const 12)",
-        "(i32.const 0)",
-    ] {
+    for body in ["(i32.const -16)", "(i32.const 524272)", "(i32.const 12)", "(i32.const 0)"] {
         let error = load(&[("alloc", body)]).unwrap_err().to_string();
-        assert!(
-            error.contains("htex_model_alloc") && error.contains("test.htex"),
-            "{error}"
-        );
+        assert!(error.contains("htex_model_alloc") && error.contains("test.htex"), "{error}");
     }
 }
 
@@ -202,10 +169,7 @@ fn answers_that_no_model_may_give() {
              (i64.const 0)"
         )
     };
-    let (nan, infinite) = (
-        fill("0xff"),
-        "(f32.store (local.get 1) (f32.const inf)) (i64.const 0)",
-    );
+    let (nan, infinite) = (fill("0xff"), "(f32.store (local.get 1) (f32.const inf)) (i64.const 0)");
     let level = "(f64.store (local.get 12) (f64.const nan)) (i64.const 1)";
     let more = "(i64.add (i64.extend_i32_u (local.get 11)) (i64.const 44))";
     let outside = "(f64.store (local.get 10) (f64.const 7))
@@ -233,16 +197,14 @@ fn answers_that_no_model_may_give() {
         let named = error.contains(ID) && error.contains(call) && error.contains(reason);
         assert!(named, "{call}: {body}: {error}");
     }
-    // An invalid length of the last-error text, and no text. A message escapes each of the zero bytes.
+    // An invalid length of the last-error text, and no text. A message escapes each of the zero
+    // bytes.
     for body in ["(i64.const 0x7fffffffffffffff)", "(i64.const -1)"] {
         let model = load(&[("last_error", body), ("fit", "(i64.const -4)")]).unwrap();
         let error = fit(&model).unwrap_err().to_string();
         assert!(error.contains("fit") && error.len() < 5000, "{error}");
     }
-    let stuck = [
-        ("last_error", "(loop $l (br $l)) unreachable"),
-        ("fit", "(i64.const -4)"),
-    ];
+    let stuck = [("last_error", "(loop $l (br $l)) unreachable"), ("fit", "(i64.const -4)")];
     let error = fit(&load(&stuck).unwrap()).unwrap_err().to_string();
     assert!(error.contains("ran longer"), "{error}");
 }
@@ -251,10 +213,7 @@ fn answers_that_no_model_may_give() {
 fn invalid_descriptors() {
     let giant = [("descriptor", "(i64.const 1000000000)")];
     let negative = [("descriptor", "(i64.const -8)")];
-    let growing = [(
-        "descriptor",
-        "(i64.extend_i32_u (i32.add (local.get 1) (i32.const 9)))",
-    )];
+    let growing = [("descriptor", "(i64.extend_i32_u (i32.add (local.get 1) (i32.const 9)))")];
     let valid = text("1.0.0", &[], "");
     let cases = [
         (text("1.0.0", &giant, ""), "1000000000 bytes"),
@@ -268,10 +227,7 @@ fn invalid_descriptors() {
         (valid.replace("0x48540100", "0x48540200"), "0x48540200"),
         (valid.replace("0x48540100", "0"), "marker"),
         (valid.replace("htex_model_fit", "fit"), "`htex_model_fit`"),
-        (
-            valid.replace("htex_model_alloc", "alloc"),
-            "`htex_model_alloc`",
-        ),
+        (valid.replace("htex_model_alloc", "alloc"), "`htex_model_alloc`"),
         (
             valid.replace("(param i64) (result i64)", "(param i64 i64) (result i64)"),
             "`htex_model_voice_free`",
@@ -280,10 +236,7 @@ fn invalid_descriptors() {
     ];
     for (wat, reason) in cases {
         let error = load_within(&wat, &limits()).unwrap_err().to_string();
-        assert!(
-            error.contains("test.htex") && error.contains(reason),
-            "{reason}: {error}"
-        );
+        assert!(error.contains("test.htex") && error.contains(reason), "{reason}: {error}");
     }
 }
 

@@ -20,7 +20,8 @@ fn run(body: &str, more: &str, limits: &WasmLimits) -> Result<(), String> {
     magnitude(&model).map_err(|e| e.to_string())
 }
 
-/// Checks that a body runs within the usual limits and is refused under a smaller one, with this reason.
+/// Checks that a body runs within the usual limits and is refused under a smaller one, with this
+/// reason.
 fn bites(body: &str, more: &str, smaller: &WasmLimits, reason: &str) {
     run(body, more, &limits()).unwrap();
     let error = run(body, more, smaller).unwrap_err();
@@ -38,21 +39,13 @@ fn size_of_the_module() {
 #[test]
 fn memory_at_the_start_and_grown() {
     let smaller = limits().with_memory_bytes(1 << 20);
-    bites(
-        "(drop (memory.grow (i32.const 9))) (i64.const 0)",
-        "",
-        &smaller,
-        "1048576 bytes",
-    );
+    bites("(drop (memory.grow (i32.const 9))) (i64.const 0)", "", &smaller, "1048576 bytes");
     let tiny = limits().with_memory_bytes(100_000);
     bites(NOTHING, "", &tiny, "100000 bytes");
     // Arguments that the host passes are counted too.
     let model = load_within(&text("1.0.0", &[], ""), &smaller).unwrap();
     let many = vec![50.0; 200_000];
-    let error = model
-        .magnitude(&[0.5], Band::TACTILE, &many)
-        .unwrap_err()
-        .to_string();
+    let error = model.magnitude(&[0.5], Band::TACTILE, &many).unwrap_err().to_string();
     assert!(error.contains("limited to 1048576"), "{error}");
     magnitude(&model).unwrap();
 }
@@ -73,12 +66,7 @@ fn stack() {
 #[test]
 fn instructions() {
     let smaller = limits().with_fuel(10_000);
-    bites(
-        "(call $count (i32.const 100000)) (i64.const 0)",
-        "",
-        &smaller,
-        "10000 instructions",
-    );
+    bites("(call $count (i32.const 100000)) (i64.const 0)", "", &smaller, "10000 instructions");
     // Instructions are counted per call, not per model.
     let counting = limits().with_fuel(1_000_000);
     let body = "(call $count (i32.const 100000)) (i64.const 0)";
@@ -120,14 +108,8 @@ fn time_of_a_voice() {
     let model = load_within(&wat, &limits().with_render(Duration::from_secs(60))).unwrap();
     let mut voice = model.voice(&[0.5], Band::TACTILE, 48_000.0, 1).unwrap();
     let mut block = [0.0; 16];
-    let error = (0..1_000)
-        .find_map(|_| voice.render(&mut block).err())
-        .unwrap()
-        .to_string();
-    assert!(
-        error.contains("10 times the duration of its samples"),
-        "{error}"
-    );
+    let error = (0..1_000).find_map(|_| voice.render(&mut block).err()).unwrap().to_string();
+    assert!(error.contains("10 times the duration of its samples"), "{error}");
 }
 
 /// The shared limits of a registry, with models that are within their own limits.
@@ -144,11 +126,7 @@ fn time_memory_and_instances_of_all() {
             let bytes = wat::parse_str(&wat).unwrap();
             errors.extend(registry.add_wasm_bytes("test.htex", &bytes).err());
         }
-        errors
-            .iter()
-            .map(ToString::to_string)
-            .collect::<Vec<_>>()
-            .join("; ")
+        errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
     };
     let sound = "(i32.const 0x48540100)";
     let grows = format!("(drop (memory.grow (i32.const 160))) {sound}");
@@ -157,16 +135,8 @@ fn time_memory_and_instances_of_all() {
     assert_eq!(registry(with(enough), &grows), "");
     for (body, all, said) in [
         (sound, enough.with_instances(3), "3 instances at a time"),
-        (
-            &grows,
-            enough.with_memory_bytes(20 << 20),
-            "20971520 bytes of memory together",
-        ),
-        (
-            &counts,
-            enough.with_time(Duration::from_millis(100)),
-            "used up the 100 ms",
-        ),
+        (&grows, enough.with_memory_bytes(20 << 20), "20971520 bytes of memory together"),
+        (&counts, enough.with_time(Duration::from_millis(100)), "used up the 100 ms"),
     ] {
         let errors = registry(with(all), body);
         assert!(errors.contains(said), "{errors}");

@@ -28,26 +28,13 @@ fn a_registered_model_equals_the_built_in_one_bit_for_bit() {
     assert_eq!(fit, builtin.fit(&request).unwrap());
 
     let played = [own, builtin].map(|model| {
-        let rate_hz = model
-            .voice_rate_hz(&fit.parameters, Band::TACTILE, 20_000.0)
-            .unwrap();
-        let mut voice = model
-            .voice(&fit.parameters, Band::TACTILE, rate_hz, 7)
-            .unwrap();
+        let rate_hz = model.voice_rate_hz(&fit.parameters, Band::TACTILE, 20_000.0).unwrap();
+        let mut voice = model.voice(&fit.parameters, Band::TACTILE, rate_hz, 7).unwrap();
         let mut out = vec![0.0; 2_000];
         voice.render(&mut out).unwrap();
         voice.free_and_keep_handle().unwrap();
         let freed = voice.render(&mut [0.0]).unwrap_err();
-        assert!(
-            matches!(
-                freed,
-                HostError::Call {
-                    status: Status::BadHandle,
-                    ..
-                }
-            ),
-            "{freed}"
-        );
+        assert!(matches!(freed, HostError::Call { status: Status::BadHandle, .. }), "{freed}");
         out.into_iter().map(f32::to_bits).collect::<Vec<_>>()
     });
     assert_eq!(played[0], played[1]);

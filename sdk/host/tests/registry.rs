@@ -63,13 +63,11 @@ fn files_precede_embedded_models_then_folders_then_built_in_models() {
     assert_eq!(find("^1").unwrap().descriptor().version, "1.2.0");
     assert_eq!(find("*").unwrap().descriptor().version, "3.0.0");
     let error = find("^9").unwrap_err().to_string();
-    assert!(
-        error.contains("^9") && error.contains("hostile 1.2.0"),
-        "{error}"
-    );
+    assert!(error.contains("^9") && error.contains("hostile 1.2.0"), "{error}");
 }
 
-/// The name of a file does not decide, and neither does the place: a newer minor version plays all that an older one does.
+/// The name of a file does not decide, and neither does the place: a newer minor version plays all
+/// that an older one does.
 #[test]
 fn the_newest_installed_version_of_a_major_version_is_used() {
     let dir = tempfile::tempdir().unwrap();
@@ -86,32 +84,21 @@ fn the_newest_installed_version_of_a_major_version_is_used() {
             search.dirs.push(at);
         }
         let registry = Registry::search(&search).unwrap();
-        let all = registry
-            .all(ID)
-            .map(|model| model.descriptor().version.clone());
+        let all = registry.all(ID).map(|model| model.descriptor().version.clone());
         all.collect()
     };
-    let in_one = [
-        ("a.wasm", "1.0.0"),
-        ("b.wasm", "1.10.0"),
-        ("c.wasm", "1.9.0"),
-    ];
+    let in_one = [("a.wasm", "1.0.0"), ("b.wasm", "1.10.0"), ("c.wasm", "1.9.0")];
     assert_eq!(versions(&[&in_one]), ["1.10.0", "1.9.0", "1.0.0"]);
     let in_two: [&[_]; 2] = [&[("a.wasm", "1.0.0")], &[("b.wasm", "1.1.0")]];
     assert_eq!(versions(&in_two), ["1.1.0", "1.0.0"]);
-    let majors: [&[_]; 2] = [
-        &[("a.wasm", "1.0.0")],
-        &[("b.wasm", "2.0.0"), ("c.wasm", "1.1.0")],
-    ];
+    let majors: [&[_]; 2] = [&[("a.wasm", "1.0.0")], &[("b.wasm", "2.0.0"), ("c.wasm", "1.1.0")]];
     assert_eq!(versions(&majors), ["2.0.0", "1.1.0", "1.0.0"]);
 
-    // An installed model is used in place of a built-in one of its version, and not in place of a newer one.
-    for (installed, is_used) in [
-        ("0.9.0", true),
-        ("1.0.0", true),
-        ("1.0.1", true),
-        ("1.0.0-a", false),
-    ] {
+    // An installed model is used in place of a built-in one of its version, and not in place of a
+    // newer one.
+    for (installed, is_used) in
+        [("0.9.0", true), ("1.0.0", true), ("1.0.1", true), ("1.0.0-a", false)]
+    {
         let at = folder("sbeta");
         std::fs::create_dir_all(&at).unwrap();
         let json = format!(
@@ -128,9 +115,7 @@ fn the_newest_installed_version_of_a_major_version_is_used() {
     // A file that the user names is used whatever its version is.
     write(dir.path(), "named.wasm", "0.1.0");
     write(&folder("0"), "a.wasm", "3.0.0");
-    let named = search()
-        .with_files(vec![folder("named.wasm")])
-        .with_dirs(vec![folder("0")]);
+    let named = search().with_files(vec![folder("named.wasm")]).with_dirs(vec![folder("0")]);
     assert_eq!(version(&Registry::search(&named).unwrap()), "0.1.0");
 }
 
@@ -139,9 +124,7 @@ fn a_broken_plugin_is_a_note_in_a_folder_and_an_error_by_name() {
     let dir = tempfile::tempdir().unwrap();
     let broken = dir.path().join("broken.wasm");
     std::fs::write(&broken, "no module").unwrap();
-    let native = dir
-        .path()
-        .join(format!("x.{}", std::env::consts::DLL_EXTENSION));
+    let native = dir.path().join(format!("x.{}", std::env::consts::DLL_EXTENSION));
     std::fs::write(&native, "no library").unwrap();
     std::fs::write(dir.path().join("README.md"), "no plugin").unwrap();
     write(dir.path(), "fine.wasm", "1.0.0");
@@ -159,17 +142,11 @@ fn a_broken_plugin_is_a_note_in_a_folder_and_an_error_by_name() {
     for path in [broken, dir.path().join("missing.wasm")] {
         let mut by_name = search();
         by_name.files.push(path);
-        assert!(matches!(
-            Registry::search(&by_name),
-            Err(HostError::Load { .. })
-        ));
+        assert!(matches!(Registry::search(&by_name), Err(HostError::Load { .. })));
     }
     let mut no_folder = search();
     no_folder.dirs.push(dir.path().join("missing"));
-    assert!(matches!(
-        Registry::search(&no_folder),
-        Err(HostError::Load { .. })
-    ));
+    assert!(matches!(Registry::search(&no_folder), Err(HostError::Load { .. })));
 }
 
 #[test]
@@ -178,19 +155,11 @@ fn a_short_name_that_two_ids_have_is_noted() {
     let mut registry = Registry::search(&search()).unwrap();
     let own = wat::parse_str(text("1.0.0", &[], "")).unwrap();
     registry.add_wasm_bytes("a", &own).unwrap();
-    registry
-        .add_wasm_bytes("b", &wat::parse_str(twin).unwrap())
-        .unwrap();
+    registry.add_wasm_bytes("b", &wat::parse_str(twin).unwrap()).unwrap();
     assert_eq!(registry.find("hostile").unwrap().id(), ID);
-    assert_eq!(
-        registry.find("com.example.hostile").unwrap().id(),
-        "com.example.hostile"
-    );
+    assert_eq!(registry.find("com.example.hostile").unwrap().id(), "com.example.hostile");
     let note = registry.notes()[0].to_string();
-    assert!(
-        note.contains("`hostile` means org.example.hostile"),
-        "{note}"
-    );
+    assert!(note.contains("`hostile` means org.example.hostile"), "{note}");
 }
 
 #[test]
@@ -215,25 +184,14 @@ fn folders_of_the_environment() {
             &Search::default().with_limits(limits().with_cache(htex_host::WasmCache::User)),
         );
         let registry = registry.unwrap();
-        assert_eq!(
-            version(&registry),
-            "2.0.0",
-            "HTEX_PLUGIN_PATH before the user's folder"
-        );
+        assert_eq!(version(&registry), "2.0.0", "HTEX_PLUGIN_PATH before the user's folder");
         let find = |wanted: &str| registry.find_version(ID, &VersionReq::parse(wanted).unwrap());
         assert!(find("^1").is_ok(), "the user's folder");
-        assert!(
-            matches!(registry.notes()[0], Note::Folder { .. }),
-            "{:?}",
-            registry.notes()
-        );
+        assert!(matches!(registry.notes()[0], Note::Folder { .. }), "{:?}", registry.notes());
         return assert_eq!(registry.notes().len(), 2);
     }
     let dir = tempfile::tempdir().unwrap();
-    let (listed, user) = (
-        dir.path().join("listed"),
-        dir.path().join("data/htex/plugins"),
-    );
+    let (listed, user) = (dir.path().join("listed"), dir.path().join("data/htex/plugins"));
     std::fs::create_dir_all(&user).unwrap();
     std::fs::create_dir(&listed).unwrap();
     write(&listed, "a.wasm", "2.0.0");
@@ -247,11 +205,7 @@ fn folders_of_the_environment() {
         .env("HTEX_CACHE_DIR", dir.path().join("cache"))
         .output()
         .unwrap();
-    assert!(
-        inside.status.success(),
-        "{}",
-        String::from_utf8_lossy(&inside.stdout)
-    );
+    assert!(inside.status.success(), "{}", String::from_utf8_lossy(&inside.stdout));
     let kept = std::fs::read_dir(dir.path().join("cache/wasm")).unwrap();
     assert_eq!(kept.count(), 2, "both modules are kept, compiled");
 }

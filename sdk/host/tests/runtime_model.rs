@@ -13,7 +13,8 @@ const ID: &str = "org.example.steps";
 const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(ID, "Steps", "1.0.0", "Steps.")
     .fields(&[StaticField::scalar("step", "1", (0.0, 10.0), "Step.")]);
 
-/// A model whose step is the first magnitude; 7 cannot be fitted, 9 panics. Its samples are 0, step, 2·step, …
+/// A model whose step is the first magnitude; 7 cannot be fitted, 9 panics. Its samples are 0,
+/// step, 2·step, …
 struct Steps;
 struct StepVoice {
     step: f32,
@@ -27,10 +28,7 @@ impl RuntimeModel for Steps {
             return Err(Error::cannot_fit("seven"));
         }
         assert!(step != 9.0, "nine");
-        Ok(Fit {
-            parameters: vec![step],
-            level_rms: 1.0,
-        })
+        Ok(Fit { parameters: vec![step], level_rms: 1.0 })
     }
 
     fn magnitude(
@@ -51,10 +49,7 @@ impl RuntimeModel for Steps {
         _: f64,
         seed: u64,
     ) -> Result<Box<dyn RuntimeVoice>, Error> {
-        Ok(Box::new(StepVoice {
-            step: parameters.scalar(0) as f32,
-            next: seed as f32,
-        }))
+        Ok(Box::new(StepVoice { step: parameters.scalar(0) as f32, next: seed as f32 }))
     }
 }
 
@@ -79,9 +74,7 @@ impl RuntimeVoice for StepVoice {
 fn steps() -> LoadedModel {
     let mut registry = Registry::builtin();
     let descriptor = Descriptor::from(&DESCRIPTOR);
-    registry
-        .add_runtime_model("a test", descriptor, Arc::new(Steps))
-        .unwrap();
+    registry.add_runtime_model("a test", descriptor, Arc::new(Steps)).unwrap();
     registry.find("steps").unwrap().clone()
 }
 
@@ -98,9 +91,7 @@ fn fit(magnitude: [f64; 3], options: &[f64]) -> Result<Fit, HostError> {
 
 fn status(error: HostError) -> (Status, String) {
     match error {
-        HostError::Call {
-            status, message, ..
-        } => (status, message),
+        HostError::Call { status, message, .. } => (status, message),
         other => panic!("{other}"),
     }
 }
@@ -123,9 +114,7 @@ fn the_calls_reach_the_object() {
     voice.retune(&[1.0]).unwrap();
     voice.render(&mut out).unwrap();
     assert_eq!(out, [4.0, 5.0, 6.0]);
-    voice
-        .retune_mix(&[1.0, 3.0], &[0.5, 0.5], &mut [0.0])
-        .unwrap();
+    voice.retune_mix(&[1.0, 3.0], &[0.5, 0.5], &mut [0.0]).unwrap();
     voice.render(&mut out[..1]).unwrap();
     assert_eq!(out[0], 14.0);
 }
@@ -163,11 +152,7 @@ fn a_voice_that_fails_plays_zeros_and_a_freed_one_is_refused() {
     assert_eq!(eight, (Status::Failed, "eight".to_owned()));
     assert_eq!(out, [0.0; 4]);
     voice.free_and_keep_handle().unwrap();
-    for freed in [
-        voice.render(&mut out),
-        voice.retune(&[1.0]),
-        voice.free_and_keep_handle(),
-    ] {
+    for freed in [voice.render(&mut out), voice.retune(&[1.0]), voice.free_and_keep_handle()] {
         assert_eq!(status(freed.unwrap_err()).0, Status::BadHandle);
     }
 }

@@ -47,12 +47,8 @@ fn smooth_spectrum(frequency_hz: &[f64]) -> Vec<f64> {
 
 /// A second of a voice in blocks of several sizes, with a retune in the middle.
 fn rendered(model: &LoadedModel, parameters: &[f64]) -> Vec<f32> {
-    let rate_hz = model
-        .voice_rate_hz(parameters, Band::TACTILE, RATE_HZ)
-        .unwrap();
-    let mut voice = model
-        .voice(parameters, Band::TACTILE, rate_hz, SEED)
-        .unwrap();
+    let rate_hz = model.voice_rate_hz(parameters, Band::TACTILE, RATE_HZ).unwrap();
+    let mut voice = model.voice(parameters, Band::TACTILE, rate_hz, SEED).unwrap();
     let mut out = vec![0.0f32; 20_000];
     for (i, block) in out.chunks_mut(997).enumerate() {
         if i == 10 {
@@ -66,10 +62,7 @@ fn rendered(model: &LoadedModel, parameters: &[f64]) -> Vec<f32> {
 /// Largest difference over the largest sample.
 fn difference(a: &[f32], b: &[f32]) -> f64 {
     let full = a.iter().fold(0.0f32, |m, x| m.max(x.abs()));
-    let largest = a
-        .iter()
-        .zip(b)
-        .fold(0.0f32, |m, (x, y)| m.max((x - y).abs()));
+    let largest = a.iter().zip(b).fold(0.0f32, |m, (x, y)| m.max((x - y).abs()));
     f64::from(largest / full)
 }
 
@@ -98,22 +91,16 @@ fn the_same_samples_three_ways() {
             println!("{name:8} built in and {kind:6}: differ by {difference:e} of full scale");
             // Only an FFT may choose instructions by the machine.
             let exact = ["ar", "speak"].contains(&name);
-            assert!(
-                difference <= if exact { 0.0 } else { 1e-9 },
-                "{name} {kind}"
-            );
+            assert!(difference <= if exact { 0.0 } else { 1e-9 }, "{name} {kind}");
             let refitted = fitted(&other);
             let near = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-9 * a.abs().max(1e-6);
-            assert!(
-                parameters.iter().zip(&refitted).all(near),
-                "{name} {kind}: fit"
-            );
+            assert!(parameters.iter().zip(&refitted).all(near), "{name} {kind}: fit");
         }
     }
 }
 
-/// Time per sample for each kind of loading, and time to the first samples: printed, and compared with the bounds of
-/// rendering in real time.
+/// Time per sample for each kind of loading, and time to the first samples: printed, and compared
+/// with the bounds of rendering in real time.
 #[test]
 fn what_each_way_costs() {
     let Some(folder) = plugins::wasm_if_there() else {
@@ -148,12 +135,8 @@ fn what_each_way_costs() {
 
 /// The minimum of many blocks, which excludes other load of the machine.
 fn ns_a_sample(model: &LoadedModel, parameters: &[f64], block: usize) -> f64 {
-    let rate_hz = model
-        .voice_rate_hz(parameters, Band::TACTILE, RATE_HZ)
-        .unwrap();
-    let mut voice = model
-        .voice(parameters, Band::TACTILE, rate_hz, SEED)
-        .unwrap();
+    let rate_hz = model.voice_rate_hz(parameters, Band::TACTILE, RATE_HZ).unwrap();
+    let mut voice = model.voice(parameters, Band::TACTILE, rate_hz, SEED).unwrap();
     let mut out = vec![0.0f32; block];
     // Frames of noise are computed once in several blocks, so means of 64 blocks are compared.
     let mean = |_| {

@@ -9,16 +9,11 @@ use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex::simulate::{SimulationOptions, Surface, simulate};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let path: PathBuf = std::env::args_os()
-        .nth(1)
-        .ok_or("give the asset to write: author FILE.htex")?
-        .into();
+    let path: PathBuf =
+        std::env::args_os().nth(1).ok_or("give the asset to write: author FILE.htex")?.into();
     let options = SimulationOptions::new(Surface::CoarseFabric);
     let take = Take {
-        given: Exploration {
-            speed_mm_s: Some(options.speed_mm_s),
-            force_n: Some(options.force_n),
-        },
+        given: Exploration { speed_mm_s: Some(options.speed_mm_s), force_n: Some(options.force_n) },
         recording: simulate(&options)?.to_recording("simulated")?,
     };
     let registry = Registry::builtin();

@@ -1,5 +1,5 @@
-//! Prints the time of a sample, ns: the least of several runs over blocks of 64 samples, or of another length. Other languages
-//! are compared with it (`cargo xtask prove costs`).
+//! Prints the time of a sample, ns: the least of several runs over blocks of 64 samples, or of
+//! another length. Other languages are compared with it (`cargo xtask prove costs`).
 //!
 //! `cargo run --release -p htex --example block -- cloth.htex ar 64`
 

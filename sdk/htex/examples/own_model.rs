@@ -1,5 +1,5 @@
-//! A model of the program itself: flat noise between two frequencies. It is registered and fitted to a simulated
-//! recording, and the asset is played.
+//! A model of the program itself: flat noise between two frequencies. It is registered and fitted
+//! to a simulated recording, and the asset is played.
 //!
 //! `cargo run --release -p htex --features author --example own_model`
 
@@ -50,10 +50,7 @@ impl Model for Plateau {
             });
             input.frequency_hz[bin.unwrap_or(input.frequency_hz.len() - 1)]
         };
-        Ok(Fit {
-            parameters: vec![below(0.05), below(0.95)],
-            level_rms: (total / 3.0).sqrt(),
-        })
+        Ok(Fit { parameters: vec![below(0.05), below(0.95)], level_rms: (total / 3.0).sqrt() })
     }
 
     fn magnitude(
@@ -89,11 +86,7 @@ impl Model for Plateau {
 
 impl Curve for Edges {
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
-        let mut edges = Self {
-            low_hz: 0.0,
-            high_hz: 0.0,
-            band,
-        };
+        let mut edges = Self { low_hz: 0.0, high_hz: 0.0, band };
         edges.set(parameters)?;
         Ok(edges)
     }
@@ -103,9 +96,7 @@ impl Curve for Edges {
         if self.level() > 0.0 {
             return Ok(());
         }
-        Err(Error::parameters(
-            "no bin of the band lies between `low_hz` and `high_hz`",
-        ))
+        Err(Error::parameters("no bin of the band lies between `low_hz` and `high_hz`"))
     }
 
     fn at(&self, frequency_hz: f64) -> f64 {
@@ -123,10 +114,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let options = SimulationOptions::new(Surface::Sandpaper);
     let take = Take {
-        given: Exploration {
-            speed_mm_s: Some(options.speed_mm_s),
-            force_n: Some(options.force_n),
-        },
+        given: Exploration { speed_mm_s: Some(options.speed_mm_s), force_n: Some(options.force_n) },
         recording: simulate(&options)?.to_recording("simulated")?,
     };
     let model = registry.find("org.example.plateau")?.clone();

@@ -5,9 +5,7 @@
 use htex::{Asset, Motion, VoiceOptions};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let path = std::env::args()
-        .nth(1)
-        .ok_or("give an asset: play FILE.htex")?;
+    let path = std::env::args().nth(1).ok_or("give an asset: play FILE.htex")?;
     let asset = Asset::open(&path)?;
     let options = VoiceOptions::default();
     let mut voice = asset.voice(&options)?;

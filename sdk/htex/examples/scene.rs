@@ -11,16 +11,9 @@ use htex::scene::{Costs, DeviceOverride, LoadedScene, Renderer, Surroundings, pl
 use htex_device_file::FileAdapter;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let path: PathBuf = std::env::args_os()
-        .nth(1)
-        .ok_or("give a scene: scene SCENE.json")?
-        .into();
+    let path: PathBuf = std::env::args_os().nth(1).ok_or("give a scene: scene SCENE.json")?.into();
     let devices = Devices::new(vec![Arc::new(FileAdapter)]);
-    let around = Surroundings {
-        models: &Registry::builtin(),
-        embedded: true,
-        devices: &devices,
-    };
+    let around = Surroundings { models: &Registry::builtin(), embedded: true, devices: &devices };
     // The samples are rendered here and the device is not opened.
     let device = DeviceOverride {
         adapter: Some("org.htex.file".to_owned()),
@@ -29,11 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let scene = LoadedScene::open(&path, &around, &device)?;
     let adapter = &devices.find("org.htex.file")?.adapter;
-    let plan = plan(
-        &scene,
-        &adapter.capabilities(&scene.settings)?,
-        &Costs::embedded(),
-    )?;
+    let plan = plan(&scene, &adapter.capabilities(&scene.settings)?, &Costs::embedded())?;
     for stage in &plan.stages {
         println!("{}: {}", stage.name, stage.reason);
     }
@@ -42,11 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for tenth in 0..10 {
         let frames = renderer.render(&mut block);
         let power: f32 = block[..frames].iter().map(|x| x * x).sum::<f32>() / frames.max(1) as f32;
-        println!(
-            "{:.1} s  {:7.3} mN RMS",
-            f64::from(tenth) / 10.0,
-            power.sqrt() * 1e3
-        );
+        println!("{:.1} s  {:7.3} mN RMS", f64::from(tenth) / 10.0, power.sqrt() * 1e3);
     }
     Ok(())
 }

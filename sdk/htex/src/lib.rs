@@ -13,13 +13,17 @@
 //! [`Voice::render`] does not allocate, lock or access files: it may run in an audio thread.
 //!
 //! # Features
-//! - `wasm` (default): runs models that are embedded in assets, in a sandbox. Without it the program is smaller, and only
-//!   representations of built-in models can be played.
+//! - `wasm` (default): runs models that are embedded in assets, in a sandbox. Without it the
+//!   program is smaller, and only representations of built-in models can be played.
 //! - `write` (default): `format::Asset::write` and `to_bytes`.
-//! - `author`: `htex::author`, which reads recordings and makes assets, and `htex::simulate`, which simulates recordings.
-//! - `library`: `htex::Library`, a file with thousands of textures, of which `Asset::from_library` opens one; `htex::library` has all of it.
-//! - `storage`: `htex::storage`, files by path or URI, and `Library::open_located`; `cloud` has the web servers and object stores.
-//! - `scene`: `htex::scene`, which plans and renders scenes, and `htex::device`, the devices they are played on.
+//! - `author`: `htex::author`, which reads recordings and makes assets, and `htex::simulate`, which
+//!   simulates recordings.
+//! - `library`: `htex::Library`, a file with thousands of textures, of which `Asset::from_library`
+//!   opens one; `htex::library` has all of it.
+//! - `storage`: `htex::storage`, files by path or URI, and `Library::open_located`; `cloud` has the
+//!   web servers and object stores.
+//! - `scene`: `htex::scene`, which plans and renders scenes, and `htex::device`, the devices they
+//!   are played on.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,5 @@
-//! A player without the sandbox plays the representations of built-in models of an asset with an embedded module.
+//! A player without the sandbox plays the representations of built-in models of an asset with an
+//! embedded module.
 #![cfg(all(feature = "author", not(feature = "wasm")))]
 
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
@@ -9,18 +10,13 @@ use htex::{Asset, Error, Registry, VoiceOptions};
 /// An id that no built-in model has.
 const ELSEWHERE: &str = "org.example.elsewhere";
 
-/// An asset of AR and sBeta. The named one gets another id, the smallest error, and an embedded module.
+/// An asset of AR and sBeta. The named one gets another id, the smallest error, and an embedded
+/// module.
 fn asset() -> htex::AssetData {
     let options = SimulationOptions::new(Surface::Sandpaper).with_duration_s(3.0);
     let take = Take {
-        recording: simulate(&options)
-            .unwrap()
-            .to_recording("simulated")
-            .unwrap(),
-        given: Exploration {
-            speed_mm_s: Some(80.0),
-            force_n: Some(0.4),
-        },
+        recording: simulate(&options).unwrap().to_recording("simulated").unwrap(),
+        given: Exploration { speed_mm_s: Some(80.0), force_n: Some(0.4) },
     };
     let registry = Registry::builtin();
     let model = |name: &str| ModelRequest::new(registry.find(name).unwrap());

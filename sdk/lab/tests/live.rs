@@ -28,7 +28,8 @@ fn live(rate_hz: f64, axes: &[&[f64]]) -> LiveSignal {
     signal
 }
 
-/// Magnitude at a frequency (Hz) of the last 0.4 s: root of the mean power of three windows and the sum of the axes' powers.
+/// Magnitude at a frequency (Hz) of the last 0.4 s: root of the mean power of three windows and the
+/// sum of the axes' powers.
 fn magnitude(rate_hz: f64, axes: &[Vec<f64>], hz: f64) -> f64 {
     let len = (0.2 * rate_hz).round() as usize;
     let mut power = 0.0;
@@ -52,8 +53,8 @@ fn magnitude(rate_hz: f64, axes: &[Vec<f64>], hz: f64) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// On the grid of 5 Hz a sinusoid has its amplitude within 0.01 dB; between two points of the grid the highest is at most 1.43 dB
-    /// lower, which is what a Hann window loses there.
+    /// On the grid of 5 Hz a sinusoid has its amplitude within 0.01 dB; between two points of the
+    /// grid the highest is at most 1.43 dB lower, which is what a Hann window loses there.
     #[test]
     fn a_sinusoid_has_its_height(
         bin in 6..199_u32,
@@ -72,8 +73,9 @@ proptest! {
         prop_assert!((at_hz - hz).abs() <= 2.51, "{hz} Hz is shown at {at_hz} Hz");
         let lowest = if between == 0.0 { -0.01 } else { -1.43 };
         prop_assert!((lowest..0.01).contains(&above_db), "{above_db} dB");
-        // The nine bands add to the square of its RMS value between the centres of the first (29.6 Hz) and the last (676 Hz), where their
-        // weights add to one; the window spreads a sinusoid by 10 Hz.
+        // The nine bands add to the square of its RMS value between the centres of the first (29.6
+        // Hz) and the last (676 Hz), where their weights add to one; the window spreads a sinusoid
+        // by 10 Hz.
         if (40.0..640.0).contains(&hz) {
             let all: f64 = spectrum.band_db.iter().map(|db| 10_f64.powf(db / 10.0)).sum();
             let error_db = 10.0 * (all / (0.5 * amplitude * amplitude)).log10();
@@ -107,19 +109,11 @@ fn what_a_session_shows_is_the_transform_of_the_newest_samples_of_the_source() {
     assert!(spectra.len() >= 5);
     for (elapsed_s, force_n, spectrum) in spectra {
         let end = (elapsed_s * RATE_HZ).round() as usize;
-        let axes = [0, 1].map(|axis| {
-            rows[..end]
-                .iter()
-                .map(|row| row[axis])
-                .collect::<Vec<f64>>()
-        });
+        let axes = [0, 1].map(|axis| rows[..end].iter().map(|row| row[axis]).collect::<Vec<f64>>());
         for at in [0, 1, 20, 96, 150, 196] {
             let expected_db = 20.0 * magnitude(RATE_HZ, &axes, spectrum.frequency_hz[at]).log10();
             let shown_db = spectrum.level_db[at];
-            assert!(
-                (shown_db - expected_db).abs() < 1e-6,
-                "{shown_db} {expected_db} dB"
-            );
+            assert!((shown_db - expected_db).abs() < 1e-6, "{shown_db} {expected_db} dB");
         }
         // The force is the mean of the last 50 ms.
         let last = &rows[end - 100..end];
@@ -138,9 +132,5 @@ fn samples_that_are_no_recording_have_no_spectrum() {
     assert!(spectrum(30.0, &[0.1; 30]).is_none(), "below 20 Hz alone");
     let low = spectrum(1_000.0, &[0.1; 800]).unwrap();
     assert_eq!(low.frequency_hz.last(), Some(&500.0));
-    assert!(
-        LiveSignal::new(Quantity::Acceleration, 2_000.0)
-            .spectrum()
-            .is_none()
-    );
+    assert!(LiveSignal::new(Quantity::Acceleration, 2_000.0).spectrum().is_none());
 }

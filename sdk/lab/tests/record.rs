@@ -15,19 +15,13 @@ fn a_take_that_leaves_its_target_is_set_aside_and_repeated() {
     let folder = tempfile::tempdir().unwrap();
     let source = sweeps(folder.path(), &[0.6, 0.4]);
     let settings = Settings {
-        target: Exploration {
-            speed_mm_s: Some(80.0),
-            force_n: Some(0.4),
-        },
+        target: Exploration { speed_mm_s: Some(80.0), force_n: Some(0.4) },
         ..Settings::default()
     };
     let kept = record(folder.path(), &source, &settings).unwrap();
     assert_eq!((kept.outcome, kept.number), (Outcome::Kept, 2), "{kept:?}");
     let force = kept.verdict.force_n.unwrap();
-    assert!(
-        force.min >= 0.36 && force.max <= 0.44 && (force.mean - 0.4).abs() < 0.02,
-        "{force:?}"
-    );
+    assert!(force.min >= 0.36 && force.max <= 0.44 && (force.mean - 0.4).abs() < 0.02, "{force:?}");
     assert!(kept.verdict.speed_mm_s.is_some() && kept.verdict.segments > 0);
     let rejected = folder.path().join("rejected/take-001.json");
     let rejected: serde_json::Value = serde_json::from_slice(&fs::read(rejected).unwrap()).unwrap();
@@ -40,19 +34,13 @@ fn a_take_that_leaves_its_target_is_set_aside_and_repeated() {
     // The kept take has the second half of the source, bit for bit.
     let recording = read_recording(&kept.file, &ReadOptions::default()).unwrap();
     let all = fs::read_to_string(&source).unwrap();
-    let first: f64 = all
-        .lines()
-        .nth(1 + 8_000)
-        .unwrap()
-        .split(',')
-        .next()
-        .unwrap()
-        .parse()
-        .unwrap();
+    let first: f64 =
+        all.lines().nth(1 + 8_000).unwrap().split(',').next().unwrap().parse().unwrap();
     assert_eq!((recording.samples(), recording.axes[0][0]), (8_000, first));
 }
 
-/// The finger is lifted from 3.2 s of 10 s and moves on in the air: its three sweeps are on target, and the take is refused.
+/// The finger is lifted from 3.2 s of 10 s and moves on in the air: its three sweeps are on target,
+/// and the take is refused.
 #[test]
 fn a_take_in_which_the_finger_is_lifted_is_set_aside() {
     let folder = tempfile::tempdir().unwrap();
@@ -65,12 +53,8 @@ fn a_take_in_which_the_finger_is_lifted_is_set_aside() {
         }
     });
     let source = source(folder.path(), &[lifted.collect(), whole.clone()].concat());
-    let guidance = Guidance {
-        speed_mm_s: Some(80.0),
-        force_n: Some(0.4),
-        tolerance: 0.1,
-        stroke_mm: 80.0,
-    };
+    let guidance =
+        Guidance { speed_mm_s: Some(80.0), force_n: Some(0.4), tolerance: 0.1, stroke_mm: 80.0 };
     let required = Required {
         on_target: Required::USUAL_ON_TARGET,
         sweeps: Required::usual_sweeps(&guidance, 10.0),
@@ -78,20 +62,14 @@ fn a_take_in_which_the_finger_is_lifted_is_set_aside() {
     assert_eq!(required.sweeps, 4);
     let settings = Settings {
         seconds: 10.0,
-        target: Exploration {
-            speed_mm_s: Some(80.0),
-            force_n: Some(0.4),
-        },
+        target: Exploration { speed_mm_s: Some(80.0), force_n: Some(0.4) },
         required,
         ..Settings::default()
     };
     let kept = record(folder.path(), &source, &settings).unwrap();
     assert_eq!((kept.outcome, kept.number), (Outcome::Kept, 2), "{kept:?}");
     let coverage = kept.verdict.coverage.unwrap();
-    assert!(
-        coverage.on_target > 0.6 && coverage.sweeps >= 6,
-        "{coverage:?}"
-    );
+    assert!(coverage.on_target > 0.6 && coverage.sweeps >= 6, "{coverage:?}");
     let rejected = folder.path().join("rejected/take-001.json");
     let rejected: serde_json::Value = serde_json::from_slice(&fs::read(rejected).unwrap()).unwrap();
     let verdict = &rejected["verdict"];
@@ -113,18 +91,12 @@ fn when_no_take_keeps_to_its_target_that_is_an_error_and_all_are_kept_aside() {
     let folder = tempfile::tempdir().unwrap();
     let source = sweeps(folder.path(), &[0.6, 0.6, 0.4]);
     let settings = Settings {
-        target: Exploration {
-            speed_mm_s: None,
-            force_n: Some(0.4),
-        },
+        target: Exploration { speed_mm_s: None, force_n: Some(0.4) },
         attempts: 2,
         ..Settings::default()
     };
     let error = record(folder.path(), &source, &settings).unwrap_err();
-    assert!(
-        matches!(error, RecordError::OffTarget { attempts: 2, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, RecordError::OffTarget { attempts: 2, .. }), "{error}");
     assert!(folder.path().join("rejected/take-002.csv").exists());
 }
 
@@ -132,49 +104,21 @@ fn when_no_take_keeps_to_its_target_that_is_an_error_and_all_are_kept_aside() {
 fn a_source_that_ends_and_a_person_who_leaves_lose_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let source = sweeps(folder.path(), &[0.4]);
-    let long = Settings {
-        seconds: 6.0,
-        ..Settings::default()
-    };
+    let long = Settings { seconds: 6.0, ..Settings::default() };
     let error = record(folder.path(), &source, &long).unwrap_err();
     let text = error.to_string();
-    let RecordError::Ended {
-        after_s,
-        kept: Some(kept),
-        ..
-    } = error
-    else {
+    let RecordError::Ended { after_s, kept: Some(kept), .. } = error else {
         unreachable!("{text}")
     };
-    assert!(
-        (after_s - 4.0).abs() < 0.01 && text.contains("incomplete"),
-        "{text}"
-    );
-    assert_eq!(
-        read_recording(&kept, &ReadOptions::default())
-            .unwrap()
-            .samples(),
-        8_000
-    );
-    let left = Settings {
-        stop_after: 80,
-        ..Settings::default()
-    };
+    assert!((after_s - 4.0).abs() < 0.01 && text.contains("incomplete"), "{text}");
+    assert_eq!(read_recording(&kept, &ReadOptions::default()).unwrap().samples(), 8_000);
+    let left = Settings { stop_after: 80, ..Settings::default() };
     let RecordError::Left { kept: Some(kept) } = record(folder.path(), &source, &left).unwrap_err()
     else {
         unreachable!("it was left")
     };
-    assert!(
-        kept.ends_with("incomplete/take-002.csv"),
-        "{}",
-        kept.display()
-    );
-    assert!(
-        read_recording(&kept, &ReadOptions::default())
-            .unwrap()
-            .samples()
-            >= 80 * 40
-    );
+    assert!(kept.ends_with("incomplete/take-002.csv"), "{}", kept.display());
+    assert!(read_recording(&kept, &ReadOptions::default()).unwrap().samples() >= 80 * 40);
     assert!(!folder.path().join("take-002.part").exists());
 }
 
@@ -184,10 +128,7 @@ fn formats_hold_the_same_samples() {
     let source = sweeps(folder.path(), &[0.4]);
     let mut axes = Vec::new();
     for format in [Format::Csv, Format::Npy, Format::Wav] {
-        let settings = Settings {
-            format,
-            ..Settings::default()
-        };
+        let settings = Settings { format, ..Settings::default() };
         let taken = record(folder.path(), &source, &settings).unwrap();
         let value = |flag: &str| {
             let at = taken.fit.iter().position(|word| word == flag)?;
@@ -204,10 +145,7 @@ fn formats_hold_the_same_samples() {
     assert!(axes[0] == axes[1], "CSV and NPY have all bits");
     let rounded =
         |axes: &Vec<Vec<f64>>| axes.iter().flatten().map(|v| *v as f32).collect::<Vec<_>>();
-    assert!(
-        rounded(&axes[0]) == rounded(&axes[2]),
-        "WAV has those of f32"
-    );
+    assert!(rounded(&axes[0]) == rounded(&axes[2]), "WAV has those of f32");
 }
 
 #[test]
@@ -226,11 +164,7 @@ fn a_take_of_this_version_has_no_other_keys() {
             "\"rate_h\": 1, \"tare\"",
             "take: there is no key `rate_h`; did you mean `rate_hz`?",
         ),
-        (
-            "\"htex_take\": 1",
-            "\"htex_take\": 2",
-            "take: its version is 2, and this htex reads 1",
-        ),
+        ("\"htex_take\": 1", "\"htex_take\": 2", "take: its version is 2, and this htex reads 1"),
     ] {
         assert!(text.contains(from), "{text}");
         fs::write(&beside, text.replace(from, to)).unwrap();

@@ -61,7 +61,8 @@ fn part_file(folder: &Path, pieces: &[usize]) -> PathBuf {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// A file that ends at any byte, or is damaged at any, gives the frames before, and at most a second is missing.
+    /// A file that ends at any byte, or is damaged at any, gives the frames before, and at most a
+    /// second is missing.
     #[test]
     fn a_part_file_cut_anywhere_gives_its_beginning(
         pieces in proptest::collection::vec(1_usize..600, 1..5),
@@ -101,7 +102,8 @@ proptest! {
         for (frame, expected) in all.chunks(2).take(data.frames()).enumerate() {
             prop_assert_eq!([data.signals[0][frame], data.signals[1][frame]], [expected[0], expected[1]]);
         }
-        // Chunks before the damage are all there: each is little more than a second, and a frame takes 40 bytes at most.
+        // Chunks before the damage are all there: each is little more than a second, and a frame
+        // takes 40 bytes at most.
         let before = (at - header_end) / 40;
         prop_assert!(data.frames() + 2_000 + 600 >= before.min(whole.frames()), "{} of {before}", data.frames());
     }
@@ -112,29 +114,17 @@ fn a_killed_take_is_recovered_once_and_the_next_has_another_number() {
     let folder = tempfile::tempdir().unwrap();
     part_file(folder.path(), &[100]);
     let recovered = recover(folder.path()).unwrap();
-    let [take] = &recovered[..] else {
-        unreachable!("{recovered:?}")
-    };
-    assert_eq!(
-        (take.outcome, take.number, take.recorded_s),
-        (Outcome::Incomplete, 1, 3.0)
-    );
+    let [take] = &recovered[..] else { unreachable!("{recovered:?}") };
+    assert_eq!((take.outcome, take.number, take.recorded_s), (Outcome::Incomplete, 1, 3.0));
     assert_eq!(take.file, folder.path().join("incomplete/vinyl-001.csv"));
     let recording = read_recording(&take.file, &ReadOptions::default()).unwrap();
     assert_eq!((recording.rate_hz, recording.samples()), (RATE_HZ, 6_000));
     assert_eq!(recording.axes[0][..3], [0.0, 1.0, 2.0]);
     assert!(recover(folder.path()).unwrap().is_empty(), "once");
-    let taken = record(
-        folder.path(),
-        &sweeps(folder.path(), &[0.4]),
-        &Settings::default(),
-    )
-    .unwrap();
+    let taken =
+        record(folder.path(), &sweeps(folder.path(), &[0.4]), &Settings::default()).unwrap();
     assert_eq!(taken.number, 1, "another name");
-    let own = Settings {
-        name: "vinyl",
-        ..Settings::default()
-    };
+    let own = Settings { name: "vinyl", ..Settings::default() };
     let taken = record(folder.path(), &sweeps(folder.path(), &[0.4]), &own).unwrap();
     assert_eq!(taken.number, 2);
 }

@@ -1,4 +1,5 @@
-//! The response of simulated setups: a resonance through noise, hits that must not be used, and what cannot be measured.
+//! The response of simulated setups: a resonance through noise, hits that must not be used, and
+//! what cannot be measured.
 #![allow(clippy::unwrap_used, clippy::disallowed_methods)] // A failed unwrap is a failed test.
 
 use std::f64::consts::PI;
@@ -28,20 +29,13 @@ impl Rig {
     fn peak(&self) -> (f64, f64) {
         let z = self.damping;
         let warped = (self.tangent * (1.0 - 2.0 * z * z).sqrt()).atan();
-        (
-            RATE_HZ / PI * warped,
-            1.0 / (2.0 * z * (1.0 - z * z).sqrt()),
-        )
+        (RATE_HZ / PI * warped, 1.0 / (2.0 * z * (1.0 - z * z).sqrt()))
     }
 
     fn filter(&self, input: &[f64]) -> Vec<f64> {
         let (k, z) = (self.tangent, self.damping);
         let d = 1.0 + 2.0 * z * k + k * k;
-        let (b, a1, a2) = (
-            k * k / d,
-            2.0 * (k * k - 1.0) / d,
-            (1.0 - 2.0 * z * k + k * k) / d,
-        );
+        let (b, a1, a2) = (k * k / d, 2.0 * (k * k - 1.0) / d, (1.0 - 2.0 * z * k + k * k) / d);
         let (mut x, mut y) = ([0.0; 2], [0.0; 2]);
         let step = |&new: &f64| {
             let out = b * (new + 2.0 * x[0] + x[1]) - a1 * y[0] - a2 * y[1];
@@ -69,10 +63,7 @@ fn noisy(signal: &[f64], relative_db: f64, seed: u64) -> Vec<f64> {
     let power = signal.iter().map(|x| x * x).sum::<f64>() / signal.len() as f64;
     let rms = (power * 10_f64.powf(relative_db / 10.0)).sqrt();
     let mut noise = GaussianNoise::new(seed);
-    signal
-        .iter()
-        .map(|x| x + rms * f64::from(noise.next_sample()))
-        .collect()
+    signal.iter().map(|x| x + rms * f64::from(noise.next_sample())).collect()
 }
 
 fn hits(options: HitOptions) -> ResponseOptions {
@@ -81,23 +72,16 @@ fn hits(options: HitOptions) -> ResponseOptions {
 
 /// Ten hits of a rig, on both channels noise 30 dB below the signal.
 fn ten_hits(rig: &Rig, seed: u64) -> Record {
-    let times: Vec<(f64, f64)> = (0..10)
-        .map(|i| (0.3 + 1.237 * f64::from(i), 12.0 + f64::from(i % 4)))
-        .collect();
+    let times: Vec<(f64, f64)> =
+        (0..10).map(|i| (0.3 + 1.237 * f64::from(i), 12.0 + f64::from(i % 4))).collect();
     let input = pulses(13.0, &times);
     let output = rig.filter(&input);
     let input = noisy(&input, -30.0, seed);
-    Record::new(
-        "hits.csv",
-        RATE_HZ,
-        input,
-        noisy(&output, -30.0, seed + 1000),
-    )
-    .unwrap()
+    Record::new("hits.csv", RATE_HZ, input, noisy(&output, -30.0, seed + 1000)).unwrap()
 }
 
-/// Within 0.1 dB and 1 Hz for every estimator, on the grid and between its points, with separate hits and with windows
-/// on them.
+/// Within 0.1 dB and 1 Hz for every estimator, on the grid and between its points, with separate
+/// hits and with windows on them.
 #[test]
 fn a_resonance_is_recovered_through_noise() {
     let (mut worst_db, mut worst_hz) = (0.0_f64, 0.0_f64);
@@ -106,10 +90,7 @@ fn a_resonance_is_recovered_through_noise() {
         let (peak_hz, peak) = rig.peak();
         let record = ten_hits(&rig, seed);
         for estimator in [Estimator::H1, Estimator::H2, Estimator::Hv] {
-            for hit in [
-                HitOptions::default(),
-                HitOptions::default().with_force_window_s(0.005),
-            ] {
+            for hit in [HitOptions::default(), HitOptions::default().with_force_window_s(0.005)] {
                 let options = hits(hit).with_estimator(estimator);
                 let measured = measure(std::slice::from_ref(&record), &options).unwrap();
                 assert_eq!((measured.averages, measured.resolution_hz), (10, 1.0));
@@ -120,10 +101,7 @@ fn a_resonance_is_recovered_through_noise() {
         }
     }
     println!("largest errors {worst_db:.4} dB, {worst_hz:.4} Hz");
-    assert!(
-        worst_db < 0.1 && worst_hz < 1.0,
-        "{worst_db} dB, {worst_hz} Hz"
-    );
+    assert!(worst_db < 0.1 && worst_hz < 1.0, "{worst_db} dB, {worst_hz} Hz");
 }
 
 #[test]
@@ -152,44 +130,23 @@ fn without_noise_the_coherence_is_one_and_the_file_is_read_back() {
 fn double_hits_and_overloads_are_thrown_out_with_their_time() {
     let rig = Rig::new(180.0, 0.02);
     let good = [(0.3, 10.0), (4.2, 9.0), (5.5, 11.0)];
-    // A bounce 25 ms after the second hit; the third hit beyond the range of the converter; the last one cut off.
-    let all = [
-        &good[..],
-        &[(1.6, 10.0), (1.625, 2.0), (2.9, 30.0), (6.8, 10.0)],
-    ]
-    .concat();
+    // A bounce 25 ms after the second hit; the third hit beyond the range of the converter; the
+    // last one cut off.
+    let all = [&good[..], &[(1.6, 10.0), (1.625, 2.0), (2.9, 30.0), (6.8, 10.0)]].concat();
     let input = pulses(7.5, &all);
     let output = noisy(&rig.filter(&input), -30.0, 7);
-    let input: Vec<f64> = noisy(&input, -40.0, 8)
-        .iter()
-        .map(|x| x.min(15.0))
-        .collect();
+    let input: Vec<f64> = noisy(&input, -40.0, 8).iter().map(|x| x.min(15.0)).collect();
     let record = Record::new("hits.csv", RATE_HZ, input, output).unwrap();
     let measured = measure(std::slice::from_ref(&record), &ResponseOptions::default()).unwrap();
-    let reasons: Vec<(f64, Option<&Reason>)> = measured
-        .pieces
-        .iter()
-        .map(|piece| (piece.time_s, piece.thrown_out.as_ref()))
-        .collect();
+    let reasons: Vec<(f64, Option<&Reason>)> =
+        measured.pieces.iter().map(|piece| (piece.time_s, piece.thrown_out.as_ref())).collect();
     assert_eq!(reasons.len(), 6, "{reasons:?}");
     let expected_s = [0.3, 1.6, 2.9, 4.2, 5.5, 6.8];
-    assert!(
-        reasons
-            .iter()
-            .zip(expected_s)
-            .all(|((s, _), expected)| (s - expected).abs() < 0.002)
-    );
+    assert!(reasons.iter().zip(expected_s).all(|((s, _), expected)| (s - expected).abs() < 0.002));
     assert_eq!([0, 3, 4].map(|at: usize| reasons[at].1), [None; 3]);
-    let Some(Reason::DoubleHit { second_s }) = reasons[1].1 else {
-        panic!("{reasons:?}")
-    };
+    let Some(Reason::DoubleHit { second_s }) = reasons[1].1 else { panic!("{reasons:?}") };
     assert!((second_s - 1.625).abs() < 0.002, "{second_s}");
-    let Some(Reason::Overload {
-        channel: Channel::Input,
-        at_s,
-        value,
-    }) = reasons[2].1
-    else {
+    let Some(Reason::Overload { channel: Channel::Input, at_s, value }) = reasons[2].1 else {
         panic!("{reasons:?}")
     };
     assert!((at_s - 2.9).abs() < 0.002 && *value == 15.0, "{at_s}");
@@ -201,20 +158,16 @@ fn double_hits_and_overloads_are_thrown_out_with_their_time() {
     let limited = measure(&[record], &options).unwrap();
     assert_eq!(limited.averages, 2);
     let reason = &limited.pieces[4].thrown_out;
-    assert!(
-        matches!(reason, Some(Reason::Overload { .. })),
-        "{reason:?}"
-    );
+    assert!(matches!(reason, Some(Reason::Overload { .. })), "{reason:?}");
 }
 
-/// A drive of white noise through a gain of 3, with noise of a quarter of the signal's power: by the formulas H1 reads it
-/// by 1/1.25 with noise in the input, H2 by 1.25 with noise in the output, and Hv right with both.
+/// A drive of white noise through a gain of 3, with noise of a quarter of the signal's power: by
+/// the formulas H1 reads it by 1/1.25 with noise in the input, H2 by 1.25 with noise in the output,
+/// and Hv right with both.
 #[test]
 fn estimators_are_biased_as_their_theory_says() {
     let mut drive = GaussianNoise::new(5);
-    let clean: Vec<f64> = (0..400_000)
-        .map(|_| f64::from(drive.next_sample()))
-        .collect();
+    let clean: Vec<f64> = (0..400_000).map(|_| f64::from(drive.next_sample())).collect();
     let gained: Vec<f64> = clean.iter().map(|x| 3.0 * x).collect();
     let quarter = 10.0 * 0.25_f64.log10();
     let (rough_in, rough_out) = (noisy(&clean, quarter, 11), noisy(&gained, quarter, 12));
@@ -225,12 +178,7 @@ fn estimators_are_biased_as_their_theory_says() {
             .with_estimator(estimator)
             .with_window_s(0.2);
         let measured: MeasuredResponse = measure(&[record], &options).unwrap();
-        assert!(
-            measured
-                .pieces
-                .iter()
-                .all(|piece| piece.thrown_out.is_none())
-        );
+        assert!(measured.pieces.iter().all(|piece| piece.thrown_out.is_none()));
         measured.magnitude.iter().sum::<f64>() / measured.magnitude.len() as f64
     };
     use Estimator::{H1, H2, Hv};
@@ -245,14 +193,12 @@ fn estimators_are_biased_as_their_theory_says() {
         (&rough_in, &rough_out, H2, 3.75),
     ] {
         let found = gain(input, output, estimator);
-        assert!(
-            (found / expected - 1.0).abs() < 0.01,
-            "{estimator}: {found}, not {expected}"
-        );
+        assert!((found / expected - 1.0).abs() < 0.01, "{estimator}: {found}, not {expected}");
     }
 }
 
-/// Both channels are multiplied by the same exponential, which is the response with its damping raised by `1/τ`.
+/// Both channels are multiplied by the same exponential, which is the response with its damping
+/// raised by `1/τ`.
 #[test]
 fn an_exponential_window_raises_the_damping_by_its_inverse() {
     let rig = Rig::new(180.0, 0.002);
@@ -264,34 +210,14 @@ fn an_exponential_window_raises_the_damping_by_its_inverse() {
     };
     let records = [10.0, 12.0].map(record);
     let plain = measure(&records, &ResponseOptions::default()).unwrap();
-    assert!(
-        plain
-            .warnings
-            .iter()
-            .any(|w| w.contains("has not died out")),
-        "{:?}",
-        plain.warnings
-    );
-    let windowed = measure(
-        &records,
-        &hits(HitOptions::default().with_exponential_s(0.1)),
-    )
-    .unwrap();
+    assert!(plain.warnings.iter().any(|w| w.contains("has not died out")), "{:?}", plain.warnings);
+    let windowed = measure(&records, &hits(HitOptions::default().with_exponential_s(0.1))).unwrap();
     let damping = 0.002 + 10.0 / (2.0 * PI * 180.0);
     let expected = 1.0 / (2.0 * damping * (1.0 - damping * damping).sqrt());
     let found = windowed.peak.unwrap().magnitude;
     assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
-    assert!(
-        windowed.warnings.iter().any(|w| w.contains("10.0000 1/s")),
-        "{:?}",
-        windowed.warnings
-    );
-    assert!(
-        !windowed
-            .warnings
-            .iter()
-            .any(|w| w.contains("has not died out"))
-    );
+    assert!(windowed.warnings.iter().any(|w| w.contains("10.0000 1/s")), "{:?}", windowed.warnings);
+    assert!(!windowed.warnings.iter().any(|w| w.contains("has not died out")));
 }
 
 #[test]
@@ -299,76 +225,41 @@ fn what_cannot_be_measured_is_named() {
     let pulse = |hits: &[(f64, f64)]| pulses(3.0, hits);
     let record = |input: Vec<f64>| Record::new("a.csv", RATE_HZ, input.clone(), input);
     let fails = |input: Vec<f64>, options: ResponseOptions| {
-        measure(&[record(input).unwrap()], &options)
-            .unwrap_err()
-            .to_string()
+        measure(&[record(input).unwrap()], &options).unwrap_err().to_string()
     };
     let default = ResponseOptions::default;
 
     let few = fails(pulse(&[(0.5, 10.0)]), default());
-    assert!(
-        few.starts_with("1 of 1 hits can be used, and coherence needs at least 2"),
-        "{few}"
-    );
+    assert!(few.starts_with("1 of 1 hits can be used, and coherence needs at least 2"), "{few}");
     let cut_off = fails(pulse(&[(0.5, 10.0), (2.5, 10.0)]), default());
-    assert!(
-        cut_off.contains("a.csv at 2.5001 s, cut off: the recording ends"),
-        "{cut_off}"
-    );
+    assert!(cut_off.contains("a.csv at 2.5001 s, cut off: the recording ends"), "{cut_off}");
     let mut noise = GaussianNoise::new(3);
-    let noise = (0..30_000)
-        .map(|_| f64::from(noise.next_sample()))
-        .collect();
+    let noise = (0..30_000).map(|_| f64::from(noise.next_sample())).collect();
     let none = fails(noise, default());
-    assert!(
-        none.starts_with("a.csv: no hit found: the largest input is"),
-        "{none}"
-    );
+    assert!(none.starts_with("a.csv: no hit found: the largest input is"), "{none}");
     let short = fails(pulse(&[(0.5, 10.0)]), default().with_window_s(5.0));
-    assert!(
-        short.starts_with("a.csv lasts 3.000 s, less than one window of 5 s"),
-        "{short}"
-    );
+    assert!(short.starts_with("a.csv lasts 3.000 s, less than one window of 5 s"), "{short}");
 
     let constant = record(vec![0.5; 100]).unwrap_err().to_string();
-    assert!(
-        constant.starts_with("a.csv: the input is 0.5 at every sample"),
-        "{constant}"
-    );
+    assert!(constant.starts_with("a.csv: the input is 0.5 at every sample"), "{constant}");
     let lengths = Record::new("a.csv", RATE_HZ, vec![0.0, 1.0], vec![0.0]).unwrap_err();
     assert!(matches!(
         lengths,
-        ResponseError::Record {
-            problem: RecordProblem::Lengths {
-                input: 2,
-                output: 1,
-            },
-            ..
-        }
+        ResponseError::Record { problem: RecordProblem::Lengths { input: 2, output: 1 }, .. }
     ));
     let missing = Record::new("a.csv", RATE_HZ, vec![0.0, 1.0], vec![0.0, f64::NAN]).unwrap_err();
     assert!(matches!(
         missing,
         ResponseError::Record {
-            problem: RecordProblem::Sample {
-                channel: Channel::Output,
-                sample: 1,
-                ..
-            },
+            problem: RecordProblem::Sample { channel: Channel::Output, sample: 1, .. },
             ..
         }
     ));
     let input = pulse(&[(0.5, 10.0), (1.7, 10.0)]);
     let two = [5_000.0, RATE_HZ]
         .map(|rate| Record::new("r.csv", rate, input.clone(), input.clone()).unwrap());
-    assert!(matches!(
-        measure(&two, &default()),
-        Err(ResponseError::Rates { .. })
-    ));
-    assert!(matches!(
-        measure(&[], &default()),
-        Err(ResponseError::Nothing)
-    ));
+    assert!(matches!(measure(&two, &default()), Err(ResponseError::Rates { .. })));
+    assert!(matches!(measure(&[], &default()), Err(ResponseError::Nothing)));
 
     for options in [
         default().with_window_s(f64::NAN),
@@ -382,15 +273,9 @@ fn what_cannot_be_measured_is_named() {
         hits(HitOptions::default().with_force_window_s(f64::INFINITY)),
     ] {
         let result = measure(&two[1..], &options);
-        assert!(
-            matches!(result, Err(ResponseError::Option { .. })),
-            "{options:?}: {result:?}"
-        );
+        assert!(matches!(result, Err(ResponseError::Option { .. })), "{options:?}: {result:?}");
     }
     let tiny: Vec<f64> = input.iter().map(|x| x * 1e-11).collect();
     let tiny = Record::new("t.csv", RATE_HZ, input, tiny).unwrap();
-    assert!(matches!(
-        measure(&[tiny], &default()),
-        Err(ResponseError::Magnitude { .. })
-    ));
+    assert!(matches!(measure(&[tiny], &default()), Err(ResponseError::Magnitude { .. })));
 }

@@ -7,13 +7,8 @@ use htex_finding::Findings;
 use htex_lab::study::{Plan, Study, Trial, read_study};
 use proptest::prelude::*;
 
-const ORDERS: [&str; 5] = [
-    "random",
-    "blocked_by_repetition",
-    "blocked_by_texture",
-    "latin_square",
-    "williams_square",
-];
+const ORDERS: [&str; 5] =
+    ["random", "blocked_by_repetition", "blocked_by_texture", "latin_square", "williams_square"];
 
 fn study(text: &str) -> Study {
     let head = "htex_study = '1.0'\nmotion = 'live'\ndevice = { adapter = 'file' }\n";
@@ -74,17 +69,15 @@ proptest! {
     }
 }
 
-/// Over as many rows as the square has, each condition is once at each place, and follows each other one once.
+/// Over as many rows as the square has, each condition is once at each place, and follows each
+/// other one once.
 #[test]
 fn participants_together_make_a_whole_square() {
     let mut study = of("williams_square", 2, 2, 1, 3);
     study.participants = htex_lab::study::Participants::Count(4);
     let plan = Plan::new(&study);
-    let rows: Vec<Vec<_>> = plan
-        .participants
-        .iter()
-        .map(|p| p.trials.iter().map(condition).collect())
-        .collect();
+    let rows: Vec<Vec<_>> =
+        plan.participants.iter().map(|p| p.trials.iter().map(condition).collect()).collect();
     let mut pairs: Vec<_> = rows.iter().flat_map(|row| row.windows(2)).collect();
     pairs.sort();
     pairs.dedup();
@@ -121,10 +114,7 @@ fn the_defaults_are_the_papers_study() {
     assert_eq!(study.models, ["ar", "mfcc", "speak", "sbeta", "sslope"]);
     assert_eq!((study.repetitions, study.trial_s), (5, 10.0));
     assert_eq!((study.scale.min, study.scale.max), (0, 6));
-    assert_eq!(
-        (&study.scale.low[..], &study.scale.high[..]),
-        ("Different", "Same")
-    );
+    assert_eq!((&study.scale.low[..], &study.scale.high[..]), ("Different", "Same"));
     let plan = Plan::new(&study);
     assert_eq!(plan.participants.len(), 14);
     assert_eq!(plan.participants[6].participant, "P07");

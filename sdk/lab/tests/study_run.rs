@@ -94,12 +94,7 @@ impl Rig for TestRig {
             },
         };
         let (drive_v, output) = levels(stimulus);
-        Ok(Played {
-            drive_v,
-            output,
-            reference_rms: 0.1,
-            felt,
-        })
+        Ok(Played { drive_v, output, reference_rms: 0.1, felt })
     }
 
     fn output_before_error(&mut self) -> Option<(Option<f64>, OutputLevels)> {
@@ -146,14 +141,12 @@ impl Asker for Willing {
                 Some(Key::Digit(4))
             }
             // Felt at -12 dB, and 4 dB weaker as the real one.
-            View::Matching {
-                rising: true,
-                gain_db,
-                ..
-            } => Some(Key::Gain(match *gain_db < -12.0 {
-                true => GainKey::MuchStronger,
-                false => GainKey::Accept,
-            })),
+            View::Matching { rising: true, gain_db, .. } => {
+                Some(Key::Gain(match *gain_db < -12.0 {
+                    true => GainKey::MuchStronger,
+                    false => GainKey::Accept,
+                }))
+            }
             View::Matching { gain_db, .. } => Some(Key::Gain(match *gain_db > -16.0 {
                 true => GainKey::MuchWeaker,
                 false => GainKey::Accept,
@@ -207,11 +200,7 @@ impl Place {
         fs::write(folder.path().join("cloth.htex"), "it is hashed alone").unwrap();
         let study = read_study(text.as_bytes(), &mut Findings::default()).unwrap();
         let plan = Plan::new(&study);
-        Self {
-            folder,
-            study,
-            plan,
-        }
+        Self { folder, study, plan }
     }
 
     fn run(&self, fates: &[Fate]) -> Went {
@@ -224,25 +213,15 @@ impl Place {
         let device = DeviceUsed::default();
         let header = Header::new(&self.study, &path, own, device, "test".to_owned()).unwrap();
         let mut session = Session::open(&self.study, own, self.folder.path(), &header).unwrap();
-        let mut rig = TestRig {
-            fates: fates.to_vec(),
-            ..TestRig::default()
-        };
+        let mut rig = TestRig { fates: fates.to_vec(), ..TestRig::default() };
         let ended = run(&mut session, &mut rig, &mut asker, &mut NoClock, None);
-        Went {
-            ended,
-            asker,
-            told: rig.told.into_inner(),
-            played: rig.played,
-        }
+        Went { ended, asker, told: rig.told.into_inner(), played: rig.played }
     }
 
     fn lines(&self) -> Vec<serde_json::Value> {
         let text = fs::read_to_string(self.folder.path().join("P01.jsonl")).unwrap();
         let lines = text.lines();
-        lines
-            .map(|line| serde_json::from_str(line).unwrap())
-            .collect()
+        lines.map(|line| serde_json::from_str(line).unwrap()).collect()
     }
 }
 
@@ -262,37 +241,25 @@ fn a_trial_in_which_the_device_runs_dry_is_repeated_three_times_at_most() {
     let notice = "the device ran dry, and trial-0001 is played again (the buffer is empty)";
     assert_eq!(went.told[0], notice);
     let lines = place.lines();
-    let kinds: Vec<&str> = lines
-        .iter()
-        .map(|line| line["kind"].as_str().unwrap())
-        .collect();
+    let kinds: Vec<&str> = lines.iter().map(|line| line["kind"].as_str().unwrap()).collect();
     let dry = "stopped";
-    assert_eq!(
-        kinds,
-        ["header", "session", dry, dry, "answer", dry, dry, dry]
-    );
+    assert_eq!(kinds, ["header", "session", dry, dry, "answer", dry, dry, dry]);
     assert_eq!(lines[1]["date"], "2026-11-25T10:25:25Z");
     assert_eq!(lines[2]["reason"], "ran_dry");
-    assert_eq!(
-        (&lines[4]["repeats"], &lines[4]["stops"]),
-        (&2.into(), &2.into())
-    );
+    assert_eq!((&lines[4]["repeats"], &lines[4]["stops"]), (&2.into(), &2.into()));
     // The same command goes on.
     assert_eq!(place.run(&[OnTarget]).ended.unwrap(), Ended::Done);
     let lines = place.lines();
     assert_eq!((lines.len(), &lines[9]["stops"]), (10, &3.into()));
 }
 
-/// Training and gain matching start 20 dB below the maximum, nothing is played stronger than the participant asked for, and each line
-/// of each phase says what the device was given.
+/// Training and gain matching start 20 dB below the maximum, nothing is played stronger than the
+/// participant asked for, and each line of each phase says what the device was given.
 #[test]
 fn every_phase_starts_weak_and_says_what_the_device_was_given() {
     let phases = "phases = ['training', 'gain', 'testing']\ntraining = { trials = 1 }";
     let place = Place::with(&STUDY.replace("phases = ['testing']", phases));
-    let leaving = Willing {
-        leaves: true,
-        ..Willing::default()
-    };
+    let leaving = Willing { leaves: true, ..Willing::default() };
     let went = place.run_with(&[], leaving);
     assert_eq!(went.ended.unwrap(), Ended::Left);
     let mut played = went.played;
@@ -306,16 +273,12 @@ fn every_phase_starts_weak_and_says_what_the_device_was_given() {
     expected.extend(rise("gain-cloth"));
     expected.extend([("gain-cloth", -12.0), ("gain-cloth", -16.0)]);
     expected.extend([("trial-0001", -16.0), ("trial-0002", -16.0)]);
-    let played: Vec<_> = played
-        .iter()
-        .map(|(file, gain_db)| (&file[..], gain_db.unwrap()))
-        .collect();
+    let played: Vec<_> =
+        played.iter().map(|(file, gain_db)| (&file[..], gain_db.unwrap())).collect();
     assert_eq!(played, expected);
     let lines = place.lines();
-    let plays: Vec<_> = lines
-        .iter()
-        .filter(|line| line["kind"] != "header" && line["kind"] != "session")
-        .collect();
+    let plays: Vec<_> =
+        lines.iter().filter(|line| line["kind"] != "header" && line["kind"] != "session").collect();
     assert_eq!(plays.len(), expected.len());
     let stop = plays.iter().position(|line| line["kind"] == "stopped");
     let stop = stop.unwrap();
@@ -350,25 +313,16 @@ fn a_trial_off_its_target_is_said_at_once_kept_and_marked() {
     assert_eq!(went.asker.notices, [said]);
     assert_eq!(place.lines()[2]["felt"]["off_target"][0], REASON);
     let table = export(place.folder.path(), None).unwrap();
-    let marks: Vec<&str> = table
-        .csv
-        .lines()
-        .map(|row| row.rsplit(',').next().unwrap())
-        .collect();
+    let marks: Vec<&str> = table.csv.lines().map(|row| row.rsplit(',').next().unwrap()).collect();
     assert_eq!(marks, ["off_target", "yes", "no"]);
     assert_eq!((table.ratings, table.off_target), (2, 1));
 
-    // Neither speed nor force was measured: the table does not say that the trial kept to the target.
+    // Neither speed nor force was measured: the table does not say that the trial kept to the
+    // target.
     let unknown = Place::new();
-    unknown
-        .run(&[Fate::NotMeasured, Fate::OnTarget])
-        .ended
-        .unwrap();
+    unknown.run(&[Fate::NotMeasured, Fate::OnTarget]).ended.unwrap();
     let rows = export(unknown.folder.path(), None).unwrap().csv;
-    let marks: Vec<&str> = rows
-        .lines()
-        .map(|row| row.rsplit(',').next().unwrap())
-        .collect();
+    let marks: Vec<&str> = rows.lines().map(|row| row.rsplit(',').next().unwrap()).collect();
     assert_eq!(marks, ["off_target", "", "no"]);
     assert!(
         table.warnings[0].starts_with("P01: 1 of 2 trials whose motion was measured"),

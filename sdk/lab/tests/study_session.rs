@@ -36,18 +36,10 @@ impl Place {
     fn new() -> Self {
         let folder = TempDir::new().unwrap();
         fs::write(folder.path().join("study.toml"), STUDY).unwrap();
-        fs::write(
-            folder.path().join("cloth.htex"),
-            "its bytes are hashed alone",
-        )
-        .unwrap();
+        fs::write(folder.path().join("cloth.htex"), "its bytes are hashed alone").unwrap();
         let study = read_study(STUDY.as_bytes(), &mut Findings::default()).unwrap();
         let plan = Plan::new(&study);
-        Self {
-            folder,
-            study,
-            plan,
-        }
+        Self { folder, study, plan }
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -61,20 +53,13 @@ impl Place {
     fn header_with(&self, simulated: Option<u64>, settings: [(&str, &str); 2]) -> Header {
         let device = DeviceUsed {
             adapter: "file".to_owned(),
-            settings: settings
-                .map(|(name, value)| (name.to_owned(), value.to_owned()))
-                .into(),
+            settings: settings.map(|(name, value)| (name.to_owned(), value.to_owned())).into(),
             limit: Some(150.0),
             ..DeviceUsed::default()
         };
         let own = &self.plan.participants[0];
-        let header = Header::new(
-            &self.study,
-            &self.path("study.toml"),
-            own,
-            device,
-            "test".to_owned(),
-        );
+        let header =
+            Header::new(&self.study, &self.path("study.toml"), own, device, "test".to_owned());
         let simulated = simulated.map(|seed| SimulatedParticipant::new(seed, "P01").header());
         header.unwrap().with_simulated(simulated)
     }
@@ -92,9 +77,9 @@ impl Place {
 /// Does one step.
 fn act(session: &mut Session<'_>) -> bool {
     match session.step() {
-        Step::Rate(_, trial, _) => session
-            .rate((trial.number % 7) as u8, 1, 2, Presented::default())
-            .unwrap(),
+        Step::Rate(_, trial, _) => {
+            session.rate((trial.number % 7) as u8, 1, 2, Presented::default()).unwrap()
+        }
         Step::Match { matching, .. } => {
             let gain_db = matching.gain_db();
             let key = match (matching.is_rising(), gain_db) {
@@ -130,10 +115,7 @@ fn a_session_goes_on_from_every_byte() {
     let lines = whole.iter().filter(|b| **b == b'\n').count();
     // 2 training, 4 gain, each after 6 of a rise, 8 ratings, 1 rest.
     assert_eq!(lines, 1 + 6 + 2 + 6 + 4 + 8 + 1);
-    for cut in (header..whole.len())
-        .step_by(17)
-        .chain([header, whole.len() - 1])
-    {
+    for cut in (header..whole.len()).step_by(17).chain([header, whole.len() - 1]) {
         fs::write(place.answers(), &whole[..cut]).unwrap();
         let mut session = place.open().unwrap();
         while act(&mut session) {}
@@ -216,24 +198,12 @@ fn damaged_lines_are_named_and_kept() {
         refused(&place, words);
         assert_eq!(fs::read_to_string(place.answers()).unwrap(), changed);
     };
-    damaged(
-        "\"number\":1,",
-        "\"number\":9,",
-        &["line 8", "trial 1 of the plan"],
-    );
-    damaged(
-        "\"rating\":1,",
-        "\"rating\":9,",
-        &["line 8", "not on the scale"],
-    );
+    damaged("\"number\":1,", "\"number\":9,", &["line 8", "trial 1 of the plan"]);
+    damaged("\"rating\":1,", "\"rating\":9,", &["line 8", "not on the scale"]);
     damaged(
         "\"rating\":1,",
         "\"rating\":1,\"ratting\":2,",
-        &[
-            "line 8",
-            "unknown field `ratting`, expected one of",
-            "`rating`",
-        ],
+        &["line 8", "unknown field `ratting`, expected one of", "`rating`"],
     );
     // A level that the keys do not give: of other rules, and nobody knows what was felt.
     damaged(
@@ -253,7 +223,8 @@ fn damaged_lines_are_named_and_kept() {
     refused(&place, &["line 1"]);
 }
 
-/// A file that is not of this session stays as it is, also its last line without an end, and a link to one is not followed.
+/// A file that is not of this session stays as it is, also its last line without an end, and a link
+/// to one is not followed.
 #[test]
 fn a_file_that_is_not_ours_is_not_changed() {
     let place = Place::new();
@@ -308,10 +279,7 @@ fn ratings_are_exported_by_attribute() {
     }
     drop(session);
     // A line that is being written is left out.
-    let mut file = fs::OpenOptions::new()
-        .append(true)
-        .open(place.answers())
-        .unwrap();
+    let mut file = fs::OpenOptions::new().append(true).open(place.answers()).unwrap();
     file.write_all(b"{\"kind\":\"answ").unwrap();
     let error = rows(folder, None).unwrap_err().to_string();
     assert!(error.contains("roughness, similarity"), "{error}");
@@ -321,21 +289,13 @@ fn ratings_are_exported_by_attribute() {
     let mut lines = table.csv.lines();
     let head = "participant,texture,model,repetition,rating,attribute,hidden_reference,response_ms,gain_db,simulated,off_target";
     assert_eq!(lines.next(), Some(head));
-    assert!(
-        lines.next().unwrap().ends_with(",1,roughness,no,1,-3,no,"),
-        "{}",
-        table.csv
-    );
+    assert!(lines.next().unwrap().ends_with(",1,roughness,no,1,-3,no,"), "{}", table.csv);
     fs::write(place.path("P02.jsonl"), "{}\n").unwrap();
-    assert!(
-        rows(folder, None)
-            .unwrap_err()
-            .to_string()
-            .contains("P02.jsonl, line 1")
-    );
+    assert!(rows(folder, None).unwrap_err().to_string().contains("P02.jsonl, line 1"));
 }
 
-/// What a spreadsheet would take for a formula, which may open an address or run a program, is text in the table.
+/// What a spreadsheet would take for a formula, which may open an address or run a program, is text
+/// in the table.
 #[test]
 fn cells_that_begin_like_formulas_are_text() {
     let place = Place::new();
@@ -347,10 +307,8 @@ fn cells_that_begin_like_formulas_are_text() {
     let whole = fs::read_to_string(place.answers()).unwrap();
     for start in ["=", "+", "-", "@", "\\t", "\\r"] {
         let evil = format!("{start}HYPERLINK(0)");
-        let mut text = whole.replace(
-            "\"participant\":\"P01\"",
-            &format!("\"participant\":\"{evil}\""),
-        );
+        let mut text =
+            whole.replace("\"participant\":\"P01\"", &format!("\"participant\":\"{evil}\""));
         for key in ["texture", "model", "attribute"] {
             text = renamed(&text, key, &evil);
         }
@@ -363,10 +321,7 @@ fn cells_that_begin_like_formulas_are_text() {
             let row = row.unwrap();
             for column in [0, 1, 2, 5] {
                 let cell = &row[column];
-                assert!(
-                    cell.starts_with('\'') && cell.ends_with("HYPERLINK(0)"),
-                    "{cell:?}"
-                );
+                assert!(cell.starts_with('\'') && cell.ends_with("HYPERLINK(0)"), "{cell:?}");
             }
         }
     }

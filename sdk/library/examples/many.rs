@@ -1,7 +1,9 @@
-//! Packs many small textures and measures it: seconds, memory, and the reads and bytes for one texture.
+//! Packs many small textures and measures it: seconds, memory, and the reads and bytes for one
+//! texture.
 //!
-//! `cargo run --release -p htex-library --example many` packs 1,000, 100,000 and 1,000,000 of them; other numbers may be given.
-//! Each number is packed in a process of its own, so that its peak of memory is its own.
+//! `cargo run --release -p htex-library --example many` packs 1,000, 100,000 and 1,000,000 of them;
+//! other numbers may be given. Each number is packed in a process of its own, so that its peak of
+//! memory is its own.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::error::Error;
@@ -30,15 +32,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!(
         "textures   pack/s  peak/MiB  file/MB  index/MB  pages  reads  index bytes read  one texture/us  in an open library/us"
     );
-    for count in if given.is_empty() {
-        COUNTS.to_vec()
-    } else {
-        given
-    } {
+    for count in if given.is_empty() { COUNTS.to_vec() } else { given } {
         let program = std::env::current_exe()?;
-        let status = Command::new(program)
-            .args([PACKS, &count.to_string()])
-            .status()?;
+        let status = Command::new(program).args([PACKS, &count.to_string()]).status()?;
         if !status.success() {
             return Err("the packing failed".into());
         }
@@ -179,9 +175,8 @@ fn template() -> Result<Asset, Box<dyn Error>> {
 
 /// Makes texture `i`: its name, and the bytes of its file. Tags, conditions and parameters vary.
 fn make(texture: &mut Asset, i: u64) -> Result<(String, Vec<u8>), Box<dyn Error>> {
-    const KINDS: [&str; 8] = [
-        "wood", "felt", "cotton", "paper", "leather", "vinyl", "stone", "steel",
-    ];
+    const KINDS: [&str; 8] =
+        ["wood", "felt", "cotton", "paper", "leather", "vinyl", "stone", "steel"];
     const FEELS: [&str; 5] = ["rough", "smooth", "ribbed", "soft", "sticky"];
     let mixed = i.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 20;
     let (kind, feel) = (KINDS[mixed as usize % 8], FEELS[(mixed >> 3) as usize % 5]);
@@ -190,14 +185,9 @@ fn make(texture: &mut Asset, i: u64) -> Result<(String, Vec<u8>), Box<dyn Error>
     manifest.tags = vec![kind.to_owned(), feel.to_owned()];
     manifest.conditions[0].speed_mm_s = Some(20.0 + (mixed % 181) as f64);
     manifest.conditions[0].force_n = Some(0.1 + (mixed % 19) as f64 * 0.1);
-    texture.parameters[0][0] = vec![
-        1.0 + (mixed % 1000) as f64 / 500.0,
-        2.0 + (i % 977) as f64 / 300.0,
-    ];
-    Ok((
-        format!("{kind}/{feel}/{mixed:011x}-{i}"),
-        texture.to_bytes()?,
-    ))
+    texture.parameters[0][0] =
+        vec![1.0 + (mixed % 1000) as f64 / 500.0, 2.0 + (i % 977) as f64 / 300.0];
+    Ok((format!("{kind}/{feel}/{mixed:011x}-{i}"), texture.to_bytes()?))
 }
 
 /// Peak memory (RSS) of this process, MiB; `None` where the system does not state it.

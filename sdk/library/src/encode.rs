@@ -7,8 +7,8 @@ use crate::leaf::{CONTACTS, FORCE, ONE_FORCE, ONE_SPEED, SOURCES, SPEED, length}
 use crate::page;
 use crate::wire::{common_prefix, put_following, put_text, put_varint, varint_bytes};
 
-/// Bytes of an unpacked leaf at which the next one begins. Packed and with the first read, a leaf stays below 64 kB, and
-/// the root page of a million textures below the first read.
+/// Bytes of an unpacked leaf at which the next one begins. Packed and with the first read, a leaf
+/// stays below 64 kB, and the root page of a million textures below the first read.
 const LEAF_BYTES: usize = 40 << 10;
 
 /// The pages of an index.
@@ -36,29 +36,21 @@ impl Pages {
             let shared = common_prefix(&self.last, entry.name.as_bytes());
             let is_first = self.separators.is_empty();
             let separator = if is_first { 0 } else { shared + 1 };
-            self.separators
-                .push(entry.name.as_bytes()[..separator].to_vec());
+            self.separators.push(entry.name.as_bytes()[..separator].to_vec());
         }
         self.size += self.size_of(&entry);
         let words = entry.tags.iter().chain(&entry.models);
-        for word in words
-            .filter(|word| !self.words.contains(*word))
-            .cloned()
-            .collect::<Vec<_>>()
-        {
+        for word in words.filter(|word| !self.words.contains(*word)).cloned().collect::<Vec<_>>() {
             self.words.insert(word);
         }
         self.last = entry.name.clone().into_bytes();
         self.entries.push(entry);
     }
 
-    /// An upper bound of the bytes that an entry adds to the leaf. Indices of words are below 2^14, in two bytes.
+    /// An upper bound of the bytes that an entry adds to the leaf. Indices of words are below 2^14,
+    /// in two bytes.
     fn size_of(&self, entry: &Entry) -> usize {
-        let before: &[u8] = if self.entries.is_empty() {
-            &[]
-        } else {
-            &self.last
-        };
+        let before: &[u8] = if self.entries.is_empty() { &[] } else { &self.last };
         let name = entry.name.as_bytes();
         let name = name.len() - common_prefix(before, name) + 4;
         let words = entry.tags.iter().chain(&entry.models);
@@ -119,20 +111,12 @@ fn leaf(entries: &[Entry]) -> Vec<u8> {
         put_following(&mut page, before, entry.name.as_bytes());
         before = entry.name.as_bytes();
     }
-    entries
-        .iter()
-        .for_each(|e| put_words(&mut page, &words, &e.tags));
-    entries
-        .iter()
-        .for_each(|e| put_words(&mut page, &words, &e.models));
-    entries
-        .iter()
-        .for_each(|e| put_conditions(&mut page, &e.conditions));
+    entries.iter().for_each(|e| put_words(&mut page, &words, &e.tags));
+    entries.iter().for_each(|e| put_words(&mut page, &words, &e.models));
+    entries.iter().for_each(|e| put_conditions(&mut page, &e.conditions));
     entries.iter().for_each(|e| put_law(&mut page, e));
     put_varint(&mut page, entries.first().map_or(0, |e| e.place.own.start));
-    entries
-        .iter()
-        .for_each(|e| put_varint(&mut page, length(&e.place.own)));
+    entries.iter().for_each(|e| put_varint(&mut page, length(&e.place.own)));
     entries.iter().for_each(|e| put_cuts(&mut page, e));
     entries.iter().for_each(|e| page.extend(e.blake3));
     page
@@ -155,10 +139,7 @@ fn put_conditions(page: &mut Vec<u8>, conditions: &Conditions) {
     page.push(
         bits(conditions.speed_mm_s, SPEED, ONE_SPEED) | bits(conditions.force_n, FORCE, ONE_FORCE),
     );
-    for interval in [conditions.speed_mm_s, conditions.force_n]
-        .into_iter()
-        .flatten()
-    {
+    for interval in [conditions.speed_mm_s, conditions.force_n].into_iter().flatten() {
         page.extend(interval.min.to_le_bytes());
         if interval.min != interval.max {
             page.extend(interval.max.to_le_bytes());

@@ -71,11 +71,7 @@ pub struct IndexedExponent {
 impl IndexedLaw {
     pub(crate) const fn new(exponents: [IndexedExponent; 3]) -> Self {
         let [frequency_speed, level_speed, level_force] = exponents;
-        Self {
-            frequency_speed,
-            level_speed,
-            level_force,
-        }
+        Self { frequency_speed, level_speed, level_force }
     }
 
     /// The exponents in the order of the index.
@@ -88,12 +84,7 @@ impl IndexedLaw {
 impl From<Law> for IndexedLaw {
     fn from(law: Law) -> Self {
         // A sum with zero has no sign of zero.
-        let indexed = |(
-            _,
-            Exponent {
-                exponent, source, ..
-            },
-        ): (_, Exponent)| IndexedExponent {
+        let indexed = |(_, Exponent { exponent, source, .. }): (_, Exponent)| IndexedExponent {
             exponent: exponent + 0.0,
             source,
         };
@@ -138,10 +129,7 @@ impl Interval {
     pub(crate) fn of(numbers: impl IntoIterator<Item = f64>) -> Option<Self> {
         numbers.into_iter().fold(None, |interval, x| {
             let Self { min, max } = interval.unwrap_or(Self { min: x, max: x });
-            Some(Self {
-                min: min.min(x),
-                max: max.max(x),
-            })
+            Some(Self { min: min.min(x), max: max.max(x) })
         })
     }
 }

@@ -20,11 +20,7 @@ impl Fault {
         place: impl Into<String>,
         message: impl Into<String>,
     ) -> Self {
-        Self {
-            rule,
-            place: place.into(),
-            message: message.into(),
-        }
+        Self { rule, place: place.into(), message: message.into() }
     }
 
     /// A page whose contents cannot be read.

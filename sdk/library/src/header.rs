@@ -7,8 +7,8 @@ use crate::limits::Limits;
 use crate::page::crc32;
 use crate::rules as rule;
 
-/// First bytes of every library. As in PNG, one byte is no ASCII and line ends of both kinds follow, so that a transfer as
-/// text is detected.
+/// First bytes of every library. As in PNG, one byte is no ASCII and line ends of both kinds
+/// follow, so that a transfer as text is detected.
 pub const MAGIC: [u8; 8] = *b"\x89HTL\r\n\x1a\n";
 /// Extension of the files of libraries.
 pub const EXTENSION: &str = "htexlib";
@@ -22,7 +22,8 @@ const PLACE: &str = "/header";
 /// Names of the parts, in their order.
 const PARTS: [&str; 4] = ["root", "leaves", "shared", "payload"];
 
-/// The header. The parts of a library follow each other without gaps: header, root, leaves, shared, payload.
+/// The header. The parts of a library follow each other without gaps: header, root, leaves, shared,
+/// payload.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Header {
     pub minor: u16,
@@ -128,9 +129,7 @@ impl Header {
             return Err(Fault::new(rule::LIBRARY_LEAVES_TOO_MANY, PLACE, message));
         }
         if (entries == 0) != (leaves == 0) || leaves > entries {
-            return Err(invalid(&format!(
-                "{entries} textures are in {leaves} pages"
-            )));
+            return Err(invalid(&format!("{entries} textures are in {leaves} pages")));
         }
         Ok(())
     }

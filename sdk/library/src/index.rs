@@ -1,4 +1,5 @@
-//! The index of an open library, without input or output: says where pages and textures are, and reads their bytes.
+//! The index of an open library, without input or output: says where pages and textures are, and
+//! reads their bytes.
 
 use std::ops::Range;
 
@@ -17,8 +18,9 @@ use crate::rules as rule;
 
 /// The header and the root page of a library.
 ///
-/// A texture is opened in three steps: [`Self::leaf_of`] its name and [`Self::leaf_range`] say which page of the index to read,
-/// [`Self::read_leaf`] finds its entry there, and [`Self::asset_ranges`] says which bytes [`Self::assemble`] makes the texture of.
+/// A texture is opened in three steps: [`Self::leaf_of`] its name and [`Self::leaf_range`] say
+/// which page of the index to read, [`Self::read_leaf`] finds its entry there, and
+/// [`Self::asset_ranges`] says which bytes [`Self::assemble`] makes the texture of.
 /// [`crate::Library`] does so from a [`crate::LibrarySource`].
 #[derive(Debug, Clone)]
 pub struct Index {
@@ -29,11 +31,7 @@ pub struct Index {
 
 impl Index {
     pub(crate) fn new(header: Header, root: Root, limits: Limits) -> Self {
-        Self {
-            header,
-            root,
-            limits,
-        }
+        Self { header, root, limits }
     }
 
     pub(crate) fn header(&self) -> &Header {
@@ -51,7 +49,8 @@ impl Index {
         self.header.entries
     }
 
-    /// Returns the BLAKE3 of the index, which names the library: equal hashes mean equal textures under equal names.
+    /// Returns the BLAKE3 of the index, which names the library: equal hashes mean equal textures
+    /// under equal names.
     pub fn blake3(&self) -> [u8; 32] {
         self.header.index_blake3
     }
@@ -98,16 +97,13 @@ impl Index {
 
     pub(crate) fn leaf(&self, leaf: usize, bytes: &[u8]) -> Result<Vec<Entry>, Fault> {
         let page = page::unpack(bytes, self.limits.leaf_bytes, &leaf_place(leaf))?;
-        let reader = LeafReader {
-            leaf,
-            root: &self.root,
-            header: &self.header,
-            limits: &self.limits,
-        };
+        let reader =
+            LeafReader { leaf, root: &self.root, header: &self.header, limits: &self.limits };
         reader.read(&page)
     }
 
-    /// Returns the bytes in the file of which a texture is made: its own, and each object that it shares.
+    /// Returns the bytes in the file of which a texture is made: its own, and each object that it
+    /// shares.
     pub fn asset_ranges(&self, entry: &Entry) -> Vec<Range<u64>> {
         let in_part = |part: &Range<u64>, range: &Range<u64>| {
             part.start.saturating_add(range.start)..part.start.saturating_add(range.end)
@@ -118,7 +114,8 @@ impl Index {
         std::iter::once(own).chain(shared).collect()
     }
 
-    /// Makes a texture of the bytes of its ranges, in the order of [`Self::asset_ranges`], and compares them with its hash.
+    /// Makes a texture of the bytes of its ranges, in the order of [`Self::asset_ranges`], and
+    /// compares them with its hash.
     ///
     /// # Errors
     /// [`LibraryError::Invalid`] when the bytes are not those of the texture.
@@ -135,7 +132,8 @@ impl Index {
     }
 }
 
-/// Puts shared objects among the texture's own bytes; `None` when a part is missing or has another length.
+/// Puts shared objects among the texture's own bytes; `None` when a part is missing or has another
+/// length.
 pub(crate) fn assembled<B: AsRef<[u8]>>(entry: &Entry, parts: &[B]) -> Option<Vec<u8>> {
     let (own, objects) = parts.split_first()?;
     let (own, cuts) = (own.as_ref(), &entry.place.cuts);

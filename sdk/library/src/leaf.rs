@@ -1,7 +1,7 @@
 //! A leaf page: the entries of a run of names, column by column.
 //!
-//! A page has columns: hashes take most of it and cannot be compressed, the rest can. Pages are cut before compression,
-//! so that their size is bounded without trying.
+//! A page has columns: hashes take most of it and cannot be compressed, the rest can. Pages are cut
+//! before compression, so that their size is bounded without trying.
 
 use htex_format::{Contact, ExponentSource, MOST_EXPONENT};
 
@@ -28,11 +28,8 @@ pub(crate) const ONE_FORCE: u8 = 8;
 
 /// Contacts and sources of exponents by their numbers in the column of laws.
 pub(crate) const CONTACTS: [Contact; 3] = [Contact::Finger, Contact::Tool, Contact::Unknown];
-pub(crate) const SOURCES: [ExponentSource; 3] = [
-    ExponentSource::Measured,
-    ExponentSource::Given,
-    ExponentSource::Assumed,
-];
+pub(crate) const SOURCES: [ExponentSource; 3] =
+    [ExponentSource::Measured, ExponentSource::Given, ExponentSource::Assumed];
 
 pub(crate) struct LeafReader<'a> {
     pub leaf: usize,
@@ -56,9 +53,8 @@ impl LeafReader<'_> {
     /// Reads the unpacked page.
     pub(crate) fn read(&self, page: &[u8]) -> Result<Vec<Entry>, Fault> {
         let mut cursor = Cursor::new(page);
-        let columns = self
-            .columns(&mut cursor)
-            .map_err(|m| Fault::page(&leaf_place(self.leaf), m))?;
+        let columns =
+            self.columns(&mut cursor).map_err(|m| Fault::page(&leaf_place(self.leaf), m))?;
         self.check_names(&columns.names)?;
         let rows = columns
             .names
@@ -71,17 +67,7 @@ impl LeafReader<'_> {
             let ((((name, tags), (models, conditions)), law), (place, blake3)) = row;
             let (contact, law) = law;
             let bytes = self.check_place(i, &name, &place)?;
-            Ok(Entry {
-                name,
-                tags,
-                conditions,
-                contact,
-                law,
-                models,
-                bytes,
-                blake3,
-                place,
-            })
+            Ok(Entry { name, tags, conditions, contact, law, models, bytes, blake3, place })
         });
         entries.collect()
     }
@@ -143,9 +129,7 @@ impl LeafReader<'_> {
         let mut total = own;
         for cut in &place.cuts {
             if cut.at > own || cut.object.end > shared {
-                return Err(outside(
-                    "a shared object is outside of it or of the shared part",
-                ));
+                return Err(outside("a shared object is outside of it or of the shared part"));
             }
             total = total.saturating_add(length(&cut.object));
         }
@@ -188,8 +172,7 @@ fn names(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<String>, Malformed
     column(cursor, count, |cursor| {
         cursor.following(&mut text)?;
         let name = std::str::from_utf8(&text);
-        name.map(str::to_owned)
-            .map_err(|_| cursor.malformed("a name is not UTF-8"))
+        name.map(str::to_owned).map_err(|_| cursor.malformed("a name is not UTF-8"))
     })
 }
 
@@ -202,8 +185,7 @@ fn chosen(cursor: &mut Cursor<'_>, words: &[&str]) -> Result<Vec<String>, Malfor
     column(cursor, count, |cursor| {
         let index = usize::try_from(cursor.varint()?).ok();
         let word = index.and_then(|index| words.get(index));
-        word.map(|word| (*word).to_owned())
-            .ok_or(cursor.malformed("a word does not exist"))
+        word.map(|word| (*word).to_owned()).ok_or(cursor.malformed("a word does not exist"))
     })
 }
 
@@ -215,22 +197,17 @@ fn conditions(cursor: &mut Cursor<'_>) -> Result<Conditions, Malformed> {
     if !is_sound {
         return Err(cursor.malformed("the bits of conditions contradict each other"));
     }
-    Ok(Conditions {
-        speed_mm_s: interval(cursor, speed)?,
-        force_n: interval(cursor, force)?,
-    })
+    Ok(Conditions { speed_mm_s: interval(cursor, speed)?, force_n: interval(cursor, force)? })
 }
 
-/// Reads a contact and a law: a byte with two bits for the contact and for the source of each exponent, and the exponents.
+/// Reads a contact and a law: a byte with two bits for the contact and for the source of each
+/// exponent, and the exponents.
 fn law(cursor: &mut Cursor<'_>) -> Result<(Contact, IndexedLaw), Malformed> {
     let bits = usize::from(cursor.byte()?);
     let unknown = |cursor: &Cursor<'_>| cursor.malformed("a contact or a source does not exist");
     let contact = CONTACTS.get(bits & 3).copied();
     let contact = contact.ok_or_else(|| unknown(cursor))?;
-    let mut exponents = [IndexedExponent {
-        exponent: 0.0,
-        source: ExponentSource::Assumed,
-    }; 3];
+    let mut exponents = [IndexedExponent { exponent: 0.0, source: ExponentSource::Assumed }; 3];
     let in_range = |x: f64| (-MOST_EXPONENT..=MOST_EXPONENT).contains(&x);
     for (i, one) in exponents.iter_mut().enumerate() {
         let source = SOURCES.get((bits >> (2 * i + 2)) & 3).copied();
@@ -252,11 +229,7 @@ fn interval(
         return Ok(None);
     }
     let min = f64::from_le_bytes(cursor.array()?);
-    let max = if is_one {
-        min
-    } else {
-        f64::from_le_bytes(cursor.array()?)
-    };
+    let max = if is_one { min } else { f64::from_le_bytes(cursor.array()?) };
     let is_number = min.is_finite() && max.is_finite() && min.is_sign_positive();
     if !is_number || (!is_one && min >= max) {
         return Err(cursor.malformed("a range of conditions is not finite, negative or reversed"));
@@ -274,9 +247,7 @@ fn places(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<TexturePlace>, Ma
     })?;
     let cuts = column(cursor, count, cuts)?;
     let places = owns.into_iter().zip(cuts);
-    Ok(places
-        .map(|(own, cuts)| TexturePlace { own, cuts })
-        .collect())
+    Ok(places.map(|(own, cuts)| TexturePlace { own, cuts }).collect())
 }
 
 fn cuts(cursor: &mut Cursor<'_>) -> Result<Vec<Cut>, Malformed> {
@@ -292,10 +263,7 @@ fn cuts(cursor: &mut Cursor<'_>) -> Result<Vec<Cut>, Malformed> {
         if start == end {
             return Err(cursor.malformed("a shared object is empty"));
         }
-        Ok(Cut {
-            at,
-            object: start..end,
-        })
+        Ok(Cut { at, object: start..end })
     })
 }
 

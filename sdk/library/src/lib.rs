@@ -1,7 +1,8 @@
 //! The `.htexlib` file: thousands of textures in one file, opened one at a time.
 //!
-//! `spec/htexlib-1.md` is the normative text. The index comes first, sorted by name and in compressed pages: one texture takes three
-//! reads whatever the size of the library, the start of the file, a page of the index and the texture.
+//! `spec/htexlib-1.md` is the normative text. The index comes first, sorted by name and in
+//! compressed pages: one texture takes three reads whatever the size of the library, the start of
+//! the file, a page of the index and the texture.
 //!
 //! ```
 //! use htex_library::{Library, Writer};
@@ -30,8 +31,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! With the feature `storage`, `Library::open_located` opens libraries by URI. [`Index`] and [`Opening`] do no input or output: they state which bytes of the file they need. [`Library`] reads them from a
-//! [`LibrarySource`]; a browser fetches them.
+//! With the feature `storage`, `Library::open_located` opens libraries by URI. [`Index`] and
+//! [`Opening`] do no input or output: they state which bytes of the file they need. [`Library`]
+//! reads them from a [`LibrarySource`]; a browser fetches them.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -16,8 +16,8 @@ use crate::source::{LibrarySource, LocalFile};
 
 /// A library of textures, each of which is read when it is asked for.
 ///
-/// The page of the index that was used last is kept, so that neighbours by name take one read. One library may be used from
-/// several threads.
+/// The page of the index that was used last is kept, so that neighbours by name take one read. One
+/// library may be used from several threads.
 ///
 /// ```no_run
 /// let library = htex_library::Library::open("cloth.htexlib".as_ref())?;
@@ -71,11 +71,7 @@ impl<S: LibrarySource> Library<S> {
             match opening.give(&bytes, length)? {
                 Progress::More(more) => opening = more,
                 Progress::Open(index) => {
-                    return Ok(Self {
-                        source,
-                        index,
-                        recent: Mutex::new(None),
-                    });
+                    return Ok(Self { source, index, recent: Mutex::new(None) });
                 }
             }
         }
@@ -101,7 +97,8 @@ impl<S: LibrarySource> Library<S> {
         self.index.notes()
     }
 
-    /// Returns a count for reading many textures, by which a small file does not become a large folder.
+    /// Returns a count for reading many textures, by which a small file does not become a large
+    /// folder.
     ///
     /// ```no_run
     /// let library = htex_library::Library::open("cloth.htexlib".as_ref())?;
@@ -124,12 +121,11 @@ impl<S: LibrarySource> Library<S> {
     /// Reads a texture: the bytes of its `.htex` file, which have the hash of its entry.
     ///
     /// # Errors
-    /// [`LibraryError::Absent`] when there is no such texture; when bytes cannot be read or break a rule.
+    /// [`LibraryError::Absent`] when there is no such texture; when bytes cannot be read or break a
+    /// rule.
     pub fn get(&self, name: &str) -> Result<Vec<u8>, LibraryError> {
         let entry = self.entry(name)?;
-        let entry = entry.ok_or_else(|| LibraryError::Absent {
-            name: name.to_owned(),
-        })?;
+        let entry = entry.ok_or_else(|| LibraryError::Absent { name: name.to_owned() })?;
         self.read(&entry)
     }
 
@@ -146,7 +142,8 @@ impl<S: LibrarySource> Library<S> {
         Ok(found.ok().map(|i| entries[i].clone()))
     }
 
-    /// Reads the entries of a leaf page of the index, counted from 0, sorted by name; `None` when there is no such page.
+    /// Reads the entries of a leaf page of the index, counted from 0, sorted by name; `None` when
+    /// there is no such page.
     ///
     /// # Errors
     /// When the page cannot be read or breaks a rule.
@@ -169,12 +166,7 @@ impl<S: LibrarySource> Library<S> {
 
     /// Returns all entries, sorted by name. Pages are read one at a time.
     pub fn entries(&self) -> Entries<'_, S> {
-        Entries {
-            library: self,
-            next_leaf: 0,
-            entries: Arc::default(),
-            next: 0,
-        }
+        Entries { library: self, next_leaf: 0, entries: Arc::default(), next: 0 }
     }
 
     /// Reads the entries of a leaf page, or takes them if they were read last.
@@ -186,10 +178,7 @@ impl<S: LibrarySource> Library<S> {
         let range = self.index.leaf_range(number).unwrap_or_default();
         let bytes = self.read_range(range)?;
         let entries = Arc::new(self.index.read_leaf(number, &bytes)?);
-        *recent() = Some(Leaf {
-            number,
-            entries: entries.clone(),
-        });
+        *recent() = Some(Leaf { number, entries: entries.clone() });
         Ok(entries)
     }
 
@@ -206,7 +195,8 @@ impl<S: LibrarySource> Library<S> {
     }
 }
 
-/// Reads a range, or less at the end of the file. Ranges of an opened library are within its limits.
+/// Reads a range, or less at the end of the file. Ranges of an opened library are within its
+/// limits.
 fn read_up_to(source: &impl LibrarySource, range: Range<u64>) -> Result<Vec<u8>, LibraryError> {
     let length = usize::try_from(range.end - range.start)
         .map_err(|error| failed(&range, std::io::Error::other(error)))?;
@@ -220,11 +210,7 @@ fn read_up_to(source: &impl LibrarySource, range: Range<u64>) -> Result<Vec<u8>,
 }
 
 fn failed(range: &Range<u64>, error: std::io::Error) -> LibraryError {
-    LibraryError::Read {
-        at: range.start,
-        length: range.end - range.start,
-        error,
-    }
+    LibraryError::Read { at: range.start, length: range.end - range.start, error }
 }
 
 /// The entries of a library, sorted by name. After an error there are no more.

@@ -22,8 +22,8 @@ pub struct Limits {
     pub asset_bytes: u64,
     /// Different shared objects: 1,048,576. Only validation counts them.
     pub objects: u64,
-    /// Ratio of the bytes of all textures to the bytes of the file: 1,000. Whoever reads them all, to validate or to unpack, sums them
-    /// up ([`crate::Ratio`]).
+    /// Ratio of the bytes of all textures to the bytes of the file: 1,000. Whoever reads them all,
+    /// to validate or to unpack, sums them up ([`crate::Ratio`]).
     pub ratio: u64,
 }
 

@@ -19,8 +19,9 @@ pub enum Located {
 }
 
 impl Library<Located> {
-    /// Opens a library by path or URI, within the default [`Limits`](crate::Limits). Opening one texture of a file elsewhere takes three requests:
-    /// the start of the file, a page of the index, the texture; a library whose index fits into the start takes two.
+    /// Opens a library by path or URI, within the default [`Limits`](crate::Limits). Opening one
+    /// texture of a file elsewhere takes three requests: the start of the file, a page of the
+    /// index, the texture; a library whose index fits into the start takes two.
     ///
     /// # Errors
     /// As [`Library::open`]; [`LibraryError::Storage`].
@@ -54,7 +55,8 @@ impl Located {
         Ok(Self::Elsewhere(Box::new(remote)))
     }
 
-    /// Returns the requests to a server so far, and the bytes that they brought; `None` of a file of this machine.
+    /// Returns the requests to a server so far, and the bytes that they brought; `None` of a file
+    /// of this machine.
     pub fn usage(&self) -> Option<htex_storage::Usage> {
         match self {
             Self::File(_) => None,
@@ -77,9 +79,7 @@ impl LibrarySource for Located {
             Self::Elsewhere(remote) => {
                 let there = remote.len().saturating_sub(offset);
                 let count = usize::try_from(there).map_or(buffer.len(), |n| n.min(buffer.len()));
-                remote
-                    .read_at(offset, &mut buffer[..count])
-                    .map_err(io::Error::other)?;
+                remote.read_at(offset, &mut buffer[..count]).map_err(io::Error::other)?;
                 Ok(count)
             }
         }

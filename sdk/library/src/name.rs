@@ -47,7 +47,8 @@ pub enum InvalidName {
     Device,
 }
 
-/// Checks a name: up to 255 bytes of UTF-8, parts separated by `/`, so that every name is a relative path of a file.
+/// Checks a name: up to 255 bytes of UTF-8, parts separated by `/`, so that every name is a
+/// relative path of a file.
 ///
 /// # Errors
 /// The rule that it breaks.
@@ -76,14 +77,13 @@ pub fn check_name(name: &str) -> Result<(), InvalidName> {
     }
 }
 
-/// Returns what names of one file have in common on systems that ignore case or compare names after normalisation: two names
-/// are a canonical caseless match (The Unicode Standard, definition D145) if these are equal.
+/// Returns what names of one file have in common on systems that ignore case or compare names after
+/// normalisation: two names are a canonical caseless match (The Unicode Standard, definition D145)
+/// if these are equal.
 fn of_one_file(name: &str) -> String {
     let decomposed = DecomposingNormalizer::new_nfd();
     let folded = |text: &str| CaseMapper::new().fold_string(text).into_owned();
-    decomposed
-        .normalize(&folded(&decomposed.normalize(name)))
-        .into_owned()
+    decomposed.normalize(&folded(&decomposed.normalize(name))).into_owned()
 }
 
 /// The first 16 bytes of the hash of [`of_one_file`]: a library may have millions of names.
@@ -95,7 +95,8 @@ pub(crate) fn file_key(name: &str) -> [u8; 16] {
     start
 }
 
-/// Names of textures that are different files on every system. Packing, validating and unpacking compare names by it.
+/// Names of textures that are different files on every system. Packing, validating and unpacking
+/// compare names by it.
 ///
 /// ```
 /// let mut names = htex_library::Names::default();
@@ -108,14 +109,15 @@ pub struct Names {
 }
 
 impl Names {
-    /// Adds a name. Returns false if some system takes it and a name before for one file: they differ in case or in Unicode's
-    /// normalisation only.
+    /// Adds a name. Returns false if some system takes it and a name before for one file: they
+    /// differ in case or in Unicode's normalisation only.
     pub fn insert(&mut self, name: &str) -> bool {
         self.seen.insert(file_key(name))
     }
 }
 
-/// Checks the name of a library: up to 255 bytes of UTF-8 without characters that steer a terminal; it may be empty.
+/// Checks the name of a library: up to 255 bytes of UTF-8 without characters that steer a terminal;
+/// it may be empty.
 pub(crate) fn check_library_name(name: &str) -> Result<(), InvalidName> {
     if name.len() > TEXT_BYTES {
         return Err(InvalidName::TooLong(name.len()));
@@ -144,7 +146,8 @@ fn check_part(part: &str) -> Result<(), InvalidName> {
     Ok(())
 }
 
-/// Whether a part is a device of Windows, with or without an extension. Windows ignores spaces before the extension.
+/// Whether a part is a device of Windows, with or without an extension. Windows ignores spaces
+/// before the extension.
 fn is_device(part: &str) -> bool {
     let stem = part.split('.').next().unwrap_or(part).trim_end_matches(' ');
     let is = |stem: &str, names: &[&str]| names.iter().any(|name| stem.eq_ignore_ascii_case(name));
@@ -159,15 +162,7 @@ mod tests {
 
     #[test]
     fn names_are_relative_paths_everywhere() {
-        for name in [
-            "a",
-            "wood/oak 2",
-            "布/綿",
-            "a..b/.c",
-            "console/com10",
-            "com⁴",
-            "a.htex",
-        ] {
+        for name in ["a", "wood/oak 2", "布/綿", "a..b/.c", "console/com10", "com⁴", "a.htex"] {
             assert_eq!(check_name(name), Ok(()), "{name}");
         }
         for (name, error) in [
@@ -197,14 +192,8 @@ mod tests {
         }
         assert_eq!(check_name(&"é".repeat(128)), Err(InvalidName::TooLong(256)));
         assert_eq!(check_name(&"é".repeat(125)), Ok(()));
-        assert_eq!(
-            check_name(&"a".repeat(251)),
-            Err(InvalidName::LongPart(251))
-        );
-        assert_eq!(
-            check_library_name("a\u{2066}b"),
-            Err(InvalidName::Character('\u{2066}'))
-        );
+        assert_eq!(check_name(&"a".repeat(251)), Err(InvalidName::LongPart(251)));
+        assert_eq!(check_library_name("a\u{2066}b"), Err(InvalidName::Character('\u{2066}')));
     }
 
     #[test]
@@ -222,10 +211,6 @@ mod tests {
             assert!(names.insert(one) && !names.insert(other), "{one} {other}");
         }
         let mut names = Names::default();
-        assert!(
-            ["a", "b", "á", "ａ", "aa"]
-                .iter()
-                .all(|name| names.insert(name))
-        );
+        assert!(["a", "b", "á", "ａ", "aa"].iter().all(|name| names.insert(name)));
     }
 }

@@ -53,11 +53,7 @@ pub enum Progress {
 impl Opening {
     /// Starts to open a library.
     pub fn new(limits: Limits) -> Self {
-        Self {
-            limits,
-            start: Vec::new(),
-            header: None,
-        }
+        Self { limits, start: Vec::new(), header: None }
     }
 
     /// Returns the bytes of the file that are needed next. The file may end before them.
@@ -69,15 +65,15 @@ impl Opening {
         }
     }
 
-    /// Takes the wanted bytes; fewer when the file ends before them. `file_bytes` is the length of the whole file.
+    /// Takes the wanted bytes; fewer when the file ends before them. `file_bytes` is the length of
+    /// the whole file.
     ///
     /// # Errors
     /// [`LibraryError::Invalid`] when the header or the root page breaks a rule.
     pub fn give(mut self, bytes: &[u8], file_bytes: u64) -> Result<Progress, LibraryError> {
         let wanted = self.wanted();
         let most = usize::try_from(wanted.end - wanted.start).unwrap_or(usize::MAX);
-        self.start
-            .extend_from_slice(&bytes[..bytes.len().min(most)]);
+        self.start.extend_from_slice(&bytes[..bytes.len().min(most)]);
         let header = match self.header.take() {
             Some(header) => header,
             None => self.read_header(file_bytes)?,

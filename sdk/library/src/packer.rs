@@ -75,10 +75,8 @@ pub struct Packed {
 impl<S: Store> Packer<S> {
     /// Starts a library of this name, whose textures are kept in a store.
     pub(crate) fn new(path: &Path, name: &str, store: S) -> Result<Self, LibraryError> {
-        check_library_name(name).map_err(|problem| LibraryError::Name {
-            name: name.to_owned(),
-            problem,
-        })?;
+        check_library_name(name)
+            .map_err(|problem| LibraryError::Name { name: name.to_owned(), problem })?;
         Ok(Self {
             path: path.to_owned(),
             name: name.to_owned(),
@@ -92,21 +90,14 @@ impl<S: Store> Packer<S> {
 
     /// Adds a texture; see [`crate::Writer::add`].
     pub(crate) fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
-        check_name(name).map_err(|problem| LibraryError::Name {
-            name: name.to_owned(),
-            problem,
-        })?;
+        check_name(name)
+            .map_err(|problem| LibraryError::Name { name: name.to_owned(), problem })?;
         if self.added.contains_key(name) {
-            return Err(LibraryError::Duplicate {
-                name: name.to_owned(),
-            });
+            return Err(LibraryError::Duplicate { name: name.to_owned() });
         }
         let file = file_key(name);
         if let Some(other) = self.files.get(&file) {
-            return Err(LibraryError::Alike {
-                name: name.to_owned(),
-                other: other.clone(),
-            });
+            return Err(LibraryError::Alike { name: name.to_owned(), other: other.clone() });
         }
         let read = Asset::from_bytes(asset).map_err(|error| LibraryError::Asset {
             name: name.to_owned(),
@@ -142,15 +133,11 @@ impl<S: Store> Packer<S> {
 
     /// Refuses textures without a licence, which nobody but who made them may pass on.
     fn check_licences(&self) -> Result<(), LibraryError> {
-        let mut unlicensed = self
-            .added
-            .iter()
-            .filter(|(_, texture)| !texture.is_licensed);
+        let mut unlicensed = self.added.iter().filter(|(_, texture)| !texture.is_licensed);
         match unlicensed.next() {
-            Some((name, _)) if !self.allows_unlicensed => Err(LibraryError::Unlicensed {
-                name: name.clone(),
-                others: unlicensed.count(),
-            }),
+            Some((name, _)) if !self.allows_unlicensed => {
+                Err(LibraryError::Unlicensed { name: name.clone(), others: unlicensed.count() })
+            }
             _ => Ok(()),
         }
     }
@@ -158,13 +145,7 @@ impl<S: Store> Packer<S> {
     /// Writes the library.
     pub(crate) fn finish(self, target: &mut impl Write) -> Result<Packed, LibraryError> {
         self.check_licences()?;
-        let Self {
-            path,
-            name,
-            spool,
-            added,
-            ..
-        } = self;
+        let Self { path, name, spool, added, .. } = self;
         let (mut spool, modules) = spool.finish().unchanged(&path)?;
         let sharing = Sharing::of(modules);
         let (header, index, total) = index(&name, &added, &sharing);
@@ -188,19 +169,13 @@ pub(crate) trait Unchanged<T> {
 
 impl<T> Unchanged<T> for io::Result<T> {
     fn unchanged(self, path: &Path) -> Result<T, LibraryError> {
-        self.map_err(|error| LibraryError::Write {
-            path: path.to_owned(),
-            error,
-        })
+        self.map_err(|error| LibraryError::Write { path: path.to_owned(), error })
     }
 }
 
 fn check_words(name: &str, what: &str, words: &[String]) -> Result<(), LibraryError> {
     let problem = if words.len() > MOST_WORDS {
-        format!(
-            "it has {} {what} and the index holds {MOST_WORDS}; leave some out",
-            words.len()
-        )
+        format!("it has {} {what} and the index holds {MOST_WORDS}; leave some out", words.len())
     } else if let Some(word) = words.iter().find(|word| word.len() > TEXT_BYTES) {
         format!(
             "one of its {what} has {} bytes and the index holds {TEXT_BYTES}; shorten it",
@@ -209,10 +184,7 @@ fn check_words(name: &str, what: &str, words: &[String]) -> Result<(), LibraryEr
     } else {
         return Ok(());
     };
-    Err(LibraryError::Limit {
-        name: name.to_owned(),
-        problem,
-    })
+    Err(LibraryError::Limit { name: name.to_owned(), problem })
 }
 
 /// Encodes the index. Returns the header, root and leaves, and the bytes of all textures.
@@ -280,10 +252,7 @@ fn check_limits(name: &str, header: &Header, total: u64) -> Result<(), LibraryEr
     } else {
         return Ok(());
     };
-    Err(LibraryError::Limit {
-        name: format!("library {name:?}"),
-        problem,
-    })
+    Err(LibraryError::Limit { name: format!("library {name:?}"), problem })
 }
 
 fn write(

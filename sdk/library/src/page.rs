@@ -8,7 +8,8 @@ use crate::rules as rule;
 /// Bytes of the frame before the stream.
 const FRAME_BYTES: usize = 8;
 
-/// Returns the most bytes that a page takes in the file: a deflate stream grows by a few bytes per block at worst.
+/// Returns the most bytes that a page takes in the file: a deflate stream grows by a few bytes per
+/// block at worst.
 fn most_packed(unpacked: u64) -> u64 {
     (unpacked + unpacked / 64 + 64).saturating_add(FRAME_BYTES as u64)
 }
@@ -23,10 +24,7 @@ pub(crate) fn unpack(page: &[u8], most: u64, place: &str) -> Result<Vec<u8>, Fau
         return Err(corrupt("it is shorter than its frame"));
     };
     let [a, b, c, d, e, f, g, h] = *frame;
-    let (stated, size) = (
-        u32::from_le_bytes([a, b, c, d]),
-        u32::from_le_bytes([e, f, g, h]),
-    );
+    let (stated, size) = (u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h]));
     let found = crc32(&page[4..]);
     if found != stated {
         let message =
@@ -59,7 +57,8 @@ pub(crate) fn check_packed_size(size: u64, most: u64, place: &str) -> Result<(),
     Err(Fault::new(rule::LIBRARY_PAGE_TOO_LARGE, place, message))
 }
 
-/// The checksum of pages and of the header, of the inflater: its tables are in every program that reads a library.
+/// The checksum of pages and of the header, of the inflater: its tables are in every program that
+/// reads a library.
 pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = Crc::new();
     crc.update(bytes);

@@ -24,7 +24,8 @@ pub struct Query {
     pub words: Vec<String>,
     /// Tags that the texture has, without case.
     pub tags: Vec<String>,
-    /// A speed among the recorded ones, mm/s; within 5 % of one of them where it is beyond ([`htex_format::SAME_CONDITION`]).
+    /// A speed among the recorded ones, mm/s; within 5 % of one of them where it is beyond
+    /// ([`htex_format::SAME_CONDITION`]).
     pub speed_mm_s: Option<f64>,
     /// A force among the recorded ones, newtons; as for the speed.
     pub force_n: Option<f64>,
@@ -35,10 +36,7 @@ pub struct Query {
 impl Query {
     /// Whether the texture has all that is asked for.
     pub fn matches(&self, entry: &Entry) -> bool {
-        let (name, tags) = (
-            caseless(&entry.name),
-            entry.tags.iter().map(|tag| caseless(tag)),
-        );
+        let (name, tags) = (caseless(&entry.name), entry.tags.iter().map(|tag| caseless(tag)));
         let tags: Vec<String> = tags.collect();
         let is_in = |word: &String| {
             let word = caseless(word);
@@ -49,10 +47,7 @@ impl Query {
             && self.tags.iter().all(|tag| tags.contains(&caseless(tag)))
             && is_among(self.speed_mm_s, conditions.speed_mm_s)
             && is_among(self.force_n, conditions.force_n)
-            && self
-                .model
-                .as_ref()
-                .is_none_or(|model| has_model(entry, model))
+            && self.model.as_ref().is_none_or(|model| has_model(entry, model))
     }
 }
 

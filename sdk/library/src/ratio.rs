@@ -5,8 +5,8 @@ use crate::error::LibraryError;
 use crate::fault::Fault;
 use crate::rules as rule;
 
-/// Counts the bytes of textures that are read one after another, against [`crate::Limits::ratio`] times the bytes of the file. Whoever reads
-/// all of them, to check or to unpack, counts first.
+/// Counts the bytes of textures that are read one after another, against [`crate::Limits::ratio`]
+/// times the bytes of the file. Whoever reads all of them, to check or to unpack, counts first.
 #[derive(Debug, Clone)]
 pub struct Ratio {
     file_bytes: u64,
@@ -16,11 +16,7 @@ pub struct Ratio {
 
 impl Ratio {
     pub(crate) fn new(file_bytes: u64, most_ratio: u64) -> Self {
-        Self {
-            file_bytes,
-            most_ratio,
-            total: 0,
-        }
+        Self { file_bytes, most_ratio, total: 0 }
     }
 
     /// Counts a texture that is about to be read.
@@ -33,11 +29,7 @@ impl Ratio {
 
     pub(crate) fn count(&mut self, entry: &Entry, place: &str) -> Result<(), Fault> {
         self.total = self.total.saturating_add(entry.bytes);
-        let Self {
-            file_bytes,
-            most_ratio,
-            total,
-        } = *self;
+        let Self { file_bytes, most_ratio, total } = *self;
         if total <= file_bytes.saturating_mul(most_ratio) {
             return Ok(());
         }

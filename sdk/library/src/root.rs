@@ -1,6 +1,7 @@
 //! The root page: the library's name, and for every leaf page its first name and its length.
 //!
-//! The root page of a million textures is within the first 16 KiB of a file, so that the first read has it.
+//! The root page of a million textures is within the first 16 KiB of a file, so that the first read
+//! has it.
 
 use std::ops::Range;
 
@@ -47,11 +48,7 @@ impl Root {
         if header.minor == crate::header::MINOR && cursor.rest() > 0 {
             return Err(malformed(cursor.malformed("bytes follow the last value")));
         }
-        Ok(Self {
-            name,
-            separators,
-            offsets,
-        })
+        Ok(Self { name, separators, offsets })
     }
 
     pub(crate) fn leaves(&self) -> usize {
@@ -124,9 +121,7 @@ impl Texts {
         let mut text = Vec::new();
         for leaf in 0..count {
             let before = text.clone();
-            cursor
-                .following(&mut text)
-                .map_err(|m| Fault::page(PLACE, m))?;
+            cursor.following(&mut text).map_err(|m| Fault::page(PLACE, m))?;
             if (leaf == 0) != text.is_empty() || leaf > 0 && text <= before {
                 let message = format!(
                     "the first name of leaf {leaf} is not above the one before; pack the library again"

@@ -8,7 +8,8 @@ use crate::entry::{Cut, TexturePlace};
 use crate::leaf::{MOST_CUTS, length};
 use crate::spool::{Module, Spooled};
 
-/// The modules of all textures, and which of them are shared objects: those that occur more than once.
+/// The modules of all textures, and which of them are shared objects: those that occur more than
+/// once.
 pub(crate) struct Sharing {
     modules: Vec<Module>,
     /// Place of each module in the shared part; `None` for one that only one texture has.
@@ -19,11 +20,10 @@ pub(crate) struct Sharing {
 }
 
 impl Sharing {
-    /// Decides which modules are shared. Their order is that of their hashes, whatever the order of adding.
+    /// Decides which modules are shared. Their order is that of their hashes, whatever the order of
+    /// adding.
     pub(crate) fn of(modules: Vec<Module>) -> Self {
-        let mut shared: Vec<usize> = (0..modules.len())
-            .filter(|i| modules[*i].uses > 1)
-            .collect();
+        let mut shared: Vec<usize> = (0..modules.len()).filter(|i| modules[*i].uses > 1).collect();
         shared.sort_by_key(|i| modules[*i].blake3);
         let (mut places, mut bytes) = (vec![None; modules.len()], 0);
         for i in &shared {
@@ -31,12 +31,7 @@ impl Sharing {
             places[*i] = Some(bytes..end);
             bytes = end;
         }
-        Self {
-            modules,
-            places,
-            shared,
-            bytes,
-        }
+        Self { modules, places, shared, bytes }
     }
 
     /// Returns the bytes of the shared part.
@@ -61,23 +56,20 @@ impl Sharing {
         for (at, module) in &spooled.modules {
             let module = *module as usize;
             match &self.places[module] {
-                Some(object) => cuts.push(Cut {
-                    at: u64::from(*at) + inlined,
-                    object: object.clone(),
-                }),
+                Some(object) => {
+                    cuts.push(Cut { at: u64::from(*at) + inlined, object: object.clone() })
+                }
                 None => inlined += length(&self.modules[module].at),
             }
         }
         // An archive has at most as many entries, of which modules are some.
         debug_assert!(cuts.len() <= MOST_CUTS);
         let own = length(&spooled.own) + inlined;
-        TexturePlace {
-            own: start..start + own,
-            cuts,
-        }
+        TexturePlace { own: start..start + own, cuts }
     }
 
-    /// Returns where in the spool a texture's own bytes are: those around its modules, and the modules that only it has.
+    /// Returns where in the spool a texture's own bytes are: those around its modules, and the
+    /// modules that only it has.
     pub(crate) fn own_pieces(&self, spooled: &Spooled) -> Vec<Range<u64>> {
         let (mut at, mut pieces) = (spooled.own.start, Vec::new());
         for (before, module) in &spooled.modules {

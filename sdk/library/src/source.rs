@@ -8,10 +8,11 @@ use crate::error::LibraryError;
 
 /// Bytes that a library is read from: a file, a buffer, ranges of a file on a server.
 ///
-/// A library asks for few and large ranges, each once: 16 KiB when it is opened, a page of the index, the texture.
+/// A library asks for few and large ranges, each once: 16 KiB when it is opened, a page of the
+/// index, the texture.
 pub trait LibrarySource {
-    /// Returns the length of the file, bytes. It is asked for after the first read, so that a network source knows it from
-    /// its first response.
+    /// Returns the length of the file, bytes. It is asked for after the first read, so that a
+    /// network source knows it from its first response.
     ///
     /// # Errors
     /// Those of the source.
@@ -25,7 +26,8 @@ pub trait LibrarySource {
         Ok(self.len()? == 0)
     }
 
-    /// Fills `buffer` from byte `offset` on. Returns the number of bytes, less than asked for only at the end of the file.
+    /// Fills `buffer` from byte `offset` on. Returns the number of bytes, less than asked for only
+    /// at the end of the file.
     ///
     /// # Errors
     /// Those of the source.
@@ -42,10 +44,8 @@ impl LocalFile {
     /// # Errors
     /// [`LibraryError::Open`].
     pub fn open(path: &Path) -> Result<Self, LibraryError> {
-        let file = File::open(path).map_err(|error| LibraryError::Open {
-            path: path.to_owned(),
-            error,
-        })?;
+        let file = File::open(path)
+            .map_err(|error| LibraryError::Open { path: path.to_owned(), error })?;
         Ok(Self(file))
     }
 }

@@ -1,4 +1,5 @@
-//! The bytes of textures while a library is written, with every embedded module once: in a file beside it, or in memory.
+//! The bytes of textures while a library is written, with every embedded module once: in a file
+//! beside it, or in memory.
 
 use std::collections::HashMap;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
@@ -74,13 +75,7 @@ const BUFFER_BYTES: usize = 1 << 20;
 
 impl<S: Store> Spool<S> {
     pub(crate) fn new(store: S) -> Self {
-        Self {
-            store,
-            buffer: Vec::new(),
-            end: 0,
-            modules: Vec::new(),
-            by_hash: HashMap::new(),
-        }
+        Self { store, buffer: Vec::new(), end: 0, modules: Vec::new(), by_hash: HashMap::new() }
     }
 
     /// Adds a valid asset.
@@ -101,10 +96,7 @@ impl<S: Store> Spool<S> {
             at = range.end;
         }
         self.write(&asset[at..])?;
-        Ok(Spooled {
-            own: start..self.end,
-            modules: cuts.into(),
-        })
+        Ok(Spooled { own: start..self.end, modules: cuts.into() })
     }
 
     /// Adds a module, or counts another use of one. Returns its index.
@@ -118,11 +110,7 @@ impl<S: Store> Spool<S> {
         self.write(bytes)?;
         let index = self.modules.len() as u32;
         self.by_hash.insert(blake3, index);
-        self.modules.push(Module {
-            blake3,
-            at: at..self.end,
-            uses: 1,
-        });
+        self.modules.push(Module { blake3, at: at..self.end, uses: 1 });
         Ok(index)
     }
 
@@ -144,10 +132,8 @@ impl<S: Store> Spool<S> {
     pub(crate) fn finish(mut self) -> io::Result<(SpoolReader<S>, Vec<Module>)> {
         self.flush()?;
         self.store.rewind()?;
-        let reader = SpoolReader {
-            store: BufReader::with_capacity(BUFFER_BYTES, self.store),
-            at: 0,
-        };
+        let reader =
+            SpoolReader { store: BufReader::with_capacity(BUFFER_BYTES, self.store), at: 0 };
         Ok((reader, self.modules))
     }
 }
@@ -170,10 +156,7 @@ impl<S: Store> SpoolReader<S> {
         if copied == length {
             return Ok(());
         }
-        Err(io::Error::new(
-            io::ErrorKind::UnexpectedEof,
-            "the temporary file was cut off",
-        ))
+        Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the temporary file was cut off"))
     }
 
     fn seek(&mut self, to: u64) -> io::Result<()> {

@@ -19,7 +19,8 @@ use crate::ratio::Ratio;
 use crate::rules as rule;
 use crate::source::{LibrarySource, LocalFile};
 
-/// Validates a library within the default limits: every page of the index, and every texture as [`htex_format::validate`] does.
+/// Validates a library within the default limits: every page of the index, and every texture as
+/// [`htex_format::validate`] does.
 ///
 /// # Errors
 /// When the file cannot be read. Whatever it holds is a finding.
@@ -105,14 +106,14 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         if hash.finalize().as_bytes() != &index.blake3() {
             let message =
                 "the index does not have the header's hash; get the file again".to_owned();
-            self.findings
-                .add(rule::LIBRARY_INDEX_CHANGED, "/header", message);
+            self.findings.add(rule::LIBRARY_INDEX_CHANGED, "/header", message);
         }
         self.check_end();
         Ok(())
     }
 
-    /// Checks the entries of a leaf and their textures. False when no further texture is to be read.
+    /// Checks the entries of a leaf and their textures. False when no further texture is to be
+    /// read.
     fn check_leaf(&mut self, leaf: usize, entries: &[Entry]) -> Result<bool, LibraryError> {
         for (i, entry) in entries.iter().enumerate() {
             let place = entry_place(leaf, i);
@@ -154,8 +155,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
                 own.start,
                 expected.unwrap_or(0)
             );
-            self.findings
-                .add(rule::LIBRARY_RANGE_INVALID, place, message);
+            self.findings.add(rule::LIBRARY_RANGE_INVALID, place, message);
         }
     }
 
@@ -172,8 +172,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
                     "a shared object of {} overlaps another one; pack the library again",
                     entry.name
                 );
-                self.findings
-                    .add(rule::LIBRARY_RANGE_INVALID, place, message);
+                self.findings.add(rule::LIBRARY_RANGE_INVALID, place, message);
                 continue;
             }
             if self.objects.len() as u64 == self.limits.objects {
@@ -181,8 +180,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
                     "there are more than {} shared objects; raise the limit if you trust the file",
                     self.limits.objects
                 );
-                self.findings
-                    .add(rule::LIBRARY_OBJECTS_TOO_MANY, place, message);
+                self.findings.add(rule::LIBRARY_OBJECTS_TOO_MANY, place, message);
                 return false;
             }
             self.objects.insert(start, end);
@@ -202,8 +200,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             Ok(asset) => self.check_facts(entry, &Facts::of(&asset.manifest), place),
             Err(error) => {
                 let message = format!("{}: {error}", entry.name);
-                self.findings
-                    .add(rule::LIBRARY_ASSET_INVALID, place, message);
+                self.findings.add(rule::LIBRARY_ASSET_INVALID, place, message);
             }
         }
         Ok(())
@@ -218,13 +215,12 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             ("contact", entry.contact == facts.contact),
             ("exponents of the law", entry.law == facts.law),
         ] {
-            self.findings
-                .require(is_same, rule::LIBRARY_ENTRY_WRONG, place, || {
-                    format!(
-                        "{}: the index states other {what} than the texture; pack the library again",
-                        entry.name
-                    )
-                });
+            self.findings.require(is_same, rule::LIBRARY_ENTRY_WRONG, place, || {
+                format!(
+                    "{}: the index states other {what} than the texture; pack the library again",
+                    entry.name
+                )
+            });
         }
     }
 
@@ -246,9 +242,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             });
         let used: u64 = self.objects.iter().map(|(start, end)| end - start).sum();
         let unused = length(&header.shared).saturating_sub(used);
-        self.findings
-            .require(unused == 0, rule::LIBRARY_OBJECT_UNUSED, "/header", || {
-                format!("no texture uses {unused} bytes of the shared part; pack the library again")
-            });
+        self.findings.require(unused == 0, rule::LIBRARY_OBJECT_UNUSED, "/header", || {
+            format!("no texture uses {unused} bytes of the shared part; pack the library again")
+        });
     }
 }

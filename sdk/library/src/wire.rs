@@ -1,4 +1,5 @@
-//! Numbers and texts of pages: little-endian numbers, LEB128 integers, and texts that share their start with the one before.
+//! Numbers and texts of pages: little-endian numbers, LEB128 integers, and texts that share their
+//! start with the one before.
 
 /// Longest text of a page: a name, a tag, the id of a model, bytes.
 pub(crate) const TEXT_BYTES: usize = 255;
@@ -25,10 +26,7 @@ impl<'a> Cursor<'a> {
     }
 
     pub(crate) fn malformed(&self, problem: &'static str) -> Malformed {
-        Malformed {
-            at: self.at,
-            problem,
-        }
+        Malformed { at: self.at, problem }
     }
 
     pub(crate) fn rest(&self) -> usize {
@@ -75,7 +73,8 @@ impl<'a> Cursor<'a> {
         Err(self.malformed("an integer exceeds 64 bits"))
     }
 
-    /// Reads a count of values that take at least `least` bytes each, so that it is bounded by the page.
+    /// Reads a count of values that take at least `least` bytes each, so that it is bounded by the
+    /// page.
     pub(crate) fn count(&mut self, least: usize) -> Result<usize, Malformed> {
         let count = self.varint()?;
         let most = self.rest() / least.max(1);

@@ -14,8 +14,9 @@ const BUFFER_BYTES: usize = 1 << 20;
 
 /// Writes a library. Textures are added in any order; the same textures give the same bytes.
 ///
-/// What is added is kept in a file beside the target, so that only the index is in memory: about 500 bytes for each texture.
-/// The target is written by [`Self::finish`] and renamed into place; a writer that is dropped leaves nothing.
+/// What is added is kept in a file beside the target, so that only the index is in memory: about
+/// 500 bytes for each texture. The target is written by [`Self::finish`] and renamed into place; a
+/// writer that is dropped leaves nothing.
 ///
 /// ```no_run
 /// let mut writer = htex_library::Writer::create("cloth.htexlib".as_ref(), "Cloth")?;
@@ -34,19 +35,17 @@ impl Writer {
     /// Starts a library. `path` is the file, `name` the name that people see; it may be empty.
     ///
     /// # Errors
-    /// When the name has a control character or more than 255 bytes, or a file cannot be written there.
+    /// When the name has a control character or more than 255 bytes, or a file cannot be written
+    /// there.
     #[allow(clippy::disallowed_methods, reason = "the user named this file")]
     pub fn create(path: &Path, name: &str) -> Result<Self, LibraryError> {
         let target = Unfinished::create(path).unchanged(path)?;
         let scratch = ScratchFile(Scratch::beside(path).unchanged(path)?);
-        Ok(Self {
-            target,
-            path: path.to_owned(),
-            packer: Packer::new(path, name, scratch)?,
-        })
+        Ok(Self { target, path: path.to_owned(), packer: Packer::new(path, name, scratch)? })
     }
 
-    /// Packs textures that state no licence, too, which [`Self::finish`] refuses else: nobody but who made them may pass them on.
+    /// Packs textures that state no licence, too, which [`Self::finish`] refuses else: nobody but
+    /// who made them may pass them on.
     pub fn allow_unlicensed(&mut self) {
         self.packer.allows_unlicensed = true;
     }
@@ -54,8 +53,9 @@ impl Writer {
     /// Adds a texture: `asset` are the bytes of a `.htex` file, which is stored as it is.
     ///
     /// # Errors
-    /// When the name breaks a rule of [`check_name`](crate::check_name) or was added before, in the same or another case, the asset is not valid or has more tags or longer ones
-    /// than the index holds (64 of 255 bytes), or the bytes cannot be written.
+    /// When the name breaks a rule of [`check_name`](crate::check_name) or was added before, in the
+    /// same or another case, the asset is not valid or has more tags or longer ones than the index
+    /// holds (64 of 255 bytes), or the bytes cannot be written.
     pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
         self.packer.add(name, asset)
     }
@@ -63,13 +63,10 @@ impl Writer {
     /// Writes the library and renames it into place.
     ///
     /// # Errors
-    /// When a texture states no licence, a file cannot be written, or the library exceeds the default limits of readers.
+    /// When a texture states no licence, a file cannot be written, or the library exceeds the
+    /// default limits of readers.
     pub fn finish(self) -> Result<Packed, LibraryError> {
-        let Self {
-            mut target,
-            path,
-            packer,
-        } = self;
+        let Self { mut target, path, packer } = self;
         let mut file = BufWriter::with_capacity(BUFFER_BYTES, target.file());
         let packed = packer.finish(&mut file)?;
         let written = file.flush();

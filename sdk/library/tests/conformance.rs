@@ -34,11 +34,7 @@ fn a_file_is_named_after_the_rule_it_breaks_and_every_rule_has_one() {
         let name = case.name.to_uppercase();
         let named = codes.iter().any(|code| name.starts_with(code.as_str()));
         assert!(named || name.starts_with("VALID"), "{name} gets {codes:?}");
-        assert!(
-            report.valid == name.starts_with("VALID"),
-            "{name}: {:?}",
-            report.findings
-        );
+        assert!(report.valid == name.starts_with("VALID"), "{name}: {:?}", report.findings);
         raised.extend(codes);
     }
     let rules: BTreeSet<String> = RULES.iter().map(|rule| rule.code.to_owned()).collect();
@@ -68,10 +64,7 @@ fn reading_refuses_what_validation_refuses_where_it_reads() {
             Ok(())
         });
         let report = case.report();
-        let first = report
-            .findings
-            .iter()
-            .find(|f| f.code != "LIBRARY_VERSION_NEWER");
+        let first = report.findings.iter().find(|f| f.code != "LIBRARY_VERSION_NEWER");
         if let Err(error) = read {
             let error = error.to_string();
             let is_found = report.findings.iter().any(|f| error.contains(&f.code));

@@ -69,9 +69,7 @@ impl Random {
         let mut page = raw.page(number);
         let other = raw.page(self.below(raw.leaves.len() + 1));
         (0..=self.below(3)).for_each(|_| self.mutate(&mut page, &other));
-        raw.clone()
-            .with(|raw| raw.replaced = vec![(number, page)])
-            .bytes()
+        raw.clone().with(|raw| raw.replaced = vec![(number, page)]).bytes()
     }
 }
 

@@ -1,4 +1,5 @@
-//! A small file whose textures are large together: refused in the same way where it is checked and where it is unpacked.
+//! A small file whose textures are large together: refused in the same way where it is checked and
+//! where it is unpacked.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -11,10 +12,7 @@ use htex_library::{Library, LibraryError, Limits, validate_source};
 fn what_is_unpacked_is_counted_as_what_is_checked() {
     let bytes = pack("Shared", &sharing()).1;
     for ratio in [0, Limits::default().ratio] {
-        let limits = Limits {
-            ratio,
-            ..Limits::default()
-        };
+        let limits = Limits { ratio, ..Limits::default() };
         let checked = validate_source(bytes.as_slice(), &limits).unwrap();
         let library = Library::open_source_with(bytes.as_slice(), limits).unwrap();
         let mut count = library.ratio();

@@ -28,11 +28,7 @@ impl<S: LibrarySource> LibrarySource for Counted<S> {
 
 fn valid(file: &[u8]) {
     let report = validate_source(file, &Default::default()).unwrap();
-    assert!(
-        report.valid && report.findings.is_empty(),
-        "{:?}",
-        report.findings
-    );
+    assert!(report.valid && report.findings.is_empty(), "{:?}", report.findings);
 }
 
 #[test]
@@ -41,17 +37,12 @@ fn textures_come_back_whole_and_in_order_of_their_names() {
         let (packed, file) = pack("Some", &textures);
         valid(&file);
         assert_eq!(packed.bytes, file.len() as u64);
-        let mut expected: Vec<(String, Vec<u8>)> = textures
-            .iter()
-            .map(|t| (t.name.clone(), t.bytes()))
-            .collect();
+        let mut expected: Vec<(String, Vec<u8>)> =
+            textures.iter().map(|t| (t.name.clone(), t.bytes())).collect();
         expected.sort();
         assert_eq!(all(&file), expected);
         let library = Library::open_source(file.as_slice()).unwrap();
-        assert_eq!(
-            (library.name(), library.len()),
-            ("Some", textures.len() as u64)
-        );
+        assert_eq!((library.name(), library.len()), ("Some", textures.len() as u64));
         for (name, bytes) in expected {
             assert_eq!(library.get(&name).unwrap(), bytes);
         }
@@ -71,10 +62,7 @@ fn shared_modules_are_stored_once() {
     assert_eq!(packed.shared_objects, 1);
     assert!(packed.saved_bytes >= 300);
     let inside: usize = textures.iter().map(|t| t.bytes().len()).sum();
-    assert_eq!(
-        packed.bytes,
-        packed.index_bytes + inside as u64 - packed.saved_bytes
-    );
+    assert_eq!(packed.bytes, packed.index_bytes + inside as u64 - packed.saved_bytes);
 }
 
 #[test]
@@ -109,10 +97,7 @@ fn a_texture_takes_three_reads() {
     let again = Library::open_source(&source).unwrap();
     again.get(&name).unwrap();
     let reads = source.1.borrow();
-    assert_eq!(
-        (reads.len(), reads[0], reads[2]),
-        (3, FIRST_READ, bytes.len() as u64)
-    );
+    assert_eq!((reads.len(), reads[0], reads[2]), (3, FIRST_READ, bytes.len() as u64));
     assert!(reads[0] + reads[1] <= 64_000, "{reads:?}");
 }
 
@@ -138,19 +123,14 @@ fn what_cannot_be_packed_is_refused_and_says_why() {
     let refused = |writer: &mut Writer, name: &str, asset: &[u8]| {
         writer.add(name, asset).unwrap_err().to_string()
     };
-    for (name, words) in [
-        ("a", "two textures have the name a"),
-        ("../a", "is not a name"),
-        ("", "is not a name"),
-    ] {
+    for (name, words) in
+        [("a", "two textures have the name a"), ("../a", "is not a name"), ("", "is not a name")]
+    {
         let message = refused(&mut writer, name, &good);
         assert!(message.contains(words), "{message}");
     }
     let message = refused(&mut writer, "text", b"no asset");
-    assert!(
-        message.starts_with("text: ") && message.contains("ARCHIVE_INVALID"),
-        "{message}"
-    );
+    assert!(message.starts_with("text: ") && message.contains("ARCHIVE_INVALID"), "{message}");
     let mut tagged = texture("tagged");
     tagged.tags = (0..65).map(|i| i.to_string()).collect();
     assert!(refused(&mut writer, "tagged", &tagged.bytes()).contains("65 tags"));
@@ -174,43 +154,19 @@ fn searches_find_by_words_tags_conditions_and_models() {
         words: words.iter().map(|w| (*w).to_owned()).collect(),
         ..Query::default()
     };
-    assert_eq!(
-        found(words(&["WOOD", "o"])),
-        ["wood/birch", "wood/oak", "wood/Ölweide"]
-    );
+    assert_eq!(found(words(&["WOOD", "o"])), ["wood/birch", "wood/oak", "wood/Ölweide"]);
     assert_eq!(found(words(&["textil"])), ["felt", "wood/oak"]);
     assert_eq!(found(words(&["öl"])), ["wood/Ölweide"]);
     let tags = vec!["Rough".to_owned(), "textile".to_owned()];
-    assert_eq!(
-        found(Query {
-            tags,
-            ..Query::default()
-        }),
-        ["felt", "wood/oak"]
-    );
-    let speed = |x| Query {
-        speed_mm_s: Some(x),
-        ..Query::default()
-    };
+    assert_eq!(found(Query { tags, ..Query::default() }), ["felt", "wood/oak"]);
+    let speed = |x| Query { speed_mm_s: Some(x), ..Query::default() };
     assert_eq!(found(speed(100.0)), ["wood/birch"]);
     assert_eq!(found(speed(82.0)).len(), 4);
     assert_eq!(found(speed(123.0)), ["wood/birch"]);
-    let force = |x| Query {
-        force_n: Some(x),
-        ..Query::default()
-    };
+    let force = |x| Query { force_n: Some(x), ..Query::default() };
     assert_eq!((found(force(0.49)).len(), found(force(2.0)).len()), (4, 0));
-    let model = |x: &str| Query {
-        model: Some(x.to_owned()),
-        ..Query::default()
-    };
-    assert_eq!(
-        (
-            found(model("sbeta")).len(),
-            found(model("org.htex.ar")).len()
-        ),
-        (4, 0)
-    );
+    let model = |x: &str| Query { model: Some(x.to_owned()), ..Query::default() };
+    assert_eq!((found(model("sbeta")).len(), found(model("org.htex.ar")).len()), (4, 0));
 }
 
 fn textures() -> impl Strategy<Value = Vec<Texture>> {

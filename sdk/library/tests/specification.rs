@@ -1,4 +1,5 @@
-//! The specification's example, limits and conformance files, held against encoders and a reader that share no code with the crate.
+//! The specification's example, limits and conformance files, held against encoders and a reader
+//! that share no code with the crate.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -10,7 +11,8 @@ use htex_library::{Library, Limits};
 use serde_json::{Value, json};
 
 const TEXT: &str = include_str!("../../../spec/htexlib-1.md");
-/// What `tests/peers/library.py`, a reader written from the specification alone, prints for the valid conformance files.
+/// What `tests/peers/library.py`, a reader written from the specification alone, prints for the
+/// valid conformance files.
 const LISTED: &str = include_str!("../../../tests/golden/library.json");
 
 /// Lines of the code block of this name: bytes and comment.
@@ -27,10 +29,7 @@ fn lines(name: &str) -> Vec<(Vec<u8>, &'static str)> {
 
 /// Bytes of the code block of this name.
 fn example(name: &str) -> Vec<u8> {
-    lines(name)
-        .into_iter()
-        .flat_map(|(bytes, _)| bytes)
-        .collect()
+    lines(name).into_iter().flat_map(|(bytes, _)| bytes).collect()
 }
 
 /// The number of bytes that a line's comment states, if it does.
@@ -44,10 +43,7 @@ fn stated(comment: &str) -> Option<u64> {
 fn number(line: &[u8]) -> u64 {
     match line.last_chunk::<8>() {
         Some(last) => u64::from_le_bytes(*last),
-        None => line
-            .iter()
-            .rev()
-            .fold(0, |sum, byte| sum << 7 | u64::from(byte & 0x7f)),
+        None => line.iter().rev().fold(0, |sum, byte| sum << 7 | u64::from(byte & 0x7f)),
     }
 }
 
@@ -82,10 +78,8 @@ fn the_example_is_what_the_writer_and_another_encoder_write() {
     assert_eq!(unpacked(&file[146..252]), example("leaf"));
     let raw = Raw::of(&four()[..1], 1);
     assert_eq!(raw.page(1), example("leaf"));
-    let kept = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../spec/library-conformance/valid_one.htexlib"
-    );
+    let kept =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../spec/library-conformance/valid_one.htexlib");
     assert_eq!(std::fs::read(kept).unwrap(), file);
 }
 
@@ -96,25 +90,17 @@ fn pages_of_several_entries_are_those_of_another_encoder() {
     let library = Library::open_source(file.as_slice()).unwrap();
     let leaf = library.index().leaf_range(0).unwrap();
     let raw = Raw::of(&four(), 4);
-    assert_eq!(
-        unpacked(&file[leaf.start as usize..leaf.end as usize]),
-        raw.page(1)
-    );
+    assert_eq!(unpacked(&file[leaf.start as usize..leaf.end as usize]), raw.page(1));
     let payload = file.len() - raw.payload.len();
     assert_eq!(file[payload..], raw.payload);
 }
 
 #[test]
 fn entries_are_those_that_another_reader_lists() {
-    let mut valid: Vec<_> = cases()
-        .into_iter()
-        .filter(|c| c.name.starts_with("valid"))
-        .collect();
+    let mut valid: Vec<_> = cases().into_iter().filter(|c| c.name.starts_with("valid")).collect();
     valid.sort_by(|a, b| a.name.cmp(&b.name));
-    let listed: Vec<Value> = LISTED
-        .lines()
-        .map(|line| serde_json::from_str(line).unwrap())
-        .collect();
+    let listed: Vec<Value> =
+        LISTED.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!(valid.len(), listed.len());
     for (case, listed) in valid.iter().zip(listed) {
         let library = Library::open_source(case.bytes.as_slice()).unwrap();
@@ -127,9 +113,6 @@ fn entries_are_those_that_another_reader_lists() {
 #[test]
 fn the_text_names_every_limit_and_its_default() {
     for (name, value) in limits(&Limits::default()) {
-        assert!(
-            TEXT.contains(&format!("| `{name}` | {value} |")),
-            "{name} {value}"
-        );
+        assert!(TEXT.contains(&format!("| `{name}` | {value} |")), "{name} {value}");
     }
 }

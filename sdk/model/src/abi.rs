@@ -1,9 +1,9 @@
 //! The frozen ABI between a host and a model: constants and function signatures.
 //!
-//! Arguments are scalars, or a pointer and a length. `usize` is the machine's own size: 8 bytes native, 4 in
-//! a WASM module. Functions that return text or parameters write to the caller's buffer and return the
-//! required length; a caller whose buffer is too small calls again. Negative return values are
-//! [`crate::Status`] codes.
+//! Arguments are scalars, or a pointer and a length. `usize` is the machine's own size: 8 bytes
+//! native, 4 in a WASM module. Functions that return text or parameters write to the caller's
+//! buffer and return the required length; a caller whose buffer is too small calls again. Negative
+//! return values are [`crate::Status`] codes.
 //!
 //! A native library exports the functions of [`ModelTable`]. A WASM module exports these, its
 //! `memory`, and two more by which the host allocates memory for arguments in the module:
@@ -43,8 +43,8 @@ pub type AbiVersion = extern "C" fn() -> u32;
 pub type DescriptorJson = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
 /// Writes the text of the calling thread's last error; returns its length. `[any thread]`
 pub type LastError = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
-/// Fits; writes parameters and the level (RMS, in the asset's unit); returns how many parameters there are.
-/// `[any thread]`
+/// Fits; writes parameters and the level (RMS, in the asset's unit); returns how many parameters
+/// there are. `[any thread]`
 pub type FitFn = unsafe extern "C" fn(
     band_low_hz: f64,
     band_high_hz: f64,
@@ -105,20 +105,20 @@ pub type VoiceRetuneFn =
     unsafe extern "C" fn(voice: i64, parameters: *const f64, parameters_len: usize) -> i64;
 /// Frees a voice; returns a status. `[any thread, not while the voice renders]`
 pub type VoiceFreeFn = extern "C" fn(voice: i64) -> i64;
-/// Returns 1 if the model has the extension named by UTF-8 `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`),
-/// else 0. `[any thread]`
+/// Returns 1 if the model has the extension named by UTF-8 `id` (`htex.NAME/REV`,
+/// `com.vendor.NAME/REV`), else 0. `[any thread]`
 pub type ExtensionFn = unsafe extern "C" fn(id: *const u8, id_len: usize) -> i64;
 
 /// Of a WASM module only, `htex_model_alloc`: allocates `len` bytes, zeroed and aligned to
-/// [`ALLOC_ALIGN`]; returns null when memory is exhausted, or when `len` is 0. The host owns the block
-/// until it passes it to `htex_model_free`. `[not while another call is in flight]`
+/// [`ALLOC_ALIGN`]; returns null when memory is exhausted, or when `len` is 0. The host owns the
+/// block until it passes it to `htex_model_free`. `[not while another call is in flight]`
 pub type AllocFn = extern "C" fn(len: usize) -> *mut u8;
 /// Of a WASM module only, `htex_model_free`: frees what `htex_model_alloc` returned for the
 /// same `len`; null is allowed and does nothing. `[not while another call is in flight]`
 pub type FreeFn = unsafe extern "C" fn(pointer: *mut u8, len: usize);
 
-/// All functions of a model: a static table in a built-in model, filled from the symbols `htex_model_…` of a native
-/// library.
+/// All functions of a model: a static table in a built-in model, filled from the symbols
+/// `htex_model_…` of a native library.
 #[derive(Clone, Copy)]
 #[repr(C)]
 #[allow(missing_docs)] // The types document the functions.

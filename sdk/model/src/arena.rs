@@ -1,8 +1,9 @@
-//! Allocator of a module: blocks in size classes, each class with a list of freed blocks. It has a tenth of the code
-//! of a general allocator.
+//! Allocator of a module: blocks in size classes, each class with a list of freed blocks. It has a
+//! tenth of the code of a general allocator.
 //!
-//! Classes are at most a quarter of an octave apart, so a block is at most a quarter larger than requested. Freed
-//! blocks are reused only in their class, which suits models: they allocate the same sizes repeatedly.
+//! Classes are at most a quarter of an octave apart, so a block is at most a quarter larger than
+//! requested. Freed blocks are reused only in their class, which suits models: they allocate the
+//! same sizes repeatedly.
 
 use core::alloc::Layout;
 use core::ptr::null_mut;
@@ -27,15 +28,11 @@ pub(crate) struct Arena {
 impl Arena {
     /// No memory yet.
     pub(crate) const fn new() -> Self {
-        Self {
-            freed: [null_mut(); CLASSES],
-            fresh: null_mut(),
-            fresh_len: 0,
-        }
+        Self { freed: [null_mut(); CLASSES], fresh: null_mut(), fresh_len: 0 }
     }
 
-    /// A block for a layout; `None` where `grow`, which returns new pages, has none, or the alignment is
-    /// above 16 bytes.
+    /// A block for a layout; `None` where `grow`, which returns new pages, has none, or the
+    /// alignment is above 16 bytes.
     pub(crate) fn take(
         &mut self,
         layout: Layout,
@@ -102,8 +99,8 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    /// Blocks of all sizes, allocated and freed in mixed order, never overlap, keep their content, are aligned, and are
-    /// reused.
+    /// Blocks of all sizes, allocated and freed in mixed order, never overlap, keep their content,
+    /// are aligned, and are reused.
     #[test]
     fn blocks_are_apart_and_used_again() {
         const PAGES: usize = 512;
@@ -145,10 +142,7 @@ mod tests {
         for size in (0..10_000).chain([1 << 20, (1 << 30) + 1]) {
             let (number, len) = class(size).unwrap();
             assert!(number < CLASSES && len >= size, "{size}");
-            assert!(
-                len <= (size + size / 4).next_multiple_of(ALIGN).max(ALIGN),
-                "{size}"
-            );
+            assert!(len <= (size + size / 4).next_multiple_of(ALIGN).max(ALIGN), "{size}");
         }
         assert!(class(usize::MAX).is_none());
     }

@@ -1,4 +1,5 @@
-//! Checks of arguments and results, common to all models. A host uses them for models that have no C functions.
+//! Checks of arguments and results, common to all models. A host uses them for models that have no
+//! C functions.
 
 use alloc::vec::Vec;
 
@@ -9,7 +10,8 @@ use crate::{Band, Error, Fields, Fit, FitInput, Numbers, Status, Values, text};
 /// Sets that can be mixed without allocating.
 const FEW_SETS: usize = 8;
 
-/// Checks the handles of voices that are rendered together: at most [`MAX_VOICES`], and all different.
+/// Checks the handles of voices that are rendered together: at most [`MAX_VOICES`], and all
+/// different.
 pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {
     if handles.len() > MAX_VOICES {
         let count = handles.len();
@@ -52,11 +54,7 @@ pub fn check_rate(rate_hz: f64) -> Result<(), Error> {
     if (MIN_RATE_HZ..=MAX_RATE_HZ).contains(&rate_hz) {
         return Ok(());
     }
-    Err(Error::argument(text![
-        "rate ",
-        rate_hz,
-        " Hz: 1 Hz to 10 MHz is allowed",
-    ]))
+    Err(Error::argument(text!["rate ", rate_hz, " Hz: 1 Hz to 10 MHz is allowed",]))
 }
 
 /// Checks that all numbers of an argument are finite.
@@ -66,21 +64,15 @@ pub fn check_rate(rate_hz: f64) -> Result<(), Error> {
 pub fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
     match numbers.iter().position(|x| !x.is_finite()) {
         None => Ok(()),
-        Some(i) => Err(Error::argument(text![
-            "`",
-            name,
-            "`[",
-            i,
-            "] is not a finite number",
-        ])),
+        Some(i) => Err(Error::argument(text!["`", name, "`[", i, "] is not a finite number",])),
     }
 }
 
 /// Checks the input of a fit.
 ///
 /// # Errors
-/// When a number is not finite, the spectrum is too short, does not ascend or is negative, the rate is invalid, or an option
-/// is missing or out of range.
+/// When a number is not finite, the spectrum is too short, does not ascend or is negative, the rate
+/// is invalid, or an option is missing or out of range.
 pub fn check_fit_input(input: &FitInput<'_>, descriptor: &dyn Fields) -> Result<(), Error> {
     check_recording(input)?;
     check_options(input.options, descriptor)
@@ -161,7 +153,8 @@ fn check_weights(weights: &[f64]) -> Result<(), Error> {
 /// A model's function that mixes sets of parameters.
 type Interpolation<'a> = dyn Fn(&[Values<'_>], &[f64], &mut Numbers<'_>) -> Result<(), Error> + 'a;
 
-/// Interpolates with a model's function: reads the sets, and checks the result. Returns the number of numbers of the result.
+/// Interpolates with a model's function: reads the sets, and checks the result. Returns the number
+/// of numbers of the result.
 ///
 /// # Errors
 /// When weights or sets are invalid, the model's own error, or that of an invalid result.

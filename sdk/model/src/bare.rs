@@ -1,10 +1,11 @@
-//! Targets without the standard library that are not WASM, such as microcontrollers: models are used through their traits.
+//! Targets without the standard library that are not WASM, such as microcontrollers: models are
+//! used through their traits.
 
 use core::cell::RefMut;
 use core::marker::PhantomData;
 
-/// A lock that is never acquired: this crate has no lock for such targets. Callers then compute the value that they would
-/// share.
+/// A lock that is never acquired: this crate has no lock for such targets. Callers then compute the
+/// value that they would share.
 pub struct Lock<T>(PhantomData<fn() -> T>);
 
 impl<T> Lock<T> {
@@ -25,7 +26,8 @@ impl<T> Lock<T> {
     }
 }
 
-/// Expands to nothing: without an operating system there is no host that calls a model by its C functions.
+/// Expands to nothing: without an operating system there is no host that calls a model by its C
+/// functions.
 #[macro_export]
 macro_rules! export_model {
     ($model:ty, symbols: $feature:literal $(, extensions: [motion])?) => {};

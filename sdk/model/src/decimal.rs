@@ -1,4 +1,5 @@
-//! Decimal texts of numbers, without the formatting of the standard library, which takes 20 kB of a WASM module.
+//! Decimal texts of numbers, without the formatting of the standard library, which takes 20 kB of a
+//! WASM module.
 
 /// Significant digits of [`rounded`].
 const DIGITS: i32 = 9;
@@ -20,10 +21,7 @@ pub(crate) struct Short {
 }
 
 impl Short {
-    const EMPTY: Self = Self {
-        bytes: [0; 40],
-        len: 0,
-    };
+    const EMPTY: Self = Self { bytes: [0; 40], len: 0 };
 
     pub(crate) const fn bytes(&self) -> &[u8] {
         self.bytes.split_at(self.len).0
@@ -70,9 +68,7 @@ pub(crate) const fn whole(number: u64) -> Short {
 impl Decimal {
     /// Returns the text in the syntax of JSON.
     pub(crate) const fn text(self) -> Short {
-        let Self {
-            negative, digits, ..
-        } = self;
+        let Self { negative, digits, .. } = self;
         let mut text = Short::EMPTY;
         if negative {
             text.push(b'-');
@@ -124,11 +120,7 @@ pub(crate) fn rounded(number: f64) -> Decimal {
         digits /= 10;
         exponent += 1;
     }
-    Decimal {
-        negative: number < 0.0,
-        digits,
-        exponent: if digits == 0 { 0 } else { exponent },
-    }
+    Decimal { negative: number < 0.0, digits, exponent: if digits == 0 { 0 } else { exponent } }
 }
 
 #[cfg(test)]

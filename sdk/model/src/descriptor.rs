@@ -43,8 +43,8 @@ pub struct Descriptor {
     /// Fit options, in the order of their array.
     #[serde(default)]
     pub options: Vec<FitOption>,
-    /// Whether the level of a fit is determined by the parameters, as for energies, and is stored unchanged. Otherwise
-    /// the level may be taken from the recording.
+    /// Whether the level of a fit is determined by the parameters, as for energies, and is stored
+    /// unchanged. Otherwise the level may be taken from the recording.
     #[serde(default, skip_serializing_if = "is_false")]
     pub keeps_level: bool,
 }
@@ -143,14 +143,12 @@ impl Descriptor {
         self.options.iter().map(|o| o.default).collect()
     }
 
-    /// Whether the parameters are sinusoids: the lists among them are their frequencies, `frequency_hz`, and their
-    /// amplitudes, `amplitude`, and come first.
+    /// Whether the parameters are sinusoids: the lists among them are their frequencies,
+    /// `frequency_hz`, and their amplitudes, `amplitude`, and come first.
     pub fn is_sum_of_sines(&self) -> bool {
         let is_list = |field: &&Field| matches!(field.kind, Kind::List { .. });
         let lists = self.fields.iter().take_while(is_list);
-        lists
-            .map(|field| &field.name[..])
-            .eq(["frequency_hz", "amplitude"])
+        lists.map(|field| &field.name[..]).eq(["frequency_hz", "amplitude"])
     }
 }
 

@@ -67,10 +67,7 @@ pub struct Error {
 impl Error {
     /// Makes an error of any status.
     pub fn new(status: Status, message: impl Into<String>) -> Self {
-        Self {
-            status,
-            message: message.into(),
-        }
+        Self { status, message: message.into() }
     }
 
     /// The model cannot be fitted to the spectrum.

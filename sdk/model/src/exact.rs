@@ -15,21 +15,14 @@ const LIMB: u64 = 1_000_000_000;
 /// Returns the decimal of a finite number: the shortest if one exact product or quotient gives it
 /// (Clinger 1990), else one with 17 digits.
 pub(crate) const fn exact(number: f64) -> Decimal {
-    assert!(
-        number.is_finite(),
-        "a descriptor contains a number that is not finite"
-    );
+    assert!(number.is_finite(), "a descriptor contains a number that is not finite");
     let negative = number < 0.0;
     let size = number.abs();
     let (digits, exponent) = match short(size) {
         Some(found) => found,
         None => long(size),
     };
-    Decimal {
-        negative,
-        digits,
-        exponent,
-    }
+    Decimal { negative, digits, exponent }
 }
 
 const fn short(size: f64) -> Option<(u64, i32)> {
@@ -39,18 +32,10 @@ const fn short(size: f64) -> Option<(u64, i32)> {
     let mut exponent = EXACT_POWER;
     while exponent >= -EXACT_POWER {
         let power = power_of_ten(exponent.abs());
-        let digits = if exponent >= 0 {
-            size / power
-        } else {
-            size * power
-        };
+        let digits = if exponent >= 0 { size / power } else { size * power };
         if digits < EXACT_WHOLE {
             let whole = (digits + 0.5) as u64;
-            let back = if exponent >= 0 {
-                whole as f64 * power
-            } else {
-                whole as f64 / power
-            };
+            let back = if exponent >= 0 { whole as f64 * power } else { whole as f64 / power };
             if back == size && whole as f64 <= EXACT_WHOLE {
                 return Some((whole, exponent));
             }
@@ -141,9 +126,6 @@ mod tests {
             assert_eq!(text(number).parse(), Ok(number));
         }
         let written = [0.12, 1e-3, -18.0, 0.000_976_562_5, 1e6, 0.3e-3].map(text);
-        assert_eq!(
-            written,
-            ["0.12", "0.001", "-18", "0.0009765625", "1000000", "0.0003"]
-        );
+        assert_eq!(written, ["0.12", "0.001", "-18", "0.0009765625", "1000000", "0.0003"]);
     }
 }

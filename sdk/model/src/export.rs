@@ -6,9 +6,10 @@
 /// when the crate is built with that Cargo feature: for a native library or a WASM module, which
 /// contains one model. A WASM module also gets the two memory functions of the ABI.
 ///
-/// With `extensions: [motion]` after it, as in `export_model!(Stick, symbols: "plugin", extensions: [motion])`,
-/// the model has the extension `htex.motion/1`: its voice implements [`MotionVoice`](crate::MotionVoice), and the
-/// extension's functions are in `pub static MOTION`.
+/// With `extensions: [motion]` after it, as in
+/// `export_model!(Stick, symbols: "plugin", extensions: [motion])`, the model has the extension
+/// `htex.motion/1`: its voice implements [`MotionVoice`](crate::MotionVoice), and the extension's
+/// functions are in `pub static MOTION`.
 ///
 /// ```
 /// # #![allow(clippy::needless_doctest_main)]

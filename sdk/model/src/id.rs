@@ -1,6 +1,7 @@
 //! The grammar of model ids.
 
-/// Returns whether `id` is a valid model id: three or more parts, separated by dots, of `a-z`, `0-9`, `-` and `_`.
+/// Returns whether `id` is a valid model id: three or more parts, separated by dots, of `a-z`,
+/// `0-9`, `-` and `_`.
 ///
 /// ```
 /// assert!(htex_model::is_model_id("org.example.my-model_2"));

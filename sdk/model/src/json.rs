@@ -1,5 +1,5 @@
-//! The JSON text of a descriptor, generated at compile time, so that a module contains the text and no code that
-//! writes it.
+//! The JSON text of a descriptor, generated at compile time, so that a module contains the text and
+//! no code that writes it.
 
 use crate::decimal::whole;
 use crate::exact::exact;
@@ -16,10 +16,7 @@ pub const fn text<const N: usize>(descriptor: &StaticDescriptor) -> [u8; N] {
 }
 
 const fn written<const N: usize>(descriptor: &StaticDescriptor) -> Writer<N> {
-    let mut json = Writer {
-        bytes: [0; N],
-        len: 0,
-    };
+    let mut json = Writer { bytes: [0; N], len: 0 };
     json.descriptor(descriptor);
     json
 }
@@ -184,11 +181,7 @@ mod tests {
     use super::*;
     use crate::Descriptor;
 
-    const STEPS: Store = Store::U8 {
-        scale: 1.0 / 3.0,
-        offset: -18.0,
-        log: true,
-    };
+    const STEPS: Store = Store::U8 { scale: 1.0 / 3.0, offset: -18.0, log: true };
     const ALL: StaticDescriptor =
         StaticDescriptor::new("org.example.all", "A \"B\" \\ ü\n\u{1f}", "1.2.3", "Σ.")
             .keeping_level()

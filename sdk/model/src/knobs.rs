@@ -1,5 +1,6 @@
-//! The values of a model's fit options that a sweep of accuracy against cost takes. They do not cross the ABI: the author of a
-//! model chooses them, and without them a sweep spans the ranges of the descriptor.
+//! The values of a model's fit options that a sweep of accuracy against cost takes. They do not
+//! cross the ABI: the author of a model chooses them, and without them a sweep spans the ranges of
+//! the descriptor.
 
 /// A knob and its values in a sweep, besides its default.
 #[derive(Debug, Clone, Copy)]

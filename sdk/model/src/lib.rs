@@ -1,11 +1,11 @@
-//! The texture model ABI: the C functions that every model exports, and the safe traits from which Rust models get
-//! these exports.
+//! The texture model ABI: the C functions that every model exports, and the safe traits from which
+//! Rust models get these exports.
 //!
-//! A *model* describes a magnitude spectrum by a few parameters. It has five pure
-//! functions: describe, fit, magnitude, interpolate, voice ([`Model`], [`Voice`]). Across the ABI
-//! parameters are one flat array of `f64` in the order of the descriptor's fields: one value for a scalar, the length
-//! and then the values for a list ([`Values`]). Spectra are *shapes* of unit RMS in the asset's band; the level, in
-//! the unit of the asset's quantity, is stored separately.
+//! A *model* describes a magnitude spectrum by a few parameters. It has five pure functions:
+//! describe, fit, magnitude, interpolate, voice ([`Model`], [`Voice`]). Across the ABI parameters
+//! are one flat array of `f64` in the order of the descriptor's fields: one value for a scalar, the
+//! length and then the values for a list ([`Values`]). Spectra are *shapes* of unit RMS in the
+//! asset's band; the level, in the unit of the asset's quantity, is stored separately.
 //!
 //! A Rust author implements the traits and calls [`export_model!`]; the macro makes the table of C
 //! functions ([`abi::ModelTable`]) through which every host calls the model, built in or not.

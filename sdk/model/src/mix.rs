@@ -8,8 +8,8 @@ pub fn sole<'a, 'v>(sets: &'a [Values<'v>], weights: &[f64]) -> Option<&'a Value
     sets.get(i)
 }
 
-/// Writes the weighted mean of sets whose fields have the same lengths. The mean is within the range of the sets; a set
-/// of weight 1 is copied unchanged. Does not allocate.
+/// Writes the weighted mean of sets whose fields have the same lengths. The mean is within the
+/// range of the sets; a set of weight 1 is copied unchanged. Does not allocate.
 ///
 /// # Errors
 /// When the sets differ in length.
@@ -20,9 +20,7 @@ pub fn linear(sets: &[Values<'_>], weights: &[f64], out: &mut Numbers<'_>) -> Re
     }
     let len = sets.first().map_or(0, |set| set.flat().len());
     if sets.iter().any(|set| set.flat().len() != len) {
-        return Err(Error::argument(
-            "parameter sets of different lengths cannot be mixed",
-        ));
+        return Err(Error::argument("parameter sets of different lengths cannot be mixed"));
     }
     for i in 0..len {
         let values = || sets.iter().map(|set| set.flat()[i]);

@@ -1,7 +1,7 @@
 //! Replacements for parts of the standard library: a panic handler and an allocator.
 //!
-//! A module links no standard library, no serializer and no formatting; `docs/modules.md` has the reasons,
-//! `tests/tests/modules.rs` the bounds of the sizes.
+//! A module links no standard library, no serializer and no formatting; `docs/modules.md` has the
+//! reasons, `tests/tests/modules.rs` the bounds of the sizes.
 
 use core::alloc::{GlobalAlloc, Layout};
 use core::arch::wasm32::{memory_grow, unreachable};
@@ -21,8 +21,8 @@ static MEMORY: Memory = Memory(Lock::new(Arena::new()));
 
 struct Memory(Lock<Arena>);
 
-// SAFETY: the arena returns each live block once, aligned and as large as its layout, in memory from `memory.grow`; a
-// block is freed with the layout of its allocation.
+// SAFETY: the arena returns each live block once, aligned and as large as its layout, in memory
+// from `memory.grow`; a block is freed with the layout of its allocation.
 unsafe impl GlobalAlloc for Memory {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let block = self.0.lock().and_then(|mut arena| arena.take(layout, grow));

@@ -3,7 +3,8 @@
 use crate::motion_1::{MAX_FORCE_N, MAX_POSITION_MM, MAX_SPEED_MM_S};
 use crate::{Error, Voice, text};
 
-/// The motion of a finger at one sample. The speed is constant from there until the next motion is set.
+/// The motion of a finger at one sample. The speed is constant from there until the next motion is
+/// set.
 ///
 /// ```
 /// let back = htex_model::Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm: 12.5, x_mm: 10.0, y_mm: 7.5 };
@@ -19,7 +20,8 @@ pub struct Motion {
     pub force_n: f64,
     /// Position along the finger's path, mm, of either sign.
     pub position_mm: f64,
-    /// Place on the surface, mm, of either sign; where it is not known, the position along the path.
+    /// Place on the surface, mm, of either sign; where it is not known, the position along the
+    /// path.
     pub x_mm: f64,
     /// Place on the surface across `x_mm`, mm, of either sign; where it is not known, 0.
     pub y_mm: f64,
@@ -29,7 +31,8 @@ impl Motion {
     /// Checks the ranges of the extension.
     ///
     /// # Errors
-    /// [`InvalidArgument`](crate::Status::InvalidArgument) for a number that is not finite or beyond its range.
+    /// [`InvalidArgument`](crate::Status::InvalidArgument) for a number that is not finite or
+    /// beyond its range.
     ///
     /// ```
     /// let motion = htex_model::Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm: 12.5, x_mm: 10.0, y_mm: 7.5 };
@@ -37,11 +40,7 @@ impl Motion {
     /// assert!(htex_model::Motion { force_n: -0.1, ..motion }.check().is_err());
     /// ```
     pub fn check(self) -> Result<(), Error> {
-        within(
-            "speed_mm_s",
-            self.speed_mm_s,
-            (-MAX_SPEED_MM_S, MAX_SPEED_MM_S),
-        )?;
+        within("speed_mm_s", self.speed_mm_s, (-MAX_SPEED_MM_S, MAX_SPEED_MM_S))?;
         within("force_n", self.force_n, (0.0, MAX_FORCE_N))?;
         let far = (-MAX_POSITION_MM, MAX_POSITION_MM);
         within("position_mm", self.position_mm, far)?;
@@ -84,7 +83,8 @@ impl FitCondition {
     /// Converts numbers of the ABI: NaN means unknown.
     ///
     /// # Errors
-    /// [`InvalidArgument`](crate::Status::InvalidArgument) for a number that is infinite or beyond its range.
+    /// [`InvalidArgument`](crate::Status::InvalidArgument) for a number that is infinite or beyond
+    /// its range.
     pub fn from_numbers(speed_mm_s: f64, force_n: f64) -> Result<Self, Error> {
         let known = |name, x: f64, most| {
             if x.is_nan() {
@@ -105,16 +105,17 @@ impl FitCondition {
     }
 }
 
-/// A voice that follows the motion itself, by the extension `htex.motion/1`. A model has the extension if
-/// [`export_model!`](crate::export_model) gets `extensions: [motion]`, which requires this trait of its voice.
+/// A voice that follows the motion itself, by the extension `htex.motion/1`. A model has the
+/// extension if [`export_model!`](crate::export_model) gets `extensions: [motion]`, which requires
+/// this trait of its voice.
 ///
-/// A host then scales neither frequencies with the speed nor the level with the force. Before its first motion a voice
-/// plays its parameters as at the motion of their recording.
+/// A host then scales neither frequencies with the speed nor the level with the force. Before its
+/// first motion a voice plays its parameters as at the motion of their recording.
 pub trait MotionVoice: Voice {
-    /// Sets the motion at the next sample, which is in range. The samples depend on the motions and on the samples at
-    /// which they are set, not on the blocks. A voice changes to a new motion without a click; the model determines the
-    /// samples at a speed of 0. The order of this call and of [`retune`](Voice::retune) before the same sample does not
-    /// matter.
+    /// Sets the motion at the next sample, which is in range. The samples depend on the motions and
+    /// on the samples at which they are set, not on the blocks. A voice changes to a new motion
+    /// without a click; the model determines the samples at a speed of 0. The order of this call
+    /// and of [`retune`](Voice::retune) before the same sample does not matter.
     /// `[render thread, no allocation, no lock, no I/O]`
     fn set_motion(&mut self, motion: Motion);
 }
@@ -123,15 +124,5 @@ fn within(name: &str, x: f64, (low, high): (f64, f64)) -> Result<(), Error> {
     if (low..=high).contains(&x) {
         return Ok(());
     }
-    Err(Error::argument(text![
-        "`",
-        name,
-        "` is ",
-        x,
-        "; ",
-        low,
-        " to ",
-        high,
-        " is allowed",
-    ]))
+    Err(Error::argument(text!["`", name, "` is ", x, "; ", low, " to ", high, " is allowed",]))
 }

@@ -1,7 +1,7 @@
 //! An output buffer for the numbers that a model writes.
 
-/// An output buffer for numbers. Numbers that do not fit are only counted, so that the caller can provide a larger
-/// buffer.
+/// An output buffer for numbers. Numbers that do not fit are only counted, so that the caller can
+/// provide a larger buffer.
 ///
 /// ```
 /// let mut buffer = [0.0; 2];

@@ -1,6 +1,7 @@
 //! The layer between the C functions and the traits: checks arguments, catches panics.
 //!
-//! The functions that [`export_model!`](crate::export_model) generates call it, and hosts for models that are objects.
+//! The functions that [`export_model!`](crate::export_model) generates call it, and hosts for
+//! models that are objects.
 
 use alloc::alloc::Layout;
 use core::marker::PhantomData;
@@ -39,7 +40,8 @@ impl<'a, T> Input<'a, T> {
             return Self(Some(&[]));
         }
         let usable = !pointer.is_null() && pointer.is_aligned() && fits::<T>(len);
-        // SAFETY: not null, aligned, not longer than memory; the caller guarantees that it is readable.
+        // SAFETY: not null, aligned, not longer than memory; the caller guarantees that it is
+        // readable.
         Self(usable.then(|| unsafe { core::slice::from_raw_parts(pointer, len) }))
     }
 
@@ -61,13 +63,15 @@ impl<'a, T> Output<'a, T> {
     /// Refuses null and misaligned pointers when `len` is above 0.
     ///
     /// # Safety
-    /// `pointer` is null, or `len` initialised values can be written there for `'a`, with exclusive access.
+    /// `pointer` is null, or `len` initialised values can be written there for `'a`, with exclusive
+    /// access.
     pub unsafe fn new(pointer: *mut T, len: usize) -> Self {
         if len == 0 {
             return Self(Some(&mut []));
         }
         let usable = !pointer.is_null() && pointer.is_aligned() && fits::<T>(len);
-        // SAFETY: not null, aligned, not longer than memory; the caller guarantees exclusive access.
+        // SAFETY: not null, aligned, not longer than memory; the caller guarantees exclusive
+        // access.
         Self(usable.then(|| unsafe { core::slice::from_raw_parts_mut(pointer, len) }))
     }
 
@@ -106,11 +110,7 @@ pub struct FitCall<'a> {
 impl<M: Model> State<M> {
     /// Makes the state without voices; `json` is the model's descriptor.
     pub const fn new(json: &'static [u8]) -> Self {
-        Self {
-            json,
-            voices: Voices::new(),
-            model: PhantomData,
-        }
+        Self { json, voices: Voices::new(), model: PhantomData }
     }
 
     fn values<'a>(&self, parameters: Input<'a, f64>) -> Result<Values<'a>, Error> {
@@ -190,10 +190,7 @@ impl<M: Model> State<M> {
             check_rate(rate_hz)?;
             let voice = M::voice(&self.values(parameters)?, band(band_hz)?, rate_hz, seed)?;
             self.voices.insert(voice).ok_or_else(|| {
-                Error::new(
-                    Status::TooManyVoices,
-                    "no more voices can be made; free some voices",
-                )
+                Error::new(Status::TooManyVoices, "no more voices can be made; free some voices")
             })
         })
     }
@@ -231,8 +228,8 @@ impl<M: Model> State<M> {
                 *voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
             }
             let voices = voices.as_mut_ptr().cast::<&mut M::Voice>();
-            // SAFETY: one pointer per handle was just made of a reference to a different voice, and the pointers
-            // are used only as these references.
+            // SAFETY: one pointer per handle was just made of a reference to a different voice, and
+            // the pointers are used only as these references.
             let voices = unsafe { core::slice::from_raw_parts_mut(voices, handles.len()) };
             M::Voice::render_together(voices, frames, out);
             Ok(0)
@@ -285,7 +282,8 @@ fn values<'a>(
     Values::read(descriptor, parameters.get("parameters")?)
 }
 
-/// Fits with the model's function. Not generic, so that a module contains it once, at this crate's optimisation level.
+/// Fits with the model's function. Not generic, so that a module contains it once, at this crate's
+/// optimisation level.
 fn fit(
     descriptor: &StaticDescriptor,
     own: fn(&FitInput<'_>) -> Result<Fit, Error>,

@@ -1,5 +1,5 @@
-//! The descriptor as constants in a model's code, from which [`export_model!`](crate::export_model) generates
-//! the JSON text of the ABI at compile time.
+//! The descriptor as constants in a model's code, from which [`export_model!`](crate::export_model)
+//! generates the JSON text of the ABI at compile time.
 
 use crate::{Kind, Store};
 
@@ -80,15 +80,7 @@ impl StaticDescriptor {
         version: &'static str,
         summary: &'static str,
     ) -> Self {
-        Self {
-            id,
-            name,
-            version,
-            summary,
-            fields: &[],
-            options: &[],
-            keeps_level: false,
-        }
+        Self { id, name, version, summary, fields: &[], options: &[], keeps_level: false }
     }
 
     /// Sets the parameter fields, 1 to 32.
@@ -103,15 +95,13 @@ impl StaticDescriptor {
 
     /// Declares that the level of a fit is determined by the parameters.
     pub const fn keeping_level(self) -> Self {
-        Self {
-            keeps_level: true,
-            ..self
-        }
+        Self { keeps_level: true, ..self }
     }
 }
 
 impl StaticField {
-    /// A parameter of one number in `min..=max`, stored as 32-bit float unless [`Self::stored`] sets another store.
+    /// A parameter of one number in `min..=max`, stored as 32-bit float unless [`Self::stored`]
+    /// sets another store.
     pub const fn scalar(
         name: &'static str,
         unit: &'static str,
@@ -138,10 +128,7 @@ impl StaticField {
         max_len: u32,
         description: &'static str,
     ) -> Self {
-        Self {
-            kind: Kind::List { max_len },
-            ..Self::scalar(name, unit, range, description)
-        }
+        Self { kind: Kind::List { max_len }, ..Self::scalar(name, unit, range, description) }
     }
 
     /// Sets the store.
@@ -151,10 +138,7 @@ impl StaticField {
 
     /// Sets the value for assets of earlier minor versions; for scalars only.
     pub const fn defaulted(self, value: f64) -> Self {
-        Self {
-            default: Some(value),
-            ..self
-        }
+        Self { default: Some(value), ..self }
     }
 }
 
@@ -167,16 +151,7 @@ impl StaticOption {
         default: f64,
         description: &'static str,
     ) -> Self {
-        Self {
-            name,
-            unit,
-            min,
-            max,
-            default,
-            integer: false,
-            choices: &[],
-            description,
-        }
+        Self { name, unit, min, max, default, integer: false, choices: &[], description }
     }
 
     /// A whole number in `min..=max`.
@@ -188,13 +163,7 @@ impl StaticOption {
     ) -> Self {
         Self {
             integer: true,
-            ..Self::number(
-                name,
-                "1",
-                (min as f64, max as f64),
-                default as f64,
-                description,
-            )
+            ..Self::number(name, "1", (min as f64, max as f64), default as f64, description)
         }
     }
 
@@ -205,10 +174,6 @@ impl StaticOption {
         description: &'static str,
     ) -> Self {
         let last = choices.len().saturating_sub(1) as f64;
-        Self {
-            integer: true,
-            choices,
-            ..Self::number(name, "1", (0.0, last), 0.0, description)
-        }
+        Self { integer: true, choices, ..Self::number(name, "1", (0.0, last), 0.0, description) }
     }
 }

@@ -11,10 +11,7 @@
 #[cfg_attr(feature = "host", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "host", serde(tag = "type", rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
-#[cfg_attr(
-    feature = "schemars",
-    schemars(description = "One number, or a list of them.")
-)]
+#[cfg_attr(feature = "schemars", schemars(description = "One number, or a list of them."))]
 pub enum Kind {
     /// One number.
     Scalar,

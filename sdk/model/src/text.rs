@@ -1,4 +1,5 @@
-//! Error texts, built without the formatting of the standard library, which is larger than a small WASM module.
+//! Error texts, built without the formatting of the standard library, which is larger than a small
+//! WASM module.
 
 use alloc::string::String;
 

@@ -13,16 +13,18 @@ pub struct FitInput<'a> {
     pub band: Band,
     /// Frequencies of the texture spectrum, ascending, hertz (the 5 Hz grid in the band).
     pub frequency_hz: &'a [f64],
-    /// Magnitudes at those frequencies, in the unit of the asset's quantity, finite and not negative.
+    /// Magnitudes at those frequencies, in the unit of the asset's quantity, finite and not
+    /// negative.
     pub magnitude: &'a [f64],
-    /// The recording's segments overlap-added to one signal, in the same unit, band-limited; may be empty.
+    /// The recording's segments overlap-added to one signal, in the same unit, band-limited; may be
+    /// empty.
     pub signal: &'a [f64],
     /// Rate of `signal`, hertz.
     pub signal_rate_hz: f64,
     /// One value for each of the descriptor's options, in range.
     pub options: &'a [f64],
-    /// The motion at which the recording was made. Unknown for models without the extension `htex.motion/1`, and if the
-    /// host does not know it.
+    /// The motion at which the recording was made. Unknown for models without the extension
+    /// `htex.motion/1`, and if the host does not know it.
     pub condition: FitCondition,
 }
 
@@ -37,7 +39,8 @@ pub struct FitInput<'a> {
 pub struct Fit {
     /// The flat array of parameters.
     pub parameters: Vec<f64>,
-    /// RMS of the fitted magnitude in the band, in the unit of [`FitInput::magnitude`]: shape × level is the fitted spectrum.
+    /// RMS of the fitted magnitude in the band, in the unit of [`FitInput::magnitude`]: shape ×
+    /// level is the fitted spectrum.
     pub level_rms: f64,
 }
 
@@ -81,7 +84,8 @@ pub trait Model: 'static {
         out: &mut Numbers<'_>,
     ) -> Result<(), Error>;
 
-    /// Returns the rate at which a voice renders for a requested rate of `wanted_hz`; the host converts between them.
+    /// Returns the rate at which a voice renders for a requested rate of `wanted_hz`; the host
+    /// converts between them.
     fn voice_rate_hz(_parameters: &Values<'_>, _band: Band, wanted_hz: f64) -> f64 {
         wanted_hz
     }
@@ -99,14 +103,15 @@ pub trait Model: 'static {
     ) -> Result<Self::Voice, Error>;
 }
 
-/// An endless stream of samples. Equal parameters, rates and seeds give equal samples, for all block sizes.
+/// An endless stream of samples. Equal parameters, rates and seeds give equal samples, for all
+/// block sizes.
 pub trait Voice: Send + 'static {
     /// Fills `out` with the next samples. `[render thread, no allocation, no lock, no I/O]`
     fn render(&mut self, out: &mut [f32]);
 
-    /// Fills `out` with the next `frames` samples of each voice, one voice after another, bit-identical to
-    /// [`Self::render`] of each. A model that renders several voices faster in one call than separately overrides this.
-    /// `[render thread, no allocation, no lock, no I/O]`
+    /// Fills `out` with the next `frames` samples of each voice, one voice after another,
+    /// bit-identical to [`Self::render`] of each. A model that renders several voices faster in one
+    /// call than separately overrides this. `[render thread, no allocation, no lock, no I/O]`
     fn render_together(voices: &mut [&mut Self], frames: usize, out: &mut [f32])
     where
         Self: Sized,

@@ -1,5 +1,6 @@
-//! The usual ranges of a model's parameters, for sliders. They do not cross the ABI: a descriptor has the ranges of what may be stored, which
-//! are wide (0.001 to 1,000,000 for a shape parameter of sBeta).
+//! The usual ranges of a model's parameters, for sliders. They do not cross the ABI: a descriptor
+//! has the ranges of what may be stored, which are wide (0.001 to 1,000,000 for a shape parameter
+//! of sBeta).
 
 /// The scale on which a range is even.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,20 +39,12 @@ impl Usual {
     /// A range in which equal differences are equally far.
     #[must_use]
     pub const fn linear(field: &'static str, (min, max): (f64, f64)) -> Self {
-        Self {
-            field,
-            min,
-            max,
-            scale: Scale::Linear,
-        }
+        Self { field, min, max, scale: Scale::Linear }
     }
 
     /// A range above 0 in which equal ratios are equally far.
     #[must_use]
     pub const fn log(field: &'static str, range: (f64, f64)) -> Self {
-        Self {
-            scale: Scale::Log,
-            ..Self::linear(field, range)
-        }
+        Self { scale: Scale::Log, ..Self::linear(field, range) }
     }
 }

@@ -1,7 +1,7 @@
 //! The flat array of parameters, by field.
 //!
-//! With the descriptor an array describes itself (a scalar is one number, a list its length and its numbers), so
-//! several sets are concatenated without further lengths.
+//! With the descriptor an array describes itself (a scalar is one number, a list its length and its
+//! numbers), so several sets are concatenated without further lengths.
 
 use alloc::vec::Vec;
 
@@ -9,7 +9,8 @@ use crate::abi::{MAX_FIELDS, MAX_LIST_LEN};
 use crate::text;
 use crate::{Error, Kind, StaticDescriptor};
 
-/// Names and ranges of parameters and of fit options: of a model's constants, and of a descriptor that a host has read.
+/// Names and ranges of parameters and of fit options: of a model's constants, and of a descriptor
+/// that a host has read.
 pub trait Fields {
     /// Reverse-DNS id of the model.
     fn id(&self) -> &str;
@@ -23,7 +24,8 @@ pub trait Fields {
     /// The number of fit options.
     fn option_count(&self) -> usize;
 
-    /// Option `i`, which is below [`Self::option_count`], and whether only whole numbers are allowed.
+    /// Option `i`, which is below [`Self::option_count`], and whether only whole numbers are
+    /// allowed.
     fn option(&self, i: usize) -> (Range<'_>, bool);
 }
 
@@ -110,10 +112,7 @@ pub struct Values<'a> {
 impl<'a> Values<'a> {
     /// An empty value, to be replaced.
     #[cfg(any(feature = "std", target_family = "wasm"))]
-    pub(crate) const NONE: Self = Self {
-        flat: &[],
-        spans: [(0, 0); MAX_FIELDS],
-    };
+    pub(crate) const NONE: Self = Self { flat: &[], spans: [(0, 0); MAX_FIELDS] };
 
     /// Reads an array of exactly one parameter set.
     ///
@@ -218,11 +217,7 @@ fn list_length(field: &Range<'_>, value: Option<f64>, max_len: u32) -> Result<us
             max,
             " is allowed",
         ])),
-        None => Err(Error::parameters(text![
-            "parameter `",
-            field.name,
-            "` is missing",
-        ])),
+        None => Err(Error::parameters(text!["parameter `", field.name, "` is missing",])),
     }
 }
 
@@ -231,10 +226,7 @@ fn whole_part(x: f64) -> f64 {
 }
 
 fn check_range(field: &Range<'_>, numbers: &[f64]) -> Result<(), Error> {
-    match numbers
-        .iter()
-        .position(|x| !(field.min..=field.max).contains(x))
-    {
+    match numbers.iter().position(|x| !(field.min..=field.max).contains(x)) {
         None => Ok(()),
         Some(i) => Err(Error::parameters(text![
             "parameter `",

@@ -7,15 +7,12 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use crate::platform::{Lock, Once};
 
-/// Chunk `c` has `FIRST << c` slots, allocated with the first voice in it: the first voice of a model takes the memory of a
-/// few slots (of up to 2.8 kB each), and a thousand voices that of at most twice as many.
+/// Chunk `c` has `FIRST << c` slots, allocated with the first voice in it: the first voice of a
+/// model takes the memory of a few slots (of up to 2.8 kB each), and a thousand voices that of at
+/// most twice as many.
 const FIRST: usize = 4;
 /// Most voices at a time: fewer in a module, whose instances have one or two.
-const MOST: usize = if cfg!(target_family = "wasm") {
-    1024
-} else {
-    65_536
-};
+const MOST: usize = if cfg!(target_family = "wasm") { 1024 } else { 65_536 };
 /// Chunks for `MOST` slots.
 const CHUNKS: usize = place(MOST - 1).0 + 1;
 
@@ -25,8 +22,8 @@ const fn place(index: usize) -> (usize, usize) {
     (chunk, index - FIRST * ((1 << chunk) - 1))
 }
 
-/// Up to 65,536 voices, 1,024 in a module. A handle consists of a slot's index and the slot's generation, which changes
-/// when a voice is inserted or removed.
+/// Up to 65,536 voices, 1,024 in a module. A handle consists of a slot's index and the slot's
+/// generation, which changes when a voice is inserted or removed.
 pub struct Voices<V> {
     chunks: [Once<Box<[Slot<V>]>>; CHUNKS],
     free: Lock<Free>,
@@ -58,10 +55,7 @@ impl<V> Voices<V> {
     pub const fn new() -> Self {
         Self {
             chunks: [const { Once::new() }; CHUNKS],
-            free: Lock::new(Free {
-                freed: Vec::new(),
-                never_used: 0,
-            }),
+            free: Lock::new(Free { freed: Vec::new(), never_used: 0 }),
         }
     }
 
@@ -78,10 +72,7 @@ impl<V> Voices<V> {
         };
         let (chunk, offset) = place(index as usize);
         let slots = self.chunks[chunk].get_or_init(|| {
-            let slot = || Slot {
-                generation: AtomicU32::new(0),
-                voice: UnsafeCell::new(None),
-            };
+            let slot = || Slot { generation: AtomicU32::new(0), voice: UnsafeCell::new(None) };
             (0..FIRST << chunk).map(|_| slot()).collect()
         });
         let slot = &slots[offset];

@@ -9,7 +9,8 @@ pub fn cache() -> Option<PathBuf> {
     absolute("HTEX_CACHE_DIR").or_else(|| Some(base("XDG_CACHE_HOME", ".cache")?.join("htex")))
 }
 
-/// Returns the folder of settings: `$HTEX_CONFIG_DIR`, else `htex` in the user's configuration folder.
+/// Returns the folder of settings: `$HTEX_CONFIG_DIR`, else `htex` in the user's configuration
+/// folder.
 pub fn config() -> Option<PathBuf> {
     absolute("HTEX_CONFIG_DIR").or_else(|| Some(base("XDG_CONFIG_HOME", ".config")?.join("htex")))
 }
@@ -24,7 +25,8 @@ const VARIABLES: [&str; 6] = [
     "HOME",
 ];
 
-/// Returns the variables that hold a relative path, with the path: the functions of this module ignore it.
+/// Returns the variables that hold a relative path, with the path: the functions of this module
+/// ignore it.
 pub fn relative() -> Vec<(&'static str, PathBuf)> {
     let path = |variable: &'static str| {
         let path = PathBuf::from(var_os(variable)?);
@@ -34,7 +36,8 @@ pub fn relative() -> Vec<(&'static str, PathBuf)> {
     VARIABLES.into_iter().filter_map(path).collect()
 }
 
-/// Returns a folder in the user's data folder, if it exists: `htex/plugins`, `htex/devices`, `htex/sources`.
+/// Returns a folder in the user's data folder, if it exists: `htex/plugins`, `htex/devices`,
+/// `htex/sources`.
 pub fn data(folder: &str) -> Option<PathBuf> {
     let data = base("XDG_DATA_HOME", ".local/share")?.join(folder);
     data.exists().then_some(data)
@@ -64,8 +67,8 @@ pub fn libraries_in(dir: &Path, other: Option<&str>) -> io::Result<Vec<PathBuf>>
     Ok(files)
 }
 
-/// Returns a folder of the XDG base directory specification: that of the variable, else one in the home
-/// folder; on Windows the local application data.
+/// Returns a folder of the XDG base directory specification: that of the variable, else one in the
+/// home folder; on Windows the local application data.
 fn base(variable: &str, in_home: &str) -> Option<PathBuf> {
     let home = || absolute("HOME").map(|home| home.join(in_home));
     let windows = || absolute("LOCALAPPDATA").filter(|_| cfg!(windows));

@@ -1,9 +1,11 @@
-//! Native libraries (`.so`, `.dylib`, `.dll`), loaded from a file or by a name that the system's loader searches.
+//! Native libraries (`.so`, `.dylib`, `.dll`), loaded from a file or by a name that the system's
+//! loader searches.
 //!
 //! No library is ever unloaded: function pointers, open devices and voices point into it.
 //!
-//! This is the only place that loads one, but for tests. A bare name is a file of the current folder, as every other
-//! argument is; only NI-DAQmx's own names, or a `driver` that is not a file, are given to the system's loader.
+//! This is the only place that loads one, but for tests. A bare name is a file of the current
+//! folder, as every other argument is; only NI-DAQmx's own names, or a `driver` that is not a file,
+//! are given to the system's loader.
 
 pub mod folders;
 
@@ -37,8 +39,8 @@ use libloading::Library as Loaded;
 enum Loaded {}
 
 impl Library {
-    /// Loads the library in a file. A relative path, a bare file name among them, starts at the current folder; the
-    /// loader's search path is not used.
+    /// Loads the library in a file. A relative path, a bare file name among them, starts at the
+    /// current folder; the loader's search path is not used.
     ///
     /// # Safety
     /// Runs the library's initialisers with all rights of this program.
@@ -63,8 +65,8 @@ impl Library {
         unsafe { load(OsStr::new(name)) }
     }
 
-    /// Loads the library that a person names in a setting: a path, or a bare name, which is a file of the current folder, else a
-    /// library of the system.
+    /// Loads the library that a person names in a setting: a path, or a bare name, which is a file
+    /// of the current folder, else a library of the system.
     ///
     /// # Safety
     /// Runs the library's initialisers with all rights of this program.
@@ -133,8 +135,9 @@ impl<E> Symbols<'_, E> {
     }
 }
 
-/// Makes a table of a library's functions of [`Symbols`]: the name of each is the prefix and its field's name. Unsafe, since
-/// each symbol must have the type of its field; an error ends the function around it.
+/// Makes a table of a library's functions of [`Symbols`]: the name of each is the prefix and its
+/// field's name. Unsafe, since each symbol must have the type of its field; an error ends the
+/// function around it.
 #[macro_export]
 macro_rules! table_of_symbols {
     ($symbols:expr, $table:ident, $prefix:literal, $($field:ident)*) => {

@@ -1,7 +1,7 @@
 //! An asset and the models that can play it.
 //!
-//! A model is loaded when one of its representations is first used: validating, listing or inspecting an asset runs no
-//! module.
+//! A model is loaded when one of its representations is first used: validating, listing or
+//! inspecting an asset runs no module.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -88,9 +88,10 @@ impl Asset {
         }
     }
 
-    /// Allows embedded models to run, in a sandbox. They precede the models of the registry, except plugins named by
-    /// their files that play the representation ([`model_of`]). An embedded model is loaded when a representation of its id is first used; a module that cannot be
-    /// loaded, or has another id or version than declared, is an error of that use.
+    /// Allows embedded models to run, in a sandbox. They precede the models of the registry, except
+    /// plugins named by their files that play the representation ([`model_of`]). An embedded model
+    /// is loaded when a representation of its id is first used; a module that cannot be loaded, or
+    /// has another id or version than declared, is an error of that use.
     #[must_use]
     pub fn with_embedded(mut self) -> Self {
         self.embedded = true;
@@ -101,8 +102,8 @@ impl Asset {
     /// Loads an embedded model by its id.
     ///
     /// # Errors
-    /// When the asset embeds no model of this id, when it cannot be loaded, or when it has another id or version than
-    /// declared.
+    /// When the asset embeds no model of this id, when it cannot be loaded, or when it has another
+    /// id or version than declared.
     pub fn load_embedded(&self, id: &str) -> Result<(), Error> {
         if self.embeds(id) {
             self.registry_with(id).map(drop)
@@ -127,12 +128,11 @@ impl Asset {
         Ok(registry)
     }
 
-    /// Returns whether there is a model of this id that plays the asset's representation, without loading it.
+    /// Returns whether there is a model of this id that plays the asset's representation, without
+    /// loading it.
     pub fn knows_model(&self, id: &str) -> bool {
         let stored = self.data.manifest.representations.iter();
-        stored
-            .filter(|r| r.model == id)
-            .any(|r| self.is_runnable(r))
+        stored.filter(|r| r.model == id).any(|r| self.is_runnable(r))
     }
 
     /// Returns the data of the file.
@@ -145,8 +145,8 @@ impl Asset {
         &self.data.manifest
     }
 
-    /// Returns the quantity of the samples, which determines their unit: a lateral force in newtons, an acceleration in
-    /// m/s².
+    /// Returns the quantity of the samples, which determines their unit: a lateral force in
+    /// newtons, an acceleration in m/s².
     pub fn quantity(&self) -> Quantity {
         self.data.manifest.quantity
     }
@@ -165,7 +165,8 @@ impl Asset {
     ///
     /// # Errors
     /// When there is no such representation, its model is missing or not compatible, the model
-    /// refuses the parameters, the rate is below twice the highest frequency of the texture, or another option is out of range.
+    /// refuses the parameters, the rate is below twice the highest frequency of the texture, or
+    /// another option is out of range.
     pub fn voice(&self, options: &VoiceOptions<'_>) -> Result<Voice, Error> {
         self.check_rate(options.rate_hz)?;
         let ceiling = options.ceiling;
@@ -175,10 +176,8 @@ impl Asset {
         let still = self.still(options)?;
         let base = self.base_ratio(options)?;
         // The source is read `base` times as fast, so a lower rate of its samples suffices.
-        let source = self.source(&VoiceOptions {
-            rate_hz: options.rate_hz / base,
-            ..options.clone()
-        })?;
+        let source =
+            self.source(&VoiceOptions { rate_hz: options.rate_hz / base, ..options.clone() })?;
         Voice::new(source, still, options, base)
     }
 
@@ -203,11 +202,7 @@ impl Asset {
         let slides = crate::exploration::slides(motion.speed_mm_s, motion.force_n);
         let scales = options.effects.frequency_scaling && slides && !follows;
         Ok(match scales && motion.is_plausible() {
-            true => {
-                self.motions_of(r)?
-                    .scaling(motion, options.ceiling)
-                    .frequency
-            }
+            true => self.motions_of(r)?.scaling(motion, options.ceiling).frequency,
             false => 1.0,
         })
     }
@@ -246,19 +241,13 @@ impl Asset {
         let motion = options.motion.unwrap_or_else(|| self.start(r));
         let model = self.model(r)?;
         let known = self.known(r, &model)?;
-        SampleSource::new(
-            known,
-            model,
-            self.band(),
-            options.rate_hz,
-            options.seed,
-            motion,
-        )
+        SampleSource::new(known, model, self.band(), options.rate_hz, options.seed, motion)
     }
 
-    /// Returns the magnitudes that a long recording of the voice reads at a motion (else the default condition), at frequencies
-    /// in hertz and in the asset's unit: with the law of the asset outside the recorded conditions, and 0 where the finger does
-    /// not slide. At a ratio r of frequencies a noise of magnitude m(f) reads `m(f / r) / sqrt(r)`, and a sum of sinusoids
+    /// Returns the magnitudes that a long recording of the voice reads at a motion (else the
+    /// default condition), at frequencies in hertz and in the asset's unit: with the law of the
+    /// asset outside the recorded conditions, and 0 where the finger does not slide. At a ratio r
+    /// of frequencies a noise of magnitude m(f) reads `m(f / r) / sqrt(r)`, and a sum of sinusoids
     /// `m(f / r)`.
     ///
     /// # Errors
@@ -276,18 +265,12 @@ impl Asset {
         };
         let level_rms = self.level_rms(model, motion)?;
         let (parameters, _) = self.parameters(model, motion)?;
-        scaled_magnitude(
-            &loaded,
-            &parameters,
-            self.band(),
-            frequency_hz,
-            ratio,
-            level_rms,
-        )
+        scaled_magnitude(&loaded, &parameters, self.band(), frequency_hz, ratio, level_rms)
     }
 
-    /// Returns the level of a voice at a motion, else at the default condition: RMS in the asset's unit, with the law of the asset
-    /// outside the recorded conditions, and 0 where the finger does not slide.
+    /// Returns the level of a voice at a motion, else at the default condition: RMS in the asset's
+    /// unit, with the law of the asset outside the recorded conditions, and 0 where the finger does
+    /// not slide.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -299,7 +282,8 @@ impl Asset {
         Ok(level_rms * scaling.level)
     }
 
-    /// Returns the factors by which a representation is scaled at a motion; `None` where the finger does not slide.
+    /// Returns the factors by which a representation is scaled at a motion; `None` where the finger
+    /// does not slide.
     fn scaling(
         &self,
         model: Option<&str>,
@@ -321,8 +305,9 @@ impl Asset {
         model.is_ok_and(|model| model.follows_motion())
     }
 
-    /// Returns the magnitudes at a motion as they were recorded, or interpolated between recordings, without the law of the asset
-    /// and also where the finger does not slide: the counterpart of [`Self::magnitude`].
+    /// Returns the magnitudes at a motion as they were recorded, or interpolated between
+    /// recordings, without the law of the asset and also where the finger does not slide: the
+    /// counterpart of [`Self::magnitude`].
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -338,7 +323,8 @@ impl Asset {
         Ok(shape.iter().map(|m| m * level_rms).collect())
     }
 
-    /// Returns the model of a representation, named by its id or short name, else of the best representation.
+    /// Returns the model of a representation, named by its id or short name, else of the best
+    /// representation.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -346,7 +332,8 @@ impl Asset {
         self.model(self.representation(model)?)
     }
 
-    /// Returns the full model id of a representation, named by its id or short name, else of the best representation.
+    /// Returns the full model id of a representation, named by its id or short name, else of the
+    /// best representation.
     ///
     /// # Errors
     /// When there is no such representation.
@@ -355,8 +342,8 @@ impl Asset {
         Ok(&self.data.manifest.representations[r].model)
     }
 
-    /// Returns parameters (the flat array) and level (RMS, in the asset's unit) of a representation at a motion, else
-    /// at its default condition, as recorded or interpolated between recordings.
+    /// Returns parameters (the flat array) and level (RMS, in the asset's unit) of a representation
+    /// at a motion, else at its default condition, as recorded or interpolated between recordings.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -394,8 +381,9 @@ impl Asset {
         Ok(named(&self.loaded_model(model)?.descriptor().fields, flat))
     }
 
-    /// Returns the indices of the representations in the order in which a program chooses among them: models that it can run before
-    /// the others, then those that were measured, then the smallest [`Representation::error_db`]; among equals as in the file.
+    /// Returns the indices of the representations in the order in which a program chooses among
+    /// them: models that it can run before the others, then those that were measured, then the
+    /// smallest [`Representation::error_db`]; among equals as in the file.
     ///
     /// ```no_run
     /// let asset = htex::Asset::open("sandpaper.htex")?;
@@ -428,11 +416,7 @@ impl Asset {
         };
         found.ok_or_else(|| Error::NoRepresentation {
             wanted: model.unwrap_or("any").to_owned(),
-            there: all
-                .iter()
-                .map(|r| r.model.as_str())
-                .collect::<Vec<_>>()
-                .join(", "),
+            there: all.iter().map(|r| r.model.as_str()).collect::<Vec<_>>().join(", "),
         })
     }
 
@@ -449,7 +433,8 @@ impl Asset {
         Ok(kept.get_or_init(|| model).clone())
     }
 
-    /// Returns whether the embedded model of this id may run; a program without a sandbox runs none.
+    /// Returns whether the embedded model of this id may run; a program without a sandbox runs
+    /// none.
     fn may_run_embedded(&self, id: &str) -> bool {
         RUNS_WASM && self.embedded && self.embeds(id)
     }
@@ -468,32 +453,26 @@ impl Asset {
             Err(Error::Model(HostError::UnknownModel { .. }))
                 if self.embeds(id) && self.embedded =>
             {
-                self.registry_with(id)?
-                    .find(id)
-                    .cloned()
-                    .map_err(Error::from)
+                self.registry_with(id)?.find(id).cloned().map_err(Error::from)
             }
             Err(Error::Model(HostError::UnknownModel { .. })) if self.embeds(id) => {
                 Err(Error::EmbeddedOff { id: id.clone() })
             }
-            Err(Error::ModelOlder {
-                model,
-                asset,
-                installed,
-                problem,
-                ..
-            }) => Err(Error::ModelOlder {
-                embedded: self.embeds(id) && !self.embedded,
-                model,
-                asset,
-                installed,
-                problem,
-            }),
+            Err(Error::ModelOlder { model, asset, installed, problem, .. }) => {
+                Err(Error::ModelOlder {
+                    embedded: self.embeds(id) && !self.embedded,
+                    model,
+                    asset,
+                    installed,
+                    problem,
+                })
+            }
             found => found.cloned(),
         }
     }
 
-    /// Returns the conditions of a representation, with parameters in the order of the model's fields.
+    /// Returns the conditions of a representation, with parameters in the order of the model's
+    /// fields.
     fn known(&self, representation: usize, model: &LoadedModel) -> Result<Known, Error> {
         let manifest = &self.data.manifest;
         let stored = &manifest.representations[representation];
@@ -513,14 +492,12 @@ impl Asset {
         let manifest = &self.data.manifest;
         let stored = &manifest.representations[representation];
         let motions = Motions::of(stored, &manifest.conditions, manifest.law());
-        motions.map_err(|error| Error::Triangles {
-            model: stored.model.clone(),
-            error,
-        })
+        motions.map_err(|error| Error::Triangles { model: stored.model.clone(), error })
     }
 
-    /// Returns the index of the condition at which a representation, named by its model's id or short name, else the best one, is
-    /// played where no motion is given: its first, or its strongest if the first is silent ([`default_condition`]). Loads no model.
+    /// Returns the index of the condition at which a representation, named by its model's id or
+    /// short name, else the best one, is played where no motion is given: its first, or its
+    /// strongest if the first is silent ([`default_condition`]). Loads no model.
     ///
     /// # Errors
     /// When there is no such representation.
@@ -528,8 +505,8 @@ impl Asset {
         Ok(self.default_of(self.representation(model)?))
     }
 
-    /// Returns a motion of a speed, mm/s, and a force, newtons. What is not given comes from [`Self::default_condition`], and 80 mm/s
-    /// and 0.4 N where it does not state them.
+    /// Returns a motion of a speed, mm/s, and a force, newtons. What is not given comes from
+    /// [`Self::default_condition`], and 80 mm/s and 0.4 N where it does not state them.
     ///
     /// ```no_run
     /// let asset = htex::Asset::open("sandpaper.htex")?;
@@ -556,9 +533,7 @@ impl Asset {
     fn default_of(&self, representation: usize) -> usize {
         let manifest = &self.data.manifest;
         let stored = &manifest.representations[representation];
-        let at = stored
-            .at
-            .get(default_condition(stored, &manifest.conditions));
+        let at = stored.at.get(default_condition(stored, &manifest.conditions));
         at.map_or(0, |at| at.condition)
     }
 
@@ -578,9 +553,5 @@ impl Asset {
 
 fn is_named(representation: &Representation, name: &str) -> bool {
     let id = &representation.model;
-    id == name
-        || id
-            .rsplit('.')
-            .next()
-            .is_some_and(|short| short.eq_ignore_ascii_case(name))
+    id == name || id.rsplit('.').next().is_some_and(|short| short.eq_ignore_ascii_case(name))
 }

@@ -4,9 +4,10 @@ use htex_format::{AtCondition, Condition, Representation};
 
 use crate::exploration::slides;
 
-/// Returns the default condition of a representation, as an index into its `at`: the first, or the strongest if the first is silent.
-/// A condition is silent where its level is 0, or where a finger does not slide at the speed or the force that it states. The
-/// strongest is the one of the greatest level that is not silent, the first of equal ones; the first of all if all are silent.
+/// Returns the default condition of a representation, as an index into its `at`: the first, or the
+/// strongest if the first is silent. A condition is silent where its level is 0, or where a finger
+/// does not slide at the speed or the force that it states. The strongest is the one of the
+/// greatest level that is not silent, the first of equal ones; the first of all if all are silent.
 ///
 /// ```no_run
 /// let asset = htex::Asset::open("sandpaper.htex")?;
@@ -29,7 +30,8 @@ pub fn default_condition(representation: &Representation, conditions: &[Conditio
     }
 }
 
-/// Returns whether nothing is felt at a condition. A speed or a force that is not known does not make it silent.
+/// Returns whether nothing is felt at a condition. A speed or a force that is not known does not
+/// make it silent.
 fn is_silent(at: &AtCondition, conditions: &[Condition]) -> bool {
     let known = conditions.get(at.condition).copied().unwrap_or_default();
     let [speed_mm_s, force_n] = [known.speed_mm_s, known.force_n].map(|x| x.unwrap_or(f64::MAX));
@@ -48,16 +50,13 @@ mod tests {
             ..Condition::default()
         };
         let conditions: Vec<Condition> = all.iter().rev().map(condition).collect();
-        let at = all
-            .iter()
-            .enumerate()
-            .map(|(i, (_, _, level_rms))| AtCondition {
-                // The other way round, so that both indices differ.
-                condition: all.len() - 1 - i,
-                level_rms: *level_rms,
-                quality: None,
-                left_out: None,
-            });
+        let at = all.iter().enumerate().map(|(i, (_, _, level_rms))| AtCondition {
+            // The other way round, so that both indices differ.
+            condition: all.len() - 1 - i,
+            level_rms: *level_rms,
+            quality: None,
+            left_out: None,
+        });
         let representation = Representation {
             model: "org.example.x".to_owned(),
             model_version: "1.0.0".to_owned(),
@@ -72,40 +71,15 @@ mod tests {
     #[test]
     fn the_strongest_takes_the_place_of_a_silent_first() {
         let at = |speed, force, level| (Some(speed), Some(force), level);
-        assert_eq!(
-            default_of(&[at(80.0, 0.4, 0.1), at(160.0, 0.4, 0.3)]),
-            0,
-            "it sounds"
-        );
-        for silent in [
-            at(80.0, 0.4, 0.0),
-            at(0.0, 0.4, 0.9),
-            at(80.0, 0.0, 0.9),
-            at(0.4, 0.4, 0.9),
-        ] {
-            let all = [
-                silent,
-                at(40.0, 0.4, 0.1),
-                at(80.0, 0.4, 0.3),
-                at(160.0, 0.4, 0.3),
-            ];
-            assert_eq!(
-                default_of(&all),
-                2,
-                "{silent:?}: the first of the strongest"
-            );
-            assert_eq!(
-                default_of(&[silent, at(0.0, 0.0, 0.5)]),
-                0,
-                "all are silent"
-            );
+        assert_eq!(default_of(&[at(80.0, 0.4, 0.1), at(160.0, 0.4, 0.3)]), 0, "it sounds");
+        for silent in [at(80.0, 0.4, 0.0), at(0.0, 0.4, 0.9), at(80.0, 0.0, 0.9), at(0.4, 0.4, 0.9)]
+        {
+            let all = [silent, at(40.0, 0.4, 0.1), at(80.0, 0.4, 0.3), at(160.0, 0.4, 0.3)];
+            assert_eq!(default_of(&all), 2, "{silent:?}: the first of the strongest");
+            assert_eq!(default_of(&[silent, at(0.0, 0.0, 0.5)]), 0, "all are silent");
         }
         let unknown = (None, None, 0.2);
-        assert_eq!(
-            default_of(&[unknown, at(80.0, 0.4, 0.3)]),
-            0,
-            "not known, not at rest"
-        );
+        assert_eq!(default_of(&[unknown, at(80.0, 0.4, 0.3)]), 0, "not known, not at rest");
         assert_eq!(default_of(&[at(0.0, 0.0, 0.0), unknown]), 1);
         assert_eq!(default_of(&[]), 0);
     }

@@ -1,8 +1,9 @@
-//! What a voice plays, in a few numbers: for vibration motors, phones and pads that are driven by level and frequency instead of samples.
+//! What a voice plays, in a few numbers: for vibration motors, phones and pads that are driven by
+//! level and frequency instead of samples.
 //!
-//! The level is that of the samples of a block, exactly and without delay. Centroid and bands are those of Hann windows, as
-//! [`htex_dsp::envelope`] defines them. They lag: the middle of a window is 21 to 26 ms before its end at 20 and 48 kHz, and a window
-//! ends every 11 to 13 ms.
+//! The level is that of the samples of a block, exactly and without delay. Centroid and bands are
+//! those of Hann windows, as [`htex_dsp::envelope`] defines them. They lag: the middle of a window
+//! is 21 to 26 ms before its end at 20 and 48 kHz, and a window ends every 11 to 13 ms.
 
 use htex_dsp::envelope::Analyser;
 use htex_dsp::grid::Band;
@@ -12,8 +13,8 @@ use crate::Error;
 /// Most bands of an envelope.
 pub const MOST_BANDS: usize = 32;
 
-/// What a voice played since it was last asked ([`Voice::envelope`](crate::Voice::envelope)), effects, gain and limiter
-/// included.
+/// What a voice played since it was last asked ([`Voice::envelope`](crate::Voice::envelope)),
+/// effects, gain and limiter included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Envelope {

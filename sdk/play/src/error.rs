@@ -33,8 +33,8 @@ pub enum Error {
         "the asset embeds no model `{id}`; its manifest lists the embedded models under `plugins`"
     )]
     NoEmbeddedModel { id: String },
-    /// The only model that can play a representation is embedded in the asset, and embedded models are not allowed to run
-    /// ([`crate::Asset::with_embedded`] allows it).
+    /// The only model that can play a representation is embedded in the asset, and embedded models
+    /// are not allowed to run ([`crate::Asset::with_embedded`] allows it).
     #[error(
         "no model `{id}` is installed; the asset embeds it, but embedded models are not allowed to run: allow them, or \
          install the model"
@@ -45,12 +45,9 @@ pub enum Error {
         "the asset was fitted by {model} {asset}, and version {installed} is installed, which is \
          not compatible; install a {model} of the same major version"
     )]
-    ModelVersion {
-        model: String,
-        asset: String,
-        installed: String,
-    },
-    /// The installed model is older than the one that fitted the asset, and lacks some of its fields.
+    ModelVersion { model: String, asset: String, installed: String },
+    /// The installed model is older than the one that fitted the asset, and lacks some of its
+    /// fields.
     #[error(
         "version {installed} of {model} is installed, and the asset was fitted by {asset}: {problem}; install version {asset} or \
          newer of {model}{}", if *.embedded { ", or allow the model that the asset embeds" } else { "" }

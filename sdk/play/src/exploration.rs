@@ -22,7 +22,8 @@ pub const MOST_FORCE_N: f64 = 20.0;
 pub const HOLD_S: f64 = 0.1;
 /// Speed, mm/s, and force, newtons, of a texture that states neither: as in the paper's study.
 pub const USUAL: (f64, f64) = (80.0, 0.4);
-/// Highest level of a voice unless its options say another, as a multiple of the strongest recorded one.
+/// Highest level of a voice unless its options say another, as a multiple of the strongest recorded
+/// one.
 pub const CEILING: f64 = 4.0;
 
 /// Returns whether a finger slides at this speed (mm/s, either sign) and force (newtons).
@@ -30,8 +31,8 @@ pub fn slides(speed_mm_s: f64, force_n: f64) -> bool {
     speed_mm_s.abs() >= MIN_SLIDING_MM_S && force_n > 0.0
 }
 
-/// Effects of a motion on a voice in addition to interpolation between recorded conditions; a scene has an effect of
-/// the same name for each.
+/// Effects of a motion on a voice in addition to interpolation between recorded conditions; a scene
+/// has an effect of the same name for each.
 ///
 /// ```
 /// use htex::Effects;
@@ -53,19 +54,13 @@ impl Effects {
     /// Sets whether frequencies follow the law outside the recorded speeds.
     #[must_use]
     pub const fn with_frequency_scaling(self, frequency_scaling: bool) -> Self {
-        Self {
-            frequency_scaling,
-            ..self
-        }
+        Self { frequency_scaling, ..self }
     }
 
     /// Sets whether the level follows the law outside the recorded speeds and forces.
     #[must_use]
     pub const fn with_level_scaling(self, level_scaling: bool) -> Self {
-        Self {
-            level_scaling,
-            ..self
-        }
+        Self { level_scaling, ..self }
     }
 
     /// Sets whether the voice is silent while the finger does not slide.
@@ -75,21 +70,13 @@ impl Effects {
     }
 
     /// The texture as recorded, at any motion; it is still interpolated between several conditions.
-    pub const NONE: Self = Self {
-        frequency_scaling: false,
-        level_scaling: false,
-        contact: false,
-    };
+    pub const NONE: Self = Self { frequency_scaling: false, level_scaling: false, contact: false };
 }
 
 impl Default for Effects {
     /// All of them.
     fn default() -> Self {
-        Self {
-            frequency_scaling: true,
-            level_scaling: true,
-            contact: true,
-        }
+        Self { frequency_scaling: true, level_scaling: true, contact: true }
     }
 }
 
@@ -138,7 +125,8 @@ impl Recorded {
         *self != Self::Unknown
     }
 
-    /// Returns the ratio of a speed or force to the nearest recorded one; 1 if it is unknown, or the nearest is 0.
+    /// Returns the ratio of a speed or force to the nearest recorded one; 1 if it is unknown, or
+    /// the nearest is 0.
     fn ratio(&self, asked: f64, nearest: f64) -> f64 {
         match self.is_known() && nearest > 0.0 {
             true => asked / nearest,
@@ -158,7 +146,8 @@ impl fmt::Display for Recorded {
     }
 }
 
-/// The speeds (mm/s) and forces (newtons) at which a representation was fitted, and the law beyond them.
+/// The speeds (mm/s) and forces (newtons) at which a representation was fitted, and the law beyond
+/// them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Explored {
     /// Recorded speeds, mm/s.
@@ -176,11 +165,7 @@ impl Explored {
             let known = at.iter().filter_map(|at| conditions.get(at.condition));
             Recorded::new(known.map(value))
         };
-        Self {
-            speed: of(|c| c.speed_mm_s),
-            force: of(|c| c.force_n),
-            law,
-        }
+        Self { speed: of(|c| c.speed_mm_s), force: of(|c| c.force_n), law }
     }
 
     /// Returns whether frequencies depend on the speed outside the recorded ones.
@@ -194,7 +179,8 @@ impl Explored {
         by_speed || self.force.is_known() && self.law.level_force.exponent != 0.0
     }
 
-    /// Returns the factors of a motion whose nearest recorded one is `nearest`: speed, mm/s, and force, newtons.
+    /// Returns the factors of a motion whose nearest recorded one is `nearest`: speed, mm/s, and
+    /// force, newtons.
     pub(crate) fn scaling(&self, motion: Motion, nearest: [f64; 2]) -> Scaling {
         let speed = self.speed.ratio(motion.speed_mm_s, nearest[0]);
         let speed = speed.clamp(MIN_RATIO, MAX_RATIO);
@@ -205,7 +191,8 @@ impl Explored {
         }
     }
 
-    /// Returns the coverage of a motion with these factors, whose nearest recorded one is `nearest`.
+    /// Returns the coverage of a motion with these factors, whose nearest recorded one is
+    /// `nearest`.
     pub(crate) fn coverage(
         &self,
         motion: Motion,
@@ -225,7 +212,8 @@ impl Explored {
     }
 }
 
-/// The factors by which a texture is played at a motion outside the recorded ones; both are 1 inside.
+/// The factors by which a texture is played at a motion outside the recorded ones; both are 1
+/// inside.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scaling {
     /// Factor of all frequencies, 1/16 to 8.
@@ -236,10 +224,7 @@ pub struct Scaling {
 
 impl Scaling {
     /// The texture as recorded.
-    pub const NONE: Self = Self {
-        frequency: 1.0,
-        level: 1.0,
-    };
+    pub const NONE: Self = Self { frequency: 1.0, level: 1.0 };
 
     /// Returns the factors of the effects that are on.
     pub(crate) fn with(self, effects: Effects) -> Self {
@@ -255,10 +240,7 @@ fn reach(recorded: Recorded, asked: f64, nearest: f64) -> Reach {
     match recorded.is_known() {
         false => Reach::Unknown,
         true if Condition::is_same(asked, nearest) => Reach::Inside,
-        true => Reach::Outside {
-            asked,
-            recorded: nearest,
-        },
+        true => Reach::Outside { asked, recorded: nearest },
     }
 }
 
@@ -303,8 +285,8 @@ pub enum Reach {
 }
 
 impl Coverage {
-    /// Returns the relative distance of the motion from the one that is played; 0 if the texture is played as
-    /// recorded, interpolated, or scaled to the motion.
+    /// Returns the relative distance of the motion from the one that is played; 0 if the texture is
+    /// played as recorded, interpolated, or scaled to the motion.
     pub fn excess(&self) -> f64 {
         let speed = match (self.scales_speed, self.speed) {
             (false, speed) => speed.excess(1.0),
@@ -324,8 +306,8 @@ impl Coverage {
         if excess > 1e-9 { excess } else { 0.0 }
     }
 
-    /// Returns whether the texture is played as recorded, or interpolated between recordings; unknown values are
-    /// ignored.
+    /// Returns whether the texture is played as recorded, or interpolated between recordings;
+    /// unknown values are ignored.
     pub fn is_inside(&self) -> bool {
         let inside = |reach| matches!(reach, Reach::Inside | Reach::Unknown);
         self.slides && inside(self.speed) && inside(self.force)
@@ -357,10 +339,7 @@ impl fmt::Display for Coverage {
         for (reach, unit) in [(self.speed, "mm/s"), (self.force, "N")] {
             if let Reach::Outside { asked, recorded } = reach {
                 let [asked, recorded] = [asked, recorded].map(four_digits);
-                write!(
-                    f,
-                    "{joint}{asked} {unit}, where {recorded} {unit} was recorded"
-                )?;
+                write!(f, "{joint}{asked} {unit}, where {recorded} {unit} was recorded")?;
                 joint = "; ";
             }
         }

@@ -27,8 +27,8 @@ pub(crate) struct Follow {
 }
 
 impl Follow {
-    /// Makes the effects of a voice of `rate_hz` that plays as recorded. Its source has `base` times the recorded speed, and
-    /// reaches half the rate at `highest` times the recorded speed.
+    /// Makes the effects of a voice of `rate_hz` that plays as recorded. Its source has `base`
+    /// times the recorded speed, and reaches half the rate at `highest` times the recorded speed.
     pub(crate) fn new(
         explored: &Explored,
         effects: Effects,
@@ -61,7 +61,8 @@ impl Follow {
         }
     }
 
-    /// Returns whether the voice is audible at a motion; a silent one leaves texture and level unchanged.
+    /// Returns whether the voice is audible at a motion; a silent one leaves texture and level
+    /// unchanged.
     pub(crate) fn is_felt(&self, motion: Motion) -> bool {
         slides(motion.speed_mm_s, motion.force_n) || !self.effects.contact
     }
@@ -96,8 +97,8 @@ impl Follow {
         self.ratio
     }
 
-    /// Returns after how many of the next `len` samples, the first of which is that of `frame`, the voice rests: its samples are 0 from
-    /// there until it is felt again.
+    /// Returns after how many of the next `len` samples, the first of which is that of `frame`, the
+    /// voice rests: its samples are 0 from there until it is felt again.
     pub(crate) fn sounding(&self, len: usize, frame: u64) -> usize {
         let until_zero = match (self.contact.until_zero(), self.ends) {
             (Some(left), _) => u64::from(left),
@@ -112,7 +113,8 @@ impl Follow {
         self.contact.rests_at(0.0)
     }
 
-    /// Fades samples out while the finger does not slide, or its motion is unknown; the first sample is that of `frame`.
+    /// Fades samples out while the finger does not slide, or its motion is unknown; the first
+    /// sample is that of `frame`.
     pub(crate) fn apply_contact(&mut self, block: &mut [f32], frame: u64) {
         let left = self.ends.map(|end| end.saturating_sub(frame));
         let held = left.map_or(block.len(), |left| {

@@ -64,11 +64,10 @@ impl Motions {
         }
     }
 
-    /// Returns how a voice with these effects plays a motion, and whether the motion lies within the recorded conditions.
+    /// Returns how a voice with these effects plays a motion, and whether the motion lies within
+    /// the recorded conditions.
     pub fn coverage(&self, motion: Motion, effects: Effects) -> Coverage {
-        let Located {
-            scaling, nearest, ..
-        } = self.locate(motion);
+        let Located { scaling, nearest, .. } = self.locate(motion);
         self.explored.coverage(motion, nearest, scaling, effects)
     }
 
@@ -77,8 +76,8 @@ impl Motions {
         &self.explored
     }
 
-    /// Returns the factors of a motion outside the recorded ones, such that the level is at most `ceiling` times the
-    /// strongest recorded one. Does not allocate.
+    /// Returns the factors of a motion outside the recorded ones, such that the level is at most
+    /// `ceiling` times the strongest recorded one. Does not allocate.
     pub fn scaling(&self, motion: Motion, ceiling: f64) -> Scaling {
         self.bounded(&self.locate(motion), ceiling)
     }
@@ -88,11 +87,7 @@ impl Motions {
         let most = ceiling * self.strongest_rms / located.level_rms;
         let Scaling { frequency, level } = located.scaling;
         // Inside, no level exceeds the strongest; a level of 0 has no most.
-        let level = if level > 1.0 && level > most {
-            most.max(1.0)
-        } else {
-            level
-        };
+        let level = if level > 1.0 && level > most { most.max(1.0) } else { level };
         Scaling { frequency, level }
     }
 
@@ -107,16 +102,18 @@ impl Motions {
         }
     }
 
-    /// Returns the level of weighted conditions: the weighted mean. The mean of logarithms is 1.2 dB from the truth of simulated
-    /// sandpaper in place of 0.4 (median third-octave error of a free motion), and no nearer on recordings: of 398 nodes of the
-    /// Penn Haptic Texture Toolkit, each predicted from the others, 0.72 and 0.68 dB in the median.
+    /// Returns the level of weighted conditions: the weighted mean. The mean of logarithms is 1.2
+    /// dB from the truth of simulated sandpaper in place of 0.4 (median third-octave error of a
+    /// free motion), and no nearer on recordings: of 398 nodes of the Penn Haptic Texture Toolkit,
+    /// each predicted from the others, 0.72 and 0.68 dB in the median.
     fn level_at(&self, weights: &Weights) -> f64 {
         let level = |(i, weight): (usize, f64)| weight * self.level_rms[i];
         weights.iter().map(level).sum()
     }
 }
 
-/// Returns speed and force of each condition that a representation is fitted at; 0 where one is not known.
+/// Returns speed and force of each condition that a representation is fitted at; 0 where one is not
+/// known.
 fn points(at: &[AtCondition], conditions: &[Condition]) -> Vec<[f64; 2]> {
     let point = |at: &AtCondition| {
         let known = conditions.get(at.condition).copied().unwrap_or_default();
@@ -141,10 +138,7 @@ impl Known {
     /// Returns the parameters of a located motion, interpolated by the model.
     pub(crate) fn at(&self, model: &LoadedModel, located: &Located) -> Result<Vec<f64>, Error> {
         let weights = &located.weights;
-        let sets: Vec<&[f64]> = weights
-            .iter()
-            .map(|(i, _)| &self.parameters[i][..])
-            .collect();
+        let sets: Vec<&[f64]> = weights.iter().map(|(i, _)| &self.parameters[i][..]).collect();
         if let [only] = sets[..] {
             return Ok(only.to_vec());
         }

@@ -1,4 +1,5 @@
-//! Opens and plays texture assets. Scenes build on this crate; programs depend on the crate `htex`, which re-exports it.
+//! Opens and plays texture assets. Scenes build on this crate; programs depend on the crate `htex`,
+//! which re-exports it.
 //!
 //! ```no_run
 //! use htex::{Asset, Motion, VoiceOptions};
@@ -12,7 +13,8 @@
 //!
 //! [`Voice::render`] does not allocate, lock or access files: it may run in an audio thread.
 //!
-//! The two cannot be one: scenes build on the player, so a crate with the player cannot re-export scenes.
+//! The two cannot be one: scenes build on the player, so a crate with the player cannot re-export
+//! scenes.
 #![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]

@@ -1,18 +1,22 @@
 //! Interpolation between exploration conditions.
 //!
-//! Weights are barycentric in the Delaunay triangulation of the known (speed, force) points, each axis divided by
-//! its largest value. A motion outside the hull has the weights of the hull's nearest point. Measured conditions
-//! are not exactly aligned, and a grid has several triangulations, so these rules apply:
+//! Weights are barycentric in the Delaunay triangulation of the known (speed, force) points, each
+//! axis divided by its largest value. A motion outside the hull has the weights of the hull's
+//! nearest point. Measured conditions are not exactly aligned, and a grid has several
+//! triangulations, so these rules apply:
 //!
-//! - Speeds that are equal within [`htex_format::SAME_CONDITION`] are one value; the same holds for forces (`axis`).
+//! - Speeds that are equal within [`htex_format::SAME_CONDITION`] are one value; the same holds for
+//!   forces (`axis`).
 //! - Of several Delaunay triangulations, as of a grid, one is used (`cells`).
-//! - A condition that is equal to its projection on an edge of the hull, within that tolerance, lies on that edge. The
-//!   narrow triangle between them is not interpolated in: motions in it, and outside the hull next to it, have the
-//!   weights of their projections on the edge.
+//! - A condition that is equal to its projection on an edge of the hull, within that tolerance,
+//!   lies on that edge. The narrow triangle between them is not interpolated in: motions in it, and
+//!   outside the hull next to it, have the weights of their projections on the edge.
 //!
-//! Weights are continuous in the motion, and at a recorded condition only its own weight is not zero.
+//! Weights are continuous in the motion, and at a recorded condition only its own weight is not
+//! zero.
 //!
-//! An asset may store triangles (`stored`): then weights are barycentric in them and no rule above applies.
+//! An asset may store triangles (`stored`): then weights are barycentric in them and no rule above
+//! applies.
 
 mod axis;
 mod build;
@@ -24,15 +28,19 @@ mod tests;
 use axis::Axis;
 use htex_format::{Triangle, TrianglesError};
 
-/// Position, relative to the largest speed and force, from which edges are told apart by direction: farther out, rounding hides which is nearest.
+/// Position, relative to the largest speed and force, from which edges are told apart by direction:
+/// farther out, rounding hides which is nearest.
 const FARTHEST: f64 = 1e6;
-/// Largest distance from an edge, relative to the largest speed and force, that is attributed to rounding.
+/// Largest distance from an edge, relative to the largest speed and force, that is attributed to
+/// rounding.
 const ON_SIDE: f64 = 1e-9;
 
-/// Weights up to which a condition is left out, so that a recorded condition is played without interpolation.
+/// Weights up to which a condition is left out, so that a recorded condition is played without
+/// interpolation.
 const NO_WEIGHT: f64 = 1e-12;
 
-/// Weights of up to three conditions, summing to one, in ascending order of their speeds, then their forces.
+/// Weights of up to three conditions, summing to one, in ascending order of their speeds, then
+/// their forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
     pub(crate) condition: [usize; 3],
@@ -42,11 +50,7 @@ pub struct Weights {
 
 impl Weights {
     fn one(condition: usize) -> Self {
-        Self {
-            condition: [condition, 0, 0],
-            weight: [1.0, 0.0, 0.0],
-            count: 1,
-        }
+        Self { condition: [condition, 0, 0], weight: [1.0, 0.0, 0.0], count: 1 }
     }
 
     /// Iterates over the pairs of condition, by its index, and weight.
@@ -54,7 +58,8 @@ impl Weights {
         (0..self.count).map(|i| (self.condition[i], self.weight[i]))
     }
 
-    /// Returns the weights above [`NO_WEIGHT`] in ascending order, by the numbers of the caller's conditions.
+    /// Returns the weights above [`NO_WEIGHT`] in ascending order, by the numbers of the caller's
+    /// conditions.
     fn numbered(self, numbers: &[usize]) -> Self {
         let mut parts = [0, 1, 2].map(|i| (self.condition[i], self.weight[i]));
         // Insertion sort, which neither allocates nor is large.
@@ -75,7 +80,8 @@ impl Weights {
     }
 }
 
-/// The triangulation of recorded conditions, by the rules of section 11 of the format's specification.
+/// The triangulation of recorded conditions, by the rules of section 11 of the format's
+/// specification.
 ///
 /// ```
 /// use htex_play::Mesh;
@@ -87,8 +93,8 @@ impl Weights {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Mesh {
-    /// The caller's number of each condition. All other indices are those of conditions in ascending order of their
-    /// coordinates.
+    /// The caller's number of each condition. All other indices are those of conditions in
+    /// ascending order of their coordinates.
     numbers: Vec<usize>,
     /// The place of the only condition of a mesh without sides.
     only: [f64; 2],
@@ -113,17 +119,20 @@ struct Side {
     along: [f64; 2],
     /// Conditions in their order along the edge, including both ends.
     conditions: Vec<usize>,
-    /// Position of each projection on the edge, from 0 at the first to 1 at the last, strictly ascending.
+    /// Position of each projection on the edge, from 0 at the first to 1 at the last, strictly
+    /// ascending.
     feet: Vec<f64>,
 }
 
 impl Mesh {
-    /// Makes a mesh of one or more points: speed, mm/s, and force, newtons, finite and not negative.
+    /// Makes a mesh of one or more points: speed, mm/s, and force, newtons, finite and not
+    /// negative.
     pub fn new(conditions: &[[f64; 2]]) -> Self {
         build::mesh(conditions)
     }
 
-    /// Makes a mesh of points and the triangles between them, as an asset stores them; of no triangles, as [`Self::new`].
+    /// Makes a mesh of points and the triangles between them, as an asset stores them; of no
+    /// triangles, as [`Self::new`].
     ///
     /// # Errors
     /// When the triangles are none to interpolate in: [`htex_format::check_triangles`].
@@ -143,8 +152,8 @@ impl Mesh {
         self.locate(speed_mm_s, force_n).0
     }
 
-    /// Returns the weights at a motion, and the recorded motion that is nearest to it, (speed, force): the motion itself
-    /// inside the mesh. Does not allocate.
+    /// Returns the weights at a motion, and the recorded motion that is nearest to it, (speed,
+    /// force): the motion itself inside the mesh. Does not allocate.
     pub(crate) fn locate(&self, speed_mm_s: f64, force_n: f64) -> (Weights, [f64; 2]) {
         let asked = [speed_mm_s, force_n];
         let q = [0, 1].map(|axis| self.axes[axis].place(asked[axis]));
@@ -157,7 +166,8 @@ impl Mesh {
         (weights.numbered(&self.numbers), nearest)
     }
 
-    /// Returns whether a motion lies inside the mesh, or on its edge; a mesh on a line surrounds the motions on it.
+    /// Returns whether a motion lies inside the mesh, or on its edge; a mesh on a line surrounds
+    /// the motions on it.
     pub fn surrounds(&self, speed_mm_s: f64, force_n: f64) -> bool {
         let [speed, force] = &self.axes;
         let q = [speed.place(speed_mm_s), force.place(force_n)];
@@ -174,8 +184,8 @@ impl Mesh {
 
     fn within(&self, face: &Face, q: [f64; 2]) -> Option<Weights> {
         let [a, b, c] = face.places;
-        // Two triangles compute numbers of equal size and opposite signs for their common edge, so that no motion is
-        // outside of both.
+        // Two triangles compute numbers of equal size and opposite signs for their common edge, so
+        // that no motion is outside of both.
         let areas = [area(q, b, c), area(q, c, a), area(q, a, b)];
         if areas.iter().any(|area| *area < 0.0) {
             return None;
@@ -194,20 +204,11 @@ impl Mesh {
     /// Returns the weights of the hull's nearest point, and the point.
     fn nearest(&self, q: [f64; 2]) -> (Weights, [f64; 2]) {
         let size = q[0].abs().max(q[1].abs());
-        let q = if size > FARTHEST {
-            q.map(|x| x / size * FARTHEST)
-        } else {
-            q
-        };
+        let q = if size > FARTHEST { q.map(|x| x / size * FARTHEST) } else { q };
         let distance = |side: &Side| side.distance2(q);
-        let nearest = self
-            .sides
-            .iter()
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let nearest = self.sides.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let only = || (Weights::one(0), self.only);
-        nearest.map_or_else(only, |side| {
-            (side.weights(q), side.at(side.foot(q).clamp(0.0, 1.0)))
-        })
+        nearest.map_or_else(only, |side| (side.weights(q), side.at(side.foot(q).clamp(0.0, 1.0))))
     }
 }
 
@@ -255,7 +256,8 @@ impl Side {
     }
 }
 
-/// Returns twice the signed area of a triangle. Swapping the last two corners changes only the sign.
+/// Returns twice the signed area of a triangle. Swapping the last two corners changes only the
+/// sign.
 fn area(q: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - q[0]) * (c[1] - q[1]) - (b[1] - q[1]) * (c[0] - q[0])
 }

@@ -26,39 +26,29 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Makes a motion of a scanning speed, mm/s, and a normal force, newtons, at an unknown position and place.
+    /// Makes a motion of a scanning speed, mm/s, and a normal force, newtons, at an unknown
+    /// position and place.
     pub const fn new(speed_mm_s: f64, force_n: f64) -> Self {
-        Self {
-            speed_mm_s,
-            force_n,
-            position_mm: None,
-            place_mm: None,
-        }
+        Self { speed_mm_s, force_n, position_mm: None, place_mm: None }
     }
 
     /// Sets the position along the path, mm.
     #[must_use]
     pub const fn with_position_mm(self, position_mm: f64) -> Self {
-        Self {
-            position_mm: Some(position_mm),
-            ..self
-        }
+        Self { position_mm: Some(position_mm), ..self }
     }
 
     /// Sets the place on the surface, mm.
     #[must_use]
     pub const fn with_place_mm(self, x_mm: f64, y_mm: f64) -> Self {
-        Self {
-            place_mm: Some([x_mm, y_mm]),
-            ..self
-        }
+        Self { place_mm: Some([x_mm, y_mm]), ..self }
     }
 
     /// Returns the motion if its numbers are in range.
     ///
     /// # Errors
-    /// [`Error::Motion`] if the speed or the force is negative or not finite; [`Error::Position`] if the position is not finite,
-    /// and [`Error::Place`] if the place is not.
+    /// [`Error::Motion`] if the speed or the force is negative or not finite; [`Error::Position`]
+    /// if the position is not finite, and [`Error::Place`] if the place is not.
     ///
     /// ```
     /// use htex::Motion;
@@ -68,10 +58,7 @@ impl Motion {
     pub fn checked(self) -> Result<Self, Error> {
         let in_range = |x: f64| x.is_finite() && x >= 0.0;
         if !(in_range(self.speed_mm_s) && in_range(self.force_n)) {
-            return Err(Error::Motion {
-                speed_mm_s: self.speed_mm_s,
-                force_n: self.force_n,
-            });
+            return Err(Error::Motion { speed_mm_s: self.speed_mm_s, force_n: self.force_n });
         }
         if let Some(position_mm) = self.position_mm.filter(|mm| !mm.is_finite()) {
             return Err(Error::Position { position_mm });
@@ -84,13 +71,14 @@ impl Motion {
         }
     }
 
-    /// Returns whether a finger moves so: speed and force are at most [`MOST_SPEED_MM_S`] and [`MOST_FORCE_N`]. A voice
-    /// ignores other motions as failed readings.
+    /// Returns whether a finger moves so: speed and force are at most [`MOST_SPEED_MM_S`] and
+    /// [`MOST_FORCE_N`]. A voice ignores other motions as failed readings.
     pub fn is_plausible(&self) -> bool {
         self.speed_mm_s <= MOST_SPEED_MM_S && self.force_n <= MOST_FORCE_N
     }
 
-    /// Returns whether speed and force, which determine the parameters, equal those of another motion.
+    /// Returns whether speed and force, which determine the parameters, equal those of another
+    /// motion.
     pub(crate) fn has_conditions_of(&self, other: &Self) -> bool {
         (self.speed_mm_s, self.force_n) == (other.speed_mm_s, other.force_n)
     }

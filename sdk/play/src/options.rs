@@ -18,34 +18,39 @@ use crate::exploration::{CEILING, Effects};
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct VoiceOptions<'a> {
-    /// The representation, by its model's id or short name; else the one with the smallest nine-band error.
+    /// The representation, by its model's id or short name; else the one with the smallest
+    /// nine-band error.
     pub model: Option<&'a str>,
     /// Rate of the samples, hertz.
     pub rate_hz: f64,
     /// Seed of the noise; equal seeds give equal samples.
     pub seed: u64,
-    /// The motion at the start; `None`: the default condition ([`Asset::default_condition`](crate::Asset::default_condition)).
+    /// The motion at the start; `None`: the default condition
+    /// ([`Asset::default_condition`](crate::Asset::default_condition)).
     pub motion: Option<Motion>,
-    /// Method of synthesis: the model's voice, or one with less computation and a constant spectrum.
-    /// [`Asset::source`](crate::Asset::source) is always streamed.
+    /// Method of synthesis: the model's voice, or one with less computation and a constant
+    /// spectrum. [`Asset::source`](crate::Asset::source) is always streamed.
     pub synthesis: Synthesis,
     /// Effects of a motion; [`Asset::source`](crate::Asset::source) has none.
     pub effects: Effects,
-    /// Highest level that a motion outside the recorded ones has, as a multiple of the strongest recorded level; above 0 and finite.
-    /// A level that no motion raises is never reduced by it.
+    /// Highest level that a motion outside the recorded ones has, as a multiple of the strongest
+    /// recorded level; above 0 and finite. A level that no motion raises is never reduced by it.
     pub ceiling: f64,
-    /// Gain of the samples at the start ([`Voice::set_gain`](crate::Voice::set_gain)); not negative.
+    /// Gain of the samples at the start ([`Voice::set_gain`](crate::Voice::set_gain)); not
+    /// negative.
     pub gain: f64,
-    /// Greatest magnitude of a sample after the gain, in the asset's unit; above 0. The gain falls at once where a sample would
-    /// exceed it, and returns within 50 ms (to 1/e). `None` for no limit.
+    /// Greatest magnitude of a sample after the gain, in the asset's unit; above 0. The gain falls
+    /// at once where a sample would exceed it, and returns within 50 ms (to 1/e). `None` for no
+    /// limit.
     pub limit: Option<f64>,
-    /// Number of bands of [`Voice::envelope`](crate::Voice::envelope), 1 to 32; 0 for no envelope, which takes no time.
+    /// Number of bands of [`Voice::envelope`](crate::Voice::envelope), 1 to 32; 0 for no envelope,
+    /// which takes no time.
     pub envelope_bands: usize,
 }
 
 impl Default for VoiceOptions<'_> {
-    /// 20 kHz (the paper's rate), seed 0, the default condition, streamed, all effects, 4 times the strongest level, a gain of 1, no
-    /// limit and no envelope.
+    /// 20 kHz (the paper's rate), seed 0, the default condition, streamed, all effects, 4 times the
+    /// strongest level, a gain of 1, no limit and no envelope.
     fn default() -> Self {
         Self {
             model: None,

@@ -4,7 +4,8 @@ use htex_dsp::glide::Glide;
 
 use crate::Error;
 
-/// Time constant with which a limiter lets go, seconds: shorter ones distort the lowest frequency of a texture, 20 Hz.
+/// Time constant with which a limiter lets go, seconds: shorter ones distort the lowest frequency
+/// of a texture, 20 Hz.
 const RELEASE_S: f64 = 0.050;
 
 /// The last effects of a voice.
@@ -27,15 +28,9 @@ impl Output {
         ramp: u32,
         rate_hz: f64,
     ) -> Result<Self, Error> {
-        let limiter = limit
-            .map(|limit| Limiter::new(limit, rate_hz))
-            .transpose()?;
+        let limiter = limit.map(|limit| Limiter::new(limit, rate_hz)).transpose()?;
         let target = checked(gain)?;
-        Ok(Self {
-            gain: Glide::new(target, ramp),
-            target,
-            limiter,
-        })
+        Ok(Self { gain: Glide::new(target, ramp), target, limiter })
     }
 
     /// Changes the gain: gradually, or at once in a voice that rests.
@@ -104,11 +99,7 @@ impl Limiter {
                 range: "it must be finite and above 0",
             });
         }
-        Ok(Self {
-            limit: number,
-            gain: 1.0,
-            release: (1.0 / (RELEASE_S * rate_hz)) as f32,
-        })
+        Ok(Self { limit: number, gain: 1.0, release: (1.0 / (RELEASE_S * rate_hz)) as f32 })
     }
 
     fn apply(&mut self, block: &mut [f32]) {

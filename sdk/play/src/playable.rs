@@ -6,9 +6,9 @@ use semver::Version;
 
 use crate::Error;
 
-/// Returns the model of `registry` that plays a representation: of the models of its id and its major version, in their order in
-/// the registry, the first that is not older than the representation and has its fields, else the first that has its
-/// fields, else the first.
+/// Returns the model of `registry` that plays a representation: of the models of its id and its
+/// major version, in their order in the registry, the first that is not older than the
+/// representation and has its fields, else the first that has its fields, else the first.
 ///
 /// ```no_run
 /// let asset = htex::Asset::open("sandpaper.htex")?;
@@ -62,7 +62,8 @@ fn is_older(model: &LoadedModel, representation: &Representation) -> bool {
 /// ```
 ///
 /// # Errors
-/// When the fields differ from the model's: [`Error::ModelOlder`] if a newer version fitted them, else [`Error::Fields`].
+/// When the fields differ from the model's: [`Error::ModelOlder`] if a newer version fitted them,
+/// else [`Error::Fields`].
 pub fn field_order<'a>(
     representation: &'a Representation,
     loaded: &LoadedModel,

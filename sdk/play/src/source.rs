@@ -11,9 +11,9 @@ use crate::{Error, Motion};
 /// Most conditions that are interpolated.
 const MIXED: usize = 3;
 
-/// Samples of unit RMS at the model's own rate, and their level. A renderer of many textures resamples their sum once;
-/// [`crate::Voice`] resamples a single texture. A source interpolates between conditions; other effects of a motion
-/// ([`crate::Effects`]) are left to the renderer.
+/// Samples of unit RMS at the model's own rate, and their level. A renderer of many textures
+/// resamples their sum once; [`crate::Voice`] resamples a single texture. A source interpolates
+/// between conditions; other effects of a motion ([`crate::Effects`]) are left to the renderer.
 ///
 /// ```no_run
 /// use htex::{Asset, VoiceOptions};
@@ -79,7 +79,8 @@ impl SampleSource {
     }
 
     /// Returns whether the model renders at this rate whichever is wanted. Its conversion is then
-    /// [`Resampler::of_own_rate`](htex_dsp::resample::Resampler::of_own_rate), so that it has one level at all rates.
+    /// [`Resampler::of_own_rate`](htex_dsp::resample::Resampler::of_own_rate), so that it has one
+    /// level at all rates.
     pub fn has_own_rate(&self) -> bool {
         self.own_rate
     }
@@ -99,8 +100,8 @@ impl SampleSource {
         self.level_rms
     }
 
-    /// Returns whether the model follows the motion itself: the renderer then calls [`Self::set_finger`], and scales
-    /// neither frequencies nor level.
+    /// Returns whether the model follows the motion itself: the renderer then calls
+    /// [`Self::set_finger`], and scales neither frequencies nor level.
     pub fn follows_motion(&self) -> bool {
         self.follows
     }
@@ -110,7 +111,8 @@ impl SampleSource {
         self.motion
     }
 
-    /// Returns the magnitudes of the texture at a motion, read at `ratio` times its recorded speed and played at a level.
+    /// Returns the magnitudes of the texture at a motion, read at `ratio` times its recorded speed
+    /// and played at a level.
     pub(crate) fn magnitude(
         &self,
         motion: Motion,
@@ -120,14 +122,7 @@ impl SampleSource {
     ) -> Result<Vec<f64>, Error> {
         let (model, located) = (&self.model, self.known.motions.locate(motion));
         let parameters = self.known.at(model, &located)?;
-        scaled_magnitude(
-            model,
-            &parameters,
-            self.band,
-            frequency_hz,
-            ratio,
-            level_rms,
-        )
+        scaled_magnitude(model, &parameters, self.band, frequency_hz, ratio, level_rms)
     }
 
     /// Returns the duration of the samples rendered so far, seconds.
@@ -135,14 +130,16 @@ impl SampleSource {
         self.frames as f64 / self.rate_hz
     }
 
-    /// Sets the motion of the finger at `at_s` seconds after this source's first sample, for a model that follows the
-    /// motion itself. The time may precede the samples rendered so far, because a resampler reads ahead. The speed is
-    /// negative while the position decreases; numbers are clamped to the ranges of the model ABI. The position is moved on by
-    /// the time that was rendered ahead; a known place is passed as it is, and an unknown one as a path along x. Does nothing for other
-    /// models. Does not allocate, lock or do I/O if the model keeps to the ABI.
+    /// Sets the motion of the finger at `at_s` seconds after this source's first sample, for a
+    /// model that follows the motion itself. The time may precede the samples rendered so far,
+    /// because a resampler reads ahead. The speed is negative while the position decreases; numbers
+    /// are clamped to the ranges of the model ABI. The position is moved on by the time that was
+    /// rendered ahead; a known place is passed as it is, and an unknown one as a path along x. Does
+    /// nothing for other models. Does not allocate, lock or do I/O if the model keeps to the ABI.
     ///
     /// # Errors
-    /// When a number is not finite, or the model refuses the motion; the source then continues unchanged.
+    /// When a number is not finite, or the model refuses the motion; the source then continues
+    /// unchanged.
     pub fn set_finger(&mut self, finger: Finger, at_s: f64) -> Result<(), Error> {
         if !self.follows {
             return Ok(());
@@ -167,13 +164,14 @@ impl SampleSource {
         &self.known.motions
     }
 
-    /// Changes gradually to the spectrum of the recorded motion nearest to this one, and returns its level. An
-    /// unchanged motion takes no time; a new one interpolates parameters in the voice's own memory. Does not allocate,
-    /// lock or do I/O if the model keeps to the ABI, as the models of this project do.
+    /// Changes gradually to the spectrum of the recorded motion nearest to this one, and returns
+    /// its level. An unchanged motion takes no time; a new one interpolates parameters in the
+    /// voice's own memory. Does not allocate, lock or do I/O if the model keeps to the ABI, as the
+    /// models of this project do.
     ///
     /// # Errors
-    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate; the source then continues
-    /// unchanged.
+    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate; the source
+    /// then continues unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<f64, Error> {
         let motion = motion.checked()?;
         if self.motion.has_conditions_of(&motion) || self.known.parameters.len() < 2 {
@@ -204,15 +202,14 @@ impl SampleSource {
             self.sets.extend_from_slice(&known[i]);
         }
         let weights = &weights.weight[..weights.count];
-        Ok(self
-            .voice
-            .retune_mix(&self.sets, weights, &mut self.mixed)?)
+        Ok(self.voice.retune_mix(&self.sets, weights, &mut self.mixed)?)
     }
 
-    /// Fills `out` with the next `frames` samples of each source, one source after another, bit-identical to
-    /// [`Self::render`] of each, in as few calls as the models allow. AR then takes about six tenths of the time in
-    /// blocks of 256 frames. If `out` is too short, the remaining sources are not advanced; if it is too long, the rest is
-    /// filled with zeros. Does not allocate, lock or do I/O.
+    /// Fills `out` with the next `frames` samples of each source, one source after another,
+    /// bit-identical to [`Self::render`] of each, in as few calls as the models allow. AR then
+    /// takes about six tenths of the time in blocks of 256 frames. If `out` is too short, the
+    /// remaining sources are not advanced; if it is too long, the rest is filled with zeros. Does
+    /// not allocate, lock or do I/O.
     ///
     /// # Errors
     /// The first error of a model. The samples of its source are zero, and other sources continue.

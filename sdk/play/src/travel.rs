@@ -1,12 +1,14 @@
 //! The position of a finger on its path: given, or integrated from its speed.
 //!
-//! Position and place are those of the next sample that the *voice* renders ([`crate::SampleSource::set_finger`]): a resampler reads
-//! ahead by parts of a block that differ from call to call, and the jitter would be audible. For a model that does not
-//! follow the motion itself, a motion costs one test of a `bool`.
+//! Position and place are those of the next sample that the *voice* renders
+//! ([`crate::SampleSource::set_finger`]): a resampler reads ahead by parts of a block that differ
+//! from call to call, and the jitter would be audible. For a model that does not follow the motion
+//! itself, a motion costs one test of a `bool`.
 
 use crate::Motion;
 
-/// The motion that models receive which follow it: with a signed speed and a position along the path.
+/// The motion that models receive which follow it: with a signed speed and a position along the
+/// path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finger {
     /// Speed along the path, mm/s; negative while the position decreases.
@@ -15,7 +17,8 @@ pub struct Finger {
     pub force_n: f64,
     /// Position along the path, mm, of either sign.
     pub position_mm: f64,
-    /// Place on the surface, x and y, mm. Where it is unknown, models receive the position as x, and 0 as y.
+    /// Place on the surface, x and y, mm. Where it is unknown, models receive the position as x,
+    /// and 0 as y.
     pub place_mm: Option<[f64; 2]>,
 }
 
@@ -28,7 +31,8 @@ pub(crate) struct Course {
 }
 
 impl Course {
-    /// Returns where the finger is some way on from a place, mm, in the direction in which the places moved.
+    /// Returns where the finger is some way on from a place, mm, in the direction in which the
+    /// places moved.
     pub(crate) fn on(&mut self, place_mm: [f64; 2], way_mm: f64) -> [f64; 2] {
         if let Some(before) = self.place_mm {
             let moved: [f64; 2] = std::array::from_fn(|axis| place_mm[axis] - before[axis]);
@@ -62,12 +66,7 @@ impl Travel {
         Self {
             rate_hz,
             frames: 0,
-            motion: Finger {
-                speed_mm_s,
-                force_n: 0.0,
-                position_mm: 0.0,
-                place_mm: None,
-            },
+            motion: Finger { speed_mm_s, force_n: 0.0, position_mm: 0.0, place_mm: None },
             set: false,
             given_mm: None,
         }
@@ -80,15 +79,11 @@ impl Travel {
 
     /// Sets a checked motion; returns the motion for the model if it has changed.
     ///
-    /// The finger moves backward if the position is less than the last given one, forward if it is greater, and keeps
-    /// its direction if the position is equal or unknown. A place changes neither.
+    /// The finger moves backward if the position is less than the last given one, forward if it is
+    /// greater, and keeps its direction if the position is equal or unknown. A place changes
+    /// neither.
     pub(crate) fn set(&mut self, motion: Motion) -> Option<Finger> {
-        let Motion {
-            speed_mm_s,
-            force_n,
-            position_mm,
-            place_mm,
-        } = motion;
+        let Motion { speed_mm_s, force_n, position_mm, place_mm } = motion;
         let before = self.motion;
         let same = speed_mm_s == before.speed_mm_s.abs() && force_n == before.force_n;
         if self.set && same && position_mm.is_none() && place_mm.is_none() {
@@ -117,10 +112,7 @@ mod tests {
 
     /// Sets a motion and advances; returns speed and position if the motion has changed.
     fn set(travel: &mut Travel, at: (f64, Option<f64>), frames: usize) -> Option<(f64, f64)> {
-        let motion = travel.set(Motion {
-            position_mm: at.1,
-            ..Motion::new(at.0, 0.4)
-        });
+        let motion = travel.set(Motion { position_mm: at.1, ..Motion::new(at.0, 0.4) });
         travel.advance(frames);
         motion.map(|m| (m.speed_mm_s, m.position_mm))
     }
@@ -134,15 +126,8 @@ mod tests {
         assert_eq!(set(100.0, 250), None);
         assert_eq!(set(50.0, 1_000), Some((50.0, 100.0)));
         assert_eq!(set(0.0, 1_000), Some((0.0, 150.0)));
-        assert_eq!(
-            set(80.0, 0),
-            Some((80.0, 150.0)),
-            "the position was constant at 0 mm/s"
-        );
-        assert!(
-            travel.set(Motion::new(80.0, 0.5)).is_some(),
-            "another force"
-        );
+        assert_eq!(set(80.0, 0), Some((80.0, 150.0)), "the position was constant at 0 mm/s");
+        assert!(travel.set(Motion::new(80.0, 0.5)).is_some(), "another force");
     }
 
     #[test]
@@ -153,11 +138,7 @@ mod tests {
         assert_eq!(set(100.0, Some(5.5)), Some((100.0, 5.5)));
         assert_eq!(set(100.0, Some(5.4)), Some((-100.0, 5.4)));
         assert_eq!(set(0.0, Some(5.4)), Some((-0.0, 5.4)));
-        assert_eq!(
-            set(100.0, Some(5.4)),
-            Some((-100.0, 5.4)),
-            "the direction is kept"
-        );
+        assert_eq!(set(100.0, Some(5.4)), Some((-100.0, 5.4)), "the direction is kept");
         assert_eq!(set(50.0, None), Some((-50.0, 4.4)));
         assert_eq!(set(50.0, Some(6.0)), Some((50.0, 6.0)));
     }

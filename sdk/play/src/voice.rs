@@ -23,8 +23,8 @@ const ADDED: usize = 256;
 /// Length of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
 
-/// An endless stream of samples in the asset's unit ([`Asset::quantity`](crate::Asset::quantity)) that follows the
-/// finger's motion with the same [`Effects`](crate::Effects) as a scene.
+/// An endless stream of samples in the asset's unit ([`Asset::quantity`](crate::Asset::quantity))
+/// that follows the finger's motion with the same [`Effects`](crate::Effects) as a scene.
 ///
 /// ```no_run
 /// use htex::{Asset, Motion, VoiceOptions};
@@ -60,8 +60,8 @@ pub struct Voice {
 }
 
 impl Voice {
-    /// Makes a voice of a source and the resampler it needs, or of a pre-rendered sound. The resampler reads the source
-    /// `base` times as fast as recorded.
+    /// Makes a voice of a source and the resampler it needs, or of a pre-rendered sound. The
+    /// resampler reads the source `base` times as fast as recorded.
     pub(crate) fn new(
         source: SampleSource,
         still: Option<StillSound>,
@@ -111,23 +111,25 @@ impl Voice {
         Ok(voice)
     }
 
-    /// Sets the motion. Spectrum and level change gradually to those interpolated between the recorded conditions; if the
-    /// voice is not streamed ([`Synthesis`](crate::Synthesis)), only the level changes. Outside the recorded conditions
-    /// frequencies and level follow the law of the asset ([`Law`](crate::Law)) from the nearest recorded motion: frequencies
-    /// 1/16 to 8 times the recorded ones and up to half the rate, the level up to
-    /// [`ceiling`](VoiceOptions::ceiling) times the strongest recorded one. A finger that does not slide (below
-    /// 0.5 mm/s or at 0 N) makes the voice silent. Each of these can be switched off ([`Effects`](crate::Effects));
-    /// [`Self::coverage`] reports them for a motion.
+    /// Sets the motion. Spectrum and level change gradually to those interpolated between the
+    /// recorded conditions; if the voice is not streamed ([`Synthesis`](crate::Synthesis)), only
+    /// the level changes. Outside the recorded conditions frequencies and level follow the law of
+    /// the asset ([`Law`](crate::Law)) from the nearest recorded motion: frequencies 1/16 to 8
+    /// times the recorded ones and up to half the rate, the level up to
+    /// [`ceiling`](VoiceOptions::ceiling) times the strongest recorded one. A finger that does not
+    /// slide (below 0.5 mm/s or at 0 N) makes the voice silent. Each of these can be switched off
+    /// ([`Effects`](crate::Effects)); [`Self::coverage`] reports them for a motion.
     ///
-    /// A motion above 1 m/s or 20 N, or out of range, is a failed reading: the last good motion is held for at most 100 ms, and the voice
-    /// is silent after that until the next good one.
+    /// A motion above 1 m/s or 20 N, or out of range, is a failed reading: the last good motion is
+    /// held for at most 100 ms, and the voice is silent after that until the next good one.
     ///
-    /// An unchanged motion takes no time; a new one interpolates parameters in the voice's own memory. Does not allocate,
-    /// lock or do I/O if the model keeps to the ABI, as the models of this project do.
+    /// An unchanged motion takes no time; a new one interpolates parameters in the voice's own
+    /// memory. Does not allocate, lock or do I/O if the model keeps to the ABI, as the models of
+    /// this project do.
     ///
     /// # Errors
-    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate; the voice then continues as said, or
-    /// unchanged.
+    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate; the voice
+    /// then continues as said, or unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), Error> {
         let checked = motion.checked();
         if checked.is_err() || !motion.is_plausible() {
@@ -137,9 +139,7 @@ impl Voice {
         self.send_motion(motion)?;
         let felt = self.follow.is_felt(motion);
         self.follow.set_contact(felt);
-        let is_new = !self
-            .asked
-            .is_some_and(|asked| asked.has_conditions_of(&motion));
+        let is_new = !self.asked.is_some_and(|asked| asked.has_conditions_of(&motion));
         if felt && is_new {
             let source = self.stream.source_mut();
             let located = source.motions().locate(motion);
@@ -152,8 +152,9 @@ impl Voice {
         Ok(())
     }
 
-    /// Returns whether the model follows the motion itself (the extension `htex.motion/1`): it then determines frequencies
-    /// and level, and neither is scaled. False for a voice that is not streamed.
+    /// Returns whether the model follows the motion itself (the extension `htex.motion/1`): it then
+    /// determines frequencies and level, and neither is scaled. False for a voice that is not
+    /// streamed.
     pub fn follows_motion(&self) -> bool {
         self.travel.is_some()
     }
@@ -166,13 +167,11 @@ impl Voice {
         let Some(finger) = travel.set(motion) else {
             return Ok(());
         };
-        self.stream
-            .source_mut()
-            .set_finger(finger, self.played as f64 / self.rate_hz)
+        self.stream.source_mut().set_finger(finger, self.played as f64 / self.rate_hz)
     }
 
-    /// Returns how this voice plays a motion, and whether the motion lies within the recorded conditions. Does not
-    /// allocate.
+    /// Returns how this voice plays a motion, and whether the motion lies within the recorded
+    /// conditions. Does not allocate.
     pub fn coverage(&self, motion: Motion) -> Coverage {
         let effects = self.follow.effects();
         let mut coverage = self.stream.source().motions().coverage(motion, effects);
@@ -192,17 +191,15 @@ impl Voice {
         self.asked.unwrap_or(self.started)
     }
 
-    /// Returns the magnitudes that a long recording of this voice reads at the motion that is set, at frequencies in hertz and in the
-    /// asset's unit: with its effects, its [`ceiling`](VoiceOptions::ceiling) and its gain, and 0 where it is silent. What still glides is
-    /// taken at its end, and a limit is left out.
+    /// Returns the magnitudes that a long recording of this voice reads at the motion that is set,
+    /// at frequencies in hertz and in the asset's unit: with its effects, its
+    /// [`ceiling`](VoiceOptions::ceiling) and its gain, and 0 where it is silent. What still glides
+    /// is taken at its end, and a limit is left out.
     ///
     /// # Errors
     /// When the model refuses the parameters.
     pub fn magnitude(&self, frequency_hz: &[f64]) -> Result<Vec<f64>, Error> {
-        if self
-            .asked
-            .is_some_and(|motion| !self.follow.is_felt(motion))
-        {
+        if self.asked.is_some_and(|motion| !self.follow.is_felt(motion)) {
             return Ok(vec![0.0; frequency_hz.len()]);
         }
         let source = self.stream.source();
@@ -223,14 +220,15 @@ impl Voice {
         self.output.set_gain(gain, self.follow.rests())
     }
 
-    /// Returns whether the voice rests: its samples are 0 until a motion is felt again. A voice without the effect of
-    /// contact never rests.
+    /// Returns whether the voice rests: its samples are 0 until a motion is felt again. A voice
+    /// without the effect of contact never rests.
     pub fn is_silent(&self) -> bool {
         self.follow.rests()
     }
 
-    /// Fills `out` with the next samples, in the asset's unit. Does not allocate, lock or do I/O. While the voice rests
-    /// ([`Self::is_silent`]) this takes hardly any time, and the noise goes on where it stopped when the voice is felt again.
+    /// Fills `out` with the next samples, in the asset's unit. Does not allocate, lock or do I/O.
+    /// While the voice rests ([`Self::is_silent`]) this takes hardly any time, and the noise goes
+    /// on where it stopped when the voice is felt again.
     ///
     /// # Errors
     /// When the model fails; the samples that it did not render are zero.
@@ -262,7 +260,8 @@ impl Voice {
         result
     }
 
-    /// Adds the next samples, multiplied by `gain`, to `out`: voices of a mix. Does not allocate, lock or do I/O.
+    /// Adds the next samples, multiplied by `gain`, to `out`: voices of a mix. Does not allocate,
+    /// lock or do I/O.
     ///
     /// # Errors
     /// As [`Self::render`], and when `gain` is not finite; `out` is unchanged then.
@@ -286,10 +285,11 @@ impl Voice {
         result
     }
 
-    /// Returns what was rendered since the last call, or since the start: level, mean frequency, and the mean square in each of the
-    /// voice's bands ([`VoiceOptions::envelope_bands`]), in the squared unit, written to `bands`, which may be empty. All effects, the
-    /// gain and the limiter are included. The level is exact; frequency and bands lag by some 20 ms, since they are those of
-    /// windows of 40 to 80 ms ([`crate::envelope`]). Does not allocate, lock or do I/O.
+    /// Returns what was rendered since the last call, or since the start: level, mean frequency,
+    /// and the mean square in each of the voice's bands ([`VoiceOptions::envelope_bands`]), in the
+    /// squared unit, written to `bands`, which may be empty. All effects, the gain and the limiter
+    /// are included. The level is exact; frequency and bands lag by some 20 ms, since they are
+    /// those of windows of 40 to 80 ms ([`crate::envelope`]). Does not allocate, lock or do I/O.
     ///
     /// ```no_run
     /// use htex::{Asset, VoiceOptions};
@@ -308,8 +308,9 @@ impl Voice {
         envelope::read(self.analyser.as_mut(), bands)
     }
 
-    /// Returns the edges of the bands of [`Self::envelope`], one more than bands, hertz: from the lowest to the highest frequency
-    /// of the asset in equal ratios. The first band reaches down to 0 Hz, and the last up to half the rate. Empty without bands.
+    /// Returns the edges of the bands of [`Self::envelope`], one more than bands, hertz: from the
+    /// lowest to the highest frequency of the asset in equal ratios. The first band reaches down to
+    /// 0 Hz, and the last up to half the rate. Empty without bands.
     pub fn envelope_edges_hz(&self) -> &[f64] {
         self.analyser.as_ref().map_or(&[], Analyser::edges_hz)
     }

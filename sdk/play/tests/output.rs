@@ -8,14 +8,12 @@ use htex_play::envelope::MOST_BANDS;
 use htex_play::{Asset, Error, Motion, Voice, VoiceOptions};
 
 fn asset() -> Asset {
-    let path = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../examples/scenes/vinyl.htex"
-    );
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes/vinyl.htex");
     Asset::open(path).unwrap()
 }
 
-/// Renders blocks of lengths that differ, with a motion that lifts and fails before some: all samples.
+/// Renders blocks of lengths that differ, with a motion that lifts and fails before some: all
+/// samples.
 fn played(
     voice: &mut Voice,
     lengths: impl Iterator<Item = usize>,
@@ -62,51 +60,24 @@ fn options() -> VoiceOptions<'static> {
 
 #[test]
 fn samples_do_not_depend_on_the_lengths_of_blocks() {
-    let once = played(
-        &mut asset().voice(&options()).unwrap(),
-        [60_000; 10].into_iter(),
-        |_| (),
-    );
-    let often = played(
-        &mut asset().voice(&options()).unwrap(),
-        random_lengths(),
-        |_| (),
-    );
+    let once = played(&mut asset().voice(&options()).unwrap(), [60_000; 10].into_iter(), |_| ());
+    let often = played(&mut asset().voice(&options()).unwrap(), random_lengths(), |_| ());
     assert_eq!(once, often);
 }
 
 #[test]
 fn a_limit_is_kept_and_changes_nothing_below() {
-    let free = played(
-        &mut asset().voice(&options().with_limit(None)).unwrap(),
-        random_lengths(),
-        |_| (),
-    );
+    let free =
+        played(&mut asset().voice(&options().with_limit(None)).unwrap(), random_lengths(), |_| ());
     let peak = free.iter().fold(0.0f32, |peak, x| peak.max(x.abs()));
     let above = options().with_limit(f64::from(peak));
-    assert_eq!(
-        played(
-            &mut asset().voice(&above).unwrap(),
-            random_lengths(),
-            |_| ()
-        ),
-        free
-    );
+    assert_eq!(played(&mut asset().voice(&above).unwrap(), random_lengths(), |_| ()), free);
     let below = options().with_limit(f64::from(0.5 * peak));
-    let limited = played(
-        &mut asset().voice(&below).unwrap(),
-        random_lengths(),
-        |_| (),
-    );
+    let limited = played(&mut asset().voice(&below).unwrap(), random_lengths(), |_| ());
     let most = limited.iter().fold(0.0f32, |most, x| most.max(x.abs()));
     assert_eq!(most, 0.5 * peak);
     // A gain, not a clipper: signs and small samples keep their shape.
-    assert!(
-        limited
-            .iter()
-            .zip(&free)
-            .all(|(l, f)| l.abs() <= f.abs() && l * f >= 0.0)
-    );
+    assert!(limited.iter().zip(&free).all(|(l, f)| l.abs() <= f.abs() && l * f >= 0.0));
 }
 
 /// A voice rests 20 ms after the finger does, and then takes no time to speak of.
@@ -132,10 +103,7 @@ fn a_resting_voice_is_silent_and_takes_hardly_any_time() {
     }
     let ns = least.as_secs_f64() * 1e9 / 64_000.0;
     println!("{ns:.3} ns a sample at rest, in blocks of 64");
-    assert!(
-        ns < if cfg!(debug_assertions) { 1.0 } else { 0.2 },
-        "{ns} ns"
-    );
+    assert!(ns < if cfg!(debug_assertions) { 1.0 } else { 0.2 }, "{ns} ns");
     voice.set_motion(Motion::new(80.0, 0.4)).unwrap();
     voice.render(&mut block).unwrap();
     assert!(!voice.is_silent() && block[1] != 0.0);
@@ -143,10 +111,8 @@ fn a_resting_voice_is_silent_and_takes_hardly_any_time() {
 
 #[test]
 fn adding_multiplies_and_adds() {
-    let (mut one, mut two) = (
-        asset().voice(&options()).unwrap(),
-        asset().voice(&options()).unwrap(),
-    );
+    let (mut one, mut two) =
+        (asset().voice(&options()).unwrap(), asset().voice(&options()).unwrap());
     let (mut alone, mut sum) = (vec![0.0f32; 1_000], vec![0.25f32; 1_000]);
     one.render(&mut alone).unwrap();
     two.render_add(&mut sum, -0.5).unwrap();
@@ -161,10 +127,7 @@ fn options_out_of_range_are_errors() {
     let refused = |options: VoiceOptions<'_>| asset().voice(&options).unwrap_err();
     let plain = VoiceOptions::default;
     for rate_hz in [f64::NAN, f64::INFINITY, 0.0, -1.0, 1_999.0, 1e8] {
-        assert!(matches!(
-            refused(plain().with_rate_hz(rate_hz)),
-            Error::Rate { .. }
-        ));
+        assert!(matches!(refused(plain().with_rate_hz(rate_hz)), Error::Rate { .. }));
     }
     assert!(asset().voice(&plain().with_rate_hz(2_000.0)).is_ok());
     for options in [
@@ -176,27 +139,18 @@ fn options_out_of_range_are_errors() {
         assert!(matches!(refused(options), Error::OutOfRange { .. }));
     }
     let mut voice = asset().voice(&plain().with_envelope_bands(3)).unwrap();
-    assert!(matches!(
-        voice.envelope(&mut [0.0; 4]),
-        Err(Error::Bands { given: 4, there: 3 })
-    ));
+    assert!(matches!(voice.envelope(&mut [0.0; 4]), Err(Error::Bands { given: 4, there: 3 })));
     let mut without = asset().voice(&plain()).unwrap();
-    assert!(matches!(
-        without.envelope(&mut []),
-        Err(Error::Bands { .. })
-    ));
+    assert!(matches!(without.envelope(&mut []), Err(Error::Bands { .. })));
 }
 
 /// The powers of the bins of one window of samples, by the definition.
 fn powers(samples: &[f64]) -> Vec<f64> {
     let len = samples.len();
-    let window: Vec<f64> = (0..len)
-        .map(|n| 0.5 - 0.5 * (TAU * n as f64 / len as f64).cos())
-        .collect();
+    let window: Vec<f64> =
+        (0..len).map(|n| 0.5 - 0.5 * (TAU * n as f64 / len as f64).cos()).collect();
     let weight = len as f64 * window.iter().map(|w| w * w).sum::<f64>();
-    let turn: Vec<(f64, f64)> = (0..len)
-        .map(|n| (TAU * n as f64 / len as f64).sin_cos())
-        .collect();
+    let turn: Vec<(f64, f64)> = (0..len).map(|n| (TAU * n as f64 / len as f64).sin_cos()).collect();
     let windowed: Vec<f64> = samples.iter().zip(&window).map(|(x, w)| x * w).collect();
     (0..=len / 2)
         .map(|k| {
@@ -211,14 +165,13 @@ fn powers(samples: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The envelope of blocks of a voice that lifts and fails is that of its samples, computed directly.
+/// The envelope of blocks of a voice that lifts and fails is that of its samples, computed
+/// directly.
 #[test]
 fn the_envelope_is_that_of_the_samples() {
     const LEN: usize = 1_024;
     const BANDS: usize = 5;
-    let mut voice = asset()
-        .voice(&options().with_envelope_bands(BANDS))
-        .unwrap();
+    let mut voice = asset().voice(&options().with_envelope_bands(BANDS)).unwrap();
     let edges_hz = voice.envelope_edges_hz().to_vec();
     assert_eq!(edges_hz.len(), BANDS + 1);
     assert!((edges_hz[0] - 20.0).abs() < 1e-9 && (edges_hz[BANDS] - 1_000.0).abs() < 1e-9);
@@ -230,26 +183,19 @@ fn the_envelope_is_that_of_the_samples() {
     };
     let samples = played(&mut voice, random_lengths(), &mut read);
 
-    let padded: Vec<f64> = std::iter::repeat_n(0.0, LEN)
-        .chain(samples.iter().map(|x| f64::from(*x)))
-        .collect();
+    let padded: Vec<f64> =
+        std::iter::repeat_n(0.0, LEN).chain(samples.iter().map(|x| f64::from(*x))).collect();
     let windows: Vec<Vec<f64>> = (1..=samples.len() / (LEN / 4))
         .map(|end| powers(&padded[end * LEN / 4..][..LEN]))
         .collect();
     let hz = |k: usize| k as f64 * 20_000.0 / LEN as f64;
     let near = |a: f64, b: f64, what: &str| {
-        assert!(
-            (a - b).abs() <= 1e-9 + 1e-6 * b.abs(),
-            "{what}: {a} and {b}"
-        )
+        assert!((a - b).abs() <= 1e-9 + 1e-6 * b.abs(), "{what}: {a} and {b}")
     };
     let (mut from, mut expected_bands, mut expected_hz) = (0, [0.0; BANDS], 0.0);
     for (envelope, bands) in &measured {
         let to = from + envelope.frames as usize;
-        let squares: f64 = samples[from..to]
-            .iter()
-            .map(|x| f64::from(*x).powi(2))
-            .sum();
+        let squares: f64 = samples[from..to].iter().map(|x| f64::from(*x).powi(2)).sum();
         let level_rms = match to - from {
             0 => 0.0,
             count => (squares / count as f64).sqrt(),
@@ -262,18 +208,11 @@ fn the_envelope_is_that_of_the_samples() {
             let mean: Vec<f64> = (0..=LEN / 2).map(mean).collect();
             expected_bands = [0.0; BANDS];
             for (k, power) in mean.iter().enumerate() {
-                let band = edges_hz[1..BANDS]
-                    .iter()
-                    .filter(|edge| **edge <= hz(k))
-                    .count();
+                let band = edges_hz[1..BANDS].iter().filter(|edge| **edge <= hz(k)).count();
                 expected_bands[band] += power;
             }
             let total: f64 = mean.iter().sum();
-            let moment: f64 = mean
-                .iter()
-                .enumerate()
-                .map(|(k, power)| hz(k) * power)
-                .sum();
+            let moment: f64 = mean.iter().enumerate().map(|(k, power)| hz(k) * power).sum();
             expected_hz = if total > 0.0 { moment / total } else { 0.0 };
         }
         for (band, expected) in bands.iter().zip(expected_bands) {
@@ -283,32 +222,24 @@ fn the_envelope_is_that_of_the_samples() {
         from = to;
     }
     assert_eq!(from, samples.len());
-    assert!(
-        measured
-            .iter()
-            .any(|(envelope, _)| envelope.level_rms == 0.0 && envelope.frames > 0)
-    );
+    assert!(measured.iter().any(|(envelope, _)| envelope.level_rms == 0.0 && envelope.frames > 0));
     assert!(measured.len() > 50);
 }
 
-/// Over a long block the powers of the bands are those that the asset states: the squared magnitudes, and together the squared level.
+/// Over a long block the powers of the bands are those that the asset states: the squared
+/// magnitudes, and together the squared level.
 #[test]
 fn the_bands_of_a_long_block_are_those_of_the_asset() {
     let asset = asset();
     for model in ["ar", "mfcc", "sbeta"] {
-        let options = VoiceOptions::default()
-            .with_model(model)
-            .with_envelope_bands(3);
+        let options = VoiceOptions::default().with_model(model).with_envelope_bands(3);
         let mut voice = asset.voice(&options).unwrap();
         voice.render(&mut vec![0.0; 600_000]).unwrap(); // 30 s
         let mut bands = [0.0; 3];
         let envelope = voice.envelope(&mut bands).unwrap();
         let level_rms = asset.level_rms(Some(model), None).unwrap();
         let db = 10.0 * (bands.iter().sum::<f64>() / level_rms.powi(2)).log10();
-        println!(
-            "{model}: {db:.3} dB, {:.1} Hz, {bands:?}",
-            envelope.centroid_hz
-        );
+        println!("{model}: {db:.3} dB, {:.1} Hz, {bands:?}", envelope.centroid_hz);
         assert!(db.abs() < 0.2, "{model}: {db} dB");
         let grid: Vec<f64> = (4..=200).map(|k| 5.0 * f64::from(k)).collect();
         let magnitude = asset.magnitude(Some(model), None, &grid).unwrap();
@@ -316,10 +247,6 @@ fn the_bands_of_a_long_block_are_those_of_the_asset() {
         let moment: f64 = magnitude.iter().zip(&grid).map(|(m, hz)| m * m * hz).sum();
         let centroid_hz = moment / total;
         let off = envelope.centroid_hz / centroid_hz - 1.0;
-        assert!(
-            off.abs() < 0.03,
-            "{model}: {} and {centroid_hz} Hz",
-            envelope.centroid_hz
-        );
+        assert!(off.abs() < 0.03, "{model}: {} and {centroid_hz} Hz", envelope.centroid_hz);
     }
 }

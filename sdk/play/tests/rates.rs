@@ -4,17 +4,13 @@
 use htex_play::{Asset, VoiceOptions};
 
 /// Rates at which no image of the filter's own rate lies next to what it is the image of.
-const RATES_HZ: [f64; 8] = [
-    2_000.0, 2_050.0, 2_200.0, 2_400.0, 2_500.0, 4_000.0, 8_000.0, 44_100.0,
-];
+const RATES_HZ: [f64; 8] =
+    [2_000.0, 2_050.0, 2_200.0, 2_400.0, 2_500.0, 4_000.0, 8_000.0, 44_100.0];
 const SECONDS: f64 = 20.0;
 
 /// A texture of AR with a resonance at a frequency, as wide as two bins.
 fn resonance(hz: f64) -> Asset {
-    let file = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../examples/scenes/vinyl.htex"
-    );
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes/vinyl.htex");
     let mut data = Asset::open(file).unwrap().data().clone();
     let all = &mut data.manifest.representations;
     let ar = all.iter().position(|r| r.model == "org.htex.ar").unwrap();
@@ -30,10 +26,7 @@ fn resonance(hz: f64) -> Asset {
 }
 
 fn rms(asset: &Asset, rate_hz: f64) -> f64 {
-    let options = VoiceOptions::default()
-        .with_model("ar")
-        .with_seed(3)
-        .with_rate_hz(rate_hz);
+    let options = VoiceOptions::default().with_model("ar").with_seed(3).with_rate_hz(rate_hz);
     let mut voice = asset.voice(&options).unwrap();
     let mut samples = vec![0.0; (SECONDS * rate_hz) as usize];
     voice.render(&mut samples).unwrap();

@@ -55,7 +55,8 @@ impl core::error::Error for OpenError {}
 /// What a block stores for its conditions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BlockKind {
-    /// Symmetrical filters for white noise, with `half` coefficients on each side of the centre. Each condition mixes them.
+    /// Symmetrical filters for white noise, with `half` coefficients on each side of the centre.
+    /// Each condition mixes them.
     Noise {
         /// Coefficients on one side.
         half: usize,
@@ -79,7 +80,8 @@ pub struct Block<'a> {
     /// Level up to which the law raises that of the grid.
     ceiling: f32,
     full_scale: f32,
-    /// Frequency up to which the law raises those of the grid, cycles per sample of the internal rate.
+    /// Frequency up to which the law raises those of the grid, cycles per sample of the internal
+    /// rate.
     highest: f32,
     rate_hz: f32,
     up: usize,
@@ -128,7 +130,8 @@ impl Parts {
 }
 
 impl<'a> Block<'a> {
-    /// Validates bytes. Bytes after the block's end are ignored, so a block may be read from a larger area of flash memory.
+    /// Validates bytes. Bytes after the block's end are ignored, so a block may be read from a
+    /// larger area of flash memory.
     ///
     /// # Errors
     /// When the bytes are not a complete block of version 1 with all numbers in range.
@@ -165,16 +168,10 @@ impl<'a> Block<'a> {
         let filters = usize::from(header[26]);
         let kind = match (header[6], header[7], filters) {
             (KIND_NOISE, 0, 1..=MOST_FILTERS) if size.is_multiple_of(4) && size <= MOST_HALF => {
-                BlockKind::Noise {
-                    half: size,
-                    filters,
-                }
+                BlockKind::Noise { half: size, filters }
             }
             (KIND_TONES, flags, 0) if flags <= RANDOM_PHASE && size <= MOST_TONES => {
-                BlockKind::Tones {
-                    count: size,
-                    random_phase: flags == RANDOM_PHASE,
-                }
+                BlockKind::Tones { count: size, random_phase: flags == RANDOM_PHASE }
             }
             _ => return None,
         };
@@ -208,23 +205,12 @@ impl<'a> Block<'a> {
             BlockKind::Noise { half, filters } => (filters, filters * (conditions + half + 1)),
             BlockKind::Tones { count, .. } => (2 * count * conditions, 0),
         };
-        let parts = Parts {
-            speeds,
-            forces,
-            rows: up * row,
-            levels: conditions,
-            numbers,
-            integers,
-        };
+        let parts = Parts { speeds, forces, rows: up * row, levels: conditions, numbers, integers };
         let none = Words::new(&[]);
         let block = Self {
             kind,
             quantity,
-            law: Law {
-                frequency_speed: a,
-                level_speed: b,
-                level_force: c,
-            },
+            law: Law { frequency_speed: a, level_speed: b, level_force: c },
             ceiling,
             full_scale,
             highest,
@@ -287,7 +273,8 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// Returns whether the numbers of the kind are in range. Frequencies are at most half the internal rate.
+    /// Returns whether the numbers of the kind are in range. Frequencies are at most half the
+    /// internal rate.
     fn are_sound(&self, numbers: Words<'_>) -> bool {
         let amplitudes = -MOST_VALUE..=MOST_VALUE;
         match self.kind {
@@ -329,13 +316,14 @@ impl<'a> Block<'a> {
         self.ceiling
     }
 
-    /// Returns a magnitude that samples of the grid rarely exceed, in the asset's unit: for [`crate::Player::render_i16`].
+    /// Returns a magnitude that samples of the grid rarely exceed, in the asset's unit: for
+    /// [`crate::Player::render_i16`].
     pub fn full_scale(&self) -> f32 {
         self.full_scale
     }
 
-    /// Returns the numbers of 32 bits that the player in C (`c/htex_player.h`) keeps for the block: `htex_player_size` is these and
-    /// the members of a `htex_player`.
+    /// Returns the numbers of 32 bits that the player in C (`c/htex_player.h`) keeps for the block:
+    /// `htex_player_size` is these and the members of a `htex_player`.
     pub fn numbers(&self) -> usize {
         let interpolator = (self.up + 2) * self.row;
         match self.kind {
@@ -392,7 +380,8 @@ impl<'a> Block<'a> {
         self.integers.at(condition * self.filters() + filter)
     }
 
-    /// Returns the factor between products of weights and coefficients, which are integers, and coefficients.
+    /// Returns the factor between products of weights and coefficients, which are integers, and
+    /// coefficients.
     pub(crate) fn filter_scale(&self, filter: usize) -> f32 {
         self.numbers.at(filter)
     }
@@ -416,10 +405,7 @@ impl<'a> Block<'a> {
 
     /// Returns what to play at a motion: what the nearest motion of the grid is, scaled by the law.
     pub(crate) fn target(&self, motion: (f32, f32)) -> Target {
-        let nearest = (
-            nearest_on(self.speeds, motion.0),
-            nearest_on(self.forces, motion.1),
-        );
+        let nearest = (nearest_on(self.speeds, motion.0), nearest_on(self.forces, motion.1));
         let weights = Weights::new(self.speeds, self.forces, nearest.0, nearest.1);
         let mut level = 0.0;
         for (condition, weight) in weights.iter() {
@@ -429,11 +415,7 @@ impl<'a> Block<'a> {
             true => Factors::NONE,
             false => self.law.factors(motion, nearest),
         };
-        Target {
-            weights,
-            level: self.scaled(level, factors.level),
-            frequency: factors.frequency,
-        }
+        Target { weights, level: self.scaled(level, factors.level), frequency: factors.frequency }
     }
 
     /// Returns a level times a factor. It is not raised above the ceiling.

@@ -8,8 +8,9 @@ const RATIO: (f32, f32) = (MIN_RATIO, MAX_RATIO);
 /// Range of the ratio of a force to the nearest of the grid: 2^20 in both directions.
 const FORCE_RATIO: (f32, f32) = (1.0 / 1_048_576.0, 1_048_576.0);
 
-/// The exponents of the law of a texture: from the nearest motion (v0, F0) of the grid to a motion (v, F), frequencies follow
-/// `(v / v0)^a` and the level `(v / v0)^b (F / F0)^c`. A filter cannot follow in frequency.
+/// The exponents of the law of a texture: from the nearest motion (v0, F0) of the grid to a motion
+/// (v, F), frequencies follow `(v / v0)^a` and the level `(v / v0)^b (F / F0)^c`. A filter cannot
+/// follow in frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law {
     /// Exponent a of frequencies over the speed.
@@ -29,14 +30,12 @@ pub(crate) struct Factors {
 
 impl Factors {
     /// Those of a motion of the grid.
-    pub(crate) const NONE: Self = Self {
-        frequency: 1.0,
-        level: 1.0,
-    };
+    pub(crate) const NONE: Self = Self { frequency: 1.0, level: 1.0 };
 }
 
 impl Law {
-    /// Returns the factors of a motion from the nearest of the grid; both are a speed and a force, above 0.
+    /// Returns the factors of a motion from the nearest of the grid; both are a speed and a force,
+    /// above 0.
     pub(crate) fn factors(&self, motion: (f32, f32), nearest: (f32, f32)) -> Factors {
         let speed = log2(within(motion.0 / nearest.0, RATIO));
         let force = log2(within(motion.1 / nearest.1, FORCE_RATIO));

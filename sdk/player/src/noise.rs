@@ -49,7 +49,8 @@ impl Noise {
         2 * self.half + 1
     }
 
-    /// Starts a glide of `samples` to the filter of a motion; 0 sets it at once. Returns the level that is reached.
+    /// Starts a glide of `samples` to the filter of a motion; 0 sets it at once. Returns the level
+    /// that is reached.
     pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) -> f32 {
         if samples == 0 {
             self.silence();
@@ -161,8 +162,8 @@ impl Noise {
         else {
             return 0.0;
         };
-        // The side's length is a multiple of four, and so are those beside it. Slices that get shorter compile to fewer
-        // instructions than iterators, of which one is reversed.
+        // The side's length is a multiple of four, and so are those beside it. Slices that get
+        // shorter compile to fewer instructions than iterators, of which one is reversed.
         let mut before = before.as_rchunks::<4>().1;
         let mut after = after.as_chunks::<4>().0;
         let mut side = self.side.as_chunks::<4>().0;

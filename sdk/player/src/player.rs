@@ -44,7 +44,8 @@ impl Memory {
     };
 }
 
-/// An endless stream of samples of a block, in the asset's unit. The samples do not depend on the lengths of the buffers.
+/// An endless stream of samples of a block, in the asset's unit. The samples do not depend on the
+/// lengths of the buffers.
 ///
 /// ```no_run
 /// use htex_player::{Block, Player};
@@ -65,10 +66,7 @@ pub struct Player<'a> {
 impl<'a> Player<'a> {
     /// Makes a player at the first condition. Players of different seeds have independent noise.
     pub fn new(block: Block<'a>, seed: u32) -> Self {
-        let mut player = Self {
-            block,
-            memory: Memory::ZERO,
-        };
+        let mut player = Self { block, memory: Memory::ZERO };
         player.start(seed);
         player
     }
@@ -77,10 +75,9 @@ impl<'a> Player<'a> {
     fn start(&mut self, seed: u32) {
         match self.block.kind() {
             BlockKind::Noise { half, .. } => self.memory.noise.start(half, seed),
-            BlockKind::Tones {
-                count,
-                random_phase,
-            } => self.memory.tones.start(count, random_phase, seed),
+            BlockKind::Tones { count, random_phase } => {
+                self.memory.tones.start(count, random_phase, seed)
+            }
         }
         self.sound(self.block.first());
     }
@@ -89,17 +86,19 @@ impl<'a> Player<'a> {
         &self.block
     }
 
-    /// Returns the RMS of the samples at the motion that was set, once they have glided to it, in the asset's unit; 0 if the
-    /// player is silent or becomes so.
+    /// Returns the RMS of the samples at the motion that was set, once they have glided to it, in
+    /// the asset's unit; 0 if the player is silent or becomes so.
     pub fn level(&self) -> f32 {
         self.memory.level
     }
 
-    /// Sets the motion: speed in mm/s, of either sign, and normal force in newtons. Spectrum and level glide to it; before
-    /// the first sample they are set at once. Beyond the grid the level follows the law of the block from the nearest motion
-    /// of the grid, and so do the frequencies of sinusoids. The player is silent while the finger does not slide (below 0.5 mm/s, or without force). A
-    /// reading above 1000 mm/s or 20 N is none of a finger: the last motion is held for 0.1 s, then the player is silent until
-    /// the next good one. Returns false, without a change, if a number is not finite.
+    /// Sets the motion: speed in mm/s, of either sign, and normal force in newtons. Spectrum and
+    /// level glide to it; before the first sample they are set at once. Beyond the grid the level
+    /// follows the law of the block from the nearest motion of the grid, and so do the frequencies
+    /// of sinusoids. The player is silent while the finger does not slide (below 0.5 mm/s, or
+    /// without force). A reading above 1000 mm/s or 20 N is none of a finger: the last motion is
+    /// held for 0.1 s, then the player is silent until the next good one. Returns false, without a
+    /// change, if a number is not finite.
     pub fn set_motion(&mut self, speed_mm_s: f32, force_n: f32) -> bool {
         if !(speed_mm_s.is_finite() && force_n.is_finite()) {
             return false;
@@ -171,8 +170,9 @@ impl<'a> Player<'a> {
         out.iter_mut().for_each(|x| *x = self.tick());
     }
 
-    /// Fills `out` with the next samples as integers: `full_scale`, in the asset's unit, becomes 32767, and larger samples
-    /// are limited. If `full_scale` is not above zero the integers are zero.
+    /// Fills `out` with the next samples as integers: `full_scale`, in the asset's unit, becomes
+    /// 32767, and larger samples are limited. If `full_scale` is not above zero the integers are
+    /// zero.
     pub fn render_i16(&mut self, out: &mut [i16], full_scale: f32) {
         let gain = match full_scale > 0.0 {
             true => 32_767.0 / full_scale,

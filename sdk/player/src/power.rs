@@ -1,4 +1,5 @@
-//! Logarithms and powers of two as polynomials in single precision, the same bits on every processor.
+//! Logarithms and powers of two as polynomials in single precision, the same bits on every
+//! processor.
 
 /// Coefficients of `log2((1 + s) / (1 - s)) / s` over `s²`: `2 / ((2 i + 1) ln 2)`.
 const LOG2: [f32; 4] = [2.885_39, 0.961_796_7, 0.577_078, 0.412_198_6];

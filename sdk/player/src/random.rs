@@ -1,7 +1,7 @@
 //! Random numbers in 32-bit arithmetic.
 
-/// Multiplied with the sum of four centred 16-bit numbers it gives unit variance: the sum's variance is
-/// `4 (2^32 - 1) / 12`.
+/// Multiplied with the sum of four centred 16-bit numbers it gives unit variance: the sum's
+/// variance is `4 (2^32 - 1) / 12`.
 const UNIT: f32 = 2.642_894_3e-5;
 
 /// The generator xoshiro128++ (Blackman and Vigna 2021), seeded by SplitMix32.
@@ -23,9 +23,7 @@ impl Random {
             z ^ (z >> 16)
         };
         // Successive outputs of the bijection differ, so they are not all zero.
-        Self {
-            state: [next(), next(), next(), next()],
-        }
+        Self { state: [next(), next(), next(), next()] }
     }
 
     pub(crate) fn bits(&mut self) -> u32 {

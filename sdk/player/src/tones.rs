@@ -9,7 +9,8 @@ const CYCLES: f32 = 1.0 / 4_294_967_296.0;
 /// Least power of mixed sinusoids that are scaled to a level.
 const LEAST_POWER: f32 = 1e-9;
 
-/// A sinusoid whose frequency and amplitude glide. Frequencies are in cycles per sample of the internal rate.
+/// A sinusoid whose frequency and amplitude glide. Frequencies are in cycles per sample of the
+/// internal rate.
 #[derive(Debug, Clone, Copy)]
 struct Tone {
     phase: u32,
@@ -20,13 +21,8 @@ struct Tone {
 }
 
 impl Tone {
-    const ZERO: Self = Self {
-        phase: 0,
-        frequency: 0.0,
-        frequency_step: 0.0,
-        amplitude: 0.0,
-        amplitude_step: 0.0,
-    };
+    const ZERO: Self =
+        Self { phase: 0, frequency: 0.0, frequency_step: 0.0, amplitude: 0.0, amplitude_step: 0.0 };
 }
 
 /// A sum of sinusoids.
@@ -37,12 +33,10 @@ pub(crate) struct Tones {
 }
 
 impl Tones {
-    pub(crate) const ZERO: Self = Self {
-        tones: [Tone::ZERO; MOST_TONES],
-        count: 0,
-    };
+    pub(crate) const ZERO: Self = Self { tones: [Tone::ZERO; MOST_TONES], count: 0 };
 
-    /// Starts sinusoids at their crests, or at phases drawn from the seed; all numbers are zero before.
+    /// Starts sinusoids at their crests, or at phases drawn from the seed; all numbers are zero
+    /// before.
     pub(crate) fn start(&mut self, count: usize, random_phase: bool, seed: u32) {
         self.count = count;
         if random_phase {
@@ -56,7 +50,8 @@ impl Tones {
         self.tones.get_mut(..self.count).unwrap_or(&mut [])
     }
 
-    /// Starts a glide of `samples` to the sinusoids of a motion; 0 sets them at once. Returns the level that is reached.
+    /// Starts a glide of `samples` to the sinusoids of a motion; 0 sets them at once. Returns the
+    /// level that is reached.
     pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) -> f32 {
         let part = 1.0 / samples.max(1) as f32;
         let (mut power, mut highest) = (0.0, 0.0f32);
@@ -114,9 +109,7 @@ impl Tones {
 
     /// Sets all amplitudes to zero.
     fn silence(&mut self) {
-        self.sounding()
-            .iter_mut()
-            .for_each(|tone| tone.amplitude = 0.0);
+        self.sounding().iter_mut().for_each(|tone| tone.amplitude = 0.0);
     }
 
     /// Returns the next sample, after a step of a glide, or of a glide to silence that ends.
@@ -141,7 +134,8 @@ impl Tones {
     }
 }
 
-/// Returns the cosine of a phase, `2^32` being a cycle, to 4e-6: Taylor's series of the sine within a quarter of a cycle.
+/// Returns the cosine of a phase, `2^32` being a cycle, to 4e-6: Taylor's series of the sine within
+/// a quarter of a cycle.
 fn cosine(phase: u32) -> f32 {
     let x = phase as i32 as f32 * CYCLES;
     let t = 0.25 - x.abs();

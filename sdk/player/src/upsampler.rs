@@ -3,7 +3,8 @@
 use crate::layout::MOST_ROW;
 use crate::words::Words;
 
-/// A polyphase low-pass filter with `row` coefficients for each phase, from the oldest input to the newest.
+/// A polyphase low-pass filter with `row` coefficients for each phase, from the oldest input to the
+/// newest.
 #[derive(Debug, Clone)]
 pub(crate) struct Upsampler {
     /// Each input is stored twice, so that the newest inputs are always contiguous.
@@ -12,10 +13,7 @@ pub(crate) struct Upsampler {
 }
 
 impl Upsampler {
-    pub(crate) const ZERO: Self = Self {
-        history: [0.0; 2 * MOST_ROW],
-        next: 0,
-    };
+    pub(crate) const ZERO: Self = Self { history: [0.0; 2 * MOST_ROW], next: 0 };
 
     pub(crate) fn push(&mut self, input: f32, row: usize) {
         for place in [self.next, self.next + row] {

@@ -9,7 +9,8 @@ pub(crate) struct Weights {
 }
 
 impl Weights {
-    /// Weighs the corners around a motion of the grid. Conditions are stored with speeds varying first.
+    /// Weighs the corners around a motion of the grid. Conditions are stored with speeds varying
+    /// first.
     pub(crate) fn new(speeds: Words<'_>, forces: Words<'_>, speed: f32, force: f32) -> Self {
         let (s, u) = place(speeds, speed);
         let (f, v) = place(forces, force);
@@ -31,7 +32,8 @@ impl Weights {
     }
 }
 
-/// Returns the index below a value on an ascending axis, and the position between it and the next one.
+/// Returns the index below a value on an ascending axis, and the position between it and the next
+/// one.
 fn place(axis: Words<'_>, value: f32) -> (usize, f32) {
     let above = axis.iter().take_while(|x| *x <= value).count();
     if above == 0 {

@@ -15,9 +15,7 @@ impl<'a> Words<'a> {
 
     /// Returns the number at an index; zero beyond the end.
     pub(crate) fn at(self, index: usize) -> f32 {
-        self.0
-            .get(index)
-            .map_or(0.0, |word| f32::from_le_bytes(*word))
+        self.0.get(index).map_or(0.0, |word| f32::from_le_bytes(*word))
     }
 
     /// Returns the last number; zero if there is none.
@@ -53,9 +51,7 @@ impl<'a> Integers<'a> {
 
     /// Returns the number at an index; zero beyond the end.
     pub(crate) fn at(self, index: usize) -> f32 {
-        self.0
-            .get(index)
-            .map_or(0.0, |integer| f32::from(i16::from_le_bytes(*integer)))
+        self.0.get(index).map_or(0.0, |integer| f32::from(i16::from_le_bytes(*integer)))
     }
 
     /// Returns `count` numbers from an index; none if they extend beyond the end.

@@ -1,5 +1,6 @@
-//! The player in C returns the bits of the player of this crate, or its refusal: on this machine, on emulated boards, and on
-//! hostile blocks, of which it reads and writes nothing beyond its memory.
+//! The player in C returns the bits of the player of this crate, or its refusal: on this machine,
+//! on emulated boards, and on hostile blocks, of which it reads and writes nothing beyond its
+//! memory.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/blocks.rs"]
@@ -20,18 +21,13 @@ use xtask::needs::{ARM_GCC, CC, CLANG, QEMU_ARM, QEMU_RISCV, RISCV_GCC, SANITIZE
 
 /// The blocks of `spec/baked-conformance` and what is done with them, for samples and for integers.
 fn conformance() -> Vec<Case> {
-    let both = cases::blocks_and_steps()
-        .into_iter()
-        .flat_map(|(block, steps)| {
-            [false, true].map(|are_integers| Case {
-                steps: steps
-                    .iter()
-                    .map(|s| step(*s, &block, are_integers))
-                    .collect(),
-                block: block.clone(),
-                seed: cases::SEED,
-            })
-        });
+    let both = cases::blocks_and_steps().into_iter().flat_map(|(block, steps)| {
+        [false, true].map(|are_integers| Case {
+            steps: steps.iter().map(|s| step(*s, &block, are_integers)).collect(),
+            block: block.clone(),
+            seed: cases::SEED,
+        })
+    });
     both.collect()
 }
 
@@ -72,7 +68,8 @@ fn clang_makes_the_bits_of_the_specification() {
     }
 }
 
-/// With this option clang does not heed what a file says of fusing, and tells the file nothing of it.
+/// With this option clang does not heed what a file says of fusing, and tells the file nothing of
+/// it.
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn a_player_that_was_compiled_to_fuse_opens_no_block() {
@@ -83,20 +80,13 @@ fn a_player_that_was_compiled_to_fuse_opens_no_block() {
     let case = conformance().remove(0);
     let [cases, results] = ["cases", "results"].map(|end| program.with_extension(end));
     std::fs::write(&cases, stream::encoded(&[case])).unwrap();
-    compilers::run(
-        std::process::Command::new(&program)
-            .arg(cases)
-            .arg(&results),
-    );
+    compilers::run(std::process::Command::new(&program).arg(cases).arg(&results));
     let refused = i32::to_le_bytes(-4);
     assert_eq!(std::fs::read(results).unwrap(), refused);
 }
 
 fn compare_on_arm(board: &Board, name: &str, more: &str) {
-    let needs = [
-        (&QEMU_ARM, has("qemu-system-arm")),
-        (&ARM_GCC, has("arm-none-eabi-gcc")),
-    ];
+    let needs = [(&QEMU_ARM, has("qemu-system-arm")), (&ARM_GCC, has("arm-none-eabi-gcc"))];
     if needs.iter().all(|(need, there)| need.met(*there)) {
         board.compare(name, more, &conformance());
     }
@@ -115,10 +105,8 @@ fn a_cortex_m0_makes_the_bits_of_the_specification() {
 
 #[test]
 fn a_riscv32_makes_the_bits_of_the_specification() {
-    let needs = [
-        (&QEMU_RISCV, has("qemu-system-riscv32")),
-        (&RISCV_GCC, has("riscv64-unknown-elf-gcc")),
-    ];
+    let needs =
+        [(&QEMU_RISCV, has("qemu-system-riscv32")), (&RISCV_GCC, has("riscv64-unknown-elf-gcc"))];
     if needs.iter().all(|(need, there)| need.met(*there)) {
         RISCV32.compare("riscv32", "", &conformance());
     }
@@ -167,27 +155,19 @@ fn options_that_reorder_operations_are_refused() {
     }
     let of_both = ["-ffast-math", "-ffinite-math-only"];
     let of_gcc = ["-freciprocal-math", "-funsafe-math-optimizations"];
-    for (compiler, all) in [
-        ("gcc", [of_both, of_gcc].concat()),
-        ("clang", of_both.to_vec()),
-    ] {
+    for (compiler, all) in [("gcc", [of_both, of_gcc].concat()), ("clang", of_both.to_vec())] {
         for options in all {
             let mut compiler = compilers::compiler(&format!("{compiler} -O2 {options} -c"));
             compiler.arg(compilers::folder().join("htex_player.c"));
-            let done = compiler
-                .arg("-o")
-                .arg(compilers::written("refused.o"))
-                .output();
+            let done = compiler.arg("-o").arg(compilers::written("refused.o")).output();
             let error = String::from_utf8(done.unwrap().stderr).unwrap();
-            assert!(
-                error.contains("compile this file without -ffast-math"),
-                "{options}: {error}"
-            );
+            assert!(error.contains("compile this file without -ffast-math"), "{options}: {error}");
         }
     }
 }
 
-/// Options of clang with which a read or a write beyond memory, or an operation without a defined result, ends the program.
+/// Options of clang with which a read or a write beyond memory, or an operation without a defined
+/// result, ends the program.
 const SANITIZED: &str =
     "clang -O1 -g -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all";
 
@@ -195,10 +175,7 @@ fn has_sanitizers() -> bool {
     let source = compilers::written("empty.c");
     std::fs::write(&source, "int main(void) { return 0; }\n").unwrap();
     let mut clang = compilers::compiler(SANITIZED);
-    clang
-        .arg(&source)
-        .arg("-o")
-        .arg(compilers::written("empty"));
+    clang.arg(&source).arg("-o").arg(compilers::written("empty"));
     clang.output().is_ok_and(|done| done.status.success())
 }
 
@@ -209,11 +186,8 @@ fn hostile_blocks_play_or_are_refused_as_in_rust() {
     }
     let program = host_program(SANITIZED, "sanitized");
     let damaged = mutated::damaged().into_iter().map(mutated::case);
-    let all: Vec<Case> = mutated::cases(4000)
-        .into_iter()
-        .chain(damaged)
-        .chain(conformance())
-        .collect();
+    let all: Vec<Case> =
+        mutated::cases(4000).into_iter().chain(damaged).chain(conformance()).collect();
     compare_on_host(&program, &all);
     let played = all.iter().filter(|case| Block::open(&case.block).is_ok());
     let share = played.count() as f64 / all.len() as f64;

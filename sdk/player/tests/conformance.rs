@@ -10,7 +10,8 @@ use std::collections::BTreeSet;
 
 use xtask::generated::{file, only};
 
-/// The bits are those of every processor: `sdk/bake/tests/board.rs` compares blocks of models with a Cortex-M4F.
+/// The bits are those of every processor: `sdk/bake/tests/board.rs` compares blocks of models with
+/// a Cortex-M4F.
 #[test]
 fn generated_blocks_and_samples_are_fresh() {
     let files = cases::files();

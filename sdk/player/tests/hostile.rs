@@ -68,14 +68,8 @@ fn each_error_has_its_reason() {
     assert_eq!(with(&|plan| plan.highest = 0.6), header);
     assert_eq!(with(&|plan| plan.glide = 0), header);
     assert_eq!(with(&|plan| plan.forces.clear()), header);
-    assert_eq!(
-        with(&|plan| plan.speeds = vec![80.0, 80.0]),
-        Err(OpenError::Axes)
-    );
-    assert_eq!(
-        with(&|plan| plan.forces[0] = f32::NAN),
-        Err(OpenError::Axes)
-    );
+    assert_eq!(with(&|plan| plan.speeds = vec![80.0, 80.0]), Err(OpenError::Axes));
+    assert_eq!(with(&|plan| plan.forces[0] = f32::NAN), Err(OpenError::Axes));
     let axes = Err(OpenError::Axes);
     assert_eq!(with(&|plan| plan.speeds[0] = 0.4), axes);
     assert_eq!(with(&|plan| plan.speeds[1] = 1001.0), axes);

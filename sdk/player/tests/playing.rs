@@ -35,10 +35,7 @@ fn samples_do_not_depend_on_the_lengths_of_buffers() {
             whole.set_motion(motion, 0.4);
             parts.set_motion(motion, 0.4);
             let expected = rendered(&mut whole, lengths.iter().sum());
-            let got: Vec<f32> = lengths
-                .iter()
-                .flat_map(|n| rendered(&mut parts, *n))
-                .collect();
+            let got: Vec<f32> = lengths.iter().flat_map(|n| rendered(&mut parts, *n)).collect();
             assert_eq!(expected, got);
         }
     }
@@ -101,20 +98,15 @@ fn frequency(motion: (f32, f32)) -> f64 {
     let mut player = Player::new(Block::open(&bytes).unwrap(), 1);
     player.set_motion(motion.0, motion.1);
     let samples = rendered(&mut player, 10_000);
-    let rises = samples
-        .windows(2)
-        .filter(|pair| pair[0] < 0.0 && pair[1] >= 0.0);
+    let rises = samples.windows(2).filter(|pair| pair[0] < 0.0 && pair[1] >= 0.0);
     rises.count() as f64 / 10_000.0
 }
 
 #[test]
 fn frequencies_of_sinusoids_follow_the_law_beyond_the_grid() {
-    for (speed, expected) in [
-        (40.0, 0.02),
-        (10.0, 0.01),
-        (320.0, 0.08),
-        (160.0, 0.04 * 2f64.sqrt()),
-    ] {
+    for (speed, expected) in
+        [(40.0, 0.02), (10.0, 0.01), (320.0, 0.08), (160.0, 0.04 * 2f64.sqrt())]
+    {
         let read = frequency((speed, 0.4));
         assert!((read - expected).abs() < 2e-4, "{speed} mm/s: {read}");
     }
@@ -126,9 +118,7 @@ fn frequencies_of_sinusoids_follow_the_law_beyond_the_grid() {
     player.set_motion(160.0, 0.4);
     let samples = rendered(&mut player, 10_000);
     // Of 0.2 and 0.4 cycles per sample, 5 samples are a period.
-    let differs = samples
-        .windows(6)
-        .any(|part| (part[5] - part[0]).abs() > 1e-2);
+    let differs = samples.windows(6).any(|part| (part[5] - part[0]).abs() > 1e-2);
     assert!(!differs);
 }
 
@@ -187,20 +177,11 @@ fn a_change_of_the_motion_makes_no_step() {
     let bytes = plan.bytes();
     let mut player = Player::new(Block::open(&bytes).unwrap(), 1);
     let steady = steepest(&rendered(&mut player, 1000));
-    for (speed, force) in [
-        (80.0, 0.4),
-        (0.0, 0.0),
-        (40.0, 0.4),
-        (1.0, 0.0),
-        (80.0, 0.3),
-    ] {
+    for (speed, force) in [(80.0, 0.4), (0.0, 0.0), (40.0, 0.4), (1.0, 0.0), (80.0, 0.3)] {
         player.set_motion(speed, force);
         let step = steepest(&rendered(&mut player, 137));
         // The level moves by at most 1.42 in 20 samples.
-        assert!(
-            step < 1.3 * steady + 1.42 / 20.0,
-            "{speed} mm/s: {step}, steady {steady}"
-        );
+        assert!(step < 1.3 * steady + 1.42 / 20.0, "{speed} mm/s: {step}, steady {steady}");
     }
 }
 

@@ -114,7 +114,8 @@ fn fitted(sources: &[Source], reading: &Reading, fit: Fit) -> PyResult<(Texture,
     Ok((texture, rest))
 }
 
-/// Raises the error of a model that is written in Python: others that cannot be fitted are left out.
+/// Raises the error of a model that is written in Python: others that cannot be fitted are left
+/// out.
 fn raise_of_python(registry: &Registry, skipped: &[(String, String)]) -> PyResult<()> {
     for (id, reason) in skipped {
         let model = registry.find(id).or_raise()?;
@@ -144,10 +145,7 @@ impl Fit {
         reading: &Reading,
         metadata: &Metadata,
     ) -> PyResult<AssetRequest> {
-        let settings = FitSettings {
-            strict: Some(reading.strict()),
-            ..parsed(&self.settings)?
-        };
+        let settings = FitSettings { strict: Some(reading.strict()), ..parsed(&self.settings)? };
         let name = metadata.name.as_deref().unwrap_or("texture");
         let request = settings.request(registry, reading.settings(), name, TOOL);
         request.map_err(|error| match error {
@@ -168,22 +166,13 @@ pub(crate) fn agreement<'py>(
     reference: Vec<f64>,
     magnitude: Vec<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let band = Band {
-        low_hz: band_hz.0,
-        high_hz: band_hz.1,
-    };
+    let band = Band { low_hz: band_hz.0, high_hz: band_hz.1 };
     check(&frequency_hz, band, &reference, &magnitude)?;
-    let reference = SpectrumRef {
-        band,
-        frequency_hz: &frequency_hz,
-        magnitude: &reference,
-    };
+    let reference = SpectrumRef { band, frequency_hz: &frequency_hz, magnitude: &reference };
     let found = py.detach(|| htex_author::agreement(reference, &magnitude));
     let Keyed(measures) = found.measures.keyed(By::Magnitude, Measure::stored());
-    let mut fields: BTreeMap<_, Value> = measures
-        .into_iter()
-        .map(|(key, value)| (key, value.into()))
-        .collect();
+    let mut fields: BTreeMap<_, Value> =
+        measures.into_iter().map(|(key, value)| (key, value.into())).collect();
     fields.insert("band_error_db", found.band_error_db.into());
     fields.insert("matching_gain_db", found.matching_gain_db.into());
     from_json(py, &fields)
@@ -212,8 +201,6 @@ fn check(frequency_hz: &[f64], band: Band, reference: &[f64], magnitude: &[f64])
     let is_magnitude = |m: &f64| (0.0..=1e12).contains(m);
     match reference.iter().chain(magnitude).all(is_magnitude) {
         true => Ok(()),
-        false => Err(option(
-            "magnitudes must be 0 to 1e12; one is not, or is not a number",
-        )),
+        false => Err(option("magnitudes must be 0 to 1e12; one is not, or is not a number")),
     }
 }

@@ -61,9 +61,7 @@ impl Build {
     /// Keeps what a job made.
     fn store(&self, py: Python<'_>, key: &str, made: PyBackedBytes) -> PyResult<()> {
         py.detach(|| match &mut *self.lock() {
-            Some(build) => build
-                .store(key, &made)
-                .map_err(|error| failed_while_open(build, error)),
+            Some(build) => build.store(key, &made).map_err(|error| failed_while_open(build, error)),
             None => Err(finished()),
         })
     }
@@ -127,11 +125,7 @@ pub(crate) fn unhashed(
     output: PathBuf,
 ) -> PyResult<Vec<OsString>> {
     let files = py.detach(|| htex_build::unhashed(&recipe, &output));
-    Ok(files
-        .map_err(raised)?
-        .into_iter()
-        .map(OsString::from)
-        .collect())
+    Ok(files.map_err(raised)?.into_iter().map(OsString::from).collect())
 }
 
 /// Hashes a file of a recipe; returns the hash as JSON.
@@ -154,8 +148,7 @@ pub(crate) fn remember(
         Ok((file, hashed.map_err(|error| option(error.to_string()))?))
     });
     let hashed = hashed.collect::<PyResult<Vec<_>>>()?;
-    py.detach(|| htex_build::remember(&output, hashed))
-        .map_err(raised)
+    py.detach(|| htex_build::remember(&output, hashed)).map_err(raised)
 }
 
 /// Does a job, given as JSON, with the key that it has; returns what it made.

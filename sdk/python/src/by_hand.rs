@@ -54,14 +54,8 @@ pub(crate) fn mix(
         let metadata = checked(metadata)?;
         let hashes = [hash(a)?, hash(b)?];
         let mixed = by_hand::mix(
-            MixedAsset {
-                asset: a.asset(),
-                blake3: &hashes[0],
-            },
-            MixedAsset {
-                asset: b.asset(),
-                blake3: &hashes[1],
-            },
+            MixedAsset { asset: a.asset(), blake3: &hashes[0] },
+            MixedAsset { asset: b.asset(), blake3: &hashes[1] },
             weight,
             metadata.name.as_deref().unwrap_or("mix"),
             TOOL,
@@ -104,11 +98,7 @@ impl Made {
         let name = metadata.name.as_deref().unwrap_or("texture");
         let (speed_mm_s, force_n) = self.at;
         let mut texture = ByHand::new(name, self.level_rms, TOOL)
-            .at(Condition {
-                speed_mm_s,
-                force_n,
-                ..Condition::default()
-            })
+            .at(Condition { speed_mm_s, force_n, ..Condition::default() })
             .with_quantity(quantity);
         texture.values = self.parameters;
         let mut asset = by_hand::make(model, &texture).or_raise()?;

@@ -1,5 +1,5 @@
-//! Exceptions of models that are written in Python. The host passes their texts on; the exception that is raised for one
-//! gets the original as its cause.
+//! Exceptions of models that are written in Python. The host passes their texts on; the exception
+//! that is raised for one gets the original as its cause.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
@@ -36,7 +36,8 @@ pub(crate) fn failed(py: Python<'_>, error: PyErr) -> Error {
     Error::new(Status::Failed, keep(py, error))
 }
 
-/// Sets the kept exception whose text is part of this one's as its cause. An interrupt is returned itself.
+/// Sets the kept exception whose text is part of this one's as its cause. An interrupt is returned
+/// itself.
 pub(crate) fn attach(error: PyErr) -> PyErr {
     Python::attach(|py| {
         let text = error.to_string();

@@ -19,7 +19,8 @@ use crate::python::{data, from_json};
 #[pyclass(module = "htex")]
 pub(crate) struct Device {
     name: String,
-    /// None when it is closed. The lock is for the interpreter alone: each call has the object to itself.
+    /// None when it is closed. The lock is for the interpreter alone: each call has the object to
+    /// itself.
     device: Mutex<Option<Box<dyn Opened>>>,
     can: Capabilities,
     rate_hz: f64,
@@ -91,8 +92,7 @@ impl Device {
             .map_err(|_| option(format!("timeout_s is {timeout_s}; at least 0")))?;
         let samples = samples.as_slice()?.to_vec();
         let device = self.open()?;
-        py.detach(|| device.write(&samples, timeout))
-            .map_err(raised)
+        py.detach(|| device.write(&samples, timeout)).map_err(raised)
     }
 
     /// What it did so far.
@@ -147,9 +147,7 @@ impl Device {
 
 impl Device {
     fn slot(&mut self) -> &mut Option<Box<dyn Opened>> {
-        self.device
-            .get_mut()
-            .unwrap_or_else(PoisonError::into_inner)
+        self.device.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn open(&mut self) -> PyResult<&mut Box<dyn Opened>> {
@@ -158,7 +156,8 @@ impl Device {
     }
 }
 
-/// The devices, as `htex device list --json` has them: what each is, its settings, what is connected.
+/// The devices, as `htex device list --json` has them: what each is, its settings, what is
+/// connected.
 #[pyfunction(name = "devices")]
 #[pyo3(signature = (*, installed=false))]
 pub(crate) fn listed(py: Python<'_>, installed: bool) -> PyResult<Bound<'_, PyAny>> {
@@ -178,11 +177,7 @@ pub(crate) fn listed(py: Python<'_>, installed: bool) -> PyResult<Bound<'_, PyAn
 
 /// The devices that the command has, and the installed ones if requested.
 pub(crate) fn devices(installed: bool) -> Result<Devices, DeviceError> {
-    let search = Search {
-        env: installed,
-        user_dir: installed,
-        ..Search::default()
-    };
+    let search = Search { env: installed, user_dir: installed, ..Search::default() };
     Devices::search(htex_device_builtin::devices(), &search)
 }
 

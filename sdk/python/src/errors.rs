@@ -44,7 +44,8 @@ impl<T, E: IntoPyErr> OrRaise<T> for Result<T, E> {
     }
 }
 
-/// Makes the `OSError` of a file; its subclass, such as `FileNotFoundError`, follows from the system's number.
+/// Makes the `OSError` of a file; its subclass, such as `FileNotFoundError`, follows from the
+/// system's number.
 pub(crate) fn of_file(path: &Path, error: &io::Error) -> PyErr {
     match error.raw_os_error() {
         Some(number) => {

@@ -92,9 +92,7 @@ impl Importing {
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         Format::of_file(&name).or_raise()?;
         let metadata: Metadata = parsed(&self.metadata)?;
-        metadata
-            .check()
-            .map_err(|error| option(error.to_string()))?;
+        metadata.check().map_err(|error| option(error.to_string()))?;
         let fit: FitSettings = parsed(&self.settings)?;
         let quantity = Quantity::from_name(&self.quantity).ok_or_else(|| {
             let known: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();

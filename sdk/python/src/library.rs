@@ -82,12 +82,7 @@ impl Library {
             };
             htex::Library::open_source(origin)
         });
-        Ok(Self {
-            library: opened.or_raise()?,
-            plugins,
-            embedded,
-            installed,
-        })
+        Ok(Self { library: opened.or_raise()?, plugins, embedded, installed })
     }
 
     /// Name of the library; may be empty.
@@ -121,13 +116,7 @@ impl Library {
         force_n: Option<f64>,
         model: Option<String>,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let query = Query {
-            words: words.extract()?,
-            tags,
-            speed_mm_s,
-            force_n,
-            model,
-        };
+        let query = Query { words: words.extract()?, tags, speed_mm_s, force_n, model };
         let entries = py.detach(|| self.matching(&query))?;
         entries.iter().map(|entry| entry_data(py, entry)).collect()
     }
@@ -207,8 +196,9 @@ fn entry_data<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyAny>
     data(py, "LibraryEntry", &fields)
 }
 
-/// Packs textures into a library, by their names: paths, bytes, objects with the method `read`, or `Texture`s. Each states a licence, since a
-/// library is passed on; with `unlicensed=True` those that state none are packed, too.
+/// Packs textures into a library, by their names: paths, bytes, objects with the method `read`, or
+/// `Texture`s. Each states a licence, since a library is passed on; with `unlicensed=True` those
+/// that state none are packed, too.
 #[pyfunction]
 #[pyo3(signature = (path, textures, *, name="", unlicensed=false))]
 pub(crate) fn pack(

@@ -9,13 +9,11 @@ use crate::errors::OrRaise;
 use crate::python::from_json;
 use crate::python_model;
 
-/// Searches models: plugin files and folders of them, the installed ones if requested, the built-in ones, and those that
-/// are written in Python.
+/// Searches models: plugin files and folders of them, the installed ones if requested, the built-in
+/// ones, and those that are written in Python.
 pub(crate) fn registry(plugins: &[PathBuf], installed: bool) -> PyResult<Registry> {
     let (dirs, files) = plugins.iter().cloned().partition(|path| path.is_dir());
-    let places = Search::builtin()
-        .with_env(installed)
-        .with_user_dir(installed);
+    let places = Search::builtin().with_env(installed).with_user_dir(installed);
     let mut registry = Registry::search(&places.with_files(files).with_dirs(dirs)).or_raise()?;
     python_model::add_to(&mut registry)?;
     Ok(registry)

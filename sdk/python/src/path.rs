@@ -62,9 +62,7 @@ pub(crate) fn located(
     match (x_mm, y_mm) {
         (Some(x), Some(y)) => Ok(motion.with_place_mm(x, y)),
         (None, None) => Ok(motion),
-        _ => Err(option(
-            "a place is two numbers: give x_mm and y_mm, or neither",
-        )),
+        _ => Err(option("a place is two numbers: give x_mm and y_mm, or neither")),
     }
 }
 
@@ -93,10 +91,7 @@ impl Path {
             let checked = motion.checked();
             checked.map_err(|error| MotionError::new_err(format!("block {i}: {error}")))
         };
-        Ok(Self {
-            motions: (0..count).map(motion).collect::<PyResult<_>>()?,
-            block,
-        })
+        Ok(Self { motions: (0..count).map(motion).collect::<PyResult<_>>()?, block })
     }
 
     /// Returns a buffer for all samples of the path.

@@ -1,7 +1,8 @@
 //! Models that are written in Python. They run under the interpreter's lock, in this process only.
 //!
-//! They are objects ([`RuntimeModel`]), whose arguments and results the host checks as for other models. Exceptions
-//! pass the host as texts; the exception that is raised for one gets the original as its cause.
+//! They are objects ([`RuntimeModel`]), whose arguments and results the host checks as for other
+//! models. Exceptions pass the host as texts; the exception that is raised for one gets the
+//! original as its cause.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -28,7 +29,8 @@ fn registered() -> MutexGuard<'static, Vec<(Descriptor, Arc<PythonModel>)>> {
     REGISTERED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Registers a model, or replaces the one of its id. `adapter` converts parameters and checks results.
+/// Registers a model, or replaces the one of its id. `adapter` converts parameters and checks
+/// results.
 #[pyfunction]
 pub(crate) fn register_model(
     py: Python<'_>,
@@ -70,9 +72,7 @@ pub(crate) fn unregister_model(py: Python<'_>, id: &str) -> bool {
 pub(crate) fn add_to(registry: &mut Registry) -> PyResult<()> {
     let all = registered().clone();
     for (descriptor, model) in all {
-        registry
-            .add_runtime_model(ORIGIN, descriptor, model)
-            .or_raise()?;
+        registry.add_runtime_model(ORIGIN, descriptor, model).or_raise()?;
     }
     Ok(())
 }
@@ -93,10 +93,7 @@ fn numbers(value: &Bound<'_, PyAny>, wanted: usize) -> PyResult<Vec<f64>> {
     let numbers: Vec<f64> = value.extract()?;
     match numbers.len() == wanted {
         true => Ok(numbers),
-        false => Err(option(format!(
-            "{} numbers for {wanted} frequencies",
-            numbers.len()
-        ))),
+        false => Err(option(format!("{} numbers for {wanted} frequencies", numbers.len()))),
     }
 }
 
@@ -142,10 +139,7 @@ impl RuntimeModel for PythonModel {
             };
             called().map_err(|error| failed(py, error))
         })?;
-        Ok(Fit {
-            parameters,
-            level_rms: level_rms(input.magnitude),
-        })
+        Ok(Fit { parameters, level_rms: level_rms(input.magnitude) })
     }
 
     fn magnitude(
@@ -155,11 +149,8 @@ impl RuntimeModel for PythonModel {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        let inside: Vec<f64> = frequency_hz
-            .iter()
-            .copied()
-            .filter(|hz| band.contains(*hz))
-            .collect();
+        let inside: Vec<f64> =
+            frequency_hz.iter().copied().filter(|hz| band.contains(*hz)).collect();
         let mut curve = self.curve(parameters.flat(), band, &inside)?.into_iter();
         for (m, hz) in magnitude.iter_mut().zip(frequency_hz) {
             let found = band.contains(*hz).then(|| curve.next()).flatten();
@@ -182,10 +173,8 @@ impl RuntimeModel for PythonModel {
         rate_hz: f64,
         seed: u64,
     ) -> Result<Box<dyn RuntimeVoice>, Error> {
-        let model = Python::attach(|py| Self {
-            adapter: self.adapter.clone_ref(py),
-            plays: self.plays,
-        });
+        let model =
+            Python::attach(|py| Self { adapter: self.adapter.clone_ref(py), plays: self.plays });
         if self.plays {
             let voice = Python::attach(|py| {
                 let arguments = (array(py, parameters.flat()), rate_hz, seed);
@@ -201,7 +190,8 @@ impl RuntimeModel for PythonModel {
     }
 }
 
-/// Noise with the magnitudes of a model. Rendering does not call Python; changing the parameters does.
+/// Noise with the magnitudes of a model. Rendering does not call Python; changing the parameters
+/// does.
 struct ShapedVoice {
     model: PythonModel,
     band: Band,

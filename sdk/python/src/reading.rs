@@ -51,10 +51,7 @@ pub(crate) type Pair = (Option<f64>, Option<f64>);
 
 impl Reading {
     pub(crate) fn new((settings, besides): &ReadingText) -> PyResult<Self> {
-        Ok(Self {
-            settings: parsed(settings)?,
-            besides: parsed(besides)?,
-        })
+        Ok(Self { settings: parsed(settings)?, besides: parsed(besides)? })
     }
 
     /// Whether recordings with findings that are errors or warnings are refused.
@@ -85,15 +82,13 @@ impl Reading {
             }
         };
         let take = |(i, (source, options))| {
-            Ok(Take {
-                recording: self.read(source, options)?,
-                given: given(i),
-            })
+            Ok(Take { recording: self.read(source, options)?, given: given(i) })
         };
         sources.iter().zip(&options).enumerate().map(take).collect()
     }
 
-    /// Reads one recording; returns it with the segments that were read, and their texture spectrum.
+    /// Reads one recording; returns it with the segments that were read, and their texture
+    /// spectrum.
     pub(crate) fn spectrum(
         &self,
         source: Source,
@@ -107,7 +102,8 @@ impl Reading {
         Ok((take.recording, read, spectrum))
     }
 
-    /// Reads a recording. One of `htex record` or of a study is read as the JSON beside it says, unless a setting says what the columns are.
+    /// Reads a recording. One of `htex record` or of a study is read as the JSON beside it says,
+    /// unless a setting says what the columns are.
     fn read(&self, source: &Source, options: &ReadOptions) -> PyResult<Recording> {
         let path = match source {
             Source::Bytes(name, bytes) => {

@@ -28,10 +28,7 @@ pub(crate) fn response<'py>(
         let records: Result<Vec<Record>, _> = records.into_iter().enumerate().map(record).collect();
         measure(&records?, &options)
     });
-    from_json(
-        py,
-        &json!({"measured": measured.or_raise()?, "settings": options}),
-    )
+    from_json(py, &json!({"measured": measured.or_raise()?, "settings": options}))
 }
 
 /// Returns the CSV file of a response.
@@ -51,11 +48,7 @@ pub(crate) fn response_csv(
             lengths[1]
         )));
     }
-    let response = SetupResponse {
-        frequency_hz,
-        magnitude,
-        phase_rad,
-    };
+    let response = SetupResponse { frequency_hz, magnitude, phase_rad };
     let mut csv = Vec::new();
     response.write_csv(&mut csv)?;
     Ok(PyBytes::new(py, &csv))

@@ -60,23 +60,11 @@ impl Scene {
         py.detach(|| {
             let models = registry(&plugins, installed)?;
             let devices = devices(installed).or_raise()?;
-            let around = Surroundings {
-                models: &models,
-                embedded,
-                devices: &devices,
-            };
+            let around = Surroundings { models: &models, embedded, devices: &devices };
             let loaded = LoadedScene::open(&path, &around, &device).or_raise()?;
             let known = devices.find(&loaded.scene.device.adapter).or_raise()?;
             let able = known.adapter.capabilities(&loaded.settings).or_raise()?;
-            Ok(Self {
-                file: path,
-                models,
-                embedded,
-                device,
-                loaded,
-                able,
-                devices,
-            })
+            Ok(Self { file: path, models, embedded, device, loaded, able, devices })
         })
     }
 
@@ -115,9 +103,7 @@ impl Scene {
             let mut loaded = self.loaded.clone();
             if let Some(seconds) = seconds {
                 if !(seconds > 0.0 && seconds <= 1e9) {
-                    return Err(option(format!(
-                        "seconds is {seconds}; more than 0, at most 1e9"
-                    )));
+                    return Err(option(format!("seconds is {seconds}; more than 0, at most 1e9")));
                 }
                 loaded.scene.duration_s = Some(seconds);
             }
@@ -139,7 +125,8 @@ impl Scene {
         Ok(samples.into_pyarray(py))
     }
 
-    /// Returns the samples of the scene at another motion: one speed, force and position for each block of samples.
+    /// Returns the samples of the scene at another motion: one speed, force and position for each
+    /// block of samples.
     #[pyo3(signature = (speed_mm_s, force_n, x_mm=None, y_mm=None, block=64))]
     fn render_path<'py>(
         &self,
@@ -151,17 +138,10 @@ impl Scene {
         block: usize,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         if x_mm.is_some() != y_mm.is_some() {
-            return Err(option(
-                "a position has two coordinates; give x_mm and y_mm, or neither",
-            ));
+            return Err(option("a position has two coordinates; give x_mm and y_mm, or neither"));
         }
         let samples = py.detach(|| {
-            let given = [
-                Some(&speed_mm_s),
-                Some(&force_n),
-                x_mm.as_ref(),
-                y_mm.as_ref(),
-            ];
+            let given = [Some(&speed_mm_s), Some(&force_n), x_mm.as_ref(), y_mm.as_ref()];
             let samples = count(&given, block)?;
             let loaded = self.live()?;
             let plan = self.planned(&loaded)?;
@@ -187,10 +167,7 @@ impl Scene {
     fn __repr__(&self) -> String {
         let (file, surfaces) = (self.file.display(), self.loaded.scene.surfaces.len());
         let device = &self.loaded.scene.device.adapter;
-        format!(
-            "<htex.Scene {file}: {surfaces} surface(s), device {device} in {}>",
-            self.unit()
-        )
+        format!("<htex.Scene {file}: {surfaces} surface(s), device {device} in {}>", self.unit())
     }
 }
 
@@ -201,15 +178,9 @@ impl Scene {
 
     /// Loads the scene for a motion that is given while it plays.
     fn live(&self) -> PyResult<LoadedScene> {
-        let around = Surroundings {
-            models: &self.models,
-            embedded: self.embedded,
-            devices: &self.devices,
-        };
-        let device = DeviceOverride {
-            live: true,
-            ..self.device.clone()
-        };
+        let around =
+            Surroundings { models: &self.models, embedded: self.embedded, devices: &self.devices };
+        let device = DeviceOverride { live: true, ..self.device.clone() };
         let mut loaded = LoadedScene::open(&self.file, &around, &device).or_raise()?;
         loaded.scene.motion = Motion::Live;
         loaded.scene.duration_s = None;

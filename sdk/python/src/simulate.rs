@@ -24,7 +24,8 @@ pub(crate) enum Range {
     One(f64),
 }
 
-/// Simulates a recording; returns its columns, the CSV file of them, and the response of the simulated setup.
+/// Simulates a recording; returns its columns, the CSV file of them, and the response of the
+/// simulated setup.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn simulate<'py>(
@@ -56,15 +57,12 @@ pub(crate) fn simulate<'py>(
         ("y_mm", simulation.y_mm),
     ];
     let columns = columns.map(|(name, values)| (name, values.into_pyarray(py)));
-    let response = [
-        response.frequency_hz,
-        response.magnitude,
-        response.phase_rad,
-    ];
+    let response = [response.frequency_hz, response.magnitude, response.phase_rad];
     Ok((columns.into(), PyBytes::new(py, &csv), response))
 }
 
-/// The exponents of a law as JSON, the drift in decibels per minute, and the part of the time that the finger is off the surface.
+/// The exponents of a law as JSON, the drift in decibels per minute, and the part of the time that
+/// the finger is off the surface.
 fn departing((law, drift_db_per_min, lifted): (&str, f64, f64)) -> PyResult<Departures> {
     let law: GivenLaw =
         serde_json::from_str(law).map_err(|error| option(format!("law: {error}")))?;
@@ -98,9 +96,9 @@ fn moved(
     let one = |range: Option<Range>, name: &str, usual| match range {
         None => Ok(usual),
         Some(Range::One(value)) => Ok(value),
-        Some(Range::Between(..)) => Err(option(format!(
-            "{name}: sweeps have one value; a range needs motion=\"free\""
-        ))),
+        Some(Range::Between(..)) => {
+            Err(option(format!("{name}: sweeps have one value; a range needs motion=\"free\"")))
+        }
     };
     let speed = one(speed_mm_s, "speed_mm_s", options.speed_mm_s)?;
     let force = one(force_n, "force_n", options.force_n)?;

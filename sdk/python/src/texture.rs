@@ -72,10 +72,7 @@ impl Source {
                 format!("expected a path, bytes or a file opened in binary mode, got {class}");
             return Err(PyTypeError::new_err(text));
         }
-        let bytes = read
-            .py()
-            .import("builtins")?
-            .call_method1("bytes", (read,))?;
+        let bytes = read.py().import("builtins")?.call_method1("bytes", (read,))?;
         Ok(Self::Bytes(bytes.cast::<PyBytes>()?.as_bytes().to_vec()))
     }
 }
@@ -95,18 +92,15 @@ impl Texture {
     ) -> PyResult<Self> {
         let asset = Asset::with_registry(data, registry(&plugins, installed)?);
         Ok(Self {
-            asset: if embedded {
-                asset.with_embedded()
-            } else {
-                asset
-            },
+            asset: if embedded { asset.with_embedded() } else { asset },
             plugins,
             embedded,
             installed,
         })
     }
 
-    /// Makes a texture of what the file of a made asset holds: levels and errors have fewer digits there.
+    /// Makes a texture of what the file of a made asset holds: levels and errors have fewer digits
+    /// there.
     pub(crate) fn of(
         made: &htex::format::Asset,
         plugins: Vec<PathBuf>,
@@ -117,23 +111,14 @@ impl Texture {
 
     /// Makes a texture of an asset's file.
     pub(crate) fn of_bytes(bytes: &[u8], plugins: Vec<PathBuf>, installed: bool) -> PyResult<Self> {
-        Self::new(
-            AssetData::from_bytes(bytes).or_raise()?,
-            plugins,
-            true,
-            installed,
-        )
+        Self::new(AssetData::from_bytes(bytes).or_raise()?, plugins, true, installed)
     }
 
-    /// Makes a texture of an asset that was made of this one, and of `others`: models that one of them does not run, it does not run either.
+    /// Makes a texture of an asset that was made of this one, and of `others`: models that one of
+    /// them does not run, it does not run either.
     pub(crate) fn made_of(&self, made: &htex::format::Asset, others: &[&Self]) -> PyResult<Self> {
         let embedded = self.embedded && others.iter().all(|other| other.embedded);
-        Self::new(
-            stored(made)?,
-            self.plugins.clone(),
-            embedded,
-            self.installed,
-        )
+        Self::new(stored(made)?, self.plugins.clone(), embedded, self.installed)
     }
 
     pub(crate) fn asset(&self) -> &Asset {
@@ -143,19 +128,10 @@ impl Texture {
     /// Returns the motion at a condition; a missing value comes from the default condition.
     fn motion(&self, model: Option<&str>, at: Option<At>) -> PyResult<Option<Motion>> {
         match at {
-            None
-            | Some(At {
-                speed_mm_s: None,
-                force_n: None,
-            }) => Ok(None),
-            Some(At {
-                speed_mm_s,
-                force_n,
-            }) => self
-                .asset
-                .motion(model, speed_mm_s, force_n)
-                .map(Some)
-                .or_raise(),
+            None | Some(At { speed_mm_s: None, force_n: None }) => Ok(None),
+            Some(At { speed_mm_s, force_n }) => {
+                self.asset.motion(model, speed_mm_s, force_n).map(Some).or_raise()
+            }
         }
     }
 
@@ -176,16 +152,10 @@ impl<'py> FromPyObject<'_, 'py> for At {
 
     fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let (speed_mm_s, force_n) = match value.hasattr("speed_mm_s")? {
-            true => (
-                value.getattr("speed_mm_s")?.extract()?,
-                value.getattr("force_n")?.extract()?,
-            ),
+            true => (value.getattr("speed_mm_s")?.extract()?, value.getattr("force_n")?.extract()?),
             false => value.extract()?,
         };
-        Ok(Self {
-            speed_mm_s,
-            force_n,
-        })
+        Ok(Self { speed_mm_s, force_n })
     }
 }
 
@@ -280,7 +250,8 @@ impl Texture {
         spectrum(py, quantity, band, frequency_hz, magnitude.or_raise()?)
     }
 
-    /// Returns the magnitudes of a representation at a recorded condition as a recording of its voice reads them.
+    /// Returns the magnitudes of a representation at a recorded condition as a recording of its
+    /// voice reads them.
     #[pyo3(signature = (model=None, condition=None))]
     fn read_spectrum<'py>(
         &self,
@@ -288,9 +259,8 @@ impl Texture {
         model: Option<&str>,
         condition: Option<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let condition = condition
-            .map_or_else(|| self.asset.default_condition(model), Ok)
-            .or_raise()?;
+        let condition =
+            condition.map_or_else(|| self.asset.default_condition(model), Ok).or_raise()?;
         let known = self.asset.manifest().conditions.get(condition);
         let known =
             known.ok_or_else(|| option(format!("condition is {condition}; there is none")))?;
@@ -301,16 +271,13 @@ impl Texture {
         let level = self.asset.level_rms(model, motion).or_raise()?;
         let loaded = self.asset.loaded_model(model).or_raise()?;
         let (frequency_hz, silent) = (band.grid_hz(), vec![0.0; band.bins()]);
-        let grid = SpectrumRef {
-            band,
-            frequency_hz: &frequency_hz,
-            magnitude: &silent,
-        };
+        let grid = SpectrumRef { band, frequency_hz: &frequency_hz, magnitude: &silent };
         let read = py.detach(|| read_spectrum(&loaded, &parameters, level, grid));
         spectrum(py, quantity, band, frequency_hz.clone(), read.or_raise()?)
     }
 
-    /// Returns the level of a representation at a condition: RMS in the band, in the unit of the samples.
+    /// Returns the level of a representation at a condition: RMS in the band, in the unit of the
+    /// samples.
     #[pyo3(signature = (model=None, at=None))]
     fn level(&self, py: Python<'_>, model: Option<&str>, at: Option<At>) -> PyResult<f64> {
         let motion = self.motion(model, at)?;
@@ -326,9 +293,7 @@ impl Texture {
         at: Option<At>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let motion = self.motion(model, at)?;
-        let all = py
-            .detach(|| self.asset.named_parameters(model, motion))
-            .or_raise()?;
+        let all = py.detach(|| self.asset.named_parameters(model, motion)).or_raise()?;
         let named = PyDict::new(py);
         for (name, parameter) in all {
             match parameter {
@@ -376,10 +341,7 @@ impl Texture {
         envelope_bands: usize,
     ) -> PyResult<Voice> {
         check_rate(rate_hz)?;
-        let at = At {
-            speed_mm_s,
-            force_n,
-        };
+        let at = At { speed_mm_s, force_n };
         let motion = self.motion(model, Some(at))?;
         let motion = match motion {
             Some(motion) => Some(located(motion, position_mm, [x_mm, y_mm])?),
@@ -458,8 +420,6 @@ fn write(path: &Path, bytes: &[u8]) -> PyResult<()> {
 fn check_rate(rate_hz: f64) -> PyResult<()> {
     match (100.0..=1e6).contains(&rate_hz) {
         true => Ok(()),
-        false => Err(option(format!(
-            "rate_hz is {rate_hz}; 100 to 1,000,000 Hz are allowed"
-        ))),
+        false => Err(option(format!("rate_hz is {rate_hz}; 100 to 1,000,000 Hz are allowed"))),
     }
 }

@@ -12,7 +12,8 @@ use crate::errors::OrRaise;
 use crate::path::{Path, Series, located};
 use crate::python::{data, zeros};
 
-/// A voice: an endless stream of samples in the texture's unit, which follows the motion of the finger.
+/// A voice: an endless stream of samples in the texture's unit, which follows the motion of the
+/// finger.
 #[pyclass(frozen, module = "htex")]
 pub(crate) struct Voice {
     voice: Mutex<htex::Voice>,
@@ -30,13 +31,7 @@ impl Voice {
         seed: u64,
         unit: &'static str,
     ) -> Self {
-        Self {
-            voice: Mutex::new(voice),
-            model,
-            rate_hz,
-            seed,
-            unit,
-        }
+        Self { voice: Mutex::new(voice), model, rate_hz, seed, unit }
     }
 
     /// Waits for a call of another thread; called without the interpreter.
@@ -94,9 +89,8 @@ impl Voice {
         let mut borrowed = array.try_readwrite().map_err(|error| {
             PyValueError::new_err(format!("the array cannot be written to: {error}"))
         })?;
-        let samples = borrowed
-            .as_slice_mut()
-            .map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let samples =
+            borrowed.as_slice_mut().map_err(|error| PyValueError::new_err(error.to_string()))?;
         py.detach(|| self.lock().render(samples).or_raise())
     }
 
@@ -161,7 +155,8 @@ impl Voice {
         edges_hz.into_pyarray(py)
     }
 
-    /// Returns what was rendered since the last call: level, mean frequency and mean squares in bands.
+    /// Returns what was rendered since the last call: level, mean frequency and mean squares in
+    /// bands.
     fn envelope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (envelope, bands) = py.detach(|| {
             let mut voice = self.lock();
@@ -200,10 +195,7 @@ impl Voice {
 
     fn __repr__(&self) -> String {
         let (model, rate, unit) = (&self.model, self.rate_hz, self.unit);
-        format!(
-            "<htex.Voice of {model} at {rate} Hz in {unit}, seed {}>",
-            self.seed
-        )
+        format!("<htex.Voice of {model} at {rate} Hz in {unit}, seed {}>", self.seed)
     }
 }
 

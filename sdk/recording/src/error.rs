@@ -1,6 +1,7 @@
 //! Errors of reading recordings, setup responses and motion traces.
 //!
-//! A reader says what is wrong and where ([`Fault`]); the name of the file is added where it is opened.
+//! A reader says what is wrong and where ([`Fault`]); the name of the file is added where it is
+//! opened.
 
 use std::borrow::Cow;
 use std::{fmt, io};
@@ -73,12 +74,7 @@ pub enum ReadProblem {
     #[error(
         "column {first:?} has {rows} numbers, {other:?} has {got}; map columns of equal lengths, such as those of one run"
     )]
-    Lengths {
-        first: String,
-        rows: usize,
-        other: String,
-        got: usize,
-    },
+    Lengths { first: String, rows: usize, other: String, got: usize },
     /// The file is damaged or of an unsupported kind, or its numbers are not what they are to be.
     #[error("{0}")]
     Invalid(String),
@@ -170,10 +166,7 @@ impl ReadProblem {
     }
 
     pub(crate) fn at(self, place: impl Into<Place>) -> Fault {
-        Fault {
-            place: Some(place.into()),
-            problem: self,
-        }
+        Fault { place: Some(place.into()), problem: self }
     }
 
     pub(crate) fn invalid(problem: impl fmt::Display) -> Self {
@@ -195,20 +188,13 @@ pub(crate) struct Fault {
 
 impl Fault {
     pub(crate) fn in_file(self, file: &str) -> ReadError {
-        ReadError {
-            file: file.to_owned(),
-            place: self.place,
-            problem: self.problem,
-        }
+        ReadError { file: file.to_owned(), place: self.place, problem: self.problem }
     }
 }
 
 impl From<ReadProblem> for Fault {
     fn from(problem: ReadProblem) -> Self {
-        Self {
-            place: None,
-            problem,
-        }
+        Self { place: None, problem }
     }
 }
 

@@ -87,11 +87,7 @@ fn read(file: &str, tracker: &Tracker, options: &ReadOptions) -> Result<Motion, 
     warnings.append(&mut signals.warnings());
     warnings.extend(gap(&time_s).map(Notice::from));
     let of_file = |told: Notice| Notice::new(format!("{file}: {told}"), told.hint);
-    Ok(Motion {
-        warnings: warnings.into_iter().map(of_file).collect(),
-        time_s,
-        path,
-    })
+    Ok(Motion { warnings: warnings.into_iter().map(of_file).collect(), time_s, path })
 }
 
 fn check_time(sheet: &dyn Sheet, time_s: &[f64]) -> Result<(), Fault> {
@@ -149,7 +145,8 @@ impl Motion {
         self.time_s.last().copied().unwrap_or(0.0)
     }
 
-    /// Returns the samples, at ascending times, that the tracker covers, as a range; refuses fewer than two.
+    /// Returns the samples, at ascending times, that the tracker covers, as a range; refuses fewer
+    /// than two.
     fn covered(
         &self,
         samples: usize,
@@ -157,14 +154,8 @@ impl Motion {
     ) -> Result<(usize, usize), ReadProblem> {
         let (first_s, last_s) = (self.first_s(), self.last_s());
         let all = 0..samples;
-        let from = all
-            .clone()
-            .position(|sample| second(sample) >= first_s)
-            .unwrap_or(samples);
-        let to = all
-            .rev()
-            .find(|sample| second(*sample) <= last_s)
-            .map_or(0, |last| last + 1);
+        let from = all.clone().position(|sample| second(sample) >= first_s).unwrap_or(samples);
+        let to = all.rev().find(|sample| second(*sample) <= last_s).map_or(0, |last| last + 1);
         if to >= from + 2 {
             return Ok((from, to));
         }

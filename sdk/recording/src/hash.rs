@@ -7,7 +7,8 @@ use std::time::SystemTime;
 
 /// The file that a recording was read from, as far as its hash needs it.
 ///
-/// A file is hashed where provenance asks for it, and not when it is read, which would read it twice for a tenth of the time.
+/// A file is hashed where provenance asks for it, and not when it is read, which would read it
+/// twice for a tenth of the time.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RecordedFile(Known);
 
@@ -35,8 +36,8 @@ impl RecordedFile {
         Self(Known::Hash(blake3::hash(bytes).to_hex().to_string()))
     }
 
-    /// BLAKE3 of the file's bytes, 64 hexadecimal digits. `None` where there is no file, and where the file is another one
-    /// than at the reading, or cannot be read any more.
+    /// BLAKE3 of the file's bytes, 64 hexadecimal digits. `None` where there is no file, and where
+    /// the file is another one than at the reading, or cannot be read any more.
     pub fn blake3(&self) -> Option<String> {
         match &self.0 {
             Known::Nothing => None,
@@ -61,10 +62,7 @@ impl Version {
     }
 
     fn of_metadata(metadata: &Metadata) -> Self {
-        Self {
-            bytes: metadata.len(),
-            modified: metadata.modified().ok(),
-        }
+        Self { bytes: metadata.len(), modified: metadata.modified().ok() }
     }
 }
 

@@ -2,16 +2,9 @@
 
 /// Formats a rate with at most one decimal, or three below 10 Hz: `524.7 Hz`, `20000 Hz`.
 pub fn hertz(rate_hz: f64) -> String {
-    let text = if rate_hz.abs() < 10.0 {
-        format!("{rate_hz:.3}")
-    } else {
-        format!("{rate_hz:.1}")
-    };
-    let text = if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        &text
-    };
+    let text = if rate_hz.abs() < 10.0 { format!("{rate_hz:.3}") } else { format!("{rate_hz:.1}") };
+    let text =
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     format!("{text} Hz")
 }
 

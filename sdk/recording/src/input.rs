@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Fault, ReadProblem};
 
-/// The largest file that is read, bytes. The numbers kept of it are limited by [`crate::MOST_VALUES`].
+/// The largest file that is read, bytes. The numbers kept of it are limited by
+/// [`crate::MOST_VALUES`].
 const MAX_BYTES: u64 = 4 << 30;
 
-/// First bytes that are read to detect the kind of file: an HDF5 signature is at most this far from the start.
+/// First bytes that are read to detect the kind of file: an HDF5 signature is at most this far from
+/// the start.
 const FRONT: usize = 4096;
 
 /// A file, or bytes.
@@ -60,11 +62,7 @@ impl<'a> Opened<'a> {
     fn new(path: &Path, mut input: Input<'a>) -> Result<Self, Fault> {
         let mut front = Vec::new();
         input.by_ref().take(FRONT as u64).read_to_end(&mut front)?;
-        Ok(Self {
-            path: path.to_owned(),
-            front,
-            rest: input,
-        })
+        Ok(Self { path: path.to_owned(), front, rest: input })
     }
 
     /// Returns all bytes, in their order.
@@ -72,7 +70,8 @@ impl<'a> Opened<'a> {
         Cursor::new(self.front).chain(self.rest)
     }
 
-    /// Returns the input for access in any order. What cannot be read twice, such as a pipe, is read into memory.
+    /// Returns the input for access in any order. What cannot be read twice, such as a pipe, is
+    /// read into memory.
     pub(crate) fn random(self) -> io::Result<Random> {
         let mut bytes = self.front;
         match self.rest {
@@ -131,8 +130,5 @@ impl Seek for Random {
 
 /// Returns the file's name without its directory.
 pub(crate) fn file_name(path: &Path) -> String {
-    path.file_name()
-        .unwrap_or(path.as_os_str())
-        .to_string_lossy()
-        .into_owned()
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

@@ -1,5 +1,5 @@
-//! Recordings of a finger that slides on a texture, and the readers of their files: CSV, and the other [`FORMATS`] by the
-//! features of this crate.
+//! Recordings of a finger that slides on a texture, and the readers of their files: CSV, and the
+//! other [`FORMATS`] by the features of this crate.
 //!
 //! ```no_run
 //! # use std::path::Path;
@@ -13,8 +13,8 @@
 //! # Ok::<(), htex_recording::ReadError>(())
 //! ```
 //!
-//! A format is read by a library where that checks what it reads. All readers read only the columns that are used, and
-//! take no memory for a size that the file does not hold.
+//! A format is read by a library where that checks what it reads. All readers read only the columns
+//! that are used, and take no memory for a size that the file does not hold.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
@@ -78,7 +78,8 @@ use error::Fault;
 use follow::follow;
 use input::{Opened, file_name};
 
-/// Reads a recording. The kind of file is detected by its first bytes; a file without a signature by its extension.
+/// Reads a recording. The kind of file is detected by its first bytes; a file without a signature
+/// by its extension.
 ///
 /// The recording's warnings list assumed units, gaps in time and unused columns.
 ///

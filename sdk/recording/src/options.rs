@@ -12,14 +12,15 @@ use crate::value_limit::{MOST_VALUES, ValueLimit};
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// Sample rate, hertz. Required where the file has neither a rate nor times. It takes precedence over both, but must equal the
-    /// rate of a WAV or FLAC.
+    /// Sample rate, hertz. Required where the file has neither a rate nor times. It takes
+    /// precedence over both, but must equal the rate of a WAV or FLAC.
     pub rate_hz: Option<f64>,
     /// Roles of columns; columns that it leaves out are assigned by their names.
     pub map: Option<ColumnMap>,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
-    /// Value of a full-scale (1.0) sample in WAV, FLAC and NPY without a map, in the quantity's unit; 1 with a warning when absent.
+    /// Value of a full-scale (1.0) sample in WAV, FLAC and NPY without a map, in the quantity's
+    /// unit; 1 with a warning when absent.
     pub scale: Option<f64>,
     /// Start of the part to read, seconds of the file.
     pub from_s: Option<f64>,
@@ -27,7 +28,8 @@ pub struct ReadOptions {
     pub to_s: Option<f64>,
     /// A file with the motion of the finger.
     pub tracker: Option<Tracker>,
-    /// Limit on the numbers kept in memory of each file; [`MOST_VALUES`] when absent. Unused columns do not count.
+    /// Limit on the numbers kept in memory of each file; [`MOST_VALUES`] when absent. Unused
+    /// columns do not count.
     pub most_values: Option<usize>,
 }
 
@@ -89,9 +91,7 @@ impl ReadOptions {
 
     /// Returns the limit on the numbers kept in memory.
     pub(crate) fn value_limit(&self) -> ValueLimit {
-        ValueLimit {
-            most_values: self.most_values.unwrap_or(MOST_VALUES),
-        }
+        ValueLimit { most_values: self.most_values.unwrap_or(MOST_VALUES) }
     }
 
     /// Refuses values that no file can be read with.
@@ -104,10 +104,9 @@ impl ReadOptions {
                     "the given sample rate is {rate}; it must be above 0 and at most {MAX_RATE_HZ} Hz"
                 ),
             ),
-            (_, Some(scale)) if !scale.is_finite() || scale == 0.0 => refuse(
-                "scale",
-                format!("the given scale is {scale}; it must be finite and not 0"),
-            ),
+            (_, Some(scale)) if !scale.is_finite() || scale == 0.0 => {
+                refuse("scale", format!("the given scale is {scale}; it must be finite and not 0"))
+            }
             _ => Ok(()),
         }
     }

@@ -1,4 +1,5 @@
-//! What a file's columns are taken to be, before it is read: for programs that show it and let a person correct it.
+//! What a file's columns are taken to be, before it is read: for programs that show it and let a
+//! person correct it.
 
 use std::path::Path;
 
@@ -26,7 +27,8 @@ pub struct Preview {
     pub columns: Vec<PreviewColumn>,
     /// The rate that the file states, hertz; that of a column of times is not among them.
     pub rate_hz: Option<f64>,
-    /// The roles as a column map ([`crate::ColumnMap`]), which a person may correct; empty if no column has one.
+    /// The roles as a column map ([`crate::ColumnMap`]), which a person may correct; empty if no
+    /// column has one.
     pub map: String,
     /// Why the file cannot be read as a recording with these options, if it cannot.
     pub problem: Option<String>,
@@ -48,7 +50,8 @@ pub struct PreviewColumn {
     pub first: Vec<f64>,
 }
 
-/// Returns what the columns of a file are taken to be. `path` names it; the bytes are those of its contents.
+/// Returns what the columns of a file are taken to be. `path` names it; the bytes are those of its
+/// contents.
 ///
 /// ```
 /// use htex_recording::{ReadOptions, Role, preview};
@@ -62,8 +65,8 @@ pub struct PreviewColumn {
 /// ```
 ///
 /// # Errors
-/// When the file has no columns of numbers at all, or an option does not apply. Columns without a clear role are no error, but the
-/// [`Preview::problem`].
+/// When the file has no columns of numbers at all, or an option does not apply. Columns without a
+/// clear role are no error, but the [`Preview::problem`].
 pub fn preview(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Preview, ReadError> {
     let previewed = || {
         options.check()?;
@@ -72,15 +75,14 @@ pub fn preview(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Previ
             Layout::Text => beginning(bytes),
             Layout::Channels { .. } | Layout::Named => bytes,
         };
-        let first = first_numbers(&*sheet, || {
-            formats::open(Opened::bytes(path, bytes)?, options)
-        });
+        let first = first_numbers(&*sheet, || formats::open(Opened::bytes(path, bytes)?, options));
         Ok(of_sheet(&*sheet, first, options))
     };
     previewed().map_err(|fault: Fault| fault.in_file(&file_name(path)))
 }
 
-/// Returns the first numbers of each column; none of a column of words. A sheet is read once, so that it is opened for each reading.
+/// Returns the first numbers of each column; none of a column of words. A sheet is read once, so
+/// that it is opened for each reading.
 fn first_numbers<'a>(
     sheet: &dyn Sheet,
     open: impl Fn() -> Result<Box<dyn Sheet + 'a>, Fault>,
@@ -171,7 +173,8 @@ fn by_order(columns: &mut [PreviewColumn], options: &ReadOptions) -> Result<(), 
     Ok(())
 }
 
-/// Assigns columns that a map or their names select; what is computed of several has the role at its first column.
+/// Assigns columns that a map or their names select; what is computed of several has the role at
+/// its first column.
 fn by_name(selection: &Selection, columns: &mut [PreviewColumn], quantity: Quantity) {
     for chosen in &selection.chosen {
         let scale = match chosen.values {

@@ -6,7 +6,8 @@ use thiserror::Error;
 
 use crate::hash::RecordedFile;
 
-/// Highest sample rate, hertz: above that of any force sensor, and low enough that sample counts are exact.
+/// Highest sample rate, hertz: above that of any force sensor, and low enough that sample counts
+/// are exact.
 pub const MAX_RATE_HZ: f64 = 1e9;
 /// Largest magnitude of a sample, in any unit: sums of squares over hours stay finite.
 const LARGEST: f64 = 1e12;
@@ -28,21 +29,12 @@ pub enum RecordingError {
     #[error(
         "from {from_s} to {to_s} s there are fewer than 2 samples; the recording runs from {begins_s:.3} to {ends_s:.3} s"
     )]
-    Between {
-        from_s: f64,
-        to_s: f64,
-        begins_s: f64,
-        ends_s: f64,
-    },
+    Between { from_s: f64, to_s: f64, begins_s: f64, ends_s: f64 },
     /// A signal differs in length from the first axis.
     #[error(
         "the {signal} has {got} samples, the first axis has {expected}; all signals must be equally long"
     )]
-    Lengths {
-        signal: &'static str,
-        expected: usize,
-        got: usize,
-    },
+    Lengths { signal: &'static str, expected: usize, got: usize },
     /// A sample exceeds the largest magnitude.
     #[error(
         "the {signal} is {value} at sample {sample} (counted from 0), and no recording goes beyond {LARGEST}; correct its unit"
@@ -65,10 +57,11 @@ pub enum RecordingError {
     },
 }
 
-/// A recording: the texture's signal, such as the lateral force, and the normal force and speed if they are
-/// known.
+/// A recording: the texture's signal, such as the lateral force, and the normal force and speed if
+/// they are known.
 ///
-/// All signals have the same length of at least two samples, and are finite with magnitudes up to 1e12.
+/// All signals have the same length of at least two samples, and are finite with magnitudes up to
+/// 1e12.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     /// File name without its directory, for messages and provenance.
@@ -79,8 +72,8 @@ pub struct Recording {
     pub rate_hz: f64,
     /// Quantity of the axes.
     pub quantity: Quantity,
-    /// The signal in the quantity's unit: one axis, or perpendicular axes: two of a lateral force, up to three of
-    /// an acceleration, velocity or displacement.
+    /// The signal in the quantity's unit: one axis, or perpendicular axes: two of a lateral force,
+    /// up to three of an acceleration, velocity or displacement.
     pub axes: Vec<Vec<f64>>,
     /// Normal force, newtons, with a positive mean.
     pub normal_n: Option<Vec<f64>>,
@@ -117,11 +110,13 @@ impl Recording {
         Self::of(Quantity::LateralForce, source, rate_hz, axes)
     }
 
-    /// Creates a recording without normal force, speed or warnings; `axes` are in the quantity's unit.
+    /// Creates a recording without normal force, speed or warnings; `axes` are in the quantity's
+    /// unit.
     ///
     /// # Errors
-    /// When the rate is not above 0 and at most [`MAX_RATE_HZ`], there are no axes or more than the quantity
-    /// has, or they are shorter than two samples, differ in length, or hold NaN or an infinity.
+    /// When the rate is not above 0 and at most [`MAX_RATE_HZ`], there are no axes or more than the
+    /// quantity has, or they are shorter than two samples, differ in length, or hold NaN or an
+    /// infinity.
     ///
     /// ```
     /// # use htex_recording::Recording;
@@ -188,8 +183,8 @@ impl Recording {
         Ok(self)
     }
 
-    /// Returns the part of the recording between two times of its file, seconds; `None` is the start or the
-    /// end. Findings of the time column are kept.
+    /// Returns the part of the recording between two times of its file, seconds; `None` is the
+    /// start or the end. Findings of the time column are kept.
     ///
     /// # Errors
     /// When a time is not finite, or fewer than two samples are between them.
@@ -298,25 +293,15 @@ pub(crate) fn check_rate(rate_hz: f64) -> Result<(), RecordingError> {
 
 fn check(signal: &'static str, values: &[f64], expected: usize) -> Result<(), RecordingError> {
     if values.len() != expected {
-        return Err(RecordingError::Lengths {
-            signal,
-            expected,
-            got: values.len(),
-        });
+        return Err(RecordingError::Lengths { signal, expected, got: values.len() });
     }
     // False for NaN.
     let holds = |value: &f64| value.abs() <= LARGEST;
     match values.iter().position(|value| !holds(value)) {
-        Some(sample) if values[sample].is_finite() => Err(RecordingError::TooLarge {
-            signal,
-            sample,
-            value: values[sample],
-        }),
-        Some(sample) => Err(RecordingError::NotFinite {
-            signal,
-            sample,
-            value: values[sample],
-        }),
+        Some(sample) if values[sample].is_finite() => {
+            Err(RecordingError::TooLarge { signal, sample, value: values[sample] })
+        }
+        Some(sample) => Err(RecordingError::NotFinite { signal, sample, value: values[sample] }),
         None => Ok(()),
     }
 }

@@ -14,8 +14,8 @@ use crate::value_limit::ValueLimit;
 /// Smallest magnitude above 0; largest magnitude, frequency (hertz) and phase (radians).
 const SMALLEST: f64 = 1e-9;
 const LARGEST: f64 = 1e9;
-/// Gain above which a warning is given, decibels: what it raises was attenuated to a third or less and is mostly
-/// noise.
+/// Gain above which a warning is given, decibels: what it raises was attenuated to a third or less
+/// and is mostly noise.
 const RAISED_DB: f64 = 10.0;
 
 /// A sampled frequency response.
@@ -32,8 +32,8 @@ pub struct SetupResponse {
 }
 
 impl SetupResponse {
-    /// Returns the real and imaginary part at a frequency in hertz. Magnitude and unwrapped phase are interpolated
-    /// linearly in frequency and constant below the first and above the last.
+    /// Returns the real and imaginary part at a frequency in hertz. Magnitude and unwrapped phase
+    /// are interpolated linearly in frequency and constant below the first and above the last.
     ///
     /// ```
     /// # use htex_recording::SetupResponse;
@@ -74,8 +74,8 @@ impl SetupResponse {
 }
 
 impl SetupResponse {
-    /// Writes `frequency_hz,magnitude,phase_rad`, each number in the shortest form that reads back to the same
-    /// bits.
+    /// Writes `frequency_hz,magnitude,phase_rad`, each number in the shortest form that reads back
+    /// to the same bits.
     ///
     /// # Errors
     /// Those of the writer.
@@ -89,7 +89,8 @@ impl SetupResponse {
     }
 }
 
-/// Frequencies at which dividing by a response raises a spectrum by more than 10 dB, with the gains.
+/// Frequencies at which dividing by a response raises a spectrum by more than 10 dB, with the
+/// gains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Raised {
     /// Lowest and highest frequency of each stretch, hertz, and its largest gain, decibels.
@@ -117,10 +118,7 @@ impl fmt::Display for Raised {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, (low_hz, high_hz, most_db)) in self.stretches.iter().enumerate() {
             let comma = if i > 0 { ", " } else { "" };
-            write!(
-                f,
-                "{comma}{low_hz} to {high_hz} Hz by up to {most_db:.1} dB"
-            )?;
+            write!(f, "{comma}{low_hz} to {high_hz} Hz by up to {most_db:.1} dB")?;
         }
         Ok(())
     }
@@ -149,27 +147,18 @@ pub fn response_from_bytes(file: &str, bytes: &[u8]) -> Result<SetupResponse, Re
 fn response(opened: Opened<'_>) -> Result<SetupResponse, Fault> {
     let mut csv = Csv::open(opened, ValueLimit::default())?;
     let columns = csv.columns();
-    let mut wanted = vec![
-        column(columns, "frequency_hz")?,
-        column(columns, "magnitude")?,
-    ];
+    let mut wanted = vec![column(columns, "frequency_hz")?, column(columns, "magnitude")?];
     wanted.extend(column(columns, "phase_rad").ok());
     let mut columns = csv.numbers(&wanted)?.columns.into_iter();
     let frequency_hz = columns.next().unwrap_or_default();
     let magnitude = columns.next().unwrap_or_default();
     check(&csv, &frequency_hz, &magnitude)?;
-    let phase_rad = columns
-        .next()
-        .unwrap_or_else(|| vec![0.0; frequency_hz.len()]);
+    let phase_rad = columns.next().unwrap_or_else(|| vec![0.0; frequency_hz.len()]);
     if let Some(row) = phase_rad.iter().position(|phase| phase.abs() > LARGEST) {
         let problem = format!("the phase {} rad is beyond {LARGEST}", phase_rad[row]);
         return Err(ReadProblem::Invalid(problem).at(csv.place(row)));
     }
-    Ok(SetupResponse {
-        frequency_hz,
-        magnitude,
-        phase_rad: unwrapped(phase_rad),
-    })
+    Ok(SetupResponse { frequency_hz, magnitude, phase_rad: unwrapped(phase_rad) })
 }
 
 fn column(columns: &Columns, name: &str) -> Result<usize, ReadProblem> {

@@ -14,36 +14,26 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// Makes columns from their names; the last part of a name follows the last `separator`, if there is one.
+    /// Makes columns from their names; the last part of a name follows the last `separator`, if
+    /// there is one.
     pub(crate) fn new(names: impl IntoIterator<Item = String>, separator: Option<char>) -> Self {
         let names: Vec<String> = names.into_iter().collect();
         let part = |name: &String| {
             let separator = separator.and_then(|c| name.rfind(c));
             separator.map_or(0, |at| at + 1)
         };
-        Self {
-            parts: names.iter().map(part).collect(),
-            names,
-            are_named: true,
-        }
+        Self { parts: names.iter().map(part).collect(), names, are_named: true }
     }
 
     /// Makes columns from names and the bytes at which their last parts begin.
     pub(crate) fn with_parts(names: Vec<(String, usize)>) -> Self {
         let (names, parts) = names.into_iter().unzip();
-        Self {
-            names,
-            parts,
-            are_named: true,
-        }
+        Self { names, parts, are_named: true }
     }
 
     /// Makes columns that have only numbers.
     pub(crate) fn unnamed(width: usize) -> Self {
-        Self {
-            are_named: false,
-            ..Self::new(vec![String::new(); width], None)
-        }
+        Self { are_named: false, ..Self::new(vec![String::new(); width], None) }
     }
 
     /// Returns the number of columns.
@@ -71,27 +61,21 @@ impl Columns {
         &name[..self.parts.get(column).copied().unwrap_or(0)]
     }
 
-    /// Returns the columns of this name: those with exactly the name, else in another case, else whose last part it is.
+    /// Returns the columns of this name: those with exactly the name, else in another case, else
+    /// whose last part it is.
     pub(crate) fn by_name(&self, name: &str) -> Vec<usize> {
         let all = 0..self.width();
         let exact = |column: &usize| self.names[*column] == name;
         let alike = |column: &usize| self.names[*column].eq_ignore_ascii_case(name);
         let part = |column: &usize| self.last_part(*column) == name;
         let tests: [&dyn Fn(&usize) -> bool; 3] = [&exact, &alike, &part];
-        let mut found = tests
-            .map(|test| all.clone().filter(test).collect::<Vec<_>>())
-            .into_iter();
-        found
-            .find(|columns| !columns.is_empty())
-            .unwrap_or_default()
+        let mut found = tests.map(|test| all.clone().filter(test).collect::<Vec<_>>()).into_iter();
+        found.find(|columns| !columns.is_empty()).unwrap_or_default()
     }
 
     /// Returns the problem that roles of these columns are not clear.
     pub(crate) fn refuse(&self, problem: String) -> ReadProblem {
-        ReadProblem::Columns {
-            problem,
-            columns: self.list(),
-        }
+        ReadProblem::Columns { problem, columns: self.list() }
     }
 
     /// Returns all names, for messages.
@@ -102,11 +86,8 @@ impl Columns {
     /// Returns the names of some columns, for messages.
     pub(crate) fn list_of(&self, columns: &[usize]) -> String {
         const MANY: usize = 20;
-        let mut names: Vec<_> = columns
-            .iter()
-            .take(MANY)
-            .map(|column| self.name(*column))
-            .collect();
+        let mut names: Vec<_> =
+            columns.iter().take(MANY).map(|column| self.name(*column)).collect();
         if columns.len() > MANY {
             names.push(format!("and {} more", columns.len() - MANY));
         }
@@ -149,7 +130,8 @@ pub(crate) trait Sheet {
         Ok(None)
     }
 
-    /// Reads the wanted columns, each below the width. They may be of different lengths and hold numbers that are not finite.
+    /// Reads the wanted columns, each below the width. They may be of different lengths and hold
+    /// numbers that are not finite.
     fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, Fault>;
 
     /// Returns the place of a row, from 0.
@@ -168,12 +150,7 @@ pub(crate) fn even_numbers(sheet: &mut dyn Sheet, wanted: &[usize]) -> Result<Nu
     };
     if let Some((other, got)) = lengths.find(|(_, length)| *length != rows) {
         let (first, other) = (columns.name(*first), columns.name(*other));
-        let problem = ReadProblem::Lengths {
-            first,
-            rows,
-            other,
-            got,
-        };
+        let problem = ReadProblem::Lengths { first, rows, other, got };
         return Err(problem.into());
     }
     if rows < 2 {

@@ -67,8 +67,8 @@ pub struct StrokeColumns {
     pub warnings: Vec<String>,
 }
 
-/// Reads a stroke from a CSV with time, speed and force (`t_s`, `speed_mm_s`, `force_n`); one without a speed is read as a trace, whose speed is that
-/// of its positions.
+/// Reads a stroke from a CSV with time, speed and force (`t_s`, `speed_mm_s`, `force_n`); one
+/// without a speed is read as a trace, whose speed is that of its positions.
 ///
 /// # Errors
 /// As [`read_trace`].
@@ -108,12 +108,7 @@ fn stroke(opened: Opened<'_>) -> Result<StrokeColumns, Fault> {
     }
     speed_mm_s.iter_mut().for_each(|speed| *speed = speed.abs());
     warnings.dedup();
-    Ok(StrokeColumns {
-        t_s,
-        speed_mm_s,
-        force_n,
-        warnings,
-    })
+    Ok(StrokeColumns { t_s, speed_mm_s, force_n, warnings })
 }
 
 /// The stroke of a trace.
@@ -144,10 +139,8 @@ fn traced(mut csv: Csv<'_>) -> Result<TraceColumns, Fault> {
     warn_of_unused(columns, &found, &mut warnings);
     let wanted: Vec<usize> = found.iter().map(|(column, _)| *column).collect();
     let numbers = csv.numbers(&wanted)?.columns;
-    let mut columns = numbers
-        .into_iter()
-        .zip(&found)
-        .map(|(values, (_, scale))| scaled(values, *scale));
+    let mut columns =
+        numbers.into_iter().zip(&found).map(|(values, (_, scale))| scaled(values, *scale));
     let mut next = || columns.next().unwrap_or_default();
     let trace = TraceColumns {
         t_s: next(),
@@ -185,16 +178,11 @@ fn find(
             return Err(columns.refuse(problem));
         }
     };
-    let (name, wanted) = (
-        columns.name(*column),
-        base_unit(role, Quantity::LateralForce),
-    );
+    let (name, wanted) = (columns.name(*column), base_unit(role, Quantity::LateralForce));
     let scale = match unit {
         Unit::Scale(scale) => *scale,
         Unit::Unsaid => {
-            warnings.push(format!(
-                "Column {name:?} ({role}) has no unit; {wanted} is assumed."
-            ));
+            warnings.push(format!("Column {name:?} ({role}) has no unit; {wanted} is assumed."));
             1.0
         }
         Unit::Volts | Unit::Unknown(_) => {
@@ -216,10 +204,8 @@ fn missing(columns: &Columns, role: Role) -> ReadProblem {
 
 fn warn_of_unused(columns: &Columns, found: &[(usize, f64)], warnings: &mut Vec<String>) {
     let unused = |column: &usize| found.iter().all(|(used, _)| used != column);
-    let names: Vec<String> = (0..columns.width())
-        .filter(unused)
-        .map(|column| columns.name(column))
-        .collect();
+    let names: Vec<String> =
+        (0..columns.width()).filter(unused).map(|column| columns.name(column)).collect();
     if !names.is_empty() {
         warnings.push(format!("Columns not used: {}.", names.join(", ")));
     }
@@ -243,10 +229,7 @@ fn check_size(csv: &Csv<'_>, values: &[f64]) -> Result<(), Fault> {
 }
 
 fn check_time(csv: &Csv<'_>, t_s: &[f64]) -> Result<(), Fault> {
-    let Some(row) = t_s
-        .windows(2)
-        .position(|pair| pair[1] - pair[0] < SHORTEST_S)
-    else {
+    let Some(row) = t_s.windows(2).position(|pair| pair[1] - pair[0] < SHORTEST_S) else {
         return Ok(());
     };
     let (before, after) = (t_s[row], t_s[row + 1]);

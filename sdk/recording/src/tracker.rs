@@ -7,15 +7,16 @@ use crate::columns::map::ColumnMap;
 
 /// A file with the finger's position or speed over time, of any kind that recordings have.
 ///
-/// Both files have times of one clock. A recording without times begins at 0 s, and so does a tracker whose file has only a
-/// rate. The recording is cut to the time that the tracker covers.
+/// Both files have times of one clock. A recording without times begins at 0 s, and so does a
+/// tracker whose file has only a rate. The recording is cut to the time that the tracker covers.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Tracker {
     pub path: PathBuf,
     /// The bytes of the file, where it is not read from the path.
     pub bytes: Option<Arc<[u8]>>,
-    /// Roles of its columns: time, x, y, speed; columns that it leaves out are assigned by their names.
+    /// Roles of its columns: time, x, y, speed; columns that it leaves out are assigned by their
+    /// names.
     pub map: Option<ColumnMap>,
 }
 
@@ -23,11 +24,7 @@ impl Tracker {
     /// Names a tracker's file; its columns are assigned by their names.
     #[must_use]
     pub fn new(path: impl Into<PathBuf>) -> Self {
-        Self {
-            path: path.into(),
-            bytes: None,
-            map: None,
-        }
+        Self { path: path.into(), bytes: None, map: None }
     }
 
     /// Gives the bytes of the file, whose path is then its name alone.

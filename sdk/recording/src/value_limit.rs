@@ -2,8 +2,8 @@
 
 use crate::error::ReadProblem;
 
-/// Default limit on the numbers kept of a file: 11 minutes of three columns at 20 kHz. With derived data they
-/// take 8 to 40 bytes each, most at low rates.
+/// Default limit on the numbers kept of a file: 11 minutes of three columns at 20 kHz. With derived
+/// data they take 8 to 40 bytes each, most at low rates.
 pub const MOST_VALUES: usize = 40_000_000;
 
 /// Limit on the numbers kept of one file.
@@ -19,17 +19,13 @@ impl ValueLimit {
         if values <= self.most_values as u64 {
             Ok(())
         } else {
-            Err(ReadProblem::TooManyValues {
-                limit: self.most_values,
-            })
+            Err(ReadProblem::TooManyValues { limit: self.most_values })
         }
     }
 }
 
 impl Default for ValueLimit {
     fn default() -> Self {
-        Self {
-            most_values: MOST_VALUES,
-        }
+        Self { most_values: MOST_VALUES }
     }
 }

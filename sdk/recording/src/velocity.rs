@@ -1,15 +1,17 @@
 //! Velocity of a tracked position.
 
-/// Half the support of the triangle over which the velocity is averaged, seconds. Trackers are slow and
-/// quantised (60 Hz, 0.1 mm): a shorter window would show their steps instead of the motion.
+/// Half the support of the triangle over which the velocity is averaged, seconds. Trackers are slow
+/// and quantised (60 Hz, 0.1 mm): a shorter window would show their steps instead of the motion.
 const REACH_S: f64 = 0.05;
 
-/// Returns the velocity at ascending times, from positions at the times `t_s`, which ascend strictly from 0.
+/// Returns the velocity at ascending times, from positions at the times `t_s`, which ascend
+/// strictly from 0.
 ///
-/// The velocity is the second difference, over 50 ms, of the position's integral: the slope of the position (linear
-/// between rows) averaged with a triangular window of 100 ms. It is exact for a constant velocity with any spacing of the rows,
-/// and insensitive to a tracker of 60 Hz that repeats its last value. Within 50 ms of the ends, and beyond them, it is constant.
-/// Its unit is that of the position per second.
+/// The velocity is the second difference, over 50 ms, of the position's integral: the slope of the
+/// position (linear between rows) averaged with a triangular window of 100 ms. It is exact for a
+/// constant velocity with any spacing of the rows, and insensitive to a tracker of 60 Hz that
+/// repeats its last value. Within 50 ms of the ends, and beyond them, it is constant. Its unit is
+/// that of the position per second.
 ///
 /// ```
 /// # use htex_recording::velocity;
@@ -37,7 +39,8 @@ pub fn velocity(t_s: &[f64], position: &[f64], at_s: impl IntoIterator<Item = f6
     at_s.map(at).collect()
 }
 
-/// The integral of the position (minus the first one) from the first row on, evaluated at ascending times.
+/// The integral of the position (minus the first one) from the first row on, evaluated at ascending
+/// times.
 #[derive(Clone)]
 struct Integral<'a> {
     t_s: &'a [f64],
@@ -48,12 +51,7 @@ struct Integral<'a> {
 
 impl<'a> Integral<'a> {
     fn new(t_s: &'a [f64], position: &'a [f64]) -> Self {
-        Self {
-            t_s,
-            position,
-            row: 0,
-            sum: 0.0,
-        }
+        Self { t_s, position, row: 0, sum: 0.0 }
     }
 
     /// Time and position of a row.

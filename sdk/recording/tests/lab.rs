@@ -1,5 +1,6 @@
-//! Files as laboratories keep them, written by SciPy, h5py, npTDMS, pyarrow and soundfile (`lab/make.py`), and compared with the numbers
-//! that these libraries read back (`lab/expected.json`).
+//! Files as laboratories keep them, written by SciPy, h5py, npTDMS, pyarrow and soundfile
+//! (`lab/make.py`), and compared with the numbers that these libraries read back
+//! (`lab/expected.json`).
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -39,28 +40,17 @@ fn cases() -> Vec<Case> {
             .iter()
             .map(|(name, values)| {
                 let values = values.as_array().unwrap();
-                (
-                    name.clone(),
-                    values.iter().map(|x| x.as_f64().unwrap()).collect(),
-                )
+                (name.clone(), values.iter().map(|x| x.as_f64().unwrap()).collect())
             })
             .collect(),
     };
     let all = all.as_object().unwrap().iter().map(case);
-    all.filter(|case| cfg!(feature = "lab-files") || !is_heavy(&case.name))
-        .collect()
+    all.filter(|case| cfg!(feature = "lab-files") || !is_heavy(&case.name)).collect()
 }
 
 /// Whether a file is read only with the feature `lab-files`.
 fn is_heavy(name: &str) -> bool {
-    let kinds = [
-        ".h5",
-        "version73.mat",
-        ".parquet",
-        ".feather",
-        ".arrow",
-        ".arrows",
-    ];
+    let kinds = [".h5", "version73.mat", ".parquet", ".feather", ".arrow", ".arrows"];
     kinds.iter().any(|end| name.ends_with(end))
 }
 
@@ -81,10 +71,8 @@ fn every_column_is_what_its_library_reads() {
     assert!(cases.len() >= 11);
     for case in &cases {
         for (column, expected) in &case.columns {
-            let options = mapped(
-                &format!("lateral=\"{column}\":1"),
-                Some(case.rate_hz.unwrap_or(100.0)),
-            );
+            let options =
+                mapped(&format!("lateral=\"{column}\":1"), Some(case.rate_hz.unwrap_or(100.0)));
             let recording = read_lab(&case.name, &options);
             let recording =
                 recording.unwrap_or_else(|error| panic!("{} {column}: {error}", case.name));
@@ -99,13 +87,9 @@ fn a_recording_is_that_of_the_csv_with_the_same_numbers() {
         // Arithmetic on the first column of a file and another of its length.
         let (first, values) = &case.columns[0];
         let mut others = case.columns.iter().skip(1);
-        let (second, other) = others
-            .find(|(_, other)| other.len() == values.len())
-            .unwrap_or(&case.columns[0]);
-        let rows = values
-            .iter()
-            .zip(other)
-            .map(|(a, b)| format!("{a:e},{b:e}\n"));
+        let (second, other) =
+            others.find(|(_, other)| other.len() == values.len()).unwrap_or(&case.columns[0]);
+        let rows = values.iter().zip(other).map(|(a, b)| format!("{a:e},{b:e}\n"));
         let csv = format!("one,two\n{}", rows.collect::<String>());
         let map = |one: &str, two: &str| {
             format!("lateral=\"{one}\"*2-\"{two}\"/4,normal=0.4+0*\"{two}\",speed=80")
@@ -117,9 +101,7 @@ fn a_recording_is_that_of_the_csv_with_the_same_numbers() {
         let without_file = |mut recording: Recording| {
             recording.source = String::new();
             recording.file = Default::default();
-            recording
-                .warnings
-                .retain(|warning| !warning.starts_with("Column"));
+            recording.warnings.retain(|warning| !warning.starts_with("Column"));
             recording
         };
         assert_eq!(without_file(found), without_file(expected), "{}", case.name);
@@ -132,21 +114,9 @@ fn names_units_and_rates_are_those_of_the_file() {
     assert_eq!((plain.rate_hz, plain.samples()), (2000.0, 96));
     assert!(plain.normal_n.is_some() && has_warning(&plain, "\"Run 1/fz\" (normal) has no unit"));
     for (name, map, words) in [
-        (
-            "segments.tdms",
-            "lateral=fx_n,normal=it's/raw:1",
-            "its samples are 0.001 s apart",
-        ),
-        (
-            "segments.tdms",
-            "lateral=fy",
-            "the columns are: Run 1/fx_n, Run 1/fz, Run 2/it's/raw",
-        ),
-        (
-            "plain.mat",
-            "lateral=note",
-            "the columns are: t, fx_n, fz_n, counts, run.forces#1",
-        ),
+        ("segments.tdms", "lateral=fx_n,normal=it's/raw:1", "its samples are 0.001 s apart"),
+        ("segments.tdms", "lateral=fy", "the columns are: Run 1/fx_n, Run 1/fz, Run 2/it's/raw"),
+        ("plain.mat", "lateral=note", "the columns are: t, fx_n, fz_n, counts, run.forces#1"),
         (
             "plain.mat",
             "lateral=run.deep.x:1,normal=f:1",
@@ -159,12 +129,7 @@ fn names_units_and_rates_are_those_of_the_file() {
     let nested = read_lab("compressed.mat", &mapped("lateral=run.deep.x:1", None)).unwrap();
     assert_eq!(nested.rate_hz, 2000.0, "run.fs applies to run.deep.x");
     let by_name = read_lab("compressed.mat", &ReadOptions::default()).unwrap();
-    assert_eq!(
-        (by_name.rate_hz, by_name.warnings.len()),
-        (2000.0, 2),
-        "{:?}",
-        by_name.warnings
-    );
+    assert_eq!((by_name.rate_hz, by_name.warnings.len()), (2000.0, 2), "{:?}", by_name.warnings);
 }
 
 #[test]
@@ -173,27 +138,16 @@ fn the_limit_of_numbers_applies_to_used_columns() {
         ("pcm16.wav", "lateral=#2:1", 96),
         ("pcm16.flac", "lateral=#1+#4", 192),
         ("segments.tdms", "lateral=fx_n,normal=fz:1", 192),
-        (
-            "compressed.mat",
-            "lateral=run.forces#2:1,normal=fz_n,time=t",
-            288,
-        ),
+        ("compressed.mat", "lateral=run.forces#2:1,normal=fz_n,time=t", 288),
     ] {
         let limited = |most: usize| {
             let options =
                 mapped(map, None).with_rate_hz((name == "compressed.mat").then_some(2000.0));
             read_lab(name, &options.with_most_values(most))
         };
-        assert_eq!(
-            limited(used).map(|recording| recording.samples()),
-            Ok(96),
-            "{name}"
-        );
+        assert_eq!(limited(used).map(|recording| recording.samples()), Ok(96), "{name}");
         let refused = limited(used - 1).unwrap_err();
-        assert!(
-            refused.contains(&format!("more than {} numbers", used - 1)),
-            "{refused}"
-        );
+        assert!(refused.contains(&format!("more than {} numbers", used - 1)), "{refused}");
     }
 }
 
@@ -232,21 +186,13 @@ fn damaged_files_are_refused_with_their_place() {
             with("segments.tdms", 905, b'X'),
             "segment at byte 905: a segment begins with [58, 44, 53, 6d] instead of TDSm",
         ),
-        (
-            "a.tdms",
-            with("segments.tdms", 3, b'h'),
-            "give the .tdms file beside it",
-        ),
+        ("a.tdms", with("segments.tdms", 3, b'h'), "give the .tdms file beside it"),
         (
             "a.flac",
             cut("pcm24.flac", 500),
             "sample 0 (counted from 0): the file ends or breaks here",
         ),
-        (
-            "a.wav",
-            cut("extensible_float.wav", 1000),
-            "the file ends or breaks at sample 73",
-        ),
+        ("a.wav", cut("extensible_float.wav", 1000), "the file ends or breaks at sample 73"),
     ] {
         let error = recording_from_bytes(Path::new(name), &bytes, &ReadOptions::default());
         let error = error.unwrap_err().to_string();
@@ -258,21 +204,9 @@ fn damaged_files_are_refused_with_their_place() {
 #[test]
 fn what_is_not_read_is_named() {
     for (name, map, words) in [
-        (
-            "zstd.parquet",
-            "lateral=fx_n",
-            "zstd.parquet, t_s: it is compressed by ZSTD",
-        ),
-        (
-            "zstd.feather",
-            "lateral=fx_n",
-            "zstd.feather, t_s: it is compressed by ZSTD",
-        ),
-        (
-            "split.parquet",
-            "lateral=fx_n",
-            "BYTE_STREAM_SPLIT is not read",
-        ),
+        ("zstd.parquet", "lateral=fx_n", "zstd.parquet, t_s: it is compressed by ZSTD"),
+        ("zstd.feather", "lateral=fx_n", "zstd.feather, t_s: it is compressed by ZSTD"),
+        ("split.parquet", "lateral=fx_n", "BYTE_STREAM_SPLIT is not read"),
         (
             "null.parquet",
             "lateral=fx_n",
@@ -283,16 +217,8 @@ fn what_is_not_read_is_named() {
             "lateral=fx_n",
             "null.feather, row 2, column \"fx_n\": it is not a number, or empty",
         ),
-        (
-            "plain.arrow",
-            "lateral=surface:1",
-            "plain.arrow, surface: its type is Utf8",
-        ),
-        (
-            "earliest.h5",
-            "lateral=/run1/fy",
-            "/run1/fx_n, /run1/fz, /run2/deep/forces#1",
-        ),
+        ("plain.arrow", "lateral=surface:1", "plain.arrow, surface: its type is Utf8"),
+        ("earliest.h5", "lateral=/run1/fy", "/run1/fx_n, /run1/fz, /run2/deep/forces#1"),
     ] {
         let error = read_lab(name, &mapped(map, Some(2000.0))).unwrap_err();
         assert!(error.contains(words), "{map}: {error}");
@@ -311,10 +237,7 @@ fn files_of_readers_that_were_not_built_are_named() {
         "version73.mat",
     ] {
         let error = read_lab(name, &ReadOptions::default()).unwrap_err();
-        assert!(
-            error.contains("build with the feature lab-files"),
-            "{error}"
-        );
+        assert!(error.contains("build with the feature lab-files"), "{error}");
     }
 }
 
@@ -340,9 +263,7 @@ fn damage_never_panics() {
             let mut bytes = whole.clone();
             match round % 4 {
                 0 => bytes.truncate(next(whole.len())),
-                1 => bytes
-                    .splice(next(whole.len())..whole.len(), [])
-                    .for_each(drop),
+                1 => bytes.splice(next(whole.len())..whole.len(), []).for_each(drop),
                 _ => {
                     for _ in 0..=round % 5 {
                         let at = next(bytes.len());
@@ -354,10 +275,7 @@ fn damage_never_panics() {
                 let read = recording_from_bytes(Path::new(&case.name), &bytes, options);
                 if let Err(error) = read {
                     let text = error.to_string();
-                    assert!(
-                        text.starts_with(&case.name) && !text.ends_with('\n'),
-                        "{text}"
-                    );
+                    assert!(text.starts_with(&case.name) && !text.ends_with('\n'), "{text}");
                 }
             }
         }

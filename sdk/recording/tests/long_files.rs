@@ -1,4 +1,5 @@
-//! Files longer than one block of 256 KiB are read as shorter ones, with the same line numbers in errors.
+//! Files longer than one block of 256 KiB are read as shorter ones, with the same line numbers in
+//! errors.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -45,19 +46,10 @@ fn all_rows_are_read_and_lines_are_counted_through() {
     let error = read(&bytes).unwrap_err();
     assert!(error.contains(&format!("line {}", lines + 2)), "{error}");
     let timed: String = (0..ROWS)
-        .map(|n| {
-            format!(
-                "{:.3},{:07}\n",
-                n as f64 * 1e-3 + f64::from(n >= 50_000),
-                n % 131
-            )
-        })
+        .map(|n| format!("{:.3},{:07}\n", n as f64 * 1e-3 + f64::from(n >= 50_000), n % 131))
         .collect();
     let gap = read(format!("t_s,lateral_n\n\n{timed}")).unwrap();
-    let told = gap
-        .clock_findings
-        .iter()
-        .any(|found| found.message.contains("line 50003"));
+    let told = gap.clock_findings.iter().any(|found| found.message.contains("line 50003"));
     assert!(told, "{:?}", gap.clock_findings);
 }
 
@@ -71,10 +63,7 @@ fn a_short_row_is_cut_off_at_the_end_alone() {
         let line = before + 3;
         text += "1234567\n";
         let cut = read(&text).unwrap_err();
-        assert!(
-            cut.contains("truncated") && cut.contains(&format!("{line}")),
-            "{cut}"
-        );
+        assert!(cut.contains("truncated") && cut.contains(&format!("{line}")), "{cut}");
         for behind in ["1,1\n", "\n# Notes\n\n1,1\n"] {
             let ragged = read(format!("{text}{behind}")).unwrap_err();
             assert!(!ragged.contains("truncated"), "{ragged}");
@@ -90,9 +79,6 @@ fn comments_and_lines_may_be_longer_than_a_block() {
     assert_eq!(recording.axes, [[1.0, 2.0, 3.0]]);
     for long in ["1".repeat(3 * BLOCK), "é".repeat(2 * BLOCK)] {
         let error = read(format!("lateral_n\n1\n2\n{long}\n3\n")).unwrap_err();
-        assert!(
-            error.contains("line 4") && error.contains("long"),
-            "{error}"
-        );
+        assert!(error.contains("line 4") && error.contains("long"), "{error}");
     }
 }

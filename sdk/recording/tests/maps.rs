@@ -55,10 +55,7 @@ fn malformed_expressions_are_refused_where_they_break() {
     for (expression, words) in [
         ("(a+b", "character 9: '(' is not closed"),
         ("a+b)", "character 12: ')' closes nothing"),
-        (
-            "a+*b",
-            "character 11: a number or a column is missing before this",
-        ),
+        ("a+*b", "character 11: a number or a column is missing before this"),
         ("a+", "a number or a column is missing at the end"),
         ("2 a", "character 11: an operator is missing before this"),
         ("\"a", "character 9: the quote \" is not closed"),
@@ -82,35 +79,18 @@ fn malformed_expressions_are_refused_where_they_break() {
 #[test]
 fn units_of_an_expression_are_those_of_the_role() {
     let text = "fx1_mN,fx2_mN\n1,2\n3,4\n";
-    let sum = read(
-        "u.csv",
-        text,
-        &mapped("lateral_x=fx1_mN+fx2_mN", Some(100.0)),
-    )
-    .unwrap();
+    let sum = read("u.csv", text, &mapped("lateral_x=fx1_mN+fx2_mN", Some(100.0))).unwrap();
     assert_eq!(sum.axes, [[3.0, 7.0]]);
-    assert!(has_warning(
-        &sum,
-        "taken to be in N, but column \"fx1_mN\" has another unit"
-    ));
-    for map in [
-        "lateral_x=(fx1_mN+fx2_mN)*1e-3",
-        "lateral_x=fx1_mN+fx2_mN:1e-3",
-    ] {
+    assert!(has_warning(&sum, "taken to be in N, but column \"fx1_mN\" has another unit"));
+    for map in ["lateral_x=(fx1_mN+fx2_mN)*1e-3", "lateral_x=fx1_mN+fx2_mN:1e-3"] {
         let scaled = read("u.csv", text, &mapped(map, Some(100.0))).unwrap();
-        assert_eq!(
-            (&scaled.axes[..], scaled.warnings.len()),
-            (&[vec![3e-3, 7e-3]][..], 0)
-        );
+        assert_eq!((&scaled.axes[..], scaled.warnings.len()), (&[vec![3e-3, 7e-3]][..], 0));
     }
 }
 
 #[test]
 fn channels_of_a_wav_are_chosen_by_a_map() {
-    let bytes = wav(
-        spec(4, 16),
-        &[0.5, 0.25, 0.125, -0.5, 0.0, 0.5, -0.125, 0.25],
-    );
+    let bytes = wav(spec(4, 16), &[0.5, 0.25, 0.125, -0.5, 0.0, 0.5, -0.125, 0.25]);
     let options = mapped("lateral=ch2*2-#4,normal=ch3:8", None);
     let recording = read("w.wav", &bytes, &options).unwrap();
     assert_eq!(recording.axes, [[1.0, 0.75]]);
@@ -123,12 +103,7 @@ fn channels_of_a_wav_are_chosen_by_a_map() {
 fn columns_of_an_array_are_chosen_by_a_map() {
     let rows = [1.0_f64, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
     let columns = [1.0_f64, 5.0, 2.0, 6.0, 3.0, 7.0, 4.0, 8.0];
-    let bytes = |values: &[f64]| {
-        values
-            .iter()
-            .flat_map(|x| x.to_le_bytes())
-            .collect::<Vec<u8>>()
-    };
+    let bytes = |values: &[f64]| values.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
     for (order, values) in [("False", rows), ("True", columns)] {
         let file = npy(&npy_header("<f8", order, "(2, 4)"), &bytes(&values));
         let options = mapped("lateral=#4-#1,normal=ch3:2", Some(1000.0));
@@ -148,9 +123,7 @@ fn tracked(tracker: &str, map: Option<&str>, header: &str) -> Result<Recording, 
     let map = map.map(|map| map.parse::<ColumnMap>().unwrap());
     let tracker = Tracker::new(folder.put("t.csv", tracker)).with_map(map);
     let given = (!header.starts_with("t_s")).then_some(1000.0);
-    let options = ReadOptions::default()
-        .with_tracker(tracker)
-        .with_rate_hz(given);
+    let options = ReadOptions::default().with_tracker(tracker).with_rate_hz(given);
     read_recording(&signal, &options).map_err(|error| error.to_string())
 }
 
@@ -179,19 +152,11 @@ fn a_tracker_gives_the_speed_of_each_sample() {
     assert_eq!((whole.samples(), whole.warnings.len()), (2000, 0));
 
     let map = Some("time=clock,x=east,y=north");
-    let part = tracked(
-        &at_80_mm_s("clock,east,north", 100.5, 101.25),
-        map,
-        "t_s,fy_n",
-    )
-    .unwrap();
+    let part = tracked(&at_80_mm_s("clock,east,north", 100.5, 101.25), map, "t_s,fy_n").unwrap();
     close(&part);
     assert_eq!((part.samples(), part.first_sample), (751, 500));
     assert!(has_warning(&part, "only the common part is read"));
-    assert!(has_warning(
-        &part,
-        "t.csv: Column \"east\" (x) has no unit; mm is assumed"
-    ));
+    assert!(has_warning(&part, "t.csv: Column \"east\" (x) has no unit; mm is assumed"));
 
     let from_start = tracked(&at_80_mm_s("t_s,x_mm,y_mm", -1.0, 3.0), None, "clock,fy_n").unwrap();
     close(&from_start);
@@ -200,10 +165,7 @@ fn a_tracker_gives_the_speed_of_each_sample() {
     assert!(
         (speed_mm_s[0], speed_mm_s[1000]) == (2.0, 2.0) && (speed_mm_s[1900] - 2.5).abs() < 1e-9
     );
-    assert!(has_warning(
-        &speed,
-        "The longest gap of the tracker is 11.000 s"
-    ));
+    assert!(has_warning(&speed, "The longest gap of the tracker is 11.000 s"));
 }
 
 #[test]
@@ -214,11 +176,7 @@ fn trackers_that_cannot_be_aligned_are_refused() {
             None,
             "covers 0.000 to 3.000 s and the recording 100.000 to 101.999 s",
         ),
-        (
-            at_80_mm_s("t_s,x_mm,y_mm", 101.9985, 103.0),
-            None,
-            "do not overlap",
-        ),
+        (at_80_mm_s("t_s,x_mm,y_mm", 101.9985, 103.0), None, "do not overlap"),
         (
             at_80_mm_s("clock,x_mm,y_mm", 99.0, 103.0),
             None,
@@ -239,11 +197,7 @@ fn trackers_that_cannot_be_aligned_are_refused() {
             None,
             "t.csv, line 3: the tracker's time after 1 s is 1 s",
         ),
-        (
-            "t_s,x_mm\n1,2\n2,nan\n".to_owned(),
-            None,
-            "t.csv, line 3, column \"x_mm\"",
-        ),
+        ("t_s,x_mm\n1,2\n2,nan\n".to_owned(), None, "t.csv, line 3, column \"x_mm\""),
     ] {
         let error = tracked(&tracker, map, "t_s,fy_n").unwrap_err();
         assert!(error.contains(words), "{error}");

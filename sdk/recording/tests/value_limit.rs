@@ -12,15 +12,13 @@ use htex_recording::{MOST_VALUES, ReadOptions, recording_from_bytes};
 
 fn read(name: &str, bytes: &[u8], most_values: Option<usize>) -> Result<usize, String> {
     let rate_hz = (!name.ends_with("wav")).then_some(1_000.0);
-    let options = ReadOptions::default()
-        .with_rate_hz(rate_hz)
-        .with_most_values(most_values);
+    let options = ReadOptions::default().with_rate_hz(rate_hz).with_most_values(most_values);
     let read = recording_from_bytes(Path::new(name), bytes, &options);
     read.map(|r| r.samples()).map_err(|error| error.to_string())
 }
 
-/// The whole file is read with a limit equal to its numbers. With a lower limit nothing after it is parsed, such as the
-/// invalid text at the end of `more`.
+/// The whole file is read with a limit equal to its numbers. With a lower limit nothing after it is
+/// parsed, such as the invalid text at the end of `more`.
 fn check_limit(name: &str, whole: &[u8], more: &[u8], most_values: usize, samples: usize) {
     assert_eq!(read(name, whole, Some(most_values)), Ok(samples));
     let broken = read(name, more, None).unwrap_err();
@@ -36,8 +34,8 @@ fn check_limit(name: &str, whole: &[u8], more: &[u8], most_values: usize, sample
 
 #[test]
 fn numbers_beyond_the_limit_are_refused_before_they_are_read() {
-    // Longer than a block, with an unused column. The start of the rows and each gap between them take the memory of
-    // two numbers.
+    // Longer than a block, with an unused column. The start of the rows and each gap between them
+    // take the memory of two numbers.
     let rows = "1,2,oiled\n".repeat(40_000);
     let csv = format!("lateral_n,normal_n,what\n{rows}\n1,2,dry\n");
     let values = 2 * 40_001 + 2;

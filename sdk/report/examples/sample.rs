@@ -19,36 +19,17 @@ fn main() -> std::io::Result<()> {
     std::fs::write(path, texture_report(&report()))
 }
 
-/// Caption, and whether it is a correlation; of errors, whether they are compared with the repeatability.
+/// Caption, and whether it is a correlation; of errors, whether they are compared with the
+/// repeatability.
 const MEASURES: [(&str, bool, bool); 4] = [
-    (
-        "Spectral correlation with the recording (1 is the best, dark)",
-        true,
-        false,
-    ),
-    (
-        "Nine-band error of the fitted magnitude, RMS in dB (0 is the best, light)",
-        false,
-        true,
-    ),
-    (
-        "Nine-band error of the rendered samples, RMS in dB (0 is the best, light)",
-        false,
-        true,
-    ),
-    (
-        "Third-octave error of the fitted magnitude, RMS in dB (0 is the best, light)",
-        false,
-        false,
-    ),
+    ("Spectral correlation with the recording (1 is the best, dark)", true, false),
+    ("Nine-band error of the fitted magnitude, RMS in dB (0 is the best, light)", false, true),
+    ("Nine-band error of the rendered samples, RMS in dB (0 is the best, light)", false, true),
+    ("Third-octave error of the fitted magnitude, RMS in dB (0 is the best, light)", false, false),
 ];
 
 fn measure((caption, is_correlation, repeats): (&str, bool, bool)) -> Measure {
-    Measure {
-        caption: caption.to_owned(),
-        is_correlation,
-        repeats,
-    }
+    Measure { caption: caption.to_owned(), is_correlation, repeats }
 }
 
 fn report() -> TextureReport {
@@ -71,10 +52,7 @@ fn texture(index: usize) -> Texture {
     let envelope =
         |f: f64| height_n * (-((f / peak_hz).ln() / width).powi(2) / 2.0).exp() + 0.04 * height_n;
     let ripple = |f: f64| 1.0 + 0.35 * (f * 0.71 + index as f64).sin() * (f * 0.113).cos();
-    let recorded: Vec<f64> = frequency_hz
-        .iter()
-        .map(|f| envelope(*f) * ripple(*f))
-        .collect();
+    let recorded: Vec<f64> = frequency_hz.iter().map(|f| envelope(*f) * ripple(*f)).collect();
     let model = |spec: &Spec| model(spec, &frequency_hz, &recorded, envelope, peak_hz, index);
     Texture {
         name: name.to_owned(),
@@ -141,10 +119,7 @@ fn model(
 fn strongest(frequency_hz: &[f64], recorded: &[f64]) -> Vec<(f64, f64)> {
     let inner = 1..recorded.len() - 1;
     let is_peak = |i: &usize| recorded[*i] > recorded[*i - 1] && recorded[*i] > recorded[*i + 1];
-    let mut peaks: Vec<_> = inner
-        .filter(is_peak)
-        .map(|i| (frequency_hz[i], recorded[i]))
-        .collect();
+    let mut peaks: Vec<_> = inner.filter(is_peak).map(|i| (frequency_hz[i], recorded[i])).collect();
     peaks.sort_by(|a, b| b.1.total_cmp(&a.1));
     peaks.truncate(10);
     peaks

@@ -20,26 +20,20 @@ pub struct Axis {
     pub range: Option<(f64, f64)>,
 }
 
-/// Largest magnitude of values; larger ones are limited to it, so that spans and ratios stay finite.
+/// Largest magnitude of values; larger ones are limited to it, so that spans and ratios stay
+/// finite.
 const LARGEST: f64 = 1e140;
 const SMALLEST: f64 = 1e-140;
 
 impl Axis {
     /// Creates a linear axis whose range is that of the data.
     pub fn linear(label: &str) -> Self {
-        Self {
-            label: label.to_owned(),
-            scale: Scale::Linear,
-            range: None,
-        }
+        Self { label: label.to_owned(), scale: Scale::Linear, range: None }
     }
 
     /// Creates a logarithmic axis whose range is that of the data.
     pub fn log(label: &str) -> Self {
-        Self {
-            scale: Scale::Log,
-            ..Self::linear(label)
-        }
+        Self { scale: Scale::Log, ..Self::linear(label) }
     }
 
     /// Sets the range from `low` to `high`, in the label's unit.
@@ -59,8 +53,8 @@ impl Axis {
         value.is_finite() && (self.scale == Scale::Linear || value > 0.0)
     }
 
-    /// Returns the range to draw for `values`: always finite, increasing, wide enough to divide, and
-    /// positive on a log axis.
+    /// Returns the range to draw for `values`: always finite, increasing, wide enough to divide,
+    /// and positive on a log axis.
     pub(crate) fn resolve(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
         let given = self.range.filter(|(a, b)| self.shows(*a) && self.shows(*b));
         match given {
@@ -73,7 +67,8 @@ impl Axis {
     }
 }
 
-/// Returns a valid range with a margin for a marker at either end that does not extend it across zero.
+/// Returns a valid range with a margin for a marker at either end that does not extend it across
+/// zero.
 fn with_margin((low, high): (f64, f64), scale: Scale) -> (f64, f64) {
     const MARGIN: f64 = 0.03;
     match scale {
@@ -105,9 +100,7 @@ pub(crate) fn sound_range(range: Option<(f64, f64)>, scale: Scale) -> (f64, f64)
             sound_linear(a.min(b), a.max(b))
         }
         Scale::Log => {
-            let (a, b) = usable
-                .filter(|(a, b)| *a > 0.0 && *b > 0.0)
-                .unwrap_or((1.0, 10.0));
+            let (a, b) = usable.filter(|(a, b)| *a > 0.0 && *b > 0.0).unwrap_or((1.0, 10.0));
             sound_log(a.min(b), a.max(b))
         }
     }
@@ -126,9 +119,5 @@ fn sound_linear(low: f64, high: f64) -> (f64, f64) {
 
 fn sound_log(low: f64, high: f64) -> (f64, f64) {
     let (low, high) = (low.clamp(SMALLEST, LARGEST), high.clamp(SMALLEST, LARGEST));
-    if high / low > 1.0 + 1e-6 {
-        (low, high)
-    } else {
-        (low / 2.0, high * 2.0)
-    }
+    if high / low > 1.0 + 1e-6 { (low, high) } else { (low / 2.0, high * 2.0) }
 }

@@ -1,4 +1,5 @@
-//! Diagram of a chain of stages as one SVG element: the running stages with their costs, and the omitted ones in grey.
+//! Diagram of a chain of stages as one SVG element: the running stages with their costs, and the
+//! omitted ones in grey.
 
 use crate::markup::Element;
 use crate::number::{brief, px};
@@ -88,12 +89,7 @@ impl Chain {
         let top = row_top(row);
         let rate = format!("{} Hz", brief(stage.rate_hz));
         let boxed = boxed(top, &stage.name, &stage.reason, FILL, LINE)
-            .child(&svg::label(
-                LEFT + BOX_WIDTH - 10.0,
-                top + 16.0,
-                "end",
-                &rate,
-            ))
+            .child(&svg::label(LEFT + BOX_WIDTH - 10.0, top + 16.0, "end", &rate))
             .children(self.bar(top, stage.ns_per_sample));
         let (x, next) = (LEFT + 24.0, top + BOX_HEIGHT);
         let is_last = row + 1 == self.stages.len();
@@ -132,11 +128,7 @@ fn boxed(top: f64, name: &str, reason: &str, fill: &str, line: &str) -> Element 
     Element::new("g")
         .child(&title)
         .child(&frame.set("fill", fill).set("stroke", line))
-        .child(
-            &name
-                .set("font-size", &px(NAME_PX))
-                .set("font-weight", "600"),
-        )
+        .child(&name.set("font-size", &px(NAME_PX)).set("font-weight", "600"))
         .child(&reason_text)
 }
 

@@ -1,27 +1,25 @@
 //! Colours: a palette for models and series, and the scales of the heat tables.
 //!
 //! The hues are based on Okabe and Ito's set. Light ones are replaced by darker ones, so that every
-//! line has a contrast of at least 3 : 1 on white, and any two models differ in normal, protan, deutan
-//! and tritan vision (simulated after Machado et al. 2009: CIE76 difference of about 17 or more).
+//! line has a contrast of at least 3 : 1 on white, and any two models differ in normal, protan,
+//! deutan and tritan vision (simulated after Machado et al. 2009: CIE76 difference of about 17 or
+//! more).
 
 /// Colour of the recording: dark grey, distinct from the models' colours.
 pub const RECORDING_COLOR: &str = "#4d4d4d";
 
 /// Colours of the models, in the order of their registry, and of series.
-const PALETTE: [&str; 6] = [
-    "#0072b2", "#009e73", "#d55e00", "#7d1f6b", "#5b2c00", "#006b7a",
-];
+const PALETTE: [&str; 6] = ["#0072b2", "#009e73", "#d55e00", "#7d1f6b", "#5b2c00", "#006b7a"];
 
 /// Colours of models beyond the palette, and of those that the registry does not have.
 const OTHERS: [&str; 4] = ["#5b4fc4", "#8a8000", "#2a7f8e", "#5f7a1f"];
 
-/// Returns the colour of the model called `short_name` (`"sbeta"`) by its place among the short names of the built-in models, the
-/// same in every picture. Any other model gets one of four further colours, chosen by its name.
+/// Returns the colour of the model called `short_name` (`"sbeta"`) by its place among the short
+/// names of the built-in models, the same in every picture. Any other model gets one of four
+/// further colours, chosen by its name.
 pub fn model_color(short_name: &str, builtin: &[&str]) -> &'static str {
     let name = short_name.to_ascii_lowercase();
-    let place = builtin
-        .iter()
-        .position(|known| known.eq_ignore_ascii_case(&name));
+    let place = builtin.iter().position(|known| known.eq_ignore_ascii_case(&name));
     let sum = name.bytes().map(usize::from).sum::<usize>();
     let color = place.and_then(|place| PALETTE.get(place));
     color.unwrap_or(&OTHERS[sum % OTHERS.len()])
@@ -51,11 +49,7 @@ impl Rgb {
 
     /// Returns black or white, whichever has more contrast on this colour: at least 4.5 : 1.
     pub(crate) fn ink(self) -> &'static str {
-        if self.contrast(BLACK) >= self.contrast(WHITE) {
-            "#000"
-        } else {
-            "#fff"
-        }
+        if self.contrast(BLACK) >= self.contrast(WHITE) { "#000" } else { "#fff" }
     }
 
     fn mix(self, other: Self, amount: f64) -> Self {
@@ -73,11 +67,7 @@ impl Rgb {
     fn luminance(self) -> f64 {
         let linear = self.0.map(|part| {
             let part = part / 255.0;
-            if part <= 0.04045 {
-                part / 12.92
-            } else {
-                ((part + 0.055) / 1.055).powf(2.4)
-            }
+            if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
         });
         0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
     }

@@ -24,11 +24,7 @@ impl Drawing<'_> {
         let group = stroke(Element::new("g"), series)
             .children(self.strokes(series))
             .children(self.markers(series));
-        if series.hover {
-            group.child(&self.hover(series))
-        } else {
-            group
-        }
+        if series.hover { group.child(&self.hover(series)) } else { group }
     }
 
     fn strokes(&self, series: &Series) -> Vec<Element> {
@@ -61,17 +57,14 @@ impl Drawing<'_> {
         };
         let places = series.points.iter().filter_map(|p| self.place(*p));
         let shown = places.filter(|place| self.inside(*place));
-        shown
-            .map(|(x, y)| svg::circle(x, y, radius).set("fill", series.marker_fill()))
-            .collect()
+        shown.map(|(x, y)| svg::circle(x, y, radius).set("fill", series.marker_fill())).collect()
     }
 
-    /// Draws invisible dots that show the hover text, no closer together than a pointer can distinguish.
+    /// Draws invisible dots that show the hover text, no closer together than a pointer can
+    /// distinguish.
     fn hover(&self, series: &Series) -> Element {
         let mut last = f64::NEG_INFINITY;
-        let mut dots = Element::new("g")
-            .set("fill", "transparent")
-            .set("stroke", "none");
+        let mut dots = Element::new("g").set("fill", "transparent").set("stroke", "none");
         for (i, point) in series.points.iter().enumerate() {
             let Some((x, y)) = self.place(*point).filter(|place| self.inside(*place)) else {
                 continue;
@@ -91,12 +84,7 @@ impl Drawing<'_> {
     fn describe(&self, series: &Series, (x, y): (f64, f64)) -> String {
         let (x_unit, y_unit) = (self.plot.x.unit(), self.plot.y.unit());
         let value = |v: f64, unit: &str| format!("{} {unit}", brief(v)).trim_end().to_owned();
-        format!(
-            "{}: {}, {}",
-            series.name,
-            value(x, x_unit),
-            value(y, y_unit)
-        )
+        format!("{}: {}, {}", series.name, value(x, x_unit), value(y, y_unit))
     }
 
     /// Returns the position of a point in the data area, pixels from its top left.

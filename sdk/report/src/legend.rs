@@ -29,12 +29,8 @@ pub(crate) fn entry(x: f64, y: f64, series: &Series) -> Element {
     let dot = series
         .marker_radius_px
         .map(|r| svg::circle(x + 10.0, y - 4.0, r).set("fill", series.marker_fill()));
-    let look = stroke(Element::new("g"), series)
-        .children(sample)
-        .children(dot);
-    Element::new("g")
-        .child(&look)
-        .child(&svg::label(x + 26.0, y, "start", &series.name))
+    let look = stroke(Element::new("g"), series).children(sample).children(dot);
+    Element::new("g").child(&look).child(&svg::label(x + 26.0, y, "start", &series.name))
 }
 
 /// Applies the series' colour and line style to `element`.

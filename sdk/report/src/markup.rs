@@ -31,11 +31,7 @@ pub(crate) struct Element {
 
 impl Element {
     pub(crate) fn new(name: &'static str) -> Self {
-        Self {
-            name,
-            head: String::new(),
-            content: String::new(),
-        }
+        Self { name, head: String::new(), content: String::new() }
     }
 
     /// Adds an attribute; the value is escaped.
@@ -76,11 +72,7 @@ impl Element {
     }
 
     fn write_to(&self, out: &mut String) {
-        let Self {
-            name,
-            head,
-            content,
-        } = self;
+        let Self { name, head, content } = self;
         let _ = write!(out, "<{name}{head}>{content}</{name}>");
     }
 }
@@ -92,9 +84,6 @@ mod tests {
     #[test]
     fn escapes_content_and_attributes() {
         let element = Element::new("b").set("title", "\"<&").text("a<'\u{0}");
-        assert_eq!(
-            element.render(),
-            "<b title=\"&quot;&lt;&amp;\">a&lt;&#39;\u{fffd}</b>"
-        );
+        assert_eq!(element.render(), "<b title=\"&quot;&lt;&amp;\">a&lt;&#39;\u{fffd}</b>");
     }
 }

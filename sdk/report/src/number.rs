@@ -3,7 +3,8 @@
 /// Text for a value that is missing or not finite.
 pub(crate) const MISSING: &str = "\u{2013}";
 
-/// Formats `value` with exactly `decimals` decimals and a minus sign (U+2212); an en dash when not finite.
+/// Formats `value` with exactly `decimals` decimals and a minus sign (U+2212); an en dash when not
+/// finite.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return MISSING.to_owned();
@@ -11,11 +12,7 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let negative = text.starts_with('-') && text.chars().any(|c| ('1'..='9').contains(&c));
     let digits = text.trim_start_matches('-');
-    if negative {
-        format!("\u{2212}{digits}")
-    } else {
-        digits.to_owned()
-    }
+    if negative { format!("\u{2212}{digits}") } else { digits.to_owned() }
 }
 
 /// Formats `value` with about three significant digits, without trailing zeros.
@@ -66,11 +63,7 @@ pub(crate) fn ratio(whole: u64, part: u64) -> String {
 /// Rounds `value` to three digits if it has more before the decimal point.
 fn three_digits(value: f64) -> f64 {
     let unit = 10f64.powi(value.max(100.0).log10().floor() as i32 - 2);
-    if value < 100.0 {
-        value
-    } else {
-        (value / unit).round() * unit
-    }
+    if value < 100.0 { value } else { (value / unit).round() * unit }
 }
 
 /// Groups digits in threes by narrow no-break spaces if there are more than four.

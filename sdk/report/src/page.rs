@@ -15,10 +15,7 @@ impl Page {
     /// Creates a page with `title` as its heading.
     pub fn new(title: &str) -> Self {
         let heading = Element::new("h1").text(title);
-        Self {
-            title: title.to_owned(),
-            body: heading.render(),
-        }
+        Self { title: title.to_owned(), body: heading.render() }
     }
 
     /// Starts a section.
@@ -55,9 +52,7 @@ pub fn list(items: &[impl ToString]) -> String {
     if items.is_empty() {
         return String::new();
     }
-    let items = items
-        .iter()
-        .map(|item| Element::new("li").text(&item.to_string()));
+    let items = items.iter().map(|item| Element::new("li").text(&item.to_string()));
     Element::new("ul").children(items).render()
 }
 

@@ -120,39 +120,17 @@ impl<'a> Drawing<'a> {
         let points = || plot.series.iter().flat_map(|series| &series.points);
         let x = Projection::new(&plot.x, points().map(|p| p.0));
         let y = Projection::new(&plot.y, points().map(|p| p.1));
-        let legend = if plot.legend {
-            legend::places(&plot.series, width)
-        } else {
-            Vec::new()
-        };
+        let legend = if plot.legend { legend::places(&plot.series, width) } else { Vec::new() };
         let legend_bottom = legend.last().map_or(0.0, |(_, y, _)| y + 12.0);
         let top = legend_bottom.max(if plot.title.is_empty() { 10.0 } else { 24.0 });
         let area_height = (height - top - 38.0).max(30.0);
         let y_ticks = y.ticks((area_height / 26.0) as usize);
-        let widest = y_ticks
-            .iter()
-            .map(|(_, t)| text_width(&t.label, TEXT_PX))
-            .fold(0.0, f64::max);
+        let widest = y_ticks.iter().map(|(_, t)| text_width(&t.label, TEXT_PX)).fold(0.0, f64::max);
         let left = (24.0 + widest).max(least_left);
         let area_width = (width - left - 14.0).max(30.0);
         let x_ticks = x.ticks((area_width / 45.0) as usize);
-        let area = Area {
-            left,
-            top,
-            width: area_width,
-            height: area_height,
-        };
-        Self {
-            plot,
-            width,
-            height,
-            x,
-            y,
-            x_ticks,
-            y_ticks,
-            legend,
-            area,
-        }
+        let area = Area { left, top, width: area_width, height: area_height };
+        Self { plot, width, height, x, y, x_ticks, y_ticks, legend, area }
     }
 
     fn heading(&self) -> Vec<Element> {
@@ -161,10 +139,7 @@ impl<'a> Drawing<'a> {
             .set("font-size", &px(TITLE_PX))
             .set("font-weight", "600");
         let shown = (!self.plot.title.is_empty()).then_some(title);
-        let names = self
-            .legend
-            .iter()
-            .map(|(x, y, series)| legend::entry(*x, *y, series));
+        let names = self.legend.iter().map(|(x, y, series)| legend::entry(*x, *y, series));
         shown.into_iter().chain(names).collect()
     }
 
@@ -190,10 +165,7 @@ impl<'a> Drawing<'a> {
         let mut out = Vec::new();
         for (fraction, tick) in &self.y_ticks {
             let y = area.top + (1.0 - fraction) * area.height;
-            out.push(grid_line(
-                tick,
-                svg::line(area.left, y, area.left + area.width, y),
-            ));
+            out.push(grid_line(tick, svg::line(area.left, y, area.left + area.width, y)));
             if !tick.label.is_empty() {
                 out.push(svg::label(area.left - 5.0, y + 4.0, "end", &tick.label));
             }
@@ -209,38 +181,19 @@ impl<'a> Drawing<'a> {
     }
 
     fn border(&self) -> Element {
-        let Area {
-            left,
-            top,
-            width,
-            height,
-        } = self.area;
+        let Area { left, top, width, height } = self.area;
         let border = svg::rect(left, top, width, height);
-        border
-            .set("fill", "none")
-            .set("stroke", "#8a8a8a")
-            .set("pointer-events", "none")
+        border.set("fill", "none").set("stroke", "#8a8a8a").set("pointer-events", "none")
     }
 }
 
 /// Returns `given` if it is a valid width or height, else `otherwise`.
 fn size(given: f64, otherwise: f64) -> f64 {
-    if given.is_finite() {
-        given.clamp(120.0, 10_000.0)
-    } else {
-        otherwise
-    }
+    if given.is_finite() { given.clamp(120.0, 10_000.0) } else { otherwise }
 }
 
 fn grid_line(tick: &Tick, line: Element) -> Element {
-    line.set(
-        "stroke",
-        if tick.label.is_empty() {
-            MINOR_GRID
-        } else {
-            GRID
-        },
-    )
+    line.set("stroke", if tick.label.is_empty() { MINOR_GRID } else { GRID })
 }
 
 /// Returns the labels of `ticks` that fit without overlap, by decreasing importance.
@@ -253,10 +206,7 @@ fn spaced_labels<'t>(ticks: &'t [(f64, Tick)], area: &Area) -> Vec<(f64, &'t str
         let clearance = |other: &str| {
             (text_width(&tick.label, TEXT_PX) + text_width(other, TEXT_PX)) / 2.0 + 4.0
         };
-        if kept
-            .iter()
-            .all(|(at, other)| (x - at).abs() >= clearance(other))
-        {
+        if kept.iter().all(|(at, other)| (x - at).abs() >= clearance(other)) {
             kept.push((x, &tick.label));
         }
     }

@@ -11,8 +11,8 @@ pub(crate) struct Projection {
     high: f64,
 }
 
-/// Distance outside the plot, in lengths of the axis, at which points are clamped, so that coordinates
-/// stay short.
+/// Distance outside the plot, in lengths of the axis, at which points are clamped, so that
+/// coordinates stay short.
 const FAR: f64 = 20.0;
 
 impl Projection {
@@ -23,8 +23,8 @@ impl Projection {
         Self { scale, low, high }
     }
 
-    /// Returns the position of `value`: 0 at the low end, 1 at the high end; `None` if the axis cannot
-    /// show it.
+    /// Returns the position of `value`: 0 at the low end, 1 at the high end; `None` if the axis
+    /// cannot show it.
     pub(crate) fn fraction(&self, value: f64) -> Option<f64> {
         let fraction = match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
@@ -35,7 +35,8 @@ impl Projection {
         usable.then(|| fraction.clamp(-FAR, FAR))
     }
 
-    /// Returns the value at which stems start: zero if the axis shows it, otherwise the closest end.
+    /// Returns the value at which stems start: zero if the axis shows it, otherwise the closest
+    /// end.
     pub(crate) fn base(&self) -> f64 {
         match self.scale {
             Scale::Linear => 0f64.clamp(self.low, self.high),
@@ -46,9 +47,7 @@ impl Projection {
     /// Returns about `count` labelled ticks, each with its position from 0 to 1.
     pub(crate) fn ticks(&self, count: usize) -> Vec<(f64, Tick)> {
         let all = ticks(self.scale, self.low, self.high, count);
-        let placed = all
-            .into_iter()
-            .filter_map(|t| Some((self.fraction(t.value)?, t)));
+        let placed = all.into_iter().filter_map(|t| Some((self.fraction(t.value)?, t)));
         placed.collect()
     }
 }

@@ -55,20 +55,12 @@ impl Series {
 
     /// Creates stems with a dot on each.
     pub fn stems(name: &str, points: Vec<(f64, f64)>) -> Self {
-        Self {
-            line: Line::Stems,
-            marker_radius_px: Some(2.5),
-            ..Self::line(name, points)
-        }
+        Self { line: Line::Stems, marker_radius_px: Some(2.5), ..Self::line(name, points) }
     }
 
     /// Creates dots without lines.
     pub fn scatter(name: &str, points: Vec<(f64, f64)>) -> Self {
-        Self {
-            line: Line::None,
-            marker_radius_px: Some(3.0),
-            ..Self::line(name, points)
-        }
+        Self { line: Line::None, marker_radius_px: Some(3.0), ..Self::line(name, points) }
     }
 
     #[must_use]
@@ -79,11 +71,7 @@ impl Series {
 
     /// Returns the fill colour of dots.
     pub(crate) fn marker_fill(&self) -> &str {
-        if self.marker_hollow {
-            "#fff"
-        } else {
-            &self.color
-        }
+        if self.marker_hollow { "#fff" } else { &self.color }
     }
 
     /// Makes the series a backdrop: thin, without hover text.

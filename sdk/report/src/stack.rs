@@ -4,8 +4,8 @@ use crate::markup::Element;
 use crate::number::px;
 use crate::plot::Plot;
 
-/// Draws plots below each other, in their order and with their data areas aligned at the left, as one self-contained `<svg>`
-/// element; `title` is its name for screen readers.
+/// Draws plots below each other, in their order and with their data areas aligned at the left, as
+/// one self-contained `<svg>` element; `title` is its name for screen readers.
 ///
 /// ```
 /// use htex_report::{Axis, Plot, stacked};

@@ -41,10 +41,7 @@ pub(crate) fn rect(x: f64, y: f64, width: f64, height: f64) -> Element {
 
 /// Draws a line through `points`.
 pub(crate) fn polyline(points: &[(f64, f64)]) -> Element {
-    let pairs: Vec<String> = points
-        .iter()
-        .map(|(x, y)| format!("{},{}", px(*x), px(*y)))
-        .collect();
+    let pairs: Vec<String> = points.iter().map(|(x, y)| format!("{},{}", px(*x), px(*y))).collect();
     Element::new("polyline").set("points", &pairs.join(" "))
 }
 

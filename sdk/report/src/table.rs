@@ -78,9 +78,7 @@ impl Table {
             .child(&Element::new("caption").text(&self.caption))
             .child(&Element::new("thead").child(&self.head()))
             .child(&Element::new("tbody").children(self.rows.iter().map(|row| self.row(row))));
-        let frame = Element::new("div")
-            .set("class", "scroll")
-            .set("tabindex", "0");
+        let frame = Element::new("div").set("class", "scroll").set("tabindex", "0");
         frame.child(&table).render()
     }
 

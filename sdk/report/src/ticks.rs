@@ -14,8 +14,8 @@ pub struct Tick {
     pub(crate) rank: u8,
 }
 
-/// Returns the ticks of an axis from `low` to `high`, increasing and inside it: steps of 1, 2 or 5 times
-/// a power of ten, about `count` of them labelled. A log axis has ticks at 1, 2 and 5 of each
+/// Returns the ticks of an axis from `low` to `high`, increasing and inside it: steps of 1, 2 or 5
+/// times a power of ten, about `count` of them labelled. A log axis has ticks at 1, 2 and 5 of each
 /// decade with minor ticks between, or at whole decades if there are many.
 pub fn ticks(scale: Scale, low: f64, high: f64, count: usize) -> Vec<Tick> {
     let (low, high) = sound_range(Some((low, high)), scale);
@@ -35,24 +35,18 @@ fn linear(low: f64, high: f64, count: f64) -> Vec<Tick> {
     (0..=steps.clamp(0.0, 200.0) as u32)
         .map(|k| {
             let value = ((first + f64::from(k)) * step).clamp(low, high);
-            let near = if (value / step).abs() < 0.5 {
-                0.0
-            } else {
-                value
-            };
+            let near = if (value / step).abs() < 0.5 { 0.0 } else { value };
             tick(value, label(near, exponent), 0)
         })
         .collect()
 }
 
-/// Returns the smallest of 1, 2, 5 times a power of ten that is at least `step`, as mantissa and exponent.
+/// Returns the smallest of 1, 2, 5 times a power of ten that is at least `step`, as mantissa and
+/// exponent.
 fn nice_step(step: f64) -> (f64, i32) {
     let exponent = step.log10().floor() as i32;
     let rest = step / 10f64.powi(exponent);
-    match [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|m| rest <= m * (1.0 + 1e-9))
-    {
+    match [1.0, 2.0, 5.0].into_iter().find(|m| rest <= m * (1.0 + 1e-9)) {
         Some(mantissa) => (mantissa, exponent),
         None => (1.0, exponent + 1),
     }
@@ -73,11 +67,7 @@ fn log(low: f64, high: f64, count: f64) -> Vec<Tick> {
                 2 | 5 => dense,
                 _ => false,
             };
-            let text = if labelled {
-                label(value, exponent)
-            } else {
-                String::new()
-            };
+            let text = if labelled { label(value, exponent) } else { String::new() };
             tick(value, text, log_rank(m))
         })
         .filter(|tick| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(&tick.value))
@@ -130,17 +120,10 @@ mod tests {
 
     /// Checks that no gap, at the ends or between ticks, is wider than the 1-2-5 grid allows.
     fn check(scale: Scale, low: f64, high: f64, count: usize) -> Result<(), TestCaseError> {
-        let values: Vec<f64> = ticks(scale, low, high, count)
-            .iter()
-            .map(|t| t.value)
-            .collect();
+        let values: Vec<f64> = ticks(scale, low, high, count).iter().map(|t| t.value).collect();
         let slack = (high - low) * 1e-6;
         prop_assert!(values.windows(2).all(|w| w[0] < w[1]), "{values:?}");
-        prop_assert!(
-            values
-                .iter()
-                .all(|v| *v >= low - slack && *v <= high + slack)
-        );
+        prop_assert!(values.iter().all(|v| *v >= low - slack && *v <= high + slack));
         prop_assert!(!labels(&ticks(scale, low, high, count)).is_empty());
         let place = |v: f64| if scale == Scale::Log { v.log10() } else { v };
         let ends = [low, high];
@@ -149,11 +132,7 @@ mod tests {
         let widest = all.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
         let span = place(high) - place(low);
         let linear_limit = 2.51 * span / count as f64;
-        let limit = if scale == Scale::Log {
-            linear_limit.max(1.01)
-        } else {
-            linear_limit
-        };
+        let limit = if scale == Scale::Log { linear_limit.max(1.01) } else { linear_limit };
         prop_assert!(widest <= limit, "gap {widest} over {limit}: {values:?}");
         Ok(())
     }

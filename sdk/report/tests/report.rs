@@ -21,21 +21,8 @@ fn body(page: &str) -> &str {
 }
 
 fn strange_value() -> impl Strategy<Value = f64> {
-    let special = [
-        f64::NAN,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-        0.0,
-        -0.0,
-        1e308,
-        -1e308,
-        5e-324,
-    ];
-    prop_oneof![
-        -1e3f64..1e3,
-        proptest::sample::select(special.to_vec()),
-        any::<f64>()
-    ]
+    let special = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, 1e308, -1e308, 5e-324];
+    prop_oneof![-1e3f64..1e3, proptest::sample::select(special.to_vec()), any::<f64>()]
 }
 
 fn strange_values() -> impl Strategy<Value = Vec<f64>> {
@@ -48,10 +35,7 @@ fn hostile_model(values: &[f64], lines: bool) -> ModelResult {
         short_name: HOSTILE.to_owned(),
         color: HOSTILE.to_owned(),
         magnitude: values.to_vec(),
-        measured: values
-            .iter()
-            .map(|v| (v % 2.0 < 1.0).then_some(*v))
-            .collect(),
+        measured: values.iter().map(|v| (v % 2.0 < 1.0).then_some(*v)).collect(),
         note: HOSTILE.to_owned(),
         band_error_db: values.to_vec(),
         payload_bytes: values.len(),
@@ -60,11 +44,7 @@ fn hostile_model(values: &[f64], lines: bool) -> ModelResult {
 }
 
 fn measure(is_correlation: bool, repeats: bool) -> Measure {
-    Measure {
-        caption: HOSTILE.to_owned(),
-        is_correlation,
-        repeats,
-    }
+    Measure { caption: HOSTILE.to_owned(), is_correlation, repeats }
 }
 
 fn hostile_report(values: &[f64]) -> TextureReport {
@@ -84,16 +64,9 @@ fn hostile_report(values: &[f64]) -> TextureReport {
     TextureReport {
         title: HOSTILE.to_owned(),
         intro: vec![HOSTILE.to_owned()],
-        measures: vec![
-            measure(true, false),
-            measure(false, true),
-            measure(false, false),
-        ],
+        measures: vec![measure(true, false), measure(false, true), measure(false, false)],
         textures: vec![texture, Texture::default()],
-        shares: vec![Share {
-            short_name: HOSTILE.to_owned(),
-            ..Share::default()
-        }],
+        shares: vec![Share { short_name: HOSTILE.to_owned(), ..Share::default() }],
         pictures: vec![Plot::new(HOSTILE, Axis::log(HOSTILE), Axis::log(HOSTILE)).to_svg()],
         command: HOSTILE.to_owned(),
     }
@@ -135,11 +108,7 @@ proptest! {
 fn text_comes_back_as_it_went_in() {
     let plot = Plot::new(HOSTILE, Axis::linear("x / m"), Axis::linear("y / N"));
     let svg = plot.to_svg();
-    let label = parse(&svg)
-        .root_element()
-        .attribute("aria-label")
-        .unwrap()
-        .to_owned();
+    let label = parse(&svg).root_element().attribute("aria-label").unwrap().to_owned();
     assert_eq!(label, HOSTILE.replace('\u{1}', "\u{fffd}"));
 }
 
@@ -157,14 +126,7 @@ fn a_page_fetches_nothing_and_says_what_is_simulated() {
 
 #[test]
 fn values_off_a_log_axis_break_the_line() {
-    let points = vec![
-        (1.0, 1.0),
-        (2.0, 2.0),
-        (0.0, 3.0),
-        (3.0, 1.0),
-        (f64::NAN, 1.0),
-        (4.0, 2.0),
-    ];
+    let points = vec![(1.0, 1.0), (2.0, 2.0), (0.0, 3.0), (3.0, 1.0), (f64::NAN, 1.0), (4.0, 2.0)];
     let mut plot = Plot::new("", Axis::log("x"), Axis::linear("y"));
     plot.series.push(Series::line("s", points));
     let svg = plot.to_svg();
@@ -172,28 +134,21 @@ fn values_off_a_log_axis_break_the_line() {
     let runs = document
         .descendants()
         .filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "polyline")));
-    let lengths: Vec<usize> = runs
-        .map(|n| n.attribute("points").unwrap().split(' ').count())
-        .collect();
+    let lengths: Vec<usize> =
+        runs.map(|n| n.attribute("points").unwrap().split(' ').count()).collect();
     assert_eq!(lengths, [2, 1, 1]);
 }
 
 #[test]
 fn a_table_keeps_its_shape() {
-    let row = |header: &str, cells| Row {
-        header: header.to_owned(),
-        cells,
-    };
+    let row = |header: &str, cells| Row { header: header.to_owned(), cells };
     let table = Table {
         caption: "error / dB".to_owned(),
         corner: "texture".to_owned(),
         columns: vec!["a".to_owned(), "b".to_owned()],
         rows: vec![
             row("short", vec![Cell::Shaded(-2.0, "*")]),
-            row(
-                "long",
-                vec![Cell::Plain(1.0), Cell::Shaded(f64::NAN, ""), Cell::Missing],
-            ),
+            row("long", vec![Cell::Plain(1.0), Cell::Shaded(f64::NAN, ""), Cell::Missing]),
         ],
         scale: HeatScale::Diverging { extent: 4.0 },
         decimals: 1,
@@ -201,9 +156,8 @@ fn a_table_keeps_its_shape() {
     let html = table.to_html();
     let document = parse(&html);
     let rows = document.descendants().filter(|n| n.has_tag_name("tr"));
-    let texts: Vec<Vec<&str>> = rows
-        .map(|row| row.children().filter_map(|cell| cell.text()).collect())
-        .collect();
+    let texts: Vec<Vec<&str>> =
+        rows.map(|row| row.children().filter_map(|cell| cell.text()).collect()).collect();
     assert_eq!(texts[1], ["short", "\u{2212}2.0*", "\u{2013}"]);
     assert_eq!(texts[2], ["long", "1.0", "\u{2013}"]);
 }
@@ -222,19 +176,10 @@ fn a_chain_shows_what_runs_by_its_cost_and_what_was_left_out_pale() {
         left_out: vec![("carrier".to_owned(), "none is wanted".to_owned())],
     };
     let svg = chain.to_svg();
-    for text in [
-        "40 ns a sample in all",
-        "&lt;is&gt;",
-        "a &amp; b",
-        "none is wanted",
-        "Left out",
-    ] {
+    for text in ["40 ns a sample in all", "&lt;is&gt;", "a &amp; b", "none is wanted", "Left out"] {
         assert!(svg.contains(text), "{text}");
     }
     // Bars proportional to the costs, and one grey box.
-    assert!(
-        svg.contains("width=\"105\"") && svg.contains("width=\"35\""),
-        "{svg}"
-    );
+    assert!(svg.contains("width=\"105\"") && svg.contains("width=\"35\""), "{svg}");
     assert_eq!(svg.matches("stroke-dasharray").count(), 1);
 }

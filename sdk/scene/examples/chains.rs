@@ -1,6 +1,6 @@
-//! Measures the time saved by short chains, whether budgets are met, and how many voices one core plays:
-//! `cargo run --release -p htex-scene --example chains`, followed by `--` and `saved`, `live`, `budgets`,
-//! `voices` or `fingers` for a single table.
+//! Measures the time saved by short chains, whether budgets are met, and how many voices one core
+//! plays: `cargo run --release -p htex-scene --example chains`, followed by `--` and `saved`,
+//! `live`, `budgets`, `voices` or `fingers` for a single table.
 //!
 //! Times are the minimum over many short runs; all runs of a table are interleaved.
 #![allow(clippy::unwrap_used)] // A program for developers: a failure may end it.
@@ -52,10 +52,7 @@ fn typical() -> Vec<(&'static str, LoadedScene, Capabilities)> {
         moved.scene.surfaces[0].representation = "ar".to_owned();
         moved
     };
-    let at_rate = Capabilities {
-        default_rate_hz: 2_000.0,
-        ..file()
-    };
+    let at_rate = Capabilities { default_rate_hz: 2_000.0, ..file() };
     let ar = |mut scene: LoadedScene| {
         scene.scene.surfaces[0].representation = "ar".to_owned();
         scene
@@ -67,11 +64,7 @@ fn typical() -> Vec<(&'static str, LoadedScene, Capabilities)> {
         ("file of integers, constant", still(), integer_file()),
         ("preview by ear, constant", preview, loudspeaker()),
         ("file of floats, strokes over a grid", moved(grid()), file()),
-        (
-            "display, strokes at one condition",
-            moved(single()),
-            display(),
-        ),
+        ("display, strokes at one condition", moved(single()), display()),
     ]
 }
 
@@ -157,10 +150,8 @@ fn saved() {
         let mut full = scene.clone();
         full.scene.effects = Effect::ALL.map(|effect| (effect, Switch::On)).into();
         let plans = [planned(&scene, &device), planned(&full, &device)];
-        let mut renderers = [
-            Renderer::new(&scene, &plans[0]).unwrap(),
-            Renderer::new(&full, &plans[1]).unwrap(),
-        ];
+        let mut renderers =
+            [Renderer::new(&scene, &plans[0]).unwrap(), Renderer::new(&full, &plans[1]).unwrap()];
         let ns = interleaved(&mut renderers);
         println!(
             "{name:36} {:2} / {:2}  {:7.2}  {:10.2}  {:5.2}x",
@@ -194,10 +185,7 @@ fn live() {
             least[1] = least[1].min(stretches(&mut one));
             least[2] = least[2].min(stretches(&mut nine));
         }
-        println!(
-            "{model:38} {:8.2} {:20.2} {:22.2}",
-            least[0], least[1], least[2]
-        );
+        println!("{model:38} {:8.2} {:20.2} {:22.2}", least[0], least[1], least[2]);
     }
 }
 
@@ -221,14 +209,9 @@ fn stretches(renderer: &mut [Renderer; 1]) -> f64 {
 fn budgets() {
     let costs = Costs::measure(&Registry::builtin(), "this machine").unwrap();
     println!("\nbudget, ns  chosen             planned  rendered  of the budget");
-    for ns in [
-        100.0, 20.0, 12.0, 10.0, 9.0, 8.0, 6.0, 4.0, 3.5, 3.3, 3.1, 2.9,
-    ] {
+    for ns in [100.0, 20.0, 12.0, 10.0, 9.0, 8.0, 6.0, 4.0, 3.5, 3.3, 3.1, 2.9] {
         let mut scene = scene(single(), constant(80.0, 0.4), 1e4);
-        scene.scene.budget = Budget {
-            ns_per_sample: Some(ns),
-            ..Budget::default()
-        };
+        scene.scene.budget = Budget { ns_per_sample: Some(ns), ..Budget::default() };
         match plan(&scene, &file(), &costs) {
             Err(error) => println!("{ns:10}  {error}"),
             Ok(plan) => {
@@ -245,9 +228,9 @@ fn budgets() {
     }
 }
 
-/// Time per sample of one of many voices, each with a chain and a resampler of its own, and the number of
-/// voices that one core plays at 20 kHz, extrapolated from the cost among 5,000. Voices start at different
-/// times, like independent fingers.
+/// Time per sample of one of many voices, each with a chain and a resampler of its own, and the
+/// number of voices that one core plays at 20 kHz, extrapolated from the cost among 5,000. Voices
+/// start at different times, like independent fingers.
 fn voices() {
     println!(
         "\nns a sample, blocks of 64 at 20 kHz   1 voice  1,000  5,000  10,000  \
@@ -297,17 +280,15 @@ fn scene_voice(model: &str, seed: u64) -> Renderer {
 }
 
 fn app_voice(model: &str, seed: u64) -> htex_play::Voice {
-    let options = htex_play::VoiceOptions::default()
-        .with_model(model)
-        .with_seed(seed);
+    let options = htex_play::VoiceOptions::default().with_model(model).with_seed(seed);
     single().voice(&options).unwrap()
 }
 
 /// Blocks in 0.36 s of sound, in which each voice computes a frame.
 const FRAME_BLOCKS: usize = 112;
 
-/// Time per sample of voices rendered in turn, nanoseconds, and that of the slowest block, milliseconds: the
-/// minimum over several runs.
+/// Time per sample of voices rendered in turn, nanoseconds, and that of the slowest block,
+/// milliseconds: the minimum over several runs.
 fn among<V: FnMut(&mut [f32])>(voices: &mut [V]) -> (f64, f64) {
     let mut block = [0.0f32; BLOCK];
     let mut least = (f64::INFINITY, f64::INFINITY);
@@ -327,8 +308,8 @@ fn among<V: FnMut(&mut [f32])>(voices: &mut [V]) -> (f64, f64) {
     least
 }
 
-/// A thousand live voices of each model over nine conditions, each with a motion of its own that changes all
-/// the time and starts at a time of its own.
+/// A thousand live voices of each model over nine conditions, each with a motion of its own that
+/// changes all the time and starts at a time of its own.
 fn fingers() {
     println!("\n1,000 live voices over nine conditions, blocks of 64 at 20 kHz: part of one core");
     for model in Registry::builtin_names() {

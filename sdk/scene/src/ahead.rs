@@ -1,15 +1,15 @@
 //! A buffer of samples rendered in advance, for scenes in constant motion.
 
-/// Samples rendered in advance at a time. Of 256, 512 and 1,024, with 1,024 one core plays the most renderers in
-/// turn (the example `chains`, mode `voices`).
+/// Samples rendered in advance at a time. Of 256, 512 and 1,024, with 1,024 one core plays the most
+/// renderers in turn (the example `chains`, mode `voices`).
 const AHEAD: usize = 1024;
 
 /// The buffer; samples from index `taken` on are not played yet.
 pub(crate) struct Ahead {
     samples: Vec<f32>,
     taken: usize,
-    /// Length of the first buffer, from 1 to [`AHEAD`], derived from the seed: renderers started together fill their
-    /// buffers at different times.
+    /// Length of the first buffer, from 1 to [`AHEAD`], derived from the seed: renderers started
+    /// together fill their buffers at different times.
     first: usize,
 }
 
@@ -40,7 +40,8 @@ impl Ahead {
         frames
     }
 
-    /// Moves the buffer out, resized to the next length but at most `left` samples; [`Self::end`] moves it back.
+    /// Moves the buffer out, resized to the next length but at most `left` samples; [`Self::end`]
+    /// moves it back.
     pub(crate) fn begin(&mut self, left: u64) -> Vec<f32> {
         let mut samples = std::mem::take(&mut self.samples);
         let frames = match samples.len() {

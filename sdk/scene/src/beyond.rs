@@ -8,8 +8,8 @@ use crate::motion::{Finger, topmost};
 use crate::rules as rule;
 use crate::trace::Trace;
 
-/// Part of the time on a surface that may be outside the recorded motions without a warning: strokes slow
-/// down where they turn.
+/// Part of the time on a surface that may be outside the recorded motions without a warning:
+/// strokes slow down where they turn.
 const MOST: f64 = 0.1;
 /// Maximum number of trace rows checked, evenly spaced: each is compared with all conditions.
 const MOST_ROWS: usize = 20_000;
@@ -75,8 +75,8 @@ fn fingers(scene: &Scene, trace: Option<&Trace>) -> Vec<Finger> {
     }
 }
 
-/// Fraction of the sliding fingers that are played as if at another motion, and the coverage of the farthest
-/// one.
+/// Fraction of the sliding fingers that are played as if at another motion, and the coverage of the
+/// farthest one.
 fn beyond<'a>(
     fingers: impl Iterator<Item = &'a Finger>,
     motions: &Motions,

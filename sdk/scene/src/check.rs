@@ -23,12 +23,9 @@ pub(crate) fn check(scene: &Scene, limits: &Limits, findings: &mut Findings) {
 }
 
 fn check_surfaces(surfaces: &[Surface], limits: &Limits, findings: &mut Findings) {
-    findings.require(
-        !surfaces.is_empty(),
-        rule::SURFACES_EMPTY,
-        "/surfaces",
-        || "the scene has no surface; add one with an asset".to_owned(),
-    );
+    findings.require(!surfaces.is_empty(), rule::SURFACES_EMPTY, "/surfaces", || {
+        "the scene has no surface; add one with an asset".to_owned()
+    });
     if surfaces.len() > limits.surfaces {
         let (there, most) = (surfaces.len(), limits.surfaces);
         let message =
@@ -44,12 +41,7 @@ fn check_surfaces(surfaces: &[Surface], limits: &Limits, findings: &mut Findings
 
 fn check_surface(surface: &Surface, at: &str, findings: &mut Findings) {
     let range = Range(0.0, 1000.0);
-    range.require(
-        surface.gain,
-        rule::SURFACE_GAIN_INVALID,
-        format!("{at}/gain"),
-        findings,
-    );
+    range.require(surface.gain, rule::SURFACE_GAIN_INVALID, format!("{at}/gain"), findings);
     let pointer = format!("{at}/representation");
     let is_named = !surface.representation.trim().is_empty();
     findings.require(is_named, rule::REPRESENTATION_NAME_EMPTY, pointer, || {
@@ -100,11 +92,7 @@ fn check_constant(motion: &Constant, surfaces: &[Surface], findings: &mut Findin
         ("force_n", motion.force_n, Range(0.0, 1e3)),
         ("from_mm/0", from[0], place),
         ("from_mm/1", from[1], place),
-        (
-            "direction_deg",
-            motion.direction_deg,
-            Range(-3600.0, 3600.0),
-        ),
+        ("direction_deg", motion.direction_deg, Range(-3600.0, 3600.0)),
     ];
     for (key, value, range) in numbers {
         range.require(value, rule::MOTION_INVALID, format!("{at}/{key}"), findings);
@@ -125,37 +113,20 @@ fn check_device(device: &DeviceChoice, findings: &mut Findings) {
         ("level_dbfs", device.level_dbfs, Range(-120.0, 0.0)),
         ("reference_rms", device.reference_rms, Range(1e-12, 1e6)),
         ("pitch", device.pitch, Range(0.05, 20.0)),
-        (
-            "response_depth_db",
-            Some(device.response_depth_db),
-            Range(0.0, 120.0),
-        ),
+        ("response_depth_db", Some(device.response_depth_db), Range(0.0, 120.0)),
     ];
     for (key, value, range) in numbers {
         let Some(value) = value else { continue };
-        range.require(
-            value,
-            rule::DEVICE_FIELD_INVALID,
-            format!("/device/{key}"),
-            findings,
-        );
+        range.require(value, rule::DEVICE_FIELD_INVALID, format!("/device/{key}"), findings);
     }
 }
 
 fn check_budget(budget: &Budget, findings: &mut Findings) {
-    let numbers = [
-        ("ns_per_sample", budget.ns_per_sample),
-        ("max_error_db", budget.max_error_db),
-    ];
+    let numbers = [("ns_per_sample", budget.ns_per_sample), ("max_error_db", budget.max_error_db)];
     for (key, value) in numbers {
         let range = Range(f64::MIN_POSITIVE, 1e12);
         let value = value.unwrap_or(1.0);
-        range.require(
-            value,
-            rule::BUDGET_INVALID,
-            format!("/budget/{key}"),
-            findings,
-        );
+        range.require(value, rule::BUDGET_INVALID, format!("/budget/{key}"), findings);
     }
 }
 

@@ -18,10 +18,11 @@ pub struct Costs {
     pub retune_ns: BTreeMap<String, f64>,
     /// Stage to the time of one sample at the stage's rate, nanoseconds.
     pub stage_ns: BTreeMap<String, f64>,
-    /// Stage to the time of one sample at the stage's rate where a scene switches it on and it changes nothing, nanoseconds. Interpolation
-    /// and crossfades take none then.
+    /// Stage to the time of one sample at the stage's rate where a scene switches it on and it
+    /// changes nothing, nanoseconds. Interpolation and crossfades take none then.
     pub neutral_ns: BTreeMap<String, f64>,
-    /// Time of a sample of the renderer itself where nothing changes, nanoseconds, and where the motion is read before every block.
+    /// Time of a sample of the renderer itself where nothing changes, nanoseconds, and where the
+    /// motion is read before every block.
     pub renderer_ns: [f64; 2],
     /// Compensation, in the short blocks that a resampler pulls.
     pub compensation: FilterCost,
@@ -63,10 +64,7 @@ impl Costs {
     ///
     /// # Errors
     /// If the file cannot be written.
-    #[allow(
-        clippy::disallowed_methods,
-        reason = "the user's own folder of settings"
-    )]
+    #[allow(clippy::disallowed_methods, reason = "the user's own folder of settings")]
     pub fn save(&self, path: &Path) -> std::io::Result<()> {
         let text = serde_json::to_string_pretty(self)?;
         if let Some(folder) = path.parent() {

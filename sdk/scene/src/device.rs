@@ -1,7 +1,8 @@
 //! Rules for a scene's device, and the settings a user states in place of the scene's.
 //!
-//! Quantities are never confused ([`quantity_misfit`]): an asset of accelerations is played on a device of newtons, or
-//! on an electrovibration display, only with a `quantity_gain` that a person states.
+//! Quantities are never confused ([`quantity_misfit`]): an asset of accelerations is played on a
+//! device of newtons, or on an electrovibration display, only with a `quantity_gain` that a person
+//! states.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +19,8 @@ use crate::output::named;
 pub(crate) use crate::output::stem;
 use crate::rules as rule;
 
-/// The setting that names a library to load; not allowed in a scene, which may come from an untrusted source.
+/// The setting that names a library to load; not allowed in a scene, which may come from an
+/// untrusted source.
 const DRIVER: &str = "driver";
 
 /// Device options of the program that loads a scene; they take precedence over the scene's.
@@ -30,8 +32,8 @@ pub struct DeviceOverride {
     pub profile: Option<String>,
     /// Settings in the adapter's syntax; relative paths are not resolved.
     pub settings: BTreeMap<String, String>,
-    /// The device will not be opened: the scene's own profile and hardware settings are accepted, in order to
-    /// validate, plan, or render to a file. Never set it for a device that plays.
+    /// The device will not be opened: the scene's own profile and hardware settings are accepted,
+    /// in order to validate, plan, or render to a file. Never set it for a device that plays.
     pub rehearsal: bool,
     /// The motion is given while the scene plays: unset settings get their live defaults.
     pub live: bool,
@@ -39,8 +41,8 @@ pub struct DeviceOverride {
     pub rate_hz: Option<f64>,
     /// Replaces [`DeviceChoice::quantity_gain`].
     pub quantity_gain: Option<f64>,
-    /// Default of an unset setting that names a file; `None`: the scene's name with the extension of the
-    /// format, in the current folder.
+    /// Default of an unset setting that names a file; `None`: the scene's name with the extension
+    /// of the format, in the current folder.
     pub output: Option<String>,
 }
 
@@ -54,10 +56,7 @@ impl DeviceOverride {
     /// Replaces adapter and profile in a scene's choice.
     pub(crate) fn apply(&self, choice: &mut DeviceChoice) {
         if let Some(adapter) = &self.adapter {
-            *choice = DeviceChoice {
-                adapter: adapter.clone(),
-                ..DeviceChoice::default()
-            };
+            *choice = DeviceChoice { adapter: adapter.clone(), ..DeviceChoice::default() };
         }
         if self.profile.is_some() {
             choice.profile.clone_from(&self.profile);
@@ -131,12 +130,7 @@ fn settle(
                 .or_insert_with(|| change.output(stem, format.as_ref()));
         }
     }
-    let stated = Stated {
-        profile,
-        given: &given,
-        asked: &asked,
-        live: change.live,
-    };
+    let stated = Stated { profile, given: &given, asked: &asked, live: change.live };
     let settled = Settings::settle(descriptor, &stated);
     let (settings, ignored) = settled.map_err(|error| add_error(error, findings)).ok()?;
     for Ignored { name, what } in ignored {
@@ -171,7 +165,8 @@ fn add_error(error: DeviceError, findings: &mut Findings) {
     findings.add(rule::DEVICE_SETTING, pointer, error.to_string());
 }
 
-/// The scene's settings as text, except files, which a scene must not name; `None` if a setting is invalid.
+/// The scene's settings as text, except files, which a scene must not name; `None` if a setting is
+/// invalid.
 fn texts(
     choice: &DeviceChoice,
     descriptor: &Descriptor,
@@ -220,41 +215,16 @@ fn is_path(descriptor: &Descriptor, name: &str) -> bool {
 
 fn check_fit(choice: &DeviceChoice, able: &Capabilities, findings: &mut Findings) {
     if let Some(rate_hz) = choice.rate_hz {
-        findings.require(
-            able.has_rate(rate_hz),
-            rule::DEVICE_RATE,
-            "/device/rate_hz",
-            || {
-                let rates = able.rates_text();
-                format!("the device does not run at {rate_hz} Hz; it runs at {rates}")
-            },
-        );
+        findings.require(able.has_rate(rate_hz), rule::DEVICE_RATE, "/device/rate_hz", || {
+            let rates = able.rates_text();
+            format!("the device does not run at {rate_hz} Hz; it runs at {rates}")
+        });
     }
     let keys = [
-        (
-            "gain_db",
-            choice.gain_db,
-            able.quantity.is_physical(),
-            "N, m/s2, m/s or m",
-        ),
-        (
-            "drive_v",
-            choice.drive_v,
-            able.quantity == Quantity::DisplayVoltage,
-            "V",
-        ),
-        (
-            "level_dbfs",
-            choice.level_dbfs,
-            able.quantity == Quantity::Sound,
-            "FS",
-        ),
-        (
-            "pitch",
-            choice.pitch,
-            able.quantity == Quantity::Sound,
-            "FS",
-        ),
+        ("gain_db", choice.gain_db, able.quantity.is_physical(), "N, m/s2, m/s or m"),
+        ("drive_v", choice.drive_v, able.quantity == Quantity::DisplayVoltage, "V"),
+        ("level_dbfs", choice.level_dbfs, able.quantity == Quantity::Sound, "FS"),
+        ("pitch", choice.pitch, able.quantity == Quantity::Sound, "FS"),
     ];
     let takes = able.quantity.unit();
     for (key, value, fits, unit) in keys {
@@ -277,16 +247,10 @@ fn check_fit(choice: &DeviceChoice, able: &Capabilities, findings: &mut Findings
         "/device/reference_rms",
         || "reference_rms applies to the levels `own` only; add \"levels\": \"own\", or leave it out".to_owned(),
     );
-    let (drive_v, limit_v) = (
-        choice.drive_v.unwrap_or(0.0),
-        able.limit.unwrap_or(f64::MAX),
-    );
-    findings.require(
-        drive_v <= limit_v,
-        rule::DEVICE_DRIVE_TOO_HIGH,
-        "/device/drive_v",
-        || format!("{drive_v} V is above the device's limit of {limit_v} V; lower it"),
-    );
+    let (drive_v, limit_v) = (choice.drive_v.unwrap_or(0.0), able.limit.unwrap_or(f64::MAX));
+    findings.require(drive_v <= limit_v, rule::DEVICE_DRIVE_TOO_HIGH, "/device/drive_v", || {
+        format!("{drive_v} V is above the device's limit of {limit_v} V; lower it")
+    });
 }
 
 /// Checks that the device takes the quantity of the assets.
@@ -302,7 +266,8 @@ fn check_quantity(
     }
 }
 
-/// Reason why a device cannot play assets of a quantity with this gain, or without one; `None` if it can.
+/// Reason why a device cannot play assets of a quantity with this gain, or without one; `None` if
+/// it can.
 ///
 /// An electrovibration drive adds a lateral force; sound is scaled to its level from any unit.
 pub(crate) fn quantity_misfit(held: Held, device: Quantity, gain: Option<f64>) -> Option<String> {
@@ -333,8 +298,8 @@ pub(crate) fn quantity_misfit(held: Held, device: Quantity, gain: Option<f64>) -
 mod tests {
     use super::*;
 
-    /// Assets and devices have separate lists of quantities, since devices do not depend on textures; the
-    /// lists must match.
+    /// Assets and devices have separate lists of quantities, since devices do not depend on
+    /// textures; the lists must match.
     #[test]
     fn devices_have_every_quantity_that_assets_have() {
         let physical: Vec<(&str, &str)> = Quantity::ALL
@@ -342,10 +307,8 @@ mod tests {
             .filter(|quantity| quantity.is_physical())
             .map(|quantity| (quantity.name(), quantity.unit()))
             .collect();
-        let held: Vec<(&str, &str)> = Held::ALL
-            .iter()
-            .map(|held| (held.name(), held.unit()))
-            .collect();
+        let held: Vec<(&str, &str)> =
+            Held::ALL.iter().map(|held| (held.name(), held.unit())).collect();
         assert_eq!(physical, held);
     }
 }

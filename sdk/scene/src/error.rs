@@ -36,8 +36,8 @@ pub enum SceneError {
         surface: usize,
         /// The budget, decibels.
         wanted_db: f64,
-        /// The representation with the smallest error, and the largest error over its conditions, decibels; `None` if the asset
-        /// states no error by this measure.
+        /// The representation with the smallest error, and the largest error over its conditions,
+        /// decibels; `None` if the asset states no error by this measure.
         nearest: Option<(String, f64)>,
     },
     /// No choice of representations is within the time budget.
@@ -71,8 +71,8 @@ pub enum SceneError {
         rate_hz: f64,
         rates: String,
     },
-    /// The loudest texture exceeds the reference level so far that more samples than allowed would be clipped
-    /// at the drive voltage.
+    /// The loudest texture exceeds the reference level so far that more samples than allowed would
+    /// be clipped at the drive voltage.
     #[error(
         "the loudest texture is {above_db:.1} dB above the reference level of the drive, so that {percent:.0} % of its \
          samples would be clipped ({most_percent} % are allowed): raise drive_v, lower the surface's gain, or choose another \

@@ -97,8 +97,8 @@ pub struct Region {
 pub enum Motion {
     /// Constant speed, force and direction.
     Constant(Constant),
-    /// A recorded motion: path of a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n`; relative paths
-    /// start at the scene's folder.
+    /// A recorded motion: path of a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n`; relative
+    /// paths start at the scene's folder.
     Trace(PathBuf),
     /// Controlled by a person while the scene plays.
     Live,
@@ -145,13 +145,14 @@ pub struct DeviceChoice {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -120, max = 120))]
     pub gain_db: Option<f64>,
-    /// Device units per unit of the assets' quantity, required if the quantities differ: with 0.1, a device
-    /// of newtons plays an acceleration of 1 m/s2 as 0.1 N. Without it such assets are refused.
+    /// Device units per unit of the assets' quantity, required if the quantities differ: with 0.1,
+    /// a device of newtons plays an acceleration of 1 m/s2 as 0.1 N. Without it such assets are
+    /// refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-9, max = 1e9))]
     pub quantity_gain: Option<f64>,
-    /// Largest voltage of an electrovibration drive, volts: sqrt(2) times V_g of the paper. Default: half of
-    /// the device's limit.
+    /// Largest voltage of an electrovibration drive, volts: sqrt(2) times V_g of the paper.
+    /// Default: half of the device's limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e4), extend("exclusiveMinimum" = 0))]
     pub drive_v: Option<f64>,
@@ -159,12 +160,12 @@ pub struct DeviceChoice {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -120, max = 0))]
     pub level_dbfs: Option<f64>,
-    /// Whether the drive voltage or the preview level applies to the scene's loudest texture or to a
-    /// reference level.
+    /// Whether the drive voltage or the preview level applies to the scene's loudest texture or to
+    /// a reference level.
     #[serde(default, skip_serializing_if = "Levels::is_normalised")]
     pub levels: Levels,
-    /// With the levels `own`: the RMS that is mapped to the drive voltage or the preview level, in the
-    /// assets' unit. Default: that of the strongest representation of all the scene's surfaces.
+    /// With the levels `own`: the RMS that is mapped to the drive voltage or the preview level, in
+    /// the assets' unit. Default: that of the strongest representation of all the scene's surfaces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-12, max = 1e6))]
     pub reference_rms: Option<f64>,
@@ -186,11 +187,12 @@ pub struct DeviceChoice {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Levels {
-    /// The loudest texture of the scene, in the representation that plays it, gets the drive voltage or
-    /// preview level: a texture is equally strong in every representation.
+    /// The loudest texture of the scene, in the representation that plays it, gets the drive
+    /// voltage or preview level: a texture is equally strong in every representation.
     #[default]
     Normalised,
-    /// A reference level gets it, whichever representation plays: each representation keeps its own energy.
+    /// A reference level gets it, whichever representation plays: each representation keeps its own
+    /// energy.
     Own,
 }
 
@@ -200,8 +202,8 @@ impl Levels {
     }
 }
 
-/// Limits for the choice of representations. With both limits, the representation of least error within the
-/// time limit must be within the error limit.
+/// Limits for the choice of representations. With both limits, the representation of least error
+/// within the time limit must be within the error limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Budget {
@@ -228,11 +230,13 @@ fn is_default(measure: &ErrorMeasure) -> bool {
 )]
 #[serde(rename_all = "snake_case")]
 pub enum Effect {
-    /// Interpolation of parameters and level between exploration conditions as speed and force change.
+    /// Interpolation of parameters and level between exploration conditions as speed and force
+    /// change.
     Interpolation,
     /// Scaling of frequencies with the speed outside the recorded speeds, by the law of the asset.
     FrequencyScaling,
-    /// Scaling of the level with speed and force outside the recorded motions, by the law of the asset.
+    /// Scaling of the level with speed and force outside the recorded motions, by the law of the
+    /// asset.
     LevelScaling,
     /// Cross-fades between surfaces, and fades at their edges.
     Crossfade,

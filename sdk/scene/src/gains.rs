@@ -1,9 +1,9 @@
-//! Drive voltages by person, texture and device: V_g of the paper, found by adjustment and stored in a file
-//! of the user's own.
+//! Drive voltages by person, texture and device: V_g of the paper, found by adjustment and stored
+//! in a file of the user's own.
 //!
-//! A gain belongs to a texture, not to a file: its key is name and author, which remain after a new fit, while a hash
-//! of the recordings would change with one more recording. It stores the RMS at which it was found, so that other
-//! representations keep their energies.
+//! A gain belongs to a texture, not to a file: its key is name and author, which remain after a new
+//! fit, while a hash of the recordings would change with one more recording. It stores the RMS at
+//! which it was found, so that other representations keep their energies.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -15,8 +15,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Level at which a texture is first played to a finger while its gain is found, decibels relative to the maximum: a tenth of its
-/// voltage. It rises only when the person asks for more.
+/// Level at which a texture is first played to a finger while its gain is found, decibels relative
+/// to the maximum: a tenth of its voltage. It rises only when the person asks for more.
 pub const START_DB: f64 = -20.0;
 
 /// The factor of an amplitude that is this many decibels.
@@ -32,7 +32,8 @@ const MAX_BYTES: u64 = 16 << 20;
 pub struct GainKey {
     /// Name of the person.
     pub person: String,
-    /// Identifier of the texture: see [`texture_id`]. Empty in legacy entries, which have a hash instead.
+    /// Identifier of the texture: see [`texture_id`]. Empty in legacy entries, which have a hash
+    /// instead.
     #[serde(default)]
     pub texture: String,
     /// Id of the device's adapter.
@@ -53,8 +54,8 @@ pub struct Gain {
     /// Largest voltage of the drive, volts: V_g times sqrt(2).
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub drive_v: f64,
-    /// Reference level of this drive voltage, RMS in the assets' unit; other representations are scaled
-    /// relative to it if levels are not normalised.
+    /// Reference level of this drive voltage, RMS in the assets' unit; other representations are
+    /// scaled relative to it if levels are not normalised.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub reference_rms: Option<f64>,
@@ -79,9 +80,9 @@ pub fn gains_schema() -> Value {
     htex_schema::crossing::<Gains>("gains-1.json", "gains of persons of htex 1")
 }
 
-/// Identifier that all assets of one texture share, whenever and however they were fitted: the name and, if
-/// present, the author, both normalised by [`texture_name`]. For several textures played together, all of
-/// them in order.
+/// Identifier that all assets of one texture share, whenever and however they were fitted: the name
+/// and, if present, the author, both normalised by [`texture_name`]. For several textures played
+/// together, all of them in order.
 pub fn texture_id<'a>(textures: impl IntoIterator<Item = &'a Manifest>) -> String {
     let id = |texture: &Manifest| match texture.author.as_deref().map(texture_name) {
         Some(author) if !author.is_empty() => {
@@ -124,7 +125,8 @@ impl Gains {
     /// Reads a gains file; a missing file gives no gains.
     ///
     /// # Errors
-    /// If it cannot be read, is too large, or is not a gains file; also if it has keys that would be lost when it is written again.
+    /// If it cannot be read, is too large, or is not a gains file; also if it has keys that would
+    /// be lost when it is written again.
     pub fn load(path: &Path) -> io::Result<Self> {
         let bytes = match fs::metadata(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
@@ -140,7 +142,8 @@ impl Gains {
     /// Reads the contents of a gains file.
     ///
     /// # Errors
-    /// If they are not those of a gains file, or have keys that would be lost when it is written again.
+    /// If they are not those of a gains file, or have keys that would be lost when it is written
+    /// again.
     pub fn from_json(document: Value) -> io::Result<Self> {
         htex_schema::check_keys::<Self>(&document).map_err(io::Error::other)?;
         let gains: Self = serde_json::from_value(document)?;
@@ -155,15 +158,12 @@ impl Gains {
         }
     }
 
-    /// Reads the file, applies `change`, and replaces the file atomically; concurrent programs wait for each
-    /// other. Creates the folder if it is missing.
+    /// Reads the file, applies `change`, and replaces the file atomically; concurrent programs wait
+    /// for each other. Creates the folder if it is missing.
     ///
     /// # Errors
     /// As [`Self::load`], and I/O errors of writing.
-    #[allow(
-        clippy::disallowed_methods,
-        reason = "the user's own folder of settings"
-    )]
+    #[allow(clippy::disallowed_methods, reason = "the user's own folder of settings")]
     pub fn update(path: &Path, change: impl FnOnce(&mut Self)) -> io::Result<()> {
         if let Some(folder) = path.parent() {
             fs::create_dir_all(folder)?;
@@ -177,7 +177,8 @@ impl Gains {
         htex_format::write_file(path, text.as_bytes())
     }
 
-    /// The gain of a key; else the legacy entry of the same person and device for a file with this hash.
+    /// The gain of a key; else the legacy entry of the same person and device for a file with this
+    /// hash.
     pub fn find(&self, key: &GainKey, blake3: &str) -> Option<&Gain> {
         let exact = self.gains.iter().find(|gain| gain.key == *key);
         exact.or_else(|| self.gains.iter().find(|gain| gain.is_of_old(key, blake3)))

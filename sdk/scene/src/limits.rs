@@ -13,10 +13,6 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self {
-            file_bytes: 1 << 20,
-            json_depth: 16,
-            surfaces: 256,
-        }
+        Self { file_bytes: 1 << 20, json_depth: 16, surfaces: 256 }
     }
 }

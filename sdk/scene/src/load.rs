@@ -93,7 +93,8 @@ pub enum LoadError {
 }
 
 impl LoadError {
-    /// Shortens pointers to keys that the file leaves out, so that each refers to a value that is there.
+    /// Shortens pointers to keys that the file leaves out, so that each refers to a value that is
+    /// there.
     fn pointing_into(mut self, bytes: &[u8]) -> Self {
         if let (Self::Invalid { findings }, Ok(document)) = (&mut self, parse_json(bytes)) {
             for Finding { pointer, .. } in findings {
@@ -127,8 +128,8 @@ impl LoadedScene {
     /// Opens a scene file and the files it names.
     ///
     /// # Errors
-    /// [`LoadError::Invalid`] with all findings if at least one is an error; [`LoadError::Io`] if the file
-    /// cannot be read.
+    /// [`LoadError::Invalid`] with all findings if at least one is an error; [`LoadError::Io`] if
+    /// the file cannot be read.
     pub fn open(
         path: &Path,
         around: &Surroundings<'_>,
@@ -137,7 +138,8 @@ impl LoadedScene {
         Self::from_bytes(path, &read_file(path)?, around, device)
     }
 
-    /// Opens a scene in memory and the files it names; `path` is its notional location and is not opened.
+    /// Opens a scene in memory and the files it names; `path` is its notional location and is not
+    /// opened.
     ///
     /// # Errors
     /// As [`Self::open`].
@@ -211,10 +213,7 @@ impl LoadedScene {
 /// # Errors
 /// If the file cannot be read.
 pub fn validate(path: &Path, around: &Surroundings<'_>) -> Result<Report, LoadError> {
-    let rehearsal = DeviceOverride {
-        rehearsal: true,
-        ..DeviceOverride::default()
-    };
+    let rehearsal = DeviceOverride { rehearsal: true, ..DeviceOverride::default() };
     let findings = match LoadedScene::open(path, around, &rehearsal) {
         Ok(loaded) => return Ok(report(true, loaded.notes)),
         Err(LoadError::Invalid { findings }) => findings,
@@ -231,10 +230,7 @@ fn finish(loaded: Option<LoadedScene>, findings: Findings) -> Result<LoadedScene
     let has_errors = findings.has_errors();
     let findings = findings.into_list();
     match loaded {
-        Some(loaded) if !has_errors => Ok(LoadedScene {
-            notes: findings,
-            ..loaded
-        }),
+        Some(loaded) if !has_errors => Ok(LoadedScene { notes: findings, ..loaded }),
         _ => Err(LoadError::Invalid { findings }),
     }
 }
@@ -246,10 +242,7 @@ fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
     let read = File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes));
     match read {
         Ok(_) => Ok(bytes),
-        Err(error) => Err(LoadError::Io {
-            path: path.to_owned(),
-            error,
-        }),
+        Err(error) => Err(LoadError::Io { path: path.to_owned(), error }),
     }
 }
 
@@ -269,10 +262,7 @@ fn load(
     let trace = open_trace(&scene, place, findings);
     device.0.apply(&mut scene.device);
     let response = open_response(&scene, place, findings);
-    let held = assets
-        .as_ref()
-        .and_then(|all| all.first())
-        .map(Asset::quantity);
+    let held = assets.as_ref().and_then(|all| all.first()).map(Asset::quantity);
     let settings = check_device(&scene.device, device, around.devices, held, findings);
     let assets = assets?;
     check_quantities(&assets, findings);
@@ -334,10 +324,7 @@ fn open_asset(
         }
         Place::Given(files) => files
             .read(asset)
-            .map_err(|error| htex_format::ReadError::Io {
-                path: asset.to_owned(),
-                error,
-            })
+            .map_err(|error| htex_format::ReadError::Io { path: asset.to_owned(), error })
             .and_then(|bytes| htex_format::Asset::from_bytes(&bytes)),
     };
     let opened = data
@@ -377,8 +364,8 @@ fn check_quantities(assets: &[Asset], findings: &mut Findings) {
     }
 }
 
-/// Whether the path is a regular file or missing. Scenes may come from untrusted sources, and reading a
-/// device or a pipe may never end.
+/// Whether the path is a regular file or missing. Scenes may come from untrusted sources, and
+/// reading a device or a pipe may never end.
 fn may_be_read(path: &Path) -> bool {
     std::fs::metadata(path).map_or(true, |what| what.is_file())
 }
@@ -392,10 +379,7 @@ fn is_missing(error: &io::Error) -> bool {
 }
 
 fn missing(path: &Path) -> String {
-    format!(
-        "there is no file {}; correct the path, or put it there",
-        path.display()
-    )
+    format!("there is no file {}; correct the path, or put it there", path.display())
 }
 
 fn check_representation(asset: &Asset, surface: &Surface, i: usize, findings: &mut Findings) {
@@ -435,16 +419,9 @@ fn open_trace(scene: &Scene, place: &Place<'_>, findings: &mut Findings) -> Opti
         findings.add(rule::TRACE_ASSUMED, "/motion/trace", warning.clone());
     }
     let (wanted, there) = (scene.duration_s.unwrap_or(0.0), trace.duration_s());
-    findings.require(
-        wanted <= there,
-        rule::DURATION_BEYOND_TRACE,
-        "/duration_s",
-        || {
-            format!(
-                "the duration is {wanted} s and the trace ends after {there} s; the rest is silent"
-            )
-        },
-    );
+    findings.require(wanted <= there, rule::DURATION_BEYOND_TRACE, "/duration_s", || {
+        format!("the duration is {wanted} s and the trace ends after {there} s; the rest is silent")
+    });
     Some(trace)
 }
 
@@ -455,7 +432,8 @@ fn open_response(scene: &Scene, place: &Place<'_>, findings: &mut Findings) -> O
     opened(open, place, path, rules, "/device/response", findings)
 }
 
-/// Reports a response that is zero in the band of the textures, and warns of what its compensation raises.
+/// Reports a response that is zero in the band of the textures, and warns of what its compensation
+/// raises.
 fn check_response(
     response: &Response,
     assets: &[Asset],
@@ -514,10 +492,7 @@ fn opened<T>(
     };
     match read {
         Ok(value) => return Some(value),
-        Err(ReadError {
-            problem: ReadProblem::Io(error),
-            ..
-        }) if is_missing(&error) => {
+        Err(ReadError { problem: ReadProblem::Io(error), .. }) if is_missing(&error) => {
             findings.add(gone, pointer, missing(path));
         }
         Err(error) => findings.add(invalid, pointer, error.to_string()),

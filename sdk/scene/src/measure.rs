@@ -29,7 +29,8 @@ const CONTROL: usize = 2;
 /// Coefficients of the two filters that are measured.
 const SHORT: usize = 201;
 const LONG: usize = 801;
-/// Converters of one stage with few and with many coefficients: from a rate to a rate, for a highest frequency, hertz.
+/// Converters of one stage with few and with many coefficients: from a rate to a rate, for a
+/// highest frequency, hertz.
 const WHOLE: [[f64; 3]; 2] = [[4_000.0, 20_000.0, 1_000.0], [2_000.0, 6_000.0, 1_000.0]];
 const RATIONAL: [[f64; 3]; 2] = [[4_000.0, 44_100.0, 1_000.0], [2_000.0, 2_500.0, 1_000.0]];
 
@@ -39,10 +40,7 @@ impl Costs {
     /// # Errors
     /// If a model cannot be fitted or played.
     pub fn measure(models: &Registry, machine: &str) -> Result<Self, HostError> {
-        let mut costs = Self {
-            machine: machine.to_owned(),
-            ..Self::nothing()
-        };
+        let mut costs = Self { machine: machine.to_owned(), ..Self::nothing() };
         for model in models.models() {
             let (sample_ns, retune_ns) = measure_model(model)?;
             costs.model_ns.insert(model.id().to_owned(), sample_ns);
@@ -75,8 +73,8 @@ fn least(mut run: impl FnMut(&mut [f32])) -> f64 {
     (0..ROUNDS).map(|_| stretch()).fold(f64::INFINITY, f64::min)
 }
 
-/// Time per sample at the model's own rate, and time of interpolating parameters and retuning, both in
-/// nanoseconds.
+/// Time per sample at the model's own rate, and time of interpolating parameters and retuning, both
+/// in nanoseconds.
 fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
     let (one, other) = (fitted(model, 200.0)?, fitted(model, 300.0)?);
     let rate_hz = model.voice_rate_hz(&one, Band::TACTILE, 20_000.0)?;
@@ -94,11 +92,9 @@ fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
         let weights = if turn { [0.25, 0.75] } else { [0.75, 0.25] };
         let mixed = model.interpolate(&[&one, &other], &weights);
         let pulls = block.chunks_mut(PULLED);
-        failed = mixed.and_then(|mixed| voice.retune(&mixed)).and_then(|()| {
-            pulls
-                .map(|block| voice.render(block))
-                .fold(Ok(()), Result::and)
-        });
+        failed = mixed
+            .and_then(|mixed| voice.retune(&mixed))
+            .and_then(|()| pulls.map(|block| voice.render(block)).fold(Ok(()), Result::and));
     });
     failed?;
     Ok((steady, (retuned - steady).max(0.0) * BLOCK as f64))
@@ -126,10 +122,7 @@ fn filter_cost([(few, short_ns), (many, long_ns)]: [(Part, f64); 2]) -> FilterCo
     let per_sample = |part: Part| part.macs / part.samples;
     let [short_ns, long_ns] = [short_ns / few.samples, long_ns / many.samples];
     let mac_ns = (long_ns - short_ns).max(0.0) / (per_sample(many) - per_sample(few));
-    FilterCost {
-        sample_ns: (short_ns - per_sample(few) * mac_ns).max(0.0),
-        mac_ns,
-    }
+    FilterCost { sample_ns: (short_ns - per_sample(few) * mac_ns).max(0.0), mac_ns }
 }
 
 /// Measures filters of two lengths, in the blocks that a resampler pulls.
@@ -140,9 +133,7 @@ fn compensation() -> FilterCost {
         let mut source = signal();
         let ns = least(|block| {
             source(block);
-            block
-                .chunks_mut(PULLED)
-                .for_each(|block| fir.process(block));
+            block.chunks_mut(PULLED).for_each(|block| fir.process(block));
         });
         let (samples, macs) = (1.0, taps as f64);
         (Part { samples, macs }, ns - source_ns)
@@ -172,7 +163,8 @@ fn conversion(rates_hz: [[f64; 3]; 2]) -> Result<FilterCost, UnusableRates> {
 /// Stage to time.
 type Times = BTreeMap<String, f64>;
 
-/// Time per sample of each stage at its own rate, nanoseconds, but of filters: where it is needed, and where it changes nothing.
+/// Time per sample of each stage at its own rate, nanoseconds, but of filters: where it is needed,
+/// and where it changes nothing.
 fn stages() -> Result<(Times, Times), UnusableRates> {
     let (required, played) = (example_required(), example_surface());
     let (mut needed, mut neutral) = (BTreeMap::new(), BTreeMap::new());
@@ -183,17 +175,14 @@ fn stages() -> Result<(Times, Times), UnusableRates> {
             // A resampler pulls short blocks from what is before it.
             let (mut stage, block) = match &entry.place {
                 StagePlace::Surface { build: None, .. } => continue,
-                StagePlace::Surface {
-                    build: Some(build), ..
-                } => (build(&required, &played, is_neutral), PULLED),
+                StagePlace::Surface { build: Some(build), .. } => {
+                    (build(&required, &played, is_neutral), PULLED)
+                }
                 StagePlace::Mix { .. } if !is_neutral => continue,
                 StagePlace::Mix { build, .. } => (build(&required, &played, true)?, PULLED),
                 StagePlace::Device { build, .. } => (build(&required, is_neutral), BLOCK),
             };
-            costs.insert(
-                entry.name.to_owned(),
-                measure_stage(&mut *stage, block, !is_neutral),
-            );
+            costs.insert(entry.name.to_owned(), measure_stage(&mut *stage, block, !is_neutral));
         }
     }
     Ok((needed, neutral))
@@ -202,9 +191,7 @@ fn stages() -> Result<(Times, Times), UnusableRates> {
 /// A source of samples.
 fn signal() -> impl FnMut(&mut [f32]) {
     let mut at = 0;
-    let input: Vec<f32> = (0..4 * BLOCK)
-        .map(|n| libm::sinf(n as f32 * 0.7) * 0.1)
-        .collect();
+    let input: Vec<f32> = (0..4 * BLOCK).map(|n| libm::sinf(n as f32 * 0.7) * 0.1).collect();
     move |block: &mut [f32]| {
         for piece in block.chunks_mut(BLOCK) {
             at = (at + BLOCK) % (3 * BLOCK);
@@ -213,8 +200,8 @@ fn signal() -> impl FnMut(&mut [f32]) {
     }
 }
 
-/// Time per sample of a stage that is rendered in blocks of `pulled`. `moves`: the motion changes at every control block, of which one lasts
-/// about two blocks that are pulled.
+/// Time per sample of a stage that is rendered in blocks of `pulled`. `moves`: the motion changes
+/// at every control block, of which one lasts about two blocks that are pulled.
 fn measure_stage(stage: &mut dyn Stage, pulled: usize, moves: bool) -> f64 {
     let mut source = signal();
     let context = |turn: bool| Context {
@@ -276,17 +263,9 @@ fn example_required() -> Requirements {
 
 /// One condition, with the law of a finger.
 fn example_motions() -> Motions {
-    let condition = Condition {
-        speed_mm_s: Some(80.0),
-        force_n: Some(0.4),
-        ..Condition::default()
-    };
-    let at = AtCondition {
-        condition: 0,
-        level_rms: 0.1,
-        quality: None,
-        left_out: None,
-    };
+    let condition =
+        Condition { speed_mm_s: Some(80.0), force_n: Some(0.4), ..Condition::default() };
+    let at = AtCondition { condition: 0, level_rms: 0.1, quality: None, left_out: None };
     let law = Law::assumed(htex_format::Quantity::LateralForce, Contact::Finger);
     Motions::new(&[at], &[condition], law)
 }

@@ -5,8 +5,8 @@ use htex_play::exploration::{HOLD_S, MIN_SLIDING_MM_S, slides};
 use crate::file::{Constant, Motion, Region, Surface};
 use crate::trace::Trace;
 
-/// Position, signed speed and force of the finger at one time. [`Self::motion`] is the part that a voice follows;
-/// [`crate::file::Motion`] is the motion of a whole scene.
+/// Position, signed speed and force of the finger at one time. [`Self::motion`] is the part that a
+/// voice follows; [`crate::file::Motion`] is the motion of a whole scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finger {
     /// Scanning speed, mm/s; negative on the back stroke.
@@ -19,18 +19,15 @@ pub struct Finger {
 
 impl Finger {
     /// A finger without contact.
-    pub const AWAY: Self = Self {
-        speed_mm_s: 0.0,
-        force_n: 0.0,
-        at_mm: None,
-    };
+    pub const AWAY: Self = Self { speed_mm_s: 0.0, force_n: 0.0, at_mm: None };
 
     /// The motion that a voice follows: the speed without its sign, and the force.
     pub fn motion(&self) -> htex_play::Motion {
         htex_play::Motion::new(self.speed_mm_s.abs(), self.force_n)
     }
 
-    /// Whether a finger moves so: numbers, a force that is not negative, at most 1000 mm/s and 20 N. Else the reading has failed.
+    /// Whether a finger moves so: numbers, a force that is not negative, at most 1000 mm/s and 20
+    /// N. Else the reading has failed.
     pub fn is_reading(&self) -> bool {
         let is_placed = self.at_mm.is_none_or(|at| at.iter().all(|x| x.is_finite()));
         is_placed && self.motion().checked().is_ok() && self.motion().is_plausible()
@@ -54,8 +51,9 @@ impl Finger {
     }
 }
 
-/// The readings of a finger: those that no finger has are replaced by the last good motion, for at most [`HOLD_S`]. Every motion of a scene
-/// goes through them, so that one bad reading changes nothing that is felt.
+/// The readings of a finger: those that no finger has are replaced by the last good motion, for at
+/// most [`HOLD_S`]. Every motion of a scene goes through them, so that one bad reading changes
+/// nothing that is felt.
 #[derive(Debug)]
 pub(crate) struct Readings {
     last: Finger,
@@ -67,14 +65,11 @@ pub(crate) struct Readings {
 impl Readings {
     /// Makes readings of one in each control block of a duration, seconds.
     pub(crate) fn new(control_s: f64) -> Self {
-        Self {
-            last: Finger::AWAY,
-            most: (HOLD_S / control_s) as u64,
-            held: 0,
-        }
+        Self { last: Finger::AWAY, most: (HOLD_S / control_s) as u64, held: 0 }
     }
 
-    /// Takes a reading that holds for a number of control blocks; returns it, the held one at its place, or no contact.
+    /// Takes a reading that holds for a number of control blocks; returns it, the held one at its
+    /// place, or no contact.
     pub(crate) fn take(&mut self, finger: Finger, blocks: u64) -> Finger {
         if finger.is_reading() {
             (self.last, self.held) = (finger, 0);
@@ -86,10 +81,7 @@ impl Readings {
             false => Finger::AWAY,
         };
         let is_placed = |at: &[f64; 2]| at.iter().all(|x| x.is_finite());
-        Finger {
-            at_mm: finger.at_mm.filter(is_placed).or(self.last.at_mm),
-            ..known
-        }
+        Finger { at_mm: finger.at_mm.filter(is_placed).or(self.last.at_mm), ..known }
     }
 
     /// Whether the last reading was a good one.
@@ -101,9 +93,7 @@ impl Readings {
 /// Index of the surface under the finger: the one on the highest layer.
 pub(crate) fn topmost(surfaces: &[Surface], finger: &Finger) -> Option<usize> {
     let under = |i: &usize| finger.is_in(surfaces[*i].region.as_ref());
-    (0..surfaces.len())
-        .filter(under)
-        .max_by_key(|&i| surfaces[i].layer)
+    (0..surfaces.len()).filter(under).max_by_key(|&i| surfaces[i].layer)
 }
 
 /// The motion of the finger over time.
@@ -139,11 +129,7 @@ impl Course {
                 let point = trace.at(t_s);
                 let forward = point.vx_mm_s * way[0] + point.vy_mm_s * way[1] >= 0.0;
                 Finger {
-                    speed_mm_s: if forward {
-                        point.speed_mm_s
-                    } else {
-                        -point.speed_mm_s
-                    },
+                    speed_mm_s: if forward { point.speed_mm_s } else { -point.speed_mm_s },
                     force_n: point.force_n,
                     at_mm: Some([point.x_mm, point.y_mm]),
                 }
@@ -162,7 +148,5 @@ impl Course {
 fn first_way(trace: &Trace) -> [f64; 2] {
     let moving = trace.t_s.iter().map(|t| trace.at(*t));
     let mut sliding = moving.filter(|point| point.speed_mm_s >= MIN_SLIDING_MM_S);
-    sliding
-        .next()
-        .map_or([1.0, 0.0], |point| [point.vx_mm_s, point.vy_mm_s])
+    sliding.next().map_or([1.0, 0.0], |point| [point.vx_mm_s, point.vy_mm_s])
 }

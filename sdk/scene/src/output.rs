@@ -5,9 +5,9 @@ use std::path::Path;
 /// Maximum length of a file extension, characters.
 const LONGEST_ENDING: usize = 8;
 
-/// Default output file of a scene or an asset: its name with the extension of the format, in the current
-/// folder. The extension is `wav` if the format is `auto` or not a plain word. For any input the result is a
-/// single file name in the current folder and not a hidden file.
+/// Default output file of a scene or an asset: its name with the extension of the format, in the
+/// current folder. The extension is `wav` if the format is `auto` or not a plain word. For any
+/// input the result is a single file name in the current folder and not a hidden file.
 ///
 /// ```
 /// # use htex_scene::output_name;
@@ -21,9 +21,8 @@ pub fn output_name(scene: &Path, format: &str) -> String {
 /// The file name of the scene or asset in `path` without its extension; never a hidden file's name.
 pub(crate) fn stem(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let stem = [".scene.json", ".json", ".htex"]
-        .iter()
-        .find_map(|ending| name.strip_suffix(ending));
+    let stem =
+        [".scene.json", ".json", ".htex"].iter().find_map(|ending| name.strip_suffix(ending));
     match stem.unwrap_or(&name).trim_start_matches('.') {
         "" => "scene".to_owned(),
         // Path separators of other systems.

@@ -1,5 +1,6 @@
-//! Position of the finger along its path, for models that follow the motion themselves. It increases in the direction
-//! of the first stroke and decreases against it, so that a place has the same position on forward and back strokes.
+//! Position of the finger along its path, for models that follow the motion themselves. It
+//! increases in the direction of the first stroke and decreases against it, so that a place has the
+//! same position on forward and back strokes.
 //!
 //! Of a trace the smoothed velocity is integrated, since the positions of trackers are stepped.
 
@@ -35,10 +36,9 @@ impl Path {
     /// Speed and position at a time, seconds. Does not allocate.
     pub(crate) fn at(&self, t_s: f64) -> PathPoint {
         match self {
-            Self::Steady(speed_mm_s) => PathPoint {
-                speed_mm_s: *speed_mm_s,
-                position_mm: speed_mm_s * t_s,
-            },
+            Self::Steady(speed_mm_s) => {
+                PathPoint { speed_mm_s: *speed_mm_s, position_mm: speed_mm_s * t_s }
+            }
             Self::Trace(path) => path.at(t_s),
             Self::Live(path) => path.at(t_s),
         }
@@ -52,8 +52,8 @@ impl Path {
     }
 }
 
-/// The path of a trace: the integral of its velocity. The positions of the trace have the steps of the tracker; the
-/// velocity is smoothed.
+/// The path of a trace: the integral of its velocity. The positions of the trace have the steps of
+/// the tracker; the velocity is smoothed.
 #[derive(Debug)]
 pub(crate) struct TracePath {
     t_s: Vec<f64>,
@@ -75,14 +75,11 @@ impl TracePath {
             }
             position_mm.push(sum);
         }
-        Self {
-            t_s: trace.t_s.clone(),
-            speed_mm_s,
-            position_mm,
-        }
+        Self { t_s: trace.t_s.clone(), speed_mm_s, position_mm }
     }
 
-    /// The speed interpolated linearly between rows, and its integral; at rest before the first and after the last row.
+    /// The speed interpolated linearly between rows, and its integral; at rest before the first and
+    /// after the last row.
     fn at(&self, t_s: f64) -> PathPoint {
         let above = self.t_s.partition_point(|t| *t <= t_s);
         let row = above.saturating_sub(1);
@@ -104,8 +101,8 @@ impl TracePath {
     }
 }
 
-/// The path of a live finger between updates: the distance between successive places where both are known, else the
-/// integral of the speed.
+/// The path of a live finger between updates: the distance between successive places where both are
+/// known, else the integral of the speed.
 #[derive(Debug, Default)]
 pub(crate) struct LivePath {
     t_s: f64,
@@ -127,7 +124,8 @@ impl LivePath {
         self.position_mm = match self.at_mm.zip(finger.at_mm) {
             Some(([x0, y0], [x1, y1])) => {
                 let way = libm::hypot(x1 - x0, y1 - y0).copysign(finger.speed_mm_s);
-                // Replaces the integral of the speed since the last update, which is an extrapolation.
+                // Replaces the integral of the speed since the last update, which is an
+                // extrapolation.
                 self.position_mm + way
             }
             None => integrated,
@@ -145,10 +143,7 @@ mod tests {
     fn near(point: PathPoint, speed_mm_s: f64, position_mm: f64) {
         let close = (point.speed_mm_s - speed_mm_s).abs() < 0.5
             && (point.position_mm - position_mm).abs() < 0.05;
-        assert!(
-            close,
-            "{point:?}, not {speed_mm_s} mm/s at {position_mm} mm"
-        );
+        assert!(close, "{point:?}, not {speed_mm_s} mm/s at {position_mm} mm");
     }
 
     #[test]
@@ -178,11 +173,7 @@ mod tests {
     #[test]
     fn a_live_finger_goes_by_its_place_where_it_is_known() {
         let mut path = Path::Live(LivePath::default());
-        let finger = |speed_mm_s, at_mm| Finger {
-            speed_mm_s,
-            force_n: 0.4,
-            at_mm,
-        };
+        let finger = |speed_mm_s, at_mm| Finger { speed_mm_s, force_n: 0.4, at_mm };
         path.moved(&finger(100.0, None), 1.0);
         near(path.at(1.5), 100.0, 50.0);
         path.moved(&finger(100.0, Some([7.0, 0.0])), 1.5);

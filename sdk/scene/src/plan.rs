@@ -27,7 +27,8 @@ pub struct Plan {
     pub renderer_ns: f64,
     /// Sum of the stages' costs and the renderer's, nanoseconds per sample.
     pub ns_per_sample_total: f64,
-    /// Whether nothing changes while the scene plays, so that stages are not updated between blocks.
+    /// Whether nothing changes while the scene plays, so that stages are not updated between
+    /// blocks.
     pub constant: bool,
     /// Rate of the device, hertz.
     pub rate_hz: f64,
@@ -37,8 +38,8 @@ pub struct Plan {
     pub frames: Option<u64>,
     /// Source of the costs.
     pub costs: String,
-    /// Reference level: the RMS that is mapped to the drive voltage or the preview level, in the assets'
-    /// unit.
+    /// Reference level: the RMS that is mapped to the drive voltage or the preview level, in the
+    /// assets' unit.
     pub reference_rms: f64,
     /// Notes for the user.
     pub notes: Vec<String>,
@@ -118,10 +119,7 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
         };
         representation::choose(scene, &required, &cost)?
     };
-    let loudest_rms = choices
-        .iter()
-        .map(|c| c.played.level_rms)
-        .fold(0.0, f64::max);
+    let loudest_rms = choices.iter().map(|c| c.played.level_rms).fold(0.0, f64::max);
     required.level_rms = match scene.scene.device.levels {
         Levels::Normalised => loudest_rms,
         Levels::Own => representation::reference_rms(scene, &required),
@@ -131,14 +129,7 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
     let mut draft = Draft::new(scene, &required, costs);
     draft.all(&surfaces)?;
     let (renderer_ns, ns_per_sample_total) = (draft.renderer_ns(), draft.total());
-    let Draft {
-        stages,
-        left_out,
-        surfaces,
-        mixes,
-        device,
-        ..
-    } = draft;
+    let Draft { stages, left_out, surfaces, mixes, device, .. } = draft;
     let constant = is_constant(&required, &surfaces);
     Ok(Plan {
         renderer_ns,
@@ -160,11 +151,12 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
     })
 }
 
-/// Maximum percentage of samples that may be clipped at the drive: reached by noise 7 dB above the reference.
+/// Maximum percentage of samples that may be clipped at the drive: reached by noise 7 dB above the
+/// reference.
 const MOST_CLAMPED_PERCENT: f64 = 5.0;
 
-/// Rejects a texture that is far too strong for the drive. Noise at the reference level is clipped once in
-/// 75,000 samples.
+/// Rejects a texture that is far too strong for the drive. Noise at the reference level is clipped
+/// once in 75,000 samples.
 fn check_drive(required: &Requirements, loudest_rms: f64) -> Result<(), SceneError> {
     let over = loudest_rms / required.level_rms;
     if required.device.quantity != Quantity::DisplayVoltage || !over.is_finite() {
@@ -235,7 +227,8 @@ fn notes(required: &Requirements, constant: bool, loudest_rms: f64) -> Vec<Strin
     notes
 }
 
-/// Cost of a stage per frame of the device, nanoseconds: where it is needed, and where it changes nothing.
+/// Cost of a stage per frame of the device, nanoseconds: where it is needed, and where it changes
+/// nothing.
 struct Ns {
     needed: f64,
     neutral: f64,
@@ -272,7 +265,8 @@ impl<'a> Draft<'a> {
         stages.sum::<f64>() + self.renderer_ns()
     }
 
-    /// What the renderer takes itself, which reads the motion before every block unless nothing changes.
+    /// What the renderer takes itself, which reads the motion before every block unless nothing
+    /// changes.
     fn renderer_ns(&self) -> f64 {
         let ends = |(entry, _): &(&Entry, bool)| entry.effect == Effect::Contact;
         let constant = is_constant(self.required, &self.surfaces);
@@ -309,13 +303,7 @@ impl<'a> Draft<'a> {
         let surface = Some(played.surface);
         let per_frame = played.share * played.rate_hz * played.fixed_ratio / self.required.rate_hz;
         let model_ns = self.costs.model(&played.model) * per_frame;
-        self.push(
-            "synthesis",
-            surface,
-            always(played),
-            played.rate_hz,
-            model_ns,
-        );
+        self.push("synthesis", surface, always(played), played.rate_hz, model_ns);
         let mut effects = BTreeMap::new();
         for entry in EFFECTS {
             let StagePlace::Surface { need, .. } = &entry.place else {
@@ -338,19 +326,10 @@ impl<'a> Draft<'a> {
             if entry.effect == Effect::FrequencyScaling {
                 let level_ns = self.costs.stage("level") * per_frame;
                 let reason = "the model's samples have unit RMS; the asset gives the level";
-                self.push(
-                    "level",
-                    surface,
-                    reason.into(),
-                    played.mix_rate_hz,
-                    level_ns,
-                );
+                self.push("level", surface, reason.into(), played.mix_rate_hz, level_ns);
             }
         }
-        self.surfaces.push(PlannedSurface {
-            played: played.clone(),
-            effects,
-        });
+        self.surfaces.push(PlannedSurface { played: played.clone(), effects });
         Ok(())
     }
 
@@ -382,10 +361,7 @@ impl<'a> Draft<'a> {
                 entries.push((entry, neutral));
             }
         }
-        self.mixes.push(Mix {
-            surfaces: group,
-            entries,
-        });
+        self.mixes.push(Mix { surfaces: group, entries });
         Ok(())
     }
 
@@ -422,10 +398,9 @@ impl<'a> Draft<'a> {
     ) -> Result<Option<bool>, SceneError> {
         let switch = self.scene.scene.effects.get(&entry.effect);
         match (switch.copied().unwrap_or_default(), need) {
-            (Switch::Off, Need::In(reason)) if self.is_needed(entry) => Err(SceneError::Needed {
-                effect: entry.name.to_owned(),
-                reason,
-            }),
+            (Switch::Off, Need::In(reason)) if self.is_needed(entry) => {
+                Err(SceneError::Needed { effect: entry.name.to_owned(), reason })
+            }
             (Switch::Off, Need::In(reason)) => {
                 let reason = format!("switched off by the scene, although {reason}");
                 self.leave_out(entry, surface, reason);
@@ -471,21 +446,11 @@ impl<'a> Draft<'a> {
         rate_hz: f64,
         ns_per_sample: f64,
     ) {
-        self.stages.push(PlannedStage {
-            name,
-            surface,
-            reason,
-            rate_hz,
-            ns_per_sample,
-        });
+        self.stages.push(PlannedStage { name, surface, reason, rate_hz, ns_per_sample });
     }
 
     fn leave_out(&mut self, entry: &Entry, surface: Option<usize>, reason: String) {
-        self.left_out.push(LeftOut {
-            name: entry.name,
-            surface,
-            reason,
-        });
+        self.left_out.push(LeftOut { name: entry.name, surface, reason });
     }
 }
 
@@ -501,10 +466,7 @@ fn groups(surfaces: &[PlayedSurface]) -> Vec<Vec<usize>> {
     let key = |p: &PlayedSurface| (p.own_rate, [p.mix_rate_hz, p.fixed_ratio, p.top_hz]);
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (i, played) in surfaces.iter().enumerate() {
-        match groups
-            .iter_mut()
-            .find(|g| key(&surfaces[g[0]]) == key(played))
-        {
+        match groups.iter_mut().find(|g| key(&surfaces[g[0]]) == key(played)) {
             Some(group) => group.push(i),
             None => groups.push(vec![i]),
         }

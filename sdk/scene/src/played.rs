@@ -1,4 +1,5 @@
-//! A surface as it is played by one of its representations: its rates, its constant factors and its level.
+//! A surface as it is played by one of its representations: its rates, its constant factors and its
+//! level.
 
 use std::sync::Arc;
 
@@ -23,7 +24,8 @@ const FILTERED_OVERSAMPLING: f64 = 2.5;
 pub(crate) struct PlayedSurface {
     pub(crate) surface: usize,
     pub(crate) model: String,
-    /// Error by which the representation is chosen, by the budget's measure, decibels; `None` if not measured.
+    /// Error by which the representation is chosen, by the budget's measure, decibels; `None` if
+    /// not measured.
     pub(crate) error_db: Option<f64>,
     /// Largest error over the measured conditions, which the budget limits, decibels.
     pub(crate) largest_error_db: Option<f64>,
@@ -110,16 +112,14 @@ impl PlayedSurface {
         played.divide_rate(required.rate_hz);
         played.own_rate = source.has_own_rate() && played.oversampling == 1.0;
         played.mix_rate_hz = played.rate_hz * played.oversampling;
-        let shape = played
-            .compensated(required, asset)
-            .of_surface(surface, scene)?;
+        let shape = played.compensated(required, asset).of_surface(surface, scene)?;
         played.level_rms =
             loudest(asset, model, source.level_rms()) * played.gain * most_gain * shape;
         Ok(played)
     }
 
-    /// Makes the surface's voice. A model that renders at any rate is given one that needs no conversion
-    /// after speed scaling, or, before a compensation, one at which its filter is short.
+    /// Makes the surface's voice. A model that renders at any rate is given one that needs no
+    /// conversion after speed scaling, or, before a compensation, one at which its filter is short.
     pub(crate) fn source(
         &self,
         scene: &LoadedScene,
@@ -147,23 +147,19 @@ impl PlayedSurface {
             is_on(Effect::FrequencyScaling) && !follows && explored.moves_frequencies();
         let moves_level = is_on(Effect::LevelScaling) && !follows && explored.moves_level();
         if touch.speed_mm_s == Span::ANY {
-            self.frequency = if moves_frequencies {
-                Span::ANY
-            } else {
-                Span::ONE
-            };
+            self.frequency = if moves_frequencies { Span::ANY } else { Span::ONE };
             self.level = if moves_level { Span::ANY } else { Span::ONE };
             return;
         }
         for motion in &touch.motions {
             let Scaling { frequency, level } = self.motions.scaling(*motion, CEILING);
-            self.frequency
-                .take(if moves_frequencies { frequency } else { 1.0 });
+            self.frequency.take(if moves_frequencies { frequency } else { 1.0 });
             self.level.take(if moves_level { level } else { 1.0 });
         }
     }
 
-    /// Applies the factor of frequencies to the rates: a constant one to the resampler, a changing one to the warp.
+    /// Applies the factor of frequencies to the rates: a constant one to the resampler, a changing
+    /// one to the warp.
     fn scale_frequencies(&mut self) {
         if self.frequency.is_point() {
             self.fixed_ratio *= self.frequency.only();
@@ -177,8 +173,8 @@ impl PlayedSurface {
         self.top_hz *= fastest.max(1.0);
     }
 
-    /// Increases the oversampling of a changing speed until the rate is an integer fraction of the device's:
-    /// conversion by an integer factor takes a fraction of the time of other conversions.
+    /// Increases the oversampling of a changing speed until the rate is an integer fraction of the
+    /// device's: conversion by an integer factor takes a fraction of the time of other conversions.
     fn divide_rate(&mut self, device_hz: f64) {
         let parts = (device_hz / (self.rate_hz * self.fixed_ratio * self.oversampling)).floor();
         if self.oversampling > 1.0 && parts >= 1.0 {
@@ -186,7 +182,8 @@ impl PlayedSurface {
         }
     }
 
-    /// Applies a constant factor of the level to the gain; returns the largest factor of a changing one.
+    /// Applies a constant factor of the level to the gain; returns the largest factor of a changing
+    /// one.
     fn scale_level(&mut self) -> f64 {
         if self.level.is_point() {
             self.fixed_gain = self.level.only();
@@ -217,11 +214,7 @@ impl PlayedSurface {
         };
         let before = sum(&|_| 1.0);
         let behind = sum(&|hz| inverse.at(hz * self.fixed_ratio));
-        Ok(if before > 0.0 {
-            (behind / before).sqrt()
-        } else {
-            1.0
-        })
+        Ok(if before > 0.0 { (behind / before).sqrt() } else { 1.0 })
     }
 }
 

@@ -28,7 +28,8 @@ pub struct Renderer {
     frame: u64,
     /// Frames until the next control block.
     left: usize,
-    /// Whether stages are updated at control blocks; else the scene does not change and is rendered ahead.
+    /// Whether stages are updated at control blocks; else the scene does not change and is rendered
+    /// ahead.
     follows: bool,
     ahead: Ahead,
     timed: bool,
@@ -80,10 +81,7 @@ impl Renderer {
                 device.slots.push(Slot::new(entry.name, None, stage));
             }
         }
-        let ends = plan
-            .device
-            .iter()
-            .any(|(entry, _)| entry.effect == Effect::Contact);
+        let ends = plan.device.iter().any(|(entry, _)| entry.effect == Effect::Contact);
         let course = Course::new(&scene.scene.motion, scene.trace.as_ref());
         Ok(Self {
             surfaces: scene.scene.surfaces.clone(),
@@ -137,11 +135,13 @@ impl Renderer {
         self.timing.rate_hz
     }
 
-    /// Sets the position and motion of the finger of a live scene. Numbers that no finger has ([`Finger::is_reading`]) are a failed
-    /// reading: the last good motion is held for at most 100 ms, then there is no contact until the next good one.
+    /// Sets the position and motion of the finger of a live scene. Numbers that no finger has
+    /// ([`Finger::is_reading`]) are a failed reading: the last good motion is held for at most 100
+    /// ms, then there is no contact until the next good one.
     ///
     /// # Errors
-    /// [`SceneError::Motion`] if a number is not finite or the force is negative; that is a failed reading, too.
+    /// [`SceneError::Motion`] if a number is not finite or the force is negative; that is a failed
+    /// reading, too.
     pub fn set_motion(&mut self, finger: Finger) -> Result<(), SceneError> {
         self.live = finger;
         if finger.is_reading() {
@@ -151,10 +151,9 @@ impl Renderer {
         let finite = finger.speed_mm_s.is_finite() && place.iter().all(|x| x.is_finite());
         match finite && finger.force_n.is_finite() && finger.force_n >= 0.0 {
             true => Ok(()),
-            false => Err(SceneError::Motion {
-                speed_mm_s: finger.speed_mm_s,
-                force_n: finger.force_n,
-            }),
+            false => {
+                Err(SceneError::Motion { speed_mm_s: finger.speed_mm_s, force_n: finger.force_n })
+            }
         }
     }
 
@@ -170,24 +169,18 @@ impl Renderer {
 
     /// Frames until the end; `None` if endless.
     pub fn frames_left(&self) -> Option<u64> {
-        self.timing
-            .frames
-            .map(|frames| frames.saturating_sub(self.frame))
+        self.timing.frames.map(|frames| frames.saturating_sub(self.frame))
     }
 
-    /// Fills `out` with the next samples, in the unit of the device, and returns their number, which is
-    /// smaller at the end of the scene. The samples do not depend on the size of `out`. If a model fails, its
-    /// surface is silent and the others continue; see [`Self::take_failure`].
+    /// Fills `out` with the next samples, in the unit of the device, and returns their number,
+    /// which is smaller at the end of the scene. The samples do not depend on the size of `out`. If
+    /// a model fails, its surface is silent and the others continue; see [`Self::take_failure`].
     pub fn render(&mut self, out: &mut [f32]) -> usize {
-        if self.follows {
-            self.render_blocks(out)
-        } else {
-            self.render_ahead(out)
-        }
+        if self.follows { self.render_blocks(out) } else { self.render_ahead(out) }
     }
 
-    /// Renders many samples at once even if few are requested, so that renderers that run in turn load the memory
-    /// of their chains once for many blocks. For scenes that do not change.
+    /// Renders many samples at once even if few are requested, so that renderers that run in turn
+    /// load the memory of their chains once for many blocks. For scenes that do not change.
     fn render_ahead(&mut self, out: &mut [f32]) -> usize {
         let mut done = 0;
         loop {
@@ -245,19 +238,14 @@ impl Renderer {
     }
 
     fn piece(&mut self, out: &mut [f32]) {
-        let Self {
-            mixes,
-            device,
-            sum,
-            timed,
-            ..
-        } = self;
+        let Self { mixes, device, sum, timed, .. } = self;
         device.render(*timed, out, &mut |block| mix(mixes, sum, *timed, block));
         let peak = out.iter().fold(self.peak, |peak, x| peak.max(x.abs()));
         self.peak = peak;
     }
 
-    /// The finger at the current frame, as far as its readings are good, and its position along the path.
+    /// The finger at the current frame, as far as its readings are good, and its position along the
+    /// path.
     fn finger(&mut self) -> (Finger, FingerOnPath) {
         let t_s = self.seconds();
         let reading = match self.course {
@@ -269,12 +257,7 @@ impl Renderer {
         if !self.readings.is_good() && !finger.slides() {
             point.speed_mm_s = 0.0;
         }
-        let on_path = FingerOnPath {
-            t_s,
-            force_n: finger.force_n,
-            point,
-            place_mm: finger.at_mm,
-        };
+        let on_path = FingerOnPath { t_s, force_n: finger.force_n, point, place_mm: finger.at_mm };
         (finger, on_path)
     }
 
@@ -282,11 +265,7 @@ impl Renderer {
     fn update(&mut self) {
         self.left = self.timing.control;
         let (finger, on_path) = self.finger();
-        let context = Context {
-            finger,
-            level_rms: 0.0,
-            ends_in: self.frames_left(),
-        };
+        let context = Context { finger, level_rms: 0.0, ends_in: self.frames_left() };
         let touched = topmost(&self.surfaces, &finger);
         for mix in &mut self.mixes {
             mix.chain.follow(&context);
@@ -309,8 +288,8 @@ impl Renderer {
         tracks.chain(behind).collect()
     }
 
-    /// Largest magnitude so far, in the unit of the device. In constant motion up to 1,024 samples are rendered ahead;
-    /// this value and the counts below include them.
+    /// Largest magnitude so far, in the unit of the device. In constant motion up to 1,024 samples
+    /// are rendered ahead; this value and the counts below include them.
     pub fn peak(&self) -> f64 {
         f64::from(self.peak)
     }
@@ -327,10 +306,7 @@ impl Renderer {
 
     fn statistics(&self) -> Statistics {
         let mut statistics = Statistics::default();
-        self.device
-            .slots
-            .iter()
-            .for_each(|slot| slot.count(&mut statistics));
+        self.device.slots.iter().for_each(|slot| slot.count(&mut statistics));
         statistics
     }
 
@@ -339,11 +315,7 @@ impl Renderer {
         let mut tracks = self.mixes.iter_mut().flat_map(|mix| &mut mix.tracks);
         tracks.find_map(|track| {
             let source = track.synthesis.take_failure()?;
-            Some(SceneError::Surface {
-                surface: track.surface,
-                asset: track.asset.clone(),
-                source,
-            })
+            Some(SceneError::Surface { surface: track.surface, asset: track.asset.clone(), source })
         })
     }
 }
@@ -372,10 +344,7 @@ impl MixChain {
         surfaces: &[PlannedSurface],
         mix: &Mix,
     ) -> Result<Self, SceneError> {
-        let tracks = mix
-            .surfaces
-            .iter()
-            .map(|&i| Track::new(scene, required, &surfaces[i]));
+        let tracks = mix.surfaces.iter().map(|&i| Track::new(scene, required, &surfaces[i]));
         let mut chain = Chain::default();
         let first = &surfaces[mix.surfaces[0]].played;
         let surface = (mix.surfaces.len() == 1 && surfaces.len() > 1).then_some(first.surface);
@@ -385,11 +354,7 @@ impl MixChain {
                 chain.slots.push(Slot::new(entry.name, surface, stage));
             }
         }
-        Ok(Self {
-            tracks: tracks.collect::<Result<_, _>>()?,
-            chain,
-            piece: vec![0.0; PIECE],
-        })
+        Ok(Self { tracks: tracks.collect::<Result<_, _>>()?, chain, piece: vec![0.0; PIECE] })
     }
 
     fn render(&mut self, timed: bool, out: &mut [f32]) {

@@ -9,8 +9,9 @@ use crate::load::LoadedScene;
 use crate::played::PlayedSurface;
 use crate::requirements::Requirements;
 
-/// Safety factor of a plan over the measured times of its stages. The fastest chain takes 1.3 times their sum
-/// in blocks of 64 (the example `chains`), because of the calls between stages and the peak measurement.
+/// Safety factor of a plan over the measured times of its stages. The fastest chain takes 1.3 times
+/// their sum in blocks of 64 (the example `chains`), because of the calls between stages and the
+/// peak measurement.
 const RESERVE: f64 = 1.5;
 
 /// A representation and the reason for its choice.
@@ -20,7 +21,8 @@ pub(crate) struct Choice {
     pub(crate) why: String,
 }
 
-/// Gives the time of a set of representations, nanoseconds per sample, or why they cannot be planned.
+/// Gives the time of a set of representations, nanoseconds per sample, or why they cannot be
+/// planned.
 type Cost<'a> = &'a dyn Fn(&[PlayedSurface]) -> Result<f64, SceneError>;
 
 /// The candidate representations of a surface, the first of which is chosen without a budget.
@@ -39,9 +41,8 @@ pub(crate) fn choose(
     cost: Cost<'_>,
 ) -> Result<Vec<Choice>, SceneError> {
     let touched = (0..scene.assets.len()).filter(|&i| required.touches[i].share > 0.0);
-    let all: Vec<Candidates> = touched
-        .map(|surface| candidates(scene, required, surface))
-        .collect::<Result<_, _>>()?;
+    let all: Vec<Candidates> =
+        touched.map(|surface| candidates(scene, required, surface)).collect::<Result<_, _>>()?;
     let budget = scene.scene.budget;
     let options = within(&all, &budget, cost)?;
     let why = |(played, from): (PlayedSurface, &Candidates)| Choice {
@@ -51,8 +52,8 @@ pub(crate) fn choose(
     Ok(options.into_iter().zip(&all).map(why).collect())
 }
 
-/// Reference level if levels are not normalised, in the assets' unit: the scene's, else that of the strongest
-/// representation of the surfaces that are touched, whichever plays them.
+/// Reference level if levels are not normalised, in the assets' unit: the scene's, else that of the
+/// strongest representation of the surfaces that are touched, whichever plays them.
 pub(crate) fn reference_rms(scene: &LoadedScene, required: &Requirements) -> f64 {
     if let Some(given_n) = scene.scene.device.reference_rms {
         return given_n;
@@ -75,15 +76,10 @@ fn candidates(
     required: &Requirements,
     surface: usize,
 ) -> Result<Candidates, SceneError> {
-    let (asset, wanted) = (
-        &scene.assets[surface],
-        &scene.scene.surfaces[surface].representation,
-    );
+    let (asset, wanted) = (&scene.assets[surface], &scene.scene.surfaces[surface].representation);
     let all = &asset.manifest().representations;
     if wanted != "auto" {
-        let id = asset
-            .representation_id(Some(wanted))
-            .of_surface(surface, scene)?;
+        let id = asset.representation_id(Some(wanted)).of_surface(surface, scene)?;
         return Ok(Candidates {
             surface,
             options: vec![PlayedSurface::new(scene, required, surface, id)?],
@@ -92,24 +88,15 @@ fn candidates(
     }
     // In the order in which all programs choose.
     let ranked = asset.ranked(scene.scene.budget.error).into_iter();
-    let known = ranked
-        .map(|i| &all[i].model[..])
-        .filter(|id| asset.knows_model(id));
+    let known = ranked.map(|i| &all[i].model[..]).filter(|id| asset.knows_model(id));
     let options = known
         .map(|id| PlayedSurface::new(scene, required, surface, id))
         .collect::<Result<Vec<_>, _>>()?;
     if options.is_empty() {
         let there: Vec<&str> = all.iter().map(|r| &r.model[..]).collect();
-        return Err(SceneError::NoModel {
-            surface,
-            there: there.join(", "),
-        });
+        return Err(SceneError::NoModel { surface, there: there.join(", ") });
     }
-    Ok(Candidates {
-        surface,
-        options,
-        named: false,
-    })
+    Ok(Candidates { surface, options, named: false })
 }
 
 /// Chooses one representation per surface within the budget.
@@ -133,10 +120,8 @@ fn within(
 impl Candidates {
     /// Leaves the representations whose largest error is within the limit.
     fn within(&self, wanted_db: f64) -> Result<Self, SceneError> {
-        let is_within = |p: &&PlayedSurface| {
-            p.largest_error_db
-                .is_some_and(|error_db| error_db <= wanted_db)
-        };
+        let is_within =
+            |p: &&PlayedSurface| p.largest_error_db.is_some_and(|error_db| error_db <= wanted_db);
         let options: Vec<PlayedSurface> = self.options.iter().filter(is_within).cloned().collect();
         if !options.is_empty() {
             return Ok(Self { options, ..*self });
@@ -166,10 +151,7 @@ fn nearest_within(
     let least = unnamed.map(|c| c.options[0].error_db);
     let least = least.max_by(|a, b| by_error(*a, *b)).unwrap_or(Some(0.0));
     let mut quickest_ns: Option<f64> = None;
-    for bound in bounds
-        .into_iter()
-        .filter(|bound| by_error(*bound, least).is_ge())
-    {
+    for bound in bounds.into_iter().filter(|bound| by_error(*bound, least).is_ge()) {
         let options = quickest(all, bound, cost)?;
         let takes_ns = RESERVE * cost(&options)?;
         if takes_ns <= wanted_ns {
@@ -181,15 +163,8 @@ fn nearest_within(
         return Ok(Vec::new());
     };
     Err(match error_db {
-        None => SceneError::TooSlow {
-            wanted_ns,
-            quickest_ns,
-        },
-        Some(wanted_db) => SceneError::Budgets {
-            wanted_db,
-            wanted_ns,
-            quickest_ns,
-        },
+        None => SceneError::TooSlow { wanted_ns, quickest_ns },
+        Some(wanted_db) => SceneError::Budgets { wanted_db, wanted_ns, quickest_ns },
     })
 }
 
@@ -234,10 +209,7 @@ fn by_error(a: Option<f64>, b: Option<f64>) -> Ordering {
 fn reason(played: &PlayedSurface, from: &Candidates, budget: &Budget) -> String {
     let error = match (played.error_db, played.largest_error_db) {
         (Some(error_db), Some(largest_db)) if largest_db > error_db => {
-            format!(
-                "{} {error_db:.2} dB, at most {largest_db:.2} dB",
-                budget.error
-            )
+            format!("{} {error_db:.2} dB, at most {largest_db:.2} dB", budget.error)
         }
         (Some(error_db), _) => format!("{} {error_db:.2} dB", budget.error),
         (None, _) => format!("{} not measured", budget.error),

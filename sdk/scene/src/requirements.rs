@@ -1,4 +1,5 @@
-//! The requirements of a scene, gathered from the scene, its assets and its device before anything is built.
+//! The requirements of a scene, gathered from the scene, its assets and its device before anything
+//! is built.
 
 use htex_device::{Capabilities, Quantity};
 use htex_play::Motion;
@@ -13,8 +14,8 @@ use crate::response::Inverse;
 
 /// Relative difference of speeds and forces that is attributed to rounding.
 const SAME: f64 = 1e-6;
-/// Maximum number of control blocks examined before a scene plays, nearly an hour of motion; a longer scene
-/// is sampled at larger intervals.
+/// Maximum number of control blocks examined before a scene plays, nearly an hour of motion; a
+/// longer scene is sampled at larger intervals.
 const MOST_LOOKS: u64 = 1 << 20;
 /// Duration of a control block, seconds.
 const CONTROL_S: f64 = 0.0032;
@@ -29,18 +30,9 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    pub(crate) const NONE: Self = Self {
-        low: f64::INFINITY,
-        high: f64::NEG_INFINITY,
-    };
-    pub(crate) const ONE: Self = Self {
-        low: 1.0,
-        high: 1.0,
-    };
-    pub(crate) const ANY: Self = Self {
-        low: 0.0,
-        high: f64::INFINITY,
-    };
+    pub(crate) const NONE: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
+    pub(crate) const ONE: Self = Self { low: 1.0, high: 1.0 };
+    pub(crate) const ANY: Self = Self { low: 0.0, high: f64::INFINITY };
 
     pub(crate) fn take(&mut self, x: f64) {
         self.low = self.low.min(x);
@@ -88,8 +80,8 @@ pub(crate) struct Requirements {
     pub(crate) quantity: htex_format::Quantity,
     /// Device units per asset unit.
     pub(crate) quantity_gain: f64,
-    /// Reference level: the RMS that is mapped to the drive voltage or the preview level, at the input of the
-    /// device's stages, in the assets' unit.
+    /// Reference level: the RMS that is mapped to the drive voltage or the preview level, at the
+    /// input of the device's stages, in the assets' unit.
     pub(crate) level_rms: f64,
     pub(crate) drive_v: f64,
     pub(crate) gain_db: f64,
@@ -121,10 +113,7 @@ impl Requirements {
         let (file, choice) = (&scene.scene, &scene.scene.device);
         let rate_hz = choice.rate_hz.unwrap_or(device.default_rate_hz);
         if !device.has_rate(rate_hz) {
-            return Err(SceneError::Rate {
-                rate_hz,
-                rates: device.rates_text(),
-            });
+            return Err(SceneError::Rate { rate_hz, rates: device.rates_text() });
         }
         let quantity = scene.quantity();
         let misfit = quantity_misfit(quantity, device.quantity, choice.quantity_gain);
@@ -132,9 +121,7 @@ impl Requirements {
             return Err(SceneError::Quantity { sentence });
         }
         let course = Course::new(&scene.scene.motion, scene.trace.as_ref());
-        let duration_s = file
-            .duration_s
-            .or(scene.trace.as_ref().map(|t| t.duration_s()));
+        let duration_s = file.duration_s.or(scene.trace.as_ref().map(|t| t.duration_s()));
         let limit = device.limit.unwrap_or(f64::INFINITY);
         let pitch = match device.quantity {
             Quantity::Sound => choice.pitch.unwrap_or(1.0),

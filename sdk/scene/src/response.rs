@@ -9,8 +9,8 @@ use htex_recording::{ReadError, ReadProblem};
 
 pub use htex_recording::SetupResponse as Response;
 
-/// Reads a response from a CSV with the columns `frequency_hz` and `magnitude` (output over input). Any unit
-/// is valid, since only the shape is compensated.
+/// Reads a response from a CSV with the columns `frequency_hz` and `magnitude` (output over input).
+/// Any unit is valid, since only the shape is compensated.
 ///
 /// # Errors
 /// As [`read_response`]; and if no magnitude is above 0.
@@ -37,8 +37,8 @@ fn not_zero(response: Response, file: &str) -> Result<Response, ReadError> {
     Ok(response)
 }
 
-/// The inverse of a response. Only its shape counts: it is normalised to its largest magnitude in the band of
-/// the textures, where the gain is near 1; at other frequencies the gain is higher.
+/// The inverse of a response. Only its shape counts: it is normalised to its largest magnitude in
+/// the band of the textures, where the gain is near 1; at other frequencies the gain is higher.
 #[derive(Debug, Clone)]
 pub(crate) struct Inverse {
     response: Response,
@@ -61,8 +61,8 @@ impl Inverse {
         }
     }
 
-    /// Gain at a frequency, near 1/|H| and at most 1/(2 floor): |H| / (|H|² + floor²), with H relative to its
-    /// largest magnitude in the band; 0 where the response is 0.
+    /// Gain at a frequency, near 1/|H| and at most 1/(2 floor): |H| / (|H|² + floor²), with H
+    /// relative to its largest magnitude in the band; 0 where the response is 0.
     pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
         let (re, im) = self.response.at(frequency_hz);
         let part = libm::hypot(re, im) / self.largest;

@@ -1,7 +1,7 @@
 //! A recorded motion, interpolated at any time.
 //!
-//! Its speed is the second difference of the position's integral: exact for a steady motion with any spacing of the
-//! rows, and insensitive to the steps of a 60 Hz tracker.
+//! Its speed is the second difference of the position's integral: exact for a steady motion with
+//! any spacing of the rows, and insensitive to the steps of a 60 Hz tracker.
 
 use std::path::Path;
 
@@ -23,7 +23,8 @@ pub struct Trace {
     pub y_mm: Vec<f64>,
     /// Normal force, newtons, not negative.
     pub force_n: Vec<f64>,
-    /// Sliding speed, mm/s, not negative: from the trace if it has a speed column, else from the velocity.
+    /// Sliding speed, mm/s, not negative: from the trace if it has a speed column, else from the
+    /// velocity.
     pub speed_mm_s: Vec<f64>,
     /// Velocity along x and y, mm/s, computed from the positions.
     pub velocity_mm_s: Vec<[f64; 2]>,
@@ -68,19 +69,18 @@ impl Trace {
 
     /// Makes a trace from columns.
     ///
-    /// The velocity is that of [`velocity`]: exact when it is constant, and insensitive to the steps of a tracker of 60 Hz.
-    /// Negative forces, caused by a sensor's offset, become 0. Rows that no finger has (above 1000 mm/s or 20 N) are replaced by the last
-    /// good one for at most 100 ms, and have no contact after that: between rows, values are linear, and half of a bad one may look good.
+    /// The velocity is that of [`velocity`]: exact when it is constant, and insensitive to the
+    /// steps of a tracker of 60 Hz. Negative forces, caused by a sensor's offset, become 0. Rows
+    /// that no finger has (above 1000 mm/s or 20 N) are replaced by the last good one for at most
+    /// 100 ms, and have no contact after that: between rows, values are linear, and half of a bad
+    /// one may look good.
     pub fn new(columns: TraceColumns) -> Self {
         let start_s = columns.t_s.first().copied().unwrap_or(0.0);
         let t_s: Vec<f64> = columns.t_s.iter().map(|t| t - start_s).collect();
         let along = |position: &[f64]| velocity(&t_s, position, t_s.iter().copied());
         let (vx, vy) = (along(&columns.x_mm), along(&columns.y_mm));
         let velocity_mm_s: Vec<[f64; 2]> = vx.iter().zip(vy).map(|(x, y)| [*x, y]).collect();
-        let moved: Vec<f64> = velocity_mm_s
-            .iter()
-            .map(|[x, y]| libm::hypot(*x, *y))
-            .collect();
+        let moved: Vec<f64> = velocity_mm_s.iter().map(|[x, y]| libm::hypot(*x, *y)).collect();
         let speed_mm_s = match columns.speed_mm_s {
             Some(speed) => speed.iter().map(|v| v.abs()).collect(),
             None => moved.clone(),
@@ -101,8 +101,8 @@ impl Trace {
         }
     }
 
-    /// The motion at `t_s` seconds, linear between rows. Before the first row and after the last one the
-    /// finger rests there without contact: speed and force are 0. Does not allocate.
+    /// The motion at `t_s` seconds, linear between rows. Before the first row and after the last
+    /// one the finger rests there without contact: speed and force are 0. Does not allocate.
     pub fn at(&self, t_s: f64) -> TracePoint {
         let last = self.t_s.len().saturating_sub(1);
         let above = self.t_s.partition_point(|t| *t <= t_s);
@@ -129,11 +129,7 @@ impl Trace {
 
     fn resting(&self, row: usize) -> TracePoint {
         let place = |values: &[f64]| values.get(row).copied().unwrap_or(0.0);
-        TracePoint {
-            x_mm: place(&self.x_mm),
-            y_mm: place(&self.y_mm),
-            ..TracePoint::default()
-        }
+        TracePoint { x_mm: place(&self.x_mm), y_mm: place(&self.y_mm), ..TracePoint::default() }
     }
 
     /// Time from the first row to the last, seconds.
@@ -142,7 +138,8 @@ impl Trace {
     }
 }
 
-/// The row whose reading each row has: its own if that is good, else the last good one within [`HOLD_S`].
+/// The row whose reading each row has: its own if that is good, else the last good one within
+/// [`HOLD_S`].
 fn readings(t_s: &[f64], is_good: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
     let mut last = None;
     let row = |row: usize| {
@@ -157,9 +154,7 @@ fn readings(t_s: &[f64], is_good: impl Fn(usize) -> bool) -> Vec<Option<usize>> 
 /// The values of these rows; zero where there is none.
 fn taken<T: Copy + Default>(rows: &[Option<usize>], values: &[T]) -> Vec<T> {
     let value = |row: &Option<usize>| row.and_then(|row| values.get(row).copied());
-    rows.iter()
-        .map(|row| value(row).unwrap_or_default())
-        .collect()
+    rows.iter().map(|row| value(row).unwrap_or_default()).collect()
 }
 
 #[cfg(test)]
@@ -189,10 +184,9 @@ mod tests {
     fn a_quantised_tracker_gives_a_constant_speed() {
         // 60 Hz and 0.1 mm, as read by a recorder of 1 kHz that repeats the last value.
         let held = |t: f64| 80.0 * (t * 60.0 + 1e-9).floor() / 60.0;
-        for (rate_hz, x_mm) in [
-            (60.0, &(|t: f64| 80.0 * t) as &dyn Fn(f64) -> f64),
-            (1000.0, &held),
-        ] {
+        for (rate_hz, x_mm) in
+            [(60.0, &(|t: f64| 80.0 * t) as &dyn Fn(f64) -> f64), (1000.0, &held)]
+        {
             let trace = trace(rate_hz, 2.0, 0.1, x_mm);
             for step in 0..200 {
                 let speed = trace.at(f64::from(step) / 100.0).speed_mm_s;
@@ -217,14 +211,12 @@ mod tests {
         assert_eq!(trace.at(3.0).force_n, 0.4);
         for t in [-0.001, 3.001, f64::INFINITY, f64::NAN] {
             let point = trace.at(t);
-            assert_eq!(
-                (point.speed_mm_s, point.force_n, point.y_mm),
-                (0.0, 0.0, 1.0)
-            );
+            assert_eq!((point.speed_mm_s, point.force_n, point.y_mm), (0.0, 0.0, 1.0));
         }
     }
 
-    /// One row of no finger, in the speed or in the force, changes nothing; after 100 ms of them there is no contact.
+    /// One row of no finger, in the speed or in the force, changes nothing; after 100 ms of them
+    /// there is no contact.
     #[test]
     fn rows_that_no_finger_has_are_held_and_then_lost() {
         let made = |bad: std::ops::Range<usize>, speed_mm_s: f64, force_n: f64| {
@@ -247,11 +239,7 @@ mod tests {
                 let held = made(bad, speed_mm_s, force_n);
                 for step in 0..4_000 {
                     let t_s = f64::from(step) / 2_000.0;
-                    assert_eq!(
-                        held.at(t_s),
-                        plain.at(t_s),
-                        "{speed_mm_s} {force_n} at {t_s}"
-                    );
+                    assert_eq!(held.at(t_s), plain.at(t_s), "{speed_mm_s} {force_n} at {t_s}");
                 }
             }
             let lost = made(100..200, speed_mm_s, force_n);

@@ -60,26 +60,20 @@ impl Track {
         planned: &PlannedSurface,
     ) -> Result<Self, SceneError> {
         let played = &planned.played;
-        let source = played
-            .source(scene, required)
-            .of_surface(played.surface, scene)?;
+        let source = played.source(scene, required).of_surface(played.surface, scene)?;
         let synthesis = Synthesis::new(source);
         let mut chain = Chain::default();
         for entry in EFFECTS {
             let Some(&neutral) = planned.effects.get(&entry.effect) else {
                 continue;
             };
-            if let StagePlace::Surface {
-                build: Some(build), ..
-            } = &entry.place
-            {
+            if let StagePlace::Surface { build: Some(build), .. } = &entry.place {
                 let stage = build(required, played, neutral);
-                chain
-                    .slots
-                    .push(Slot::new(entry.name, Some(played.surface), stage));
+                chain.slots.push(Slot::new(entry.name, Some(played.surface), stage));
             }
         }
-        // The level stage follows stages that change the rate and precedes stages that change the level.
+        // The level stage follows stages that change the rate and precedes stages that change the
+        // level.
         let scaled = planned.effects.contains_key(&Effect::FrequencyScaling);
         let level = Level::new(played, synthesis.level_rms());
         let level = Slot::new("level", Some(played.surface), Box::new(level));
@@ -112,7 +106,8 @@ impl Track {
     pub(crate) fn follow(&mut self, context: &Context, touched: bool, timed: bool) {
         if let Some((crossfade, _)) = &mut self.crossfade {
             crossfade.set(touched);
-            // Changes only at control blocks, so that samples do not depend on the block sizes of the caller.
+            // Changes only at control blocks, so that samples do not depend on the block sizes of
+            // the caller.
             self.sounds = touched || !crossfade.is_silent();
         }
         if let (Some((count, neutral)), true) = (&mut self.interpolation, touched) {
@@ -123,14 +118,12 @@ impl Track {
                 }
             });
         }
-        self.chain.follow(&Context {
-            level_rms: self.synthesis.level_rms(),
-            ..*context
-        });
+        self.chain.follow(&Context { level_rms: self.synthesis.level_rms(), ..*context });
     }
 
-    /// Passes motion, position and place to a model that follows the motion itself, while its surface is audible. Position and
-    /// time are in the voice's time, so both are multiplied by the pitch; a place stays where it is on the surface.
+    /// Passes motion, position and place to a model that follows the motion itself, while its
+    /// surface is audible. Position and time are in the voice's time, so both are multiplied by the
+    /// pitch; a place stays where it is on the surface.
     pub(crate) fn set_finger(&mut self, finger: &FingerOnPath) {
         let Some(follower) = self.follower.as_ref().filter(|_| self.sounds) else {
             return;

@@ -27,8 +27,8 @@ const DOCUMENT: Document = Document {
     },
 };
 
-/// Reads a scene and checks it without its files and its device. Returns `None`, with a finding that states
-/// the reason, if it cannot be used. Never panics.
+/// Reads a scene and checks it without its files and its device. Returns `None`, with a finding
+/// that states the reason, if it cannot be used. Never panics.
 pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Scene> {
     if bytes.len() as u64 > limits.file_bytes {
         let message = format!("the scene has more than {} bytes", limits.file_bytes);
@@ -71,15 +71,8 @@ fn check_effect_names(scene: &Value, findings: &mut Findings) -> Option<()> {
     for name in effects.into_iter().flat_map(|map| map.keys()) {
         if !is_effect(name) {
             let names: Vec<&str> = Effect::ALL.iter().map(|effect| effect.name()).collect();
-            let message = format!(
-                "unknown effect {name}; the effects are {}",
-                names.join(", ")
-            );
-            findings.add(
-                rule::EFFECT_UNKNOWN,
-                format!("/effects/{}", escape(name)),
-                message,
-            );
+            let message = format!("unknown effect {name}; the effects are {}", names.join(", "));
+            findings.add(rule::EFFECT_UNKNOWN, format!("/effects/{}", escape(name)), message);
             all_known = None;
         }
     }

@@ -42,24 +42,16 @@ fn a_smaller_time_budget_never_reduces_the_error() {
     let cheapest = all.iter().map(|(.., ns)| *ns).fold(f64::INFINITY, f64::min);
     let (mut last_error, mut choices) = (0.0, std::collections::BTreeSet::new());
     // Just above and just below what each representation takes.
-    let mut budgets: Vec<f64> = all
-        .iter()
-        .flat_map(|(.., ns)| [1.0001 * ns, 0.9999 * ns])
-        .collect();
+    let mut budgets: Vec<f64> =
+        all.iter().flat_map(|(.., ns)| [1.0001 * ns, 0.9999 * ns]).collect();
     budgets.sort_by(|a, b| b.total_cmp(a));
     for ns in budgets {
-        let budget = Budget {
-            ns_per_sample: Some(ns),
-            ..Budget::default()
-        };
+        let budget = Budget { ns_per_sample: Some(ns), ..Budget::default() };
         match within(budget) {
             Ok(plan) => {
                 assert!(RESERVE * plan.ns_per_sample_total <= ns);
                 let error_db = error_of(&all, &plan);
-                assert!(
-                    error_db >= last_error,
-                    "{ns} ns: {error_db} dB after {last_error} dB"
-                );
+                assert!(error_db >= last_error, "{ns} ns: {error_db} dB after {last_error} dB");
                 // No representation of smaller error is within the time budget.
                 let nearer = all.iter().find(|(_, e, t)| *e < error_db && *t <= ns);
                 assert!(nearer.is_none(), "{nearer:?}");
@@ -72,10 +64,7 @@ fn a_smaller_time_budget_never_reduces_the_error() {
             }
         }
     }
-    assert!(
-        choices.len() >= 2,
-        "the front has more than one point: {choices:?}, {all:?}"
-    );
+    assert!(choices.len() >= 2, "the front has more than one point: {choices:?}, {all:?}");
 }
 
 #[test]
@@ -85,11 +74,7 @@ fn a_larger_error_budget_never_takes_more_time() {
         let mut last_ns = f64::INFINITY;
         for step in 0..200 {
             let most_db = 0.1 * 1.05f64.powi(step);
-            let budget = Budget {
-                max_error_db: Some(most_db),
-                error,
-                ..Budget::default()
-            };
+            let budget = Budget { max_error_db: Some(most_db), error, ..Budget::default() };
             match within(budget) {
                 Ok(plan) => {
                     assert!(error_of(&all, &plan) <= most_db);
@@ -99,10 +84,7 @@ fn a_larger_error_budget_never_takes_more_time() {
                     last_ns = ns;
                 }
                 Err(refused) => {
-                    assert!(
-                        matches!(refused, SceneError::NotNearEnough { .. }),
-                        "{refused}"
-                    );
+                    assert!(matches!(refused, SceneError::NotNearEnough { .. }), "{refused}");
                     assert!(all.iter().all(|(_, e, _)| *e > most_db));
                 }
             }
@@ -113,7 +95,8 @@ fn a_larger_error_budget_never_takes_more_time() {
     }
 }
 
-/// Without a budget a scene plays the representation that a voice plays, also where conditions were computed or none was measured.
+/// Without a budget a scene plays the representation that a voice plays, also where conditions were
+/// computed or none was measured.
 #[test]
 fn a_scene_chooses_as_a_voice_does() {
     let computed = |asset: &Asset| {
@@ -129,14 +112,7 @@ fn a_scene_chooses_as_a_voice_does() {
         representation.at[0].quality = None;
     }
     let (unmeasured, later) = (Asset::new(unmeasured), Asset::new(later));
-    for asset in [
-        single(),
-        grid(),
-        nine(),
-        three_speeds(),
-        &unmeasured,
-        &later,
-    ] {
+    for asset in [single(), grid(), nine(), three_speeds(), &unmeasured, &later] {
         let chosen = planned(&scene(asset, constant(80.0, 0.4), 1.0), &file());
         let voice = asset.representation_id(None).unwrap();
         assert_eq!(chosen.representation[0].model, voice);
@@ -162,15 +138,10 @@ fn computed_conditions_do_not_break_a_budget() {
     let least_db = largest.min_by(f64::total_cmp).unwrap();
     assert!(with(asset, least_db + 1e-9).is_ok());
     let refused = with(asset, least_db - 1e-9).unwrap_err().to_string();
-    assert!(
-        refused.contains(&format!("at {least_db:.2} dB")),
-        "{refused}"
-    );
+    assert!(refused.contains(&format!("at {least_db:.2} dB")), "{refused}");
     let mut unmeasured = asset.data().clone();
     let all = unmeasured.manifest.representations.iter_mut();
     all.flat_map(|r| &mut r.at).for_each(|at| at.quality = None);
-    let refused = with(&Asset::new(unmeasured), 100.0)
-        .unwrap_err()
-        .to_string();
+    let refused = with(&Asset::new(unmeasured), 100.0).unwrap_err().to_string();
     assert!(refused.contains("states no such error"), "{refused}");
 }

@@ -68,8 +68,5 @@ fn the_response_outside_the_band_does_not_matter() {
     }
     assert_eq!(none, None);
     let reason = reason.unwrap();
-    assert!(
-        reason.contains("505 to 1000 Hz by up to 19.9 dB"),
-        "{reason}"
-    );
+    assert!(reason.contains("505 to 1000 Hz by up to 19.9 dB"), "{reason}");
 }

@@ -18,8 +18,9 @@ use xtask::generated::{file, file_with, folder};
 
 const FOLDER: &str = "spec/scene-conformance";
 
-/// Rules that no conformance file breaks: they take a scene of a megabyte, a device with hardware settings
-/// (tested in `cli/tests/live/drive.rs`; the file device has none), or a device that is not connected.
+/// Rules that no conformance file breaks: they take a scene of a megabyte, a device with hardware
+/// settings (tested in `cli/tests/live/drive.rs`; the file device has none), or a device that is
+/// not connected.
 const WITHOUT_FILE: [&str; 3] = ["SCENE_FILE_TOO_LARGE", "DEVICE_HARDWARE", "DEVICE_ABSENT"];
 
 /// The folder of the specification, from that of this package, in which tests run.
@@ -53,16 +54,10 @@ fn scenes_raise_the_code_they_are_named_after_and_every_rule_has_one() {
         let golden = case.golden(&spec().join("scene-conformance"));
         let golden: Value = serde_json::from_str(&golden).unwrap();
         let findings = golden["findings"].as_array().unwrap();
-        let codes: BTreeSet<&str> = findings
-            .iter()
-            .map(|f| f["code"].as_str().unwrap())
-            .collect();
+        let codes: BTreeSet<&str> = findings.iter().map(|f| f["code"].as_str().unwrap()).collect();
         let name = case.name.to_uppercase();
         let is_named = codes.iter().any(|code| name.starts_with(code));
-        assert!(
-            is_named || codes.is_empty() && name.starts_with("VALID"),
-            "{name} gets {codes:?}"
-        );
+        assert!(is_named || codes.is_empty() && name.starts_with("VALID"), "{name} gets {codes:?}");
         raised.extend(codes.into_iter().map(str::to_owned));
         // Of a file that cannot be read as JSON, findings concern the whole.
         let scene: Value = serde_json::from_str(&case.text).unwrap_or_default();
@@ -72,10 +67,7 @@ fn scenes_raise_the_code_they_are_named_after_and_every_rule_has_one() {
         }
     }
     let silent = RULES.iter().filter(|rule| !raised.contains(rule.code));
-    assert_eq!(
-        silent.map(|rule| rule.code).collect::<Vec<_>>(),
-        WITHOUT_FILE
-    );
+    assert_eq!(silent.map(|rule| rule.code).collect::<Vec<_>>(), WITHOUT_FILE);
 }
 
 #[test]
@@ -106,10 +98,7 @@ fn the_text_has_every_setting_of_the_adapter_file() {
 /// Cells of the rows of a table of the text, without code marks.
 fn rows<'t>(text: &'t str, head: &str) -> Vec<Vec<&'t str>> {
     let (_, rest) = text.split_once(head).unwrap();
-    let lines = rest
-        .lines()
-        .skip(2)
-        .take_while(|line| line.starts_with('|'));
+    let lines = rest.lines().skip(2).take_while(|line| line.starts_with('|'));
     let cells = |line: &'t str| line.trim_matches('|').split('|').map(str::trim).collect();
     lines.map(cells).collect()
 }
@@ -132,28 +121,17 @@ fn the_columns_of_traces_have_the_names_and_units_of_the_text() {
             // The names of the axis y are those of x.
             let x = rows[1][1].replace('x', "y");
             let cell = if cell.starts_with('`') { cell } else { &x };
-            cell.split(", ")
-                .map(|name| name.trim_matches('`').to_owned())
-                .collect()
+            cell.split(", ").map(|name| name.trim_matches('`').to_owned()).collect()
         };
         let names = listed(row[1]).into_iter().flat_map(|name| {
-            let bracketed = [
-                format!("{name} [{unit}]"),
-                format!("{}({unit})", name.to_uppercase()),
-            ];
-            bracketed
-                .into_iter()
-                .chain([format!("{name}_{unit}"), name])
+            let bracketed =
+                [format!("{name} [{unit}]"), format!("{}({unit})", name.to_uppercase())];
+            bracketed.into_iter().chain([format!("{name}_{unit}"), name])
         });
-        let units = listed(row[2])
-            .into_iter()
-            .map(|unit| format!("{base}_{unit}"));
+        let units = listed(row[2]).into_iter().map(|unit| format!("{base}_{unit}"));
         for name in names.chain(units) {
             let found = read(column, &name).unwrap_or_else(|error| panic!("{name}: {error}"));
-            let is_assumed = found
-                .warnings
-                .iter()
-                .any(|warning| warning.contains("assumed"));
+            let is_assumed = found.warnings.iter().any(|warning| warning.contains("assumed"));
             assert_eq!(
                 found.warnings.len(),
                 usize::from(is_assumed),
@@ -175,27 +153,12 @@ fn the_text_names_every_key_effect_and_limit() {
         let names = part.split('"').filter(|name| !name.is_empty());
         names.filter(|name| name.chars().all(|c| c.is_ascii_lowercase() || c == '_'))
     });
-    let words = [
-        "additional",
-        "description",
-        "type",
-        "anyof",
-        "items",
-        "string",
-        "number",
-    ];
+    let words = ["additional", "description", "type", "anyof", "items", "string", "number"];
     for key in keys.filter(|key| key.contains('_') && !words.contains(key)) {
-        assert!(
-            text.contains(&format!("`{key}`")),
-            "{key} is not in the text"
-        );
+        assert!(text.contains(&format!("`{key}`")), "{key} is not in the text");
     }
     for effect in htex_scene::file::Effect::ALL {
-        assert!(
-            text.contains(&format!("`{}`", effect.name())),
-            "{}",
-            effect.name()
-        );
+        assert!(text.contains(&format!("`{}`", effect.name())), "{}", effect.name());
         assert_eq!(serde_json::to_value(effect).unwrap(), effect.name());
     }
     let limits = Limits::default();
@@ -205,10 +168,7 @@ fn the_text_names_every_key_effect_and_limit() {
         ("surfaces", limits.surfaces as u64),
     ];
     for (name, value) in rows {
-        assert!(
-            text.contains(&format!("| `{name}` | {value} |")),
-            "{name} {value}"
-        );
+        assert!(text.contains(&format!("| `{name}` | {value} |")), "{name} {value}");
     }
 }
 
@@ -219,11 +179,7 @@ fn a_scene_of_a_megabyte_is_refused_and_one_below_is_read() {
         text += &" ".repeat(bytes - text.len());
         let mut findings = Findings::default();
         read_scene(text.as_bytes(), &Limits::default(), &mut findings);
-        findings
-            .into_list()
-            .iter()
-            .map(|f| f.code.clone())
-            .collect::<Vec<_>>()
+        findings.into_list().iter().map(|f| f.code.clone()).collect::<Vec<_>>()
     };
     assert_eq!(codes(1 << 20), Vec::<String>::new());
     assert_eq!(codes((1 << 20) + 1), ["SCENE_FILE_TOO_LARGE"]);

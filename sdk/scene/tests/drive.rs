@@ -21,11 +21,7 @@ const PERIODS: usize = 25;
 
 /// The rig of the paper at 50 kHz, without quantisation.
 fn rig() -> Capabilities {
-    Capabilities {
-        default_rate_hz: RATE_HZ,
-        step: None,
-        ..display()
-    }
+    Capabilities { default_rate_hz: RATE_HZ, step: None, ..display() }
 }
 
 fn driven(scene: &mut LoadedScene) -> (Vec<f32>, Renderer) {
@@ -48,9 +44,7 @@ fn magnitudes(signal: Vec<f64>) -> Vec<f64> {
         .with_averaging(Averaging::Rms);
     let recording = Recording::new("drive", RATE_HZ, vec![signal]).unwrap();
     let part = segment_spectra(&recording, &options).unwrap();
-    TextureSpectrum::average(&[part], options.averaging)
-        .unwrap()
-        .magnitude
+    TextureSpectrum::average(&[part], options.averaging).unwrap().magnitude
 }
 
 #[test]
@@ -73,18 +67,12 @@ fn the_demodulated_square_has_the_compensated_spectrum() {
                 let x = std::f64::consts::PI * f * PERIODS as f64 / RATE_HZ;
                 x.sin() / x
             };
-            let found: Vec<f64> = magnitudes(steady.clone())
-                .iter()
-                .zip(&grid)
-                .map(|(m, f)| m / droop(*f))
-                .collect();
+            let found: Vec<f64> =
+                magnitudes(steady.clone()).iter().zip(&grid).map(|(m, f)| m / droop(*f)).collect();
             let texture = single().magnitude(Some(model), None, &grid).unwrap();
             let inverse = |f: f64| response.as_ref().map_or(1.0, |r| 1.0 / r.at(f).0);
-            let wanted: Vec<f64> = texture
-                .iter()
-                .zip(&grid)
-                .map(|(m, f)| m * inverse(*f))
-                .collect();
+            let wanted: Vec<f64> =
+                texture.iter().zip(&grid).map(|(m, f)| m * inverse(*f)).collect();
             let gain = energy_matching_gain(&wanted, &found);
             // Bins in which the model has no magnitude have no ratio.
             let most = wanted.iter().copied().fold(0.0, f64::max);
@@ -104,7 +92,8 @@ fn the_demodulated_square_has_the_compensated_spectrum() {
             );
             assert!(error_db < 1.0, "{model}: {error_db} dB");
 
-            // 4.5 times the RMS of the texture corresponds to half the square of the largest voltage.
+            // 4.5 times the RMS of the texture corresponds to half the square of the largest
+            // voltage.
             let reach = 4.5 * level_rms(&found) / (DRIVE_V * DRIVE_V / 2.0);
             let reach_db = 20.0 * reach.log10();
             assert!(reach_db.abs() < 0.3, "{model}: {reach_db} dB");
@@ -140,10 +129,7 @@ fn levels_under_one_gain_are_normalised_or_the_representations_own() {
             let wanted = 20.0 * (level_rms(name) / against_rms).log10();
             let found = model(name, Levels::Own, reference_rms) - alike;
             println!("{name}: {found:.2} dB, by its level {wanted:.2} dB");
-            assert!(
-                (found - wanted).abs() < SPREAD_DB,
-                "{name}: {found} dB, not {wanted} dB"
-            );
+            assert!((found - wanted).abs() < SPREAD_DB, "{name}: {found} dB, not {wanted} dB");
         }
     }
 }
@@ -155,10 +141,7 @@ fn it_never_exceeds_the_limit_and_starts_and_ends_at_zero() {
     let mut scene = traced(single(), motion, 2.0);
     // The largest drive.
     scene.scene.device.drive_v = Some(150.0);
-    let rig = Capabilities {
-        default_rate_hz: RATE_HZ,
-        ..display()
-    };
+    let rig = Capabilities { default_rate_hz: RATE_HZ, ..display() };
     let mut renderer = Renderer::new(&scene, &planned(&scene, &rig)).unwrap();
     let drive = rendered(&mut renderer);
     assert_eq!(drive.len(), 100_000);

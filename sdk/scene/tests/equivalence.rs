@@ -1,5 +1,5 @@
-//! A planned chain gives the same samples as the full chain, in which every effect is switched on and is
-//! neutral if the scene does not need it.
+//! A planned chain gives the same samples as the full chain, in which every effect is switched on
+//! and is neutral if the scene does not need it.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -128,15 +128,8 @@ impl Case {
         scene.assets = vec![asset; self.surfaces];
         let tile = |i: usize| {
             let left = -4.0 + 3.0 * i as f64;
-            let region = Region {
-                x_mm: [left, left + 3.0],
-                y_mm: [-1.0, 1.0],
-            };
-            htex_scene::file::Surface {
-                region: Some(region),
-                gain: 1.0 + i as f64,
-                ..surface()
-            }
+            let region = Region { x_mm: [left, left + 3.0], y_mm: [-1.0, 1.0] };
+            htex_scene::file::Surface { region: Some(region), gain: 1.0 + i as f64, ..surface() }
         };
         scene.scene.surfaces = (0..self.surfaces).map(tile).collect();
     }
@@ -157,7 +150,8 @@ impl Case {
         }
     }
 
-    /// All samples, rendered in blocks of the given sizes, with changes of a live motion in between.
+    /// All samples, rendered in blocks of the given sizes, with changes of a live motion in
+    /// between.
     fn samples(&self, renderer: &mut Renderer, blocks: &[usize]) -> Vec<f32> {
         let frames = renderer.frames_left().unwrap() as usize;
         let mut samples = vec![0.0f32; frames];
@@ -173,11 +167,7 @@ impl Case {
             assert_eq!(rendered, size);
             done += size;
         }
-        assert_eq!(
-            renderer.render(&mut [0.0; 8]),
-            0,
-            "no samples after the end"
-        );
+        assert_eq!(renderer.render(&mut [0.0; 8]), 0, "no samples after the end");
         let failure = renderer.take_failure();
         assert!(failure.is_none(), "{failure:?}");
         samples
@@ -187,11 +177,7 @@ impl Case {
         let phase = part as f64 * self.turns_hz;
         Finger {
             speed_mm_s: self.speed_mm_s * phase.cos(),
-            force_n: if self.lifts && part == 2 {
-                0.0
-            } else {
-                self.force_n
-            },
+            force_n: if self.lifts && part == 2 { 0.0 } else { self.force_n },
             at_mm: Some([4.0 * phase.sin(), 0.0]),
         }
     }
@@ -221,7 +207,8 @@ proptest! {
             prop_assert!(a.is_finite() && (a - b).abs() <= 1e-6 * full_scale, "{i}: {a} {b}");
         }
 
-        // The stages that ran are the planned ones, and a full chain has every effect for each surface.
+        // The stages that ran are the planned ones, and a full chain has every effect for each
+        // surface.
         for (renderer, plan) in [(&short, &short_plan), (&full, &full_plan)] {
             let runs = renderer.stages_run();
             let ran: Vec<_> = runs.iter().map(|run| (run.name, run.surface)).collect();

@@ -45,9 +45,7 @@ fn octaves(signal: &[f32], low_hz: f64) -> Vec<f64> {
     for segment in signal.chunks_exact(n) {
         for (k, power_of) in power.iter_mut().enumerate() {
             let edge = |k: usize| (low_hz * 2f64.powi(k as i32) * n as f64 / RATE_HZ) as usize;
-            *power_of += (edge(k)..edge(k + 1))
-                .map(|bin| bin_power(segment, bin))
-                .sum::<f64>();
+            *power_of += (edge(k)..edge(k + 1)).map(|bin| bin_power(segment, bin)).sum::<f64>();
         }
     }
     let all: f64 = power.iter().sum();
@@ -82,18 +80,13 @@ fn plays_as_in_a_scene(model: &str) {
         scene.scene.surfaces[0].representation = model.to_owned();
         let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
         let played = rendered(&mut renderer);
-        let made = samples(
-            &mut voice(model, Some(motion), Effects::default()),
-            played.len(),
-        );
+        let made = samples(&mut voice(model, Some(motion), Effects::default()), played.len());
         let peak = played.iter().fold(0.0f32, |peak, x| peak.max(x.abs()));
         let same = |(a, b): (&f32, &f32)| (a - b).abs() <= 1e-5 * peak;
         assert!(played.iter().zip(&made).all(same), "{model} at {motion:?}");
 
         let mut moved = voice(model, None, Effects::default());
-        moved
-            .set_motion(htex_play::Motion::new(motion.0, motion.1))
-            .unwrap();
+        moved.set_motion(htex_play::Motion::new(motion.0, motion.1)).unwrap();
         // After the ramps of level and contact.
         samples(&mut moved, 1_000);
         let moved = samples(&mut moved, played.len());
@@ -102,18 +95,13 @@ fn plays_as_in_a_scene(model: &str) {
             continue;
         }
         let difference_db = rms_db(&moved) - rms_db(&played);
-        assert!(
-            difference_db.abs() < 0.4,
-            "{model} at {motion:?}: {difference_db} dB"
-        );
+        assert!(difference_db.abs() < 0.4, "{model} at {motion:?}: {difference_db} dB");
         let low_hz = 20.0 * motion.0 / RECORDED.0;
-        for (k, (a, b)) in octaves(&moved, low_hz)
-            .iter()
-            .zip(octaves(&played, low_hz))
-            .enumerate()
+        for (k, (a, b)) in octaves(&moved, low_hz).iter().zip(octaves(&played, low_hz)).enumerate()
         {
-            // Octaves 30 dB below the total are not compared. The lowest octave contains the band's edge,
-            // where a voice after a change of motion plays up to 6 dB more between 5 and 7 Hz (of 7.5).
+            // Octaves 30 dB below the total are not compared. The lowest octave contains the band's
+            // edge, where a voice after a change of motion plays up to 6 dB more between 5 and 7 Hz
+            // (of 7.5).
             let most_db = if k == 0 { 3.0 } else { 1.5 };
             assert!(
                 (a - b).abs() < most_db || b < -30.0,
@@ -143,89 +131,49 @@ fn a_live_motion_plays_as_in_a_scene() {
         let (mut played, mut followed) = (Vec::new(), Vec::new());
         for block in 0..blocks {
             let (speed_mm_s, force_n) = stroke(block, blocks);
-            let finger = Finger {
-                speed_mm_s,
-                force_n,
-                at_mm: None,
-            };
+            let finger = Finger { speed_mm_s, force_n, at_mm: None };
             renderer.set_motion(finger).unwrap();
             let mut out = [0.0f32; CONTROL];
             renderer.render(&mut out);
             played.extend(out);
-            voice
-                .set_motion(htex_play::Motion::new(speed_mm_s, force_n))
-                .unwrap();
+            voice.set_motion(htex_play::Motion::new(speed_mm_s, force_n)).unwrap();
             followed.extend(samples(&mut voice, CONTROL));
         }
         // Windows of half a second during the stroke, and silence at its end.
         let window = RATE_HZ as usize / 2;
-        for (i, (a, b)) in followed
-            .chunks(window)
-            .zip(played.chunks(window))
-            .enumerate()
-            .skip(1)
-            .take(6)
+        for (i, (a, b)) in
+            followed.chunks(window).zip(played.chunks(window)).enumerate().skip(1).take(6)
         {
             let difference_db = rms_db(a) - rms_db(b);
-            assert!(
-                difference_db.abs() < 1.0,
-                "{model}, window {i}: {difference_db} dB"
-            );
+            assert!(difference_db.abs() < 1.0, "{model}, window {i}: {difference_db} dB");
         }
         let end = followed.len() - 4_000;
-        assert!(
-            followed[end..]
-                .iter()
-                .chain(&played[end..])
-                .all(|x| *x == 0.0),
-            "{model}"
-        );
+        assert!(followed[end..].iter().chain(&played[end..]).all(|x| *x == 0.0), "{model}");
     }
 }
 
 #[test]
 fn samples_do_not_depend_on_blocks_or_on_the_recorded_motion() {
-    let motions = [
-        RECORDED,
-        (80.0, 0.5),
-        (200.0, 0.4),
-        (0.0, 0.0),
-        (120.0, 0.4),
-        RECORDED,
-    ];
+    let motions = [RECORDED, (80.0, 0.5), (200.0, 0.4), (0.0, 0.0), (120.0, 0.4), RECORDED];
     for model in Registry::placeless_names() {
         let follow = |size: usize| {
             let mut voice = voice(model, None, Effects::default());
             let mut all = Vec::new();
             for (speed, force) in motions {
-                voice
-                    .set_motion(htex_play::Motion::new(speed, force))
-                    .unwrap();
+                voice.set_motion(htex_play::Motion::new(speed, force)).unwrap();
                 let mut out = [0.0f32; 900];
-                out.chunks_mut(size)
-                    .for_each(|block| voice.render(block).unwrap());
+                out.chunks_mut(size).for_each(|block| voice.render(block).unwrap());
                 all.extend(out);
             }
             all
         };
         let whole = follow(900);
-        assert!(
-            [1, 7, 64].iter().all(|size| follow(*size) == whole),
-            "{model}"
-        );
-        let (mut plain, mut followed) = (
-            voice(model, None, Effects::NONE),
-            voice(model, None, Effects::default()),
-        );
+        assert!([1, 7, 64].iter().all(|size| follow(*size) == whole), "{model}");
+        let (mut plain, mut followed) =
+            (voice(model, None, Effects::NONE), voice(model, None, Effects::default()));
         for _ in 0..20 {
-            followed
-                .set_motion(htex_play::Motion::new(RECORDED.0, RECORDED.1))
-                .unwrap();
-            assert_eq!(
-                samples(&mut followed, 333),
-                samples(&mut plain, 333),
-                "{model}"
-            );
+            followed.set_motion(htex_play::Motion::new(RECORDED.0, RECORDED.1)).unwrap();
+            assert_eq!(samples(&mut followed, 333), samples(&mut plain, 333), "{model}");
         }
     }
 }
@@ -242,10 +190,7 @@ fn a_voice_reports_its_coverage_of_a_motion() {
     );
     assert!(!beyond.is_inside() && !all.coverage(htex_play::Motion::new(0.0, 0.4)).slides);
     let none = voice("ar", None, Effects::NONE).coverage(htex_play::Motion::new(160.0, 0.0));
-    let outside = Reach::Outside {
-        asked: 160.0,
-        recorded: 80.0,
-    };
+    let outside = Reach::Outside { asked: 160.0, recorded: 80.0 };
     assert!(none.slides && none.speed == outside);
     assert_eq!((none.scaling, none.excess()), (Scaling::NONE, 1.0));
 
@@ -253,13 +198,8 @@ fn a_voice_reports_its_coverage_of_a_motion() {
     let options = VoiceOptions::default().with_rate_hz(4_000.0);
     let low = |speed: f64| {
         let mut voice = single().voice(&options).unwrap();
-        voice
-            .set_motion(htex_play::Motion::new(speed, 0.4))
-            .unwrap();
-        (
-            samples(&mut voice, 4_000),
-            voice.coverage(htex_play::Motion::new(speed, 0.4)),
-        )
+        voice.set_motion(htex_play::Motion::new(speed, 0.4)).unwrap();
+        (samples(&mut voice, 4_000), voice.coverage(htex_play::Motion::new(speed, 0.4)))
     };
     let ((faster, coverage), (twice, _)) = (low(320.0), low(160.0));
     assert!(faster == twice && faster != low(120.0).0);
@@ -267,23 +207,21 @@ fn a_voice_reports_its_coverage_of_a_motion() {
 
     // Four conditions, 60 and 120 mm/s by 0.3 and 0.6 N.
     let of = |motion: (f64, f64)| {
-        grid().motions(None).unwrap().coverage(
-            htex_play::Motion::new(motion.0, motion.1),
-            Effects::default(),
-        )
+        grid()
+            .motions(None)
+            .unwrap()
+            .coverage(htex_play::Motion::new(motion.0, motion.1), Effects::default())
     };
     assert!(of((100.0, 0.4)).is_inside() && of((122.0, 0.6)).is_inside());
     let fast = of((240.0, 0.4));
     assert_eq!(fast.force, Reach::Inside);
-    let outside = Reach::Outside {
-        asked: 240.0,
-        recorded: 120.0,
-    };
+    let outside = Reach::Outside { asked: 240.0, recorded: 120.0 };
     assert_eq!(fast.speed, outside);
     assert_eq!(fast.excess(), 0.0);
 }
 
-/// Forces within the tolerance of one setting count as one: each plays as recorded, and others are scaled.
+/// Forces within the tolerance of one setting count as one: each plays as recorded, and others are
+/// scaled.
 #[test]
 fn forces_within_tolerance_count_as_one() {
     let condition = |speed: f64, force: f64| Condition {
@@ -292,11 +230,7 @@ fn forces_within_tolerance_count_as_one() {
         repeatability_rms_db: None,
         segments: None,
     };
-    let conditions = [
-        condition(40.0, 0.4069),
-        condition(80.0, 0.4061),
-        condition(160.0, 0.4014),
-    ];
+    let conditions = [condition(40.0, 0.4069), condition(80.0, 0.4061), condition(160.0, 0.4014)];
     let at = [0, 1, 2].map(|condition| AtCondition {
         condition,
         level_rms: 1.0,
@@ -321,30 +255,25 @@ fn forces_within_tolerance_count_as_one() {
     assert_eq!(level(80.0, 12.0), 4.0);
 }
 
-/// A reading that no finger has is ignored for a tenth of a second, in voices and in scenes; after that there is silence.
+/// A reading that no finger has is ignored for a tenth of a second, in voices and in scenes; after
+/// that there is silence.
 #[test]
 fn a_failed_reading_is_held_and_then_silent() {
     let failed = (80.0, 12_050.0);
     let mut held = voice("bands", Some(RECORDED), Effects::default());
     let mut plain = voice("bands", Some(RECORDED), Effects::default());
-    held.set_motion(htex_play::Motion::new(failed.0, failed.1))
-        .unwrap();
+    held.set_motion(htex_play::Motion::new(failed.0, failed.1)).unwrap();
     let hold = (htex_play::exploration::HOLD_S * RATE_HZ) as usize;
     assert_eq!(samples(&mut held, hold), samples(&mut plain, hold));
     samples(&mut held, 400);
     assert!(samples(&mut held, 1_000).iter().all(|x| *x == 0.0));
-    held.set_motion(htex_play::Motion::new(RECORDED.0, RECORDED.1))
-        .unwrap();
+    held.set_motion(htex_play::Motion::new(RECORDED.0, RECORDED.1)).unwrap();
     assert!(samples(&mut held, 1_000).iter().any(|x| *x != 0.0));
 
     let scene = scene(single(), Motion::Live, 5.0);
     let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
     let mut play = |(speed_mm_s, force_n): (f64, f64), frames: usize| {
-        let finger = Finger {
-            speed_mm_s,
-            force_n,
-            at_mm: None,
-        };
+        let finger = Finger { speed_mm_s, force_n, at_mm: None };
         renderer.set_motion(finger).unwrap();
         let mut out = vec![0.0f32; frames];
         renderer.render(&mut out);
@@ -372,11 +301,7 @@ fn with_bad(device: &Capabilities, bad: Option<(f64, f64, Option<[f64; 2]>)>) ->
             None if i == 150 => {}
             None => renderer.set_motion(good).unwrap(),
             Some((speed_mm_s, force_n, at_mm)) => {
-                let bad = Finger {
-                    speed_mm_s,
-                    force_n,
-                    at_mm,
-                };
+                let bad = Finger { speed_mm_s, force_n, at_mm };
                 let _ = renderer.set_motion(bad);
             }
         }
@@ -385,7 +310,8 @@ fn with_bad(device: &Capabilities, bad: Option<(f64, f64, Option<[f64; 2]>)>) ->
     out
 }
 
-/// One bad reading of force, speed or place changes nothing that is felt, on any device: it is as if it had not come.
+/// One bad reading of force, speed or place changes nothing that is felt, on any device: it is as
+/// if it had not come.
 #[test]
 fn one_bad_reading_changes_no_sample() {
     let place = Some([30.0, 0.0]);
@@ -408,27 +334,25 @@ fn one_bad_reading_changes_no_sample() {
     }
 }
 
-/// A voice takes a number that no motion has for a failed reading, too: it is refused, held, and then silent.
+/// A voice takes a number that no motion has for a failed reading, too: it is refused, held, and
+/// then silent.
 #[test]
 fn a_reading_that_is_no_number_is_held_and_then_silent() {
     let hold = (htex_play::exploration::HOLD_S * RATE_HZ) as usize;
-    for (speed_mm_s, force_n) in [
-        (f64::NAN, 0.4),
-        (80.0, f64::NAN),
-        (-80.0, 0.4),
-        (80.0, f64::INFINITY),
-    ] {
+    for (speed_mm_s, force_n) in
+        [(f64::NAN, 0.4), (80.0, f64::NAN), (-80.0, 0.4), (80.0, f64::INFINITY)]
+    {
         let mut held = voice("bands", Some(RECORDED), Effects::default());
         let mut plain = voice("bands", Some(RECORDED), Effects::default());
-        held.set_motion(htex_play::Motion::new(speed_mm_s, force_n))
-            .unwrap_err();
+        held.set_motion(htex_play::Motion::new(speed_mm_s, force_n)).unwrap_err();
         assert_eq!(samples(&mut held, hold), samples(&mut plain, hold));
         samples(&mut held, 400);
         assert!(samples(&mut held, 1_000).iter().all(|x| *x == 0.0));
     }
 }
 
-/// A force of 20 N on a texture of 0.4 N would be 34 dB stronger by its law; it is four times as strong, or what is asked for.
+/// A force of 20 N on a texture of 0.4 N would be 34 dB stronger by its law; it is four times as
+/// strong, or what is asked for.
 #[test]
 fn no_voice_is_louder_than_its_ceiling() {
     let strong = |ceiling: f64| {
@@ -438,10 +362,8 @@ fn no_voice_is_louder_than_its_ceiling() {
             .with_ceiling(ceiling);
         rms_db(&samples(&mut single().voice(&options).unwrap(), 80_000))
     };
-    let recorded = rms_db(&samples(
-        &mut voice("bands", Some(RECORDED), Effects::default()),
-        80_000,
-    ));
+    let recorded =
+        rms_db(&samples(&mut voice("bands", Some(RECORDED), Effects::default()), 80_000));
     for (ceiling, rise_db) in [(4.0, 12.04), (10.0, 20.0), (1_000.0, 33.98)] {
         let rise = strong(ceiling) - recorded;
         assert!((rise - rise_db).abs() < 0.1, "{ceiling}: {rise} dB");

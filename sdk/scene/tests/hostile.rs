@@ -15,10 +15,7 @@ fn check(bytes: &[u8]) {
     let scene = read_scene(bytes, &Limits::default(), &mut findings);
     let has_errors = findings.has_errors();
     let list = findings.into_list();
-    assert!(
-        scene.is_some() || has_errors,
-        "no scene and no error finding: {list:?}"
-    );
+    assert!(scene.is_some() || has_errors, "no scene and no error finding: {list:?}");
     if let (Some(scene), false) = (scene, has_errors) {
         let text = serde_json::to_vec(&scene).unwrap();
         let again = read_scene(&text, &Limits::default(), &mut Findings::default());

@@ -1,5 +1,5 @@
-//! For each effect, two scenes that differ only in whether they need it: the stage is in one plan and not in
-//! the other.
+//! For each effect, two scenes that differ only in whether they need it: the stage is in one plan
+//! and not in the other.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -24,10 +24,7 @@ fn strokes(asset: &htex_play::Asset, swing: f64) -> LoadedScene {
 fn two(reach_mm: f64) -> LoadedScene {
     let mut scene = traced(single(), trace(0.5, move |t| reach_mm * t, |_| 0.4), 0.5);
     let at = |from: f64| Surface {
-        region: Some(Region {
-            x_mm: [from, from + 30.0],
-            y_mm: [-1.0, 1.0],
-        }),
+        region: Some(Region { x_mm: [from, from + 30.0], y_mm: [-1.0, 1.0] }),
         ..surface()
     };
     scene.scene.surfaces = vec![at(0.0), at(30.0)];
@@ -57,43 +54,33 @@ fn pair(effect: Effect) -> (Scene, Scene) {
         magnitude: vec![1.0, 0.2],
         phase_rad: vec![0.0; 2],
     };
-    let model_rate = Capabilities {
-        default_rate_hz: 2_000.0,
-        ..file()
-    };
+    let model_rate = Capabilities { default_rate_hz: 2_000.0, ..file() };
     let ar = with(&|s| s.scene.surfaces[0].representation = "ar".to_owned());
     match effect {
-        Effect::Interpolation => (
-            (scene(grid(), constant(90.0, 0.5), 0.5), file()),
-            (strokes(grid(), 0.2), file()),
-        ),
-        Effect::FrequencyScaling => (
-            (strokes(single(), 0.0), file()),
-            (strokes(single(), 0.2), file()),
-        ),
+        Effect::Interpolation => {
+            ((scene(grid(), constant(90.0, 0.5), 0.5), file()), (strokes(grid(), 0.2), file()))
+        }
+        Effect::FrequencyScaling => {
+            ((strokes(single(), 0.0), file()), (strokes(single(), 0.2), file()))
+        }
         Effect::LevelScaling => ((forces(0.0), file()), (forces(0.1), file())),
         Effect::Crossfade => ((two(50.0), file()), (two(80.0), file())),
-        Effect::Compensation => (
-            (plain(), display()),
-            (with(&|s| s.response = Some(response.clone())), display()),
-        ),
+        Effect::Compensation => {
+            ((plain(), display()), (with(&|s| s.response = Some(response.clone())), display()))
+        }
         // sBeta renders at the rate that is wanted, AR at one of its own.
         Effect::Resampling => {
             let sbeta = with(&|s| s.scene.surfaces[0].representation = "sbeta".to_owned());
             ((sbeta, model_rate), (ar, file()))
         }
         Effect::Direction => ((strokes(single(), 0.2), file()), (turning, file())),
-        Effect::Gain => (
-            (plain(), file()),
-            (with(&|s| s.scene.device.gain_db = Some(6.0)), file()),
-        ),
+        Effect::Gain => {
+            ((plain(), file()), (with(&|s| s.scene.device.gain_db = Some(6.0)), file()))
+        }
         Effect::SquareRoot => ((plain(), loudspeaker()), (plain(), display())),
         Effect::Contact => ((strokes(single(), 0.2), file()), (resting, file())),
         Effect::Carrier => {
-            let without = Capabilities {
-                carrier_hz: None,
-                ..display()
-            };
+            let without = Capabilities { carrier_hz: None, ..display() };
             ((plain(), without), (plain(), display()))
         }
         Effect::Limiter | Effect::Dither | Effect::Quantisation => {
@@ -109,21 +96,10 @@ fn each_effect_is_included_only_where_it_is_needed() {
         for ((scene, device), wanted) in [(&without, false), (&with, true)] {
             let plan = planned(scene, device);
             let stages: Vec<&str> = plan.stages.iter().map(|s| s.name).collect();
-            assert_eq!(
-                stages.contains(&effect.name()),
-                wanted,
-                "{effect:?}: {stages:?}"
-            );
+            assert_eq!(stages.contains(&effect.name()), wanted, "{effect:?}: {stages:?}");
             let out = plan.left_out.iter().find(|out| out.name == effect.name());
-            assert!(
-                out.is_some() != wanted || effect == Effect::Crossfade,
-                "{effect:?}"
-            );
-            assert!(
-                plan.stages
-                    .iter()
-                    .all(|s| !s.reason.is_empty() && s.rate_hz > 0.0)
-            );
+            assert!(out.is_some() != wanted || effect == Effect::Crossfade, "{effect:?}");
+            assert!(plan.stages.iter().all(|s| !s.reason.is_empty() && s.rate_hz > 0.0));
         }
     }
 }
@@ -148,11 +124,7 @@ fn a_constant_motion_to_a_file_takes_three_stages_with_reasons() {
 fn an_untouched_surface_is_left_out() {
     let plan = planned(&two(50.0), &file());
     assert_eq!(plan.representation.len(), 1);
-    let out = plan
-        .left_out
-        .iter()
-        .find(|out| out.name == "synthesis")
-        .unwrap();
+    let out = plan.left_out.iter().find(|out| out.name == "synthesis").unwrap();
     assert_eq!(out.surface, Some(1));
 }
 
@@ -163,17 +135,11 @@ fn only_required_effects_cannot_be_switched_off() {
         let (_, (mut scene, device)) = pair(effect);
         scene.scene.effects = [(effect, Switch::Off)].into();
         let result = htex_scene::plan(&scene, &device, &costs);
-        let needed = matches!(
-            effect,
-            Effect::Resampling | Effect::SquareRoot | Effect::Carrier
-        );
+        let needed = matches!(effect, Effect::Resampling | Effect::SquareRoot | Effect::Carrier);
         match result {
             Ok(plan) => {
                 assert!(!needed, "{effect:?}");
-                assert!(
-                    plan.stages.iter().all(|s| s.name != effect.name()),
-                    "{effect:?}"
-                );
+                assert!(plan.stages.iter().all(|s| s.name != effect.name()), "{effect:?}");
             }
             Err(error) => assert!(needed, "{effect:?}: {error}"),
         }

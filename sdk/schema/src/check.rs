@@ -1,4 +1,5 @@
-//! Validation of documents against schemas. Nothing is downloaded: a `$ref` must refer to the schema itself.
+//! Validation of documents against schemas. Nothing is downloaded: a `$ref` must refer to the
+//! schema itself.
 
 use std::error::Error;
 
@@ -41,10 +42,8 @@ struct Nothing;
 
 impl Retrieve for Nothing {
     fn retrieve(&self, _uri: &Uri<String>) -> Result<Value, Box<dyn Error + Send + Sync>> {
-        Err(
-            "nothing is fetched; copy the target of the reference into the schema's own $defs"
-                .into(),
-        )
+        Err("nothing is fetched; copy the target of the reference into the schema's own $defs"
+            .into())
     }
 }
 
@@ -58,7 +57,8 @@ impl Schema {
         validator.map(Self).map_err(|e| SchemaError(e.to_string()))
     }
 
-    /// Returns the violations of a document, in the order of the schema; at most the first thousand.
+    /// Returns the violations of a document, in the order of the schema; at most the first
+    /// thousand.
     pub fn violations(&self, document: &Value) -> Vec<Violation> {
         let errors = self.0.iter_errors(document);
         errors

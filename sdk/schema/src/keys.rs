@@ -49,8 +49,8 @@ pub fn check_keys<T: JsonSchema>(document: &Value) -> Result<(), String> {
     }
 }
 
-/// Returns the keys of a document that its schema refuses (`additionalProperties: false`). Of alternatives
-/// those of the value's type count.
+/// Returns the keys of a document that its schema refuses (`additionalProperties: false`). Of
+/// alternatives those of the value's type count.
 ///
 /// ```
 /// #[derive(schemars::JsonSchema)]
@@ -63,11 +63,7 @@ pub fn check_keys<T: JsonSchema>(document: &Value) -> Result<(), String> {
 /// assert_eq!(unknown[0].to_string(), "there is no key `licence`; did you mean `license`?");
 /// ```
 pub fn unknown_keys(schema: &Value, document: &Value) -> Vec<UnknownKey> {
-    let mut walk = Walk {
-        root: schema,
-        path: Vec::new(),
-        unknown: Vec::new(),
-    };
+    let mut walk = Walk { root: schema, path: Vec::new(), unknown: Vec::new() };
     walk.value(schema, document);
     walk.unknown
 }
@@ -130,9 +126,7 @@ impl<'a> Walk<'a> {
         if let Some(pointer) = reference.and_then(|to| to.strip_prefix('#')) {
             return self.of_type(self.root.pointer(pointer)?, value);
         }
-        let alternatives = ["anyOf", "oneOf"]
-            .iter()
-            .find_map(|key| schema.get(*key)?.as_array());
+        let alternatives = ["anyOf", "oneOf"].iter().find_map(|key| schema.get(*key)?.as_array());
         match alternatives {
             Some(all) => all.iter().find_map(|one| self.of_type(one, value)),
             None => is_of_type(schema, value).then_some(schema),
@@ -147,8 +141,5 @@ fn is_of_type(schema: &Value, value: &Value) -> bool {
         _ => return true,
     };
     let of = &schema["type"];
-    of == name
-        || of
-            .as_array()
-            .is_some_and(|all| all.iter().any(|one| one == name))
+    of == name || of.as_array().is_some_and(|all| all.iter().any(|one| one == name))
 }

@@ -1,4 +1,5 @@
-//! JSON Schemas (draft 2020-12) of htex's documents: generated from Rust types, and used for validation.
+//! JSON Schemas (draft 2020-12) of htex's documents: generated from Rust types, and used for
+//! validation.
 //!
 //! ```
 //! /// A cloth.
@@ -35,7 +36,8 @@ use serde_json::{Value, json};
 /// Prefix of the schemas' ids; nothing is downloaded from there.
 const BASE: &str = "https://htex.org/schemas/";
 
-/// The characters of Unicode's property `White_Space`, for the brackets of a pattern: readers of schemas differ in what `\s` is.
+/// The characters of Unicode's property `White_Space`, for the brackets of a pattern: readers of
+/// schemas differ in what `\s` is.
 #[macro_export]
 macro_rules! white_space {
     () => {
@@ -82,7 +84,8 @@ fn without_examples(schema: &mut Made) {
 /// Largest integer up to which every integer is exact in binary64; documents have none beyond.
 const EXACT: i64 = 1 << 53;
 
-/// Replaces formats such as `double` and `uint64`, which the standard does not have: those of integers by their ranges.
+/// Replaces formats such as `double` and `uint64`, which the standard does not have: those of
+/// integers by their ranges.
 fn without_formats(schema: &mut Made) {
     let format = schema.remove("format");
     let range = match format.as_ref().and_then(Value::as_str) {

@@ -34,13 +34,14 @@ pub trait Curve: Sized + Send + 'static {
     /// RMS of the curve on the band's grid, above 0.
     fn level(&self) -> f64;
 
-    /// Prepares [`Self::fill`] for these frequencies, hertz. Tables over them may be shared by `key`.
+    /// Prepares [`Self::fill`] for these frequencies, hertz. Tables over them may be shared by
+    /// `key`.
     fn prepare(&mut self, _frequency_hz: &[f64], _key: ComponentsKey) {}
 
-    /// Writes the curve at the prepared frequencies, in any scale. A voice calls it at most once in 10 ms,
-    /// not after every [`Self::set`], so slow computations belong here rather than in `set`. If the
-    /// parameters describe no spectrum, the values are all zero or not finite. `[render thread, no
-    /// allocation]`
+    /// Writes the curve at the prepared frequencies, in any scale. A voice calls it at most once in
+    /// 10 ms, not after every [`Self::set`], so slow computations belong here rather than in `set`.
+    /// If the parameters describe no spectrum, the values are all zero or not finite.
+    /// `[render thread, no allocation]`
     fn fill(&mut self, frequency_hz: &[f64], magnitude: &mut [f64]) {
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
             *m = self.at(f);
@@ -61,17 +62,13 @@ pub fn magnitude<C: Curve>(
     let curve = C::new(parameters, band)?;
     let level = curve.level();
     for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-        *m = if band.contains(f) {
-            curve.at(f) / level
-        } else {
-            0.0
-        };
+        *m = if band.contains(f) { curve.at(f) / level } else { 0.0 };
     }
     Ok(())
 }
 
-/// Rate in hertz at which a shaped voice renders: an integer fraction of `wanted_hz`, as low as the band
-/// allows.
+/// Rate in hertz at which a shaped voice renders: an integer fraction of `wanted_hz`, as low as the
+/// band allows.
 pub fn voice_rate_hz(band: Band, wanted_hz: f64) -> f64 {
     economical_rate_hz(wanted_hz, band)
 }

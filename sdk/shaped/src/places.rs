@@ -7,8 +7,8 @@ use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::shaped_noise::ComponentsKey;
 use htex_dsp::shared::Shared;
 
-/// Positions of a voice's frequencies between the bins of the band's grid. Shared by voices of the same rate
-/// and band.
+/// Positions of a voice's frequencies between the bins of the band's grid. Shared by voices of the
+/// same rate and band.
 pub struct Places(Vec<BinPosition>);
 
 /// A position between two neighbouring bins.
@@ -29,10 +29,7 @@ impl Places {
         let last = band.bins().saturating_sub(1) as f64;
         let place = |hz: &f64| {
             let place = (hz / GRID_HZ - first).clamp(0.0, last);
-            BinPosition {
-                below: place as u32,
-                part: place - f64::from(place as u32),
-            }
+            BinPosition { below: place as u32, part: place - f64::from(place as u32) }
         };
         Self(frequency_hz.iter().map(place).collect())
     }

@@ -18,10 +18,11 @@ const TURN_MM_S: f64 = 5.0;
 const STRIBECK: (f64, f64) = (0.15, 15.0);
 /// Low-pass of the skin: frequency in Hz and quality factor, second order.
 pub(super) const SKIN: (f64, f64) = (900.0, 0.6);
-/// Part of the texture that acts across the sweep, and the offset along the sweep at which it is read, mm.
+/// Part of the texture that acts across the sweep, and the offset along the sweep at which it is
+/// read, mm.
 pub(super) const ACROSS: (f64, f64) = (0.25, 7.3);
-/// Lateral mode of the rig: frequency in Hz, damping ratio, part of the force that passes through it.
-/// The gain is about 5 dB at the peak and 1 far below.
+/// Lateral mode of the rig: frequency in Hz, damping ratio, part of the force that passes through
+/// it. The gain is about 5 dB at the peak and 1 far below.
 const MODE: (f64, f64, f64) = (620.0, 0.08, 0.25);
 /// Quality factors of the anti-aliasing filter: Butterworth, fourth order.
 const ANTI_ALIAS: [f64; 2] = [0.541_196_1, 1.306_563];
@@ -49,15 +50,16 @@ pub(super) struct Contact {
 
 /// Where the texture is read.
 pub(super) enum Material {
-    /// One piece, at the finger's position; and the path, mm, along which it is read where frequencies do not follow the speed.
+    /// One piece, at the finger's position; and the path, mm, along which it is read where
+    /// frequencies do not follow the speed.
     Piece(Relief, f64),
     /// Without end, along the path: one relief for each lateral axis.
     Endless(Box<[Track; 2]>),
 }
 
 impl Material {
-    /// Returns the texture across and along the sweep at a finger that moves on by a distance, mm; `as_it_lies` if that is the finger's
-    /// own.
+    /// Returns the texture across and along the sweep at a finger that moves on by a distance, mm;
+    /// `as_it_lies` if that is the finger's own.
     fn read(&mut self, finger: &Finger, distance: f64, as_it_lies: bool) -> [f64; 2] {
         match self {
             Self::Piece(relief, path) => {
@@ -76,7 +78,8 @@ impl Material {
     }
 }
 
-/// Returns the place on a piece of material after a path that turns at its ends, mm; 0 is the middle.
+/// Returns the place on a piece of material after a path that turns at its ends, mm; 0 is the
+/// middle.
 fn to_and_fro(path_mm: f64) -> f64 {
     let length = 2.0 * HALF_READ_MM;
     let along = path_mm % (2.0 * length);
@@ -104,11 +107,7 @@ impl Contact {
     pub(super) fn tick(&mut self, finger: &Finger, level: f64) -> Force {
         let speed = libm::hypot(finger.along_mm_s, finger.across_mm_s);
         let sliding = libm::tanh(finger.along_mm_s / TURN_MM_S);
-        let slope = if speed > 0.0 {
-            finger.across_mm_s / speed
-        } else {
-            0.0
-        };
+        let slope = if speed > 0.0 { finger.across_mm_s / speed } else { 0.0 };
         let slowness = speed / STRIBECK.1;
         let friction = self.friction * (1.0 + STRIBECK.0 * libm::exp(-slowness * slowness));
         let distance = self.departures.pace_mm_s(speed) * self.step_s;
@@ -136,14 +135,13 @@ pub(super) struct Rig {
 }
 
 impl Rig {
-    /// Creates the rig. `inner_hz` is the rate of the physics, `rate_hz` the recording's, not above it.
+    /// Creates the rig. `inner_hz` is the rate of the physics, `rate_hz` the recording's, not above
+    /// it.
     pub(super) fn new(inner_hz: f64, rate_hz: f64) -> Self {
         let (hz, damping, share) = MODE;
         let anti_alias: &[f64] = if inner_hz > rate_hz { &ANTI_ALIAS } else { &[] };
-        let anti_alias: Vec<Biquad> = anti_alias
-            .iter()
-            .map(|q| low_pass(*q, 0.4 * rate_hz, inner_hz))
-            .collect();
+        let anti_alias: Vec<Biquad> =
+            anti_alias.iter().map(|q| low_pass(*q, 0.4 * rate_hz, inner_hz)).collect();
         let mut lateral = vec![mode(share, damping, hz, inner_hz)];
         lateral.extend(&anti_alias);
         Self {
@@ -160,21 +158,15 @@ impl Rig {
     }
 
     pub(super) fn tick(&mut self, force: Force) -> Force {
-        Force {
-            x: self.x.tick(force.x),
-            y: self.y.tick(force.y),
-            z: self.z.tick(force.z),
-        }
+        Force { x: self.x.tick(force.x), y: self.y.tick(force.y), z: self.z.tick(force.z) }
     }
 
-    /// Returns the rig's response to a lateral force at strictly increasing frequencies in hertz, for the rate
-    /// it was created with.
+    /// Returns the rig's response to a lateral force at strictly increasing frequencies in hertz,
+    /// for the rate it was created with.
     pub(super) fn response(&self, frequency_hz: Vec<f64>, inner_hz: f64) -> SetupResponse {
         let at = |&hz: &f64| -> Complex<f64> {
             let sections = self.lateral.iter();
-            sections
-                .map(|section| section.response(hz, inner_hz))
-                .product()
+            sections.map(|section| section.response(hz, inner_hz)).product()
         };
         let values: Vec<Complex<f64>> = frequency_hz.iter().map(at).collect();
         SetupResponse {
@@ -185,7 +177,8 @@ impl Rig {
     }
 }
 
-/// Returns the one-sided density of the noise and the quantisation of both lateral axes, newtons squared per hertz.
+/// Returns the one-sided density of the noise and the quantisation of both lateral axes, newtons
+/// squared per hertz.
 pub(super) fn noise_density(rate_hz: f64) -> f64 {
     let noise = NOISE_N * NOISE_N / 20_000.0;
     let quantisation = STEP_N * STEP_N / 12.0 / rate_hz;
@@ -197,9 +190,5 @@ pub(super) fn sense(force: Force, rate_hz: f64, random: &mut Normal) -> Force {
     let noise = NOISE_N * libm::sqrt(rate_hz / 20_000.0);
     let mut read =
         |force: f64| STEP_N * libm::round((force + noise * random.next_normal()) / STEP_N);
-    Force {
-        x: read(force.x),
-        y: read(force.y),
-        z: read(force.z),
-    }
+    Force { x: read(force.x), y: read(force.y), z: read(force.z) }
 }

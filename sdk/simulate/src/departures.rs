@@ -1,9 +1,10 @@
 //! Hands and surfaces that do not obey the law of a rigid relief.
 //!
-//! A rigid relief that is read at the finger's position has frequencies in proportion to the speed, and friction has a level in
-//! proportion to the normal force. Recorded textures depart from both: over three speeds of four materials the level rose with
-//! the speed to the power of 0.69 to 0.82, exponents of the force lay between -0.07 and 2.6, and accelerations of tools keep
-//! their frequencies. A method that is tried on the relief alone is tried on its own assumption.
+//! A rigid relief that is read at the finger's position has frequencies in proportion to the speed,
+//! and friction has a level in proportion to the normal force. Recorded textures depart from both:
+//! over three speeds of four materials the level rose with the speed to the power of 0.69 to 0.82,
+//! exponents of the force lay between -0.07 and 2.6, and accelerations of tools keep their
+//! frequencies. A method that is tried on the relief alone is tried on its own assumption.
 
 use htex_dsp::normal::Normal;
 
@@ -19,7 +20,8 @@ const SLOWEST_MM_S: f64 = 1.0;
 const LIFTED_S: [f64; 2] = [0.05, 0.25];
 const TOUCHDOWN_S: f64 = 0.01;
 
-/// What differs from a rigid relief under a steady hand; by default nothing. Exponents are relative to 80 mm/s and 0.4 N.
+/// What differs from a rigid relief under a steady hand; by default nothing. Exponents are relative
+/// to 80 mm/s and 0.4 N.
 ///
 /// ```
 /// use htex_simulate::{Departures, SimulationOptions, Surface, simulate};
@@ -60,37 +62,25 @@ impl Departures {
     /// Sets the exponent of frequencies over the speed.
     #[must_use]
     pub const fn with_frequency_speed(self, frequency_speed: f64) -> Self {
-        Self {
-            frequency_speed,
-            ..self
-        }
+        Self { frequency_speed, ..self }
     }
 
     /// Sets the exponent of the level over the speed.
     #[must_use]
     pub const fn with_level_speed(self, level_speed: f64) -> Self {
-        Self {
-            level_speed,
-            ..self
-        }
+        Self { level_speed, ..self }
     }
 
     /// Sets the exponent of the level over the normal force.
     #[must_use]
     pub const fn with_level_force(self, level_force: f64) -> Self {
-        Self {
-            level_force,
-            ..self
-        }
+        Self { level_force, ..self }
     }
 
     /// Sets the drift of the level, decibels per minute.
     #[must_use]
     pub const fn with_drift_db_per_min(self, drift_db_per_min: f64) -> Self {
-        Self {
-            drift_db_per_min,
-            ..self
-        }
+        Self { drift_db_per_min, ..self }
     }
 
     /// Sets the part of the time without contact.
@@ -116,7 +106,8 @@ impl Departures {
         self.drift_db_per_min == 0.0 && self.lifted == 0.0
     }
 
-    /// Returns the factor of the texture, relative to a relief whose level is proportional to the force.
+    /// Returns the factor of the texture, relative to a relief whose level is proportional to the
+    /// force.
     pub(super) fn level(&self, speed_mm_s: f64, force_n: f64) -> f64 {
         power(speed_mm_s.max(SLOWEST_MM_S) / SPEED_MM_S, self.level_speed)
             * power(force_n / FORCE_N, self.level_force - 1.0)
@@ -127,39 +118,21 @@ impl Departures {
         if self.frequency_speed == 1.0 {
             return speed_mm_s;
         }
-        SPEED_MM_S
-            * power(
-                speed_mm_s.max(SLOWEST_MM_S) / SPEED_MM_S,
-                self.frequency_speed,
-            )
+        SPEED_MM_S * power(speed_mm_s.max(SLOWEST_MM_S) / SPEED_MM_S, self.frequency_speed)
     }
 
     /// Returns what a file says of them, after a comma; nothing where nothing departs.
     pub(super) fn told(&self) -> String {
         let usual = Self::default();
         let parts = [
-            (
-                "frequency ~ speed^",
-                self.frequency_speed,
-                usual.frequency_speed,
-                "",
-            ),
+            ("frequency ~ speed^", self.frequency_speed, usual.frequency_speed, ""),
             ("level ~ speed^", self.level_speed, usual.level_speed, ""),
             ("level ~ force^", self.level_force, usual.level_force, ""),
-            (
-                "drift ",
-                self.drift_db_per_min,
-                usual.drift_db_per_min,
-                " dB/min",
-            ),
+            ("drift ", self.drift_db_per_min, usual.drift_db_per_min, " dB/min"),
             ("lifted ", self.lifted, usual.lifted, " of the time"),
         ];
-        let departs = parts
-            .into_iter()
-            .filter(|(_, value, usual, _)| value != usual);
-        departs
-            .map(|(name, value, _, unit)| format!(", {name}{value}{unit}"))
-            .collect()
+        let departs = parts.into_iter().filter(|(_, value, usual, _)| value != usual);
+        departs.map(|(name, value, _, unit)| format!(", {name}{value}{unit}")).collect()
     }
 }
 

@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use htex_dsp::biquad::Biquad;
 
-/// Designs `b2 s^2 + b1 s + b0` over `s^2 + s/q + 1`, s in units of 2 pi `hz`, by the bilinear transform, exact at `hz`.
+/// Designs `b2 s^2 + b1 s + b0` over `s^2 + s/q + 1`, s in units of 2 pi `hz`, by the bilinear
+/// transform, exact at `hz`.
 fn analog(numerator: [f64; 3], q: f64, hz: f64, rate_hz: f64) -> Biquad {
     let c = 1.0 / libm::tan(PI * hz / rate_hz);
     let [b2, b1, b0] = numerator;
@@ -26,7 +27,8 @@ pub(super) fn band_pass(q: f64, hz: f64, rate_hz: f64) -> Biquad {
     analog([0.0, 1.0 / q, 0.0], q, hz, rate_hz)
 }
 
-/// Designs a filter of unit gain with a part of the signal passing a resonance: `1 - share + share * mode`.
+/// Designs a filter of unit gain with a part of the signal passing a resonance:
+/// `1 - share + share * mode`.
 pub(super) fn mode(share: f64, damping: f64, hz: f64, rate_hz: f64) -> Biquad {
     let (rest, q) = (1.0 - share, 0.5 / damping);
     analog([rest, rest / q, 1.0], q, hz, rate_hz)
@@ -41,18 +43,12 @@ pub(super) struct OnePole {
 
 impl OnePole {
     pub(super) fn new(hz: f64, rate_hz: f64) -> Self {
-        Self {
-            keep: libm::exp(-2.0 * PI * hz / rate_hz),
-            state: 0.0,
-        }
+        Self { keep: libm::exp(-2.0 * PI * hz / rate_hz), state: 0.0 }
     }
 
     /// Creates a low-pass whose output is already at a constant input.
     pub(super) fn settled(hz: f64, rate_hz: f64, state: f64) -> Self {
-        Self {
-            state,
-            ..Self::new(hz, rate_hz)
-        }
+        Self { state, ..Self::new(hz, rate_hz) }
     }
 
     /// Returns the squared gain at a frequency.

@@ -9,7 +9,8 @@ use super::hand::{Finger, Heading};
 
 /// Half the length of the sheet that the strokes stay on, mm: the long side of A4.
 const HALF_SHEET_MM: f64 = 148.0;
-/// Shortest and longest duration of a stroke, s; at high speed the end of the sheet ends it earlier.
+/// Shortest and longest duration of a stroke, s; at high speed the end of the sheet ends it
+/// earlier.
 const STROKE_S: [f64; 2] = [0.6, 1.6];
 /// Time to reach the speed, and to stop, s.
 const RAMP_S: f64 = 0.06;
@@ -17,7 +18,8 @@ const RAMP_S: f64 = 0.06;
 const WANDER: f64 = 0.1;
 /// Range of the frequencies of that change, Hz: far below the texture's.
 const WANDER_HZ: [f64; 2] = [0.1, 0.4];
-/// Cutoff of the change of direction, Hz: friction turns with it, and at 20 Hz that is to be weaker than any texture.
+/// Cutoff of the change of direction, Hz: friction turns with it, and at 20 Hz that is to be weaker
+/// than any texture.
 const HEADING_HZ: f64 = 0.3;
 /// Cutoff of the change of force between strokes, Hz.
 const FORCE_HZ: f64 = 8.0;
@@ -48,17 +50,16 @@ struct Stroke {
 }
 
 impl FreeHand {
-    /// Creates a hand whose speed (mm/s) and force (N) stay in these ranges, from the lowest to the highest value.
+    /// Creates a hand whose speed (mm/s) and force (N) stay in these ranges, from the lowest to the
+    /// highest value.
     pub(super) fn new(
         speed_mm_s: [f64; 2],
         force_n: [f64; 2],
         rate_hz: f64,
         mut random: Normal,
     ) -> Self {
-        let (speed, force) = (
-            Range::new(speed_mm_s, &mut random),
-            Range::new(force_n, &mut random),
-        );
+        let (speed, force) =
+            (Range::new(speed_mm_s, &mut random), Range::new(force_n, &mut random));
         let mut hand = Self {
             finger: Finger::at_rest(0.0, libm::exp(force.middle())),
             heading: Heading::new(HEADING_HZ, rate_hz),
@@ -83,15 +84,15 @@ impl FreeHand {
         self.time_s += self.step_s;
         let speed = libm::exp(self.stroke.log_speed + self.speed.wander(self.step_s));
         let along_mm_s = self.stroke.direction * speed * self.stroke.envelope(self.time_s);
-        self.heading
-            .steer(&mut self.finger, along_mm_s, self.step_s, &mut self.random);
+        self.heading.steer(&mut self.finger, along_mm_s, self.step_s, &mut self.random);
         let target = self.stroke.log_force + self.force.wander(self.step_s);
         let log_force = self.press.iter_mut().fold(target, |x, pole| pole.tick(x));
         self.finger.normal_n = libm::exp(log_force);
         self.finger
     }
 
-    /// Draws speed, force and duration of the next stroke, in the other direction unless the sheet ends there.
+    /// Draws speed, force and duration of the next stroke, in the other direction unless the sheet
+    /// ends there.
     fn begin_stroke(&mut self) {
         let random = &mut self.random;
         let log_speed = self.speed.draw(random);
@@ -104,12 +105,8 @@ impl FreeHand {
             direction = -direction;
         }
         self.time_s = 0.0;
-        self.stroke = Stroke {
-            duration_s: wanted_s.min(left_s(direction)),
-            direction,
-            log_speed,
-            log_force,
-        };
+        self.stroke =
+            Stroke { duration_s: wanted_s.min(left_s(direction)), direction, log_speed, log_force };
     }
 }
 
@@ -139,12 +136,7 @@ impl Range {
             let hz = WANDER_HZ[0] + (WANDER_HZ[1] - WANDER_HZ[0]) * random.next_unit();
             [2.0 * PI * random.next_unit(), 2.0 * PI * hz]
         };
-        Self {
-            low,
-            high,
-            wander: WANDER.min(0.25 * (high - low)),
-            waves: [0; 3].map(wave),
-        }
+        Self { low, high, wander: WANDER.min(0.25 * (high - low)), waves: [0; 3].map(wave) }
     }
 
     fn middle(&self) -> f64 {

@@ -17,7 +17,8 @@ const RAMP_S: f64 = 0.1;
 const REST_S: [f64; 2] = [0.06, 0.11];
 /// Scatter of the speed between sweeps and within a sweep, relative.
 const SPEED_SCATTER: [f64; 2] = [0.015, 0.02];
-/// Slow drift of the force, and physiological tremor (8–12 Hz), relative; their sum is kept within 10 %.
+/// Slow drift of the force, and physiological tremor (8–12 Hz), relative; their sum is kept within
+/// 10 %.
 const FORCE_SCATTER: [f64; 2] = [0.03, 0.012];
 const FORCE_BOUND: f64 = 0.1;
 const TREMOR_HZ: f64 = 10.0;
@@ -47,14 +48,7 @@ pub(super) struct Finger {
 impl Finger {
     /// Makes a finger at rest, in the middle across the sweep.
     pub(super) fn at_rest(along_mm: f64, normal_n: f64) -> Self {
-        Self {
-            along_mm,
-            across_mm: 0.0,
-            along_mm_s: 0.0,
-            across_mm_s: 0.0,
-            normal_n,
-            contact: 1.0,
-        }
+        Self { along_mm, across_mm: 0.0, along_mm_s: 0.0, across_mm_s: 0.0, normal_n, contact: 1.0 }
     }
 }
 
@@ -163,8 +157,7 @@ impl Hand {
     fn steer(&mut self) {
         let uneven = 1.0 + SPEED_SCATTER[1] * self.unevenness.tick(&mut self.random);
         let along_mm_s = self.sweep.speed_mm_s * self.sweep.envelope(self.time_s) * uneven;
-        self.heading
-            .steer(&mut self.finger, along_mm_s, self.step_s, &mut self.random);
+        self.heading.steer(&mut self.finger, along_mm_s, self.step_s, &mut self.random);
     }
 
     fn press(&mut self) {

@@ -1,12 +1,12 @@
 //! Simulated recordings of a finger that sweeps back and forth over one of five surfaces.
 //!
-//! They serve tests, examples and first steps without a rig. The order of the surfaces' levels and the
-//! frequencies of their energy are those that the paper's Results describe of its five; they are not
-//! measured, and every file states this.
+//! They serve tests, examples and first steps without a rig. The order of the surfaces' levels and
+//! the frequencies of their energy are those that the paper's Results describe of its five; they
+//! are not measured, and every file states this.
 //!
-//! The hand's speed and force vary. The friction coefficient varies along the surface
-//! as a fixed relief read at the finger's position, so the spectrum's frequencies scale with the speed and
-//! its level with the force, unless [`Departures`] say otherwise. Skin, rig and sensor follow.
+//! The hand's speed and force vary. The friction coefficient varies along the surface as a fixed
+//! relief read at the finger's position, so the spectrum's frequencies scale with the speed and its
+//! level with the force, unless [`Departures`] say otherwise. Skin, rig and sensor follow.
 //!
 //! ```
 //! use htex_simulate::{SimulationOptions, Surface, simulate};
@@ -95,11 +95,13 @@ pub enum Motion {
     Free(FreeMotion),
 }
 
-/// A free motion: strokes of 0.6 to 1.6 s in both directions, each with its own speed and force, which change slowly by up
-/// to 10 %. The logarithms of both are distributed evenly over their ranges.
+/// A free motion: strokes of 0.6 to 1.6 s in both directions, each with its own speed and force,
+/// which change slowly by up to 10 %. The logarithms of both are distributed evenly over their
+/// ranges.
 ///
-/// The finger is always on material that it has not touched before, and the strength of contact does not vary. The spectrum
-/// of a steady part is therefore a known function of speed and force: [`SimulationOptions::truth`].
+/// The finger is always on material that it has not touched before, and the strength of contact
+/// does not vary. The spectrum of a steady part is therefore a known function of speed and force:
+/// [`SimulationOptions::truth`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FreeMotion {
@@ -124,12 +126,10 @@ impl FreeMotion {
 }
 
 impl Default for FreeMotion {
-    /// The speeds and forces of a recording of a bare finger that strokes freely: 36 to 280 mm/s, 0.15 to 3.8 N.
+    /// The speeds and forces of a recording of a bare finger that strokes freely: 36 to 280 mm/s,
+    /// 0.15 to 3.8 N.
     fn default() -> Self {
-        Self {
-            speed_mm_s: [36.0, 280.0],
-            force_n: [0.15, 3.8],
-        }
+        Self { speed_mm_s: [36.0, 280.0], force_n: [0.15, 3.8] }
     }
 }
 
@@ -137,8 +137,8 @@ impl Default for FreeMotion {
 #[non_exhaustive]
 pub struct SimulationOptions {
     pub surface: Surface,
-    /// Seed: equal seeds and options give equal samples; another seed simulates another piece of the same material and
-    /// another motion of the hand.
+    /// Seed: equal seeds and options give equal samples; another seed simulates another piece of
+    /// the same material and another motion of the hand.
     pub seed: u64,
     /// Sample rate, 200 to 200 000 Hz.
     pub rate_hz: f64,
@@ -215,9 +215,9 @@ impl SimulationOptions {
         self
     }
 
-    /// Returns the simulated rig's response to a lateral force: a resonance at 620 Hz, and for rates below 20 kHz
-    /// an anti-aliasing filter, every 5 Hz from 0 to 1000 Hz or to half the rate. Dividing the
-    /// recording by it gives the force at the finger.
+    /// Returns the simulated rig's response to a lateral force: a resonance at 620 Hz, and for
+    /// rates below 20 kHz an anti-aliasing filter, every 5 Hz from 0 to 1000 Hz or to half the
+    /// rate. Dividing the recording by it gives the force at the finger.
     ///
     /// # Errors
     /// When an option is out of its range.
@@ -256,12 +256,7 @@ impl SimulationOptions {
             ("duration_s", self.duration_s, 0.1, 600.0),
             ("speed_mm_s", self.speed_mm_s, 1.0, 500.0),
             ("force_n", self.force_n, 0.01, 10.0),
-            (
-                "rate_hz x duration_s",
-                self.rate_hz * self.duration_s,
-                2.0,
-                MAX_SAMPLES,
-            ),
+            ("rate_hz x duration_s", self.rate_hz * self.duration_s, 2.0, MAX_SAMPLES),
         ];
         for (option, value, low, high) in ranges {
             check_range(option, value, low, high)?;
@@ -335,12 +330,7 @@ fn check_range(
     if (low..=high).contains(&value) {
         return Ok(());
     }
-    Err(SimulationError::Range {
-        option,
-        value,
-        low,
-        high,
-    })
+    Err(SimulationError::Range { option, value, low, high })
 }
 
 /// A simulated recording; all signals have the same length.
@@ -432,6 +422,7 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationErr
 
 /// Returns a stream of random numbers; streams of one seed with different labels are independent.
 fn stream(seed: u64, label: u64) -> Normal {
-    // The odd factor spreads small labels over all bits; the generator mixes further when it is seeded.
+    // The odd factor spreads small labels over all bits; the generator mixes further when it is
+    // seeded.
     Normal::new(seed ^ label.wrapping_mul(0x9E37_79B9_7F4A_7C15))
 }

@@ -7,14 +7,15 @@ use htex_dsp::normal::Normal;
 use super::filters::OnePole;
 use super::surface::{Grain, Line, Parameters};
 
-/// Points per millimetre: 1000 Hz at 80 mm/s is a period of 8 points; faster sweeps have longer periods.
+/// Points per millimetre: 1000 Hz at 80 mm/s is a period of 8 points; faster sweeps have longer
+/// periods.
 pub(super) const POINTS_PER_MM: f64 = 100.0;
 /// Length of the surface with a margin, mm, centred on 0.
 const LENGTH_MM: f64 = 120.0;
 /// Half the length that a finger of its own pace reads, mm.
 pub(super) const HALF_READ_MM: f64 = 45.0;
-/// Standard deviation of the Gaussian over which one ridge's contact averages, mm: -3 dB at 6.6 periods
-/// per millimetre (530 Hz at 80 mm/s).
+/// Standard deviation of the Gaussian over which one ridge's contact averages, mm: -3 dB at 6.6
+/// periods per millimetre (530 Hz at 80 mm/s).
 const CONTACT_MM: f64 = 0.02;
 /// Distance across the sweep over which the grain changes completely, mm.
 const TRACK_MM: f64 = 3.0;
@@ -27,7 +28,8 @@ pub(super) struct Relief {
 }
 
 impl Relief {
-    /// Creates a field whose standard deviation before smoothing by the contact is `parameters.relief`.
+    /// Creates a field whose standard deviation before smoothing by the contact is
+    /// `parameters.relief`.
     pub(super) fn new(parameters: &Parameters, random: &mut Normal) -> Self {
         let unit = parameters.unit();
         let mut field = |add: &mut dyn FnMut(&mut [f64], &mut Normal)| {
@@ -36,23 +38,18 @@ impl Relief {
             smooth(&values)
         };
         let mut grains = |values: &mut [f64], random: &mut Normal| {
-            parameters
-                .grains
-                .iter()
-                .for_each(|grain| add_grain(values, grain, unit, random));
+            parameters.grains.iter().for_each(|grain| add_grain(values, grain, unit, random));
         };
         Self {
             lines: field(&mut |values, random| {
-                parameters
-                    .lines
-                    .iter()
-                    .for_each(|line| add_line(values, line, unit, random));
+                parameters.lines.iter().for_each(|line| add_line(values, line, unit, random));
             }),
             grains: [field(&mut grains), field(&mut grains)],
         }
     }
 
-    /// Returns the change of the friction coefficient at `along_mm` (0 is the middle of the sweep) and `across_mm`.
+    /// Returns the change of the friction coefficient at `along_mm` (0 is the middle of the sweep)
+    /// and `across_mm`.
     pub(super) fn at(&self, along_mm: f64, across_mm: f64) -> f64 {
         let point = (along_mm + LENGTH_MM / 2.0) * POINTS_PER_MM;
         let turn = PI * across_mm / (2.0 * TRACK_MM);
@@ -85,10 +82,7 @@ fn add_grain(values: &mut [f64], grain: &Grain, unit: f64, random: &mut Normal) 
     }
     let power = noise.iter().map(|x| x * x).sum::<f64>() / noise.len() as f64;
     let scale = unit * grain.weight / libm::sqrt(power);
-    values
-        .iter_mut()
-        .zip(noise)
-        .for_each(|(value, x)| *value += scale * x);
+    values.iter_mut().zip(noise).for_each(|(value, x)| *value += scale * x);
 }
 
 /// Returns the contact's Gaussian, normalised to a sum of 1.
@@ -125,8 +119,8 @@ fn smooth(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(at).collect()
 }
 
-/// Returns the weights of Catmull–Rom's interpolation for a position from 0 to 1 between the second and the third of four
-/// values.
+/// Returns the weights of Catmull–Rom's interpolation for a position from 0 to 1 between the second
+/// and the third of four values.
 pub(super) fn cubic_weights(t: f64) -> [f64; 4] {
     let (t2, t3) = (t * t, t * t * t);
     [

@@ -21,13 +21,8 @@ pub enum Surface {
 }
 
 impl Surface {
-    pub const ALL: [Self; 5] = [
-        Self::Sandpaper,
-        Self::FineFabric,
-        Self::CoarseFabric,
-        Self::CorrugatedPaper,
-        Self::Vinyl,
-    ];
+    pub const ALL: [Self; 5] =
+        [Self::Sandpaper, Self::FineFabric, Self::CoarseFabric, Self::CorrugatedPaper, Self::Vinyl];
 
     /// Returns the surface's name in kebab case.
     #[must_use]
@@ -65,9 +60,7 @@ impl FromStr for Surface {
         Self::ALL
             .into_iter()
             .find(|surface| surface.name() == text)
-            .ok_or_else(|| SimulationError::Surface {
-                text: text.chars().take(40).collect(),
-            })
+            .ok_or_else(|| SimulationError::Surface { text: text.chars().take(40).collect() })
     }
 }
 
@@ -99,7 +92,8 @@ pub(super) struct Parameters {
     pub(super) label: u64,
     /// Coefficient of kinetic friction, without unit.
     pub(super) friction: f64,
-    /// Standard deviation of the friction coefficient along the surface, before smoothing by the finger.
+    /// Standard deviation of the friction coefficient along the surface, before smoothing by the
+    /// finger.
     pub(super) relief: f64,
     /// Periodic parts.
     pub(super) lines: &'static [Line],
@@ -122,16 +116,8 @@ const SANDPAPER: Parameters = Parameters {
     relief: 0.042,
     lines: &[],
     grains: &[
-        Grain {
-            from_per_mm: 2.0,
-            to_per_mm: 6.0,
-            weight: 1.0,
-        },
-        Grain {
-            from_per_mm: 0.4,
-            to_per_mm: 2.0,
-            weight: 0.4,
-        },
+        Grain { from_per_mm: 2.0, to_per_mm: 6.0, weight: 1.0 },
+        Grain { from_per_mm: 0.4, to_per_mm: 2.0, weight: 0.4 },
     ],
 };
 
@@ -140,22 +126,10 @@ const FINE_FABRIC: Parameters = Parameters {
     friction: 0.60,
     relief: 0.018,
     lines: &[
-        Line {
-            per_mm: 3.9,
-            weight: 0.65,
-            wander: 1.5,
-        },
-        Line {
-            per_mm: 1.95,
-            weight: 0.3,
-            wander: 1.2,
-        },
+        Line { per_mm: 3.9, weight: 0.65, wander: 1.5 },
+        Line { per_mm: 1.95, weight: 0.3, wander: 1.2 },
     ],
-    grains: &[Grain {
-        from_per_mm: 2.0,
-        to_per_mm: 7.0,
-        weight: 1.0,
-    }],
+    grains: &[Grain { from_per_mm: 2.0, to_per_mm: 7.0, weight: 1.0 }],
 };
 
 const COARSE_FABRIC: Parameters = Parameters {
@@ -163,27 +137,11 @@ const COARSE_FABRIC: Parameters = Parameters {
     friction: 0.55,
     relief: 0.016,
     lines: &[
-        Line {
-            per_mm: 1.05,
-            weight: 0.9,
-            wander: 0.8,
-        },
-        Line {
-            per_mm: 2.1,
-            weight: 0.4,
-            wander: 1.2,
-        },
-        Line {
-            per_mm: 0.52,
-            weight: 0.4,
-            wander: 0.5,
-        },
+        Line { per_mm: 1.05, weight: 0.9, wander: 0.8 },
+        Line { per_mm: 2.1, weight: 0.4, wander: 1.2 },
+        Line { per_mm: 0.52, weight: 0.4, wander: 0.5 },
     ],
-    grains: &[Grain {
-        from_per_mm: 0.3,
-        to_per_mm: 1.5,
-        weight: 0.7,
-    }],
+    grains: &[Grain { from_per_mm: 0.3, to_per_mm: 1.5, weight: 0.7 }],
 };
 
 const CORRUGATED_PAPER: Parameters = Parameters {
@@ -191,32 +149,12 @@ const CORRUGATED_PAPER: Parameters = Parameters {
     friction: 0.50,
     relief: 0.055,
     lines: &[
-        Line {
-            per_mm: 0.5,
-            weight: 1.0,
-            wander: 0.35,
-        },
-        Line {
-            per_mm: 1.0,
-            weight: 0.5,
-            wander: 0.5,
-        },
-        Line {
-            per_mm: 1.5,
-            weight: 0.25,
-            wander: 0.6,
-        },
-        Line {
-            per_mm: 2.0,
-            weight: 0.12,
-            wander: 0.7,
-        },
+        Line { per_mm: 0.5, weight: 1.0, wander: 0.35 },
+        Line { per_mm: 1.0, weight: 0.5, wander: 0.5 },
+        Line { per_mm: 1.5, weight: 0.25, wander: 0.6 },
+        Line { per_mm: 2.0, weight: 0.12, wander: 0.7 },
     ],
-    grains: &[Grain {
-        from_per_mm: 0.4,
-        to_per_mm: 2.0,
-        weight: 0.35,
-    }],
+    grains: &[Grain { from_per_mm: 0.4, to_per_mm: 2.0, weight: 0.35 }],
 };
 
 const VINYL: Parameters = Parameters {
@@ -225,15 +163,7 @@ const VINYL: Parameters = Parameters {
     relief: 0.014,
     lines: &[],
     grains: &[
-        Grain {
-            from_per_mm: 0.25,
-            to_per_mm: 0.9,
-            weight: 1.0,
-        },
-        Grain {
-            from_per_mm: 0.8,
-            to_per_mm: 3.0,
-            weight: 0.25,
-        },
+        Grain { from_per_mm: 0.25, to_per_mm: 0.9, weight: 1.0 },
+        Grain { from_per_mm: 0.8, to_per_mm: 3.0, weight: 0.25 },
     ],
 };

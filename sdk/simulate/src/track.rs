@@ -1,5 +1,5 @@
-//! A relief without end, read along the path of the finger: the material of one surface, of which no place is touched
-//! twice.
+//! A relief without end, read along the path of the finger: the material of one surface, of which
+//! no place is touched twice.
 
 use std::f64::consts::PI;
 
@@ -39,7 +39,8 @@ struct Noise {
 }
 
 impl Track {
-    /// Creates a relief whose standard deviation before smoothing by the contact is `parameters.relief`.
+    /// Creates a relief whose standard deviation before smoothing by the contact is
+    /// `parameters.relief`.
     pub(super) fn new(parameters: &Parameters, mut random: Normal) -> Self {
         let unit = parameters.unit();
         let wave = |line: &Line| Wave {

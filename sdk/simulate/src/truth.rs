@@ -1,8 +1,10 @@
-//! The true spectrum of a free motion over a surface, as a function of speed and force, in closed form.
+//! The true spectrum of a free motion over a surface, as a function of speed and force, in closed
+//! form.
 //!
-//! The relief is a stationary process along the path with a known spectral density over spatial frequency; a speed
-//! converts it to hertz, the force multiplies it, skin and rig filter it. Through the periodic Hann window of 0.2 s the
-//! expected power at a multiple of 5 Hz is the integral of that density times the window's power transfer.
+//! The relief is a stationary process along the path with a known spectral density over spatial
+//! frequency; a speed converts it to hertz, the force multiplies it, skin and rig filter it.
+//! Through the periodic Hann window of 0.2 s the expected power at a multiple of 5 Hz is the
+//! integral of that density times the window's power transfer.
 
 use std::f64::consts::PI;
 use std::io::{self, Write};
@@ -48,11 +50,12 @@ pub struct Truth {
 }
 
 impl SimulationOptions {
-    /// Returns the true spectrum of a steady part of a free motion as a function of speed and force.
+    /// Returns the true spectrum of a steady part of a free motion as a function of speed and
+    /// force.
     ///
     /// # Errors
-    /// When an option is out of its range, or the motion is not free: sweeps run over one fixed piece of the material; or the
-    /// level drifts or the finger lifts.
+    /// When an option is out of its range, or the motion is not free: sweeps run over one fixed
+    /// piece of the material; or the level drifts or the finger lifts.
     pub fn truth(&self) -> Result<Truth, SimulationError> {
         self.check()?;
         if !self.departures.is_steady() {
@@ -61,10 +64,7 @@ impl SimulationOptions {
         if !matches!(self.motion, Motion::Free(_)) {
             return Err(SimulationError::NoTruth);
         }
-        let band = Band {
-            high_hz: Band::TACTILE.high_hz.min(0.5 * self.rate_hz),
-            ..Band::TACTILE
-        };
+        let band = Band { high_hz: Band::TACTILE.high_hz.min(0.5 * self.rate_hz), ..Band::TACTILE };
         let cell_hz = GRID_HZ / CELLS as f64;
         let cells = (band.last_bin() + WINDOW_BINS + 1) * CELLS;
         let rate_hz = self.inner_hz();
@@ -92,8 +92,9 @@ impl Truth {
         self.band.grid_hz()
     }
 
-    /// Returns the true magnitudes at [`Self::frequency_hz`], newtons: the root of the expected power of a segment of
-    /// 0.2 s, both lateral axes together, with the rig's response and the sensor's noise.
+    /// Returns the true magnitudes at [`Self::frequency_hz`], newtons: the root of the expected
+    /// power of a segment of 0.2 s, both lateral axes together, with the rig's response and the
+    /// sensor's noise.
     ///
     /// # Errors
     /// When speed or force are out of the simulator's range.
@@ -128,9 +129,7 @@ impl Truth {
             });
             libm::sqrt(2.0 * taken.sum::<f64>())
         };
-        (self.band.first_bin()..=self.band.last_bin())
-            .map(at)
-            .collect()
+        (self.band.first_bin()..=self.band.last_bin()).map(at).collect()
     }
 
     /// Returns the power of the texture in each cell at a force of 1 N, in newtons squared.
@@ -154,8 +153,9 @@ impl Truth {
         self.filters.iter().enumerate().map(power).collect()
     }
 
-    /// Writes a JSON object with the true magnitudes: for speeds in steps of at most 2 % over the range of the motion,
-    /// those of the texture at 1 N; the sensor's noise; and the rule to combine them.
+    /// Writes a JSON object with the true magnitudes: for speeds in steps of at most 2 % over the
+    /// range of the motion, those of the texture at 1 N; the sensor's noise; and the rule to
+    /// combine them.
     ///
     /// # Errors
     /// Those of the writer.
@@ -209,8 +209,8 @@ struct TruthText {
     per_newton: Vec<Vec<f64>>,
 }
 
-/// Returns the power of the relief in a cell of spatial frequency, relative to the square of [`Parameters::unit`]; `noise` are
-/// the grains' [`Grain::noise_power`].
+/// Returns the power of the relief in a cell of spatial frequency, relative to the square of
+/// [`Parameters::unit`]; `noise` are the grains' [`Grain::noise_power`].
 fn relief_power(parameters: &Parameters, noise: &[f64], per_mm: f64, width: f64) -> f64 {
     let lines = parameters.lines.iter().map(|line| {
         // A random walk of the phase gives a Lorentzian; its part below 0 is reflected.
@@ -227,7 +227,8 @@ fn relief_power(parameters: &Parameters, noise: &[f64], per_mm: f64, width: f64)
     lines.chain(grains).sum()
 }
 
-/// Returns the gain of smoothing by the contact and of reading between points, at a spatial frequency.
+/// Returns the gain of smoothing by the contact and of reading between points, at a spatial
+/// frequency.
 fn reading(kernel: &[f64], per_mm: f64) -> f64 {
     let turn = 2.0 * PI * per_mm / POINTS_PER_MM;
     let middle = (kernel.len() / 2) as f64;
@@ -236,7 +237,8 @@ fn reading(kernel: &[f64], per_mm: f64) -> f64 {
     smoothing.sum::<f64>() * cubic_gain(turn)
 }
 
-/// Returns the gain of the cubic interpolation for `turn` radians per point: its kernel's transform, by Simpson's rule.
+/// Returns the gain of the cubic interpolation for `turn` radians per point: its kernel's
+/// transform, by Simpson's rule.
 fn cubic_gain(turn: f64) -> f64 {
     const STEPS: usize = 16;
     let at = |t: f64| {
@@ -255,7 +257,8 @@ fn cubic_gain(turn: f64) -> f64 {
     (0..=STEPS).map(simpson).sum::<f64>() / (3.0 * STEPS as f64)
 }
 
-/// Returns the power transfer of the periodic Hann window in the middles of the cells above its frequency.
+/// Returns the power transfer of the periodic Hann window in the middles of the cells above its
+/// frequency.
 fn window_powers() -> Vec<f64> {
     let power = |cell: usize| {
         let x = (cell as f64 + 0.5) / CELLS as f64;
@@ -266,7 +269,8 @@ fn window_powers() -> Vec<f64> {
 }
 
 impl Grain {
-    /// Returns the squared gain of the grain's filters at a spatial frequency, periods per millimetre.
+    /// Returns the squared gain of the grain's filters at a spatial frequency, periods per
+    /// millimetre.
     pub(super) fn gain(&self, per_mm: f64) -> f64 {
         let high =
             OnePole::new(self.from_per_mm, POINTS_PER_MM).high_pass_power(per_mm, POINTS_PER_MM);

@@ -18,8 +18,8 @@ pub(super) fn rounded(value: f64, decimals: u32) -> f64 {
 }
 
 impl Simulation {
-    /// Writes `t_s,fx_n,fy_n,fz_n,x_mm,y_mm` after a comment that states that this is simulated, with the
-    /// surface, the seed and the version.
+    /// Writes `t_s,fx_n,fy_n,fz_n,x_mm,y_mm` after a comment that states that this is simulated,
+    /// with the surface, the seed and the version.
     ///
     /// The forces read back bit for bit.
     ///

@@ -1,4 +1,5 @@
-//! The simulator is repeatable, its files are readable, and its hands and spectra have the properties of their surfaces.
+//! The simulator is repeatable, its files are readable, and its hands and spectra have the
+//! properties of their surfaces.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -32,11 +33,7 @@ fn hash(bytes: &[u8]) -> u64 {
 fn written_and_read_back_it_is_the_same_recording() {
     let simulation = paper(Surface::CoarseFabric);
     let bytes = csv(&simulation);
-    assert!(
-        (10_500_000..11_500_000).contains(&bytes.len()),
-        "{} bytes",
-        bytes.len()
-    );
+    assert!((10_500_000..11_500_000).contains(&bytes.len()), "{} bytes", bytes.len());
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("coarse.csv");
     std::fs::write(&path, bytes).unwrap();
@@ -50,16 +47,16 @@ fn written_and_read_back_it_is_the_same_recording() {
 #[test]
 fn same_options_give_the_same_bytes_everywhere() {
     let short = |seed| {
-        let options = SimulationOptions::new(Surface::Sandpaper)
-            .with_seed(seed)
-            .with_duration_s(0.5);
+        let options =
+            SimulationOptions::new(Surface::Sandpaper).with_seed(seed).with_duration_s(0.5);
         csv(&simulate(&options).unwrap())
     };
     assert_eq!(short(7), short(7));
     assert_ne!(short(7), short(8));
 }
 
-/// Hash of the rows of a short simulation, without the first line of the file, which has the version.
+/// Hash of the rows of a short simulation, without the first line of the file, which has the
+/// version.
 fn hash_of_rows(options: SimulationOptions) -> u64 {
     let bytes = csv(&simulate(&options.with_duration_s(0.5)).unwrap());
     let first_row = bytes.iter().position(|byte| *byte == b'\n').unwrap();
@@ -82,27 +79,17 @@ fn simulations_are_bit_identical_everywhere() {
         ]
     );
     // Faster and harder; slower and lighter; at a rate that needs the anti-aliasing filter.
-    let of_motions = [
-        (20_000.0, 240.0, 2.5),
-        (20_000.0, 3.0, 0.05),
-        (2_000.0, 80.0, 0.4),
-    ]
-    .map(|(rate_hz, speed_mm_s, force_n)| {
-        hash_of_rows(
-            seven(Surface::Sandpaper)
-                .with_rate_hz(rate_hz)
-                .with_speed_mm_s(speed_mm_s)
-                .with_force_n(force_n),
-        )
-    });
-    assert_eq!(
-        of_motions,
-        [
-            0x7582_9557_4748_7781,
-            0x59d5_ef30_9a60_fc85,
-            0x20ea_cb8b_6839_e74b
-        ]
+    let of_motions = [(20_000.0, 240.0, 2.5), (20_000.0, 3.0, 0.05), (2_000.0, 80.0, 0.4)].map(
+        |(rate_hz, speed_mm_s, force_n)| {
+            hash_of_rows(
+                seven(Surface::Sandpaper)
+                    .with_rate_hz(rate_hz)
+                    .with_speed_mm_s(speed_mm_s)
+                    .with_force_n(force_n),
+            )
+        },
     );
+    assert_eq!(of_motions, [0x7582_9557_4748_7781, 0x59d5_ef30_9a60_fc85, 0x20ea_cb8b_6839_e74b]);
 }
 
 /// The rig's response at a rate that needs the anti-aliasing filter.
@@ -124,26 +111,10 @@ fn the_hand_keeps_within_the_papers_tolerance() {
             .windows(2)
             .filter(|pair| pair[0] < 0.1 && pair[1] >= 0.1)
             .count()
-            + simulation
-                .fy_n
-                .windows(2)
-                .filter(|pair| pair[0] > -0.1 && pair[1] <= -0.1)
-                .count();
+            + simulation.fy_n.windows(2).filter(|pair| pair[0] > -0.1 && pair[1] <= -0.1).count();
         assert!((8..=9).contains(&turns), "{surface}: {turns} sweeps");
-        assert!(
-            simulation
-                .fz_n
-                .iter()
-                .all(|force| (force / 0.4 - 1.0).abs() < 0.1),
-            "{surface}"
-        );
-        assert!(
-            simulation
-                .y_mm
-                .iter()
-                .chain(&simulation.x_mm)
-                .all(|place| place.abs() < 50.0)
-        );
+        assert!(simulation.fz_n.iter().all(|force| (force / 0.4 - 1.0).abs() < 0.1), "{surface}");
+        assert!(simulation.y_mm.iter().chain(&simulation.x_mm).all(|place| place.abs() < 50.0));
         let speeds = simulation.to_recording("").unwrap().speed_mm_s.unwrap();
         let sliding: Vec<f64> = speeds.into_iter().filter(|speed| *speed > 60.0).collect();
         let mean = sliding.iter().sum::<f64>() / sliding.len() as f64;
@@ -241,13 +212,7 @@ fn options_out_of_range_are_refused_and_names_go_round() {
     for surface in Surface::ALL {
         assert_eq!(surface.to_string().parse(), Ok(surface));
     }
-    assert!(
-        "velvet"
-            .parse::<Surface>()
-            .unwrap_err()
-            .to_string()
-            .contains("fine-fabric")
-    );
+    assert!("velvet".parse::<Surface>().unwrap_err().to_string().contains("fine-fabric"));
 }
 
 #[test]
@@ -273,10 +238,8 @@ fn dividing_by_the_rigs_response_gives_the_force_at_the_finger() {
     let step_db = |s: &TextureSpectrum| {
         let level = |low: f64, high: f64| {
             let bins = s.frequency_hz.iter().zip(&s.magnitude);
-            let inside: Vec<f64> = bins
-                .filter(|(f, _)| (low..high).contains(*f))
-                .map(|(_, m)| m * m)
-                .collect();
+            let inside: Vec<f64> =
+                bins.filter(|(f, _)| (low..high).contains(*f)).map(|(_, m)| m * m).collect();
             10.0 * (inside.iter().sum::<f64>() / inside.len() as f64).log10()
         };
         level(590.0, 650.0) - level(680.0, 740.0)
@@ -292,15 +255,10 @@ fn free(surface: Surface) -> SimulationOptions {
 
 #[test]
 fn free_motion_fills_its_ranges_and_turns() {
-    let options = free(Surface::Vinyl)
-        .with_duration_s(30.0)
-        .with_rate_hz(1000.0);
+    let options = free(Surface::Vinyl).with_duration_s(30.0).with_rate_hz(1000.0);
     let simulation = simulate(&options).unwrap();
     assert_eq!(simulation, simulate(&options).unwrap());
-    assert_ne!(
-        simulation.y_mm,
-        simulate(&options.clone().with_seed(2)).unwrap().y_mm
-    );
+    assert_ne!(simulation.y_mm, simulate(&options.clone().with_seed(2)).unwrap().y_mm);
     // The anti-aliasing filter starts at 0.
     let mut forces = simulation.fz_n.iter().skip(20);
     assert!(forces.all(|force| (0.14..3.9).contains(force)));
@@ -312,10 +270,9 @@ fn free_motion_fills_its_ranges_and_turns() {
         inside as f64 / values.len() as f64
     };
     // Thirds of the ranges in the logarithm.
-    for (values, edges) in [
-        (&speeds, [36.0, 71.4, 141.4, 280.0]),
-        (&simulation.fz_n, [0.15, 0.441, 1.293, 3.8]),
-    ] {
+    for (values, edges) in
+        [(&speeds, [36.0, 71.4, 141.4, 280.0]), (&simulation.fz_n, [0.15, 0.441, 1.293, 3.8])]
+    {
         for pair in edges.windows(2) {
             let part = part(values, pair[0], pair[1]);
             assert!((0.15..0.55).contains(&part), "{part} in {pair:?}");
@@ -324,13 +281,12 @@ fn free_motion_fills_its_ranges_and_turns() {
     // Every 0.1 s: near a turn the position is constant to its four decimals.
     let places: Vec<f64> = simulation.y_mm.iter().step_by(100).copied().collect();
     let turns = places.windows(3);
-    let turns = turns
-        .filter(|y| (y[1] - y[0]) * (y[2] - y[1]) < 0.0)
-        .count();
+    let turns = turns.filter(|y| (y[1] - y[0]) * (y[2] - y[1]) < 0.0).count();
     assert!(turns > 15, "{turns} turns");
 }
 
-/// RMS of the force along the strokes above 20 Hz, newtons: of the difference to the mean of 50 ms around, at full speed.
+/// RMS of the force along the strokes above 20 Hz, newtons: of the difference to the mean of 50 ms
+/// around, at full speed.
 fn texture_n(simulation: &Simulation, from_s: f64, to_s: f64) -> f64 {
     let [from, to] = [from_s, to_s].map(|s| (s * simulation.rate_hz) as usize);
     let around = (0.05 * simulation.rate_hz) as usize;
@@ -345,12 +301,11 @@ fn texture_n(simulation: &Simulation, from_s: f64, to_s: f64) -> f64 {
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
-/// A texture fades by its drift, a finger lifts for its part of the time, and a file says what departs.
+/// A texture fades by its drift, a finger lifts for its part of the time, and a file says what
+/// departs.
 #[test]
 fn hands_drift_and_lift() {
-    let steady = FreeMotion::default()
-        .with_speed_mm_s([80.0; 2])
-        .with_force_n([0.4; 2]);
+    let steady = FreeMotion::default().with_speed_mm_s([80.0; 2]).with_force_n([0.4; 2]);
     let with = |departures: Departures| {
         let options = SimulationOptions::new(Surface::Sandpaper)
             .with_free_motion(steady)
@@ -367,10 +322,7 @@ fn hands_drift_and_lift() {
     // The middles of the first and the last 20 s.
     let [early, late] = [lost_db(0.0, 20.0), lost_db(40.0, 60.0)];
     println!("{early:.1} and {late:.1} dB");
-    assert!(
-        (early + 2.0).abs() < 0.7 && (late + 10.0).abs() < 0.7,
-        "{early} {late}"
-    );
+    assert!((early + 2.0).abs() < 0.7 && (late + 10.0).abs() < 0.7, "{early} {late}");
     assert_eq!(options.truth().unwrap_err(), SimulationError::Unsteady);
 
     let (lifting, _) = with(Departures::default().with_lifted(0.3));
@@ -378,10 +330,7 @@ fn hands_drift_and_lift() {
     let part = off as f64 / lifting.fz_n.len() as f64;
     assert!((0.22..0.36).contains(&part), "{part}");
     let first_line = String::from_utf8(csv(&lifting)[..200].to_vec()).unwrap();
-    assert!(
-        first_line.contains(", lifted 0.3 of the time, 4000 Hz"),
-        "{first_line}"
-    );
+    assert!(first_line.contains(", lifted 0.3 of the time, 4000 Hz"), "{first_line}");
 }
 
 /// Sweeps over one piece keep their frequencies where the surface says so.

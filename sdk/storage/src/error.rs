@@ -3,7 +3,8 @@
 use std::fmt::Display;
 use std::io;
 
-/// The error of reading or writing a file. No message holds a credential, a query of a URL, or the text of a server's response.
+/// The error of reading or writing a file. No message holds a credential, a query of a URL, or the
+/// text of a server's response.
 #[derive(Debug, thiserror::Error)]
 #[error("{place}: {problem}")]
 pub struct StorageError {
@@ -94,10 +95,7 @@ pub enum StorageProblem {
 impl StorageProblem {
     /// The error of this problem at a URI or a path.
     pub fn at(self, place: impl Display) -> StorageError {
-        StorageError {
-            place: place.to_string(),
-            problem: self,
-        }
+        StorageError { place: place.to_string(), problem: self }
     }
 }
 

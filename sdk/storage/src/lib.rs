@@ -1,13 +1,17 @@
-//! Files by URI: local paths, `https://`, `s3://`, `gs://` and `az://`, read and written in blocking calls.
+//! Files by URI: local paths, `https://`, `s3://`, `gs://` and `az://`, read and written in
+//! blocking calls.
 //!
-//! - A write is whole or not there: one request, or parts that become a file by the last request. Local files are renamed into
-//!   place.
-//! - Failures that pass (503, 429, a stalled or cut connection) are retried with growing pauses, within a total time
-//!   ([`Settings`]); a body that was cut is resumed at the same version of the file.
-//! - Credentials come from the variables of the environment alone, and no message holds one ([`StorageError`]).
+//! - A write is whole or not there: one request, or parts that become a file by the last request.
+//!   Local files are renamed into place.
+//! - Failures that pass (503, 429, a stalled or cut connection) are retried with growing pauses,
+//!   within a total time ([`Settings`]); a body that was cut is resumed at the same version of the
+//!   file.
+//! - Credentials come from the variables of the environment alone, and no message holds one
+//!   ([`StorageError`]).
 //! - [`Remote`] reads ranges of one version of a file, and counts its requests and bytes.
 //!
-//! Local files need nothing else; the rest is the feature `cloud`, by the crates `object_store`, `reqwest` and `rustls`.
+//! Local files need nothing else; the rest is the feature `cloud`, by the crates `object_store`,
+//! `reqwest` and `rustls`.
 //!
 //! ```
 //! use htex_storage::{Location, Storage};
@@ -84,16 +88,12 @@ enum Named {
 impl Storage {
     /// With these limits and variables.
     pub fn new(settings: Settings, variables: Variables) -> Self {
-        Self {
-            settings,
-            variables,
-            clients: Arc::default(),
-            named: Named::ByPerson,
-        }
+        Self { settings, variables, clients: Arc::default(), named: Named::ByPerson }
     }
 
-    /// For locations that a file names, such as a recipe, which is at `origin` if it is elsewhere: of web servers those of the world
-    /// alone, and the one of `origin`. Stores are those of the variables, which a person sets.
+    /// For locations that a file names, such as a recipe, which is at `origin` if it is elsewhere:
+    /// of web servers those of the world alone, and the one of `origin`. Stores are those of the
+    /// variables, which a person sets.
     #[must_use]
     pub fn for_names_in_a_file(mut self, origin: Option<&Location>) -> Self {
         self.named = Named::InFileAt(origin.cloned());
@@ -120,7 +120,8 @@ impl Storage {
         }
     }
 
-    /// Copies a whole file of at most `most_bytes` into an open local one, which is empty. After an error that holds a part.
+    /// Copies a whole file of at most `most_bytes` into an open local one, which is empty. After an
+    /// error that holds a part.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -132,10 +133,9 @@ impl Storage {
     ) -> Result<(), StorageError> {
         match location.place() {
             LocalOrRemote::Local(path) => local::copy(path, into, most_bytes),
-            LocalOrRemote::Remote(uri) => self
-                .store(location, uri)?
-                .download(into, most_bytes)
-                .map(drop),
+            LocalOrRemote::Remote(uri) => {
+                self.store(location, uri)?.download(into, most_bytes).map(drop)
+            }
         }
     }
 
@@ -164,8 +164,7 @@ impl Storage {
     /// As [`Self::stat`], and when there is no such file.
     pub fn size(&self, location: &Location) -> Result<u64, StorageError> {
         let stat = self.stat(location)?;
-        stat.map(|stat| stat.bytes)
-            .ok_or_else(|| StorageProblem::Missing.at(location))
+        stat.map(|stat| stat.bytes).ok_or_else(|| StorageProblem::Missing.at(location))
     }
 
     /// Reads a range of bytes. To read several of one file, [`Self::open`] it.
@@ -188,8 +187,8 @@ impl Storage {
         Ok(remote.into_head())
     }
 
-    /// Opens one version of a file for reads of ranges. The one request for the first `head_bytes` gives the size too; reads within
-    /// these bytes cost no further request.
+    /// Opens one version of a file for reads of ranges. The one request for the first `head_bytes`
+    /// gives the size too; reads within these bytes cost no further request.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -206,7 +205,8 @@ impl Storage {
         }
     }
 
-    /// Lists the files below a folder whose names relative to it match a pattern, by name: `*.csv`, `**/*.htex`. At most 1,000,000.
+    /// Lists the files below a folder whose names relative to it match a pattern, by name: `*.csv`,
+    /// `**/*.htex`. At most 1,000,000.
     ///
     /// # Errors
     /// As [`Self::read`]; when the pattern is malformed; of a web server.
@@ -219,8 +219,7 @@ impl Storage {
             }
             LocalOrRemote::Remote(uri) => {
                 let uri = uri.without_last_slash();
-                self.store(&folder.with_key(&uri.path), &uri)?
-                    .list(pattern)?
+                self.store(&folder.with_key(&uri.path), &uri)?.list(pattern)?
             }
         };
         found.sort_by_cached_key(|entry| entry.location.to_string());
@@ -238,7 +237,8 @@ impl Storage {
         }
     }
 
-    /// Writes a copy of a local file, as [`Self::write`] does: above 16 MiB in parts of 8 MiB, which are taken back after a failure.
+    /// Writes a copy of a local file, as [`Self::write`] does: above 16 MiB in parts of 8 MiB,
+    /// which are taken back after a failure.
     ///
     /// # Errors
     /// As [`Self::write`], and when the local file cannot be read.
@@ -260,7 +260,8 @@ impl Storage {
         }
     }
 
-    /// Checks whether a file there could be written, as far as that is known without a request: its scheme, and the settings of its store.
+    /// Checks whether a file there could be written, as far as that is known without a request: its
+    /// scheme, and the settings of its store.
     ///
     /// # Errors
     /// When it could not.

@@ -35,10 +35,7 @@ pub(crate) fn pattern(location: &Location, text: &str) -> Result<Pattern, Storag
 }
 
 pub(crate) fn matches(pattern: &Pattern, relative: &str) -> bool {
-    let options = MatchOptions {
-        require_literal_separator: true,
-        ..MatchOptions::new()
-    };
+    let options = MatchOptions { require_literal_separator: true, ..MatchOptions::new() };
     pattern.matches_with(relative, options)
 }
 
@@ -49,7 +46,8 @@ pub(crate) fn too_many(location: &Location) -> StorageError {
     StorageProblem::Uri { problem }.at(location)
 }
 
-/// The files below a local folder whose names relative to it match. Links to folders are not followed.
+/// The files below a local folder whose names relative to it match. Links to folders are not
+/// followed.
 pub(crate) fn of_folder(folder: &Path, pattern: &Pattern) -> Result<Vec<Entry>, StorageError> {
     let mut found = Vec::new();
     let mut open = vec![(folder.to_owned(), 0)];
@@ -68,9 +66,7 @@ pub(crate) fn of_folder(folder: &Path, pattern: &Pattern) -> Result<Vec<Entry>, 
                 continue;
             }
             let relative = path.strip_prefix(folder).unwrap_or(&path);
-            let relative = relative
-                .to_string_lossy()
-                .replace(std::path::MAIN_SEPARATOR, "/");
+            let relative = relative.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/");
             let Ok(is) = path.metadata() else { continue };
             if !is.is_file() || !matches(pattern, &relative) {
                 continue;

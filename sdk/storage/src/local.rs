@@ -10,9 +10,7 @@ use crate::{Stat, StorageError, StorageProblem};
 pub(crate) fn read(path: &Path, most_bytes: u64) -> Result<Vec<u8>, StorageError> {
     let mut bytes = Vec::new();
     let file = opened(path)?;
-    let taken = file
-        .take(most_bytes.saturating_add(1))
-        .read_to_end(&mut bytes);
+    let taken = file.take(most_bytes.saturating_add(1)).read_to_end(&mut bytes);
     let taken = taken.at(path.display())?;
     check(path, taken as u64, most_bytes)?;
     Ok(bytes)

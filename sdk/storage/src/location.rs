@@ -39,7 +39,8 @@ pub(crate) struct Uri {
     pub(crate) scheme: Scheme,
     /// The bucket, the container, or the host with its port.
     pub(crate) authority: String,
-    /// The key as it is written, or the path of a URL with its escapes, without the slash before it.
+    /// The key as it is written, or the path of a URL with its escapes, without the slash before
+    /// it.
     pub(crate) path: String,
     /// Of a URL alone; never displayed.
     pub(crate) query: Option<String>,
@@ -58,12 +59,13 @@ pub(crate) enum Scheme {
 impl Location {
     /// Reads an argument.
     ///
-    /// `s3://BUCKET/KEY`, `gs://BUCKET/KEY` and `az://CONTAINER/KEY` take the key as it is written; `https://…` and `http://…` are
-    /// URLs; `file:///PATH` has escapes (`%20`). Everything else is a path of this machine and stays as it is, whether it is Unicode or
-    /// not.
+    /// `s3://BUCKET/KEY`, `gs://BUCKET/KEY` and `az://CONTAINER/KEY` take the key as it is written;
+    /// `https://…` and `http://…` are URLs; `file:///PATH` has escapes (`%20`). Everything else is
+    /// a path of this machine and stays as it is, whether it is Unicode or not.
     ///
     /// # Errors
-    /// A URI of another scheme, one with a user name or password, one that is not complete, or one that is not Unicode.
+    /// A URI of another scheme, one with a user name or password, one that is not complete, or one
+    /// that is not Unicode.
     pub fn parse(argument: &OsStr) -> Result<Self, StorageError> {
         let lossy = argument.to_string_lossy();
         let Some((scheme, rest)) = split_scheme(&lossy) else {
@@ -74,9 +76,7 @@ impl Location {
             StorageProblem::Uri { problem }.at(without_secrets(&lossy))
         };
         if argument.to_str().is_none() {
-            return Err(wrong(
-                "a URI is Unicode text; write a path without a scheme",
-            ));
+            return Err(wrong("a URI is Unicode text; write a path without a scheme"));
         }
         let scheme = match &*scheme.to_ascii_lowercase() {
             "file" => return Ok(Self(LocalOrRemote::Local(file_path(rest).map_err(&wrong)?))),
@@ -128,10 +128,9 @@ impl Location {
     pub(crate) fn with_key(&self, key: &str) -> Self {
         match &self.0 {
             LocalOrRemote::Local(path) => Self(LocalOrRemote::Local(path.join(key))),
-            LocalOrRemote::Remote(uri) => Self(LocalOrRemote::Remote(Uri {
-                path: key.to_owned(),
-                ..uri.clone()
-            })),
+            LocalOrRemote::Remote(uri) => {
+                Self(LocalOrRemote::Remote(Uri { path: key.to_owned(), ..uri.clone() }))
+            }
         }
     }
 
@@ -185,28 +184,16 @@ impl Uri {
                 "the bucket's name has other characters than letters, digits, `-`, `_` and `.`; correct it",
             );
         }
-        Ok(Self {
-            scheme,
-            authority: authority.to_owned(),
-            path: path.to_owned(),
-            query,
-        })
+        Ok(Self { scheme, authority: authority.to_owned(), path: path.to_owned(), query })
     }
 
     /// The key of a folder.
     pub(crate) fn without_last_slash(&self) -> Self {
-        Self {
-            path: self.path.trim_end_matches('/').to_owned(),
-            ..self.clone()
-        }
+        Self { path: self.path.trim_end_matches('/').to_owned(), ..self.clone() }
     }
 
     fn file_name(&self) -> Option<String> {
-        let last = self
-            .path
-            .rsplit('/')
-            .next()
-            .filter(|name| !name.is_empty())?;
+        let last = self.path.rsplit('/').next().filter(|name| !name.is_empty())?;
         let name = match self.scheme {
             Scheme::Http | Scheme::Https => {
                 percent_decode_str(last).decode_utf8_lossy().into_owned()
@@ -270,9 +257,7 @@ fn split_scheme(text: &str) -> Option<(&str, &str)> {
     let (scheme, rest) = text.split_once("://")?;
     let is_scheme = scheme.len() > 1
         && scheme.starts_with(|c: char| c.is_ascii_alphabetic())
-        && scheme
-            .chars()
-            .all(|c| c.is_ascii_alphanumeric() || "+-.".contains(c));
+        && scheme.chars().all(|c| c.is_ascii_alphanumeric() || "+-.".contains(c));
     is_scheme.then_some((scheme, rest))
 }
 
@@ -333,23 +318,12 @@ mod tests {
 
     #[test]
     fn paths_stay_as_they_are() {
-        for text in [
-            "cloth.htex",
-            "/a/b c.csv",
-            "C:\\a.csv",
-            "C://a.csv",
-            "s3:a",
-            "-",
-            "a%20b",
-            "",
-        ] {
+        for text in ["cloth.htex", "/a/b c.csv", "C:\\a.csv", "C://a.csv", "s3:a", "-", "a%20b", ""]
+        {
             assert_eq!(parsed(text).local(), Some(Path::new(text)));
             assert_eq!(parsed(text).to_string(), text);
         }
-        assert_eq!(
-            parsed("file:///a%20b.csv").local(),
-            Some(Path::new("/a b.csv"))
-        );
+        assert_eq!(parsed("file:///a%20b.csv").local(), Some(Path::new("/a b.csv")));
         assert_eq!(parsed("FILE://localhost/a").local(), Some(Path::new("/a")));
     }
 
@@ -360,36 +334,23 @@ mod tests {
         let name = OsStr::from_bytes(b"clo\xfft\x80.csv");
         let location = Location::parse(name).unwrap();
         assert_eq!(location.local(), Some(Path::new(name)));
-        assert_eq!(
-            parsed("file:///clo%FFt")
-                .local()
-                .unwrap()
-                .as_os_str()
-                .as_bytes(),
-            b"/clo\xfft"
-        );
+        assert_eq!(parsed("file:///clo%FFt").local().unwrap().as_os_str().as_bytes(), b"/clo\xfft");
         assert!(Location::parse(OsStr::from_bytes(b"s3://b/clo\xff")).is_err());
     }
 
     #[test]
     fn keys_are_literal_and_queries_are_not_shown() {
         let key = parsed("s3://bucket/a b/%20?c#d.csv");
-        let LocalOrRemote::Remote(uri) = key.place() else {
-            panic!()
-        };
+        let LocalOrRemote::Remote(uri) = key.place() else { panic!() };
         assert_eq!((&*uri.authority, &*uri.path), ("bucket", "a b/%20?c#d.csv"));
         assert_eq!(key.file_name().as_deref(), Some("%20?c#d.csv"));
         let url = parsed("https://host:8/a%20b.csv?sig=SECRET#part");
         assert_eq!(url.to_string(), "https://host:8/a%20b.csv?…");
         assert_eq!(format!("{url:?}"), url.to_string());
         assert_eq!(url.file_name().as_deref(), Some("a b.csv"));
-        for hidden in [
-            "https://h/..%2fetc",
-            "https://h/%2e%2e",
-            "s3://b/a/",
-            "https://h",
-            "s3://b/a/..",
-        ] {
+        for hidden in
+            ["https://h/..%2fetc", "https://h/%2e%2e", "s3://b/a/", "https://h", "s3://b/a/.."]
+        {
             assert_eq!(parsed(hidden).file_name(), None, "{hidden}");
         }
     }

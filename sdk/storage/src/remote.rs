@@ -21,8 +21,8 @@ pub struct Usage {
     pub bytes: u64,
 }
 
-/// One version of a file, read by ranges. When the file is replaced, reads fail with [`StorageProblem::Changed`] instead of mixing two
-/// versions.
+/// One version of a file, read by ranges. When the file is replaced, reads fail with
+/// [`StorageProblem::Changed`] instead of mixing two versions.
 ///
 /// ```
 /// use htex_storage::{Location, Storage};
@@ -48,15 +48,8 @@ pub struct Remote {
 }
 
 enum Of {
-    File {
-        file: Mutex<File>,
-        requests: AtomicU64,
-        bytes: AtomicU64,
-    },
-    Store {
-        store: Box<Store>,
-        version: Version,
-    },
+    File { file: Mutex<File>, requests: AtomicU64, bytes: AtomicU64 },
+    Store { store: Box<Store>, version: Version },
 }
 
 impl Remote {
@@ -73,10 +66,7 @@ impl Remote {
             etag: part.version.etag.clone(),
             head: part.bytes,
             head_start,
-            of: Of::Store {
-                store: Box::new(store),
-                version: part.version,
-            },
+            of: Of::Store { store: Box::new(store), version: part.version },
         })
     }
 
@@ -124,17 +114,15 @@ impl Remote {
     pub fn usage(&self) -> Usage {
         let (requests, bytes) = match &self.of {
             Of::Store { store, .. } => store.usage(),
-            Of::File {
-                requests, bytes, ..
-            } => (
-                requests.load(Ordering::Relaxed),
-                bytes.load(Ordering::Relaxed),
-            ),
+            Of::File { requests, bytes, .. } => {
+                (requests.load(Ordering::Relaxed), bytes.load(Ordering::Relaxed))
+            }
         };
         Usage { requests, bytes }
     }
 
-    /// Fills the buffer with the bytes from `offset` on: by one request, or by none where opening has brought them.
+    /// Fills the buffer with the bytes from `offset` on: by one request, or by none where opening
+    /// has brought them.
     ///
     /// # Errors
     /// When the range ends after the file, the file was replaced, or it cannot be read.
@@ -163,15 +151,9 @@ impl Remote {
         let wanted = range.end - range.start;
         let found = match &self.of {
             Of::Store { store, version } => store.part(range, Some(version.clone()))?.bytes,
-            Of::File {
-                file,
-                requests,
-                bytes,
-            } => {
-                let read = read_file(
-                    &mut file.lock().unwrap_or_else(PoisonError::into_inner),
-                    &range,
-                );
+            Of::File { file, requests, bytes } => {
+                let read =
+                    read_file(&mut file.lock().unwrap_or_else(PoisonError::into_inner), &range);
                 let read = read.at(&self.location)?;
                 requests.fetch_add(1, Ordering::Relaxed);
                 bytes.fetch_add(read.len() as u64, Ordering::Relaxed);

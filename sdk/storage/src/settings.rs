@@ -1,7 +1,8 @@
 //! Time limits and retries, and the variables that credentials are read from.
 //!
-//! Requests are sent again for as long as a server takes to restart: 20 pauses of at most 2 s are 33 s on average, 37 s at most, and
-//! in 999 of 1,000 cases 22 s and more (100,000 random sequences).
+//! Requests are sent again for as long as a server takes to restart: 20 pauses of at most 2 s are
+//! 33 s on average, 37 s at most, and in 999 of 1,000 cases 22 s and more (100,000 random
+//! sequences).
 
 use std::fmt;
 use std::time::Duration;
@@ -15,7 +16,8 @@ const TIMEOUT: &str = "HTEX_STORAGE_TIMEOUT_S";
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Settings {
-    /// Most time of an operation with all of its retries: 600 s, or the variable `HTEX_STORAGE_TIMEOUT_S`.
+    /// Most time of an operation with all of its retries: 600 s, or the variable
+    /// `HTEX_STORAGE_TIMEOUT_S`.
     pub total: Duration,
     /// Most time without a byte: 30 s; for a connection 10 s of it. The request is then sent again.
     pub stall: Duration,
@@ -58,7 +60,8 @@ impl Settings {
     }
 }
 
-/// Variables by name, which credentials and endpoints are read from. Their values are not displayed.
+/// Variables by name, which credentials and endpoints are read from. Their values are not
+/// displayed.
 #[derive(Clone, Default)]
 pub struct Variables(Vec<(String, String)>);
 
@@ -76,7 +79,8 @@ impl Variables {
         all.find_map(|(of, value)| (of == name).then_some(&value[..]))
     }
 
-    /// Refuses a value with a control character, which no header, host or key has, among the variables whose names begin with this.
+    /// Refuses a value with a control character, which no header, host or key has, among the
+    /// variables whose names begin with this.
     ///
     /// # Errors
     /// A sentence with the variable's name.
@@ -88,9 +92,9 @@ impl Variables {
             |(_, value): &(&str, &str)| is_text(value) && value.chars().any(char::is_control);
         match self.with_prefix(prefix).find(wrong) {
             None => Ok(()),
-            Some((name, _)) => Err(format!(
-                "{name} has a line break or another control character; correct it"
-            )),
+            Some((name, _)) => {
+                Err(format!("{name} has a line break or another control character; correct it"))
+            }
         }
     }
 
@@ -114,8 +118,6 @@ impl<N: Into<String>, V: Into<String>> FromIterator<(N, V)> for Variables {
 
 impl fmt::Debug for Variables {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_list()
-            .entries(self.0.iter().map(|(name, _)| name))
-            .finish()
+        f.debug_list().entries(self.0.iter().map(|(name, _)| name)).finish()
     }
 }

@@ -21,25 +21,11 @@ fn files_here_are_whole_or_not_there() {
     assert_eq!(storage.read_range(&file, 3..3).unwrap(), b"");
     assert_eq!(storage.size(&file).unwrap(), 10);
     let error = storage.read(&file, 9).unwrap_err();
-    assert!(
-        matches!(
-            error.problem,
-            StorageProblem::TooLarge { most_bytes: 9, .. }
-        ),
-        "{error}"
-    );
+    assert!(matches!(error.problem, StorageProblem::TooLarge { most_bytes: 9, .. }), "{error}");
     let error = storage.read_range(&file, 5..11).unwrap_err();
-    assert!(
-        matches!(error.problem, StorageProblem::Range { len: 10, .. }),
-        "{error}"
-    );
-    storage
-        .write_file(&at(&folder, "copy.csv"), file.local().unwrap())
-        .unwrap();
-    assert_eq!(
-        storage.read(&at(&folder, "copy.csv"), 10).unwrap(),
-        b"0123456789"
-    );
+    assert!(matches!(error.problem, StorageProblem::Range { len: 10, .. }), "{error}");
+    storage.write_file(&at(&folder, "copy.csv"), file.local().unwrap()).unwrap();
+    assert_eq!(storage.read(&at(&folder, "copy.csv"), 10).unwrap(), b"0123456789");
     let error = storage.write_file(&file, Path::new("none")).unwrap_err();
     assert!(error.to_string().starts_with("none: "), "{error}");
     assert!(storage.write(&at(&folder, "none/cloth.csv"), b"x").is_err());
@@ -55,14 +41,10 @@ fn a_list_is_by_name_and_by_pattern() {
         storage.write(&at(&folder, name), name.as_bytes()).unwrap();
     }
     let names = |pattern: &str| {
-        let found = storage
-            .list(&folder.path().to_owned().into(), pattern)
-            .unwrap();
+        let found = storage.list(&folder.path().to_owned().into(), pattern).unwrap();
         let names = found.iter().map(|entry| entry.location.local().unwrap());
         let names = names.map(|path| path.strip_prefix(folder.path()).unwrap().to_owned());
-        names
-            .map(|path| path.to_str().unwrap().to_owned())
-            .collect::<Vec<_>>()
+        names.map(|path| path.to_str().unwrap().to_owned()).collect::<Vec<_>>()
     };
     assert_eq!(names("*.csv"), ["a.csv", "b.csv"]);
     assert_eq!(names("**/*.csv"), ["a.csv", "b.csv", "deep/c.csv"]);

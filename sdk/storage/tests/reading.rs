@@ -1,4 +1,5 @@
-//! Reading from a store of S3, with faults that pass, faults that stay, and credentials that do not work.
+//! Reading from a store of S3, with faults that pass, faults that stay, and credentials that do not
+//! work.
 #![cfg(feature = "cloud")]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -27,14 +28,8 @@ fn what_is_read_is_what_is_stored() {
     assert_eq!(storage.read(&at(URI), MOST).unwrap(), bytes);
     assert_eq!(server.requests().len(), 1);
     assert!(server.requests()[0].is_signed);
-    assert_eq!(
-        storage.read_range(&at(URI), 1_000..1_010).unwrap(),
-        bytes[1_000..1_010]
-    );
-    assert_eq!(
-        server.requests()[1].range.as_deref(),
-        Some("bytes=1000-1009")
-    );
+    assert_eq!(storage.read_range(&at(URI), 1_000..1_010).unwrap(), bytes[1_000..1_010]);
+    assert_eq!(server.requests()[1].range.as_deref(), Some("bytes=1000-1009"));
     assert_eq!(storage.size(&at(URI)).unwrap(), 300_000);
     let etag = storage.stat(&at(URI)).unwrap().unwrap().etag;
     assert!(etag.is_some());
@@ -53,31 +48,19 @@ fn keys_are_taken_as_they_are_written() {
     for key in ["a b/ä+c.csv", "50%25.csv", "#1?x=y&z.csv"] {
         let uri = at(&format!("s3://surfaces/{key}"));
         storage(&server).write(&uri, key.as_bytes()).unwrap();
-        assert_eq!(
-            server.get(&format!("surfaces/{key}")).unwrap(),
-            key.as_bytes()
-        );
+        assert_eq!(server.get(&format!("surfaces/{key}")).unwrap(), key.as_bytes());
         assert_eq!(storage(&server).read(&uri, MOST).unwrap(), key.as_bytes());
     }
     for key in ["a//b", "a/../b", "a/"] {
         let uri = at(&format!("s3://surfaces/{key}"));
-        assert!(
-            said(storage(&server).read(&uri, MOST)).contains("the key"),
-            "{key}"
-        );
+        assert!(said(storage(&server).read(&uri, MOST)).contains("the key"), "{key}");
     }
 }
 
 #[test]
 fn a_list_is_by_name_and_by_pattern() {
     let server = Server::start();
-    for key in [
-        "set/b.csv",
-        "set/a.csv",
-        "set/a.htex",
-        "set/deep/c.csv",
-        "settee/d.csv",
-    ] {
+    for key in ["set/b.csv", "set/a.csv", "set/a.htex", "set/deep/c.csv", "settee/d.csv"] {
         server.put(&format!("surfaces/{key}"), key);
     }
     let names = |folder: &str, pattern: &str| {
@@ -91,10 +74,7 @@ fn a_list_is_by_name_and_by_pattern() {
         });
         names.collect::<Vec<_>>()
     };
-    assert_eq!(
-        names("s3://surfaces/set/", "*.csv"),
-        ["set/a.csv", "set/b.csv"]
-    );
+    assert_eq!(names("s3://surfaces/set/", "*.csv"), ["set/a.csv", "set/b.csv"]);
     assert_eq!(
         names("s3://surfaces/set", "**/*.csv"),
         ["set/a.csv", "set/b.csv", "set/deep/c.csv"]
@@ -111,61 +91,33 @@ fn faults_that_pass_are_retried() {
     settings.stall = Duration::from_millis(700);
     let storage = Storage::new(settings, server.variables().into_iter().collect());
     type Rule = fn(usize) -> Fault;
-    let cases: [(&str, usize, Rule); 7] = [
-        ("503 thrice", 4, |n| {
-            if n < 3 {
-                Fault::Status(503, "SlowDown")
-            } else {
-                Fault::None
-            }
-        }),
-        ("429 twice", 3, |n| {
-            if n < 2 {
-                Fault::Status(429, "TooManyRequests")
-            } else {
-                Fault::None
-            }
-        }),
-        ("500 and then a cut", 3, |n| match n {
-            0 => Fault::Status(500, "InternalError"),
-            1 => Fault::Cut(70_000),
-            _ => Fault::None,
-        }),
-        ("a late response", 1, |_| {
-            Fault::Delay(Duration::from_millis(100))
-        }),
-        ("no response in time", 2, |n| match n {
-            0 => Fault::Delay(Duration::from_secs(60)),
-            _ => Fault::None,
-        }),
-        ("three cuts", 4, |n| {
-            if n < 3 {
-                Fault::Cut(90_000)
-            } else {
-                Fault::None
-            }
-        }),
-        ("a stall", 2, |n| {
-            if n < 1 {
-                Fault::Stall(100_000)
-            } else {
-                Fault::None
-            }
-        }),
-    ];
+    let cases: [(&str, usize, Rule); 7] =
+        [
+            ("503 thrice", 4, |n| if n < 3 { Fault::Status(503, "SlowDown") } else { Fault::None }),
+            ("429 twice", 3, |n| {
+                if n < 2 { Fault::Status(429, "TooManyRequests") } else { Fault::None }
+            }),
+            ("500 and then a cut", 3, |n| match n {
+                0 => Fault::Status(500, "InternalError"),
+                1 => Fault::Cut(70_000),
+                _ => Fault::None,
+            }),
+            ("a late response", 1, |_| Fault::Delay(Duration::from_millis(100))),
+            ("no response in time", 2, |n| match n {
+                0 => Fault::Delay(Duration::from_secs(60)),
+                _ => Fault::None,
+            }),
+            ("three cuts", 4, |n| if n < 3 { Fault::Cut(90_000) } else { Fault::None }),
+            ("a stall", 2, |n| if n < 1 { Fault::Stall(100_000) } else { Fault::None }),
+        ];
     for (name, requests, rule) in cases {
         server.fail(move |n, _| rule(n));
         assert_eq!(storage.read(&at(URI), MOST).unwrap(), bytes, "{name}");
         assert_eq!(server.requests().len(), requests, "{name}");
     }
     let resumed = server.requests()[1].range.clone().unwrap();
-    let from: u64 = resumed
-        .trim_start_matches("bytes=")
-        .split('-')
-        .next()
-        .unwrap()
-        .parse()
-        .unwrap();
+    let from: u64 =
+        resumed.trim_start_matches("bytes=").split('-').next().unwrap().parse().unwrap();
     assert!((1..=100_000).contains(&from), "{resumed}");
 }
 
@@ -181,10 +133,7 @@ fn faults_that_stay_are_one_error() {
     assert_eq!(server.requests().len(), 7);
     server.fail(|_, _| Fault::Cut(10));
     let text = said(storage(&server).read(&at(URI), MOST));
-    assert!(
-        text.contains("after 7 requests") && text.contains("try again later"),
-        "{text}"
-    );
+    assert!(text.contains("after 7 requests") && text.contains("try again later"), "{text}");
     server.fail(|_, _| Fault::Status(501, "NotImplemented"));
     assert!(said(storage(&server).stat(&at(URI))).contains("status 501"));
     let gone = storage(&server);
@@ -205,13 +154,7 @@ fn the_total_time_is_bounded() {
         let begun = Instant::now();
         let error = storage.read(&at(URI), MOST);
         assert!(
-            matches!(
-                error,
-                Err(StorageError {
-                    problem: StorageProblem::TooSlow { .. },
-                    ..
-                })
-            ),
+            matches!(error, Err(StorageError { problem: StorageProblem::TooSlow { .. }, .. })),
             "{error:?}"
         );
         assert!(said(error).contains("HTEX_STORAGE_TIMEOUT_S"));
@@ -225,34 +168,22 @@ fn credentials_that_do_not_work_are_said_so() {
     let (server, _) = server();
     let none = [("AWS_ACCESS_KEY_ID", ""), ("AWS_SECRET_ACCESS_KEY", "")];
     let cases = [
-        (
-            &[("AWS_SECRET_ACCESS_KEY", "another-S3CR3T")][..],
-            "check AWS_SECRET_ACCESS_KEY",
-        ),
+        (&[("AWS_SECRET_ACCESS_KEY", "another-S3CR3T")][..], "check AWS_SECRET_ACCESS_KEY"),
         (&[("AWS_ACCESS_KEY_ID", "AKID-S3CR3T")], "AWS_ACCESS_KEY_ID"),
         // No other place is asked for credentials, that of the machine in a cloud least of all.
-        (
-            &none,
-            "no credentials are set; set AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY",
-        ),
+        (&none, "no credentials are set; set AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY"),
     ];
     for (over, words) in cases {
         server.fail(|_, _| Fault::None);
         let text = said(storage_with(&server, over).read(&at(URI), MOST));
-        assert!(
-            text.contains("refuses access (status 403") && text.contains(words),
-            "{text}"
-        );
+        assert!(text.contains("refuses access (status 403") && text.contains(words), "{text}");
         assert_eq!(server.requests().len(), 1, "{text}");
         assert_eq!(server.requests()[0].is_signed, over != none);
     }
     for (over, words) in [
         (("AWS_SECRET_ACCESS_KEY", ""), "belong together"),
         (("AWS_ALLOW_HTTP", ""), "set AWS_ALLOW_HTTP=true"),
-        (
-            ("AWS_SKIP_SIGNATURE", "perhaps"),
-            "a variable of AWS_* is not valid",
-        ),
+        (("AWS_SKIP_SIGNATURE", "perhaps"), "a variable of AWS_* is not valid"),
     ] {
         server.fail(|_, _| Fault::None);
         let text = said(storage_with(&server, &[over]).read(&at(URI), MOST));
@@ -270,22 +201,10 @@ fn refusals_are_said_by_their_code_alone() {
             Fault::Status(400, "ExpiredToken"),
             "status 400, ExpiredToken); the credentials have expired",
         ),
-        (
-            Fault::Status(403, "RequestTimeTooSkewed"),
-            "the clock of this machine is wrong",
-        ),
-        (
-            Fault::Status(403, "AccessDenied"),
-            "these credentials may not do this",
-        ),
-        (
-            Fault::Status(403, "AKID S3CR3T"),
-            "(status 403); these credentials",
-        ),
-        (
-            Fault::Status(400, "InvalidArgument"),
-            "refused: status 400, InvalidArgument",
-        ),
+        (Fault::Status(403, "RequestTimeTooSkewed"), "the clock of this machine is wrong"),
+        (Fault::Status(403, "AccessDenied"), "these credentials may not do this"),
+        (Fault::Status(403, "AKID S3CR3T"), "(status 403); these credentials"),
+        (Fault::Status(400, "InvalidArgument"), "refused: status 400, InvalidArgument"),
         (Fault::Status(301, "PermanentRedirect"), "set AWS_REGION"),
         (Fault::Unsigned, "(status 403, AccessDenied)"),
     ] {

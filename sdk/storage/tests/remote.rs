@@ -35,18 +35,9 @@ fn opening_and_two_reads_are_three_requests() {
     let requests = server.requests();
     assert!(requests.iter().all(|request| request.method == "GET"));
     let ranges: Vec<_> = requests.iter().map(|r| r.range.clone().unwrap()).collect();
-    assert_eq!(
-        ranges,
-        ["bytes=0-4095", "bytes=4095-4096", "bytes=999000-999999"]
-    );
+    assert_eq!(ranges, ["bytes=0-4095", "bytes=4095-4096", "bytes=999000-999999"]);
     let usage = remote.usage();
-    assert_eq!(
-        usage,
-        Usage {
-            requests: 3,
-            bytes: 4_096 + 2 + 1_000
-        }
-    );
+    assert_eq!(usage, Usage { requests: 3, bytes: 4_096 + 2 + 1_000 });
 }
 
 #[test]
@@ -57,20 +48,12 @@ fn the_end_of_a_file_is_kept() {
     assert!(said(read(&remote, 999_999, 2)).contains("it has 1000000"));
     assert!(said(read(&remote, u64::MAX, 2)).contains("it has 1000000"));
     assert_eq!(read(&remote, 1_000_000, 0).unwrap(), b"");
-    let empty = storage(&server)
-        .open(&at("s3://surfaces/empty"), 16)
-        .unwrap();
+    let empty = storage(&server).open(&at("s3://surfaces/empty"), 16).unwrap();
     assert!(empty.is_empty());
     assert!(read(&empty, 0, 1).is_err());
     let error = storage(&server).open(&at("s3://surfaces/none"), 16);
     assert!(
-        matches!(
-            error,
-            Err(StorageError {
-                problem: StorageProblem::Missing,
-                ..
-            })
-        ),
+        matches!(error, Err(StorageError { problem: StorageProblem::Missing, .. })),
         "{error:?}"
     );
 }
@@ -80,22 +63,11 @@ fn a_local_file_is_read_alike() {
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), bytes(10_000)).unwrap();
     let storage = storage(&Server::start());
-    let remote = storage
-        .open(&Location::from(file.path().to_owned()), 64)
-        .unwrap();
+    let remote = storage.open(&Location::from(file.path().to_owned()), 64).unwrap();
     assert_eq!(remote.len(), 10_000);
     assert_eq!(read(&remote, 8, 8).unwrap(), bytes(10_000)[8..16]);
-    assert_eq!(
-        read(&remote, 9_000, 100).unwrap(),
-        bytes(10_000)[9_000..9_100]
-    );
-    assert_eq!(
-        remote.usage(),
-        Usage {
-            requests: 2,
-            bytes: 164
-        }
-    );
+    assert_eq!(read(&remote, 9_000, 100).unwrap(), bytes(10_000)[9_000..9_100]);
+    assert_eq!(remote.usage(), Usage { requests: 2, bytes: 164 });
     assert!(said(read(&remote, 9_999, 2)).contains("it has 10000"));
 }
 
@@ -112,13 +84,7 @@ fn a_replaced_file_is_an_error_and_never_a_mixture() {
         server.put(NAME, vec![7; 1_000_000]);
         let error = read(&remote, 500_000, 10);
         assert!(
-            matches!(
-                error,
-                Err(StorageError {
-                    problem: StorageProblem::Changed,
-                    ..
-                })
-            ),
+            matches!(error, Err(StorageError { problem: StorageProblem::Changed, .. })),
             "{error:?}"
         );
         assert!(said(error).contains("was replaced while it was read"));
@@ -139,13 +105,7 @@ fn a_file_that_is_replaced_in_the_middle_is_an_error() {
     });
     let error = storage(&server).read(&at(URI), MOST);
     assert!(
-        matches!(
-            error,
-            Err(StorageError {
-                problem: StorageProblem::Changed,
-                ..
-            })
-        ),
+        matches!(error, Err(StorageError { problem: StorageProblem::Changed, .. })),
         "{error:?}"
     );
     assert_eq!(server.requests().len(), 2);
@@ -155,16 +115,7 @@ fn a_file_that_is_replaced_in_the_middle_is_an_error() {
 fn a_range_that_is_cut_is_resumed() {
     let (server, bytes) = server();
     let remote = storage(&server).open(&at(URI), 16).unwrap();
-    server.fail(|n, _| {
-        if n < 2 {
-            Fault::Cut(50_000)
-        } else {
-            Fault::None
-        }
-    });
-    assert_eq!(
-        read(&remote, 100_000, 200_000).unwrap(),
-        bytes[100_000..300_000]
-    );
+    server.fail(|n, _| if n < 2 { Fault::Cut(50_000) } else { Fault::None });
+    assert_eq!(read(&remote, 100_000, 200_000).unwrap(), bytes[100_000..300_000]);
     assert_eq!(server.requests().len(), 3);
 }

@@ -11,7 +11,8 @@ use common::{MOST, at, bytes};
 use htex_object_server::{Fault, Server};
 use htex_storage::{Settings, Storage};
 
-/// How long connections are refused, and then requests. The pauses of the former 6 retries were 11 s at most.
+/// How long connections are refused, and then requests. The pauses of the former 6 retries were 11
+/// s at most.
 const REFUSED: Duration = Duration::from_secs(7);
 const BUSY: Duration = Duration::from_secs(5);
 

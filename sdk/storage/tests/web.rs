@@ -19,10 +19,7 @@ fn a_file_is_read_without_credentials() {
     let (server, bytes) = server();
     let uri = at(&format!("{}/web/a%20b.csv", server.url()));
     assert_eq!(storage(&server).read(&uri, MOST).unwrap(), bytes);
-    assert_eq!(
-        storage(&server).read_range(&uri, 7..9).unwrap(),
-        bytes[7..9]
-    );
+    assert_eq!(storage(&server).read_range(&uri, 7..9).unwrap(), bytes[7..9]);
     assert_eq!(storage(&server).size(&uri).unwrap(), 200_000);
     server.fail(|_, _| Fault::Whole);
     assert!(said(storage(&server).open(&uri, 16)).contains("whole files only"));
@@ -57,13 +54,7 @@ fn a_signed_link_stays_secret() {
 fn a_cut_without_a_tag_is_read_from_the_start() {
     let (server, bytes) = server();
     let uri = at(&format!("{}/web/a%20b.csv", server.url()));
-    server.fail(|n, _| {
-        if n < 2 {
-            Fault::CutWithoutTag(150_000)
-        } else {
-            Fault::WithoutTag
-        }
-    });
+    server.fail(|n, _| if n < 2 { Fault::CutWithoutTag(150_000) } else { Fault::WithoutTag });
     assert_eq!(storage(&server).read(&uri, MOST).unwrap(), bytes);
     let requests = server.requests();
     assert_eq!(requests.len(), 3);
@@ -77,13 +68,7 @@ fn a_redirect_leads_to_no_inner_address() {
     let (server, bytes) = server();
     let to = format!("{}/web/a%20b.csv", server.url());
     let uri = at(&format!("{}/web/moved?sig=S3CR3T", server.url()));
-    server.fail(move |n, _| {
-        if n == 0 {
-            Fault::Redirect(to.clone())
-        } else {
-            Fault::None
-        }
-    });
+    server.fail(move |n, _| if n == 0 { Fault::Redirect(to.clone()) } else { Fault::None });
     assert_eq!(storage(&server).read(&uri, MOST).unwrap(), bytes);
     assert_eq!(server.requests().len(), 2);
     assert!(server.requests().iter().all(|seen| seen.referer.is_none()));
@@ -99,19 +84,10 @@ fn a_redirect_leads_to_no_inner_address() {
         server.fail(move |_, _| Fault::Redirect(target.clone()));
         let error = storage(&server).read(&uri, MOST);
         assert!(
-            matches!(
-                error,
-                Err(StorageError {
-                    problem: StorageProblem::Refused { .. },
-                    ..
-                })
-            ),
+            matches!(error, Err(StorageError { problem: StorageProblem::Refused { .. }, .. })),
             "{to}: {error:?}"
         );
-        assert!(
-            said(error).contains("an address of this machine or network"),
-            "{to}"
-        );
+        assert!(said(error).contains("an address of this machine or network"), "{to}");
         assert_eq!(server.requests().len(), 1, "{to}");
     }
     let again = format!("{}/web/moved", server.url());
@@ -120,7 +96,8 @@ fn a_redirect_leads_to_no_inner_address() {
     assert_eq!(server.requests().len(), 6);
 }
 
-/// What a file names is of the world, or of the server that it is on itself; what a person names may be anywhere.
+/// What a file names is of the world, or of the server that it is on itself; what a person names
+/// may be anywhere.
 #[test]
 fn a_file_names_no_inner_address() {
     let (server, bytes) = server();

@@ -81,11 +81,9 @@ fn a_write_that_fails_leaves_nothing() {
             true => Fault::CutRequest(100_000),
             false => Fault::None,
         }),
-        ("no end", &large, |r| {
-            match r.method == "POST" && r.path.contains("uploadId") {
-                true => Fault::Status(500, "InternalError"),
-                false => Fault::None,
-            }
+        ("no end", &large, |r| match r.method == "POST" && r.path.contains("uploadId") {
+            true => Fault::Status(500, "InternalError"),
+            false => Fault::None,
         }),
     ];
     for old in [None, Some(b"the old file")] {
@@ -98,11 +96,7 @@ fn a_write_that_fails_leaves_nothing() {
             let file = local(&folder, bytes);
             let text = said(storage(&server).write_file(&at(URI), &file));
             assert!(text.starts_with(URI), "{name}: {text}");
-            assert_eq!(
-                server.get(NAME).as_deref(),
-                old.map(|old| &old[..]),
-                "{name}"
-            );
+            assert_eq!(server.get(NAME).as_deref(), old.map(|old| &old[..]), "{name}");
             assert_eq!(server.files(), before, "{name}");
         }
     }
@@ -138,26 +132,16 @@ fn a_file_has_its_media_type_in_a_store() {
         ("build-report.json", "application/json"),
         ("a", "application/octet-stream"),
     ] {
-        storage
-            .write(&at(&format!("s3://shop/{name}")), b"x")
-            .unwrap();
+        storage.write(&at(&format!("s3://shop/{name}")), b"x").unwrap();
         let seen = server.requests().pop().unwrap();
         assert_eq!(seen.content_type.as_deref(), Some(media_type), "{name}");
         assert_eq!(seen.cache_control.as_deref(), Some("no-cache"), "{name}");
     }
     let large = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(large.path(), bytes(5 << 20)).unwrap();
-    storage
-        .write_file(&at("s3://shop/large.html"), large.path())
-        .unwrap();
+    storage.write_file(&at("s3://shop/large.html"), large.path()).unwrap();
     let typed = |seen: &htex_object_server::Seen| {
         seen.content_type.as_deref() == Some("text/html; charset=utf-8")
     };
-    assert!(
-        server
-            .requests()
-            .iter()
-            .filter(|seen| seen.path.contains("large"))
-            .any(typed)
-    );
+    assert!(server.requests().iter().filter(|seen| seen.path.contains("large")).any(typed));
 }

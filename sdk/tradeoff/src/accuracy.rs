@@ -13,8 +13,8 @@ pub(crate) struct Accuracy {
     pub(crate) felt: FeltError,
 }
 
-/// Error in decibels used for silence, and when there is nothing to compare with, so that all errors
-/// are finite.
+/// Error in decibels used for silence, and when there is nothing to compare with, so that all
+/// errors are finite.
 pub(crate) const FAR_DB: f64 = 200.0;
 
 pub(crate) fn accuracy(reference: &TextureSpectrum, magnitude: &[f64]) -> Accuracy {

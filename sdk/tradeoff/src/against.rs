@@ -70,8 +70,8 @@ impl Against {
         (cost, error)
     }
 
-    /// Returns which points are on the front. Points of the front of time whose times differ by no more than their spreads count as one, that
-    /// with the least error.
+    /// Returns which points are on the front. Points of the front of time whose times differ by no
+    /// more than their spreads count as one, that with the least error.
     pub(crate) fn on_front(self, points: &[&Point]) -> Vec<bool> {
         let places: Vec<(f64, f64)> = points.iter().map(|p| self.place(p)).collect();
         let mut on = front(&places);

@@ -20,10 +20,7 @@ pub(crate) fn quantise(magnitude: &[f64]) -> (Vec<f64>, usize) {
     if top <= 0.0 {
         return (vec![0.0; magnitude.len()], bytes);
     }
-    let logs: Vec<f64> = magnitude
-        .iter()
-        .map(|m| libm::log(m.max(FLOOR * top)))
-        .collect();
+    let logs: Vec<f64> = magnitude.iter().map(|m| libm::log(m.max(FLOOR * top))).collect();
     let single = |x: f64| f64::from(x as f32);
     let low = single(logs.iter().copied().fold(f64::INFINITY, f64::min));
     let step = (single(libm::log(top)) - low) / STEPS;
@@ -87,9 +84,7 @@ mod tests {
 
     #[test]
     fn a_byte_a_bin_is_near() {
-        let magnitude: Vec<f64> = (0..197)
-            .map(|i| 0.01 * (-0.03 * f64::from(i)).exp())
-            .collect();
+        let magnitude: Vec<f64> = (0..197).map(|i| 0.01 * (-0.03 * f64::from(i)).exp()).collect();
         let (stored, bytes) = quantise(&magnitude);
         assert_eq!(bytes, 205);
         // 51 dB in 255 steps of 0.2 dB; the error of ten bins together is much smaller.

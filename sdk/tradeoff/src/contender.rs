@@ -46,15 +46,11 @@ impl Contender {
             ContenderKind::Quantised => {
                 let parameters = quantise(&spectrum.magnitude).0;
                 let level_rms = level_rms(&parameters);
-                Ok(Fit {
-                    parameters,
-                    level_rms,
-                })
+                Ok(Fit { parameters, level_rms })
             }
-            ContenderKind::Recording => Ok(Fit {
-                parameters: Vec::new(),
-                level_rms: level_rms(&spectrum.magnitude),
-            }),
+            ContenderKind::Recording => {
+                Ok(Fit { parameters: Vec::new(), level_rms: level_rms(&spectrum.magnitude) })
+            }
         }
     }
 
@@ -80,11 +76,7 @@ impl Contender {
             ContenderKind::Quantised => quantise(&spectrum.magnitude),
             ContenderKind::Recording => (Vec::new(), subject.bytes),
         };
-        Ok(Stored {
-            parameters,
-            level_rms: fit.level_rms,
-            bytes,
-        })
+        Ok(Stored { parameters, level_rms: fit.level_rms, bytes })
     }
 
     fn keep(&self, fields: &mut [StoredField]) {

@@ -23,10 +23,8 @@ fn cells(p: &Point) -> Vec<(&'static str, String)> {
     let number = |(name, value): (_, Option<f64>)| (name, value.unwrap_or(f64::NAN).to_string());
     let shares = p.shares.keyed().map(|(name, share)| (name, Some(share)));
     let by_magnitude = p.by_magnitude.keyed(By::Magnitude, Measure::of_both());
-    let held_out = [
-        ("held_out_error", p.held_out_error),
-        ("held_out_error_db", p.held_out_error_db),
-    ];
+    let held_out =
+        [("held_out_error", p.held_out_error), ("held_out_error_db", p.held_out_error_db)];
     let by_magnitude = held_out.into_iter().chain(by_magnitude.0);
     let numbers = by_magnitude.chain(shares);
     cells.extend(numbers.chain(p.by_samples.keyed().0).map(number));

@@ -19,16 +19,10 @@ pub enum TradeoffError {
     Store(#[from] htex_format::WriteError),
     /// The journal could not be written.
     #[error("cannot keep finished points in {path}: {error}")]
-    Journal {
-        path: PathBuf,
-        error: std::io::Error,
-    },
+    Journal { path: PathBuf, error: std::io::Error },
     /// A recording has nothing to hold out.
     #[error("{recording}: {reason}, so that nothing can be held out: record for 10 s")]
-    NothingHeldOut {
-        recording: String,
-        reason: &'static str,
-    },
+    NothingHeldOut { recording: String, reason: &'static str },
     /// A knob does not have this value.
     #[error("knob {name}: `{value}` is not one of its values")]
     Knob { name: String, value: String },

@@ -8,11 +8,12 @@ use serde::{Serialize, Serializer};
 /// An error of settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ErrorAxis {
-    /// Fitted to the odd blocks of a recording, played, and compared with the even ones in third octaves: in units of the error of the odd
-    /// blocks themselves, as a second recording has it.
+    /// Fitted to the odd blocks of a recording, played, and compared with the even ones in third
+    /// octaves: in units of the error of the odd blocks themselves, as a second recording has it.
     #[default]
     HeldOut,
-    /// Compared with what the setting was fitted to, in decibels: by the model's magnitudes against bytes, by rendered samples against time.
+    /// Compared with what the setting was fitted to, in decibels: by the model's magnitudes against
+    /// bytes, by rendered samples against time.
     Fitted(ErrorMeasure),
 }
 

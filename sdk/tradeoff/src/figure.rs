@@ -9,9 +9,8 @@ use crate::knee::along_front;
 use crate::point::{Point, QUANTISED, RECORDING, errors, others};
 
 pub(crate) fn mark_front(points: &mut [Point], against: Against) {
-    let compared: Vec<usize> = (0..points.len())
-        .filter(|&i| against.cost.compares(&points[i]))
-        .collect();
+    let compared: Vec<usize> =
+        (0..points.len()).filter(|&i| against.cost.compares(&points[i])).collect();
     let shown: Vec<&Point> = compared.iter().map(|&i| &points[i]).collect();
     let on_front = against.on_front(&shown);
     for (&i, on) in compared.iter().zip(on_front) {
@@ -22,14 +21,11 @@ pub(crate) fn mark_front(points: &mut [Point], against: Against) {
     }
 }
 
-/// Plots error against cost: all settings as small dots, each model's own front as larger ones, both
-/// baselines, the front of all models, and the error of a second recording as the floor. Both axes are logarithmic.
+/// Plots error against cost: all settings as small dots, each model's own front as larger ones,
+/// both baselines, the front of all models, and the error of a second recording as the floor. Both
+/// axes are logarithmic.
 pub fn figure(title: &str, points: &[&Point], models: &[String], against: Against) -> Plot {
-    let shown: Vec<&Point> = points
-        .iter()
-        .copied()
-        .filter(|p| against.cost.compares(p))
-        .collect();
+    let shown: Vec<&Point> = points.iter().copied().filter(|p| against.cost.compares(p)).collect();
     let mut plot = Plot::new(
         title,
         against.cost.axis(),
@@ -46,11 +42,7 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
     let builtin = Registry::builtin_names();
     for model in models {
         let color = model_color(model, &builtin);
-        let own: Vec<&Point> = shown
-            .iter()
-            .copied()
-            .filter(|p| p.model == *model)
-            .collect();
+        let own: Vec<&Point> = shown.iter().copied().filter(|p| p.model == *model).collect();
         let places =
             |points: &[&Point]| points.iter().map(|p| against.place(p)).collect::<Vec<_>>();
         let mut dots = Series::scatter("", places(&own)).colored(color).behind();
@@ -67,11 +59,7 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
             "default" => point.model.replace('-', " "),
             other => format!("{} {other}", point.model.replace('-', " ")),
         };
-        let color = if quantised {
-            "#000000"
-        } else {
-            RECORDING_COLOR
-        };
+        let color = if quantised { "#000000" } else { RECORDING_COLOR };
         let mut series = Series::scatter(&name, vec![against.place(point)]).colored(color);
         series.marker_radius_px = Some(5.0);
         series.line = Line::None;
@@ -82,19 +70,14 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
     plot
 }
 
-/// The error of the recording against itself, over all costs: below it, errors do not distinguish models.
+/// The error of the recording against itself, over all costs: below it, errors do not distinguish
+/// models.
 fn floor(shown: &[&Point], against: Against) -> Option<Series> {
     let recording = shown.iter().find(|p| p.model == RECORDING)?;
     let error = against.place(recording).1;
     let costs = || shown.iter().map(|p| against.place(p).0);
-    let ends = [
-        costs().fold(f64::INFINITY, f64::min),
-        costs().fold(0.0, f64::max),
-    ];
-    let line = Series::line(
-        "floor: a second recording",
-        ends.map(|x| (x, error)).to_vec(),
-    );
+    let ends = [costs().fold(f64::INFINITY, f64::min), costs().fold(0.0, f64::max)];
+    let line = Series::line("floor: a second recording", ends.map(|x| (x, error)).to_vec());
     let mut line = line.colored(RECORDING_COLOR).behind();
     line.line = Line::Dashed;
     Some(line)
@@ -134,17 +117,10 @@ fn note(p: &Point) -> String {
 fn measured(p: &Point, measure: Measure) -> impl Iterator<Item = String> {
     let row = measure.row();
     let words = |name: &str, by| {
-        let text = format!(
-            "{name} {:.*} {}",
-            row.decimals,
-            p.get(by, measure),
-            row.unit
-        );
+        let text = format!("{name} {:.*} {}", row.decimals, p.get(by, measure), row.unit);
         text.trim_end().to_owned()
     };
     let own = row.column.map(|_| words(row.short, By::Magnitude));
-    let played = row
-        .played
-        .map(|_| words(&format!("played {}", row.short), By::Samples));
+    let played = row.played.map(|_| words(&format!("played {}", row.short), By::Samples));
     own.into_iter().chain(played)
 }

@@ -1,8 +1,8 @@
 //! Pareto fronts.
 
-/// Returns which points of (cost, error) are on the Pareto front: no other point has at most the cost and at most
-/// the error, and less of one. A point with a number that is not finite is never on the front;
-/// points that are equal in both are on it together.
+/// Returns which points of (cost, error) are on the Pareto front: no other point has at most the
+/// cost and at most the error, and less of one. A point with a number that is not finite is never
+/// on the front; points that are equal in both are on it together.
 pub fn front(points: &[(f64, f64)]) -> Vec<bool> {
     let finite = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
     let mut order: Vec<usize> = (0..points.len()).filter(|&i| finite(&points[i])).collect();

@@ -1,4 +1,5 @@
-//! What a contender is fitted to and what is held out of it: the odd and the even blocks of a recording.
+//! What a contender is fitted to and what is held out of it: the odd and the even blocks of a
+//! recording.
 
 use htex_author::{OddAndEven, SegmentSpectra, SpectrumOptions, agreement, odd_and_even};
 
@@ -33,23 +34,17 @@ impl HeldOut {
         // The difference is the repeatability itself.
         repeats.felt.within_repeatability = true;
         let found = agreement(halves.even.as_ref(), &halves.odd.magnitude).get(HELD_OUT_MEASURE);
-        let floor_db = found
-            .filter(|db| db.is_finite())
-            .ok_or("half of its blocks are silent")?;
+        let floor_db = found.filter(|db| db.is_finite()).ok_or("half of its blocks are silent")?;
         if floor_db <= 0.0 {
             return Err("all its blocks are equal");
         }
-        Ok(Self {
-            halves,
-            floor_db,
-            repeats,
-        })
+        Ok(Self { halves, floor_db, repeats })
     }
 }
 
 impl Contender {
-    /// Fits the odd blocks, plays, and returns the third-octave difference from the even ones, decibels; `None` without blocks. Of the
-    /// recording, it is the difference of the odd blocks.
+    /// Fits the odd blocks, plays, and returns the third-octave difference from the even ones,
+    /// decibels; `None` without blocks. Of the recording, it is the difference of the odd blocks.
     pub(crate) fn held_out_error_db(
         &self,
         subject: &Subject,

@@ -28,16 +28,9 @@ pub(crate) enum Outcome {
 #[serde(deny_unknown_fields)]
 pub(crate) enum Entry {
     /// The result of measuring a contender on a recording.
-    Measured {
-        recording: usize,
-        contender: String,
-        outcome: Outcome,
-    },
+    Measured { recording: usize, contender: String, outcome: Outcome },
     /// The times of all contenders of a recording.
-    Timed {
-        recording: usize,
-        times: Vec<(String, Timed)>,
-    },
+    Timed { recording: usize, times: Vec<(String, Timed)> },
 }
 
 /// A file of finished entries, one per line, with a key of the sweep's inputs.
@@ -51,15 +44,11 @@ pub struct Journal {
 impl Journal {
     /// Creates a journal; its file is read by the first sweep that uses it.
     pub fn new(path: &Path) -> Self {
-        Self {
-            path: path.to_owned(),
-            file: None,
-            entries: Vec::new(),
-        }
+        Self { path: path.to_owned(), file: None, entries: Vec::new() }
     }
 
-    /// Reads the entries of a file with this key; a file with another key is overwritten. Reading stops at a
-    /// truncated line.
+    /// Reads the entries of a file with this key; a file with another key is overwritten. Reading
+    /// stops at a truncated line.
     pub(crate) fn open(&mut self, key: &str) -> Result<(), TradeoffError> {
         let key = &format!("{HEAD}{key}");
         self.entries = self.kept(self.read(key))?;
@@ -107,9 +96,7 @@ impl Journal {
     pub(crate) fn keep(&self, entry: &Entry) -> Result<(), TradeoffError> {
         let write = |file: &Mutex<File>| {
             let line = serde_json::to_string(entry)? + "\n";
-            let mut file = file
-                .lock()
-                .map_err(|_| io::Error::other("a thread panicked"))?;
+            let mut file = file.lock().map_err(|_| io::Error::other("a thread panicked"))?;
             file.write_all(line.as_bytes())
         };
         self.kept(self.file.as_ref().map_or(Ok(()), write))
@@ -138,10 +125,7 @@ impl Journal {
 
     /// Names the file in an error.
     fn kept<T>(&self, result: io::Result<T>) -> Result<T, TradeoffError> {
-        result.map_err(|error| TradeoffError::Journal {
-            path: self.path.clone(),
-            error,
-        })
+        result.map_err(|error| TradeoffError::Journal { path: self.path.clone(), error })
     }
 }
 
@@ -154,9 +138,7 @@ mod tests {
         Entry::Measured {
             recording: 0,
             contender: contender.to_owned(),
-            outcome: Outcome::Failed {
-                reason: "why".to_owned(),
-            },
+            outcome: Outcome::Failed { reason: "why".to_owned() },
         }
     }
 

@@ -25,14 +25,15 @@ pub struct Knee {
     pub error: ErrorAxis,
     /// Its error: decibels, or if it is held out, in units of a second recording's.
     pub error_value: f64,
-    /// Model and setting of the next step up, whose error is at least 0.05 smaller; `None` if there is none.
+    /// Model and setting of the next step up, whose error is at least 0.05 smaller; `None` if there
+    /// is none.
     pub next: Option<String>,
     /// Description of the knee and of the next step's gain and cost, as a sentence.
     pub words: String,
 }
 
-/// Returns the point of a front, by increasing cost, that is furthest below the straight line between its
-/// ends, with cost on a logarithmic axis; the first point of a front of one or two.
+/// Returns the point of a front, by increasing cost, that is furthest below the straight line
+/// between its ends, with cost on a logarithmic axis; the first point of a front of one or two.
 pub fn knee(front: &[(f64, f64)]) -> Option<usize> {
     let (&(low, high_error), &(high, low_error)) = (front.first()?, front.last()?);
     let across = |cost: f64| libm::log(cost / low) / libm::log(high / low);
@@ -41,13 +42,7 @@ pub fn knee(front: &[(f64, f64)]) -> Option<usize> {
         if high > low { line - error } else { 0.0 }
     };
     // Of several equally low ones, the cheapest.
-    (0..front.len()).reduce(|best, i| {
-        if below(&front[i]) > below(&front[best]) {
-            i
-        } else {
-            best
-        }
-    })
+    (0..front.len()).reduce(|best, i| if below(&front[i]) > below(&front[best]) { i } else { best })
 }
 
 /// Returns the knees of one recording: of all models, then of each.
@@ -60,18 +55,10 @@ pub(crate) fn knees(
     let mut knees = Vec::new();
     for cost in [Cost::Bytes, Cost::Time] {
         let against = Against { cost, error };
-        let shown: Vec<&Point> = points
-            .iter()
-            .copied()
-            .filter(|p| cost.compares(p))
-            .collect();
+        let shown: Vec<&Point> = points.iter().copied().filter(|p| cost.compares(p)).collect();
         knees.extend(knee_of(recording, "all models", against, &shown));
         for model in models {
-            let own: Vec<&Point> = shown
-                .iter()
-                .copied()
-                .filter(|p| p.model == *model)
-                .collect();
+            let own: Vec<&Point> = shown.iter().copied().filter(|p| p.model == *model).collect();
             knees.extend(knee_of(recording, model, against, &own));
         }
     }
@@ -131,13 +118,7 @@ mod tests {
 
     #[test]
     fn the_knee_is_where_the_front_bends() {
-        let bends = [
-            (2.0, 10.0),
-            (4.0, 8.0),
-            (8.0, 1.0),
-            (16.0, 0.8),
-            (512.0, 0.5),
-        ];
+        let bends = [(2.0, 10.0), (4.0, 8.0), (8.0, 1.0), (16.0, 0.8), (512.0, 0.5)];
         assert_eq!(knee(&bends), Some(2));
         assert_eq!(knee(&[(2.0, 10.0), (4.0, 1.0)]), Some(0));
         assert_eq!(knee(&[(3.0, 1.0)]), Some(0));

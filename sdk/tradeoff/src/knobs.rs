@@ -1,5 +1,5 @@
-//! The options of storing and playing that a sweep varies, and the values of a fit option whose model chooses none
-//! ([`LoadedModel::knobs`](htex_host::LoadedModel::knobs)).
+//! The options of storing and playing that a sweep varies, and the values of a fit option whose
+//! model chooses none ([`LoadedModel::knobs`](htex_host::LoadedModel::knobs)).
 
 use htex_host::{FitOption, Knob};
 
@@ -8,15 +8,7 @@ use htex_host::{FitOption, Knob};
 pub const PLAYING: &[Knob] = &[
     Knob::new(
         "synthesis",
-        &[
-            "loop:0.5",
-            "loop:2",
-            "loop:10",
-            "filter:127",
-            "filter:255",
-            "filter:511",
-            "filter:1023",
-        ],
+        &["loop:0.5", "loop:2", "loop:10", "filter:127", "filter:255", "filter:511", "filter:1023"],
     ),
     Knob::new("store", &["f32", "f64"]),
     Knob::new("block_samples", &["1", "16", "64", "1024"]),
@@ -26,8 +18,8 @@ pub const PLAYING: &[Knob] = &[
 /// Values of an option whose model chooses none, less one.
 const STEPS: i32 = 8;
 
-/// Returns the values of an option in a sweep, from its descriptor: its choices, or numbers over its whole range, in equal
-/// ratios if it is above 0.
+/// Returns the values of an option in a sweep, from its descriptor: its choices, or numbers over
+/// its whole range, in equal ratios if it is above 0.
 pub(crate) fn of_range(option: &FitOption) -> Vec<String> {
     if !option.choices.is_empty() {
         return option.choices.clone();
@@ -41,11 +33,9 @@ pub(crate) fn of_range(option: &FitOption) -> Vec<String> {
         };
         match option.integer {
             true => value.round().to_string(),
-            false => format!("{value:.3e}")
-                .parse::<f64>()
-                .unwrap_or(value)
-                .clamp(min, max)
-                .to_string(),
+            false => {
+                format!("{value:.3e}").parse::<f64>().unwrap_or(value).clamp(min, max).to_string()
+            }
         }
     };
     let mut values: Vec<String> = (0..=STEPS).map(value).collect();
@@ -57,7 +47,5 @@ pub(crate) fn of_range(option: &FitOption) -> Vec<String> {
 pub(crate) fn few<T: Clone>(values: &[T]) -> Vec<T> {
     let mut few = vec![0, values.len() / 2, values.len().saturating_sub(1)];
     few.dedup();
-    few.into_iter()
-        .filter_map(|i| values.get(i).cloned())
-        .collect()
+    few.into_iter().filter_map(|i| values.get(i).cloned()).collect()
 }

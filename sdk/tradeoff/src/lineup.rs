@@ -19,18 +19,11 @@ pub(crate) fn lineup(request: &Request) -> Result<Vec<Contender>, TradeoffError>
         };
         let model = first.short_name().to_owned();
         let mut add = |setting: Setting, loaded: &LoadedModel| {
-            let given: Vec<(&str, &str)> = setting
-                .options
-                .iter()
-                .map(|(n, v)| (&n[..], &v[..]))
-                .collect();
+            let given: Vec<(&str, &str)> =
+                setting.options.iter().map(|(n, v)| (&n[..], &v[..])).collect();
             let options = loaded.options(&given)?;
             let kind = ContenderKind::Model(loaded.clone(), options);
-            all.push(Contender {
-                model: model.clone(),
-                setting,
-                kind,
-            });
+            all.push(Contender { model: model.clone(), setting, kind });
             Ok::<(), TradeoffError>(())
         };
         let played = playing_settings(request.quick)?;
@@ -38,35 +31,18 @@ pub(crate) fn lineup(request: &Request) -> Result<Vec<Contender>, TradeoffError>
             add(setting, first)?;
         }
         for (loader, loaded) in &ways[1..] {
-            add(
-                Setting {
-                    loader: loader.clone(),
-                    ..Setting::default()
-                },
-                loaded,
-            )?;
+            add(Setting { loader: loader.clone(), ..Setting::default() }, loaded)?;
         }
     }
     let baseline = |model: &str, kind: ContenderKind, synthesis| Contender {
         model: model.to_owned(),
-        setting: Setting {
-            synthesis,
-            ..Setting::default()
-        },
+        setting: Setting { synthesis, ..Setting::default() },
         kind,
     };
     let looped = Synthesis::Loop { seconds: 2.0 };
-    all.push(baseline(
-        QUANTISED,
-        ContenderKind::Quantised,
-        Synthesis::Streamed,
-    ));
+    all.push(baseline(QUANTISED, ContenderKind::Quantised, Synthesis::Streamed));
     all.push(baseline(QUANTISED, ContenderKind::Quantised, looped));
-    all.push(baseline(
-        RECORDING,
-        ContenderKind::Recording,
-        Synthesis::Streamed,
-    ));
+    all.push(baseline(RECORDING, ContenderKind::Recording, Synthesis::Streamed));
     Ok(all)
 }
 

@@ -23,14 +23,16 @@ pub(crate) struct Measured {
     pub(crate) kept_bytes: usize,
     pub(crate) by_magnitude: Accuracy,
     pub(crate) by_samples: Accuracy,
-    /// Third-octave difference of the fit to the odd blocks, played, from the even blocks, decibels.
+    /// Third-octave difference of the fit to the odd blocks, played, from the even blocks,
+    /// decibels.
     pub(crate) held_out_error_db: Option<f64>,
     /// Half the range of the nine-band errors of the renderings, decibels.
     pub(crate) samples_spread_db: f64,
 }
 
 impl Contender {
-    /// Fits, stores and measures. `None` for a recording of too few blocks to be compared with itself.
+    /// Fits, stores and measures. `None` for a recording of too few blocks to be compared with
+    /// itself.
     pub(crate) fn measure(
         &self,
         subject: &Subject,
@@ -75,15 +77,10 @@ impl Contender {
         let rate_hz = self.setting.output_rate_hz;
         let seconds = if quick { QUICK_SECONDS } else { SECONDS };
         let mut samples = vec![0.0; (seconds * rate_hz).min(MOST_SAMPLES) as usize];
-        let mut rendered = Rendered {
-            spectra: Vec::new(),
-            kept_bytes: 0,
-        };
+        let mut rendered = Rendered { spectra: Vec::new(), kept_bytes: 0 };
         for seed in 1..=SEEDS {
             let mut sound = self.sound(subject, stored, seed)?;
-            samples
-                .chunks_mut(self.setting.block_samples)
-                .try_for_each(&mut sound.render)?;
+            samples.chunks_mut(self.setting.block_samples).try_for_each(&mut sound.render)?;
             let reference = subject.spectrum.as_ref();
             rendered.spectra.push(spectrum_of_samples(
                 &samples,
@@ -102,12 +99,7 @@ impl Contender {
         match &self.kind {
             ContenderKind::Model(model, _) => {
                 let reference = spectrum.as_ref();
-                Ok(read_spectrum(
-                    model,
-                    &stored.parameters,
-                    stored.level_rms,
-                    reference,
-                )?)
+                Ok(read_spectrum(model, &stored.parameters, stored.level_rms, reference)?)
             }
             ContenderKind::Quantised => Ok(stored.parameters.clone()),
             ContenderKind::Recording => Ok(spectrum.magnitude.clone()),

@@ -6,7 +6,8 @@ use htex_format::{By, Measure, Measures};
 
 use crate::point::{Played, Point, Shares};
 
-/// Returns a point for each setting that was measured on all of `recordings`, in the order of the first.
+/// Returns a point for each setting that was measured on all of `recordings`, in the order of the
+/// first.
 pub(crate) fn medians(points: &[Point], recordings: usize) -> Vec<Point> {
     let mut settings: BTreeMap<String, Vec<&Point>> = BTreeMap::new();
     for point in points {

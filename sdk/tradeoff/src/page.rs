@@ -16,31 +16,16 @@ pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
     page.html(&paragraph(&made_of(tradeoff)));
     page.html(&paragraph(&reading(tradeoff)));
     let summary = tradeoff.summary();
-    let name = summary
-        .first()
-        .map_or(String::new(), |p| p.recording.clone());
+    let name = summary.first().map_or(String::new(), |p| p.recording.clone());
     section(&mut page, tradeoff, &name, &summary);
     page.heading("How it is played");
     page.html(&paragraph(PLAYING));
-    for model in tradeoff
-        .models
-        .iter()
-        .map(String::as_str)
-        .chain([QUANTISED, RECORDING])
-    {
-        page.html(&htex_report::details(
-            model,
-            &playing(&summary, model).to_html(),
-        ));
+    for model in tradeoff.models.iter().map(String::as_str).chain([QUANTISED, RECORDING]) {
+        page.html(&htex_report::details(model, &playing(&summary, model).to_html()));
     }
     if !tradeoff.medians.is_empty() {
         for recording in &tradeoff.recordings {
-            section(
-                &mut page,
-                tradeoff,
-                &recording.name,
-                &tradeoff.of(&recording.name),
-            );
+            section(&mut page, tradeoff, &recording.name, &tradeoff.of(&recording.name));
         }
     }
     page.heading("Warnings");
@@ -100,15 +85,8 @@ fn made_of(tradeoff: &Tradeoff) -> String {
         n => format!(" {n} of them are simulated: computed, not recorded."),
     };
     let (points, several) = (tradeoff.points.len(), names.len() > 1);
-    let median = if several {
-        " The first pictures show medians over the recordings."
-    } else {
-        ""
-    };
-    format!(
-        "{points} settings, measured on {}.{made}{median}",
-        names.join(", ")
-    )
+    let median = if several { " The first pictures show medians over the recordings." } else { "" };
+    format!("{points} settings, measured on {}.{made}{median}", names.join(", "))
 }
 
 fn machine(tradeoff: &Tradeoff) -> String {
@@ -135,40 +113,21 @@ fn section(page: &mut Page, tradeoff: &Tradeoff, name: &str, points: &[&Point]) 
         let own = |k: &&Knee| k.recording == name && k.against == against;
         let words = |k: &Knee| format!("{}: {}", k.of, k.words);
         let knees: Vec<String> = tradeoff.knees.iter().filter(own).map(words).collect();
-        page.html(&htex_report::details(
-            &format!("Knees against {what}"),
-            &list(&knees),
-        ));
+        page.html(&htex_report::details(&format!("Knees against {what}"), &list(&knees)));
     }
     let along = along_front(
-        &points
-            .iter()
-            .copied()
-            .filter(|p| Cost::Bytes.compares(p))
-            .collect::<Vec<_>>(),
+        &points.iter().copied().filter(|p| Cost::Bytes.compares(p)).collect::<Vec<_>>(),
         tradeoff.against(Cost::Bytes),
     );
     let table = table("The front of all against bytes", &along);
-    page.html(&htex_report::details(
-        "The front against bytes, in numbers",
-        &table.to_html(),
-    ));
+    page.html(&htex_report::details("The front against bytes, in numbers", &table.to_html()));
 }
 
 fn columns() -> Vec<String> {
-    let names = |these: &[&str]| {
-        these
-            .iter()
-            .map(|&name| name.to_owned())
-            .collect::<Vec<_>>()
-    };
+    let names = |these: &[&str]| these.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
     let mut columns = names(&["bytes", "held out"]);
     columns.extend(errors().map(Measure::heading));
-    columns.extend(names(&[
-        "below threshold / %",
-        "repeats / %",
-        "played / dB",
-    ]));
+    columns.extend(names(&["below threshold / %", "repeats / %", "played / dB"]));
     columns.extend(others().map(Measure::heading));
     columns.extend(names(&["ns a sample", "first sample / µs", "fit / ms"]));
     columns
@@ -197,10 +156,7 @@ fn cells(p: &Point) -> Vec<Cell> {
 }
 
 fn table(caption: &str, points: &[&Point]) -> Table {
-    let row = |p: &&Point| Row {
-        header: p.name(),
-        cells: cells(p),
-    };
+    let row = |p: &&Point| Row { header: p.name(), cells: cells(p) };
     Table {
         caption: caption.to_owned(),
         corner: "setting".to_owned(),

@@ -45,8 +45,9 @@ pub struct Point {
     pub bytes: usize,
     /// Bytes of a loop or a filter that are kept while playing.
     pub kept_bytes: usize,
-    /// Error of the fit to the odd blocks, played, against the even blocks, in third octaves: in units of the difference between them,
-    /// where 1 is as good as a second recording. `None` if there are too few blocks.
+    /// Error of the fit to the odd blocks, played, against the even blocks, in third octaves: in
+    /// units of the difference between them, where 1 is as good as a second recording. `None` if
+    /// there are too few blocks.
     pub held_out_error: Option<f64>,
     /// The same in decibels.
     pub held_out_error_db: Option<f64>,
@@ -62,8 +63,8 @@ pub struct Point {
     /// Whether it is on the front of bytes and magnitude error, among settings that play
     /// at their defaults.
     pub on_front: bool,
-    /// Whether it is on the front of time and sample error, among settings with blocks and output rate at their
-    /// defaults.
+    /// Whether it is on the front of time and sample error, among settings with blocks and output
+    /// rate at their defaults.
     pub on_time_front: bool,
 }
 
@@ -96,10 +97,7 @@ impl Shares {
     pub(crate) fn keyed(&self) -> [(&'static str, f64); 3] {
         [
             ("share_below_threshold", self.below_threshold),
-            (
-                "share_below_threshold_if_sensitive",
-                self.below_threshold_if_sensitive,
-            ),
+            ("share_below_threshold_if_sensitive", self.below_threshold_if_sensitive),
             ("share_within_repeatability", self.within_repeatability),
         ]
     }
@@ -134,9 +132,7 @@ impl Played {
     pub(crate) fn keyed(&self) -> Keyed {
         let mut keyed = Keyed::default();
         for measure in Measure::of_both() {
-            keyed
-                .0
-                .extend(self.measures.keyed(By::Samples, [measure]).0);
+            keyed.0.extend(self.measures.keyed(By::Samples, [measure]).0);
             if measure == Measure::NineBand {
                 let spread = Some(self.band_error_spread_db);
                 keyed.0.push(("samples_band_error_spread_db", spread));

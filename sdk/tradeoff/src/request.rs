@@ -21,10 +21,11 @@ pub struct Request {
     pub models: Vec<Model>,
     /// Whether to vary one knob at a time with three values each, and to time fewer runs.
     pub quick: bool,
-    /// The error of fronts and knees; by default the held-out one, and the third-octave error of what was fitted to if a recording is too
-    /// short to hold anything out of it.
+    /// The error of fronts and knees; by default the held-out one, and the third-octave error of
+    /// what was fitted to if a recording is too short to hold anything out of it.
     pub error: Option<ErrorAxis>,
-    /// The file of the program or library with this code: a journal of another build is not continued.
+    /// The file of the program or library with this code: a journal of another build is not
+    /// continued.
     pub program: PathBuf,
 }
 

@@ -51,11 +51,7 @@ impl Default for Setting {
 impl Setting {
     /// Whether it plays as [`Self::default`] does, with any fit and storage.
     pub fn plays_as_default(&self) -> bool {
-        let other = Self {
-            options: self.options.clone(),
-            store: self.store,
-            ..Self::default()
-        };
+        let other = Self { options: self.options.clone(), store: self.store, ..Self::default() };
         *self == other
     }
 
@@ -67,10 +63,7 @@ impl Setting {
 
     /// Returns the setting with one of [`PLAYING`](crate::knobs::PLAYING) changed.
     pub(crate) fn playing(mut self, name: &str, value: &str) -> Result<Self, TradeoffError> {
-        let wrong = || TradeoffError::Knob {
-            name: name.to_owned(),
-            value: value.to_owned(),
-        };
+        let wrong = || TradeoffError::Knob { name: name.to_owned(), value: value.to_owned() };
         match (name, value) {
             ("synthesis", _) => self.synthesis = value.parse()?,
             ("store", "f32") => self.store = Keep::F32,
@@ -85,30 +78,14 @@ impl Setting {
     /// Returns the values that are not at their defaults as text; `default` when all are.
     pub fn words(&self) -> String {
         let default = Self::default();
-        let mut words: Vec<String> = self
-            .options
-            .iter()
-            .map(|(n, v)| format!("{n}={v}"))
-            .collect();
+        let mut words: Vec<String> = self.options.iter().map(|(n, v)| format!("{n}={v}")).collect();
         let mut say = |is: bool, text: String| is.then(|| words.push(text));
-        say(
-            self.synthesis != default.synthesis,
-            self.synthesis.to_string(),
-        );
-        say(
-            self.store != default.store,
-            format!("store={}", self.store_name()),
-        );
+        say(self.synthesis != default.synthesis, self.synthesis.to_string());
+        say(self.store != default.store, format!("store={}", self.store_name()));
         let block = self.block_samples;
-        say(
-            block != default.block_samples,
-            format!("block_samples={block}"),
-        );
+        say(block != default.block_samples, format!("block_samples={block}"));
         let rate = self.output_rate_hz;
-        say(
-            rate != default.output_rate_hz,
-            format!("output_rate_hz={rate}"),
-        );
+        say(rate != default.output_rate_hz, format!("output_rate_hz={rate}"));
         say(!self.loader.is_empty(), self.loader.clone());
         if words.is_empty() {
             words.push("default".to_owned());
@@ -134,16 +111,9 @@ impl Setting {
         }
         for (name, value) in &self.options {
             let number = value.parse::<f64>().map(Value::from);
-            knobs.insert(
-                name.clone(),
-                number.unwrap_or_else(|_| Value::from(value.clone())),
-            );
+            knobs.insert(name.clone(), number.unwrap_or_else(|_| Value::from(value.clone())));
         }
-        let loader = if self.loader.is_empty() {
-            "first"
-        } else {
-            &self.loader
-        };
+        let loader = if self.loader.is_empty() { "first" } else { &self.loader };
         let playing = [
             ("synthesis", Value::from(self.synthesis.to_string())),
             ("store", Value::from(self.store_name())),

@@ -5,22 +5,17 @@ use htex_host::{Knob, Knobs, LoadedModel, Registry};
 use crate::knobs::{PLAYING, few, of_range};
 use crate::{Setting, TradeoffError};
 
-/// Returns the settings of a model's fit options, the defaults first; a quick sweep varies one knob at a time.
+/// Returns the settings of a model's fit options, the defaults first; a quick sweep varies one knob
+/// at a time.
 pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
     let mut settings = vec![Setting::default()];
     let knobs = knobs(model);
     let mut add = |options: Vec<(String, String)>| {
         let options = without_defaults(model, options);
-        let setting = Setting {
-            options,
-            ..Setting::default()
-        };
+        let setting = Setting { options, ..Setting::default() };
         // A plugin with the same name may not have all of these options.
-        let given: Vec<(&str, &str)> = setting
-            .options
-            .iter()
-            .map(|(n, v)| (&n[..], &v[..]))
-            .collect();
+        let given: Vec<(&str, &str)> =
+            setting.options.iter().map(|(n, v)| (&n[..], &v[..])).collect();
         let takes = model.options(&given).is_ok();
         let idle = knobs.is_some_and(|knobs| is_idle(model, knobs, &setting));
         if takes && !idle && !settings.contains(&setting) {
@@ -32,14 +27,13 @@ pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
     }
     for (name, values) in alone(model, knobs, quick) {
         let values = if quick { few(&values) } else { values };
-        values
-            .into_iter()
-            .for_each(|value| add(vec![(name.clone(), value)]));
+        values.into_iter().for_each(|value| add(vec![(name.clone(), value)]));
     }
     settings
 }
 
-/// The knobs of the built-in model of this name: a model that is loaded in another way, or replaces it, is swept alike.
+/// The knobs of the built-in model of this name: a model that is loaded in another way, or replaces
+/// it, is swept alike.
 fn knobs(model: &LoadedModel) -> Option<&'static Knobs> {
     Registry::builtin().find(model.short_name()).ok()?.knobs()
 }
@@ -65,11 +59,7 @@ fn alone(model: &LoadedModel, knobs: Option<&Knobs>, quick: bool) -> Vec<(String
 pub(crate) fn playing_settings(quick: bool) -> Result<Vec<Setting>, TradeoffError> {
     let mut settings = Vec::new();
     for knob in PLAYING {
-        let values = if quick {
-            few(knob.values)
-        } else {
-            knob.values.to_vec()
-        };
+        let values = if quick { few(knob.values) } else { knob.values.to_vec() };
         for value in values {
             settings.push(Setting::default().playing(knob.name, value)?);
         }
@@ -96,15 +86,9 @@ fn without_defaults(
 ) -> Vec<(String, String)> {
     let defaults = &model.descriptor().default_options();
     options.retain(|(name, value)| {
-        let index = model
-            .descriptor()
-            .options
-            .iter()
-            .position(|o| o.name == *name);
+        let index = model.descriptor().options.iter().position(|o| o.name == *name);
         let chosen = model.options(&[(name, value)]).ok();
-        index
-            .zip(chosen)
-            .is_none_or(|(i, values)| values[i] != defaults[i])
+        index.zip(chosen).is_none_or(|(i, values)| values[i] != defaults[i])
     });
     options
 }
@@ -117,13 +101,9 @@ fn is_idle(model: &LoadedModel, knobs: &Knobs, setting: &Setting) -> bool {
             let option = model.descriptor().options.iter().find(|o| o.name == name);
             option.map_or(f64::NAN, |o| o.default)
         };
-        given
-            .and_then(|(_, v)| v.parse().ok())
-            .unwrap_or_else(default)
+        given.and_then(|(_, v)| v.parse().ok()).unwrap_or_else(default)
     };
-    knobs
-        .not_above
-        .is_some_and(|(low, high)| value(low) > value(high))
+    knobs.not_above.is_some_and(|(low, high)| value(low) > value(high))
 }
 
 #[cfg(test)]
@@ -142,20 +122,10 @@ mod tests {
             for knob in knobs.together.iter().chain(knobs.alone) {
                 for value in knob.values {
                     let values = model.options(&[(knob.name, value)]);
-                    assert!(
-                        values.is_ok(),
-                        "{} {}={value}",
-                        model.short_name(),
-                        knob.name
-                    );
+                    assert!(values.is_ok(), "{} {}={value}", model.short_name(), knob.name);
                 }
                 let turned = |s: &Setting| s.options.iter().any(|(name, _)| name == knob.name);
-                assert!(
-                    settings.iter().any(turned),
-                    "{} {}",
-                    model.short_name(),
-                    knob.name
-                );
+                assert!(settings.iter().any(turned), "{} {}", model.short_name(), knob.name);
             }
             assert_eq!(settings[0], Setting::default());
             assert!(fit_settings(model, true).len() < settings.len());
@@ -184,10 +154,7 @@ mod tests {
         let registry = Registry::builtin();
         let settings = fit_settings(registry.find("mfcc").unwrap(), false);
         let words: Vec<String> = settings.iter().map(Setting::words).collect();
-        assert!(
-            words.contains(&"coefficients=40 bands=40".to_owned()),
-            "{words:?}"
-        );
+        assert!(words.contains(&"coefficients=40 bands=40".to_owned()), "{words:?}");
         assert!(!words.contains(&"coefficients=40".to_owned()));
     }
 }

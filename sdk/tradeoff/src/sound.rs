@@ -42,10 +42,7 @@ impl Sound {
             render(out);
             Ok(())
         };
-        Self {
-            render: Box::new(render),
-            kept_bytes,
-        }
+        Self { render: Box::new(render), kept_bytes }
     }
 }
 
@@ -60,15 +57,10 @@ fn of_model(
     let parameters = &stored.parameters;
     let still = StillSound::new(setting.synthesis, model, parameters, band, rate_hz, seed)?;
     if let Some(mut still) = still {
-        return Ok(Sound::sure(still.kept_bytes(), move |out| {
-            still.render(out)
-        }));
+        return Ok(Sound::sure(still.kept_bytes(), move |out| still.render(out)));
     }
     let mut stream = Stream::new(model, parameters, band, rate_hz, seed)?;
-    Ok(Sound {
-        render: Box::new(move |out| stream.render(out)),
-        kept_bytes: 0,
-    })
+    Ok(Sound { render: Box::new(move |out| stream.render(out)), kept_bytes: 0 })
 }
 
 fn of_spectrum(

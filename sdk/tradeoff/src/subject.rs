@@ -57,10 +57,9 @@ impl Subject {
     pub(crate) fn check_held_out(&self) -> Result<(), TradeoffError> {
         match &self.held_out {
             Ok(_) => Ok(()),
-            Err(reason) => Err(TradeoffError::NothingHeldOut {
-                recording: self.name.clone(),
-                reason,
-            }),
+            Err(reason) => {
+                Err(TradeoffError::NothingHeldOut { recording: self.name.clone(), reason })
+            }
         }
     }
 }

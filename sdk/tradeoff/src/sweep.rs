@@ -39,8 +39,8 @@ pub type Progress<'a> = &'a (dyn Fn(u64, u64, &str) + Sync);
 /// Measures every setting on every recording, on all cores, and times them on one.
 ///
 /// # Errors
-/// When the journal cannot be written, no model can be fitted to a recording, or a recording has nothing to hold out and the error asked
-/// for is held out.
+/// When the journal cannot be written, no model can be fitted to a recording, or a recording has
+/// nothing to hold out and the error asked for is held out.
 pub fn sweep(
     subjects: &[Subject],
     request: &Request,
@@ -57,30 +57,14 @@ pub fn sweep(
         let before = done.fetch_add(steps, Ordering::Relaxed);
         progress((before + steps) as u64, all as u64, what);
     };
-    let mut swept = Swept {
-        error,
-        ..Swept::default()
-    };
+    let mut swept = Swept { error, ..Swept::default() };
     for (recording, subject) in subjects.iter().enumerate() {
-        let measured = measure_all(
-            recording,
-            subject,
-            &contenders,
-            request.quick,
-            journal,
-            &|| {
+        let measured =
+            measure_all(recording, subject, &contenders, request.quick, journal, &|| {
                 step(1, &format!("{}: measuring", subject.name));
-            },
-        )?;
+            })?;
         step(0, &format!("{}: timing", subject.name));
-        let timed = time_all(
-            recording,
-            subject,
-            &contenders,
-            &measured,
-            request.quick,
-            journal,
-        )?;
+        let timed = time_all(recording, subject, &contenders, &measured, request.quick, journal)?;
         step(contenders.len(), &subject.name);
         for one in &contenders {
             match measured.get(&one.id()) {
@@ -97,11 +81,7 @@ pub fn sweep(
                 None => {}
             }
         }
-        if !swept
-            .points
-            .iter()
-            .any(|p| p.recording == subject.name && !p.is_baseline())
-        {
+        if !swept.points.iter().any(|p| p.recording == subject.name && !p.is_baseline()) {
             return Err(nothing_fitted(subject, &swept).into());
         }
     }
@@ -109,16 +89,11 @@ pub fn sweep(
 }
 
 fn nothing_fitted(subject: &Subject, swept: &Swept) -> AuthorError {
-    let own = swept
-        .left_out
-        .iter()
-        .filter(|l| l.recording == subject.name);
+    let own = swept.left_out.iter().filter(|l| l.recording == subject.name);
     let mut reasons: Vec<&str> = own.map(|l| &l.reason[..]).collect();
     reasons.sort_unstable();
     reasons.dedup();
-    AuthorError::NothingFitted {
-        reasons: format!("{}: {}", subject.name, reasons.join("; ")),
-    }
+    AuthorError::NothingFitted { reasons: format!("{}: {}", subject.name, reasons.join("; ")) }
 }
 
 /// Outcomes by contender.
@@ -135,20 +110,14 @@ fn measure_all(
 ) -> Result<Outcomes, TradeoffError> {
     let mut known = Outcomes::new();
     for entry in &journal.entries {
-        if let Entry::Measured {
-            recording: of,
-            contender,
-            outcome,
-        } = entry
+        if let Entry::Measured { recording: of, contender, outcome } = entry
             && *of == recording
         {
             known.insert(contender.clone(), outcome.clone());
         }
     }
-    let open: Vec<&Contender> = contenders
-        .iter()
-        .filter(|c| !known.contains_key(&c.id()))
-        .collect();
+    let open: Vec<&Contender> =
+        contenders.iter().filter(|c| !known.contains_key(&c.id())).collect();
     (open.len()..contenders.len()).for_each(|_| step());
     let (next, found) = (AtomicUsize::new(0), Mutex::new(known));
     let work = || {
@@ -158,9 +127,7 @@ fn measure_all(
                 Ok(None) => Outcome::Failed {
                     reason: "it has too few blocks to be compared with itself".to_owned(),
                 },
-                Err(error) => Outcome::Failed {
-                    reason: error.to_string(),
-                },
+                Err(error) => Outcome::Failed { reason: error.to_string() },
             };
             let contender = one.id();
             journal.keep(&Entry::Measured {
@@ -175,23 +142,15 @@ fn measure_all(
         }
         Ok::<(), TradeoffError>(())
     };
-    let cores = std::thread::available_parallelism()
-        .map_or(1, usize::from)
-        .min(open.len().max(1));
+    let cores = std::thread::available_parallelism().map_or(1, usize::from).min(open.len().max(1));
     std::thread::scope(|scope| {
         let threads: Vec<_> = (1..cores).map(|_| scope.spawn(work)).collect();
         let own = work();
         threads.into_iter().fold(own, |all, thread| {
-            all.and(
-                thread
-                    .join()
-                    .unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
-            )
+            all.and(thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
         })
     })?;
-    Ok(found
-        .into_inner()
-        .unwrap_or_else(std::sync::PoisonError::into_inner))
+    Ok(found.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
 }
 
 /// Times the contenders that could be measured, unless the journal has all of their times.
@@ -204,10 +163,7 @@ fn time_all(
     journal: &Journal,
 ) -> Result<BTreeMap<String, Timed>, TradeoffError> {
     for entry in &journal.entries {
-        if let Entry::Timed {
-            recording: of,
-            times,
-        } = entry
+        if let Entry::Timed { recording: of, times } = entry
             && *of == recording
         {
             return Ok(times.iter().cloned().collect());
@@ -218,9 +174,6 @@ fn time_all(
     let timed: Vec<&Contender> = contenders.iter().filter(is_measured).collect();
     let times = time(subject, &timed, quick)?;
     let times: Vec<(String, Timed)> = timed.iter().map(|one| one.id()).zip(times).collect();
-    journal.keep(&Entry::Timed {
-        recording,
-        times: times.clone(),
-    })?;
+    journal.keep(&Entry::Timed { recording, times: times.clone() })?;
     Ok(times.into_iter().collect())
 }

@@ -21,16 +21,8 @@ struct Rounds {
     render: usize,
 }
 
-const FULL: Rounds = Rounds {
-    fit: 7,
-    start: 9,
-    render: 41,
-};
-const QUICK: Rounds = Rounds {
-    fit: 3,
-    start: 3,
-    render: 9,
-};
+const FULL: Rounds = Rounds { fit: 7, start: 9, render: 41 };
+const QUICK: Rounds = Rounds { fit: 3, start: 3, render: 9 };
 
 /// A median, and half the interquartile range relative to it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -128,10 +120,7 @@ fn turns<T>(
 fn median(mut times: Vec<f64>) -> Median {
     times.sort_by(f64::total_cmp);
     let at = |share: f64| times[(share * (times.len() - 1) as f64).round() as usize];
-    Median {
-        median: at(0.5),
-        spread: 0.5 * (at(0.75) - at(0.25)) / at(0.5).max(f64::MIN_POSITIVE),
-    }
+    Median { median: at(0.5), spread: 0.5 * (at(0.75) - at(0.25)) / at(0.5).max(f64::MIN_POSITIVE) }
 }
 
 #[cfg(test)]
@@ -141,12 +130,6 @@ mod tests {
     #[test]
     fn a_median_and_its_quartiles() {
         let found = median(vec![9.0, 1.0, 2.0, 3.0, 4.0]);
-        assert_eq!(
-            found,
-            Median {
-                median: 3.0,
-                spread: 1.0 / 3.0
-            }
-        );
+        assert_eq!(found, Median { median: 3.0, spread: 1.0 / 3.0 });
     }
 }

@@ -39,9 +39,7 @@ impl Machine {
     /// Returns the current machine.
     pub fn here() -> Self {
         let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-        let name = info
-            .lines()
-            .find_map(|line| line.strip_prefix("model name"));
+        let name = info.lines().find_map(|line| line.strip_prefix("model name"));
         let name = name.map(|rest| rest.trim_start_matches([' ', '\t', ':']).to_owned());
         Self {
             processor: name.unwrap_or_else(|| "unknown".to_owned()),
@@ -59,11 +57,13 @@ pub struct Recorded {
     pub simulated: bool,
     /// Its repeatability, nine-band RMS, dB.
     pub repeatability_rms_db: Option<f64>,
-    /// Number of blocks of what is read of it, of which the even ones are held out; `None` if there are too few.
+    /// Number of blocks of what is read of it, of which the even ones are held out; `None` if there
+    /// are too few.
     pub blocks: Option<usize>,
     /// Length of a block, seconds.
     pub block_s: Option<f64>,
-    /// Third-octave difference between the odd and the even blocks, dB: the unit of the held-out error.
+    /// Third-octave difference between the odd and the even blocks, dB: the unit of the held-out
+    /// error.
     pub floor_db: Option<f64>,
 }
 
@@ -95,11 +95,7 @@ pub struct Tradeoff {
 impl Tradeoff {
     /// Marks the fronts of a sweep over `subjects` and finds their knees.
     pub fn new(tool: &str, subjects: &[Subject], swept: Swept) -> Self {
-        let Swept {
-            error,
-            mut points,
-            left_out,
-        } = swept;
+        let Swept { error, mut points, left_out } = swept;
         for subject in subjects {
             let own = |p: &Point| p.recording == subject.name;
             // Points are ordered by recording.
@@ -137,27 +133,17 @@ impl Tradeoff {
     }
 
     pub fn of(&self, recording: &str) -> Vec<&Point> {
-        self.points
-            .iter()
-            .filter(|p| p.recording == recording)
-            .collect()
+        self.points.iter().filter(|p| p.recording == recording).collect()
     }
 
     /// Returns the summary: the medians, or the points of the only recording.
     pub fn summary(&self) -> Vec<&Point> {
-        let points = if self.medians.is_empty() {
-            &self.points
-        } else {
-            &self.medians
-        };
+        let points = if self.medians.is_empty() { &self.points } else { &self.medians };
         points.iter().collect()
     }
 
     pub(crate) fn against(&self, cost: Cost) -> Against {
-        Against {
-            cost,
-            error: self.error,
-        }
+        Against { cost, error: self.error }
     }
 
     fn find_knees(&self) -> Vec<Knee> {
@@ -167,27 +153,17 @@ impl Tradeoff {
             all.extend(knees(&first.recording, &medians, &self.models, self.error));
         }
         for recording in &self.recordings {
-            all.extend(knees(
-                &recording.name,
-                &self.of(&recording.name),
-                &self.models,
-                self.error,
-            ));
+            all.extend(knees(&recording.name, &self.of(&recording.name), &self.models, self.error));
         }
         all
     }
 
     fn find_warnings(&self, subjects: &[Subject]) -> Vec<Notice> {
-        let mut warnings: Vec<Notice> = subjects
-            .iter()
-            .flat_map(|subject| subject.warnings.clone())
-            .collect();
+        let mut warnings: Vec<Notice> =
+            subjects.iter().flat_map(|subject| subject.warnings.clone()).collect();
         let not_held_out = subjects.iter().find_map(|s| s.check_held_out().err());
         if let (ErrorAxis::Fitted(_), Some(reason)) = (self.error, not_held_out) {
-            let what = format!(
-                "{reason}. The error is the {} of what was fitted to",
-                self.error
-            );
+            let what = format!("{reason}. The error is the {} of what was fitted to", self.error);
             warnings.push(what.into());
         }
         if !self.left_out.is_empty() {

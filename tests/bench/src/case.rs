@@ -42,13 +42,7 @@ impl Case {
         }
         let asset = asset(&registry, recording)?;
         std::fs::write(folder.join("asset.htex"), &asset)?;
-        let case = Self {
-            folder: folder.to_owned(),
-            registry,
-            spectrum,
-            asset,
-            parameters,
-        };
+        let case = Self { folder: folder.to_owned(), registry, spectrum, asset, parameters };
         std::fs::write(folder.join("case.json"), case.json().to_string())?;
         Ok(case)
     }
@@ -106,10 +100,7 @@ fn asset(registry: &Registry, recording: htex_author::Recording) -> Result<Vec<u
         let model = model.clone();
         models.push(ModelRequest::new(&model).with_options(options));
     }
-    let take = Take {
-        recording,
-        given: Default::default(),
-    };
+    let take = Take { recording, given: Default::default() };
     let wanted = AssetRequest::new("sandpaper").with_models(models);
     Ok(fit_asset(&[take], &wanted)?.asset.to_bytes()?)
 }

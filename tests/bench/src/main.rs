@@ -102,12 +102,8 @@ fn measure_whole(folder: &Path, rows: &mut Rows) -> Result<(), Box<dyn std::erro
         rows.whole_ours(seconds, mib);
         let Some(python) = &python else { continue };
         let mut script = Command::new(python);
-        script
-            .env("OMP_NUM_THREADS", "1")
-            .env("OPENBLAS_NUM_THREADS", "1");
-        script
-            .arg(peers_folder().join("synth.py"))
-            .arg(path("case.json"));
+        script.env("OMP_NUM_THREADS", "1").env("OPENBLAS_NUM_THREADS", "1");
+        script.arg(peers_folder().join("synth.py")).arg(path("case.json"));
         match whole::run(script.arg(path("theirs.wav")).arg(SECONDS)) {
             Ok((seconds, mib)) => rows.whole_theirs(seconds, mib),
             Err(error) => eprintln!("{error}"),
@@ -145,10 +141,5 @@ fn start_python(case: &Case) -> Result<Peer, String> {
         return Err("Python is skipped: none with NumPy and SciPy was found".to_owned());
     };
     let mut command = Command::new(python);
-    Peer::start(
-        "Python",
-        command
-            .arg(peers_folder().join("peers.py"))
-            .arg(&case.folder),
-    )
+    Peer::start("Python", command.arg(peers_folder().join("peers.py")).arg(&case.folder))
 }

@@ -81,9 +81,7 @@ fn stream<'a>(case: &'a Case, model: &str) -> Result<Task<'a>, Failure> {
 /// A thousand voices of AR, each with its own noise, at their own rate.
 fn many_voices<'a>(case: &'a Case) -> Result<Task<'a>, Failure> {
     let model = case.registry.find("ar")?;
-    let voices: Result<Vec<_>, _> = (0..VOICES)
-        .map(|seed| new_voice(case, model, seed))
-        .collect();
+    let voices: Result<Vec<_>, _> = (0..VOICES).map(|seed| new_voice(case, model, seed)).collect();
     let mut voices = voices?;
     Ok(Box::new(move || {
         let mut blocks = [0.0f32; TOGETHER * BLOCK];

@@ -1,7 +1,7 @@
 //! A peer: a program that lists its tasks, then runs one for each line of input.
 //!
-//! Protocol: at its start it prints `skip TASK: reason` for tasks that it lacks, and `ready TASK …`; then it
-//! reads the name of a task on each line and replies `seconds units ok`.
+//! Protocol: at its start it prints `skip TASK: reason` for tasks that it lacks, and
+//! `ready TASK …`; then it reads the name of a task on each line and replies `seconds units ok`.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -26,13 +26,7 @@ impl Peer {
         let (Some(to), Some(from)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(format!("{name} has no pipes"));
         };
-        let mut peer = Self {
-            name,
-            child,
-            to,
-            from: BufReader::new(from),
-            tasks: Vec::new(),
-        };
+        let mut peer = Self { name, child, to, from: BufReader::new(from), tasks: Vec::new() };
         loop {
             let line = peer.line()?;
             if let Some(reason) = line.strip_prefix("skip ") {

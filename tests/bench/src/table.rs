@@ -32,31 +32,15 @@ pub struct Row {
 }
 
 const fn c(task: &'static str, what: &'static str, aim: Option<f64>) -> Against {
-    Against {
-        peer: Who::C,
-        task,
-        what,
-        aim,
-    }
+    Against { peer: Who::C, task, what, aim }
 }
 
 const fn python(task: &'static str, what: &'static str, aim: Option<f64>) -> Against {
-    Against {
-        peer: Who::Python,
-        task,
-        what,
-        aim,
-    }
+    Against { peer: Who::Python, task, what, aim }
 }
 
 const fn sample(ours: &'static str, what: &'static str, against: &'static [Against]) -> Row {
-    Row {
-        ours,
-        what,
-        unit: "ns/sample",
-        scale: 1e9,
-        against,
-    }
+    Row { ours, what, unit: "ns/sample", scale: 1e9, against }
 }
 
 pub const fn rows() -> &'static [Row] {
@@ -66,11 +50,7 @@ pub const fn rows() -> &'static [Row] {
             "AR, a voice at 2 kHz",
             &[
                 python("ar", "NumPy noise, SciPy lfilter", Some(3.0)),
-                python(
-                    "ar_edges",
-                    "the same, sosfilt at the band's edge as ours",
-                    None,
-                ),
+                python("ar_edges", "the same, sosfilt at the band's edge as ours", None),
                 c("ar", "C loop", None),
                 c("ar_edges", "C loop, the band's edge as ours", None),
             ],
@@ -103,11 +83,7 @@ pub const fn rows() -> &'static [Row] {
             "sbeta_device",
             "sBeta at 20 kHz",
             &[
-                python(
-                    "sbeta_irfft",
-                    "one irfft of 10 s, the curve at hand",
-                    Some(3.0),
-                ),
+                python("sbeta_irfft", "one irfft of 10 s, the curve at hand", Some(3.0)),
                 python("sbeta", "one irfft of 10 s, SciPy's density", None),
             ],
         ),
@@ -188,18 +164,11 @@ impl Timing {
     fn of(seconds: &[f64], scale: f64) -> Option<Self> {
         let mut sorted: Vec<f64> = seconds.iter().map(|s| s * scale).collect();
         sorted.sort_by(f64::total_cmp);
-        let at = |part: f64| {
-            sorted
-                .get((part * (sorted.len().max(1) - 1) as f64) as usize)
-                .copied()
-        };
+        let at =
+            |part: f64| sorted.get((part * (sorted.len().max(1) - 1) as f64) as usize).copied();
         let (least, median) = (at(0.0)?, at(0.5)?);
         let spread = 0.5 * (at(0.75)? - at(0.25)?) / median;
-        Some(Self {
-            least,
-            median,
-            spread,
-        })
+        Some(Self { least, median, spread })
     }
 }
 
@@ -221,10 +190,7 @@ impl Rows {
         Self {
             rows,
             ours: vec![Vec::new(); rows.len()],
-            theirs: rows
-                .iter()
-                .map(|row| vec![Vec::new(); row.against.len()])
-                .collect(),
+            theirs: rows.iter().map(|row| vec![Vec::new(); row.against.len()]).collect(),
             whole_ours: Vec::new(),
             whole_theirs: Vec::new(),
         }
@@ -289,10 +255,7 @@ impl Rows {
                 aim,
             })
         };
-        let (time, memory) = (
-            line("s", |w| w.0, Some(5.0)),
-            line("MiB at most", |w| w.1, None),
-        );
+        let (time, memory) = (line("s", |w| w.0, Some(5.0)), line("MiB at most", |w| w.1, None));
         time.into_iter().chain(memory).collect()
     }
 

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 /// Time between two readings of a program's memory.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// Runs a program twice: for its time in seconds, and for its peak memory in MiB (RSS); NaN where the
-/// system does not report it.
+/// Runs a program twice: for its time in seconds, and for its peak memory in MiB (RSS); NaN where
+/// the system does not report it.
 ///
 /// # Errors
 /// When it does not start or fails.
@@ -18,7 +18,8 @@ pub fn run(command: &mut Command) -> Result<(f64, f64), String> {
     let seconds = begun.elapsed().as_secs_f64();
     let mut child = start(command)?;
     let mut most_kib = f64::NAN;
-    // The system's figure for a program that has ended includes the memory of the one that started it.
+    // The system's figure for a program that has ended includes the memory of the one that started
+    // it.
     while matches!(child.try_wait(), Ok(None)) {
         most_kib = peak_kib(child.id()).unwrap_or(most_kib);
         std::thread::sleep(LOOK);
@@ -42,8 +43,6 @@ fn finish(mut child: Child, command: &Command) -> Result<(), String> {
 /// Peak memory of a running program so far, KiB.
 fn peak_kib(process: u32) -> Option<f64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     line.split_whitespace().next()?.parse().ok()
 }

@@ -5,8 +5,8 @@ use htex_player::{Block, Player, crc32};
 /// Offset of the length in the header.
 const LENGTH: usize = 8;
 
-/// Opens the input after its first 17 bytes as a block, and plays it at two motions, which the 16 bytes before it are. If the
-/// first byte is odd, the block gets its length and checksum first.
+/// Opens the input after its first 17 bytes as a block, and plays it at two motions, which the 16
+/// bytes before it are. If the first byte is odd, the block gets its length and checksum first.
 pub fn baked_block(input: &[u8]) -> bool {
     let Some((&[mends, motions @ ..], block)) = input.split_first_chunk::<17>() else {
         return false;

@@ -17,10 +17,8 @@ pub fn parameter_block(input: &[u8]) -> bool {
     };
     static REGISTRY: OnceLock<Registry> = OnceLock::new();
     let models = REGISTRY.get_or_init(Registry::builtin).models();
-    let manifest = manifest(
-        &models[usize::from(model) % models.len()],
-        1 + usize::from(conditions % 4),
-    );
+    let manifest =
+        manifest(&models[usize::from(model) % models.len()], 1 + usize::from(conditions % 4));
     let json = serde_json::to_vec(&manifest).expect("a manifest is JSON");
     open(&container(&json, [("parameters.bin", block)]))
 }
@@ -34,12 +32,8 @@ pub(crate) fn manifest(model: &LoadedModel, conditions: usize) -> Manifest {
         repeatability_rms_db: None,
         segments: None,
     };
-    let at = |condition: usize| AtCondition {
-        condition,
-        level_rms: 0.1,
-        quality: None,
-        left_out: None,
-    };
+    let at =
+        |condition: usize| AtCondition { condition, level_rms: 0.1, quality: None, left_out: None };
     Manifest {
         htex: htex_format::VERSION.to_owned(),
         name: "fuzzed".to_owned(),
@@ -55,10 +49,7 @@ pub(crate) fn manifest(model: &LoadedModel, conditions: usize) -> Manifest {
         law: None,
         quantity: htex_format::Quantity::LateralForce,
         unit: htex_format::Quantity::LateralForce.unit().to_owned(),
-        band: Band {
-            low_hz: band.low_hz,
-            high_hz: band.high_hz,
-        },
+        band: Band { low_hz: band.low_hz, high_hz: band.high_hz },
         provenance: Default::default(),
         conditions: (0..conditions).map(condition).collect(),
         representations: vec![Representation {

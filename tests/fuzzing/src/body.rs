@@ -72,11 +72,7 @@ struct Body<'a, 'b> {
 
 impl Body<'_, '_> {
     fn statement(&mut self, depth: u8) -> String {
-        let kind = if depth == 0 {
-            0
-        } else {
-            self.bytes.next() % 11
-        };
+        let kind = if depth == 0 { 0 } else { self.bytes.next() % 11 };
         let mut i32 = || self.value(Type::I32, depth.saturating_sub(1));
         match kind {
             1 => format!("(i32.store {} {})", i32(), i32()),
@@ -95,10 +91,7 @@ impl Body<'_, '_> {
             }
             9 => {
                 let again = i32();
-                format!(
-                    "(block (loop {} (br_if 0 {again})))",
-                    self.statement(depth - 1)
-                )
+                format!("(block (loop {} (br_if 0 {again})))", self.statement(depth - 1))
             }
             10 => "(unreachable)".to_owned(),
             _ => "(nop)".to_owned(),
@@ -136,16 +129,7 @@ impl Body<'_, '_> {
 
     /// A number near to those that hosts and models use.
     fn usual(&mut self, of: Type) -> &'static str {
-        const WHOLE: [&str; 8] = [
-            "0",
-            "1",
-            "-1",
-            "16",
-            "8192",
-            "65536",
-            "524280",
-            "0x48540100",
-        ];
+        const WHOLE: [&str; 8] = ["0", "1", "-1", "16", "8192", "65536", "524280", "0x48540100"];
         const LONG: [&str; 8] = ["0", "1", "-1", "-7", "256", "65536", "1048577", "-9"];
         const REAL: [&str; 8] = ["0", "1", "0.5", "-1", "nan", "inf", "2000", "1e300"];
         let i = usize::from(self.bytes.next() % 8);

@@ -13,18 +13,15 @@ use crate::body::Bytes;
 const MOST_CALLS: usize = 64;
 const MOST_FRAMES: usize = 512;
 
-/// Makes calls from the input: pairs of an operation and its arguments, with two assets that exist and one made of the input's end.
-/// True when at least one call renders.
+/// Makes calls from the input: pairs of an operation and its arguments, with two assets that exist
+/// and one made of the input's end. True when at least one call renders.
 ///
 /// # Panics
-/// When a call reports an error of the library itself, an error has no text, or a sample is not finite.
+/// When a call reports an error of the library itself, an error has no text, or a sample is not
+/// finite.
 pub fn c_calls(input: &[u8]) -> bool {
-    let mut calls = Calls {
-        bytes: Bytes(input),
-        assets: Vec::new(),
-        voices: Vec::new(),
-        rendered: false,
-    };
+    let mut calls =
+        Calls { bytes: Bytes(input), assets: Vec::new(), voices: Vec::new(), rendered: false };
     calls.open(ASSET);
     for _ in 0..MOST_CALLS {
         if calls.bytes.0.is_empty() {
@@ -102,16 +99,12 @@ impl Calls<'_> {
 
     fn asset(&mut self) -> htex_asset {
         let all: Vec<u64> = self.assets.iter().map(|asset| asset.id).collect();
-        htex_asset {
-            id: self.handle(&all),
-        }
+        htex_asset { id: self.handle(&all) }
     }
 
     fn voice(&mut self) -> htex_voice {
         let all: Vec<u64> = self.voices.iter().map(|voice| voice.id).collect();
-        htex_voice {
-            id: self.handle(&all),
-        }
+        htex_voice { id: self.handle(&all) }
     }
 
     fn one(&mut self) {
@@ -137,31 +130,16 @@ impl Calls<'_> {
     }
 
     fn new_voice(&mut self) {
-        let names = [
-            null(),
-            c"ar".as_ptr(),
-            c"sbeta".as_ptr(),
-            c"bands".as_ptr(),
-            c"none".as_ptr(),
-        ];
-        let ways = [
-            null(),
-            null(),
-            c"loop:0.1".as_ptr(),
-            c"filter:15".as_ptr(),
-            c"x".as_ptr(),
-        ];
+        let names =
+            [null(), c"ar".as_ptr(), c"sbeta".as_ptr(), c"bands".as_ptr(), c"none".as_ptr()];
+        let ways = [null(), null(), c"loop:0.1".as_ptr(), c"filter:15".as_ptr(), c"x".as_ptr()];
         let (asset, motion) = (self.asset(), self.motion());
         let options = htex_voice_options {
             size: size_of::<htex_voice_options>() as u32,
             model: names[usize::from(self.bytes.next()) % names.len()],
             rate_hz: [0.0, 8_000.0, 20_000.0, self.number()][usize::from(self.bytes.next()) % 4],
             seed: self.bytes.next().into(),
-            motion: if self.bytes.next().is_multiple_of(2) {
-                null()
-            } else {
-                &motion
-            },
+            motion: if self.bytes.next().is_multiple_of(2) { null() } else { &motion },
             synthesis: ways[usize::from(self.bytes.next()) % ways.len()],
             gain: self.number(),
             limit: self.number(),
@@ -226,18 +204,8 @@ impl Calls<'_> {
         let mut length = 0;
         // SAFETY: `capacity` is less than the length.
         unsafe {
-            self.told(htex_asset_manifest_json(
-                asset,
-                text.as_mut_ptr(),
-                capacity,
-                &mut length,
-            ));
-            self.told(htex_asset_unit(
-                asset,
-                text.as_mut_ptr(),
-                capacity,
-                &mut length,
-            ));
+            self.told(htex_asset_manifest_json(asset, text.as_mut_ptr(), capacity, &mut length));
+            self.told(htex_asset_unit(asset, text.as_mut_ptr(), capacity, &mut length));
             self.told(htex_voice_coverage(
                 voice,
                 &motion,

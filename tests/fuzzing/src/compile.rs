@@ -14,8 +14,9 @@ const ALLOWED: Duration = Duration::from_millis(300);
 /// Hard limit: the programs are built with counters, and other programs run beside them.
 const NEVER: Duration = Duration::from_secs(6);
 
-/// Loads a valid model with a function that is described by a byte each: locals, depth, nests, copies, kinds of blocks,
-/// statements. A function within the limit of compiling is compiled in the allowed time.
+/// Loads a valid model with a function that is described by a byte each: locals, depth, nests,
+/// copies, kinds of blocks, statements. A function within the limit of compiling is compiled in the
+/// allowed time.
 pub fn compile_limits(input: &[u8]) -> bool {
     let mut bytes = Bytes(input);
     let squared = |byte: u8| usize::from(byte) * usize::from(byte) / 32;
@@ -36,17 +37,11 @@ pub fn compile_limits(input: &[u8]) -> bool {
     let text = model::text("1.0.0", &[], &heavy.text());
     let module = wat::parse_str(&text)
         .unwrap_or_else(|e| panic!("the maker of functions is wrong: {e}\n{heavy:?}"));
-    let limits = WasmLimits::default()
-        .with_compile(ALLOWED)
-        .with_cache(WasmCache::Off);
+    let limits = WasmLimits::default().with_compile(ALLOWED).with_cache(WasmCache::Off);
     let start = Instant::now();
     let loaded = LoadedModel::from_wasm_bytes("heavy.wasm", &module, &limits);
     let took = start.elapsed();
-    assert!(
-        took < NEVER,
-        "{took:?} for {} bytes: {heavy:?}",
-        module.len()
-    );
+    assert!(took < NEVER, "{took:?} for {} bytes: {heavy:?}", module.len());
     match loaded {
         Ok(_) => true,
         Err(error) => {

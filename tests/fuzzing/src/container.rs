@@ -1,6 +1,7 @@
 //! Containers around fuzzed parts, with valid checksums, which a fuzzer would not find.
 //!
-//! Modules are built out of well-typed bodies, so that a mutation reaches the code after the checks.
+//! Modules are built out of well-typed bodies, so that a mutation reaches the code after the
+//! checks.
 
 use std::io::{Cursor, Write};
 
@@ -45,11 +46,7 @@ pub fn with_checksums(bytes: &[u8]) -> Vec<u8> {
             if !sums.is_empty() {
                 directory[16..20].copy_from_slice(&u32::to_le_bytes(sums.remove(0)));
             }
-            at += 46
-                + [28, 30, 32]
-                    .map(|i| u16_at(&mended, at + i))
-                    .iter()
-                    .sum::<usize>();
+            at += 46 + [28, 30, 32].map(|i| u16_at(&mended, at + i)).iter().sum::<usize>();
         } else if header.starts_with(LOCAL) {
             let is_stored = u16_at(&mended, at + 8) == 0;
             let size = u16_at(&mended, at + 18) + (u16_at(&mended, at + 20) << 16);

@@ -20,9 +20,7 @@ pub fn descriptor(input: &[u8]) -> bool {
             let text = serde_json::to_string(&descriptor).expect("a descriptor is JSON");
             assert_eq!(read_descriptor(&text).as_ref(), Ok(&descriptor));
             finite("default", descriptor.default_options());
-            [0.0, 0.5, 1.0]
-                .iter()
-                .for_each(|weight| use_at(&descriptor, *weight));
+            [0.0, 0.5, 1.0].iter().for_each(|weight| use_at(&descriptor, *weight));
             true
         }
         Err(what) => {

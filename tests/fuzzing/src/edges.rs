@@ -1,7 +1,8 @@
 //! Inputs that differ from a valid one in one value, or in two adjacent ones, which take the
 //! extreme values that can be written: all of them, in the same order each time.
 //!
-//! `tests/tests/edges.rs` sets values, cells and bytes of the seeds to every boundary; the fuzzer covers the rest.
+//! `tests/tests/edges.rs` sets values, cells and bytes of the seeds to every boundary; the fuzzer
+//! covers the rest.
 
 use serde_json::Value;
 
@@ -38,9 +39,7 @@ const NUMBERS: &[&str] = &[
 /// The numbers for pairs of values.
 const FEW: &[&str] = &["0", "-1", "1", "5e-324", "1e19", "1e300", "1e308"];
 /// The increments of a column.
-const CLIMBS: &[f64] = &[
-    5e-324, 1e-308, 1e-300, 1e-12, 1e-9, 1e-6, 1e6, 1e15, 1e300, 1e307,
-];
+const CLIMBS: &[f64] = &[5e-324, 1e-308, 1e-300, 1e-12, 1e-9, 1e-6, 1e6, 1e15, 1e300, 1e307];
 /// JSON values that are not numbers.
 const WORDS: &[&str] = &[
     "null",
@@ -61,18 +60,7 @@ const WORDS: &[&str] = &[
     "{\"\":0}",
 ];
 /// Cells that are not numbers.
-const CELLS: &[&str] = &[
-    "",
-    " ",
-    "nan",
-    "inf",
-    "-inf",
-    "0x10",
-    "1,5",
-    "\u{1b}[31m",
-    "\"",
-    "é",
-];
+const CELLS: &[&str] = &["", " ", "nan", "inf", "-inf", "0x10", "1,5", "\u{1b}[31m", "\"", "é"];
 /// Longest text that replaces another.
 const LONG: usize = 5000;
 /// Placeholder of the inserted text.
@@ -182,8 +170,8 @@ fn neighbours<'a>(sound: &Value, pointers: &'a [String]) -> Vec<(&'a str, &'a st
     pairs.filter(|(a, b)| folder(a) == folder(b)).collect()
 }
 
-/// A table with each cell replaced by each extreme, with each column replaced as a whole, alternating or
-/// increasing by an extreme step, and without each row.
+/// A table with each cell replaced by each extreme, with each column replaced as a whole,
+/// alternating or increasing by an extreme step, and without each row.
 ///
 /// # Panics
 /// When the table is not text.
@@ -237,8 +225,8 @@ fn climb(by: f64, rows: usize) -> Vec<String> {
     (0..rows).map(|r| format!("{:e}", by * r as f64)).collect()
 }
 
-/// A binary file with each byte, and each four of them as a little-endian number, replaced by extremes,
-/// and cut before each: within its first and last bytes.
+/// A binary file with each byte, and each four of them as a little-endian number, replaced by
+/// extremes, and cut before each: within its first and last bytes.
 pub fn bytes(document: &[u8], each: &mut dyn FnMut(&[u8])) {
     let last = document.len().saturating_sub(BYTES).max(BYTES);
     let places = (0..document.len()).filter(|at| *at < BYTES || *at >= last);
@@ -250,14 +238,7 @@ pub fn bytes(document: &[u8], each: &mut dyn FnMut(&[u8])) {
             other[at] = edge;
             each(&other);
         }
-        for edge in [
-            0,
-            1,
-            i32::MAX as u32,
-            i32::MIN as u32,
-            u32::MAX - 1,
-            u32::MAX,
-        ] {
+        for edge in [0, 1, i32::MAX as u32, i32::MIN as u32, u32::MAX - 1, u32::MAX] {
             let mut other = document.to_vec();
             if let Some(four) = other.get_mut(at..at + 4) {
                 four.copy_from_slice(&edge.to_le_bytes());

@@ -9,12 +9,10 @@ use htex_exchange::{
 
 use crate::promise::sentence;
 
-/// A model file of the Penn Haptic Texture Toolkit: what is read becomes an asset that opens, and has finite magnitudes at each node.
+/// A model file of the Penn Haptic Texture Toolkit: what is read becomes an asset that opens, and
+/// has finite magnitudes at each node.
 pub fn hatt(input: &[u8]) -> bool {
-    let imported = Imported {
-        name: "fuzzed",
-        tool: "fuzz",
-    };
+    let imported = Imported { name: "fuzzed", tool: "fuzz" };
     let texture = match read(input) {
         Ok(texture) => texture,
         Err(fault) => return refused(&fault),
@@ -42,7 +40,8 @@ pub fn hatt(input: &[u8]) -> bool {
 /// Full scale of what is imported.
 const FULL_SCALE: f64 = 0.25;
 
-/// A file of Meta: what is read is a recording within its full scale, and is the same after it was written.
+/// A file of Meta: what is read is a recording within its full scale, and is the same after it was
+/// written.
 pub fn haptic(input: &[u8]) -> bool {
     let read = Haptic::from_bytes(input);
     if let Ok(file) = &read {
@@ -94,10 +93,7 @@ pub fn gltf(input: &[u8]) -> bool {
         Err(error) => return refused(&error),
     };
     let bytes = imported.to_bytes().expect("it is held");
-    assert_eq!(
-        read.ok().map(|texture| texture.bytes).as_ref(),
-        Some(&bytes)
-    );
+    assert_eq!(read.ok().map(|texture| texture.bytes).as_ref(), Some(&bytes));
     let format = Format::named("gltf").expect("it is in the table");
     let mut how = Export::new(format);
     how.file = Some(&bytes);
@@ -111,7 +107,8 @@ pub fn gltf(input: &[u8]) -> bool {
     true
 }
 
-/// An image of a friction map: what is read has 255 by 255 pixels at most, comes back pixel by pixel, and is played within bounds.
+/// An image of a friction map: what is read has 255 by 255 pixels at most, comes back pixel by
+/// pixel, and is played within bounds.
 pub fn png(input: &[u8]) -> bool {
     let image = match htex_exchange::map::read(input) {
         Ok(image) => image,
@@ -141,9 +138,7 @@ pub fn png(input: &[u8]) -> bool {
     let again = export(&asset, &Export::new(format)).expect("a map is exported");
     let again = htex_exchange::map::read(&again.bytes).expect("what was written is read");
     assert_eq!((again.width, again.grey), (image.width, image.grey));
-    let mut voice = asset
-        .voice(&htex::VoiceOptions::default())
-        .expect("a map is played");
+    let mut voice = asset.voice(&htex::VoiceOptions::default()).expect("a map is played");
     let mut samples = [0.0; 500];
     for step in 0..4 {
         let motion =
@@ -151,21 +146,14 @@ pub fn png(input: &[u8]) -> bool {
         voice.set_motion(motion).expect("a motion in range");
         voice.render(&mut samples).expect("a map is rendered");
         // The cubic and the filters of the band's edges overshoot.
-        assert!(
-            samples
-                .iter()
-                .all(|x| f64::from(x.abs()) <= 4.0 * FULL_SCALE)
-        );
+        assert!(samples.iter().all(|x| f64::from(x.abs()) <= 4.0 * FULL_SCALE));
     }
     true
 }
 
 fn same_end(before: &Pattern, after: &Pattern) {
     if before.to_s > before.from_s {
-        assert!(
-            (before.to_s - after.to_s).abs() < 1e-6,
-            "{before:?} {after:?}"
-        );
+        assert!((before.to_s - after.to_s).abs() < 1e-6, "{before:?} {after:?}");
     }
 }
 

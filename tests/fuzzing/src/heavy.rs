@@ -98,12 +98,7 @@ impl Heavy {
     pub fn is_bounded(&self) -> bool {
         let blocks = self.depth * self.nests;
         let each = 1 + self.head.len() + self.end.len();
-        let targets = self
-            .head
-            .iter()
-            .chain(&self.end)
-            .filter(|k| **k % KINDS == 5)
-            .count();
+        let targets = self.head.iter().chain(&self.end).filter(|k| **k % KINDS == 5).count();
         blocks * (each + targets * self.depth) + self.locals * self.copies <= 60_000
             && self.copies * (blocks * each + self.locals) <= 60_000
     }

@@ -5,10 +5,7 @@ use htex_author::recording::{ColumnMap, ReadOptions};
 use crate::recordings::{recording_with, refused};
 
 /// Maps that read columns of any file, by their numbers.
-const MAPS: &[&str] = &[
-    "lateral=#1:1",
-    "lateral_x=#1*2-#2/4,lateral_y=#2:1,normal=#3:1",
-];
+const MAPS: &[&str] = &["lateral=#1:1", "lateral_x=#1*2-#2/4,lateral_y=#2:1,normal=#3:1"];
 
 /// A FLAC, whose header has a rate.
 pub fn flac(input: &[u8]) -> bool {

@@ -26,7 +26,8 @@ pub(crate) enum Around {
     File,
     /// The rest is a file; its header gets a valid checksum.
     Header,
-    /// The rest is a leaf page, shared objects and payload, after the lengths of the first two (16 bits each).
+    /// The rest is a leaf page, shared objects and payload, after the lengths of the first two (16
+    /// bits each).
     Leaf,
     /// The rest is a root page, in front of the leaf pages of [`leaves`].
     Root,
@@ -76,7 +77,8 @@ impl Around {
 
 /// Two leaf pages of a texture each, `a` and `b`, of no bytes.
 pub(crate) fn leaves() -> [Vec<u8>; 2] {
-    // One entry, no words, its name, no tags, no models, no conditions, a law of zeros, no bytes, no objects, a hash.
+    // One entry, no words, its name, no tags, no models, no conditions, a law of zeros, no bytes,
+    // no objects, a hash.
     [b'a', b'b'].map(|name| {
         let before = [1, 0, 0, 1, name, 0, 0, 0];
         let law = [0; 1 + 3 * 8];
@@ -120,11 +122,7 @@ fn read(library: &Library<&[u8]>, report: &Report) -> bool {
                 return count > 0;
             }
         };
-        assert!(
-            entry.name > before && check_name(&entry.name).is_ok(),
-            "{:?}",
-            entry.name
-        );
+        assert!(entry.name > before && check_name(&entry.name).is_ok(), "{:?}", entry.name);
         if count < READ {
             let found = library.entry(&entry.name).expect("its page was read");
             assert_eq!(found.as_ref(), Some(&entry));

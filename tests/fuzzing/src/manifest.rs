@@ -56,12 +56,7 @@ fn block(representation: &Value) -> Vec<u8> {
 
 /// Bytes of spectra on a grid of 5 Hz, one for each condition.
 fn reference_bytes(manifest: &Value) -> usize {
-    let edge = |name: &str| {
-        manifest
-            .pointer(name)
-            .and_then(Value::as_f64)
-            .unwrap_or(0.0)
-    };
+    let edge = |name: &str| manifest.pointer(name).and_then(Value::as_f64).unwrap_or(0.0);
     let first = (edge("/band/low_hz") / 5.0).ceil();
     let last = (edge("/band/high_hz") / 5.0).floor();
     let points = (last - first + 1.0).clamp(0.0, 1e4) as usize;

@@ -42,7 +42,8 @@ pub fn wasm_module(input: &[u8]) -> bool {
     }
 }
 
-/// A module: for each function a byte chooses whether its body is generated from the following bytes.
+/// A module: for each function a byte chooses whether its body is generated from the following
+/// bytes.
 fn of_bodies(input: &[u8]) -> Vec<u8> {
     let mut bytes = Bytes(input);
     let mut bodies = Vec::new();

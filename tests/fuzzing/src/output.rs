@@ -7,8 +7,9 @@ use serde_json::json;
 
 use crate::scene::{around, folder};
 
-/// The output file of a scene of this name in this format lies in the current folder, whether the caller or
-/// the scene chooses the format. The format stands behind a line feed; the first byte chooses whether the scene is rehearsed.
+/// The output file of a scene of this name in this format lies in the current folder, whether the
+/// caller or the scene chooses the format. The format stands behind a line feed; the first byte
+/// chooses whether the scene is rehearsed.
 pub fn output_name(input: &[u8]) -> bool {
     let Some((&first, rest)) = input.split_first() else {
         return false;
@@ -17,10 +18,7 @@ pub fn output_name(input: &[u8]) -> bool {
     let scene = path(parts.next().unwrap_or_default());
     let format = String::from_utf8_lossy(parts.next().unwrap_or_default());
     is_here(&htex_scene::output_name(&scene, &format), &format);
-    let device = DeviceOverride {
-        rehearsal: first % 2 == 1,
-        ..DeviceOverride::default()
-    };
+    let device = DeviceOverride { rehearsal: first % 2 == 1, ..DeviceOverride::default() };
     let json = json!({
         "htex_scene": "1.0",
         "surfaces": [{ "asset": "vinyl.htex" }],
@@ -35,23 +33,18 @@ pub fn output_name(input: &[u8]) -> bool {
     !rest.is_empty()
 }
 
-/// One name in the current folder, not of a hidden file, with an extension: that of the format where it is a plain word.
+/// One name in the current folder, not of a hidden file, with an extension: that of the format
+/// where it is a plain word.
 fn is_here(name: &str, format: &str) {
     let parts: Vec<Component<'_>> = Path::new(name).components().collect();
     assert_eq!(parts, [Component::Normal(name.as_ref())], "{name:?}");
-    assert!(
-        !name.starts_with('.') && !name.contains(['/', '\\']),
-        "{name:?}"
-    );
+    assert!(!name.starts_with('.') && !name.contains(['/', '\\']), "{name:?}");
     let (stem, ending) = name.rsplit_once('.').expect("an ending");
     assert!(!stem.is_empty() && !ending.is_empty(), "{name:?}");
     let is_plain = ending.bytes().all(|byte| byte.is_ascii_alphanumeric());
     assert!(is_plain && ending.len() <= 8, "{name:?}");
     let known = ["wav", "csv", "npy", "raw"];
-    assert!(
-        !known.contains(&format) || ending == format,
-        "{name:?} in {format}"
-    );
+    assert!(!known.contains(&format) || ending == format, "{name:?} in {format}");
 }
 
 #[cfg(unix)]

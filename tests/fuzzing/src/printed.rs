@@ -16,17 +16,17 @@ const MOST: usize = 1000;
 const WIDEST: usize = 6;
 
 /// Puts a text into a string or a key of a manifest and of a descriptor; the first byte chooses
-/// which. Messages about them, and the text itself, are printed as one line without control characters.
+/// which. Messages about them, and the text itself, are printed as one line without control
+/// characters.
 pub fn printed_text(input: &[u8]) -> bool {
     let Some((&which, text)) = input.split_first() else {
         return false;
     };
     let text: String = String::from_utf8_lossy(text).chars().take(MOST).collect();
     is_tame(&plain(&text), text.len());
-    for (document, said) in [
-        (manifest(), of_manifest as fn(&str) -> Vec<String>),
-        (descriptor(), of_descriptor),
-    ] {
+    for (document, said) in
+        [(manifest(), of_manifest as fn(&str) -> Vec<String>), (descriptor(), of_descriptor)]
+    {
         let mut document = document.clone();
         write(&mut document, which.into(), &text);
         for sentence in said(&document.to_string()) {
@@ -36,7 +36,8 @@ pub fn printed_text(input: &[u8]) -> bool {
     !text.is_empty()
 }
 
-/// One line without characters that control a terminal, reverse text or hide it; printed again, it is the same.
+/// One line without characters that control a terminal, reverse text or hide it; printed again, it
+/// is the same.
 fn is_tame(printed: &str, from_bytes: usize) {
     let steers = printed.chars().find(|c| steers(*c));
     assert_eq!(steers, None, "in {printed:?}");
@@ -72,11 +73,7 @@ fn of_manifest(json: &str) -> Vec<String> {
     }
     let refused = htex_format::Asset::from_bytes(&bytes).err();
     let refused = refused.map(|error| error.to_string());
-    findings
-        .into_iter()
-        .map(|finding| finding.message)
-        .chain(refused)
-        .collect()
+    findings.into_iter().map(|finding| finding.message).chain(refused).collect()
 }
 
 fn of_descriptor(json: &str) -> Vec<String> {

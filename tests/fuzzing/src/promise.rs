@@ -20,22 +20,14 @@ pub(crate) fn sentence(error: &impl Display) {
     assert!(control.is_none(), "{control:?} in the error {text:?}");
 }
 
-const RULES: [&[Rule]; 4] = [
-    htex_format::RULES,
-    htex_library::RULES,
-    htex_scene::RULES,
-    htex_lab::study::RULES,
-];
+const RULES: [&[Rule]; 4] =
+    [htex_format::RULES, htex_library::RULES, htex_scene::RULES, htex_lab::study::RULES];
 
 /// Findings have a code that is explained, and a sentence.
 pub(crate) fn findings(findings: &[Finding]) {
     for finding in findings {
         let mut rules = RULES.iter().copied().flatten();
-        assert!(
-            rules.any(|rule| rule.code == finding.code),
-            "{}",
-            finding.code
-        );
+        assert!(rules.any(|rule| rule.code == finding.code), "{}", finding.code);
         sentence(finding);
     }
 }
@@ -68,11 +60,7 @@ pub(crate) fn finite(what: &str, numbers: impl IntoIterator<Item = f64>) {
 /// magnitudes.
 pub(crate) fn play(asset: &Asset) {
     let band = asset.band();
-    let edges = [
-        band.low_hz,
-        0.5 * (band.low_hz + band.high_hz),
-        band.high_hz,
-    ];
+    let edges = [band.low_hz, 0.5 * (band.low_hz + band.high_hz), band.high_hz];
     for representation in &asset.manifest().representations {
         let model = Some(representation.model.as_str());
         match asset.magnitude(model, None, &edges) {
@@ -105,9 +93,7 @@ fn listen(voice: &mut htex::Voice) {
 
 /// An asset that was read can be written, and reads back the same.
 pub(crate) fn round_trip(asset: &htex_format::Asset) {
-    let bytes = asset
-        .to_bytes()
-        .unwrap_or_else(|e| panic!("opens, and cannot be written: {e}"));
+    let bytes = asset.to_bytes().unwrap_or_else(|e| panic!("opens, and cannot be written: {e}"));
     let again = htex_format::Asset::from_bytes(&bytes).expect("what is written can be read");
     assert_eq!(again.manifest, asset.manifest.rounded());
     assert_eq!(again.parameters, asset.parameters);

@@ -1,5 +1,6 @@
-//! Recipes with a table, in a folder with traps: what they name is found, checked and hashed as a build does, and nothing is fitted. An
-//! error goes into the report of the folder, where links lead outside.
+//! Recipes with a table, in a folder with traps: what they name is found, checked and hashed as a
+//! build does, and nothing is fitted. An error goes into the report of the folder, where links lead
+//! outside.
 
 use std::net::TcpListener;
 use std::path::Path;
@@ -32,16 +33,9 @@ pub fn recipe_folder(input: &[u8]) -> bool {
     let checked = taken(check(&file, &BuildOptions::new("fuzz 1")));
     let dist = work.join("dist");
     let opened = taken(Build::open(&file, &dist, BuildOptions::new("fuzz 1")));
-    let lines: Vec<String> = String::from_utf8_lossy(recipe)
-        .lines()
-        .map(str::to_owned)
-        .collect();
+    let lines: Vec<String> = String::from_utf8_lossy(recipe).lines().map(str::to_owned).collect();
     let _ = report_failure(&dist, "fuzz 1", &lines);
-    assert_eq!(
-        REQUESTS.load(Ordering::SeqCst),
-        0,
-        "a recipe made a request"
-    );
+    assert_eq!(REQUESTS.load(Ordering::SeqCst), 0, "a recipe made a request");
     let outside = folder.path().join("outside");
     assert_eq!(std::fs::read(outside.join("victim")).unwrap(), PRECIOUS);
     assert_eq!(std::fs::read_dir(outside).unwrap().count(), 1);
@@ -95,9 +89,7 @@ fn links(work: &Path) {
     ] {
         std::os::unix::fs::symlink(to, work.join(name)).unwrap();
     }
-    let pipe = std::process::Command::new("mkfifo")
-        .arg(work.join("traps/pipe.csv"))
-        .status();
+    let pipe = std::process::Command::new("mkfifo").arg(work.join("traps/pipe.csv")).status();
     assert!(pipe.unwrap().success());
 }
 

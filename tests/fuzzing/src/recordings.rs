@@ -96,23 +96,12 @@ fn take_spectra(recording: &Recording) {
         return;
     }
     recording_findings(recording).iter().for_each(sentence);
-    for segments in [
-        SegmentChoice::Auto,
-        SegmentChoice::Sweeps,
-        SegmentChoice::Windows,
-    ] {
+    for segments in [SegmentChoice::Auto, SegmentChoice::Sweeps, SegmentChoice::Windows] {
         let options = SpectrumOptions::default().with_segments(segments);
-        let take = Take {
-            recording: recording.clone(),
-            given: Exploration::default(),
-        };
+        let take = Take { recording: recording.clone(), given: Exploration::default() };
         let parts = match read_take(&take, &options, false) {
             Ok(reading) => {
-                reading
-                    .warnings
-                    .iter()
-                    .chain(&reading.notes)
-                    .for_each(sentence);
+                reading.warnings.iter().chain(&reading.notes).for_each(sentence);
                 finite("speed", reading.condition.speed_mm_s);
                 finite("force", reading.condition.force_n);
                 [reading.part]

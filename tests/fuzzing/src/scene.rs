@@ -17,16 +17,15 @@ use crate::promise::{findings, finite, refusal, sentence};
 /// Blocks that are rendered.
 const BLOCKS: usize = 4;
 
-/// Reads a scene, opens the files it names, plans it for each kind of device, and renders its start.
+/// Reads a scene, opens the files it names, plans it for each kind of device, and renders its
+/// start.
 pub fn scene(input: &[u8]) -> bool {
     read_twice(input);
     let place = folder().join("fuzzed.scene.json");
     match LoadedScene::from_bytes(&place, input, &around(), &DeviceOverride::default()) {
         Ok(scene) => {
             findings(&scene.notes);
-            devices_of(&scene)
-                .iter()
-                .for_each(|device| play(&scene, device));
+            devices_of(&scene).iter().for_each(|device| play(&scene, device));
             true
         }
         Err(LoadError::Invalid { findings: found }) => {
@@ -40,17 +39,9 @@ pub fn scene(input: &[u8]) -> bool {
 /// The built-in models, and files.
 pub(crate) fn around() -> Surroundings<'static> {
     static AROUND: OnceLock<(Registry, Devices)> = OnceLock::new();
-    let (models, devices) = AROUND.get_or_init(|| {
-        (
-            Registry::builtin(),
-            Devices::new(vec![Arc::new(FileAdapter)]),
-        )
-    });
-    Surroundings {
-        models,
-        embedded: false,
-        devices,
-    }
+    let (models, devices) =
+        AROUND.get_or_init(|| (Registry::builtin(), Devices::new(vec![Arc::new(FileAdapter)])));
+    Surroundings { models, embedded: false, devices }
 }
 
 /// The folder of the assets that scenes name.
@@ -62,10 +53,7 @@ pub(crate) fn folder() -> PathBuf {
 fn read_twice(input: &[u8]) {
     let mut findings = Findings::default();
     let scene = read_scene(input, &Limits::default(), &mut findings);
-    assert!(
-        scene.is_some() || findings.has_errors(),
-        "no scene, and no reason"
-    );
+    assert!(scene.is_some() || findings.has_errors(), "no scene, and no reason");
     if let (Some(scene), false) = (scene, findings.has_errors()) {
         let text = serde_json::to_vec(&scene).expect("a scene is JSON");
         let again = read_scene(&text, &Limits::default(), &mut Findings::default());
@@ -77,10 +65,7 @@ fn read_twice(input: &[u8]) {
 fn devices_of(scene: &LoadedScene) -> [Capabilities; 3] {
     let file = Capabilities {
         quantity: Quantity::LateralForce,
-        rates: Rates::Range {
-            min_hz: 100.0,
-            max_hz: 1e6,
-        },
+        rates: Rates::Range { min_hz: 100.0, max_hz: 1e6 },
         default_rate_hz: 8000.0,
         limit: None,
         step: None,
@@ -95,11 +80,7 @@ fn devices_of(scene: &LoadedScene) -> [Capabilities; 3] {
         carrier_hz: scene.scene.seed.is_multiple_of(2).then_some(3000.0),
         ..file.clone()
     };
-    let loudspeaker = Capabilities {
-        quantity: Quantity::Sound,
-        limit: Some(1.0),
-        ..file.clone()
-    };
+    let loudspeaker = Capabilities { quantity: Quantity::Sound, limit: Some(1.0), ..file.clone() };
     [file, display, loudspeaker]
 }
 
@@ -123,10 +104,7 @@ fn play(scene: &LoadedScene, device: &Capabilities) {
         let frames = renderer.render(&mut block);
         finite("sample", block[..frames].iter().map(|x| f64::from(*x)));
         let most = device.limit.unwrap_or(f64::MAX) * (1.0 + 1e-6);
-        assert!(
-            block[..frames].iter().all(|x| f64::from(x.abs()) <= most),
-            "above the limit"
-        );
+        assert!(block[..frames].iter().all(|x| f64::from(x.abs()) <= most), "above the limit");
         if let Some(error) = renderer.take_failure() {
             refused(&error);
         }

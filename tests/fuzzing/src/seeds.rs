@@ -29,10 +29,7 @@ pub fn seeds() -> Vec<Seed> {
         let block = block_of(&asset);
         add("parameter_block", [&[i as u8, 1], &block[..]].concat());
         let json = serde_json::to_vec(&asset.manifest).expect("a manifest is JSON");
-        add(
-            "open_asset",
-            container(&json, [("parameters.bin", &block[..])]),
-        );
+        add("open_asset", container(&json, [("parameters.bin", &block[..])]));
         if let Some(stored) = seeds.last_mut() {
             stored.1 += "-stored";
         }
@@ -57,13 +54,11 @@ pub fn seeds() -> Vec<Seed> {
     seeds
 }
 
-/// Model files of the Penn Haptic Texture Toolkit: of four nodes with triangles, one of them silent, and of one without zeros.
+/// Model files of the Penn Haptic Texture Toolkit: of four nodes with triangles, one of them
+/// silent, and of one without zeros.
 fn models_of_others() -> Vec<Seed> {
     let list = |name: &str, values: &[f64]| {
-        let values: String = values
-            .iter()
-            .map(|x| format!("<value>{x}</value>"))
-            .collect();
+        let values: String = values.iter().map(|x| format!("<value>{x}</value>")).collect();
         format!("<{name}>{values}</{name}>")
     };
     let node = |i: usize, (speed, force): (f64, f64), variance: f64| {
@@ -92,7 +87,8 @@ fn models_of_others() -> Vec<Seed> {
     vec![seed("four-nodes", &whole), seed("one-node", one)]
 }
 
-/// Files of Meta, Apple and MPEG: envelopes and transients, as they are written here, and what is only read.
+/// Files of Meta, Apple and MPEG: envelopes and transients, as they are written here, and what is
+/// only read.
 fn signals_of_others() -> Vec<Seed> {
     let profile = &htex_exchange::PROFILES[0];
     let point = |time_s, value| htex_exchange::Point { time_s, value };
@@ -144,7 +140,8 @@ fn signals_of_others() -> Vec<Seed> {
     ]
 }
 
-/// Meshes whose material carries an asset of the first model: a container, and a text with its buffer.
+/// Meshes whose material carries an asset of the first model: a container, and a text with its
+/// buffer.
 fn meshes(registry: &Registry) -> Vec<Seed> {
     let model = registry.models().first().expect("a built-in model");
     let bytes = asset(model).to_bytes().expect("a sound asset");
@@ -172,7 +169,8 @@ fn images(registry: &Registry) -> Vec<Seed> {
     vec![("png", "row".to_owned(), made.bytes)]
 }
 
-/// Part files of takes, as they are and as what the target builds them from: a second of a finger, with a tracker's rows.
+/// Part files of takes, as they are and as what the target builds them from: a second of a finger,
+/// with a tracker's rows.
 fn parts() -> Vec<Seed> {
     let header = |format: &str| {
         format!(
@@ -181,17 +179,11 @@ fn parts() -> Vec<Seed> {
     };
     let row = |i: i32| [0.1 + 0.05 * (0.3 * f64::from(i)).sin(), 0.4];
     let frames: Vec<f64> = (0..120).flat_map(row).collect();
-    let rows: Vec<f64> = (0..30)
-        .flat_map(|i| [0.02 * f64::from(i), 1.6 * f64::from(i)])
-        .collect();
+    let rows: Vec<f64> = (0..30).flat_map(|i| [0.02 * f64::from(i), 1.6 * f64::from(i)]).collect();
     let chunks = [(b'F', &frames), (b'T', &rows)];
     let pieces = chunks.map(|(kind, values)| {
         let values = values.iter().flat_map(|value| value.to_le_bytes());
-        [
-            &[kind, values.clone().count() as u8 / 8][..],
-            &values.collect::<Vec<u8>>(),
-        ]
-        .concat()
+        [&[kind, values.clone().count() as u8 / 8][..], &values.collect::<Vec<u8>>()].concat()
     });
     let built = |format: &str| [b"B", header(format).as_bytes(), b"\n", &pieces.concat()].concat();
     let mut seeds: Vec<Seed> = ["csv", "npy", "wav"]
@@ -210,7 +202,8 @@ fn studies() -> Vec<Seed> {
         ("study", "two", STUDY.to_owned()),
         ("answers", "begun", answered()),
         ("recipe", "vinyls", recipe.to_owned()),
-        // Choices of the grammar: the beginnings of valid texts, and a bracket that is opened again and again.
+        // Choices of the grammar: the beginnings of valid texts, and a bracket that is opened again
+        // and again.
         ("toml_text", "recipe", "\0\0\x04".to_owned()),
         ("toml_text", "study", "\x01".to_owned()),
         ("toml_text", "calibration", "\x02".to_owned()),
@@ -221,17 +214,14 @@ fn studies() -> Vec<Seed> {
             "table",
             format!("{tabulated}\0recording,name\nrec/a.csv,one\nrec/../rec/a.csv,two\n"),
         ),
-        (
-            "recipe_folder",
-            "server",
-            recipe.replace("rec/*.csv", "http://localhost:PORT/a.csv"),
-        ),
+        ("recipe_folder", "server", recipe.replace("rec/*.csv", "http://localhost:PORT/a.csv")),
     ]
     .map(|(target, name, text)| (target, name.to_owned(), text.into_bytes()))
     .to_vec()
 }
 
-/// A library as a file and in parts: a leaf page of two textures that share an object, and a root page.
+/// A library as a file and in parts: a leaf page of two textures that share an object, and a root
+/// page.
 fn libraries() -> Vec<Seed> {
     let vinyl = include_bytes!("../../../examples/scenes/vinyl.htex");
     let folder = tempfile::tempdir().expect("a folder");
@@ -254,22 +244,14 @@ fn libraries() -> Vec<Seed> {
     .to_vec()
 }
 
-/// Contents of a leaf page, shared objects and payload: an asset, and the same with a part of it shared.
+/// Contents of a leaf page, shared objects and payload: an asset, and the same with a part of it
+/// shared.
 fn leaf(asset: &[u8]) -> Vec<u8> {
     let read = htex_format::Asset::from_bytes(asset).expect("an example");
-    let models = read
-        .manifest
-        .representations
-        .iter()
-        .map(|r| r.model.as_str());
+    let models = read.manifest.representations.iter().map(|r| r.model.as_str());
     let models: Vec<&str> = models.collect();
-    let mut words: Vec<&str> = read
-        .manifest
-        .tags
-        .iter()
-        .map(String::as_str)
-        .chain(models.clone())
-        .collect();
+    let mut words: Vec<&str> =
+        read.manifest.tags.iter().map(String::as_str).chain(models.clone()).collect();
     words.sort_unstable();
     words.dedup();
     let index = |word: &str| words.iter().position(|w| *w == word).unwrap_or(0) as u8;
@@ -278,18 +260,13 @@ fn leaf(asset: &[u8]) -> Vec<u8> {
         [&[chosen.len() as u8], &chosen[..]].concat()
     };
     let varint = |x: usize| vec![x as u8 | 0x80, (x >> 7) as u8];
-    let texts = words
-        .iter()
-        .flat_map(|w| [&[w.len() as u8], w.as_bytes()].concat());
+    let texts = words.iter().flat_map(|w| [&[w.len() as u8], w.as_bytes()].concat());
     let tags = list(&mut read.manifest.tags.iter().map(String::as_str));
     let models = list(&mut models.into_iter());
     let condition = read.manifest.conditions[0];
     let known = [condition.speed_mm_s, condition.force_n].map(|x| x.unwrap_or(0.0).to_le_bytes());
     let condition = [&[15], &known.concat()[..]].concat();
-    let (shared, own) = (
-        asset[100..200].to_vec(),
-        [&asset[..100], &asset[200..]].concat(),
-    );
+    let (shared, own) = (asset[100..200].to_vec(), [&asset[..100], &asset[200..]].concat());
     let leaf = [
         vec![2, words.len() as u8],
         texts.collect(),
@@ -340,10 +317,7 @@ fn calls() -> Vec<Seed> {
 fn words() -> Vec<Seed> {
     let texts = [
         ("escape", "\u{1}x\u{1b}[2J\u{7}\r\nhtex: all is well"),
-        (
-            "marks",
-            "\u{2}a\u{202e}b\u{200b}c\u{2028}d\u{feff}e\u{ad}f\u{e0041}",
-        ),
+        ("marks", "\u{2}a\u{202e}b\u{200b}c\u{2028}d\u{feff}e\u{ad}f\u{e0041}"),
         ("harmless", "\u{3}Raue Oberfläche, 砂纸 'P 80' \\ \"x\""),
     ];
     let names = [
@@ -401,14 +375,8 @@ fn block_of(asset: &htex_format::Asset) -> Vec<u8> {
 /// Manifests of the example assets, of an asset with a reference, and of one with a plugin.
 fn manifests() -> Vec<Seed> {
     const EXAMPLES: [(&str, &[u8]); 2] = [
-        (
-            "coarse-fabric",
-            include_bytes!("../../../examples/scenes/coarse-fabric.htex"),
-        ),
-        (
-            "vinyl",
-            include_bytes!("../../../examples/scenes/vinyl.htex"),
-        ),
+        ("coarse-fabric", include_bytes!("../../../examples/scenes/coarse-fabric.htex")),
+        ("vinyl", include_bytes!("../../../examples/scenes/vinyl.htex")),
     ];
     let mut seeds = Vec::new();
     for (name, bytes) in EXAMPLES {
@@ -419,35 +387,19 @@ fn manifests() -> Vec<Seed> {
     }
     let registry = Registry::builtin();
     let mut all = block::manifest(&registry.models()[0], 4);
-    all.reference = Some(htex_format::Reference {
-        file: "reference.bin".to_owned(),
-    });
-    all.extensions
-        .insert("com.example.note/1".to_owned(), true.into());
+    all.reference = Some(htex_format::Reference { file: "reference.bin".to_owned() });
+    all.extensions.insert("com.example.note/1".to_owned(), true.into());
     all.other.insert("later".to_owned(), 1.into());
     all.doi = Some("10.5281/zenodo.1234567".to_owned());
-    for word in [
-        &mut all.description,
-        &mut all.source,
-        &mut all.sensor,
-        &mut all.finger,
-    ] {
+    for word in [&mut all.description, &mut all.source, &mut all.sensor, &mut all.finger] {
         *word = Some("words".to_owned());
     }
-    seeds.push((
-        "manifest",
-        "all-keys".to_owned(),
-        serde_json::to_vec(&all).expect("JSON"),
-    ));
+    seeds.push(("manifest", "all-keys".to_owned(), serde_json::to_vec(&all).expect("JSON")));
     all.plugins = vec![
         htex_format::Plugin::new(&all.representations[0].model, "1.0.0", b"\0asm\x01\0\0\0")
             .signed(&[1; 32]),
     ];
-    seeds.push((
-        "manifest",
-        "plugin".to_owned(),
-        serde_json::to_vec(&all).expect("JSON"),
-    ));
+    seeds.push(("manifest", "plugin".to_owned(), serde_json::to_vec(&all).expect("JSON")));
     seeds
 }
 
@@ -476,21 +428,9 @@ fn texts() -> Vec<Seed> {
     add("csv", "trace.csv", &trace);
     add("response_csv", "phase.csv", response);
     add("response_csv", "magnitude.csv", two_columns);
-    add(
-        "scene",
-        "constant",
-        include_str!("../../../examples/scenes/constant.scene.json"),
-    );
-    add(
-        "scene",
-        "two-swatches",
-        include_str!("../../../examples/scenes/two-swatches.scene.json"),
-    );
-    add(
-        "scene",
-        "live",
-        include_str!("../../../examples/scenes/live.scene.json"),
-    );
+    add("scene", "constant", include_str!("../../../examples/scenes/constant.scene.json"));
+    add("scene", "two-swatches", include_str!("../../../examples/scenes/two-swatches.scene.json"));
+    add("scene", "live", include_str!("../../../examples/scenes/live.scene.json"));
     add("scene", "all-keys", SCENE);
     seeds
 }
@@ -528,11 +468,7 @@ fn samples() -> Vec<Seed> {
             .expect("memory takes all");
         }
         writer.finalize().expect("memory takes all");
-        seeds.push((
-            "wav",
-            format!("{bits}-bit-{channels}.wav"),
-            bytes.into_inner(),
-        ));
+        seeds.push(("wav", format!("{bits}-bit-{channels}.wav"), bytes.into_inner()));
     }
     let numbers: Vec<f64> = (0..600).map(wave).collect();
     let long: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
@@ -577,13 +513,11 @@ fn lab_files() -> Vec<Seed> {
         ("sum", "lateral_x=a+b,lateral_y=-(a-b)/2*9.81e-3"),
         ("quoted", "lateral=\"x-y\":0.5,normal=#2,speed=80"),
     ];
-    seeds.extend(maps.map(|(name, map)| {
-        (
-            "column_map",
-            name.to_owned(),
-            format!("{map}{rows}").into_bytes(),
-        )
-    }));
+    seeds.extend(
+        maps.map(|(name, map)| {
+            ("column_map", name.to_owned(), format!("{map}{rows}").into_bytes())
+        }),
+    );
     seeds
 }
 
@@ -601,33 +535,17 @@ fn modules() -> Vec<Seed> {
         ("wasm_module", "sound.wasm".to_owned(), sound.clone()),
         ("wasm_module", "sound-bodies".to_owned(), vec![0]),
         // Nested conditions, and loops one behind the other.
-        (
-            "compile_limits",
-            "nested".to_owned(),
-            vec![60, 30, 10, 0, 0, 1, 2, 0],
-        ),
-        (
-            "compile_limits",
-            "loops".to_owned(),
-            vec![80, 5, 60, 1, 1, 2, 1, 0, 0, 2, 4],
-        ),
+        ("compile_limits", "nested".to_owned(), vec![60, 30, 10, 0, 0, 1, 2, 0]),
+        ("compile_limits", "loops".to_owned(), vec![80, 5, 60, 1, 1, 2, 1, 0, 0, 2, 4]),
         ("wasm_module", "made-bodies".to_owned(), varied),
         ("signed_plugin", "sound".to_owned(), vec![0, 0, 0, 7]),
         ("signed_plugin", "unsigned".to_owned(), vec![2, 0, 0, 7]),
-        (
-            "signed_plugin",
-            "module".to_owned(),
-            [&[0, 0, 0, 9], &sound[..]].concat(),
-        ),
+        ("signed_plugin", "module".to_owned(), [&[0, 0, 0, 9], &sound[..]].concat()),
     ];
     // Changes of each part, and of the module with and without its hash.
     for part in 0..8u8 {
         let how = 1 | part.min(6) << 2 | (part / 7) << 7;
-        seeds.push((
-            "signed_plugin",
-            format!("changed-{part}"),
-            vec![how, 3, b'0' + part, 7],
-        ));
+        seeds.push(("signed_plugin", format!("changed-{part}"), vec![how, 3, b'0' + part, 7]));
     }
     seeds
 }

@@ -51,20 +51,10 @@ pub fn signed_plugin(input: &[u8]) -> bool {
     };
     findings(&data.notes);
     assert!(stored == data.plugins[0], "another module than was stored");
-    assert_eq!(
-        blake3::hash(&stored).to_hex().as_str(),
-        data.manifest.plugins[0].blake3
-    );
+    assert_eq!(blake3::hash(&stored).to_hex().as_str(), data.manifest.plugins[0].blake3);
     if !unsigned {
-        assert_eq!(
-            same_case(&plugin),
-            same_case(&made),
-            "opens, and is not what was signed"
-        );
-        assert!(
-            stored == module,
-            "opens, and is not the module that was signed"
-        );
+        assert_eq!(same_case(&plugin), same_case(&made), "opens, and is not what was signed");
+        assert!(stored == module, "opens, and is not the module that was signed");
     }
     load(data);
     true
@@ -74,14 +64,7 @@ pub fn signed_plugin(input: &[u8]) -> bool {
 /// signature of another version.
 fn alter(how: u8, place: u8, change: u8, plugin: &mut Plugin, module: &mut [u8]) {
     let Plugin {
-        model,
-        version,
-        blake3,
-        signature: Some(Signature {
-            public_key,
-            ed25519,
-        }),
-        ..
+        model, version, blake3, signature: Some(Signature { public_key, ed25519 }), ..
     } = plugin
     else {
         return;
@@ -118,11 +101,7 @@ fn alter(how: u8, place: u8, change: u8, plugin: &mut Plugin, module: &mut [u8])
 /// The plugin with its key and signature in lower case: hexadecimal digits have two.
 fn same_case(plugin: &Plugin) -> Plugin {
     let mut plugin = plugin.clone();
-    if let Some(Signature {
-        public_key,
-        ed25519,
-    }) = &mut plugin.signature
-    {
+    if let Some(Signature { public_key, ed25519 }) = &mut plugin.signature {
         public_key.make_ascii_lowercase();
         ed25519.make_ascii_lowercase();
     }

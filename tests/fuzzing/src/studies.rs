@@ -59,10 +59,7 @@ pub fn answers(input: &[u8]) -> bool {
     std::fs::write(&file, input).expect("it can be written");
     let exported = match export(folder.path(), None) {
         Ok(export) => {
-            export
-                .warnings
-                .iter()
-                .for_each(|warning| sentence(&plain(warning)));
+            export.warnings.iter().for_each(|warning| sentence(&plain(warning)));
             true
         }
         Err(error) => {
@@ -97,8 +94,6 @@ pub(crate) fn answered() -> String {
     let header = serde_json::from_value(header).expect("a header");
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = Session::open(&study, own, folder.path(), &header).expect("a new session");
-    session
-        .rate(3, 900, 1000, Presented::default())
-        .expect("the first trial");
+    session.rate(3, 900, 1000, Presented::default()).expect("the first trial");
     std::fs::read_to_string(session.file()).expect("it was written")
 }

@@ -11,8 +11,9 @@ const BUILT: u8 = b'B';
 /// Bytes of a value.
 const VALUE: usize = 8;
 
-/// A part file as it is, or after a byte `B` the header's line and pieces that become chunks: a byte of the kind, one of the number of
-/// values, and the values. It is recovered in a folder of its own.
+/// A part file as it is, or after a byte `B` the header's line and pieces that become chunks: a
+/// byte of the kind, one of the number of values, and the values. It is recovered in a folder of
+/// its own.
 pub fn take_part(input: &[u8]) -> bool {
     let bytes = match input {
         [BUILT, rest @ ..] => built(rest),
@@ -24,9 +25,7 @@ pub fn take_part(input: &[u8]) -> bool {
     let part = folder.join("seed-001.part");
     std::fs::write(&part, &bytes).expect("it can be written");
     let recovered = recover(&folder);
-    let only = std::fs::read_dir(outer.path())
-        .expect("it is there")
-        .count();
+    let only = std::fs::read_dir(outer.path()).expect("it is there").count();
     assert_eq!(only, 1, "a file beside the folder");
     let takes = match recovered {
         Ok(takes) => takes,

@@ -1,5 +1,6 @@
-//! TOML texts made by a grammar: the bytes of the input choose lines, keys and values of recipes, studies and calibrations, and
-//! errors between them. Random bytes seldom get past the first line of a text; these do.
+//! TOML texts made by a grammar: the bytes of the input choose lines, keys and values of recipes,
+//! studies and calibrations, and errors between them. Random bytes seldom get past the first line
+//! of a text; these do.
 
 use std::path::Path;
 
@@ -156,11 +157,7 @@ struct Grammar<'a> {
 
 impl<'a> Grammar<'a> {
     fn new(bytes: &'a [u8]) -> Self {
-        Self {
-            bytes: bytes.iter(),
-            text: String::new(),
-            last: 0,
-        }
+        Self { bytes: bytes.iter(), text: String::new(), last: 0 }
     }
 
     fn text(mut self) -> String {

@@ -1,5 +1,6 @@
-//! A day of every model: `cargo run --release -p htex-hard-cases --no-default-features --example
-//! long_runs`. `--hours N` for another length, `--json` for a script. Exit status 1 if a bound is broken.
+//! A day of every model:
+//! `cargo run --release -p htex-hard-cases --no-default-features --example long_runs`. `--hours N`
+//! for another length, `--json` for a script. Exit status 1 if a bound is broken.
 
 use std::process::ExitCode;
 
@@ -9,7 +10,8 @@ use serde_json::{Value, json};
 
 /// Difference between hours, decibels.
 const DRIFT_DB: f64 = 0.05;
-/// Ratio of the time of a sample in the last minute to that in the first, which is rendered again in turns.
+/// Ratio of the time of a sample in the last minute to that in the first, which is rendered again
+/// in turns.
 const SLOWDOWN: f64 = 1.1;
 const PHASE_CYCLES: f64 = 1e-6;
 /// Seconds in which blocks are compared, of each seed.
@@ -35,10 +37,7 @@ fn main() -> ExitCode {
     let phases = phases(hours, json);
     let holds = rows.iter().chain(&phases).all(|row| row["holds"] == true);
     if json {
-        println!(
-            "{}",
-            json!({ "hours": hours, "voices": rows, "phases": phases })
-        );
+        println!("{}", json!({ "hours": hours, "voices": rows, "phases": phases }));
     }
     ExitCode::from(u8::from(!holds))
 }
@@ -67,11 +66,7 @@ fn voices(hours: f64, quiet: bool) -> Vec<Value> {
                 day.ns_per_sample.1 / day.ns_per_sample.0,
                 blocks,
                 repeated,
-                if row["holds"] == true {
-                    ""
-                } else {
-                    "  <- beyond its bound"
-                }
+                if row["holds"] == true { "" } else { "  <- beyond its bound" }
             );
         }
         row

@@ -14,11 +14,7 @@ pub fn relative_error(x: f64, reference: &BigRational) -> f64 {
         return f64::NAN;
     }
     let off = (exact(x) - reference).abs();
-    let off = if reference.is_zero() {
-        off
-    } else {
-        off / reference.abs()
-    };
+    let off = if reference.is_zero() { off } else { off / reference.abs() };
     off.to_f64().unwrap_or(f64::NAN)
 }
 

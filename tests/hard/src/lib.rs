@@ -1,5 +1,5 @@
-//! Hard cases: an input, a model or a part of the library, an operation, and a promise: a result that is
-//! finite and within a stated bound, or a refusal by name. The table is tested
+//! Hard cases: an input, a model or a part of the library, an operation, and a promise: a result
+//! that is finite and within a stated bound, or a refusal by name. The table is tested
 //! (`tests/table.rs`) and published (`spec/hard-cases.md`).
 //!
 //! The bounds are part of the project; the tests print the errors that a machine measures.
@@ -61,17 +61,7 @@ pub(crate) const fn within(
     Bound(bound, unit, with): Bound,
     worst: fn() -> f64,
 ) -> Case {
-    Case {
-        input,
-        subject,
-        operation,
-        promise: Promise::Within {
-            bound,
-            unit,
-            with,
-            worst,
-        },
-    }
+    Case { input, subject, operation, promise: Promise::Within { bound, unit, with, worst } }
 }
 
 /// A row that is refused with a text that contains `by`.
@@ -82,12 +72,7 @@ pub(crate) const fn refused(
     by: &'static str,
     said: fn() -> String,
 ) -> Case {
-    Case {
-        input,
-        subject,
-        operation,
-        promise: Promise::Refused { by, said },
-    }
+    Case { input, subject, operation, promise: Promise::Refused { by, said } }
 }
 
 /// The larger of two errors; NaN if either is.
@@ -131,9 +116,7 @@ impl Case {
     pub fn run(&self) -> Result<String, String> {
         let name = format!("{} | {} | {}", self.input, self.subject, self.operation);
         match self.promise {
-            Promise::Within {
-                bound, unit, worst, ..
-            } => {
+            Promise::Within { bound, unit, worst, .. } => {
                 let found = worst();
                 let text = format!("{name}: {found:.3e} {unit} (at most {bound:e})");
                 if found <= bound { Ok(text) } else { Err(text) }

@@ -31,26 +31,17 @@ pub fn page() -> String {
 
 fn row(page: &mut String, case: &Case) {
     let promise = match case.promise {
-        Promise::Within {
-            bound: 0.0, with, ..
-        } => with.to_owned(),
-        Promise::Within {
-            bound, unit, with, ..
-        } => format!("{with} within {} {unit}", number(bound)),
+        Promise::Within { bound: 0.0, with, .. } => with.to_owned(),
+        Promise::Within { bound, unit, with, .. } => {
+            format!("{with} within {} {unit}", number(bound))
+        }
         Promise::Refused { by, .. } => format!("refused: {by}"),
     };
-    let _ = writeln!(
-        page,
-        "| {} | {} | {} | {} |",
-        case.input, case.subject, case.operation, promise
-    );
+    let _ =
+        writeln!(page, "| {} | {} | {} | {} |", case.input, case.subject, case.operation, promise);
 }
 
 /// A number in its usual notation.
 fn number(x: f64) -> String {
-    if (1e-3..1e6).contains(&x) {
-        format!("{x}")
-    } else {
-        format!("{x:e}")
-    }
+    if (1e-3..1e6).contains(&x) { format!("{x}") } else { format!("{x:e}") }
 }

@@ -19,9 +19,7 @@ pub fn spectrum(signal: &[f64]) -> Vec<f64> {
     for segment in segments {
         analyzer.analyze(segment, &mut bins).unwrap();
         let in_band = &bins[BAND.first_bin()..];
-        sum.iter_mut()
-            .zip(in_band)
-            .for_each(|(s, x)| *s += scale * x.norm());
+        sum.iter_mut().zip(in_band).for_each(|(s, x)| *s += scale * x.norm());
     }
     sum
 }
@@ -64,8 +62,8 @@ pub fn fit(model: &LoadedModel, magnitude: &[f64]) -> Result<Fit, HostError> {
     fit_with(model, magnitude, &[], &[])
 }
 
-/// Fits every model but those named, and runs every operation on the parameters; returns the largest
-/// sample over its RMS. NaN, and a line on standard output, if anything fails.
+/// Fits every model but those named, and runs every operation on the parameters; returns the
+/// largest sample over its RMS. NaN, and a line on standard output, if anything fails.
 pub fn every_model_but(refusing: &[&str], signal: &[f64]) -> f64 {
     let magnitude = spectrum(signal);
     let (mut largest, mut failed) = (0.0, false);
@@ -109,9 +107,7 @@ pub fn refusal_of_all(signal: &[f64]) -> String {
 pub fn told<T>(result: Result<T, HostError>) -> String {
     match result {
         Ok(_) => "it was done".to_owned(),
-        Err(HostError::Call {
-            status, message, ..
-        }) => format!("{status:?}: {message}"),
+        Err(HostError::Call { status, message, .. }) => format!("{status:?}: {message}"),
         Err(other) => other.to_string(),
     }
 }
@@ -123,33 +119,22 @@ fn whole_life(model: &LoadedModel, magnitude: &[f64]) -> Result<f64, String> {
     check_shape(model, &fitted.parameters)?;
     let other = fit(model, &spectrum(&signals::friction())).map_err(say("fit of friction"))?;
     let sets = [&fitted.parameters[..], &other.parameters[..]];
-    let half = model
-        .interpolate(&sets, &[0.5, 0.5])
-        .map_err(say("interpolate"))?;
+    let half = model.interpolate(&sets, &[0.5, 0.5]).map_err(say("interpolate"))?;
     check_shape(model, &half)?;
     let mut peak = play(model, &fitted.parameters, &[]).map_err(say("render"))?;
     // From the longer set to the shorter ones: a voice of AR keeps its order.
     let turns: [&[f64]; 3] = [&half, &other.parameters, &fitted.parameters];
     peak = peak.max(play(model, &fitted.parameters, &turns).map_err(say("retune"))?);
-    if peak.is_finite() {
-        Ok(peak)
-    } else {
-        Err("a sample is subnormal".to_owned())
-    }
+    if peak.is_finite() { Ok(peak) } else { Err("a sample is subnormal".to_owned()) }
 }
 
 /// A magnitude is finite and of unit RMS.
 fn check_shape(model: &LoadedModel, parameters: &[f64]) -> Result<(), String> {
-    let magnitude = model
-        .magnitude(parameters, BAND, &BAND.grid_hz())
-        .map_err(|e| e.to_string())?;
+    let magnitude =
+        model.magnitude(parameters, BAND, &BAND.grid_hz()).map_err(|e| e.to_string())?;
     let level = level_rms(&magnitude);
     // sPeak's lines are read through a window, and reach beyond the band.
-    let off = if model.short_name() == "speak" {
-        0.5
-    } else {
-        1e-9
-    };
+    let off = if model.short_name() == "speak" { 0.5 } else { 1e-9 };
     if (level - 1.0).abs() > off {
         return Err(format!("the magnitude's RMS is {level}"));
     }

@@ -5,8 +5,9 @@
 use htex_hard_cases::long::{Blocks, drift_db, phase_error_cycles, run};
 use htex_hard_cases::seen::models;
 
-/// An hour in parts of ten minutes. Ten minutes of 1 kHz of noise are 1.2 million independent values:
-/// the standard error of a part is 0.0056 dB, and shapes of narrow bands have a fraction of that.
+/// An hour in parts of ten minutes. Ten minutes of 1 kHz of noise are 1.2 million independent
+/// values: the standard error of a part is 0.0056 dB, and shapes of narrow bands have a fraction of
+/// that.
 #[test]
 fn an_hour_is_steady() {
     for model in models() {
@@ -23,17 +24,14 @@ fn an_hour_is_steady() {
         assert_eq!(run.power.len(), 6);
         assert_eq!(run.broken, 0, "{}", model.short_name());
         assert!(drift < 0.1, "{}: {drift} dB", model.short_name());
-        // Above 0 by the power that the bins of the band miss at its edges; a map's lines next to them are weaker by the filters.
-        assert!(
-            (-0.1..0.15).contains(&off),
-            "{}: {off} dB",
-            model.short_name()
-        );
+        // Above 0 by the power that the bins of the band miss at its edges; a map's lines next to
+        // them are weaker by the filters.
+        assert!((-0.1..0.15).contains(&off), "{}: {off} dB", model.short_name());
     }
 }
 
-/// Six minutes of four seeds, no two blocks of 64 samples alike. Lines repeat: those of sPeak lie on a grid of 5 Hz, and a map is
-/// crossed again.
+/// Six minutes of four seeds, no two blocks of 64 samples alike. Lines repeat: those of sPeak lie
+/// on a grid of 5 Hz, and a map is crossed again.
 #[test]
 fn seeds_never_repeat_a_block() {
     for model in models().iter().filter(|m| !m.has_lines()) {

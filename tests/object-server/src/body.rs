@@ -41,11 +41,7 @@ impl Faulty {
     }
 
     fn boxed(body: AnyBody, rest: u64, is_stalled: bool) -> AnyBody {
-        let faulty = Self {
-            body,
-            rest,
-            is_stalled,
-        };
+        let faulty = Self { body, rest, is_stalled };
         faulty.boxed_unsync()
     }
 }

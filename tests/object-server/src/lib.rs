@@ -1,5 +1,6 @@
-//! A web server on loopback for tests, in the process of the test: an S3-compatible store (the crates `s3s` and `s3s-fs`) with signatures, and
-//! the files of the bucket `web` also without them. It records its requests and fails them as a test asks.
+//! A web server on loopback for tests, in the process of the test: an S3-compatible store (the
+//! crates `s3s` and `s3s-fs`) with signatures, and the files of the bucket `web` also without them.
+//! It records its requests and fails them as a test asks.
 //!
 //! ```
 //! use htex_object_server::{Fault, Server};
@@ -46,7 +47,8 @@ pub const SECRET_KEY: &str = "sEcReT-of-the-htex-test";
 pub enum Fault {
     /// It is answered.
     None,
-    /// It is refused with this status and the code of an error document, which quotes the request as S3 does.
+    /// It is refused with this status and the code of an error document, which quotes the request
+    /// as S3 does.
     Status(u16, &'static str),
     /// It is answered later.
     Delay(Duration),
@@ -112,7 +114,8 @@ impl Server {
         Self::start_after(Duration::ZERO)
     }
 
-    /// Starts on a free port, which refuses connections for this time, as that of a server that restarts does.
+    /// Starts on a free port, which refuses connections for this time, as that of a server that
+    /// restarts does.
     pub fn start_after(time: Duration) -> Self {
         let folder = TempDir::new().unwrap();
         for bucket in ["surfaces", "web"] {
@@ -140,12 +143,7 @@ impl Server {
             };
             accept(listener, accepting).await;
         });
-        Self {
-            address,
-            folder,
-            shared,
-            runtime: Some(runtime),
-        }
+        Self { address, folder, shared, runtime: Some(runtime) }
     }
 
     /// The endpoint, `http://127.0.0.1:PORT`.
@@ -195,7 +193,8 @@ impl Server {
         found
     }
 
-    /// From now on requests meet these faults; the function gets the number of requests before, from now on.
+    /// From now on requests meet these faults; the function gets the number of requests before,
+    /// from now on.
     pub fn fail(&self, rule: impl Fn(usize, &Seen) -> Fault + Send + Sync + 'static) {
         *self.shared.rule.lock().unwrap() = (Box::new(rule), 0);
         self.shared.seen.lock().unwrap().clear();
@@ -246,9 +245,7 @@ async fn serve(socket: TcpStream, shared: Arc<Shared>) {
         async move { shared.answer(request).await }
     });
     // A connection that was cut by a fault ends with an error here.
-    let _ = http1::Builder::new()
-        .serve_connection(TokioIo::new(socket), answer)
-        .await;
+    let _ = http1::Builder::new().serve_connection(TokioIo::new(socket), answer).await;
 }
 
 /// The error that ends a connection.
@@ -353,7 +350,5 @@ fn refusal(status: u16, code: &str, request: &Request<Incoming>) -> Response<Any
     );
     let response = Response::builder().status(status);
     let response = response.header("content-type", "application/xml");
-    response
-        .body(body::of(Full::new(Bytes::from(text))))
-        .unwrap()
+    response.body(body::of(Full::new(Bytes::from(text)))).unwrap()
 }

@@ -50,10 +50,7 @@ pub fn build_rust(project: &Path, target: Option<&str>) -> PathBuf {
         None => (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX),
     };
     let library = format!("{prefix}{name}{suffix}");
-    folder
-        .join(target.unwrap_or_default())
-        .join("release")
-        .join(library)
+    folder.join(target.unwrap_or_default()).join("release").join(library)
 }
 
 /// What a program prints; its errors if it fails.

@@ -1,4 +1,5 @@
-//! libhtex as it is installed: pkg-config, CMake, the static libraries, SDL2, the plugin for FMOD, and the sizes.
+//! libhtex as it is installed: pkg-config, CMake, the static libraries, SDL2, the plugin for FMOD,
+//! and the sizes.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +10,8 @@ use crate::places::{cargo, workspace};
 use crate::platform::Build;
 use crate::programs::{program, run};
 
-/// Most bytes of the small shared library; the goal is 1.5 MB (docs/languages.md says what takes the rest).
+/// Most bytes of the small shared library; the goal is 1.5 MB (docs/languages.md says what takes
+/// the rest).
 const SMALL: u64 = 2_500_000;
 
 /// Most bytes of the static libraries, small and whole.
@@ -21,30 +23,16 @@ const CMAKE: &str = "cmake_minimum_required(VERSION 3.16)\nproject(app C)\nfind_
                      foreach(library htex static whole whole_static)\n    add_executable(app_${library} main.c)\n    \
                      target_link_libraries(app_${library} PRIVATE htex::${library} m)\nendforeach()\n";
 
-/// How the player of an asset is built, as users type it: its name, and the end of the line of the compiler.
+/// How the player of an asset is built, as users type it: its name, and the end of the line of the
+/// compiler.
 const LINES: [(&str, &str); 7] = [
     ("small", "main.c $(pkg-config --cflags --libs htex) -lm"),
-    (
-        "whole",
-        "main.c $(pkg-config --cflags --libs htex-whole) -lm",
-    ),
-    (
-        "static",
-        "main.c -static $(pkg-config --static --cflags --libs htex)",
-    ),
-    (
-        "whole-static",
-        "main.c -static $(pkg-config --static --cflags --libs htex-whole)",
-    ),
-    (
-        "two",
-        "two.c libother.a -static $(pkg-config --static --cflags --libs htex)",
-    ),
+    ("whole", "main.c $(pkg-config --cflags --libs htex-whole) -lm"),
+    ("static", "main.c -static $(pkg-config --static --cflags --libs htex)"),
+    ("whole-static", "main.c -static $(pkg-config --static --cflags --libs htex-whole)"),
+    ("two", "two.c libother.a -static $(pkg-config --static --cflags --libs htex)"),
     // Of what both libraries have, a linker takes that of the first.
-    (
-        "two-after",
-        "two.c -I prefix/include prefix/lib/libhtex.a libother.a -lpthread -ldl -lm",
-    ),
+    ("two-after", "two.c -I prefix/include prefix/lib/libhtex.a libother.a -lpthread -ldl -lm"),
     (
         "two-whole-after",
         "two.c -I prefix/include prefix/lib/whole/libhtex.a libother.a -lpthread -ldl -lm",
@@ -91,11 +79,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
         prefix: folder.join("prefix"),
         folder: folder.clone(),
     };
-    dist(&Dist {
-        prefix: installed.prefix.clone(),
-        whole: true,
-        build: Build::here()?,
-    })?;
+    dist(&Dist { prefix: installed.prefix.clone(), whole: true, build: Build::here()? })?;
     fs_err::copy(capi.join("examples/play.c"), folder.join("main.c"))?;
     fs_err::write(folder.join("two.c"), TWO)?;
     other(&folder)?;
@@ -110,10 +94,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     fs_err::write(folder.join("CMakeLists.txt"), CMAKE.replace("@LINE@", line))?;
     let mut configure = program("cmake", &folder);
     configure.args(["-S", ".", "-B", "built"]);
-    run(configure.arg(format!(
-        "-DCMAKE_PREFIX_PATH={}",
-        installed.prefix.display()
-    )))?;
+    run(configure.arg(format!("-DCMAKE_PREFIX_PATH={}", installed.prefix.display())))?;
     run(program("cmake", &folder).args(["--build", "built"]))?;
     for name in ["htex", "static", "whole", "whole_static"] {
         samples.push(installed.played(&format!("built/app_{name}"))?);
@@ -134,11 +115,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
 fn other(folder: &Path) -> Result<()> {
     fs_err::write(folder.join("other.rs"), OTHER)?;
     let rustc = Path::new(&cargo()).with_file_name("rustc");
-    let rustc = if rustc.exists() {
-        rustc
-    } else {
-        "rustc".into()
-    };
+    let rustc = if rustc.exists() { rustc } else { "rustc".into() };
     run(program(rustc, folder).args(["--crate-type", "staticlib", "-O", "other.rs"]))
 }
 
@@ -150,10 +127,7 @@ fn examples(installed: &Installed, capi: &Path) -> Result<()> {
         "cc -std=c11 -O1 -Wall -Werror -DCOUNTED -pthread {} {flags} -o real_time",
         real_time.display()
     )))?;
-    run(installed
-        .program("real_time")
-        .arg(&installed.asset)
-        .arg("20000"))?;
+    run(installed.program("real_time").arg(&installed.asset).arg("20000"))?;
     let sdl = capi.join("examples/play_sdl.c");
     run(&mut installed.shell(&format!(
         "cc -std=c11 -Wall -Werror {} $(pkg-config --cflags --libs htex-whole sdl2) -lm -o play_sdl",
@@ -164,7 +138,8 @@ fn examples(installed: &Installed, capi: &Path) -> Result<()> {
     run(play.env("SDL_AUDIODRIVER", "dummy"))
 }
 
-/// The plugin for FMOD, with the static library in it and no names but its own, is played by the host of its tests, which stands for FMOD.
+/// The plugin for FMOD, with the static library in it and no names but its own, is played by the
+/// host of its tests, which stands for FMOD.
 fn fmod(installed: &Installed, capi: &Path) -> Result<()> {
     let tests = capi.join("tests");
     let (prefix, headers) = (installed.prefix.display(), tests.join("fmod"));
@@ -186,7 +161,8 @@ fn fmod(installed: &Installed, capi: &Path) -> Result<()> {
     run(&mut installed.shell(names))
 }
 
-/// The libraries have no names but those of the header, and those of the shared ones have a version.
+/// The libraries have no names but those of the header, and those of the shared ones have a
+/// version.
 fn names(installed: &Installed) -> Result<()> {
     for folder in ["lib", "lib/whole"] {
         let lib = installed.prefix.join(folder);
@@ -195,24 +171,14 @@ fn names(installed: &Installed) -> Result<()> {
             let mut nm = installed.shell(&line);
             let output = nm.output()?;
             let text = String::from_utf8_lossy(&output.stdout).into_owned();
-            let names: Vec<&str> = text
-                .lines()
-                .filter_map(|line| line.split(' ').nth(2))
-                .collect();
+            let names: Vec<&str> = text.lines().filter_map(|line| line.split(' ').nth(2)).collect();
             let is_ours = |name: &&str| match file {
                 "libhtex.a" => name.starts_with("htex_"),
                 _ => name.ends_with("@@HTEX_1.0") || *name == "HTEX_1.0",
             };
             let strange: Vec<_> = names.iter().filter(|name| !is_ours(name)).collect();
-            ensure!(
-                names.len() > 50,
-                "{folder}/{file} has {} names",
-                names.len()
-            );
-            ensure!(
-                strange.is_empty(),
-                "{folder}/{file} has the names {strange:?}"
-            );
+            ensure!(names.len() > 50, "{folder}/{file} has {} names", names.len());
+            ensure!(strange.is_empty(), "{folder}/{file} has the names {strange:?}");
         }
     }
     Ok(())

@@ -1,4 +1,5 @@
-//! What a sample costs in each language, against Rust with blocks of the same length, in one run turn about.
+//! What a sample costs in each language, against Rust with blocks of the same length, in one run
+//! turn about.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -20,7 +21,8 @@ const BLOCK: usize = 64;
 /// Samples of a second, which scripts ask for at once.
 const SECOND: usize = 20_000;
 
-/// A language, the program that prints its time, the samples of a call, and the most that it may cost.
+/// A language, the program that prints its time, the samples of a call, and the most that it may
+/// cost.
 struct Cost {
     language: &'static str,
     command: Vec<OsString>,
@@ -92,40 +94,21 @@ fn programs(folder: &Path, workspace: &Path) -> Result<(Vec<OsString>, Vec<Cost>
     ]);
     run(build.current_dir(workspace))?;
     let prefix = folder.join("prefix");
-    dist(&Dist {
-        prefix: prefix.clone(),
-        whole: true,
-        build: Build::here()?,
-    })?;
+    dist(&Dist { prefix: prefix.clone(), whole: true, build: Build::here()? })?;
     crate::web::web(&folder.join("htex"))?;
     let costs = workspace.join("sdk/capi/tests/costs");
     let mut compile = program("cc", folder);
-    compile
-        .args(["-std=c11", "-O2", "-I"])
-        .arg(prefix.join("include"));
-    compile
-        .arg(costs.join("block.c"))
-        .arg("-L")
-        .arg(prefix.join("lib/whole"));
+    compile.args(["-std=c11", "-O2", "-I"]).arg(prefix.join("include"));
+    compile.arg(costs.join("block.c")).arg("-L").arg(prefix.join("lib/whole"));
     run(compile.args(["-lhtex", "-o", "block"]))?;
     let mut compile = program("mcs", folder);
-    compile
-        .args(["-optimize+", "-out:Block.exe"])
-        .arg(costs.join("Block.cs"));
+    compile.args(["-optimize+", "-out:Block.exe"]).arg(costs.join("Block.cs"));
     run(compile.arg(prefix.join("share/htex/unity/Runtime/Htex.cs")))?;
-    copy(
-        &workspace.join("sdk/web/tests/block.mjs"),
-        &folder.join("block.mjs"),
-    )?;
+    copy(&workspace.join("sdk/web/tests/block.mjs"), &folder.join("block.mjs"))?;
     let python = super::python::environment(folder, "test")?;
     let rust = fs_err::canonicalize(target().join("release/examples/block"))?;
     let words = |words: &[&str]| words.iter().map(OsString::from).collect();
-    let cost = |language, command, samples, most| Cost {
-        language,
-        command,
-        samples,
-        most,
-    };
+    let cost = |language, command, samples, most| Cost { language, command, samples, most };
     let block = workspace.join("sdk/python/tests/costs/block.py");
     let python = vec![python.into(), block.into()];
     let all = vec![

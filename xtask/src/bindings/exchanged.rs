@@ -1,4 +1,5 @@
-//! Files of other haptic formats that the command writes of a texture, and the textures that it makes of them again.
+//! Files of other haptic formats that the command writes of a texture, and the textures that it
+//! makes of them again.
 
 use std::path::Path;
 
@@ -44,7 +45,8 @@ pub(super) fn copy_model_file(folder: &Path) -> Result<()> {
     copy(&workspace().join(HATT), &folder.join("felt.xml"))
 }
 
-/// Writes the files of `vinyl.htex`, and what the command makes of each: `imported/taps.htex` of `taps.ahap`.
+/// Writes the files of `vinyl.htex`, and what the command makes of each: `imported/taps.htex` of
+/// `taps.ahap`.
 pub(super) fn write(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
     copy_model_file(folder)?;
     let formats = [

@@ -32,29 +32,24 @@ const SCENES: [&str; 2] = ["two-swatches", "electrovibration"];
 /// Textures of the library beside those of the fixtures: more than a page of its index holds.
 const COPIES: usize = 999;
 
-/// Writes an asset of six models (`vinyl.htex`), a mesh that carries it (`vinyl.glb`), an asset that brings its model along (`bursts.htex`), their samples at 48 kHz, the
-/// spectrum of Bands, what the command tells of the asset, a library (`many.htexlib`) and its list, scenes with their samples and
-/// plans, the models as modules, a module that does not return, and files of other haptic formats with what is imported of them.
+/// Writes an asset of six models (`vinyl.htex`), a mesh that carries it (`vinyl.glb`), an asset
+/// that brings its model along (`bursts.htex`), their samples at 48 kHz, the spectrum of Bands,
+/// what the command tells of the asset, a library (`many.htexlib`) and its list, scenes with their
+/// samples and plans, the models as modules, a module that does not return, and files of other
+/// haptic formats with what is imported of them.
 pub(super) fn write(folder: &Path) -> Result<()> {
     fs_err::create_dir_all(folder)?;
     let command = command()?;
-    let htex = |arguments: &[&str]| {
-        run(program(&command, folder)
-            .args(arguments)
-            .stdout(Stdio::null()))
-    };
+    let htex =
+        |arguments: &[&str]| run(program(&command, folder).args(arguments).stdout(Stdio::null()));
     for module in files(&plugins::wasm()?)? {
-        if let (Some(name), true) = (
-            module.file_name(),
-            module.extension().is_some_and(|e| e == "wasm"),
-        ) {
+        if let (Some(name), true) =
+            (module.file_name(), module.extension().is_some_and(|e| e == "wasm"))
+        {
             copy(&module, &folder.join(name))?;
         }
     }
-    for source in [
-        "examples/model-c-bursts/bursts.c",
-        "sdk/web/tests/endless.c",
-    ] {
+    for source in ["examples/model-c-bursts/bursts.c", "sdk/web/tests/endless.c"] {
         let name = Path::new(source).with_extension("wasm");
         c_module::build(source, &folder.join(name.file_name().unwrap_or_default()))?;
     }
@@ -72,13 +67,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
     htex(&["fit", "vinyl.csv", "-o", "vinyl.htex"])?;
     htex(&["export", "vinyl.htex", "--to", "gltf", "-o", "vinyl.glb"])?;
     let embedded = ["--embed-plugin", "bursts.wasm", "-o", "bursts.htex"];
-    htex(
-        &[
-            &["fit", "vinyl.csv", "--model", "bursts,sbeta"][..],
-            &embedded,
-        ]
-        .concat(),
-    )?;
+    htex(&[&["fit", "vinyl.csv", "--model", "bursts,sbeta"][..], &embedded].concat())?;
     let synth = |asset: &str, model: &str| {
         let out = format!("{model}.wav");
         let what = ["synth", asset, "--model", model, "-o", &out];
@@ -95,9 +84,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
     read_otherwise(folder, &htex)?;
     let printed = |arguments: &[&str], out: &str| {
         let file = fs_err::File::create(folder.join(out))?;
-        run(program(&command, folder)
-            .args(arguments)
-            .stdout(file.into_file()))
+        run(program(&command, folder).args(arguments).stdout(file.into_file()))
     };
     let spectrum = ["spectrum", "vinyl.htex", "--model", "bands", "--json"];
     printed(&spectrum, "spectrum.json")?;
@@ -116,24 +103,15 @@ pub(super) fn write(folder: &Path) -> Result<()> {
     copy_many(folder)?;
     let textures = ["many", "vinyl.htex", "bursts.htex"];
     htex(
-        &[
-            &[
-                "lib",
-                "pack",
-                "many.htexlib",
-                "--name",
-                "Many",
-                "--unlicensed",
-            ][..],
-            &textures,
-        ]
-        .concat(),
+        &[&["lib", "pack", "many.htexlib", "--name", "Many", "--unlicensed"][..], &textures]
+            .concat(),
     )?;
     printed(&["lib", "ls", "many.htexlib", "--json"], "many.json")
 }
 
-/// What the command makes of the same as the author module of the npm package: textures of a part of a recording, of samples, by hand, mixed
-/// and edited, baked blocks, a library of two, and what is read of a recording (`process.json`).
+/// What the command makes of the same as the author module of the npm package: textures of a part
+/// of a recording, of samples, by hand, mixed and edited, baked blocks, a library of two, and what
+/// is read of a recording (`process.json`).
 fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
     for name in ["pcm16.flac", "pcm16.wav"] {
         let source = workspace().join("sdk/recording/tests/lab").join(name);
@@ -141,38 +119,18 @@ fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> 
     }
     let given = ["--speed", SPEED, "--force", FORCE];
     let fitted = ["fit", "vinyl.csv", "--from", "2", "--to", "8"];
-    let options = [
-        "--model",
-        "ar,bands",
-        "--option",
-        "ar.order=8",
-        "--keep-reference",
-    ];
+    let options = ["--model", "ar,bands", "--option", "ar.order=8", "--keep-reference"];
     let said = ["--license", "CC0-1.0", "--tag", "smooth", "-o", "part.htex"];
     htex(&[&fitted[..], &options, &said].concat())?;
     let samples = ["fit", "ar.wav", "--scale", "2", "-o", "samples.htex"];
     htex(&[&samples[..], &given].concat())?;
     let made = ["make", "--model", "sbeta", "--set", "alpha=2", "beta=5"];
     htex(
-        &[
-            &made[..],
-            &[
-                "--level",
-                "0.02",
-                "--at",
-                "speed=80,force=0.5",
-                "-o",
-                "hum.htex",
-            ],
-        ]
-        .concat(),
+        &[&made[..], &["--level", "0.02", "--at", "speed=80,force=0.5", "-o", "hum.htex"]].concat(),
     )?;
     let beta = &["alpha=2", "beta=5"][..];
     let cepstrum = &["cepstrum=-12,3.1,0.4", "bands=26", "inverse=0"][..];
-    for (model, set, out) in [
-        ("sbeta", beta, "beta.htex"),
-        ("mfcc", cepstrum, "cepstrum.htex"),
-    ] {
+    for (model, set, out) in [("sbeta", beta, "beta.htex"), ("mfcc", cepstrum, "cepstrum.htex")] {
         let made = ["make", "--model", model, "--set"];
         let level = ["--level", "0.02", "--at", "speed=80,force=0.5"];
         let said = ["--quantity", "acceleration", "--license", "CC0-1.0"];
@@ -188,19 +146,12 @@ fn authored(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> 
     htex(&[&mixed[..], &["--name", "between", "-o", "mixed.htex"]].concat())?;
     let edited = ["edit", "vinyl.htex", "--author", "A. Weaver"];
     htex(&[&edited[..], &["--contact", "tool", "-o", "edited.htex"]].concat())?;
-    let pack = [
-        "lib",
-        "pack",
-        "two.htexlib",
-        "--name",
-        "Two",
-        "--unlicensed",
-    ];
+    let pack = ["lib", "pack", "two.htexlib", "--name", "Two", "--unlicensed"];
     htex(&[&pack[..], &["vinyl.htex", "bursts.htex"]].concat())
 }
 
-/// Textures of the recording with the setup's response, of its forces (`sensors.csv`) with a tracker of 60 Hz (`tracker.csv`), and of a
-/// free motion on grids.
+/// Textures of the recording with the setup's response, of its forces (`sensors.csv`) with a
+/// tracker of 60 Hz (`tracker.csv`), and of a free motion on grids.
 fn read_otherwise(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Result<()> {
     let models = ["--model", "ar,bands"];
     let compensated = ["--frf", "response.csv", "-o", "compensated.htex"];
@@ -223,14 +174,7 @@ fn read_otherwise(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Resul
     fs_err::write(folder.join("tracker.csv"), tracker)?;
     let map = "time=stamp:0.001,x=px,y=py";
     let tracked = ["--tracker", "tracker.csv", "--tracker-map", map];
-    htex(
-        &[
-            &["fit", "sensors.csv", "-o", "tracked.htex"][..],
-            &models,
-            &tracked,
-        ]
-        .concat(),
-    )?;
+    htex(&[&["fit", "sensors.csv", "-o", "tracked.htex"][..], &models, &tracked].concat())?;
     let free = ["simulate", "--surface", "vinyl", "--motion", "free"];
     let length = ["--seconds", "30", "--rate", "5000", "-o", "free.csv"];
     htex(&[&free[..], &length].concat())?;
@@ -240,18 +184,13 @@ fn read_otherwise(folder: &Path, htex: &impl Fn(&[&str]) -> Result<()>) -> Resul
     htex(&[&bands[..], &lines, &["-o", "lines.htex"]].concat())
 }
 
-/// Copies the assets to the folder `many`; the module of `bursts.htex` is then in the library twice.
+/// Copies the assets to the folder `many`; the module of `bursts.htex` is then in the library
+/// twice.
 fn copy_many(folder: &Path) -> Result<()> {
     let floor = folder.join("many/floor");
     fs_err::create_dir_all(&floor)?;
     for i in 0..COPIES {
-        copy(
-            &folder.join("vinyl.htex"),
-            &floor.join(format!("{i:04}.htex")),
-        )?;
+        copy(&folder.join("vinyl.htex"), &floor.join(format!("{i:04}.htex")))?;
     }
-    copy(
-        &folder.join("bursts.htex"),
-        &folder.join("many/bursts again.htex"),
-    )
+    copy(&folder.join("bursts.htex"), &folder.join("many/bursts again.htex"))
 }

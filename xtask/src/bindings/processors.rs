@@ -33,36 +33,20 @@ fn same(folder: &Path, surfaces: &[&str]) -> Result<()> {
     let folder = fs_err::canonicalize(folder)?;
     let native = fixtures::command()?;
     let native = fs_err::canonicalize(&native)?;
-    let expected = written(
-        &folder.join("native"),
-        std::slice::from_ref(&native),
-        surfaces,
-    )?;
+    let expected = written(&folder.join("native"), std::slice::from_ref(&native), surfaces)?;
     let mut all: Vec<(String, Vec<PathBuf>)> = Vec::new();
     if cfg!(target_arch = "x86_64") {
         all.extend(X86.map(|cpu| {
             let under = ["qemu-x86_64", "-cpu", cpu].map(PathBuf::from);
-            (
-                cpu.to_owned(),
-                [&under[..], std::slice::from_ref(&native)].concat(),
-            )
+            (cpu.to_owned(), [&under[..], std::slice::from_ref(&native)].concat())
         }));
     }
-    all.push((
-        "aarch64".to_owned(),
-        vec!["qemu-aarch64".into(), aarch64(&folder)?],
-    ));
+    all.push(("aarch64".to_owned(), vec!["qemu-aarch64".into(), aarch64(&folder)?]));
     let compared = at_a_time(2, all, |(name, command)| {
         let found = written(&folder.join(&name), &command, surfaces)?;
-        let other = expected
-            .iter()
-            .filter(|(file, bytes)| found.get(*file) != Some(bytes));
+        let other = expected.iter().filter(|(file, bytes)| found.get(*file) != Some(bytes));
         let other: Vec<&str> = other.map(|(file, _)| &file[..]).collect();
-        eprintln!(
-            "bindings: {name}: {} files, {} differ",
-            expected.len(),
-            other.len()
-        );
+        eprintln!("bindings: {name}: {} files, {} differ", expected.len(), other.len());
         ensure!(other.is_empty(), "{name}: {} differ", other.join(", "));
         Ok(())
     });
@@ -76,13 +60,7 @@ fn aarch64(folder: &Path) -> Result<PathBuf> {
     fs_err::write(&empty, "!<arch>\n")?;
     let mut build = Command::new(cargo());
     build
-        .args([
-            "build",
-            "--locked",
-            "--package",
-            "htex-cli",
-            "--no-default-features",
-        ])
+        .args(["build", "--locked", "--package", "htex-cli", "--no-default-features"])
         .args(["--profile", "quick", "--target", AARCH64])
         .env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_LINKER", "rust-lld")
         .env(
@@ -96,7 +74,8 @@ fn aarch64(folder: &Path) -> Result<PathBuf> {
     Ok(fs_err::canonicalize(built)?)
 }
 
-/// All files that a command writes: recordings, spectra, assets, samples of all models at several motions, and of a scene.
+/// All files that a command writes: recordings, spectra, assets, samples of all models at several
+/// motions, and of a scene.
 fn written(
     folder: &Path,
     command: &[PathBuf],
@@ -113,68 +92,27 @@ fn written(
     for surface in surfaces {
         let [csv, asset] = ["csv", "htex"].map(|kind| format!("{surface}.{kind}"));
         htex(&["simulate", "--surface", surface, "-o", &csv], None)?;
-        htex(
-            &["process", &csv, "--json"],
-            Some(&format!("{surface}.json")),
-        )?;
+        htex(&["process", &csv, "--json"], Some(&format!("{surface}.json")))?;
         let fit = ["fit", &csv, "--model", "all,arma,map", "-o", &asset];
         htex(&[&fit[..], &["--keep-reference"]].concat(), None)?;
         for model in &models()? {
             let out = format!("{surface}-{model}.wav");
-            let what = [
-                "synth",
-                &asset,
-                "--model",
-                model,
-                "--seconds",
-                "1",
-                "-o",
-                &out,
-            ];
+            let what = ["synth", &asset, "--model", model, "--seconds", "1", "-o", &out];
             htex(
-                &[
-                    &what[..],
-                    &["--rate", "44100", "--speed", "97", "--force", "0.3"],
-                ]
-                .concat(),
+                &[&what[..], &["--rate", "44100", "--speed", "97", "--force", "0.3"]].concat(),
                 None,
             )?;
         }
     }
     // Another rate, whose segments have a prime length, and a fit to signals.
-    htex(
-        &[
-            "simulate",
-            "--surface",
-            "sandpaper",
-            "--rate",
-            "10015",
-            "-o",
-            "sandpaper.csv",
-        ],
-        None,
-    )?;
-    let burg = [
-        "fit",
-        "sandpaper.csv",
-        "--model",
-        "ar",
-        "--option",
-        "ar.method=burg",
-    ];
+    htex(&["simulate", "--surface", "sandpaper", "--rate", "10015", "-o", "sandpaper.csv"], None)?;
+    let burg = ["fit", "sandpaper.csv", "--model", "ar", "--option", "ar.method=burg"];
     htex(&[&burg[..], &["-o", "sandpaper.htex"]].concat(), None)?;
     let scene = workspace().join("examples/scenes/two-swatches.scene.json");
     let scene = fs_err::canonicalize(scene)?;
-    htex(
-        &["render", &scene.to_string_lossy(), "-o", "scene.wav"],
-        None,
-    )?;
+    htex(&["render", &scene.to_string_lossy(), "-o", "scene.wav"], None)?;
     let read = |file: PathBuf| {
-        let name = file
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
+        let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         Ok((name, fs_err::read(&file)?))
     };
     files(folder)?.into_iter().map(read).collect()

@@ -12,7 +12,8 @@ use crate::programs::{program, run};
 pub(super) fn test(folder: &Path) -> Result<()> {
     let folder = fs_err::canonicalize(folder)?;
     let python = environment(&folder, "test,lab")?;
-    // Outside the sources, so that the installed package is imported; its README's examples are among the tests.
+    // Outside the sources, so that the installed package is imported; its README's examples are
+    // among the tests.
     let tests = package()?.join("tests");
     run(program(python, &folder)
         .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
@@ -20,15 +21,15 @@ pub(super) fn test(folder: &Path) -> Result<()> {
         .env("PYTHONDONTWRITEBYTECODE", "1"))
 }
 
-/// Builds the wheel and installs it, with the dependencies of an extra, into an empty environment; returns its interpreter.
+/// Builds the wheel and installs it, with the dependencies of an extra, into an empty environment;
+/// returns its interpreter.
 pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf> {
     let venv = folder.join("venv");
     run(program("python3", folder).args(["-m", "venv"]).arg(&venv))?;
     let python = venv.join("bin/python");
     let pip = |arguments: &[&str]| {
         let mut pip = program(&python, folder);
-        pip.args(["-m", "pip", "--disable-pip-version-check", "--quiet"])
-            .args(arguments);
+        pip.args(["-m", "pip", "--disable-pip-version-check", "--quiet"]).args(arguments);
         pip
     };
     // What the command and libhtex have built is not built again.

@@ -21,11 +21,7 @@ pub(super) fn test(folder: &Path) -> Result<()> {
     }
     let quiet = ["--silent", "--no-audit", "--no-fund"];
     run(program("npm", &tests).arg("install").args(quiet))?;
-    run(program("npm", &tests)
-        .arg("install")
-        .args(quiet)
-        .args(["--no-save"])
-        .arg(&package))?;
+    run(program("npm", &tests).arg("install").args(quiet).args(["--no-save"]).arg(&package))?;
     for project in ["tsconfig.json", "tsconfig.node.json"] {
         run(program("npx", &tests).args(["tsc", "--project", project]))?;
     }
@@ -63,13 +59,7 @@ fn catalogue(fixtures: &Path, package: &Path) -> Result<()> {
     let file = fixtures.join("library.toml");
     fs_err::write(&file, recipe)?;
     run(program(&fixtures::command()?, fixtures)
-        .args([
-            "build",
-            "library.toml",
-            "-o",
-            "catalogue",
-            "--browser-package",
-        ])
+        .args(["build", "library.toml", "-o", "catalogue", "--browser-package"])
         .arg(package)
         .stdout(std::process::Stdio::null()))
 }

@@ -21,10 +21,7 @@ pub(super) fn follow(html: &Path) -> Result<usize> {
         for loaded in loaded(text).filter(|address| is_network(address)) {
             wrong.push(format!("{}: loads {loaded}", page.display()));
         }
-        for link in values(text, "href")
-            .chain(values(text, "src"))
-            .map(unescaped)
-        {
+        for link in values(text, "href").chain(values(text, "src")).map(unescaped) {
             if is_address(&link) || link.starts_with("javascript:") {
                 continue;
             }
@@ -46,10 +43,7 @@ fn collect(folder: &Path, pages: &mut BTreeMap<PathBuf, String>) -> Result<()> {
         let path = entry?.path();
         if path.is_dir() {
             collect(&path, pages)?;
-        } else if path
-            .extension()
-            .is_some_and(|extension| extension == "html")
-        {
+        } else if path.extension().is_some_and(|extension| extension == "html") {
             let text = fs::read_to_string(&path)?;
             pages.insert(path, text);
         }
@@ -77,20 +71,13 @@ fn leads(page: &Path, link: &str, anchors: &BTreeMap<&Path, BTreeSet<String>>) -
 /// The values of an attribute.
 fn values<'a>(text: &'a str, attribute: &str) -> impl Iterator<Item = &'a str> {
     let begin = format!(" {attribute}=\"");
-    let ends = text
-        .match_indices(&begin)
-        .map(|(at, begin)| at + begin.len())
-        .collect::<Vec<_>>();
-    ends.into_iter()
-        .filter_map(|at| Some(text[at..].split_once('"')?.0))
+    let ends = text.match_indices(&begin).map(|(at, begin)| at + begin.len()).collect::<Vec<_>>();
+    ends.into_iter().filter_map(|at| Some(text[at..].split_once('"')?.0))
 }
 
 /// What a page loads: scripts, pictures, style sheets.
 fn loaded(text: &str) -> impl Iterator<Item = &str> {
-    let sheets = text
-        .split("<link ")
-        .skip(1)
-        .filter_map(|rest| rest.split_once('>'));
+    let sheets = text.split("<link ").skip(1).filter_map(|rest| rest.split_once('>'));
     values(text, "src").chain(sheets.flat_map(|(tag, _)| {
         let start = tag.find("href=\"").map(|at| at + 6);
         start.and_then(|start| Some(tag[start..].split_once('"')?.0))
@@ -103,13 +90,8 @@ fn is_network(address: &str) -> bool {
 
 /// A text without the entities of HTML.
 fn unescaped(text: &str) -> String {
-    let text = text
-        .replace("&quot;", "\"")
-        .replace("&#39;", "'")
-        .replace("&#x27;", "'");
-    text.replace("&lt;", "<")
-        .replace("&gt;", ">")
-        .replace("&amp;", "&")
+    let text = text.replace("&quot;", "\"").replace("&#39;", "'").replace("&#x27;", "'");
+    text.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
 }
 
 /// A path or fragment without `%20` and its like.
@@ -117,9 +99,7 @@ fn unquoted(text: &str) -> String {
     let mut bytes = Vec::new();
     let mut rest = text.as_bytes();
     while let Some((&first, after)) = rest.split_first() {
-        let code = after
-            .get(..2)
-            .and_then(|digits| std::str::from_utf8(digits).ok());
+        let code = after.get(..2).and_then(|digits| std::str::from_utf8(digits).ok());
         let code = code.and_then(|digits| u8::from_str_radix(digits, 16).ok());
         match (first, code) {
             (b'%', Some(code)) => {

@@ -12,7 +12,8 @@ use crate::places::workspace;
 /// Where the order of the pages stands.
 const SUMMARY: &str = "docs/SUMMARY.md";
 
-/// Copies the pages and what they link to into a folder, with the repository's paths, and returns the number of pages.
+/// Copies the pages and what they link to into a folder, with the repository's paths, and returns
+/// the number of pages.
 pub(super) fn assemble(source: &Path) -> Result<usize> {
     let root = fs::canonicalize(workspace())?;
     let summary = fs::read_to_string(root.join(SUMMARY))?;
@@ -23,9 +24,7 @@ pub(super) fn assemble(source: &Path) -> Result<usize> {
         assembly.copy_page(&page)?;
     }
     let further = assembly.pages[listed..].iter();
-    let further: Vec<String> = further
-        .map(|page| assembly.entry(page))
-        .collect::<Result<_>>()?;
+    let further: Vec<String> = further.map(|page| assembly.entry(page)).collect::<Result<_>>()?;
     let more = format!("\n# Beside these\n\n{}", further.concat());
     fs::write(source.join("SUMMARY.md"), text + &more)?;
     Ok(assembly.pages.len())
@@ -45,20 +44,11 @@ struct Assembly {
 
 impl Assembly {
     fn new(root: PathBuf, source: PathBuf) -> Self {
-        Self {
-            root,
-            source,
-            pages: Vec::new(),
-            waiting: VecDeque::new(),
-            folders: BTreeSet::new(),
-        }
+        Self { root, source, pages: Vec::new(), waiting: VecDeque::new(), folders: BTreeSet::new() }
     }
 
     fn copy_page(&mut self, page: &Path) -> Result<()> {
-        let text = match page
-            .parent()
-            .filter(|folder| self.folders.contains(*folder))
-        {
+        let text = match page.parent().filter(|folder| self.folders.contains(*folder)) {
             Some(folder) if page.ends_with("README.md") => self.list(folder)?,
             _ => fs::read_to_string(self.root.join(page))?,
         };
@@ -66,7 +56,8 @@ impl Assembly {
         self.write(page, text.as_bytes())
     }
 
-    /// Takes in what a page links to. Returns the page with its links from the top of the book, and as it stands in its folder.
+    /// Takes in what a page links to. Returns the page with its links from the top of the book, and
+    /// as it stands in its folder.
     fn with_links(&mut self, page: &Path, text: &str) -> Result<(String, String)> {
         let mut found = Vec::new();
         for range in links(text) {
@@ -100,16 +91,9 @@ impl Assembly {
             }
             linked = linked.join("README.md");
         } else {
-            ensure!(
-                self.root.join(&linked).is_file(),
-                "{}: there is no such file",
-                place()
-            );
+            ensure!(self.root.join(&linked).is_file(), "{}: there is no such file", place());
         }
-        if linked
-            .extension()
-            .is_some_and(|extension| extension == "md")
-        {
+        if linked.extension().is_some_and(|extension| extension == "md") {
             if !self.pages.contains(&linked) {
                 self.pages.push(linked.clone());
                 self.waiting.push_back(linked.clone());
@@ -131,24 +115,16 @@ impl Assembly {
             }
         }
         names.sort();
-        let lines = names
-            .iter()
-            .map(|name| format!("- [{name}]({})\n", name.replace(' ', "%20")));
-        Ok(format!(
-            "# {}\n\n{}",
-            folder.display(),
-            lines.collect::<String>()
-        ))
+        let lines = names.iter().map(|name| format!("- [{name}]({})\n", name.replace(' ', "%20")));
+        Ok(format!("# {}\n\n{}", folder.display(), lines.collect::<String>()))
     }
 
     /// The line of the summary for a page that it does not list.
     fn entry(&self, page: &Path) -> Result<String> {
         let text = fs::read_to_string(self.source.join(page))?;
         let title = text.lines().find_map(|line| line.strip_prefix("# "));
-        let title = title.map_or_else(
-            || page.display().to_string(),
-            |title| title.replace(['[', ']', '`'], ""),
-        );
+        let title = title
+            .map_or_else(|| page.display().to_string(), |title| title.replace(['[', ']', '`'], ""));
         Ok(format!("- [{title}]({})\n", page.display()))
     }
 

@@ -1,7 +1,8 @@
 //! Installs libhtex: libraries, headers, C#, pkg-config and CMake files.
 //!
-//! The library in `lib` is small: without scenes, without libraries of textures and without the engine of WASM modules. `lib/whole` has
-//! the one with all of it, under the same names: the functions are the same, and those that the small one lacks say so.
+//! The library in `lib` is small: without scenes, without libraries of textures and without the
+//! engine of WASM modules. `lib/whole` has the one with all of it, under the same names: the
+//! functions are the same, and those that the small one lacks say so.
 
 mod links;
 mod packages;
@@ -64,15 +65,15 @@ fn build_small(build: &Build) -> Result<PathBuf> {
 
 /// Builds the whole library; returns the folder of its files.
 ///
-/// With the command, whose features it then has: what both need is built once. Readers of recordings are built, too, and as nothing
-/// here calls them, not linked.
+/// With the command, whose features it then has: what both need is built once. Readers of
+/// recordings are built, too, and as nothing here calls them, not linked.
 fn build_whole(build: &Build) -> Result<PathBuf> {
     run(build.cargo_of_both().args(of_command(build)))?;
     Ok(build.built())
 }
 
-/// Features of the command on a platform. What checks certificates by the system needs frameworks of Apple, which only an SDK of theirs
-/// has.
+/// Features of the command on a platform. What checks certificates by the system needs frameworks
+/// of Apple, which only an SDK of theirs has.
 pub(crate) fn of_command(build: &Build) -> &'static [&'static str] {
     const ALL_BUT_CLOUD: [&str; 3] = [
         "--no-default-features",

@@ -19,10 +19,7 @@ pub(super) fn write(lib: &Path, version: &str, system: System, whole: bool) -> R
         fs::write(pkg_config.join("htex-whole.pc"), text)?;
         targets += &cmake_targets("whole", "whole_static", "/whole", system);
     }
-    fs::write(
-        cmake.join("htexConfig.cmake"),
-        CMAKE.replace("@TARGETS@", &targets),
-    )?;
+    fs::write(cmake.join("htexConfig.cmake"), CMAKE.replace("@TARGETS@", &targets))?;
     let text = CMAKE_VERSION.replace("@VERSION@", version);
     fs::write(
         cmake.join("htexConfigVersion.cmake"),

@@ -9,7 +9,8 @@ use super::{copy, copy_folder};
 use crate::places::workspace;
 use crate::platform::{Platform, System};
 
-/// The folder with what Unity imports as libraries, and the one, which Unity ignores, with the settings of imports of those that are not there.
+/// The folder with what Unity imports as libraries, and the one, which Unity ignores, with the
+/// settings of imports of those that are not there.
 const PLUGINS: &str = "Plugins";
 const SET_ASIDE: &str = "Plugins~";
 
@@ -25,7 +26,8 @@ pub(crate) fn package(libraries: &[(Platform, PathBuf)], to: &Path) -> Result<()
     set_aside(&plugins, to)
 }
 
-/// Folder and name of the library of a platform. Unity has no editor and no player for Linux on ARM.
+/// Folder and name of the library of a platform. Unity has no editor and no player for Linux on
+/// ARM.
 fn plugin(platform: Platform) -> Option<(&'static str, &'static str)> {
     match platform.name {
         "x86_64-linux" => Some(("Linux/x86_64", "libhtex.so")),
@@ -35,7 +37,8 @@ fn plugin(platform: Platform) -> Option<(&'static str, &'static str)> {
     }
 }
 
-/// Moves each `NAME.meta` whose NAME is not there, of which Unity would say that it is missing, and removes empty folders.
+/// Moves each `NAME.meta` whose NAME is not there, of which Unity would say that it is missing, and
+/// removes empty folders.
 fn set_aside(folder: &Path, package: &Path) -> Result<()> {
     for folder in entries(folder)?.iter().filter(|entry| entry.is_dir()) {
         set_aside(folder, package)?;

@@ -49,10 +49,7 @@ fn cargo(nightly: bool) -> Command {
     if nightly {
         let mut cargo = Command::new("cargo");
         // Variables that the current toolchain set would override the choice of another.
-        cargo
-            .env_remove("RUSTUP_TOOLCHAIN")
-            .env_remove("CARGO")
-            .env_remove("RUSTC");
+        cargo.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").env_remove("RUSTC");
         cargo.arg("+nightly");
         return cargo;
     }
@@ -70,10 +67,7 @@ fn target_folder() -> PathBuf {
 /// The triple of this machine.
 fn host() -> Result<String> {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let output = Command::new(rustc)
-        .arg("-vV")
-        .output()
-        .context("cannot run rustc")?;
+    let output = Command::new(rustc).arg("-vV").output().context("cannot run rustc")?;
     let text = String::from_utf8_lossy(&output.stdout);
     let host = text.lines().find_map(|line| line.strip_prefix("host: "));
     let host = host.context("rustc does not say what it builds for")?;

@@ -1,9 +1,11 @@
 //! `cargo xtask fuzz`: builds the fuzz targets and runs each for a time.
 //!
-//! The programs are built as `cargo fuzz build --sanitizer none` builds them, and with the toolchain
-//! that is installed: nothing here needs a nightly one or cargo-fuzz. The address sanitizer does.
+//! The programs are built as `cargo fuzz build --sanitizer none` builds them, and with the
+//! toolchain that is installed: nothing here needs a nightly one or cargo-fuzz. The address
+//! sanitizer does.
 //!
-//! It is an option: unsafe code is in the shims of the ABIs alone. Coverage counters are a pass of the stable compiler.
+//! It is an option: unsafe code is in the shims of the ABIs alone. Coverage counters are a pass of
+//! the stable compiler.
 
 mod build;
 mod options;
@@ -48,10 +50,7 @@ fn folder() -> PathBuf {
 fn chosen(wanted: &[String]) -> Result<Vec<String>> {
     let files = fs_err::read_dir(folder().join("fuzz_targets"))?;
     let name = |path: PathBuf| Some(path.file_stem()?.to_str()?.to_owned());
-    let mut all: Vec<String> = files
-        .flatten()
-        .filter_map(|file| name(file.path()))
-        .collect();
+    let mut all: Vec<String> = files.flatten().filter_map(|file| name(file.path())).collect();
     all.sort();
     if wanted.is_empty() {
         return Ok(all);

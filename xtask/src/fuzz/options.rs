@@ -26,13 +26,8 @@ impl Options {
     /// # Errors
     /// The invalid argument.
     pub fn parse(arguments: &[&str]) -> Result<Self> {
-        let mut options = Self {
-            targets: Vec::new(),
-            seconds: None,
-            executions: None,
-            jobs: 2,
-            address: false,
-        };
+        let mut options =
+            Self { targets: Vec::new(), seconds: None, executions: None, jobs: 2, address: false };
         let mut arguments = arguments.iter();
         while let Some(&argument) = arguments.next() {
             let mut number = || number(argument, arguments.next());
@@ -65,17 +60,7 @@ mod tests {
 
     #[test]
     fn arguments_are_told_apart() {
-        let all = [
-            "csv",
-            "--seconds",
-            "5",
-            "wav",
-            "--executions",
-            "9",
-            "--jobs",
-            "1",
-            "--address",
-        ];
+        let all = ["csv", "--seconds", "5", "wav", "--executions", "9", "--jobs", "1", "--address"];
         let options = Options::parse(&all);
         let expected = Options {
             targets: vec!["csv".to_owned(), "wav".to_owned()],
@@ -88,12 +73,7 @@ mod tests {
         let seconds = |options: &[&str]| Options::parse(options).ok().map(|o| o.seconds);
         assert_eq!(seconds(&[]), Some(Some(SECONDS)));
         assert_eq!(seconds(&["--executions", "9"]), Some(None));
-        for wrong in [
-            &["--seconds"][..],
-            &["--seconds", "0"],
-            &["--jobs", "x"],
-            &["--fast"],
-        ] {
+        for wrong in [&["--seconds"][..], &["--seconds", "0"], &["--jobs", "x"], &["--fast"]] {
             assert!(Options::parse(wrong).is_err(), "{wrong:?}");
         }
     }

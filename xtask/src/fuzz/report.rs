@@ -48,14 +48,7 @@ impl Outcome {
     }
 
     pub(super) fn line(&self) -> String {
-        let Self {
-            target,
-            executions,
-            per_second,
-            coverage,
-            corpus,
-            ..
-        } = self;
+        let Self { target, executions, per_second, coverage, corpus, .. } = self;
         let findings = u8::from(self.finding.is_some());
         format!(
             "{target:<16}{executions:>12}{per_second:>12}{coverage:>10}{corpus:>10}{findings:>10}"
@@ -87,9 +80,7 @@ fn after(text: &str, word: &str) -> Option<u64> {
 
 /// The whole number that a text begins with.
 fn number(text: &str) -> Option<u64> {
-    let end = text
-        .find(|c: char| !c.is_ascii_digit())
-        .unwrap_or(text.len());
+    let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
     text[..end].parse().ok()
 }
 

@@ -33,16 +33,8 @@ pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Ou
         .arg(format!("-max_len={LONGEST}"))
         .arg(format!("-timeout={TIMEOUT_S}"))
         .arg(format!("-rss_limit_mb={MEMORY_MIB}"))
-        .args([
-            "-print_final_stats=1",
-            "-verbosity=1",
-            "-use_value_profile=0",
-        ]);
-    program.args(
-        options
-            .seconds
-            .map(|seconds| format!("-max_total_time={seconds}")),
-    );
+        .args(["-print_final_stats=1", "-verbosity=1", "-use_value_profile=0"]);
+    program.args(options.seconds.map(|seconds| format!("-max_total_time={seconds}")));
     program.args(options.executions.map(|most| format!("-runs={most}")));
     let dictionary = folder().join("dictionaries").join(format!("{target}.dict"));
     if dictionary.exists() {
@@ -56,9 +48,7 @@ pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Ou
         .status()
         .with_context(|| target.to_owned())?;
     let text = String::from_utf8_lossy(&fs::read(&log)?).into_owned();
-    let new = found(&artifacts)
-        .into_iter()
-        .find(|file| !before.contains(file));
+    let new = found(&artifacts).into_iter().find(|file| !before.contains(file));
     let finding = (!status.success()).then(|| new.unwrap_or(log));
     Ok(Outcome::read(target, &text, finding))
 }

@@ -1,4 +1,5 @@
-//! `cargo xtask prove`: proofs that take too long for each run of continuous integration, which runs samples of them.
+//! `cargo xtask prove`: proofs that take too long for each run of continuous integration, which
+//! runs samples of them.
 
 mod outputs;
 mod released;
@@ -145,16 +146,8 @@ const PROOFS: &[Proof] = &[
 ];
 
 /// Without the rest of the workspace, so that it takes minutes.
-const ZERO: [&str; 8] = [
-    "test",
-    "--locked",
-    "-p",
-    "htex-device-guardian",
-    "--test",
-    "zero",
-    "--",
-    "--nocapture",
-];
+const ZERO: [&str; 8] =
+    ["test", "--locked", "-p", "htex-device-guardian", "--test", "zero", "--", "--nocapture"];
 
 const DAYS: [&str; 8] = [
     "run",
@@ -209,12 +202,7 @@ fn fuzz(options: &[&str]) -> Result<()> {
 
 /// A test with all of what it takes a sample of, of the same build as `cargo test`.
 fn whole_test(options: &[&str], test: &[&str]) -> Result<()> {
-    let test = [
-        &["test", "--locked", "--workspace"],
-        test,
-        &["--", "--nocapture"],
-    ]
-    .concat();
+    let test = [&["test", "--locked", "--workspace"], test, &["--", "--nocapture"]].concat();
     none(options).and_then(|()| cargo(&test, &[(WHOLE, "1"), ("HTEX_REQUIRE_WASM", "1")]))
 }
 

@@ -25,14 +25,8 @@ const INPUTS: [&str; 8] = [
 ];
 
 /// The ends of the keys of measured times: no two runs agree on them.
-const TIMED: [&str; 6] = [
-    "_ms\":",
-    "_us\":",
-    "ns_per_sample\":",
-    "seconds\":",
-    "spread\":",
-    "on_time_front\":",
-];
+const TIMED: [&str; 6] =
+    ["_ms\":", "_us\":", "ns_per_sample\":", "seconds\":", "spread\":", "on_time_front\":"];
 
 pub(super) fn prove(options: &[&str]) -> Result<()> {
     let htex = match *options {
@@ -102,14 +96,7 @@ fn hash(folder: &Path) -> Result<()> {
         find.args(["-not", "-path", &format!("./{name}*")]);
     }
     // The cache of builds holds times of files, and a sweep's page its measured times.
-    find.args([
-        "-not",
-        "-path",
-        "*/.htex-build/*",
-        "-not",
-        "-path",
-        "./home/*",
-    ]);
+    find.args(["-not", "-path", "*/.htex-build/*", "-not", "-path", "./home/*"]);
     find.args(["-not", "-name", "tradeoff.*", "-print"]);
     let found = find.output().context("find")?;
     let found = String::from_utf8_lossy(&found.stdout).into_owned();
@@ -128,16 +115,9 @@ impl Texts {
     fn of(command: &Path, folder: &Path) -> Result<Self> {
         let owned = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect();
         let mut conformance = Vec::new();
-        for place in INPUTS
-            .iter()
-            .filter_map(|input| input.strip_prefix("spec/"))
-        {
+        for place in INPUTS.iter().filter_map(|input| input.strip_prefix("spec/")) {
             for file in crate::places::files(&folder.join(place))? {
-                let name = file
-                    .file_name()
-                    .unwrap_or_default()
-                    .to_string_lossy()
-                    .into_owned();
+                let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 if !name.ends_with(".report.json") {
                     conformance.push(format!("{place}/{name}"));
                 }
@@ -159,10 +139,7 @@ impl Texts {
         for (place, words) in &self.0 {
             if line.contains(place) {
                 let with = |line: &String| {
-                    words
-                        .iter()
-                        .map(|word| line.replace(place, word))
-                        .collect::<Vec<_>>()
+                    words.iter().map(|word| line.replace(place, word)).collect::<Vec<_>>()
                 };
                 lines = lines.iter().flat_map(with).collect();
             }
@@ -183,10 +160,5 @@ fn firsts(command: &Path, folder: &Path, line: &str) -> Result<Vec<String>> {
     Ok(lines.filter_map(first).collect())
 }
 
-const SURFACES: [&str; 5] = [
-    "sandpaper",
-    "fine-fabric",
-    "coarse-fabric",
-    "corrugated-paper",
-    "vinyl",
-];
+const SURFACES: [&str; 5] =
+    ["sandpaper", "fine-fabric", "coarse-fabric", "corrugated-paper", "vinyl"];

@@ -26,9 +26,7 @@ pub(super) fn prove(options: &[&str]) -> Result<()> {
             let mut check = Command::new(cargo());
             check.args(["check", "--locked", "--quiet", "--target", target]);
             check.args(["--package", "htex-capi", "--no-default-features"]);
-            run(check
-                .args(["--features", features])
-                .current_dir(workspace()))?;
+            run(check.args(["--features", features]).current_dir(workspace()))?;
         }
     }
     Ok(())

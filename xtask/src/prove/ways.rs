@@ -1,9 +1,11 @@
-//! The ways in: every command of `docs/ways` is run as a reader runs it, on the files of a release, and prints what the page says.
+//! The ways in: every command of `docs/ways` is run as a reader runs it, on the files of a release,
+//! and prints what the page says.
 //!
-//! A page's blocks are taken in order. `sh` is run in one folder, and what it exports lasts. `text` is what the block before it prints;
-//! `…` stands for any lines, and within a line for any text. A block of another language begins with a comment that names the file it
-//! is saved as; `js` is one of the examples of the npm package, whose tests run them. A picture of
-//! `docs/figures/ways` is one that the commands make.
+//! A page's blocks are taken in order. `sh` is run in one folder, and what it exports lasts. `text`
+//! is what the block before it prints; `…` stands for any lines, and within a line for any text. A
+//! block of another language begins with a comment that names the file it is saved as; `js` is one
+//! of the examples of the npm package, whose tests run them. A picture of `docs/figures/ways` is
+//! one that the commands make.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -25,12 +27,8 @@ const PICTURES: &str = "../figures/ways/";
 const OTHERS: [&str; 4] = ["aarch64", "arm64", "win", "macos"];
 
 /// A page, and whether it uses the sources of htex.
-const WAYS: [(&str, bool); 4] = [
-    ("recordings", false),
-    ("models", true),
-    ("apps", false),
-    ("lab", false),
-];
+const WAYS: [(&str, bool); 4] =
+    [("recordings", false), ("models", true), ("apps", false), ("lab", false)];
 
 struct Options {
     release: PathBuf,
@@ -53,11 +51,7 @@ impl Options {
         }
         let release =
             release.context("--release DIR, to which `cargo xtask release --out DIR` wrote")?;
-        Ok(Self {
-            release,
-            only,
-            write,
-        })
+        Ok(Self { release, only, write })
     }
 }
 
@@ -78,10 +72,7 @@ pub(super) fn prove(words: &[&str]) -> Result<()> {
         pictures(name, &folder, options.write)?;
         let seconds = begin.elapsed().as_secs_f64();
         println!("docs/ways/{name}.md: {seconds:.1} s");
-        ensure!(
-            seconds < MOST_SECONDS,
-            "docs/ways/{name}.md takes longer than ten minutes"
-        );
+        ensure!(seconds < MOST_SECONDS, "docs/ways/{name}.md takes longer than ten minutes");
     }
     Ok(())
 }
@@ -95,9 +86,7 @@ fn prepare(name: &str, release: &Path, with_sources: bool) -> Result<PathBuf> {
     fs::write(place.join("exported"), "")?;
     for file in files(release)? {
         let name = file.file_name().unwrap_or_default();
-        let is_other = OTHERS
-            .iter()
-            .any(|other| name.to_string_lossy().contains(other));
+        let is_other = OTHERS.iter().any(|other| name.to_string_lossy().contains(other));
         if !is_other {
             link(&file, &folder.join(name))?;
         }
@@ -116,10 +105,7 @@ fn link(to: &Path, at: &Path) -> Result<()> {
 
 #[cfg(not(unix))]
 fn link(_: &Path, at: &Path) -> Result<()> {
-    bail!(
-        "{}: the commands of the pages are those of a shell of Unix",
-        at.display()
-    )
+    bail!("{}: the commands of the pages are those of a shell of Unix", at.display())
 }
 
 /// Takes the blocks of a page in order.
@@ -169,18 +155,15 @@ fn follow(name: &str, folder: &Path, write: bool) -> Result<()> {
 /// Whether a block stands in the README of the npm package, too.
 fn is_example_of_npm(block: &Block) -> Result<bool> {
     let readme = fs::read_to_string(workspace().join("sdk/web/README.md"))?;
-    Ok(blocks(&readme)
-        .iter()
-        .any(|example| example.language == "js" && example.text == block.text))
+    Ok(blocks(&readme).iter().any(|example| example.language == "js" && example.text == block.text))
 }
 
-/// Holds the pictures of a page against those that its commands made in their folder. Of those that Python made, in folders below, the
-/// bytes depend on the version of matplotlib: they only have to be there.
+/// Holds the pictures of a page against those that its commands made in their folder. Of those that
+/// Python made, in folders below, the bytes depend on the version of matplotlib: they only have to
+/// be there.
 fn pictures(name: &str, folder: &Path, write: bool) -> Result<()> {
     let text = fs::read_to_string(workspace().join(format!("docs/ways/{name}.md")))?;
-    let shown = links(&text)
-        .into_iter()
-        .filter_map(|link| text[link].strip_prefix(PICTURES));
+    let shown = links(&text).into_iter().filter_map(|link| text[link].strip_prefix(PICTURES));
     for picture in shown {
         let page = workspace().join("docs/figures/ways").join(picture);
         let made = folder.join(picture);
@@ -192,10 +175,9 @@ fn pictures(name: &str, folder: &Path, write: bool) -> Result<()> {
                 "docs/ways/{name}.md: the commands make another {picture}, which `--write` copies"
             ),
             (false, true) => drop(fs::copy(below, page)?),
-            (false, false) => ensure!(
-                below.exists(),
-                "docs/ways/{name}.md: no command makes {picture}"
-            ),
+            (false, false) => {
+                ensure!(below.exists(), "docs/ways/{name}.md: no command makes {picture}")
+            }
         }
     }
     Ok(())
@@ -204,55 +186,35 @@ fn pictures(name: &str, folder: &Path, write: bool) -> Result<()> {
 /// The file that the first line of a block names: `/* play.c */`, `// play.c` or `# play.py`.
 fn saved_as(block: &Block) -> Option<&str> {
     let line = block.text.lines().next()?;
-    let name = line
-        .trim_start_matches(['/', '*', '#', ' '])
-        .trim_end_matches(['/', '*', ' ']);
+    let name = line.trim_start_matches(['/', '*', '#', ' ']).trim_end_matches(['/', '*', ' ']);
     let is_file = name.contains('.') && !name.contains([' ', '/', '"', '(']);
     (is_file && name.len() < line.len()).then_some(name)
 }
 
-/// Runs the commands of a block in a shell, which ends at the first that fails, and returns what they print.
+/// Runs the commands of a block in a shell, which ends at the first that fails, and returns what
+/// they print.
 fn run(block: &Block, folder: &Path) -> Result<String> {
     let exported = folder.with_file_name("exported");
     let exported = exported.display();
-    let script = format!(
-        "set -eu\n. '{exported}'\n{}\nexport -p >'{exported}'\n",
-        block.text
-    );
+    let script = format!("set -eu\n. '{exported}'\n{}\nexport -p >'{exported}'\n", block.text);
     let printed = folder.with_file_name("printed");
     let out = fs::File::create(&printed)?.into_parts().0;
     let mut shell = Command::new("sh");
-    shell
-        .args(["-c", &script])
-        .current_dir(folder)
-        .stdin(Stdio::null());
+    shell.args(["-c", &script]).current_dir(folder).stdin(Stdio::null());
     shell.stdout(out.try_clone()?).stderr(out);
     let home = folder.with_file_name("home");
     fs::create_dir_all(&home)?;
-    // Neither models nor devices nor settings of the person who runs this; cargo's and pip's folders stay.
-    shell
-        .env("HTEX_CONFIG_DIR", &home)
-        .env("XDG_DATA_HOME", &home);
+    // Neither models nor devices nor settings of the person who runs this; cargo's and pip's
+    // folders stay.
+    shell.env("HTEX_CONFIG_DIR", &home).env("XDG_DATA_HOME", &home);
     shell.env("LC_ALL", "C.UTF-8").env("MPLCONFIGDIR", &home);
-    for name in [
-        "HTEX_PLUGIN_PATH",
-        "HTEX_DEVICE_PATH",
-        "HTEX_SOURCE_PATH",
-        "CARGO_TARGET_DIR",
-    ] {
+    for name in ["HTEX_PLUGIN_PATH", "HTEX_DEVICE_PATH", "HTEX_SOURCE_PATH", "CARGO_TARGET_DIR"] {
         shell.env_remove(name);
     }
     let status = shell.status().context("sh")?;
     let printed = fs::read_to_string(printed)?;
-    let printed: String = printed
-        .lines()
-        .map(|line| format!("{}\n", line.trim_end()))
-        .collect();
-    ensure!(
-        status.success(),
-        "{status} of\n{}\nwhich printed\n{printed}",
-        block.text
-    );
+    let printed: String = printed.lines().map(|line| format!("{}\n", line.trim_end())).collect();
+    ensure!(status.success(), "{status} of\n{}\nwhich printed\n{printed}", block.text);
     Ok(printed)
 }
 
@@ -265,7 +227,8 @@ fn difference(expected: &str, printed: &str) -> Option<usize> {
     (!is_same).then_some(furthest)
 }
 
-/// Whether the lines agree, where a line `…` stands for any lines; `at` counts those before, and `furthest` the most that agreed.
+/// Whether the lines agree, where a line `…` stands for any lines; `at` counts those before, and
+/// `furthest` the most that agreed.
 fn agree(expected: &[&str], printed: &[&str], at: usize, furthest: &mut usize) -> bool {
     *furthest = at.max(*furthest);
     match (expected.split_first(), printed.split_first()) {
@@ -300,10 +263,7 @@ mod tests {
     fn dots_stand_for_lines_and_for_text() {
         assert_eq!(difference("a\n…\nd\n", "a\nb\nc\nd\n"), None);
         assert_eq!(difference("a\n…\n", "a\n"), None);
-        assert_eq!(
-            difference("took … s, 2 files\n", "took 0.31 s, 2 files\n"),
-            None
-        );
+        assert_eq!(difference("took … s, 2 files\n", "took 0.31 s, 2 files\n"), None);
         assert_eq!(difference("a\nb\n", "a\nc\n"), Some(1));
         assert_eq!(difference("a\n", "a\nb\n"), Some(1));
         assert_eq!(difference("a\n…\nd\n", "a\nb\n"), Some(2));
@@ -313,18 +273,9 @@ mod tests {
     fn the_first_line_names_the_file() {
         let block =
             |language: &str, text: &str| blocks(&format!("```{language}\n{text}\n```\n")).remove(0);
-        assert_eq!(
-            saved_as(&block("c", "/* play.c */\nint x;")),
-            Some("play.c")
-        );
-        assert_eq!(
-            saved_as(&block("toml", "# library.toml\na = 1")),
-            Some("library.toml")
-        );
-        assert_eq!(
-            saved_as(&block("js", "import { open } from \"htex\";")),
-            None
-        );
+        assert_eq!(saved_as(&block("c", "/* play.c */\nint x;")), Some("play.c"));
+        assert_eq!(saved_as(&block("toml", "# library.toml\na = 1")), Some("library.toml"));
+        assert_eq!(saved_as(&block("js", "import { open } from \"htex\";")), None);
         assert_eq!(saved_as(&block("python", "import htex.study")), None);
     }
 

@@ -1,8 +1,10 @@
-//! What is released: archives for each platform, wheels, the npm package, lists of what they are made of, and checksums.
+//! What is released: archives for each platform, wheels, the npm package, lists of what they are
+//! made of, and checksums.
 //!
-//! Everything is built by zig against the C library of each platform, that of Windows by mingw-w64, so that one machine builds all. The same
-//! sources shall give the same bytes: times are those of the commit, and no path of this machine is in what is built (`Build::cargo`; `tree` looks
-//! for them).
+//! Everything is built by zig against the C library of each platform, that of Windows by mingw-w64,
+//! so that one machine builds all. The same sources shall give the same bytes: times are those of
+//! the commit, and no path of this machine is in what is built (`Build::cargo`; `tree` looks for
+//! them).
 
 mod packages;
 mod parts;
@@ -128,11 +130,7 @@ pub fn release(release: &Release) -> Result<()> {
 fn checksums(out: &Path) -> Result<()> {
     let mut names = Vec::new();
     for file in crate::places::files(out)? {
-        let name = file
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
+        let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if name != "SHA256SUMS" {
             names.push(name);
         }

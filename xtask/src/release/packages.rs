@@ -33,10 +33,7 @@ const PYTHON_TOOLS: &str = "python3 -m venv target/release-tools && target/relea
 /// # Errors
 /// What is missing, with how to install it. A trial needs maturin alone.
 pub(super) fn check_tools(is_trial: bool) -> Result<()> {
-    for (name, how) in TOOLS
-        .iter()
-        .filter(|(name, _)| !is_trial || *name == "maturin")
-    {
+    for (name, how) in TOOLS.iter().filter(|(name, _)| !is_trial || *name == "maturin") {
         let there = tools().join(name).is_file();
         ensure!(there, "{name} is missing: {how}");
     }
@@ -49,29 +46,19 @@ pub(super) fn archive(build: &Build, folder: &Path, out: &Path, commit: &Commit)
     if build.platform().system == System::Windows {
         return zip(folder, out, commit);
     }
-    // One thread: the bytes of several depend on how many there are. A trial, which nobody downloads, is written in a sixth of the time.
+    // One thread: the bytes of several depend on how many there are. A trial, which nobody
+    // downloads, is written in a sixth of the time.
     let compressor = match build.is_release() {
         true => "xz -9 -T1",
         false => "xz -1 -T1",
     };
-    tar(
-        folder,
-        &out.join(format!("{name}.tar.xz")),
-        compressor,
-        commit,
-    )
+    tar(folder, &out.join(format!("{name}.tar.xz")), compressor, commit)
 }
 
 /// Writes a folder as a compressed tar file: names in their order, and the time of the commit.
 fn tar(folder: &Path, to: &Path, compressor: &str, commit: &Commit) -> Result<()> {
     let mut tar = program("tar", folder.parent().unwrap_or(folder));
-    tar.args([
-        "--sort=name",
-        "--owner=0",
-        "--group=0",
-        "--numeric-owner",
-        "--format=gnu",
-    ]);
+    tar.args(["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--format=gnu"]);
     tar.args([
         "--mode=u+rwX,go+rX,go-w",
         &format!("--mtime=@{}", commit.seconds),
@@ -133,10 +120,7 @@ pub(super) fn wheel(build: &Build, out: &Path, notices: Option<&Path>) -> Result
     built?;
     for wheel in crate::places::files(&folder)? {
         let unpacked = anew("wheel-unpacked")?;
-        run(program("python3", &unpacked)
-            .args(["-m", "zipfile", "-e"])
-            .arg(&wheel)
-            .arg("."))?;
+        run(program("python3", &unpacked).args(["-m", "zipfile", "-e"]).arg(&wheel).arg("."))?;
         tree::check_paths(&unpacked)?;
         fs::copy(&wheel, out.join(wheel.file_name().unwrap_or_default()))?;
     }
@@ -152,8 +136,8 @@ fn anew(name: &str) -> Result<PathBuf> {
 
 /// Writes the sources of the Python package, which pip builds where there is no wheel.
 ///
-/// Maturin leaves packages of the workspace out, but not their lines in `Cargo.lock`, which a build by `--locked` refuses: cargo takes
-/// them out here.
+/// Maturin leaves packages of the workspace out, but not their lines in `Cargo.lock`, which a build
+/// by `--locked` refuses: cargo takes them out here.
 pub(super) fn sdist(version: &str, out: &Path, commit: &Commit) -> Result<()> {
     let trees = release_trees();
     let (folder, packed) = (anew(&format!("htex-{version}"))?, anew("sdist")?);
@@ -179,7 +163,5 @@ pub(super) fn npm(out: &Path, notices: Option<&Path>) -> Result<()> {
         put_notices(notices, &folder)?;
     }
     tree::check_paths(&folder)?;
-    run(program("npm", &folder)
-        .args(["pack", "--silent", "--pack-destination"])
-        .arg(out))
+    run(program("npm", &folder).args(["pack", "--silent", "--pack-destination"]).arg(out))
 }

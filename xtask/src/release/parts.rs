@@ -14,8 +14,8 @@ use crate::programs::{program, run};
 /// The name of the file with others' licences.
 const NOTICES: &str = "THIRD-PARTY-NOTICES.txt";
 
-/// Writes the licences of all packages that anything of the release is made of, with their texts; returns the file. It is one for all:
-/// finding the texts takes minutes.
+/// Writes the licences of all packages that anything of the release is made of, with their texts;
+/// returns the file. It is one for all: finding the texts takes minutes.
 pub(super) fn notices(platforms: &[Platform]) -> Result<PathBuf> {
     let release = workspace().join("xtask/src/release");
     let to = std::path::absolute(release_trees().join(NOTICES))?;
@@ -25,19 +25,13 @@ pub(super) fn notices(platforms: &[Platform]) -> Result<PathBuf> {
     about.arg("--fail");
     // The modules of the npm package are made of packages that a machine's own programs have, too.
     let here = [Platform::here()?];
-    let platforms = if platforms.is_empty() {
-        &here
-    } else {
-        platforms
-    };
+    let platforms = if platforms.is_empty() { &here } else { platforms };
     for platform in platforms {
         about.args(["--target", platform.triple]);
     }
     about.arg("--config").arg(release.join("about.toml"));
     about.arg("--output-file").arg(&to);
-    about
-        .arg(release.join("about.hbs"))
-        .current_dir(workspace());
+    about.arg(release.join("about.hbs")).current_dir(workspace());
     run(about.env("PATH", tools_first()))?;
     Ok(to)
 }
@@ -47,8 +41,8 @@ pub(super) fn put_notices(notices: &Path, folder: &Path) -> Result<()> {
     crate::dist::copy(notices, &folder.join(NOTICES))
 }
 
-/// Writes the bills of materials of the command and of the wheel in the format of CycloneDX. The program for it writes beside the
-/// manifests, so it has a copy of the sources.
+/// Writes the bills of materials of the command and of the wheel in the format of CycloneDX. The
+/// program for it writes beside the manifests, so it has a copy of the sources.
 pub(super) fn bills(platform: &Platform, version: &str, out: &Path, commit: &Commit) -> Result<()> {
     let sources = sources()?;
     let mut billed = vec![("cli", "")];
@@ -61,9 +55,7 @@ pub(super) fn bills(platform: &Platform, version: &str, out: &Path, commit: &Com
         cyclonedx.args(["cyclonedx", "--quiet", "--format", "json"]);
         cyclonedx.args(["--spec-version", "1.5", "--target", platform.triple]);
         cyclonedx.args(["--manifest-path", &format!("{package}/Cargo.toml")]);
-        cyclonedx
-            .args(["--override-filename", &name])
-            .current_dir(&sources);
+        cyclonedx.args(["--override-filename", &name]).current_dir(&sources);
         run(commit.told_to(cyclonedx.env("PATH", tools_first())))?;
         let name = format!("{name}.json");
         let text = fs::read_to_string(sources.join(package).join(&name))?;

@@ -40,11 +40,7 @@ pub(super) fn lay_out(build: &Build, version: &str, notices: Option<&Path>) -> R
     let folder = folder(platform, version);
     crate::places::emptied(&folder)?;
     command(build, &folder)?;
-    dist(&Dist {
-        prefix: folder.clone(),
-        whole: true,
-        build: build.clone(),
-    })?;
+    dist(&Dist { prefix: folder.clone(), whole: true, build: build.clone() })?;
     plugins(build, &folder)?;
     for (from, to) in TEXTS {
         copy(&workspace().join(from), &folder.join(to))?;
@@ -81,15 +77,10 @@ fn plugins(build: &Build, folder: &Path) -> Result<()> {
     let to = folder.join("lib/htex/plugins");
     let modules = crate::plugins::wasm()?;
     for model in models()? {
-        // Like the command, so that what models share is built once; the modules have one model each.
+        // Like the command, so that what models share is built once; the modules have one model
+        // each.
         let mut cargo = build.cargo("rustc");
-        cargo.args([
-            "--quiet",
-            "--locked",
-            "--lib",
-            "--package",
-            &format!("htex-{model}"),
-        ]);
+        cargo.args(["--quiet", "--locked", "--lib", "--package", &format!("htex-{model}")]);
         cargo.args(build.profile());
         cargo.args(["--features", "plugin", "--crate-type", "cdylib"]);
         let native = format!("{prefix}htex_{model}.{suffix}");
@@ -106,7 +97,8 @@ fn plugins(build: &Build, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Manual pages and completions, which the command writes; where it does not run here, the one for this machine, whose arguments are the same.
+/// Manual pages and completions, which the command writes; where it does not run here, the one for
+/// this machine, whose arguments are the same.
 fn help(platform: &Platform, folder: &Path) -> Result<()> {
     let own = folder.join("bin").join(executable(platform.system));
     let htex = |words: &[&str]| {
@@ -138,11 +130,7 @@ pub(super) fn check_paths(folder: &Path) -> Result<()> {
     let home = std::env::var_os("HOME").map(PathBuf::from);
     let registry = home.map(|home| home.join(".cargo"));
     for place in std::iter::once(workspace).chain(registry) {
-        let output = Command::new("grep")
-            .args(["-rlF", "--"])
-            .arg(&place)
-            .arg(folder)
-            .output()?;
+        let output = Command::new("grep").args(["-rlF", "--"]).arg(&place).arg(folder).output()?;
         let files = String::from_utf8_lossy(&output.stdout).into_owned();
         ensure!(files.is_empty(), "{} is named in\n{files}", place.display());
     }

@@ -8,7 +8,8 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json, tamed};
 
-/// Show a device's settings and profiles, what it makes of the samples, and its capabilities with these settings.
+/// Show a device's settings and profiles, what it makes of the samples, and its capabilities with
+/// these settings.
 #[derive(Args)]
 pub(crate) struct Info {
     /// The device, by short name, id or library file
@@ -47,10 +48,7 @@ impl Info {
             };
             let descriptor = tamed(descriptor);
             let maps = mapping_text(descriptor.mapping.as_ref());
-            print(&format!(
-                "{}\nmapping\n{maps}\ncan do\n{can}",
-                descriptor_text(&descriptor)
-            ))?;
+            print(&format!("{}\nmapping\n{maps}\ncan do\n{can}", descriptor_text(&descriptor)))?;
         }
         Ok(Exit::SUCCESS)
     }

@@ -10,11 +10,12 @@ use crate::invocation;
 use crate::output::{print, print_json};
 use crate::sources::{SourceArgs, source_json};
 
-/// List all devices and sources: their adapters, what is connected, and what was found but is not used.
+/// List all devices and sources: their adapters, what is connected, and what was found but is not
+/// used.
 ///
-/// Search order: --device-file, --device-dir, the folders in HTEX_DEVICE_PATH, the
-/// user's folder, built in; for sources --source-file, --source-dir, HTEX_SOURCE_PATH and so on. Of two
-/// adapters with one id the earlier is used.
+/// Search order: --device-file, --device-dir, the folders in HTEX_DEVICE_PATH, the user's folder,
+/// built in; for sources --source-file, --source-dir, HTEX_SOURCE_PATH and so on. Of two adapters
+/// with one id the earlier is used.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]
@@ -28,7 +29,8 @@ pub(crate) struct List {
     json: bool,
 }
 
-/// Tells the OpenXR loader what to print. Without it, the loader prints errors of its own on a machine without a runtime.
+/// Tells the OpenXR loader what to print. Without it, the loader prints errors of its own on a
+/// machine without a runtime.
 const LOADER_PRINTS: &str = "XR_LOADER_DEBUG";
 
 impl List {
@@ -56,16 +58,14 @@ impl List {
     }
 }
 
-/// Lists in a second process, in which the OpenXR loader prints nothing: a process cannot change its own environment safely. `None`
-/// where the user decided what it prints, or in that process.
+/// Lists in a second process, in which the OpenXR loader prints nothing: a process cannot change
+/// its own environment safely. `None` where the user decided what it prints, or in that process.
 fn listed_quietly() -> Option<Exit> {
     if std::env::var_os(LOADER_PRINTS).is_some() {
         return None;
     }
     let mut command = invocation::program().ok()?.command();
-    command
-        .args(invocation::arguments())
-        .env(LOADER_PRINTS, "none");
+    command.args(invocation::arguments()).env(LOADER_PRINTS, "none");
     Some(match command.status().ok()?.code() {
         Some(0) => Exit::SUCCESS,
         Some(code) if code == i32::from(Exit::USAGE.code()) => Exit::USAGE,

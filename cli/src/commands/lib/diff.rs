@@ -50,22 +50,14 @@ impl Diff {
         } else {
             print(&differences.to_text())?;
         }
-        Ok(if differences.is_empty() {
-            Exit::SUCCESS
-        } else {
-            Exit::FAILURE
-        })
+        Ok(if differences.is_empty() { Exit::SUCCESS } else { Exit::FAILURE })
     }
 }
 
 impl<'a> Walk<'a> {
     fn new(given: &'a Given, library: &'a Library<Located>) -> Result<Self, Failure> {
         let entries = library.entries();
-        let mut walk = Self {
-            given,
-            entries,
-            next: None,
-        };
+        let mut walk = Self { given, entries, next: None };
         walk.step()?;
         Ok(walk)
     }
@@ -106,10 +98,7 @@ impl Differences {
 
     fn to_text(&self) -> String {
         let lines = |sign: char, names: &[String]| -> String {
-            names
-                .iter()
-                .map(|name| format!("{sign} {name}\n"))
-                .collect()
+            names.iter().map(|name| format!("{sign} {name}\n")).collect()
         };
         lines('-', &self.only_in_a) + &lines('+', &self.only_in_b) + &lines('~', &self.changed)
     }

@@ -65,9 +65,6 @@ impl Find {
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {
-    let number = text
-        .parse()
-        .ok()
-        .filter(|x: &f64| x.is_finite() && *x >= 0.0);
+    let number = text.parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0);
     number.ok_or_else(|| "it must be a number that is finite and not negative".to_owned())
 }

@@ -19,11 +19,7 @@ pub(super) struct Listing {
 
 impl Listing {
     pub(super) fn new(is_json: bool) -> Self {
-        Self {
-            is_json,
-            text: String::new(),
-            count: 0,
-        }
+        Self { is_json, text: String::new(), count: 0 }
     }
 
     pub(super) fn add(&mut self, entry: &Entry) -> Result<(), Failure> {
@@ -53,11 +49,7 @@ impl Listing {
 
     fn flush(&mut self) -> Result<(), Failure> {
         let text = std::mem::take(&mut self.text);
-        if self.is_json {
-            write(&text)
-        } else {
-            print(&text)
-        }
+        if self.is_json { write(&text) } else { print(&text) }
     }
 }
 

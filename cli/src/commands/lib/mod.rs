@@ -20,8 +20,8 @@ use crate::failure::Failure;
 
 /// Pack textures into a library, one .htexlib file, and look into libraries.
 ///
-/// A library is opened one texture at a time, also over a network (https://, s3://, gs://, az://), where only the needed parts of
-/// the file are read; what textures embed in common is in it once.
+/// A library is opened one texture at a time, also over a network (https://, s3://, gs://, az://),
+/// where only the needed parts of the file are read; what textures embed in common is in it once.
 #[derive(Args)]
 pub(crate) struct Lib {
     #[command(subcommand)]

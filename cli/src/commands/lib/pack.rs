@@ -18,9 +18,9 @@ use crate::shown::shown;
 
 /// Pack textures into a library.
 ///
-/// A texture is called as its file without `.htex`; one of a folder as its path in that folder, such as wood/oak. The same
-/// textures give the same file, in any order, on any machine. Each states a licence (`htex edit --license`), since a library is
-/// passed on.
+/// A texture is called as its file without `.htex`; one of a folder as its path in that folder,
+/// such as wood/oak. The same textures give the same file, in any order, on any machine. Each
+/// states a licence (`htex edit --license`), since a library is passed on.
 #[derive(Args)]
 pub(crate) struct Pack {
     /// The library to write
@@ -46,10 +46,7 @@ pub(crate) struct Pack {
 
 impl Pack {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let is_library = self
-            .output
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION));
+        let is_library = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION));
         if !is_library && (self.output.extension().is_some() || self.output.is_dir()) {
             let output = shown(&self.output);
             return Err(Failure::Usage(format!(
@@ -57,15 +54,9 @@ impl Pack {
             )));
         }
         let sources = sources(&self.inputs)?;
-        check_outputs(
-            [self.output.as_path()],
-            sources.values().map(PathBuf::as_path),
-        )?;
+        check_outputs([self.output.as_path()], sources.values().map(PathBuf::as_path))?;
         let stem = self.output.file_stem().map(|stem| stem.to_string_lossy());
-        let name = self
-            .name
-            .clone()
-            .unwrap_or(stem.unwrap_or_default().into_owned());
+        let name = self.name.clone().unwrap_or(stem.unwrap_or_default().into_owned());
         let mut writer = Writer::create(&self.output, &name).of(&self.output)?;
         if self.unlicensed {
             writer.allow_unlicensed();
@@ -76,9 +67,7 @@ impl Pack {
             writer.add(name, &bytes).of(path)?;
             bar.inc(1);
         }
-        let packed = writer
-            .finish()
-            .map_err(|error| self.failure(error, &sources))?;
+        let packed = writer.finish().map_err(|error| self.failure(error, &sources))?;
         bar.finish_and_clear();
         if self.json {
             print_json(&summary(&self.output, &name, &packed))?;
@@ -92,12 +81,8 @@ impl Pack {
     fn failure(&self, error: LibraryError, sources: &BTreeMap<String, PathBuf>) -> Failure {
         match &error {
             LibraryError::Unlicensed { name, .. } => {
-                let file = sources
-                    .get(name)
-                    .map_or_else(|| name.clone(), |path| shown(path));
-                Failure::Other(format!(
-                    "{error}: htex edit {file} --license SPDX, or --unlicensed"
-                ))
+                let file = sources.get(name).map_or_else(|| name.clone(), |path| shown(path));
+                Failure::Other(format!("{error}: htex edit {file} --license SPDX, or --unlicensed"))
             }
             _ => error.of(&self.output),
         }
@@ -119,13 +104,7 @@ fn summary(path: &Path, name: &str, packed: &Packed) -> Value {
 }
 
 fn text(path: &Path, packed: &Packed) -> String {
-    let Packed {
-        entries,
-        bytes,
-        index_bytes,
-        saved_bytes,
-        ..
-    } = packed;
+    let Packed { entries, bytes, index_bytes, saved_bytes, .. } = packed;
     let textures = if *entries == 1 { "texture" } else { "textures" };
     let mut text = format!(
         "{}: {entries} {textures} in {bytes} bytes, {index_bytes} of them the index\n",

@@ -10,8 +10,8 @@ use crate::shown::shown;
 
 const EXTENSION: &str = "htex";
 
-/// Returns the `.htex` files of the inputs by their names in the library: of a file its own, of a folder the paths in it, both
-/// without `.htex`.
+/// Returns the `.htex` files of the inputs by their names in the library: of a file its own, of a
+/// folder the paths in it, both without `.htex`.
 pub(super) fn sources(inputs: &[PathBuf]) -> Result<BTreeMap<String, PathBuf>, Failure> {
     let mut found = BTreeMap::new();
     for input in inputs {
@@ -32,7 +32,8 @@ pub(super) fn sources(inputs: &[PathBuf]) -> Result<BTreeMap<String, PathBuf>, F
     Ok(found)
 }
 
-/// Adds the files of a folder and of the folders in it. Links to folders are not followed, since they may lead back.
+/// Adds the files of a folder and of the folders in it. Links to folders are not followed, since
+/// they may lead back.
 fn search(
     folder: &Path,
     inside: &Path,
@@ -51,17 +52,12 @@ fn search(
 }
 
 fn add(found: &mut BTreeMap<String, PathBuf>, inside: &Path, path: PathBuf) -> Result<(), Failure> {
-    let inside = if is_called_texture(inside) {
-        inside.with_extension("")
-    } else {
-        inside.to_owned()
-    };
+    let inside =
+        if is_called_texture(inside) { inside.with_extension("") } else { inside.to_owned() };
     let parts: Option<Vec<&str>> = inside.iter().map(|part| part.to_str()).collect();
     let Some(parts) = parts else {
         let path = shown(&path);
-        return Err(Failure::Other(format!(
-            "{path}: its name is not UTF-8; rename it"
-        )));
+        return Err(Failure::Other(format!("{path}: its name is not UTF-8; rename it")));
     };
     let name = parts.join("/");
     if let Some(other) = found.get(&name) {
@@ -76,6 +72,5 @@ fn add(found: &mut BTreeMap<String, PathBuf>, inside: &Path, path: PathBuf) -> R
 }
 
 fn is_called_texture(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION))
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION))
 }

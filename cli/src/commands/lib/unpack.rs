@@ -37,11 +37,7 @@ impl Unpack {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let file = self.library.shown();
         let library = self.library.open()?;
-        let count = if self.names.is_empty() {
-            library.len()
-        } else {
-            self.names.len() as u64
-        };
+        let count = if self.names.is_empty() { library.len() } else { self.names.len() as u64 };
         let bar = bar(count);
         // The index says how large all are and which files they become, before anything is written.
         let (mut ratio, mut names) = (library.ratio(), Names::default());
@@ -62,9 +58,7 @@ impl Unpack {
             self.write(&mut batch, &entry.name, &bytes)
         };
         if self.names.is_empty() {
-            library
-                .entries()
-                .try_for_each(|entry| write(entry.of(&file)?))?;
+            library.entries().try_for_each(|entry| write(entry.of(&file)?))?;
         }
         for name in &self.names {
             let entry = library.entry(name).of(&file)?;
@@ -77,12 +71,10 @@ impl Unpack {
         Ok(Exit::SUCCESS)
     }
 
-    /// Writes a texture. Its name was checked by the reader: it leads to a file inside the folder, where no link is followed.
+    /// Writes a texture. Its name was checked by the reader: it leads to a file inside the folder,
+    /// where no link is followed.
     fn write(&self, batch: &mut Batch, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-        let (own, inside) = (
-            OwnFolder::new(&self.output),
-            PathBuf::from(format!("{name}.htex")),
-        );
+        let (own, inside) = (OwnFolder::new(&self.output), PathBuf::from(format!("{name}.htex")));
         let path = self.output.join(&inside);
         match path.symlink_metadata() {
             Err(_) => {}

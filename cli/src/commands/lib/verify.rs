@@ -25,10 +25,7 @@ pub(crate) struct Verify {
 
 impl Verify {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let reports = self
-            .libraries
-            .iter()
-            .map(|path| Ok((path.as_path(), check(path)?)));
+        let reports = self.libraries.iter().map(|path| Ok((path.as_path(), check(path)?)));
         report(reports, self.json)
     }
 }

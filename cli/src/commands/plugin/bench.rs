@@ -14,8 +14,8 @@ use crate::plugins::PluginArgs;
 /// Measure what models cost: nanoseconds a sample, built in, as native plugins and as WASM.
 ///
 /// Each model is timed in every way in which it can be loaded, at its own rate, in one interleaved
-/// run, so that other load on the machine affects all alike. WASM modules are timed under the default
-/// limits, which hold time by deadlines, and with instructions counted too.
+/// run, so that other load on the machine affects all alike. WASM modules are timed under the
+/// default limits, which hold time by deadlines, and with instructions counted too.
 #[derive(Args)]
 pub(crate) struct Bench {
     /// Models by short name, id or file [default: all that are built in]
@@ -90,9 +90,7 @@ fn add(
     match loaded.origin() {
         Origin::Wasm(file) => {
             subjects.push(subject("wasm", loaded));
-            let counted = limits
-                .clone()
-                .with_fuel(limits.fuel.unwrap_or(u64::MAX / 2));
+            let counted = limits.clone().with_fuel(limits.fuel.unwrap_or(u64::MAX / 2));
             let counted = LoadedModel::from_file_within(file, &counted)?;
             subjects.push(subject("wasm, counted", &counted));
         }
@@ -117,9 +115,9 @@ fn table(costs: &[Cost]) -> String {
             let times = format!("{:.1} {:.1}±{:.1}", t.min_ns, t.median_ns, t.spread_ns);
             text += &format!("  {times:>16} {:4.2}x", block.ratio);
         }
-        let start = cost.start.map_or(String::new(), |start| {
-            format!("{:.0} -> {:.1}", start.cold_ms, start.warm_ms)
-        });
+        let start = cost
+            .start
+            .map_or(String::new(), |start| format!("{:.0} -> {:.1}", start.cold_ms, start.warm_ms));
         text += &format!("  {:>7.0}  {start:>13}\n", cost.per_call_ns);
     }
     text + "ns a sample: least, median ± half the distance between the quartiles, and the least over \

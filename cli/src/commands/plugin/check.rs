@@ -12,8 +12,8 @@ use crate::output::print_json;
 
 /// Check that a model keeps every promise of the model ABI; exit status 1 if it does not.
 ///
-/// Each check runs in a process of its own, so that a crash or an endless loop ends only that check.
-/// `spec/model-checks.md` explains them.
+/// Each check runs in a process of its own, so that a crash or an endless loop ends only that
+/// check. `spec/model-checks.md` explains them.
 #[derive(Args)]
 pub(crate) struct Check {
     /// The model: a native library or a WASM module
@@ -31,12 +31,7 @@ pub(crate) struct Check {
     fuzz: Option<Duration>,
 
     /// Checks to run, comma-separated, with those that they need [default: all]
-    #[arg(
-        long,
-        value_delimiter = ',',
-        value_name = "NAME,…",
-        conflicts_with = "reproduce"
-    )]
+    #[arg(long, value_delimiter = ',', value_name = "NAME,…", conflicts_with = "reproduce")]
     only: Option<Vec<String>>,
 
     /// The same model as a file of the other kind [default: the one beside it, if there is one]
@@ -85,11 +80,8 @@ impl Check {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let file = &self.file;
         if let Some(name) = &self.checking.reproduce {
-            let settings = Settings {
-                seed: self.seed,
-                against: self.against.as_deref(),
-                fuzz: self.fuzz,
-            };
+            let settings =
+                Settings { seed: self.seed, against: self.against.as_deref(), fuzz: self.fuzz };
             let finding = run_one(file, name, settings).map_err(failed)?;
             return self.checking.print_one(name, &finding, |text| text.into());
         }
@@ -98,15 +90,12 @@ impl Check {
             let (file, seed) = (file.display(), seed_of(&report, name));
             format!("htex plugin check {file} --reproduce {name} --seed {seed}")
         };
-        self.checking
-            .print_report(&report, |text| text.into(), again)
+        self.checking.print_report(&report, |text| text.into(), again)
     }
 
     fn options(&self) -> Result<Options, Failure> {
         Ok(Options {
-            runner: self
-                .checking
-                .runner(["plugin".into(), "check-one".into()])?,
+            runner: self.checking.runner(["plugin".into(), "check-one".into()])?,
             seed: self.seed,
             only: self.only.clone(),
             against: self.against.clone(),
@@ -117,11 +106,8 @@ impl Check {
 
 impl CheckOne {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let settings = Settings {
-            seed: self.seed,
-            against: self.against.as_deref(),
-            fuzz: self.fuzz,
-        };
+        let settings =
+            Settings { seed: self.seed, against: self.against.as_deref(), fuzz: self.fuzz };
         print_json(&run_one(&self.file, &self.name, settings).map_err(failed)?)?;
         Ok(Exit::SUCCESS)
     }

@@ -35,20 +35,10 @@ impl Info {
 }
 
 fn text(descriptor: &Descriptor) -> String {
-    let Descriptor {
-        id,
-        name,
-        version,
-        summary,
-        ..
-    } = descriptor;
+    let Descriptor { id, name, version, summary, .. } = descriptor;
     let fields: String = descriptor.fields.iter().map(field).collect();
     let options: String = descriptor.options.iter().map(option).collect();
-    let options = if options.is_empty() {
-        "  none\n".to_owned()
-    } else {
-        options
-    };
+    let options = if options.is_empty() { "  none\n".to_owned() } else { options };
     format!("{name} ({id} {version})\n{summary}\n\nparameters\n{fields}\nfit options\n{options}")
 }
 

@@ -10,9 +10,9 @@ use crate::plugins::PluginArgs;
 
 /// List all models found, and what was found but is not used.
 ///
-/// Search order: --plugin, --plugin-dir, the folders in HTEX_PLUGIN_PATH, the user's
-/// folder, built in. Of two models with one id the first one given by --plugin is used, else the newest of its major version,
-/// else the earlier.
+/// Search order: --plugin, --plugin-dir, the folders in HTEX_PLUGIN_PATH, the user's folder, built
+/// in. Of two models with one id the first one given by --plugin is used, else the newest of its
+/// major version, else the earlier.
 #[derive(Args)]
 pub(crate) struct List {
     #[command(flatten)]
@@ -54,11 +54,7 @@ fn text(registry: &Registry) -> String {
     let mut text = String::new();
     for model in registry.models() {
         let (name, version) = (model.short_name(), &model.descriptor().version);
-        text += &format!(
-            "  {name:12} {version:8} {:28} {}\n",
-            model.id(),
-            model.origin()
-        );
+        text += &format!("  {name:12} {version:8} {:28} {}\n", model.id(), model.origin());
     }
     for note in registry.notes() {
         text += &format!("note: {}\n", plain(&note.to_string()));

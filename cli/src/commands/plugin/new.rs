@@ -26,7 +26,8 @@ pub(crate) struct New {
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
 
-    /// Folder of the htex sources' `sdk`, for Rust [default: of those this program was built from, if it was not released]
+    /// Folder of the htex sources' `sdk`, for Rust [default: of those this program was built from,
+    /// if it was not released]
     #[arg(long, value_name = "DIR")]
     sdk: Option<PathBuf>,
 }
@@ -77,15 +78,11 @@ impl New {
         let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
         if !name.bytes().all(plain) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
             let rule = "lower-case letters, digits and hyphens, a letter first";
-            return Err(Failure::Usage(format!(
-                "`{name}` is not a valid name: {rule}"
-            )));
+            return Err(Failure::Usage(format!("`{name}` is not a valid name: {rule}")));
         }
         if dir.exists() {
             let dir = dir.display();
-            return Err(Failure::Usage(format!(
-                "{dir} exists; name another with --dir"
-            )));
+            return Err(Failure::Usage(format!("{dir} exists; name another with --dir")));
         }
         Ok(())
     }
@@ -116,9 +113,7 @@ impl New {
         })?;
         sdk.canonicalize().map_err(|error| {
             let sdk = sdk.display();
-            Failure::Usage(format!(
-                "{sdk}: {error}; --sdk names the folder `sdk` of the sources"
-            ))
+            Failure::Usage(format!("{sdk}: {error}; --sdk names the folder `sdk` of the sources"))
         })
     }
 }
@@ -129,7 +124,8 @@ fn capital(word: &str) -> String {
     first.to_uppercase() + rest
 }
 
-/// The path from a project to the SDK, relative as long as both are on one drive; empty where none is needed.
+/// The path from a project to the SDK, relative as long as both are on one drive; empty where none
+/// is needed.
 fn sdk_from(dir: &Path, sdk: Option<PathBuf>) -> Result<String, Failure> {
     let Some(sdk) = sdk else {
         return Ok(String::new());

@@ -17,8 +17,8 @@ const LOOK: Duration = Duration::from_millis(20);
 #[derive(Args)]
 #[command(next_help_heading = "Guidance")]
 pub(super) struct GuideArgs {
-    /// Guide on a page in a browser of this machine, whose address is printed, not in the terminal; the session begins when it is
-    /// started there
+    /// Guide on a page in a browser of this machine, whose address is printed, not in the terminal;
+    /// the session begins when it is started there
     #[arg(long)]
     page: bool,
 

@@ -24,15 +24,17 @@ use crate::signals;
 
 use guide::{Guide, GuideArgs};
 
-/// Record a finger on a surface under guidance: takes that leave their target, or in which too little slides, are set aside and repeated.
+/// Record a finger on a surface under guidance: takes that leave their target, or in which too
+/// little slides, are set aside and repeated.
 ///
-/// Takes are DIR/NAME-001.csv and so on, with all settings in JSON beside them and the tracker's rows in DIR/tracker; takes that left
-/// their target are in DIR/rejected, those that were cut short in DIR/incomplete. Each second is on disk before the next: a take that a
-/// crash cut short is recovered when the command is run again.
+/// Takes are DIR/NAME-001.csv and so on, with all settings in JSON beside them and the tracker's
+/// rows in DIR/tracker; takes that left their target are in DIR/rejected, those that were cut short
+/// in DIR/incomplete. Each second is on disk before the next: a take that a crash cut short is
+/// recovered when the command is run again.
 #[derive(Args)]
 pub(crate) struct Record {
-    /// Where the signals come from: a recording that is replayed (file:rec.csv), analog inputs of a National Instruments card
-    /// (daq:Dev1/ai0:5), or another source of `htex device list`
+    /// Where the signals come from: a recording that is replayed (file:rec.csv), analog inputs of a
+    /// National Instruments card (daq:Dev1/ai0:5), or another source of `htex device list`
     #[arg(long, value_name = "NAME:TARGET", help_heading = "Source")]
     source: String,
 
@@ -58,7 +60,8 @@ pub(crate) struct Record {
     #[arg(long, value_name = "S")]
     countdown: Option<f64>,
 
-    /// Subtract the means of the forces over a second without a finger on the surface: before the first take, or before each
+    /// Subtract the means of the forces over a second without a finger on the surface: before the
+    /// first take, or before each
     #[arg(
         long,
         value_enum,
@@ -76,17 +79,20 @@ pub(crate) struct Record {
     #[arg(long, value_name = "N")]
     target_force: Option<f64>,
 
-    /// How far mean, minimum and maximum of a sweep's speed and force may be from the target, as a part of it
+    /// How far mean, minimum and maximum of a sweep's speed and force may be from the target, as a
+    /// part of it
     #[arg(long, value_name = "PART", default_value_t = 0.1)]
     tolerance: f64,
 
-    /// Least part of a take in which the finger slides, at half of its target speed or more and with its target force, where there are
-    /// targets: a take with less is recorded again; 0 asks for nothing. The finger turns between sweeps
+    /// Least part of a take in which the finger slides, at half of its target speed or more and
+    /// with its target force, where there are targets: a take with less is recorded again; 0 asks
+    /// for nothing. The finger turns between sweeps
     #[arg(long, value_name = "PART", default_value_t = Required::USUAL_ON_TARGET)]
     min_on_target: f64,
 
-    /// Fewest complete sweeps of a take: one with fewer is recorded again; 0 asks for none [default: half of the strokes that the target
-    /// makes in a take but for the first and the last one, 4 in 10 s at 80 mm/s; without a target speed 0]
+    /// Fewest complete sweeps of a take: one with fewer is recorded again; 0 asks for none
+    /// [default: half of the strokes that the target makes in a take but for the first and the last
+    /// one, 4 in 10 s at 80 mm/s; without a target speed 0]
     #[arg(long, value_name = "N")]
     min_sweeps: Option<u32>,
 
@@ -116,9 +122,8 @@ impl Record {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let mut setup = self.setup();
         let guidance = self.guide.guidance(&setup)?;
-        setup.required.sweeps = self
-            .min_sweeps
-            .unwrap_or_else(|| Required::usual_sweeps(&guidance, setup.seconds));
+        setup.required.sweeps =
+            self.min_sweeps.unwrap_or_else(|| Required::usual_sweeps(&guidance, setup.seconds));
         let recovered = recover(&self.output)?;
         for take in &recovered {
             tell!("htex: recovered {}", said(take));
@@ -154,9 +159,7 @@ impl Record {
             return Err(Failure::Usage(sentence.to_owned()));
         }
         let given = paced(&self.source, self.settings.given()?, self.fast);
-        self.input
-            .sources
-            .open(&self.source, self.settings.profile(), &given)
+        self.input.sources.open(&self.source, self.settings.profile(), &given)
     }
 
     fn setup(&self) -> Setup {
@@ -175,15 +178,9 @@ impl Record {
                 Some(TareArg::Each) => Tare::Each,
             },
             quantity: self.input.quantity(),
-            target: Exploration {
-                speed_mm_s: self.target_speed,
-                force_n: self.target_force,
-            },
+            target: Exploration { speed_mm_s: self.target_speed, force_n: self.target_force },
             tolerance: self.tolerance,
-            required: Required {
-                on_target: self.min_on_target,
-                ..Required::NOTHING
-            },
+            required: Required { on_target: self.min_on_target, ..Required::NOTHING },
             attempts: self.attempts,
             format: self.input.format.unwrap_or_default(),
             tool: tool(),
@@ -221,10 +218,7 @@ fn said(take: &Recorded) -> String {
     };
     let measured = |what: &str, unit: &str, measured: Option<htex_lab::record::Measured>| {
         measured.map_or(String::new(), |m| {
-            format!(
-                "; {what} {:.3} {unit} ({:.3} to {:.3})",
-                m.mean, m.min, m.max
-            )
+            format!("; {what} {:.3} {unit} ({:.3} to {:.3})", m.mean, m.min, m.max)
         })
     };
     let verdict = &take.verdict;
@@ -240,10 +234,6 @@ fn said(take: &Recorded) -> String {
         measured("speed", "mm/s", verdict.speed_mm_s),
         measured("force", "N", verdict.force_n),
         verdict.segments,
-        verdict
-            .findings
-            .iter()
-            .map(|f| format!("\n  {}", plain(f)))
-            .collect::<String>(),
+        verdict.findings.iter().map(|f| format!("\n  {}", plain(f))).collect::<String>(),
     )
 }

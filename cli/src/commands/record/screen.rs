@@ -1,5 +1,5 @@
-//! Guidance in a terminal: the target and the finger as two squares, the force by its colour, a metronome by the bell, and the
-//! spectrum of what is recorded.
+//! Guidance in a terminal: the target and the finger as two squares, the force by its colour, a
+//! metronome by the bell, and the spectrum of what is recorded.
 
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -107,8 +107,8 @@ fn asked(required: Required) -> String {
     }
 }
 
-/// Two lines: the seconds left, the target as a square on its way and the finger as one in the colour of its force; the force and
-/// the spectrum.
+/// Two lines: the seconds left, the target as a square on its way and the finger as one in the
+/// colour of its force; the force and the spectrum.
 fn drawn(guidance: &Guidance, moment: &Moment<'_>, spectrum: Option<&LiveSpectrum>) -> [String; 2] {
     let left_s = (moment.of_s - moment.elapsed_s).max(0.0);
     let motion_s = moment.phase.motion_s(moment.elapsed_s, moment.of_s);
@@ -180,25 +180,13 @@ mod tests {
         let begin = format!("■{}", "·".repeat(WAY - 1));
         let end: String = begin.chars().rev().collect();
         let [ways, felt] = lines(Phase::Take, 0.0, 0.3);
-        assert_eq!(
-            ways,
-            format!(" 10.0 s  target {begin}  finger \x1b[33m{begin}\x1b[0m")
-        );
-        assert!(
-            felt.starts_with("  force \x1b[33m 0.300 N\x1b[0m "),
-            "{felt}"
-        );
+        assert_eq!(ways, format!(" 10.0 s  target {begin}  finger \x1b[33m{begin}\x1b[0m"));
+        assert!(felt.starts_with("  force \x1b[33m 0.300 N\x1b[0m "), "{felt}");
         let [ways, _] = lines(Phase::Take, 1.0, 0.4);
-        assert_eq!(
-            ways,
-            format!("  9.0 s  target {end}  finger \x1b[32m{begin}\x1b[0m")
-        );
+        assert_eq!(ways, format!("  9.0 s  target {end}  finger \x1b[32m{begin}\x1b[0m"));
         // A countdown of 10 s has 10 strokes and ends where the take begins.
         let [ways, felt] = lines(Phase::Countdown, 9.0, 0.45);
-        assert!(
-            ways.contains(&end) && felt.contains("\x1b[31m"),
-            "{ways} {felt}"
-        );
+        assert!(ways.contains(&end) && felt.contains("\x1b[31m"), "{ways} {felt}");
     }
 
     #[test]

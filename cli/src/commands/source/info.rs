@@ -9,7 +9,8 @@ use crate::failure::Failure;
 use crate::output::{print, print_json, tamed};
 use crate::sources::{SourceArgs, source_json};
 
-/// Show a source's settings and profiles, what is connected, and its rate and channels with these settings.
+/// Show a source's settings and profiles, what is connected, and its rate and channels with these
+/// settings.
 ///
 /// The source is opened for its rate and channels, and does not sample.
 #[derive(Args)]
@@ -49,9 +50,7 @@ impl Info {
             };
             let target = known.adapter.target();
             let descriptor = descriptor_text(&tamed(known.descriptor()));
-            print(&format!(
-                "{descriptor}\ntarget: {target}\ndelivers\n{delivers}"
-            ))?;
+            print(&format!("{descriptor}\ntarget: {target}\ndelivers\n{delivers}"))?;
         }
         Ok(Exit::SUCCESS)
     }
@@ -59,10 +58,7 @@ impl Info {
 
 fn stream(known: &KnownSource, settings: &Settings) -> Result<SourceStream, DeviceError> {
     let source = known.adapter.open(settings)?;
-    Ok(SourceStream {
-        rate_hz: source.rate_hz(),
-        channels: source.channels().to_vec(),
-    })
+    Ok(SourceStream { rate_hz: source.rate_hz(), channels: source.channels().to_vec() })
 }
 
 fn stream_text(stream: &SourceStream) -> String {

@@ -30,8 +30,9 @@ pub(super) struct AskingArgs {
     )]
     port: u16,
 
-    /// The motion of the finger, for a study whose motion is live: `-` reads lines `speed_mm_s force_n [x_mm y_mm]` from standard
-    /// input, `page` takes it from a finger on the page
+    /// The motion of the finger, for a study whose motion is live: `-` reads lines
+    /// `speed_mm_s force_n [x_mm y_mm]` from standard input, `page` takes it from a finger on the
+    /// page
     #[arg(long, value_name = "SOURCE", value_parser = ["-", "page"])]
     motion: Option<String>,
 
@@ -89,19 +90,13 @@ impl AskingArgs {
 
     /// Asks nobody: for a simulated participant.
     pub(super) fn of_nobody(&self) -> Asking {
-        Asking {
-            asker: Box::new(Nobody),
-            motions: self.motion.is_some().then(Motions::from_stdin),
-        }
+        Asking { asker: Box::new(Nobody), motions: self.motion.is_some().then(Motions::from_stdin) }
     }
 
     /// Asks a person.
     pub(super) fn open(&self, study: &Study, participant: &str) -> Result<Asking, Failure> {
         if !self.page {
-            return Ok(Asking {
-                asker: Box::new(Terminal::new()),
-                motions: None,
-            });
+            return Ok(Asking { asker: Box::new(Terminal::new()), motions: None });
         }
         let is_touched = self.motion.as_deref() == Some("page");
         let title = match &study.name[..] {

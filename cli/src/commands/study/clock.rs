@@ -4,8 +4,8 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use htex_lab::study::{Clock, utc};
 
-/// Milliseconds since 1970 when it was made, and then by the monotonic clock: the system's may be set while a participant answers, and
-/// a response would take less than no time, or a rest an hour.
+/// Milliseconds since 1970 when it was made, and then by the monotonic clock: the system's may be
+/// set while a participant answers, and a response would take less than no time, or a rest an hour.
 pub(super) struct WallClock {
     made_ms: u64,
     made: Instant,
@@ -17,10 +17,7 @@ impl WallClock {
     }
 
     fn made_at(made_ms: u64) -> Self {
-        Self {
-            made_ms,
-            made: Instant::now(),
-        }
+        Self { made_ms, made: Instant::now() }
     }
 }
 
@@ -31,8 +28,7 @@ fn system_ms() -> u64 {
 
 impl Clock for WallClock {
     fn now_ms(&self) -> u64 {
-        self.made_ms
-            .saturating_add(self.made.elapsed().as_millis() as u64)
+        self.made_ms.saturating_add(self.made.elapsed().as_millis() as u64)
     }
 
     fn pass(&mut self, time: Duration) {
@@ -93,10 +89,7 @@ mod tests {
         let first = clock.now_ms();
         clock.pass(Duration::from_millis(5));
         let passed = clock.now_ms() - first;
-        assert!(
-            first >= 3 * hour_ms && (5..60_000).contains(&passed),
-            "{first}, {passed}"
-        );
+        assert!(first >= 3 * hour_ms && (5..60_000).contains(&passed), "{first}, {passed}");
         clock.go_on_at(hour_ms);
         assert!(clock.now_ms() >= first + 5);
         // The date is the system's.

@@ -14,8 +14,10 @@ use super::spectra::SpectraArgs;
 
 /// Write the ratings of all participants as a table, and the spectra of what they felt as another.
 ///
-/// The columns are participant, texture, model, repetition, rating, attribute, hidden_reference, response_ms, gain_db, simulated and
-/// off_target (whether speed or force left the study's by more than 10 %; empty if neither was measured); of the spectra participant, texture, model, and a magnitude for 20, 25, …, 1000 Hz.
+/// The columns are participant, texture, model, repetition, rating, attribute, hidden_reference,
+/// response_ms, gain_db, simulated and off_target (whether speed or force left the study's by more
+/// than 10 %; empty if neither was measured); of the spectra participant, texture, model, and a
+/// magnitude for 20, 25, …, 1000 Hz.
 #[derive(Args)]
 pub(super) struct Export {
     /// The folder of answers that `htex study run` wrote
@@ -59,11 +61,7 @@ impl Export {
             }))?;
         } else {
             if let Some((file, spectra)) = &spectra {
-                print(&format!(
-                    "{}: spectra of {} recordings\n",
-                    shown(file),
-                    spectra.recordings
-                ))?;
+                print(&format!("{}: spectra of {} recordings\n", shown(file), spectra.recordings))?;
             }
             print(&format!(
                 "{}: {ratings} ratings of {participants} participants\n",

@@ -18,8 +18,9 @@ use crate::output::warn;
 /// Where what is felt comes from.
 #[derive(Args)]
 pub(super) struct FeltArgs {
-    /// Record what is felt during each trial: from analog inputs of a National Instruments card (daq:Dev1/ai0:5), from a recording
-    /// that is replayed for each trial (file:rec.csv), or from another source of `htex device list`
+    /// Record what is felt during each trial: from analog inputs of a National Instruments card
+    /// (daq:Dev1/ai0:5), from a recording that is replayed for each trial (file:rec.csv), or from
+    /// another source of `htex device list`
     #[arg(long, value_name = "NAME:TARGET", help_heading = "Source")]
     source: Option<String>,
 
@@ -89,10 +90,9 @@ impl FeltArgs {
 /// Speed and force of a motion that has only one of each.
 pub(super) fn target(study: &Study) -> Exploration {
     match &study.motion {
-        Motion::Constant(motion) => Exploration {
-            speed_mm_s: Some(motion.speed_mm_s.abs()),
-            force_n: Some(motion.force_n),
-        },
+        Motion::Constant(motion) => {
+            Exploration { speed_mm_s: Some(motion.speed_mm_s.abs()), force_n: Some(motion.force_n) }
+        }
         _ => Exploration::default(),
     }
 }

@@ -41,7 +41,8 @@ impl Press {
     }
 }
 
-/// Keys of the terminal at standard input, whose settings are restored when this is dropped. Ctrl-C stays a signal.
+/// Keys of the terminal at standard input, whose settings are restored when this is dropped. Ctrl-C
+/// stays a signal.
 pub(super) struct Keys {
     before: Termios,
     presses: Receiver<Press>,
@@ -73,12 +74,7 @@ impl Keys {
                 }
             }
         });
-        Some(Self {
-            before,
-            presses,
-            last: None,
-            shown: Instant::now(),
-        })
+        Some(Self { before, presses, last: None, shown: Instant::now() })
     }
 
     /// Forgets the keys before something is shown.
@@ -195,11 +191,7 @@ mod tests {
             Press::End,
         ];
         assert_eq!(presses_of(bytes), expected);
-        assert_eq!(
-            presses_of(b"\x1b[15~"),
-            [Press::Other],
-            "no digits of a function key"
-        );
+        assert_eq!(presses_of(b"\x1b[15~"), [Press::Other], "no digits of a function key");
         assert_eq!(presses_of("ä".as_bytes()), [Press::Other; 2]);
     }
 }

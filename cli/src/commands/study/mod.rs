@@ -27,7 +27,8 @@ use crate::shown::shown;
 
 /// Rating studies: plan them, run them, and get their results.
 ///
-/// A study is described by study.toml (its JSON Schema: `htex schema study`); its defaults are those of the paper's study.
+/// A study is described by study.toml (its JSON Schema: `htex schema study`); its defaults are
+/// those of the paper's study.
 #[derive(Args)]
 pub(crate) struct Study {
     #[command(subcommand)]
@@ -40,9 +41,11 @@ enum Command {
     Plan(plan::Plan),
     Run(Box<run::Run>),
     Export(export::Export),
-    /// Analyse the ratings of a study, and what was felt; by the Python package (`pip install htex[lab]`)
+    /// Analyse the ratings of a study, and what was felt; by the Python package
+    /// (`pip install htex[lab]`)
     Analyse(elsewhere::Elsewhere),
-    /// Find out how many participants a study needs; by the Python package (`pip install htex[lab]`)
+    /// Find out how many participants a study needs; by the Python package
+    /// (`pip install htex[lab]`)
     Power(elsewhere::Elsewhere),
 }
 

@@ -13,7 +13,8 @@ use crate::shown::shown;
 
 /// Write the order of every participant.
 ///
-/// The order follows from the study alone: the same seed gives the same order on every machine, and `htex study run` follows it.
+/// The order follows from the study alone: the same seed gives the same order on every machine, and
+/// `htex study run` follows it.
 #[derive(Args)]
 pub(super) struct Plan {
     /// The study: study.toml

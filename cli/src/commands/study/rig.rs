@@ -47,7 +47,8 @@ pub(super) struct StudyRig<'a> {
     pub(super) ended: bool,
     /// Records what is felt.
     pub(super) felt: Option<Felt>,
-    /// Drive of a display, volts, and levels of what plays or played last; `None` before a device is opened.
+    /// Drive of a display, volts, and levels of what plays or played last; `None` before a device
+    /// is opened.
     pub(super) playing: Option<(Option<f64>, Meter)>,
 }
 
@@ -61,10 +62,8 @@ impl StudyRig<'_> {
         };
         let name = output_name(file.as_ref(), &self.format);
         let path = self.folder.join(name);
-        let device = DeviceOverride {
-            output: Some(path.display().to_string()),
-            ..self.device.clone()
-        };
+        let device =
+            DeviceOverride { output: Some(path.display().to_string()), ..self.device.clone() };
         let scene = scene_of(self.study, &listed.asset, model);
         let told = &mut self.told.borrow_mut();
         self.loader.load(&self.path, told, |around| {
@@ -82,7 +81,8 @@ impl StudyRig<'_> {
             let mut settings = descriptor.settings.iter();
             settings.any(|setting| setting.name == name && setting.kind == SettingKind::Path)
         };
-        // How long samples wait is felt only as the delay of a live motion; a buffer that ran dry can be made longer in a session.
+        // How long samples wait is felt only as the delay of a live motion; a buffer that ran dry
+        // can be made longer in a session.
         let is_live = matches!(self.study.motion, Motion::Live);
         let is_unfelt = |name: &str| is_file(name) || (name == BUFFER && !is_live);
         let settings = ready.settings().iter();
@@ -90,9 +90,7 @@ impl StudyRig<'_> {
         Ok(DeviceUsed {
             adapter: descriptor.id.clone(),
             profile: self.device.profile.clone().unwrap_or_default(),
-            settings: settings
-                .map(|(name, value)| (name.to_owned(), value.to_owned()))
-                .collect(),
+            settings: settings.map(|(name, value)| (name.to_owned(), value.to_owned())).collect(),
             limit: ready.capabilities.limit,
             quantity_gain: ready.scene.scene.device.quantity_gain,
         })
@@ -111,9 +109,7 @@ impl StudyRig<'_> {
         let Some(answers) = &self.answers else {
             return Ok(());
         };
-        let path = self
-            .folder
-            .join(output_name(stimulus.file.as_ref(), &self.format));
+        let path = self.folder.join(output_name(stimulus.file.as_ref(), &self.format));
         let inside = path.strip_prefix(answers.path()).unwrap_or(&path);
         answers.path_to_write(inside).writing(&path)?;
         Ok(())
@@ -193,8 +189,7 @@ impl Rig for StudyRig<'_> {
             let asset = ready.scene.assets.first()?;
             let id = asset.representation_id(Some(model)).ok()?;
             let mut all = asset.manifest().representations.iter();
-            all.find(|r| r.model == id)?
-                .error_db(ErrorMeasure::NineBand)
+            all.find(|r| r.model == id)?.error_db(ErrorMeasure::NineBand)
         });
         self.errors_db.borrow_mut().insert(key, error_db);
         error_db

@@ -25,9 +25,9 @@ use crate::signals;
 
 /// Run the session of a participant: play each trial on the device, ask, and keep each answer.
 ///
-/// Answers are lines of DIR/PARTICIPANT.jsonl, each of which is on disk before the next trial. A session that was left (q, Ctrl-C) or
-/// killed goes on where it was when the same command is run again. Answers of two versions of a study, of its assets or of its device
-/// are not mixed.
+/// Answers are lines of DIR/PARTICIPANT.jsonl, each of which is on disk before the next trial. A
+/// session that was left (q, Ctrl-C) or killed goes on where it was when the same command is run
+/// again. Answers of two versions of a study, of its assets or of its device are not mixed.
 #[derive(Args)]
 pub(super) struct Run {
     /// The study: study.toml
@@ -48,7 +48,8 @@ pub(super) struct Run {
     #[arg(long, value_name = "SEED")]
     simulated: Option<u64>,
 
-    /// Do not wait: rests end at once, and devices without a clock get trials as fast as they take them
+    /// Do not wait: rests end at once, and devices without a clock get trials as fast as they take
+    /// them
     #[arg(long, requires = "simulated")]
     fast: bool,
 
@@ -92,19 +93,15 @@ impl Run {
     /// Refuses a study that would fail in the middle of a session.
     fn check_files(&self, study: &Study) -> Result<(), Failure> {
         let mut findings = Vec::new();
-        let device = self
-            .choice
-            .to_override(Some(&self.output.join("trial.wav")), false)?;
+        let device = self.choice.to_override(Some(&self.output.join("trial.wav")), false)?;
         let loader = self.with.loader()?;
         check_files(study, &self.study, &loader.around(), &device, &mut findings);
         findings.retain(|finding| finding.severity == Severity::Error);
         match findings.is_empty() {
             true => Ok(()),
-            false => Err(Failure::Findings {
-                cannot: CANNOT_RUN,
-                file: shown(&self.study),
-                findings,
-            }),
+            false => {
+                Err(Failure::Findings { cannot: CANNOT_RUN, file: shown(&self.study), findings })
+            }
         }
     }
 
@@ -132,15 +129,11 @@ impl Run {
         participant: &str,
     ) -> Result<(Ended, Value), Failure> {
         let mut rig = self.rig(study, participant)?;
-        let simulated = self
-            .simulated
-            .map(|seed| SimulatedParticipant::new(seed, participant));
+        let simulated = self.simulated.map(|seed| SimulatedParticipant::new(seed, participant));
         let Some(own) = plan.of(participant) else {
             return Err(Failure::Other(format!("{participant} has no plan")));
         };
-        rig.felt = self
-            .felt
-            .open(study, &self.output, participant, self.fast)?;
+        rig.felt = self.felt.open(study, &self.output, participant, self.fast)?;
         let device = rig.device_used()?;
         let mut clock: Box<dyn Clock> = match self.fast {
             true => Box::new(FastClock::default()),
@@ -157,13 +150,8 @@ impl Run {
             None => self.asking.open(study, participant)?,
         };
         rig.motions = asking.motions.take();
-        let ended = run(
-            &mut session,
-            &mut rig,
-            &mut *asking.asker,
-            &mut *clock,
-            simulated.as_ref(),
-        )?;
+        let ended =
+            run(&mut session, &mut rig, &mut *asking.asker, &mut *clock, simulated.as_ref())?;
         let summary = self.told(&session, ended)?;
         Ok((ended, summary))
     }

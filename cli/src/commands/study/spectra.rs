@@ -17,8 +17,9 @@ use crate::recordings::RecordingArgs;
 #[derive(Args)]
 #[command(next_help_heading = "Spectra")]
 pub(super) struct SpectraArgs {
-    /// The table of spectra to write, CSV: what each participant felt of each texture and model, averaged over its trials, and the
-    /// spectrum of each real texture; `htex study analyse --spectra` reads it
+    /// The table of spectra to write, CSV: what each participant felt of each texture and model,
+    /// averaged over its trials, and the spectrum of each real texture;
+    /// `htex study analyse --spectra` reads it
     #[arg(long, value_name = "CSV", value_parser = located::OUTPUT)]
     spectra: Option<PathBuf>,
 
@@ -26,23 +27,17 @@ pub(super) struct SpectraArgs {
     #[arg(long, value_name = "FILE", requires = "spectra")]
     study: Option<PathBuf>,
 
-    /// What becomes of recordings of trials whose speed or force was off the study's by more than 10 %: that is the rule for recordings of
-    /// textures, not for participants
-    #[arg(
-        long,
-        value_enum,
-        value_name = "WHAT",
-        requires = "spectra",
-        default_value = "keep"
-    )]
+    /// What becomes of recordings of trials whose speed or force was off the study's by more than
+    /// 10 %: that is the rule for recordings of textures, not for participants
+    #[arg(long, value_enum, value_name = "WHAT", requires = "spectra", default_value = "keep")]
     off_target: OffTarget,
 
     /// Response of the sensor during the study to divide out of what was felt: CSV as that of --frf
     #[arg(long, value_name = "CSV", requires = "spectra", value_parser = located::RECORDING)]
     felt_frf: Option<PathBuf>,
 
-    /// The recording of a real texture, in place of the asset's spectrum; may be given several times. The options of reading recordings
-    /// are about these
+    /// The recording of a real texture, in place of the asset's spectrum; may be given several
+    /// times. The options of reading recordings are about these
     #[arg(long, value_name = "TEXTURE=FILE", requires = "spectra")]
     recorded: Vec<String>,
 
@@ -62,10 +57,8 @@ impl SpectraArgs {
             return Ok(None);
         };
         let options = self.reading.spectrum_options()?;
-        let felt = ReadingSettings {
-            response: self.felt_frf.clone(),
-            ..ReadingSettings::default()
-        };
+        let felt =
+            ReadingSettings { response: self.felt_frf.clone(), ..ReadingSettings::default() };
         let felt = felt.spectrum_options()?;
         let mut recorded = self.of_assets()?;
         for text in &self.recorded {

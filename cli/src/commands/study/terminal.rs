@@ -23,19 +23,12 @@ enum Input {
     #[cfg(unix)]
     Keys(Keys),
     /// Lines; those that were typed before a question are forgotten, those of a pipe are not.
-    Lines {
-        lines: Receiver<String>,
-        is_typed: bool,
-    },
+    Lines { lines: Receiver<String>, is_typed: bool },
 }
 
 impl Terminal {
     pub(super) fn new() -> Self {
-        Self {
-            input: input(),
-            view: View::Done,
-            shown: Instant::now(),
-        }
+        Self { input: input(), view: View::Done, shown: Instant::now() }
     }
 
     fn words(&self, view: &View) -> String {
@@ -95,9 +88,7 @@ impl Asker for Terminal {
                 return key;
             }
             // The lines of a pipe wait for the question.
-            Input::Lines {
-                is_typed: false, ..
-            } if matches!(self.view, View::Playing { .. }) => {
+            Input::Lines { is_typed: false, .. } if matches!(self.view, View::Playing { .. }) => {
                 return None;
             }
             Input::Lines { lines, is_typed } => match lines.try_recv() {
@@ -142,9 +133,7 @@ fn text(view: &View, is_line: bool) -> String {
     match view {
         View::Ready { texture, .. } => format!("{texture}: Enter to begin, q to leave"),
         View::Playing { texture } => format!("{texture} plays"),
-        View::Question {
-            attribute, scale, ..
-        } => format!(
+        View::Question { attribute, scale, .. } => format!(
             "{} {} {} to {} {}{}",
             attribute.question,
             scale.min,
@@ -153,11 +142,7 @@ fn text(view: &View, is_line: bool) -> String {
             scale.high,
             if is_line { ", and Enter" } else { "" }
         ),
-        View::Matching {
-            texture,
-            rising: true,
-            ..
-        } => {
+        View::Matching { texture, rising: true, .. } => {
             let keys = match is_line {
                 true => "+ or ++ stronger, - or -- weaker, Enter alone: you feel it",
                 false => "+ or Page Up stronger, - or Page Down weaker, Enter: you feel it",
@@ -166,9 +151,7 @@ fn text(view: &View, is_line: bool) -> String {
                 "{texture}: make it stronger until you feel it as strongly as the real one, or more strongly: {keys}"
             )
         }
-        View::Matching {
-            texture, method, ..
-        } => {
+        View::Matching { texture, method, .. } => {
             let keys = match (method, is_line) {
                 (GainMethod::Descending, true) => "- or -- weaker, Enter alone: it matches",
                 (GainMethod::Adjustment, true) => {

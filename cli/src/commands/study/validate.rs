@@ -12,7 +12,8 @@ use crate::validation::report;
 
 /// Check a study, the assets that it names, and its device; exit status 1 if it cannot be run.
 ///
-/// Each finding has a stable code (`htex explain CODE`), a severity and a JSON pointer into the study.
+/// Each finding has a stable code (`htex explain CODE`), a severity and a JSON pointer into the
+/// study.
 #[derive(Args)]
 pub(super) struct Validate {
     /// The study: study.toml
@@ -32,10 +33,7 @@ pub(super) struct Validate {
 impl Validate {
     pub(super) fn run(self) -> Result<Exit, Failure> {
         let checked = self.check(&self.study);
-        report(
-            std::iter::once(checked.map(|report| (self.study.as_path(), report))),
-            self.json,
-        )
+        report(std::iter::once(checked.map(|report| (self.study.as_path(), report))), self.json)
     }
 
     fn check(&self, path: &Path) -> Result<Report, Failure> {

@@ -1,4 +1,5 @@
-//! Scenes and studies that ask for anything a stranger could, drawn by a seed, played on the paper's rig.
+//! Scenes and studies that ask for anything a stranger could, drawn by a seed, played on the
+//! paper's rig.
 
 use std::time::Instant;
 
@@ -136,10 +137,7 @@ impl Worst {
             true => self.played += 1,
             false => self.refused += 1,
         }
-        assert!(
-            card_v.last().is_none_or(|v| *v == 0.0),
-            "not at zero: {what}"
-        );
+        assert!(card_v.last().is_none_or(|v| *v == 0.0), "not at zero: {what}");
         let Volts { dc_v, peak_v } = volts(card_v, rate_hz);
         assert!(dc_v <= 1.0, "{dc_v} V direct voltage: {what}");
         assert!(peak_v <= LIMIT_V * (1.0 + 1e-6), "{peak_v} V: {what}");
@@ -171,10 +169,7 @@ fn to_its_end(dice: &mut Dice, worst: &mut Worst) {
 /// Plays a scene in real time, and ends the player.
 fn interrupted(dice: &mut Dice, worst: &mut Worst) {
     let what = scene(dice);
-    let (bench, name) = (
-        Bench::new(what.clone()),
-        dice.one(&["-INT", "-TERM", "-KILL"]),
-    );
+    let (bench, name) = (Bench::new(what.clone()), dice.one(&["-INT", "-TERM", "-KILL"]));
     let mut play = bench.command(&["play"]);
     play.stderr(Stdio::null()).stdout(Stdio::null());
     let begun = Instant::now();
@@ -205,10 +200,8 @@ fn interrupted(dice: &mut Dice, worst: &mut Worst) {
 fn toml(value: &Value) -> String {
     match value {
         Value::Object(all) => {
-            let pairs: Vec<String> = all
-                .iter()
-                .map(|(k, v)| format!("{k} = {}", toml(v)))
-                .collect();
+            let pairs: Vec<String> =
+                all.iter().map(|(k, v)| format!("{k} = {}", toml(v))).collect();
             format!("{{ {} }}", pairs.join(", "))
         }
         other => other.to_string(),
@@ -219,10 +212,7 @@ fn toml(value: &Value) -> String {
 fn studied(dice: &mut Dice, worst: &mut Worst) {
     let what = device(dice);
     let place = crate::studies::short(&[
-        (
-            "device = { adapter = 'file' }",
-            &format!("device = {}", toml(&what)),
-        ),
+        ("device = { adapter = 'file' }", &format!("device = {}", toml(&what))),
         ("trial_s = 0.05", "trial_s = 0.2"),
     ]);
     let driver = format!("driver={}", crate::simulated::built().display());

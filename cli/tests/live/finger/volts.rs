@@ -25,8 +25,5 @@ pub fn volts(card_v: &[f64], rate_hz: f64) -> Volts {
         dc = dc.max(sum.abs() / window as f64);
     }
     let peak = card_v.iter().fold(0.0f64, |peak, v| peak.max(v.abs()));
-    Volts {
-        dc_v: GAIN * dc,
-        peak_v: GAIN * peak,
-    }
+    Volts { dc_v: GAIN * dc, peak_v: GAIN * peak }
 }

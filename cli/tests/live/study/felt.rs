@@ -22,11 +22,7 @@ fn a_source_that_fails_ends_the_session_and_the_trial_is_repeated() {
     let place = on_card_short();
     let ann = ["--participant", "Ann"];
     let whole = on_card(&place, "whole", &ann).output().unwrap();
-    assert!(
-        whole.status.success(),
-        "{}",
-        String::from_utf8_lossy(&whole.stderr)
-    );
+    assert!(whole.status.success(), "{}", String::from_utf8_lossy(&whole.stderr));
     let expected = answers(&place.path("whole"));
     let faults = [
         ("DAQmxReadAnalogF64:20:error=-200279", "-200279"),
@@ -39,47 +35,28 @@ fn a_source_that_fails_ends_the_session_and_the_trial_is_repeated() {
         let failed = command.env("NIDAQMX_SIM_FAULT", fault).output().unwrap();
         let error = String::from_utf8_lossy(&failed.stderr).into_owned();
         assert_eq!(failed.status.code(), Some(1), "{fault}: {error}");
-        assert!(
-            error.contains(words) && error.contains("what is felt"),
-            "{error}"
-        );
+        assert!(error.contains(words) && error.contains("what is felt"), "{error}");
         // A source that cannot be opened stops nothing that plays.
         let stops = fault.starts_with("DAQmxRead");
         let text = &answers(&place.path(&folder))["Ann.jsonl"];
-        assert_eq!(
-            text.contains("\"reason\":\"failed\""),
-            stops,
-            "{fault}: {text}"
-        );
+        assert_eq!(text.contains("\"reason\":\"failed\""), stops, "{fault}: {text}");
         let so_far = &unstopped(&place.path(&folder))["Ann.jsonl"];
         assert!(
             expected["Ann.jsonl"].starts_with(&so_far[..])
                 && so_far.len() < expected["Ann.jsonl"].len()
         );
         let again = on_card(&place, &folder, &ann).output().unwrap();
-        assert!(
-            again.status.success(),
-            "{}",
-            String::from_utf8_lossy(&again.stderr)
-        );
+        assert!(again.status.success(), "{}", String::from_utf8_lossy(&again.stderr));
         assert_eq!(unstopped(&place.path(&folder)), expected, "{fault}");
         let found = felt(&place.path(&folder), "Ann");
         assert!(found == felt(&place.path("whole"), "Ann"), "{fault}");
     }
     // Answers with another source, and recordings that are not those of their trials.
-    let other = on_card(
-        &place,
-        "whole",
-        &["--participant", "Ann", "--format", "csv"],
-    )
-    .output()
-    .unwrap();
+    let other =
+        on_card(&place, "whole", &["--participant", "Ann", "--format", "csv"]).output().unwrap();
     assert_eq!(other.status.code(), Some(1));
     let error = String::from_utf8_lossy(&other.stderr).into_owned();
-    assert!(
-        error.contains("source") && error.contains("format"),
-        "{error}"
-    );
+    assert!(error.contains("source") && error.contains("format"), "{error}");
     // Answers with another gain of the amplifier.
     let before = answers(&place.path("whole"));
     assert!(
@@ -115,56 +92,25 @@ fn a_source_that_fails_ends_the_session_and_the_trial_is_repeated() {
             && error.contains("the device ran dry in 3 attempts of the same trial"),
         "{error}"
     );
-    let export = [
-        "study",
-        "export",
-        "whole",
-        "-o",
-        "r.csv",
-        "--spectra",
-        "s.csv",
-    ];
+    let export = ["study", "export", "whole", "-o", "r.csv", "--spectra", "s.csv"];
     let run = place.run(&export);
-    assert!(
-        run.code() == 1 && run.error().contains("--recorded vinyl=FILE"),
-        "{}",
-        run.error()
-    );
+    assert!(run.code() == 1 && run.error().contains("--recorded vinyl=FILE"), "{}", run.error());
     // One of the recordings stands for the real texture.
     let trials = felt(&place.path("whole"), "Ann");
-    let trials: Vec<&String> = trials
-        .keys()
-        .filter(|name| name.ends_with(".npy"))
-        .collect();
+    let trials: Vec<&String> = trials.keys().filter(|name| name.ends_with(".npy")).collect();
     assert_eq!(trials.len(), 4, "{trials:?}");
     let recorded = format!("vinyl=whole/Ann/felt/{}", trials[0]);
-    let real = [
-        "--recorded",
-        &recorded,
-        "--map",
-        "lateral=#1:1",
-        "--rate",
-        "20000",
-    ];
+    let real = ["--recorded", &recorded, "--map", "lateral=#1:1", "--rate", "20000"];
     let run = place.run(&[&export[..], &real].concat());
     assert_eq!(run.code(), 0, "{}", run.error());
-    assert_eq!(
-        fs::read_to_string(place.path("s.csv"))
-            .unwrap()
-            .lines()
-            .count(),
-        1 + 2 + 1
-    );
+    assert_eq!(fs::read_to_string(place.path("s.csv")).unwrap().lines().count(), 1 + 2 + 1);
     fs::write(place.path("whole/Ann/felt").join(trials[1]), b"other").unwrap();
     let run = place.run(&[&export[..], &real].concat());
-    assert!(
-        run.code() == 1 && run.error().contains("hash"),
-        "{}",
-        run.error()
-    );
+    assert!(run.code() == 1 && run.error().contains("hash"), "{}", run.error());
 }
 
-/// In real time, the recording begins when the output does and has the length of the trial; a source that ends too early is an error.
+/// In real time, the recording begins when the output does and has the length of the trial; a
+/// source that ends too early is an error.
 #[test]
 fn a_person_is_recorded_from_the_beginning_of_each_trial() {
     let place = short(&[
@@ -192,10 +138,7 @@ fn a_person_is_recorded_from_the_beginning_of_each_trial() {
             "csv",
         ];
         let mut command = place.command(&arguments);
-        command
-            .stdin(Stdio::piped())
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped());
+        command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
         let done = child.wait_with_output().unwrap();
@@ -204,10 +147,8 @@ fn a_person_is_recorded_from_the_beginning_of_each_trial() {
     let (code, error) = run("\n4\n\n5\n", "file:felt.csv");
     assert_eq!(code, Some(0), "{error}");
     let text = fs::read_to_string(place.path("answers/Ann.jsonl")).unwrap();
-    let lines: Vec<serde_json::Value> = text
-        .lines()
-        .map(|l| serde_json::from_str(l).unwrap())
-        .collect();
+    let lines: Vec<serde_json::Value> =
+        text.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
     assert_eq!(lines[0]["source"]["name"], "file:felt.csv");
     assert_eq!(lines[0]["source"]["signals"][0][0], "lateral");
     let answered = lines.iter().filter(|line| line["kind"] == "answer");
@@ -216,36 +157,18 @@ fn a_person_is_recorded_from_the_beginning_of_each_trial() {
     for line in answered {
         let file = line["felt"]["file"].as_str().unwrap();
         let bytes = fs::read(place.path("answers").join(file)).unwrap();
-        assert_eq!(
-            line["felt"]["blake3"],
-            blake3::hash(&bytes).to_hex().as_str()
-        );
-        assert_eq!(
-            String::from_utf8(bytes).unwrap().lines().count(),
-            1 + 1000,
-            "{file}"
-        );
+        assert_eq!(line["felt"]["blake3"], blake3::hash(&bytes).to_hex().as_str());
+        assert_eq!(String::from_utf8(bytes).unwrap().lines().count(), 1 + 1000, "{file}");
         let beside = fs::read(place.path("answers").join(file).with_extension("json")).unwrap();
         let beside: serde_json::Value = serde_json::from_slice(&beside).unwrap();
         assert_eq!(beside["trial"]["speed_mm_s"], 80.0);
         assert_eq!(beside["trial"]["texture"], line["texture"]);
     }
-    // Each trial was off its target, which is said at once; its rating and its spectrum are exported all the same.
-    assert!(
-        error.contains("note: trial-0001 was off its target: force: mean 0.6000"),
-        "{error}"
-    );
+    // Each trial was off its target, which is said at once; its rating and its spectrum are
+    // exported all the same.
+    assert!(error.contains("note: trial-0001 was off its target: force: mean 0.6000"), "{error}");
     let spectra = |more: &[&str]| {
-        let export = [
-            "study",
-            "export",
-            "answers",
-            "-o",
-            "r.csv",
-            "--spectra",
-            "s.csv",
-            "--json",
-        ];
+        let export = ["study", "export", "answers", "-o", "r.csv", "--spectra", "s.csv", "--json"];
         let run = place.run(&[&export[..], &["--recorded", "vinyl=felt.csv"], more].concat());
         assert_eq!(run.code(), 0, "{}", run.error());
         let said: serde_json::Value = serde_json::from_str(&run.text()).unwrap();
@@ -260,47 +183,24 @@ fn a_person_is_recorded_from_the_beginning_of_each_trial() {
         (said, rows("r.csv"), rows("s.csv"), run.error())
     };
     let (said, ratings, felt, warned) = spectra(&[]);
-    assert_eq!(
-        (&said["off_target"], &said["recordings"]),
-        (&2.into(), &2.into())
-    );
+    assert_eq!((&said["off_target"], &said["recordings"]), (&2.into(), &2.into()));
     assert!(
         ratings.len() == 2 && ratings.iter().all(|row| row.ends_with(",no,yes")),
         "{ratings:?}"
     );
     assert_eq!(felt.len(), 2 + 1);
-    assert!(
-        warned.contains("Ann: 2 of 2 trials whose motion was measured were off"),
-        "{warned}"
-    );
+    assert!(warned.contains("Ann: 2 of 2 trials whose motion was measured were off"), "{warned}");
     let (said, ratings, felt, warned) = spectra(&["--off-target", "leave-out"]);
-    assert_eq!(
-        (&said["off_target"], &said["recordings"]),
-        (&2.into(), &0.into())
-    );
+    assert_eq!((&said["off_target"], &said["recordings"]), (&2.into(), &0.into()));
     assert_eq!((ratings.len(), felt.len()), (2, 0));
-    assert!(
-        warned.contains("left out: there is no spectrum"),
-        "{warned}"
-    );
+    assert!(warned.contains("left out: there is no spectrum"), "{warned}");
     // What stops the spectra costs no rating.
     fs::remove_file(place.path("r.csv")).unwrap();
-    let export = [
-        "study",
-        "export",
-        "answers",
-        "-o",
-        "r.csv",
-        "--spectra",
-        "s.csv",
-    ];
+    let export = ["study", "export", "answers", "-o", "r.csv", "--spectra", "s.csv"];
     assert_eq!(place.run(&export).code(), 1);
     assert!(place.path("r.csv").exists());
     fs::remove_dir_all(place.path("answers")).unwrap();
-    place.write(
-        "short.csv",
-        rows(1).lines().take(200).collect::<Vec<_>>().join("\n"),
-    );
+    place.write("short.csv", rows(1).lines().take(200).collect::<Vec<_>>().join("\n"));
     let (code, error) = run("\n4\n\n5\n", "file:short.csv");
     assert_eq!(code, Some(1), "{error}");
     assert!(

@@ -1,4 +1,5 @@
-//! A page of a study on the simulated card: hostile programs that connect to it, a browser that dies, and the key that stops.
+//! A page of a study on the simulated card: hostile programs that connect to it, a browser that
+//! dies, and the key that stops.
 
 use std::fs;
 use std::io::{ErrorKind, Read, Write};
@@ -52,14 +53,7 @@ impl Session {
         let study = STUDY.replace("TRIAL_S", &format!("{trial_s:?}"));
         place.write("study.toml", study.replace("MOTION", motion));
         let driver = format!("driver={}", crate::simulated::built().display());
-        let run = [
-            "study",
-            "run",
-            "study.toml",
-            "--participant",
-            "Ann",
-            "--page",
-        ];
+        let run = ["study", "run", "study.toml", "--participant", "Ann", "--page"];
         let card = ["--profile", PAPER, "--set", &driver];
         let mut command = place.command(&[&run, &card[..], more].concat());
         let mut child = command
@@ -71,12 +65,7 @@ impl Session {
             .unwrap();
         let url = crate::browser::address(&mut child);
         let by_number = crate::browser::by_number(&url);
-        Self {
-            place,
-            child,
-            url,
-            by_number,
-        }
+        Self { place, child, url, by_number }
     }
 
     fn tab<'a>(&'a self, name: &'a str) -> TabOf<'a> {
@@ -146,10 +135,7 @@ impl TabOf<'_> {
         let mut reply = String::new();
         stream.read_to_string(&mut reply).unwrap();
         let (head, body) = reply.split_once("\r\n\r\n").unwrap();
-        (
-            head.split(' ').nth(1).unwrap().parse().unwrap(),
-            body.to_owned(),
-        )
+        (head.split(' ').nth(1).unwrap().parse().unwrap(), body.to_owned())
     }
 
     fn state(&self) -> Value {
@@ -187,7 +173,8 @@ impl TabOf<'_> {
     }
 }
 
-/// Programs of this machine that connect to a port without its token, each again when it is refused.
+/// Programs of this machine that connect to a port without its token, each again when it is
+/// refused.
 struct Crowd {
     ends: Arc<AtomicBool>,
     connected: Arc<AtomicUsize>,
@@ -199,10 +186,7 @@ impl Crowd {
 
     fn start(host: &str, count: usize) -> Self {
         let at: SocketAddr = host.parse().unwrap();
-        let (ends, connected) = (
-            Arc::new(AtomicBool::new(false)),
-            Arc::new(AtomicUsize::new(0)),
-        );
+        let (ends, connected) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
         let threads = (0..Self::THREADS).map(|thread| {
             let (ends, connected) = (Arc::clone(&ends), Arc::clone(&connected));
             let kinds: Vec<usize> = (0..count).filter(|i| i % Self::THREADS == thread).collect();
@@ -218,10 +202,7 @@ impl Crowd {
                                 stream.set_nonblocking(true).unwrap();
                             }
                         }
-                        if stream
-                            .as_mut()
-                            .is_some_and(|stream| !goes_on(*kind, stream, sent))
-                        {
+                        if stream.as_mut().is_some_and(|stream| !goes_on(*kind, stream, sent)) {
                             *stream = None;
                         }
                     }
@@ -230,11 +211,7 @@ impl Crowd {
             })
         });
         let threads = threads.collect();
-        Self {
-            ends,
-            connected,
-            threads,
-        }
+        Self { ends, connected, threads }
     }
 
     fn end(self) -> usize {
@@ -317,9 +294,7 @@ fn hostile_programs_delay_nobody() {
     assert!(slowest <= MOST, "{slowest:?}");
     // They are not locked.
     assert!(connected >= count);
-    let again = session
-        .place
-        .run(&["study", "export", "answers", "-o", "ratings.csv"]);
+    let again = session.place.run(&["study", "export", "answers", "-o", "ratings.csv"]);
     assert_eq!(again.code(), 0, "{}", again.error());
 }
 
@@ -334,20 +309,16 @@ fn ctrl_c_ends_a_session_with_a_request_whose_body_never_comes() {
         sleep(Duration::from_millis(10));
     }
     let mut stuck = TcpStream::connect(tab.host).unwrap();
-    let head = format!(
-        "POST /x HTTP/1.1\r\nHost: {}\r\nContent-Length: 4000\r\n\r\n",
-        tab.host
-    );
+    let head = format!("POST /x HTTP/1.1\r\nHost: {}\r\nContent-Length: 4000\r\n\r\n", tab.host);
     stuck.write_all(head.as_bytes()).unwrap();
     let id = session.child.id().to_string();
-    let sent = std::process::Command::new("kill")
-        .args(["-INT", &id])
-        .status();
+    let sent = std::process::Command::new("kill").args(["-INT", &id]).status();
     assert!(sent.unwrap().success());
     session.ends();
 }
 
-/// A page of another address that knows the token, a body that is too long, and a body that does not come.
+/// A page of another address that knows the token, a body that is too long, and a body that does
+/// not come.
 #[test]
 fn a_request_is_refused_by_its_head() {
     let constant = "{ constant = { speed_mm_s = 80, force_n = 0.4 } }";
@@ -365,10 +336,8 @@ fn a_request_is_refused_by_its_head() {
     let start = Instant::now();
     let head = |path: &str| {
         let mut stream = TcpStream::connect(tab.host).unwrap();
-        let head = format!(
-            "POST /{path} HTTP/1.1\r\nHost: {}\r\nContent-Length: 99\r\n\r\n",
-            tab.host
-        );
+        let head =
+            format!("POST /{path} HTTP/1.1\r\nHost: {}\r\nContent-Length: 99\r\n\r\n", tab.host);
         stream.write_all(head.as_bytes()).unwrap();
         let mut reply = String::new();
         stream.read_to_string(&mut reply).unwrap();
@@ -380,14 +349,11 @@ fn a_request_is_refused_by_its_head() {
     assert!(start.elapsed() < Duration::from_secs(5));
 }
 
-/// A finger that slides on the page, until the browser dies: after 300 ms of silence there is no contact.
+/// A finger that slides on the page, until the browser dies: after 300 ms of silence there is no
+/// contact.
 #[test]
 fn a_browser_that_dies_lifts_the_finger() {
-    let session = Session::start(
-        6.0,
-        "'live'",
-        &["--motion", "page", "--set", "buffer_ms=200"],
-    );
+    let session = Session::start(6.0, "'live'", &["--motion", "page", "--set", "buffer_ms=200"]);
     let tab = session.tab("a");
     tab.begins_a_trial();
     let start = Instant::now();

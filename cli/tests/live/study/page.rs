@@ -41,20 +41,9 @@ fn session(place: &Place) -> (Child, String) {
 fn asked(place: &Place, study: &str, more: &[&str]) -> (Child, String) {
     place.write("vinyl.htex", fs::read(VINYL).unwrap());
     place.write("study.toml", study);
-    let run = [
-        "study",
-        "run",
-        "study.toml",
-        "--participant",
-        "Ann",
-        "--page",
-    ];
+    let run = ["study", "run", "study.toml", "--participant", "Ann", "--page"];
     let mut command = place.command(&[&run, more].concat());
-    let mut child = command
-        .stderr(Stdio::piped())
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
     let url = crate::browser::address(&mut child);
     (child, url)
 }
@@ -68,18 +57,12 @@ fn go(browser: &mut Browser, tab: &Tab) {
 fn kept(place: &Place) -> Vec<Value> {
     let text = fs::read_to_string(place.path("answers/Ann.jsonl")).unwrap_or_default();
     let whole = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
-    whole
-        .lines()
-        .map(|line| serde_json::from_str(line).unwrap())
-        .collect()
+    whole.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
 /// Ratings so far.
 fn ratings(place: &Place) -> Vec<u64> {
-    kept(place)
-        .iter()
-        .filter_map(|line| line["rating"].as_u64())
-        .collect()
+    kept(place).iter().filter_map(|line| line["rating"].as_u64()).collect()
 }
 
 fn wait_for(place: &Place, expected: &[u64]) {
@@ -144,12 +127,7 @@ fn one_press_is_one_answer_in_one_tab() {
     for (key, lines) in [("-", 1), ("-", 2), ("Enter", 3)] {
         browser.press(&tab, key, 0);
         let start = Instant::now();
-        let gains = || {
-            kept(&place)
-                .iter()
-                .filter(|line| line["kind"] == "gain")
-                .count()
-        };
+        let gains = || kept(&place).iter().filter(|line| line["kind"] == "gain").count();
         while gains() < lines && start.elapsed() < Duration::from_secs(60) {
             std::thread::sleep(Duration::from_millis(10));
         }
@@ -162,14 +140,8 @@ fn one_press_is_one_answer_in_one_tab() {
         }
         std::thread::sleep(Duration::from_millis(500));
     }
-    let found = kept(&place)
-        .into_iter()
-        .rfind(|line| line["kind"] == "gain")
-        .unwrap();
-    assert_eq!(
-        (&found["gain_db"], &found["found"]),
-        (&(-2.0).into(), &true.into())
-    );
+    let found = kept(&place).into_iter().rfind(|line| line["kind"] == "gain").unwrap();
+    assert_eq!((&found["gain_db"], &found["found"]), (&(-2.0).into(), &true.into()));
     // When the first tab is closed, the second one goes on.
     browser.close(&tab);
     browser.shows(&second, "Begin");
@@ -238,9 +210,7 @@ fn gains(place: &Place) -> Vec<f64> {
 fn levels(place: &Place, kind: &str) -> Vec<f64> {
     let lines = kept(place).into_iter();
     let gains = lines.filter(|line| line["kind"] == kind);
-    gains
-        .map(|line| line["gain_db"].as_f64().unwrap())
-        .collect()
+    gains.map(|line| line["gain_db"].as_f64().unwrap()).collect()
 }
 
 /// Waits until the last gain is this one and the page asks for the next key.
@@ -254,7 +224,8 @@ fn gain_is(place: &Place, expected: &[f64]) {
     assert_eq!(gains(place), expected);
 }
 
-/// A matching on the page: each key or button (in angle brackets) and the gain after it, decibels; `None` where it has no meaning.
+/// A matching on the page: each key or button (in angle brackets) and the gain after it, decibels;
+/// `None` where it has no meaning.
 fn matched(method: &str, buttons: &[&str], keys: &[(&str, Option<f64>)]) {
     let installed = crate::browser::installed();
     if !xtask::needs::CHROMIUM.met(installed.is_some()) {
@@ -277,10 +248,9 @@ fn matched(method: &str, buttons: &[&str], keys: &[(&str, Option<f64>)]) {
     let mut expected = Vec::new();
     for (index, (key, gain_db)) in keys.iter().enumerate() {
         match key.strip_prefix('<') {
-            Some(button) => browser.click(
-                &tab,
-                &format!("[data-key={}]", button.trim_end_matches('>')),
-            ),
+            Some(button) => {
+                browser.click(&tab, &format!("[data-key={}]", button.trim_end_matches('>')))
+            }
             None => {
                 // Held, and pressed a second time at once: one step.
                 browser.press(&tab, key, 3);
@@ -297,9 +267,7 @@ fn matched(method: &str, buttons: &[&str], keys: &[(&str, Option<f64>)]) {
         }
     }
     browser.shows(&tab, "Begin");
-    let found = kept(&place)
-        .into_iter()
-        .rfind(|line| line["kind"] == "gain");
+    let found = kept(&place).into_iter().rfind(|line| line["kind"] == "gain");
     assert_eq!(found.unwrap()["found"], true);
     go(&mut browser, &tab);
     browser.shows(&tab, "Feel it");
@@ -315,13 +283,7 @@ fn matched(method: &str, buttons: &[&str], keys: &[(&str, Option<f64>)]) {
 
 #[test]
 fn a_gain_is_adjusted_up_and_down() {
-    let buttons = [
-        "much_weaker",
-        "weaker",
-        "stronger",
-        "much_stronger",
-        "accept",
-    ];
+    let buttons = ["much_weaker", "weaker", "stronger", "much_stronger", "accept"];
     let keys = [
         ("PageDown", Some(-4.0)),
         ("<much_weaker>", Some(-8.0)),
@@ -341,7 +303,8 @@ fn a_gain_is_adjusted_up_and_down() {
 
 #[test]
 fn a_staircase_asks_for_a_direction_alone() {
-    // Steps of 4 dB until the first reversal, then of 1 dB; the gain is the mean of the reversals after the second.
+    // Steps of 4 dB until the first reversal, then of 1 dB; the gain is the mean of the reversals
+    // after the second.
     let keys = [
         ("-", Some(-4.0)),
         ("<weaker>", Some(-8.0)),
@@ -366,11 +329,7 @@ fn masking_noise_has_its_level_and_its_times() {
     let mut browser = Browser::start(installed.unwrap(), &place.path("browser"));
     let tab = browser.open(&url);
     browser.shows(&tab, "You will match its strength");
-    assert_eq!(
-        browser.value(&tab, "audio"),
-        Value::Null,
-        "nothing sounds before"
-    );
+    assert_eq!(browser.value(&tab, "audio"), Value::Null, "nothing sounds before");
     // A listener at everything that goes to the headphones.
     let listen = "window.heard = []; const connect = AudioNode.prototype.connect; AudioNode.prototype.connect = function (to, ...rest) { \
         if (to instanceof AudioDestinationNode) { const split = this.context.createChannelSplitter(2); connect.call(this, split); \
@@ -380,7 +339,8 @@ fn masking_noise_has_its_level_and_its_times() {
     go(&mut browser, &tab);
     felt_after(&mut browser, &tab, 0);
     browser.shows(&tab, "Compare it");
-    // Level, decibels relative to full scale, and bands of an octave above the first, decibels relative to the mean power of a bin.
+    // Level, decibels relative to full scale, and bands of an octave above the first, decibels
+    // relative to the mean power of a bin.
     let measure = "(async () => { for (let i = 0; i < 100 && audio.state !== 'running'; i++) await new Promise((r) => setTimeout(r, 50)); \
         await new Promise((r) => setTimeout(r, 1500)); \
         return heard.map((ear) => { const time = new Float32Array(32768); ear.getFloatTimeDomainData(time); \
@@ -404,21 +364,13 @@ fn masking_noise_has_its_level_and_its_times() {
     browser.press(&tab, "Enter", 0);
     browser.shows(&tab, "Begin");
     let stopped = "(async () => { for (let i = 0; i < 100 && audio.state !== 'suspended'; i++) await new Promise((r) => setTimeout(r, 50)); return audio.state; })()";
-    assert_eq!(
-        browser.promised(&tab, stopped),
-        "suspended",
-        "between trials"
-    );
+    assert_eq!(browser.promised(&tab, stopped), "suspended", "between trials");
     go(&mut browser, &tab);
     browser.shows(&tab, "Feel it");
     let running = stopped.replace("suspended", "running");
     assert_eq!(browser.promised(&tab, &running), "running", "in a trial");
     browser.shows(&tab, "How similar");
-    assert_eq!(
-        browser.promised(&tab, stopped),
-        "suspended",
-        "at a question"
-    );
+    assert_eq!(browser.promised(&tab, stopped), "suspended", "at a question");
     std::thread::sleep(Duration::from_millis(400));
     browser.press(&tab, "4", 0);
     browser.shows(&tab, "Go on");
@@ -430,11 +382,7 @@ fn masking_noise_has_its_level_and_its_times() {
     child.kill().unwrap();
     child.wait().unwrap();
     browser.shows(&tab, "not running");
-    assert_eq!(
-        browser.promised(&tab, stopped),
-        "suspended",
-        "after the end of htex"
-    );
+    assert_eq!(browser.promised(&tab, stopped), "suspended", "after the end of htex");
 }
 
 #[test]
@@ -446,18 +394,11 @@ fn other_pages_and_programs_cannot_answer() {
     let (port, path) = rest.trim().split_once('/').unwrap();
     let host = format!("127.0.0.1:{port}");
     let get = |path: &str, host: &str| {
-        status(
-            port,
-            &format!("GET /{path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"),
-        )
+        status(port, &format!("GET /{path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"))
     };
     assert_eq!(get(path, &host), "200");
     assert_eq!(get("", &host), "404", "without the token");
-    assert_eq!(
-        get(&path.to_uppercase(), &host),
-        "404",
-        "with another token"
-    );
+    assert_eq!(get(&path.to_uppercase(), &host), "404", "with another token");
     assert_eq!(get(path, "evil.example"), "403", "under another name");
     let name = url.split('/').nth(2).unwrap();
     assert_eq!(get(path, name), "200", "by the name that is printed");
@@ -482,15 +423,11 @@ fn other_pages_and_programs_cannot_answer() {
     assert_eq!(post(&"x".repeat(100_000)), "413");
     child.kill().unwrap();
     child.wait().unwrap();
-    assert_eq!(
-        kept(&place).len(),
-        2,
-        "there are a header, a session and no answer"
-    );
+    assert_eq!(kept(&place).len(), 2, "there are a header, a session and no answer");
 }
 
-/// At a port that another program may have had, only the name is served at which nothing was before: a script that the program left at
-/// the number (a service worker) sees no request.
+/// At a port that another program may have had, only the name is served at which nothing was
+/// before: a script that the program left at the number (a service worker) sees no request.
 #[test]
 fn at_a_port_that_was_chosen_only_a_new_name_is_served() {
     let place = Place::new();
@@ -500,11 +437,7 @@ fn at_a_port_that_was_chosen_only_a_new_name_is_served() {
     let mut names = std::collections::BTreeSet::new();
     for _ in 0..2 {
         let (mut child, url) = asked(&place, STUDY, &["--motion", "page", "--port", &port]);
-        let (host, path) = url
-            .strip_prefix("http://")
-            .unwrap()
-            .split_once('/')
-            .unwrap();
+        let (host, path) = url.strip_prefix("http://").unwrap().split_once('/').unwrap();
         let get = |host: &str| {
             status(
                 &port,

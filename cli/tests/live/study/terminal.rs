@@ -49,11 +49,7 @@ impl Session {
         grantpt(&master).unwrap();
         unlockpt(&master).unwrap();
         let name = ptsname(&master, Vec::new()).unwrap();
-        let terminal = File::options()
-            .read(true)
-            .write(true)
-            .open(name.to_str().unwrap())
-            .unwrap();
+        let terminal = File::options().read(true).write(true).open(name.to_str().unwrap()).unwrap();
         let mut child = place
             .command(&["study", "run", "study.toml", "--participant", "Ann"])
             .stdin(Stdio::from(terminal.try_clone().unwrap()))
@@ -68,12 +64,7 @@ impl Session {
                 *heard.lock().unwrap() += &(line + "\n");
             }
         });
-        Self {
-            child,
-            keyboard: File::from(master),
-            terminal,
-            said,
-        }
+        Self { child, keyboard: File::from(master), terminal, said }
     }
 
     fn said(&self) -> String {
@@ -84,11 +75,7 @@ impl Session {
     fn says(&self, text: &str, times: usize) {
         let start = Instant::now();
         while self.said().matches(text).count() < times {
-            assert!(
-                start.elapsed() < Duration::from_secs(60),
-                "{text}: {}",
-                self.said()
-            );
+            assert!(start.elapsed() < Duration::from_secs(60), "{text}: {}", self.said());
             std::thread::sleep(Duration::from_millis(10));
         }
     }
@@ -112,15 +99,13 @@ fn place() -> Place {
     place
 }
 
-/// Enter and the space bar, of which the second one comes when the next trial waits: the rest ends, and no trial begins.
+/// Enter and the space bar, of which the second one comes when the next trial waits: the rest ends,
+/// and no trial begins.
 #[test]
 fn a_double_press_at_a_rest_begins_no_trial() {
     let place = place();
     let rests = STUDY
-        .replace(
-            "phases = ['gain', 'testing']",
-            "phases = ['testing']\nrests = { every = 1 }",
-        )
+        .replace("phases = ['gain', 'testing']", "phases = ['testing']\nrests = { every = 1 }")
         .replace("start_db = -4\ngain = { method = 'adjustment' }\n", "");
     place.write("study.toml", rests);
     for apart_ms in [0, 150, 300, 450] {
@@ -154,9 +139,7 @@ fn a_double_press_at_a_rest_begins_no_trial() {
 
 fn kept(place: &Place, key: &str) -> Vec<serde_json::Value> {
     let text = fs::read_to_string(place.path("answers/Ann.jsonl")).unwrap();
-    let lines = text
-        .lines()
-        .map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+    let lines = text.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
     lines.filter_map(|line| line.get(key).cloned()).collect()
 }
 
@@ -210,11 +193,7 @@ fn the_terminal_is_restored_after_a_signal() {
         session.says("make it stronger until you feel it", 1);
         let id = Pid::from_raw(session.child.id() as i32).unwrap();
         kill_process(id, signal).unwrap();
-        assert!(
-            session.child.wait().unwrap().success(),
-            "{}",
-            session.said()
-        );
+        assert!(session.child.wait().unwrap().success(), "{}", session.said());
         assert!(session.is_restored(), "{signal:?}");
         assert_eq!(kept(&place, "reason"), ["interrupted"], "{signal:?}");
     }

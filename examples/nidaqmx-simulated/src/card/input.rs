@@ -41,15 +41,10 @@ impl Card {
         let (first, there) = (task.read, task.sampled - task.read);
         let frames = u64::try_from(most).map_or(there, |most| most.min(there));
         task.read += frames;
-        let (inputs, range_v, rate_hz) = (
-            task.inputs.clone(),
-            task.range_v,
-            task.rate_hz.unwrap_or(1.0),
-        );
+        let (inputs, range_v, rate_hz) =
+            (task.inputs.clone(), task.range_v, task.rate_hz.unwrap_or(1.0));
         for frame in first..first + frames {
-            let volts = inputs
-                .iter()
-                .map(|input| self.volts(*input, frame, rate_hz));
+            let volts = inputs.iter().map(|input| self.volts(*input, frame, rate_hz));
             to.extend(volts.map(|v| v.clamp(-range_v, range_v)));
         }
         Ok(frames as usize)
@@ -66,17 +61,16 @@ impl Card {
         Ok(())
     }
 
-    /// The voltage at an input: that of the finger, or of the file, after its end 0; without a file a sine of 10 Hz times the input's number from 1.
+    /// The voltage at an input: that of the finger, or of the file, after its end 0; without a file
+    /// a sine of 10 Hz times the input's number from 1.
     fn volts(&self, input: usize, frame: u64, rate_hz: f64) -> f64 {
         if let Some(loopback) = &self.loopback {
             return loopback.volts(frame, rate_hz);
         }
         match &self.input {
-            Some(rows) => rows
-                .get(frame as usize)
-                .and_then(|row| row.get(input))
-                .copied()
-                .unwrap_or(0.0),
+            Some(rows) => {
+                rows.get(frame as usize).and_then(|row| row.get(input)).copied().unwrap_or(0.0)
+            }
             None => {
                 let turns = frame as f64 / rate_hz * 10.0 * (input + 1) as f64;
                 (std::f64::consts::TAU * turns).sin()
@@ -84,7 +78,8 @@ impl Card {
         }
     }
 
-    /// Lets the clock sample what is due. More unread frames than the buffer holds are an error for good.
+    /// Lets the clock sample what is due. More unread frames than the buffer holds are an error for
+    /// good.
     fn sample(&mut self, id: usize, step_s: f64) -> Answer<()> {
         self.plugged()?;
         let (by_calls, late_s) = (self.by_calls, std::mem::take(&mut self.late_s));
@@ -127,10 +122,7 @@ fn expanded(names: &str) -> Answer<Vec<usize>> {
         let range = range.strip_prefix("ai").ok_or(codes::NO_SUCH_CHANNEL)?;
         let (first, last) = range.split_once(':').unwrap_or((range, range));
         let number = |text: &str| {
-            text.trim_start_matches("ai")
-                .parse::<usize>()
-                .ok()
-                .filter(|n| *n < INPUTS)
+            text.trim_start_matches("ai").parse::<usize>().ok().filter(|n| *n < INPUTS)
         };
         let (Some(first), Some(last)) = (number(first), number(last)) else {
             return Err(codes::NO_SUCH_CHANNEL);

@@ -1,8 +1,8 @@
-//! A finger between the first output and the inputs, which may be in two processes: the friction of electrovibration follows the square
-//! of the voltage.
+//! A finger between the first output and the inputs, which may be in two processes: the friction of
+//! electrovibration follows the square of the voltage.
 //!
-//! The output appends what it puts out to a file, in chunks: the rate (f64, hertz; 0 without a clock), the number of samples (u64) and the
-//! samples (f64, volts), all little-endian.
+//! The output appends what it puts out to a file, in chunks: the rate (f64, hertz; 0 without a
+//! clock), the number of samples (u64) and the samples (f64, volts), all little-endian.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -38,10 +38,7 @@ impl Loopback {
         let file = std::mem::take(&mut self.file);
         let emptied = File::create(&file).map(|_| ());
         said(&file, emptied);
-        *self = Self {
-            file,
-            ..Self::new(Path::new(""))
-        };
+        *self = Self { file, ..Self::new(Path::new("")) };
     }
 
     /// Appends what the output puts out.
@@ -56,9 +53,9 @@ impl Loopback {
         said(&self.file, file.and_then(|mut file| file.write_all(&bytes)));
     }
 
-    /// Frames at a rate that were there by now, counted from the first sample of the output, or with `from_signal` from the first voltage
-    /// that is not zero; `None` after the output has ended,
-    /// when the inputs have a clock of their own.
+    /// Frames at a rate that were there by now, counted from the first sample of the output, or
+    /// with `from_signal` from the first voltage that is not zero; `None` after the output has
+    /// ended, when the inputs have a clock of their own.
     pub fn frames(&mut self, rate_hz: f64, from_signal: bool) -> Option<u64> {
         let heard = self.hear(from_signal);
         said(&self.file, heard);

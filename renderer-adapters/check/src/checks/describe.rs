@@ -1,4 +1,5 @@
-//! The marker, the exports, the descriptor, endpoints and capabilities; those that sources have too are of any kind.
+//! The marker, the exports, the descriptor, endpoints and capabilities; those that sources have too
+//! are of any kind.
 
 use htex_check_runner::{Finding, Found, made_up_extensions};
 use htex_device::abi::Code;
@@ -45,12 +46,7 @@ pub(crate) fn extensions<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found
 /// Endpoints choose settings of the descriptor; none, or a missing driver, is a valid result.
 pub(crate) fn endpoints<A: CheckedKind + ?Sized>(case: &case::Case<A>) -> Found {
     let descriptor = case.adapter.about();
-    let known = |name: &str| {
-        descriptor
-            .settings
-            .iter()
-            .any(|setting| setting.name == name)
-    };
+    let known = |name: &str| descriptor.settings.iter().any(|setting| setting.name == name);
     match case.adapter.connected() {
         Ok(all) => match all.iter().find(|endpoint| !known(&endpoint.setting)) {
             Some(lost) => {
@@ -81,9 +77,7 @@ pub(crate) fn capabilities(case: &Case) -> Found {
         can.check().map_err(|error| wrong(&error))?;
     }
     let unit = can.quantity.unit();
-    let limit = can.limit.map_or("no limit".to_owned(), |limit| {
-        format!("limit {limit} {unit}")
-    });
+    let limit = can.limit.map_or("no limit".to_owned(), |limit| format!("limit {limit} {unit}"));
     Ok(Finding::passed(format!("{limit}, {}", can.rates)))
 }
 
@@ -106,10 +100,8 @@ pub(crate) fn bad_settings(case: &Case) -> Found {
         }
     });
     let asked = asked.map_err(|finding| of_call("capabilities", finding))?;
-    refused(descriptor, &settings, |lines| {
-        native.refusal_of_open(lines, rate_hz, BLOCK)
-    })
-    .map_err(|finding| of_call("open", finding))?;
+    refused(descriptor, &settings, |lines| native.refusal_of_open(lines, rate_hz, BLOCK))
+        .map_err(|finding| of_call("open", finding))?;
     Ok(asked)
 }
 
@@ -125,20 +117,15 @@ struct WrongLines {
     begins: String,
 }
 
-/// Lines that are not usable are refused by `refusal`, which returns the status and the text, or `None` if it takes them. The text
-/// must begin with the setting's name.
+/// Lines that are not usable are refused by `refusal`, which returns the status and the text, or
+/// `None` if it takes them. The text must begin with the setting's name.
 pub(crate) fn refused(
     descriptor: &Descriptor,
     settings: &Settings,
     refusal: impl Fn(&str) -> Option<(i64, String)>,
 ) -> Found {
     let wrong = wrong(descriptor, &settings.to_lines(descriptor));
-    for WrongLines {
-        what,
-        lines,
-        begins,
-    } in &wrong
-    {
+    for WrongLines { what, lines, begins } in &wrong {
         let Some((status, text)) = refusal(lines) else {
             return Err(Finding::failed(format!("it takes {what}")));
         };
@@ -157,10 +144,8 @@ pub(crate) fn refused(
         }
     }
     let count = wrong.len();
-    Ok(
-        Finding::passed(format!("{count} wrong settings are refused by name"))
-            .with("settings", count as f64),
-    )
+    Ok(Finding::passed(format!("{count} wrong settings are refused by name"))
+        .with("settings", count as f64))
 }
 
 /// Settings with one error each, among valid ones.
@@ -173,9 +158,7 @@ fn wrong(descriptor: &Descriptor, good: &str) -> Vec<WrongLines> {
     single.extend(descriptor.settings.iter().flat_map(wrong_lines));
     let in_place = single.into_iter().map(|line| {
         let begins = line.trim_end().split('=').next().unwrap_or_default();
-        let others = good
-            .lines()
-            .filter(|l| !l.starts_with(&format!("{begins}=")));
+        let others = good.lines().filter(|l| !l.starts_with(&format!("{begins}=")));
         let others: String = others.flat_map(|l| [l, "\n"]).collect();
         WrongLines {
             what: format!("the line `{}`", line.trim_end()),
@@ -194,12 +177,9 @@ fn wrong(descriptor: &Descriptor, good: &str) -> Vec<WrongLines> {
 /// Lines of a setting with values that it does not have.
 fn wrong_lines(setting: &Setting) -> Vec<String> {
     let values = match &setting.kind {
-        SettingKind::Number { max, .. } => vec![
-            "".to_owned(),
-            "NaN".to_owned(),
-            "one".to_owned(),
-            format!("{}", max * 2.0 + 1.0),
-        ],
+        SettingKind::Number { max, .. } => {
+            vec!["".to_owned(), "NaN".to_owned(), "one".to_owned(), format!("{}", max * 2.0 + 1.0)]
+        }
         SettingKind::Choice { .. } => vec!["".to_owned(), "no such choice".to_owned()],
         SettingKind::Path | SettingKind::Text => Vec::new(),
     };
@@ -210,10 +190,8 @@ fn wrong_lines(setting: &Setting) -> Vec<String> {
 /// Arrays that are not usable are refused, and no call writes beyond the ones that it gets.
 pub(crate) fn arrays(case: &Case) -> Found {
     let native = case.native()?;
-    let format = StreamFormat {
-        rate_hz: case.capabilities()?.default_rate_hz,
-        block_frames: BLOCK,
-    };
+    let format =
+        StreamFormat { rate_hz: case.capabilities()?.default_rate_hz, block_frames: BLOCK };
     let checked = native.check_arrays(&case.settings()?, &format);
     checked.map_err(Finding::failed)?;
     Ok(Finding::passed(KEPT))

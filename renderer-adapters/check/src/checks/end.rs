@@ -20,26 +20,18 @@ pub(crate) fn finishes(case: &Case) -> Found {
         let message = format!("1000 frames were written, and {played} came out");
         return Err(Finding::failed(message));
     }
-    let after = [
-        ("a write", device.write(&tone, Duration::ZERO).map(drop)),
-        ("finish", device.finish()),
-    ];
+    let after =
+        [("a write", device.write(&tone, Duration::ZERO).map(drop)), ("finish", device.finish())];
     for (call, answer) in after {
         let Err(DeviceError::Closed(_)) = answer else {
-            return Err(Finding::failed(format!(
-                "{call} after the end is not refused as closed"
-            )));
+            return Err(Finding::failed(format!("{call} after the end is not refused as closed")));
         };
     }
     drop(device);
     if self::files(case).len() < files.len() {
-        return Err(Finding::failed(
-            "what was written is gone when the device is closed",
-        ));
+        return Err(Finding::failed("what was written is gone when the device is closed"));
     }
-    Ok(Finding::passed(
-        "all frames came out, and writes afterwards are refused",
-    ))
+    Ok(Finding::passed("all frames came out, and writes afterwards are refused"))
 }
 
 /// Closing without the end leaves nothing behind.
@@ -56,23 +48,16 @@ pub(crate) fn aborts(case: &Case) -> Found {
 }
 
 fn files(case: &Case) -> Vec<String> {
-    let entries = std::fs::read_dir(case.files.folder.path())
-        .into_iter()
-        .flatten();
+    let entries = std::fs::read_dir(case.files.folder.path()).into_iter().flatten();
     let names = entries.flatten().map(|entry| entry.file_name());
-    names
-        .map(|name| name.to_string_lossy().into_owned())
-        .collect()
+    names.map(|name| name.to_string_lossy().into_owned()).collect()
 }
 
 /// A handle that was closed is refused, also when another device was opened.
 pub(crate) fn handles(case: &Case) -> Found {
     let native = case.native()?;
     let can = case.capabilities()?;
-    let format = StreamFormat {
-        rate_hz: can.default_rate_hz,
-        block_frames: can.block_frames,
-    };
+    let format = StreamFormat { rate_hz: can.default_rate_hz, block_frames: can.block_frames };
     let mut closed = native.open_native(&case.settings()?, &format)?;
     closed.close_and_keep_handle()?;
     for another in [false, true] {

@@ -15,9 +15,7 @@ pub(crate) fn over(case: &Case) -> Found {
     for sample in [1.01 * limit, -1.01 * limit, 1e6 * limit] {
         refuses(case, sample as f32)?;
     }
-    Ok(Finding::passed(format!(
-        "samples over {limit} are refused, and the output stays at zero"
-    )))
+    Ok(Finding::passed(format!("samples over {limit} are refused, and the output stays at zero")))
 }
 
 /// NaN and infinities are refused.
@@ -25,9 +23,7 @@ pub(crate) fn no_number(case: &Case) -> Found {
     for sample in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         refuses(case, sample)?;
     }
-    Ok(Finding::passed(
-        "NaN and infinities are refused, and the output stays at zero",
-    ))
+    Ok(Finding::passed("NaN and infinities are refused, and the output stays at zero"))
 }
 
 /// Writes one invalid sample among valid ones: it is refused, and the device is closed.
@@ -45,14 +41,10 @@ fn refuses(case: &Case, bad: f32) -> Result<(), Finding> {
     let status = device.status();
     if status.frames_written != 64 {
         let counted = status.frames_written;
-        return wrong(format!(
-            "64 frames were taken before, and it counts {counted}"
-        ));
+        return wrong(format!("64 frames were taken before, and it counts {counted}"));
     }
-    let after = [
-        ("a write", device.write(&tone, Duration::ZERO).map(drop)),
-        ("finish", device.finish()),
-    ];
+    let after =
+        [("a write", device.write(&tone, Duration::ZERO).map(drop)), ("finish", device.finish())];
     for (call, answer) in after {
         match answer {
             Err(DeviceError::Closed(_)) => {}

@@ -28,15 +28,7 @@ pub(crate) fn bad_rate(case: &Case) -> Found {
         [only] => (only, only),
         [] => return Err(Finding::failed("it has no rates")),
     };
-    let mut wrong = vec![
-        f64::NAN,
-        0.0,
-        -1.0,
-        f64::INFINITY,
-        1e12,
-        0.5 * lowest,
-        2.0 * highest,
-    ];
+    let mut wrong = vec![f64::NAN, 0.0, -1.0, f64::INFINITY, 1e12, 0.5 * lowest, 2.0 * highest];
     wrong.push(lowest + 0.123);
     wrong.retain(|rate_hz| !can.rates.has(*rate_hz));
     for rate_hz in &wrong {
@@ -72,9 +64,7 @@ pub(crate) fn bad_block(case: &Case) -> Found {
         }
     }
     let count = wrong.len();
-    Ok(Finding::passed(format!(
-        "{count} wrong block sizes are refused"
-    )))
+    Ok(Finding::passed(format!("{count} wrong block sizes are refused")))
 }
 
 /// Two devices open at the same time, or the second is refused as busy.

@@ -28,25 +28,15 @@ pub(crate) fn blocks(case: &Case) -> Found {
         }
         write_all(device.as_mut(), &tone[..size])?;
     }
-    Ok(Finding::passed(format!(
-        "blocks of 0 to {} frames are taken",
-        sizes[3]
-    )))
+    Ok(Finding::passed(format!("blocks of 0 to {} frames are taken", sizes[3])))
 }
 
 /// Frames and peak are counted.
 pub(crate) fn status(case: &Case) -> Found {
     let (mut device, settings) = case.open()?;
     let before = device.status();
-    if before
-        != (Status {
-            latency_s: before.latency_s,
-            ..Status::default()
-        })
-    {
-        return Err(Finding::failed(format!(
-            "nothing was written, and it says {before:?}"
-        )));
+    if before != (Status { latency_s: before.latency_s, ..Status::default() }) {
+        return Err(Finding::failed(format!("nothing was written, and it says {before:?}")));
     }
     let tone = case.tone(1_000)?;
     for part in tone.chunks(300) {

@@ -63,9 +63,7 @@ pub(crate) fn read_all(source: &mut dyn Source, frames: usize) -> Result<usize, 
         empty = if there == 0 { empty + 1 } else { 0 };
         if empty == EMPTY_READS {
             let seconds = PATIENCE.as_secs() * u64::from(EMPTY_READS);
-            return Err(Finding::failed(format!(
-                "it delivers nothing for {seconds} s"
-            )));
+            return Err(Finding::failed(format!("it delivers nothing for {seconds} s")));
         }
         read += there;
     }

@@ -21,10 +21,7 @@ pub(crate) fn descriptor(case: &Case) -> Found {
 pub(crate) fn opens(case: &Case) -> Found {
     let stream = || -> Result<SourceStream, Finding> {
         let source = case.open()?;
-        Ok(SourceStream {
-            rate_hz: source.rate_hz(),
-            channels: source.channels().to_vec(),
-        })
+        Ok(SourceStream { rate_hz: source.rate_hz(), channels: source.channels().to_vec() })
     };
     let first = stream()?;
     first.check()?;
@@ -47,9 +44,7 @@ pub(crate) fn bad_settings(case: &Case) -> Found {
     let native = case.native()?;
     let settings = case.settings()?;
     native.open_native(&settings).map_err(skip_missing)?;
-    refused(case.adapter.descriptor(), &settings, |lines| {
-        native.refusal_of_lines(lines)
-    })
+    refused(case.adapter.descriptor(), &settings, |lines| native.refusal_of_lines(lines))
 }
 
 /// Arrays that are not usable are refused, and no call writes beyond the ones that it gets.

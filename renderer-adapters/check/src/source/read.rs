@@ -60,11 +60,7 @@ pub(crate) fn timeouts(case: &Case) -> Found {
     let mut source = case.started()?;
     let mut samples = vec![0.0; source.channels().len()];
     let mut latest = Duration::ZERO;
-    for timeout in [
-        Duration::ZERO,
-        Duration::from_millis(1),
-        Duration::from_millis(200),
-    ] {
+    for timeout in [Duration::ZERO, Duration::from_millis(1), Duration::from_millis(200)] {
         let since = Instant::now();
         source.read(&mut samples, timeout)?;
         latest = latest.max(since.elapsed().saturating_sub(timeout));

@@ -29,7 +29,8 @@ impl Clocked {
         &self.driver.table
     }
 
-    /// Lets the card's own clock take or deliver samples without end, by way of a buffer of `frames`.
+    /// Lets the card's own clock take or deliver samples without end, by way of a buffer of
+    /// `frames`.
     pub(super) fn set_card_clock(&self, rate_hz: f64, frames: u32) -> Result<(), Fault> {
         let source = c_text("");
         // SAFETY: a string that ends in zero: the card's own clock.
@@ -52,10 +53,7 @@ impl Clocked {
 
     /// What stops this task from another thread, while one of its calls hangs.
     pub(crate) fn stopper(&self) -> Stopper {
-        Stopper {
-            driver: self.driver,
-            handle: self.handle,
-        }
+        Stopper { driver: self.driver, handle: self.handle }
     }
 
     pub(super) fn check(&self, code: i32) -> Result<(), Fault> {
@@ -69,13 +67,15 @@ pub(crate) struct Stopper {
     handle: Handle,
 }
 
-// SAFETY: NI-DAQmx may be called from any thread, also to stop a task in which another thread has a call.
+// SAFETY: NI-DAQmx may be called from any thread, also to stop a task in which another thread has a
+// call.
 unsafe impl Send for Stopper {}
 
 impl Stopper {
     /// The task then outputs nothing more; its last voltage stays.
     pub(crate) fn stop(&self) {
-        // SAFETY: a handle of this driver, which checks the handles that it is given; whoever clears the task drops this before.
+        // SAFETY: a handle of this driver, which checks the handles that it is given; whoever
+        // clears the task drops this before.
         unsafe { (self.driver.table.stop_task)(self.handle) };
     }
 }

@@ -24,8 +24,8 @@ pub(super) fn installed() -> Result<Table, DeviceError> {
     Err(DeviceError::Missing(not_installed(&reasons.join("; "))))
 }
 
-/// The library that a setting names: a path, or a bare name, which is a file of the current folder, else a library of
-/// the system.
+/// The library that a setting names: a path, or a bare name, which is a file of the current folder,
+/// else a library of the system.
 pub(super) fn named(path: &str) -> Result<Table, DeviceError> {
     // SAFETY: the user named this library as a driver.
     let table = table(unsafe { Library::named(path) });

@@ -72,7 +72,8 @@ impl InputTask {
         Ok(frames as usize)
     }
 
-    /// Reads so many frames, which are available; returns their number. `samples` has space for them.
+    /// Reads so many frames, which are available; returns their number. `samples` has space for
+    /// them.
     pub(crate) fn read(&self, frames: usize, samples: &mut [f64]) -> Result<usize, Fault> {
         let frames = frames.min(samples.len() / self.width);
         let count = i32::try_from(frames).unwrap_or(i32::MAX);

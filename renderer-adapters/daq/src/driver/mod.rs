@@ -64,20 +64,15 @@ impl Driver {
         Ok(inputs)
     }
 
-    /// Lowest (1 Hz and above) rate of a card's analog input, and the highest of all channels together, hertz.
+    /// Lowest (1 Hz and above) rate of a card's analog input, and the highest of all channels
+    /// together, hertz.
     pub(crate) fn input_rates(&self, card: &str) -> Result<(f64, f64), Fault> {
-        Ok((
-            self.table.min_input_rate(card)?.max(1.0),
-            self.table.max_input_rate(card)?,
-        ))
+        Ok((self.table.min_input_rate(card)?.max(1.0), self.table.max_input_rate(card)?))
     }
 
     /// Lowest (1 Hz and above) and highest rate of a card's analog output, hertz.
     pub(crate) fn rates(&self, card: &str) -> Result<(f64, f64), Fault> {
-        Ok((
-            self.table.min_rate(card)?.max(1.0),
-            self.table.max_rate(card)?,
-        ))
+        Ok((self.table.min_rate(card)?.max(1.0), self.table.max_rate(card)?))
     }
 }
 
@@ -87,14 +82,11 @@ impl Driver {
     pub(crate) fn reset(&self, output: &str) -> Result<(), Fault> {
         let card = table::c_text(output.split('/').next().unwrap_or_default());
         // SAFETY: a string that ends in zero.
-        self.table
-            .check(unsafe { (self.table.reset_device)(card.as_ptr()) })
+        self.table.check(unsafe { (self.table.reset_device)(card.as_ptr()) })
     }
 }
 
 /// The items of a list separated by commas.
 fn list(text: &str) -> impl Iterator<Item = &str> {
-    text.split(',')
-        .map(str::trim)
-        .filter(|name| !name.is_empty())
+    text.split(',').map(str::trim).filter(|name| !name.is_empty())
 }

@@ -24,7 +24,8 @@ pub(super) enum TableError {
 
 macro_rules! table {
     ($($name:ident = $symbol:literal : ($($argument:ty),*),)*) => {
-        /// One function pointer for each symbol; each returns 0, a positive warning or a negative error.
+        /// One function pointer for each symbol; each returns 0, a positive warning or a negative
+        /// error.
         pub(super) struct Table {
             $(pub(super) $name: unsafe extern "system" fn($($argument),*) -> i32,)*
         }
@@ -88,10 +89,7 @@ impl Table {
             // SAFETY: as above.
             filled(|to, space| unsafe { (self.get_error_string)(code, to, space) })
         });
-        Err(Fault {
-            code,
-            words: words.unwrap_or_default().replace(['\n', '\r'], " "),
-        })
+        Err(Fault { code, words: words.unwrap_or_default().replace(['\n', '\r'], " ") })
     }
 
     pub(super) fn device_names(&self) -> Result<String, Fault> {

@@ -11,13 +11,7 @@ pub fn built() -> &'static Path {
         let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("nidaqmx-simulated");
         let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
         let built = Command::new(cargo)
-            .args([
-                "build",
-                "--release",
-                "--quiet",
-                "--locked",
-                "--manifest-path",
-            ])
+            .args(["build", "--release", "--quiet", "--locked", "--manifest-path"])
             .arg(project().join("Cargo.toml"))
             .arg("--target-dir")
             .arg(&target)

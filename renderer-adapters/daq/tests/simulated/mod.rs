@@ -17,7 +17,8 @@ pub const PAPER: &str = "pcie-6321_tabor-9200a_sct3250";
 pub const GAIN: f64 = 50.0;
 pub const RATE_HZ: f64 = 20_000.0;
 
-/// One card, whose library is a copy of its own. Its clock advances by calls, so that tests do not depend on time.
+/// One card, whose library is a copy of its own. Its clock advances by calls, so that tests do not
+/// depend on time.
 pub struct Card {
     folder: TempDir,
     library: PathBuf,
@@ -64,10 +65,8 @@ impl Card {
     pub fn settings(&self, given: &[(&str, &str)]) -> Settings {
         let driver = ("driver", self.library.to_str().unwrap());
         let given = [&[driver, ("dc_limit_v", "150")], given].concat();
-        let given: BTreeMap<String, String> = given
-            .iter()
-            .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
-            .collect();
+        let given: BTreeMap<String, String> =
+            given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
         Settings::resolve(Daq::new().descriptor(), Some(PAPER), &given).unwrap()
     }
 
@@ -98,20 +97,14 @@ impl Card {
         block_frames: u32,
         given: &[(&str, &str)],
     ) -> Result<Box<dyn Device>, DeviceError> {
-        let format = StreamFormat {
-            rate_hz,
-            block_frames,
-        };
+        let format = StreamFormat { rate_hz, block_frames };
         Daq::new().open(&self.settings(given), &format)
     }
 
     pub fn open_input(&self, given: &[(&str, &str)]) -> Result<Box<dyn Source>, DeviceError> {
         let driver = ("driver", self.library.to_str().unwrap());
         let given = [&[driver], given].concat();
-        let given = given
-            .iter()
-            .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
-            .collect();
+        let given = given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
         let adapter = DaqInput::new();
         adapter.open(&Settings::resolve(adapter.descriptor(), None, &given)?)
     }

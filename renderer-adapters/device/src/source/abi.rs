@@ -1,7 +1,7 @@
 //! The frozen surface: numbers and signatures that cross between a host and a native source.
 //!
-//! Texts, settings and results cross as those of [devices](crate::abi) do. Samples are `f64`, the frames one
-//! after another, and in a frame one sample of each channel.
+//! Texts, settings and results cross as those of [devices](crate::abi) do. Samples are `f64`, the
+//! frames one after another, and in a frame one sample of each channel.
 
 use crate::abi as device;
 pub use crate::abi::{AbiVersion, DescriptorJson, EndpointsJson, ExtensionFn, LastError};
@@ -26,7 +26,8 @@ pub const MIN_RATE_HZ: f64 = 0.001;
 /// Highest rate of a source, hertz.
 pub const MAX_RATE_HZ: f64 = 10_000_000.0;
 
-/// Negative results of calls. Frozen numbers: they are part of the ABI. Those that devices have too have the same numbers.
+/// Negative results of calls. Frozen numbers: they are part of the ABI. Those that devices have too
+/// have the same numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Code {
@@ -82,13 +83,14 @@ impl Code {
 /// Opens a source, which does not sample yet; returns its handle, greater than zero.
 /// `[any thread; may wait]`
 pub type OpenFn = unsafe extern "C" fn(settings: *const u8, settings_len: usize) -> i64;
-/// Writes the rate and the channels of an open source, as JSON; returns its length, the same at each
-/// call. `[one thread at a time for one source]`
+/// Writes the rate and the channels of an open source, as JSON; returns its length, the same at
+/// each call. `[one thread at a time for one source]`
 pub type StreamJson = unsafe extern "C" fn(source: i64, out: *mut u8, capacity: usize) -> i64;
 /// Begins to sample; returns 0. `[one thread at a time for one source; may wait]`
 pub type StartFn = extern "C" fn(source: i64) -> i64;
-/// Writes frames to `samples[0..len]`, those that are there, and waits up to `timeout_ms` for the first; returns
-/// their number. `len` is a multiple of the number of channels. `[one thread at a time for one source; may wait]`
+/// Writes frames to `samples[0..len]`, those that are there, and waits up to `timeout_ms` for the
+/// first; returns their number. `len` is a multiple of the number of channels.
+/// `[one thread at a time for one source; may wait]`
 pub type ReadFn =
     unsafe extern "C" fn(source: i64, samples: *mut f64, len: usize, timeout_ms: u32) -> i64;
 /// Stops sampling for good; returns 0. `[one thread at a time for one source; may wait]`

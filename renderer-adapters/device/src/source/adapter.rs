@@ -11,7 +11,8 @@ pub trait SourceAdapter: Send + Sync {
     /// The adapter's descriptor; the same at each call. `[any thread]`
     fn descriptor(&self) -> &Descriptor;
 
-    /// Name of the setting that says which source of the family is meant: `channels`, `path`. `[any thread]`
+    /// Name of the setting that says which source of the family is meant: `channels`, `path`.
+    /// `[any thread]`
     fn target(&self) -> &str;
 
     /// The sources that are connected now; an empty list is not an error. `[any thread]`
@@ -70,13 +71,13 @@ pub trait Source: Send {
     /// When the source is in use or gone, or was stopped before.
     fn start(&mut self) -> Result<(), DeviceError>;
 
-    /// Writes frames to `samples`, a sample of each channel in turn: those that are there, and waits up to `timeout` for the
-    /// first. The length of `samples` is a multiple of the number of channels. No frame is left out between two calls.
-    /// `[one thread at a time; may wait]`
+    /// Writes frames to `samples`, a sample of each channel in turn: those that are there, and
+    /// waits up to `timeout` for the first. The length of `samples` is a multiple of the number of
+    /// channels. No frame is left out between two calls. `[one thread at a time; may wait]`
     ///
     /// # Errors
-    /// [`DeviceError::Overrun`] when frames were lost because they were read too late; when the source is gone, was not started
-    /// or is stopped. After an error it delivers nothing more.
+    /// [`DeviceError::Overrun`] when frames were lost because they were read too late; when the
+    /// source is gone, was not started or is stopped. After an error it delivers nothing more.
     fn read(&mut self, samples: &mut [f64], timeout: Duration) -> Result<Delivered, DeviceError>;
 
     /// Stops sampling for good. `[one thread at a time; may wait]`
@@ -101,10 +102,7 @@ impl Channel {
     /// Makes a channel of a name and a unit.
     #[must_use]
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            unit: unit.into(),
-        }
+        Self { name: name.into(), unit: unit.into() }
     }
 }
 

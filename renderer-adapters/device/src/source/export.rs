@@ -1,7 +1,7 @@
 //! The macro that makes a source's C functions.
 
-/// Makes the table of C functions of a [`SourceAdapter`](crate::SourceAdapter) that has a `Default`, as
-/// `pub static SOURCE_TABLE`.
+/// Makes the table of C functions of a [`SourceAdapter`](crate::SourceAdapter) that has a
+/// `Default`, as `pub static SOURCE_TABLE`.
 ///
 /// With `symbols: "FEATURE"` the functions are also exported under their C names (`htex_source_…`)
 /// when the crate is built with that Cargo feature: for a native library, where one binary holds

@@ -56,10 +56,9 @@ impl Table for SourceTable {
     fn incoming(code: Code, text: String, name: &str, library: &str) -> DeviceError {
         match code {
             Code::InvalidRate => DeviceError::Told(text),
-            Code::Overrun | Code::End => DeviceError::Failed {
-                device: name.to_owned(),
-                what: text,
-            },
+            Code::Overrun | Code::End => {
+                DeviceError::Failed { device: name.to_owned(), what: text }
+            }
             // The others have the numbers of devices.
             code => incoming(abi::Code::from_answer(code as i64), text, name, library),
         }
@@ -70,7 +69,8 @@ impl Table for SourceTable {
 pub type NativeSourceAdapter = Native<SourceTable>;
 
 impl NativeSourceAdapter {
-    /// As [`SourceAdapter::open`], as a type with further functions for checkers, and of lines that need not be settings.
+    /// As [`SourceAdapter::open`], as a type with further functions for checkers, and of lines that
+    /// need not be settings.
     ///
     /// # Errors
     /// As [`SourceAdapter::open`].
@@ -123,10 +123,7 @@ impl NativeSource {
     fn new(opened: Opened<SourceTable>) -> Result<Self, DeviceError> {
         let mut source = Self {
             opened,
-            stream: SourceStream {
-                rate_hz: 0.0,
-                channels: Vec::new(),
-            },
+            stream: SourceStream { rate_hz: 0.0, channels: Vec::new() },
             delivered: 0,
             failed: false,
         };

@@ -48,8 +48,7 @@ impl<A: SourceAdapter + Default> State<A> {
 
     /// See [`crate::abi::EndpointsJson`].
     pub fn endpoints(&self, out: Output<'_, u8>) -> i64 {
-        self.0
-            .answer(|| copy_json(&self.adapter().endpoints().map_err(refused)?, out))
+        self.0.answer(|| copy_json(&self.adapter().endpoints().map_err(refused)?, out))
     }
 
     /// See [`crate::source::abi::OpenFn`].
@@ -65,10 +64,7 @@ impl<A: SourceAdapter + Default> State<A> {
     pub fn stream(&self, handle: i64, out: Output<'_, u8>) -> i64 {
         self.0.answer(|| {
             let stream = self.0.with(handle, |source| {
-                Ok(SourceStream {
-                    rate_hz: source.rate_hz(),
-                    channels: source.channels().to_vec(),
-                })
+                Ok(SourceStream { rate_hz: source.rate_hz(), channels: source.channels().to_vec() })
             })?;
             copy_json(&stream, out)
         })
@@ -115,8 +111,7 @@ impl<A: SourceAdapter + Default> State<A> {
         call: impl FnOnce(&mut (dyn Source + 'static)) -> Result<(), DeviceError>,
     ) -> i64 {
         let call = |source: &mut (dyn Source + 'static)| call(source).map_err(refused);
-        self.0
-            .answer_of(handle, || self.0.with(handle, call).map(|()| 0))
+        self.0.answer_of(handle, || self.0.with(handle, call).map(|()| 0))
     }
 }
 

@@ -37,9 +37,9 @@ impl AdapterKind for dyn SourceAdapter {
 }
 
 impl Sources {
-    /// Opens the source that a text names, `NAME:TARGET` such as `file:rec.csv` or `daq:Dev1/ai0:5`, with a profile and
-    /// further settings.
-    /// What follows the first colon is the value of the adapter's [`SourceAdapter::target`].
+    /// Opens the source that a text names, `NAME:TARGET` such as `file:rec.csv` or
+    /// `daq:Dev1/ai0:5`, with a profile and further settings. What follows the first colon is the
+    /// value of the adapter's [`SourceAdapter::target`].
     ///
     /// # Errors
     /// When the name is not known, a setting is not usable, or the source cannot be opened.

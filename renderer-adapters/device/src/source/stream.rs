@@ -1,4 +1,5 @@
-//! What crosses the ABI of sources as JSON: the descriptor of an adapter, the rate and the channels of an open source.
+//! What crosses the ABI of sources as JSON: the descriptor of an adapter, the rate and the channels
+//! of an open source.
 
 use serde::{Deserialize, Serialize};
 
@@ -27,9 +28,7 @@ impl SourceDescriptor {
         let mut settings = self.descriptor.settings.iter();
         match settings.any(|setting| setting.name == self.target) {
             true => Ok(()),
-            false => Err(DescriptorError::Target {
-                target: self.target.clone(),
-            }),
+            false => Err(DescriptorError::Target { target: self.target.clone() }),
         }
     }
 }
@@ -89,9 +88,7 @@ impl SourceStream {
         let mut names: Vec<&str> = channels.iter().map(|c| c.name.as_str()).collect();
         names.sort_unstable();
         match names.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => Err(SourceStreamError::Twice {
-                name: pair[0].to_owned(),
-            }),
+            Some(pair) => Err(SourceStreamError::Twice { name: pair[0].to_owned() }),
             None => Ok(()),
         }
     }

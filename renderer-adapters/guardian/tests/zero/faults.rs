@@ -20,7 +20,8 @@ pub enum Fault {
     GuardianZeroFails,
     /// What comes through the pipe is no answer.
     PipeBreaks,
-    /// The guardian's process outlives SIGKILL by so many steps: a call of the kernel that cannot be interrupted.
+    /// The guardian's process outlives SIGKILL by so many steps: a call of the kernel that cannot
+    /// be interrupted.
     KillIsSlow(u32),
     /// Every call of the driver fails from now on, in every process: the card was removed.
     CardGone,

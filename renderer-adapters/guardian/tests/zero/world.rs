@@ -1,8 +1,10 @@
-//! A model of everything around the player's decisions: the app, the guardian with its two threads, the helpers, the card.
+//! A model of everything around the player's decisions: the app, the guardian with its two threads,
+//! the helpers, the card.
 //!
-//! Time goes in steps of 50 ms, of which all the times of the program are multiples. The player is the program's own code
-//! ([`htex_device_guardian::decision`]). Of the other processes the model has what matters for the output: who may have a call of the
-//! driver that does not return, who holds the session's lock, who can still write zero.
+//! Time goes in steps of 50 ms, of which all the times of the program are multiples. The player is
+//! the program's own code ([`htex_device_guardian::decision`]). Of the other processes the model
+//! has what matters for the output: who may have a call of the driver that does not return, who
+//! holds the session's lock, who can still write zero.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -12,9 +14,7 @@ use htex_device_guardian::decision::{Action, By, Event, Player, Waits};
 /// A step of the model.
 pub const STEP: Duration = Duration::from_millis(50);
 /// Buffer of 200 ms and ramp of 50 ms.
-pub const WAITS: Waits = Waits {
-    to_zero: Duration::from_millis(250),
-};
+pub const WAITS: Waits = Waits { to_zero: Duration::from_millis(250) };
 /// Samples that the card has after a write, steps: the buffer.
 const BUFFER: u32 = 4;
 /// Steps of a finish: the buffer and the ramp.
@@ -107,7 +107,8 @@ pub enum App {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Heard {
     Answer,
-    /// The answer of a guardian whose device failed; whether it says that the output is not at zero.
+    /// The answer of a guardian whose device failed; whether it says that the output is not at
+    /// zero.
     Failed(bool),
     PipeEnded,
     Zero,
@@ -287,7 +288,8 @@ impl World {
         self.watch();
     }
 
-    /// Lets both threads go on; returns whether one holds the lock in a call that does not return, and whether it is the main one.
+    /// Lets both threads go on; returns whether one holds the lock in a call that does not return,
+    /// and whether it is the main one.
     fn thread_steps(&mut self) -> Option<bool> {
         if self.driver == Driver::Hangs {
             if let Thread::Serving(request, _) = self.main {
@@ -297,11 +299,7 @@ impl World {
             }
         }
         for is_main in [true, false] {
-            let thread = if is_main {
-                &mut self.main
-            } else {
-                &mut self.watchdog
-            };
+            let thread = if is_main { &mut self.main } else { &mut self.watchdog };
             match thread {
                 Thread::Hung(_, EVER) => return Some(is_main),
                 Thread::Hung(request, 0) => {
@@ -376,7 +374,8 @@ impl World {
                 let zero = self.guardian_zero();
                 match request {
                     Request::End => self.guardian_dies(),
-                    // A guardian that is told to abort answers so in any case, and prints its own sentence.
+                    // A guardian that is told to abort answers so in any case, and prints its own
+                    // sentence.
                     Request::Abort => self.hear(Heard::Answer),
                     _ if zero => self.hear(Heard::Answer),
                     _ => self.hear(Heard::Failed(true)),
@@ -508,7 +507,8 @@ impl World {
                     }
                 }
                 Heard::PipeEnded => {
-                    // Read only while there is a request; the end of the process is seen where it is waited for.
+                    // Read only while there is a request; the end of the process is seen where it
+                    // is waited for.
                     if self.asked.is_some() {
                         self.tell(Event::PipeEnded);
                     }
@@ -642,12 +642,7 @@ impl World {
             (By::Process, Helpers::Slow) => 6 * HELPER,
             _ => HELPER,
         };
-        self.helper.push(Helper {
-            attempt,
-            by,
-            process: Process::Running,
-            left,
-        });
+        self.helper.push(Helper { attempt, by, process: Process::Running, left });
     }
 }
 

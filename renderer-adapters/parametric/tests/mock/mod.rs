@@ -1,4 +1,5 @@
-//! The runtime of `runtime.c` and the vibrator of `vibrator.c`, a copy for each test, so that each has a state of its own.
+//! The runtime of `runtime.c` and the vibrator of `vibrator.c`, a copy for each test, so that each
+//! has a state of its own.
 #![allow(dead_code, unsafe_code)] // Each suite uses a part of it; the runtime is C.
 
 use std::collections::BTreeMap;
@@ -24,37 +25,17 @@ fn built(source: &str) -> Option<PathBuf> {
         if !xtask::needs::CC.met(cc.is_ok()) {
             return None;
         }
-        let file = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("tests")
-            .join(source);
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(source);
         let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
         let folder = folder.keep();
         std::fs::write(folder.join("pwle.h"), declared()).unwrap();
         let out = folder.join("libmock.so");
-        let flags = [
-            "-std=gnu11",
-            "-O1",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-shared",
-            "-fPIC",
-        ];
+        let flags = ["-std=gnu11", "-O1", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC"];
         let mut cc = Command::new("cc");
-        let run = cc
-            .args(flags)
-            .arg("-I")
-            .arg(&folder)
-            .arg(file)
-            .arg("-o")
-            .arg(&out)
-            .arg("-lpthread");
+        let run =
+            cc.args(flags).arg("-I").arg(&folder).arg(file).arg("-o").arg(&out).arg("-lpthread");
         let run = run.output().unwrap();
-        assert!(
-            run.status.success(),
-            "{}",
-            String::from_utf8_lossy(&run.stderr)
-        );
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
         built.insert(source.to_owned(), out);
     }
     built.get(source).cloned()
@@ -87,11 +68,7 @@ impl Mock {
         std::fs::copy(built(source)?, &path).unwrap();
         // SAFETY: the library of this test.
         let library = unsafe { libloading::Library::new(&path).unwrap() };
-        Some(Self {
-            _folder: folder,
-            path,
-            library,
-        })
+        Some(Self { _folder: folder, path, library })
     }
 
     pub fn set(&self, name: &str, value: f64) {
@@ -127,19 +104,14 @@ impl Mock {
         rate_hz: f64,
         given: &[(&str, &str)],
     ) -> Result<Box<dyn Device>, DeviceError> {
-        let format = StreamFormat {
-            rate_hz,
-            block_frames: 80,
-        };
+        let format = StreamFormat { rate_hz, block_frames: 80 };
         Parametric::new().open(&self.settings(given), &format)
     }
 }
 
 pub fn settings(given: &[(&str, &str)]) -> Result<Settings, DeviceError> {
-    let given: BTreeMap<String, String> = given
-        .iter()
-        .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
-        .collect();
+    let given: BTreeMap<String, String> =
+        given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
     Settings::resolve(Parametric::new().descriptor(), None, &given)
 }
 

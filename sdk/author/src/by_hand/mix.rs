@@ -25,13 +25,16 @@ impl MixedAsset<'_> {
     }
 }
 
-/// Mixes two textures: each model that describes both interpolates between their parameters, as it does between the conditions of one
-/// texture, and their levels are interpolated linearly. The conditions are those of both; at a condition of one alone, the other is what a
-/// player plays there. The law is that of the larger weight, of `a` if they are equal, and so are the triangles that it stores, if the
-/// conditions of its representation are all of them; else they are left out, with a warning. `weight` is the part of `b`, from 0 to 1.
+/// Mixes two textures: each model that describes both interpolates between their parameters, as it
+/// does between the conditions of one texture, and their levels are interpolated linearly. The
+/// conditions are those of both; at a condition of one alone, the other is what a player plays
+/// there. The law is that of the larger weight, of `a` if they are equal, and so are the triangles
+/// that it stores, if the conditions of its representation are all of them; else they are left out,
+/// with a warning. `weight` is the part of `b`, from 0 to 1.
 ///
 /// # Errors
-/// When no model describes both, their quantity or band differs, or a model cannot mix its parameters.
+/// When no model describes both, their quantity or band differs, or a model cannot mix its
+/// parameters.
 pub fn mix(
     a: MixedAsset<'_>,
     b: MixedAsset<'_>,
@@ -54,13 +57,10 @@ pub fn mix(
         all.iter().map(|r| r.model.clone()).collect()
     };
     let theirs = ids(b);
-    let mixed = ids(a)
-        .into_iter()
-        .filter(|id| theirs.contains(id))
-        .map(|id| {
-            let model = a.asset.loaded_model(Some(&id))?;
-            mixed(&model, (a, b), weight, &conditions)
-        });
+    let mixed = ids(a).into_iter().filter(|id| theirs.contains(id)).map(|id| {
+        let model = a.asset.loaded_model(Some(&id))?;
+        mixed(&model, (a, b), weight, &conditions)
+    });
     let mut mixed = mixed.collect::<Result<Vec<_>, ByHandError>>()?;
     if mixed.is_empty() {
         let problem = format!(
@@ -123,23 +123,13 @@ fn check(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<(), String> {
 /// The conditions of both, without measurements of the recordings; those that are the same once.
 fn conditions(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<Vec<Condition>, String> {
     let mut all: Vec<Condition> = Vec::new();
-    for condition in [a, b]
-        .iter()
-        .flat_map(|part| &part.asset.manifest().conditions)
-    {
+    for condition in [a, b].iter().flat_map(|part| &part.asset.manifest().conditions) {
         let known = |c: &Condition| (c.speed_mm_s.is_some(), c.force_n.is_some());
-        if all
-            .first()
-            .is_some_and(|first| known(first) != known(condition))
-        {
+        if all.first().is_some_and(|first| known(first) != known(condition)) {
             return Err("the speed or the force of one alone is known; edit or fit it".to_owned());
         }
         if !all.iter().any(|other| is_same(other, condition)) {
-            all.push(Condition {
-                repeatability_rms_db: None,
-                segments: None,
-                ..*condition
-            });
+            all.push(Condition { repeatability_rms_db: None, segments: None, ..*condition });
         }
     }
     Ok(all)
@@ -161,8 +151,8 @@ fn of_model<'a>(manifest: &'a Manifest, model: &str) -> &'a [Triangle] {
     own.map_or(&[], |own| &own.triangles)
 }
 
-/// Returns the triangles that a texture stores for a mixed model, by the elements of the mixed `at`; none where the conditions are
-/// others than its own.
+/// Returns the triangles that a texture stores for a mixed model, by the elements of the mixed
+/// `at`; none where the conditions are others than its own.
 fn triangles(from: &Manifest, mixed: &Representation, conditions: &[Condition]) -> Vec<Triangle> {
     let own = from.representations.iter().find(|r| r.model == mixed.model);
     let Some(own) = own.filter(|own| own.at.len() == mixed.at.len()) else {
@@ -171,9 +161,7 @@ fn triangles(from: &Manifest, mixed: &Representation, conditions: &[Condition]) 
     let motion = |c: &Condition| (c.speed_mm_s, c.force_n);
     let place = |element: usize| {
         let condition = from.conditions.get(own.at.get(element)?.condition)?;
-        conditions
-            .iter()
-            .position(|other| motion(other) == motion(condition))
+        conditions.iter().position(|other| motion(other) == motion(condition))
     };
     let moved = |corners: &Triangle| {
         let [a, b, c] = corners.map(place);
@@ -200,10 +188,8 @@ fn mixed(
     let fields = stored_fields(model.descriptor());
     let (mut at, mut parameters) = (Vec::new(), Vec::new());
     for (condition, place) in conditions.iter().enumerate() {
-        let motion = Motion::new(
-            place.speed_mm_s.unwrap_or_default(),
-            place.force_n.unwrap_or_default(),
-        );
+        let motion =
+            Motion::new(place.speed_mm_s.unwrap_or_default(), place.force_n.unwrap_or_default());
         let (first, first_level) = a.asset.parameters(Some(model.id()), Some(motion))?;
         let (second, second_level) = b.asset.parameters(Some(model.id()), Some(motion))?;
         let flat = match weight {

@@ -1,7 +1,9 @@
-//! Textures from no recording: of parameters that a person writes, and between other textures. The paper names both as what a
-//! representation by few numbers makes possible (Balasubramanian & Vardar 2026, Discussion).
+//! Textures from no recording: of parameters that a person writes, and between other textures. The
+//! paper names both as what a representation by few numbers makes possible (Balasubramanian &
+//! Vardar 2026, Discussion).
 //!
-//! Such an asset says how it was made ([`htex_format::Made`]); it has no quality, since there is nothing to compare it with.
+//! Such an asset says how it was made ([`htex_format::Made`]); it has no quality, since there is
+//! nothing to compare it with.
 
 mod error;
 mod mix;
@@ -61,12 +63,6 @@ impl Frame {
             extensions_required: Vec::new(),
             other: Default::default(),
         };
-        Asset {
-            manifest,
-            parameters,
-            reference: None,
-            plugins: Vec::new(),
-            notes: Vec::new(),
-        }
+        Asset { manifest, parameters, reference: None, plugins: Vec::new(), notes: Vec::new() }
     }
 }

@@ -66,7 +66,8 @@ impl ByHand {
     }
 }
 
-/// Makes an asset of parameters. The model computes its spectrum once, so that parameters that it cannot play are an error here.
+/// Makes an asset of parameters. The model computes its spectrum once, so that parameters that it
+/// cannot play are an error here.
 ///
 /// ```
 /// use htex_author::by_hand::{ByHand, make};
@@ -81,7 +82,8 @@ impl ByHand {
 /// ```
 ///
 /// # Errors
-/// A parameter that is unknown, absent or out of its range, a level out of its quantity's, or what the model refuses.
+/// A parameter that is unknown, absent or out of its range, a level out of its quantity's, or what
+/// the model refuses.
 pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, ByHandError> {
     let at = ByHandAt {
         condition: texture.condition,
@@ -90,17 +92,15 @@ pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, ByHandError>
     };
     make_all(&ByHandModels {
         name: texture.name.clone(),
-        models: vec![ByHandModel {
-            model: model.clone(),
-            at: vec![at],
-        }],
+        models: vec![ByHandModel { model: model.clone(), at: vec![at] }],
         quantity: texture.quantity,
         band: texture.band,
         tool: texture.tool.clone(),
     })
 }
 
-/// A texture to be made of the parameters of one or several models, each at one or several conditions.
+/// A texture to be made of the parameters of one or several models, each at one or several
+/// conditions.
 #[derive(Debug, Clone)]
 pub struct ByHandModels {
     pub name: String,
@@ -125,15 +125,17 @@ pub struct ByHandAt {
     pub condition: Condition,
     /// Values by name of the field; of a list, all of them.
     pub values: BTreeMap<String, Vec<f64>>,
-    /// RMS of the texture in the band, in the quantity's unit. It may be absent of a model whose parameters are the level
-    /// ([`htex_host::Descriptor::keeps_level`]).
+    /// RMS of the texture in the band, in the quantity's unit. It may be absent of a model whose
+    /// parameters are the level ([`htex_host::Descriptor::keeps_level`]).
     pub level_rms: Option<f64>,
 }
 
-/// As [`make`], of several models and conditions. Conditions within 5 % of each other are one ([`htex_format::SAME_CONDITION`]).
+/// As [`make`], of several models and conditions. Conditions within 5 % of each other are one
+/// ([`htex_format::SAME_CONDITION`]).
 ///
 /// # Errors
-/// As [`make`]; and without a model or a condition, or when the speed or the force of some conditions alone is known.
+/// As [`make`]; and without a model or a condition, or when the speed or the force of some
+/// conditions alone is known.
 pub fn make_all(texture: &ByHandModels) -> Result<Asset, ByHandError> {
     let Band { low_hz, high_hz } = texture.band;
     if !(0.0 < low_hz && low_hz < high_hz && high_hz <= HIGHEST_HZ) {
@@ -151,10 +153,7 @@ pub fn make_all(texture: &ByHandModels) -> Result<Asset, ByHandError> {
         quantity: texture.quantity,
         band: texture.band,
         tool: texture.tool.clone(),
-        made: Made {
-            how: How::Parameters,
-            from: Vec::new(),
-        },
+        made: Made { how: How::Parameters, from: Vec::new() },
         conditions,
         contact: Contact::Unknown,
         law: Law::assumed(texture.quantity, Contact::Unknown),
@@ -227,28 +226,19 @@ fn check_level(level_rms: f64, quantity: Quantity) -> Result<(), ByHandError> {
     if (0.0..=most).contains(&level_rms) {
         return Ok(());
     }
-    Err(ByHandError::Level {
-        level_rms,
-        unit: quantity.unit(),
-        most,
-    })
+    Err(ByHandError::Level { level_rms, unit: quantity.unit(), most })
 }
 
 /// Returns the model's flat array of named values.
 fn flat(model: &LoadedModel, values: &BTreeMap<String, Vec<f64>>) -> Result<Vec<f64>, ByHandError> {
     let fields = &model.descriptor().fields;
     let named = || model.short_name().to_owned();
-    if let Some(name) = values
-        .keys()
-        .find(|name| !fields.iter().any(|f| f.name == **name))
-    {
+    if let Some(name) = values.keys().find(|name| !fields.iter().any(|f| f.name == **name)) {
         let (model, name) = (named(), name.clone());
         let there = words(fields.iter());
         return Err(ByHandError::Unknown { model, name, there });
     }
-    let missing = fields
-        .iter()
-        .filter(|f| f.default.is_none() && !values.contains_key(&f.name));
+    let missing = fields.iter().filter(|f| f.default.is_none() && !values.contains_key(&f.name));
     let missing = words(missing);
     if !missing.is_empty() {
         let model = named();
@@ -268,11 +258,7 @@ fn flat(model: &LoadedModel, values: &BTreeMap<String, Vec<f64>>) -> Result<Vec<
 fn push(field: &Field, given: &[f64], flat: &mut Vec<f64>) -> Result<(), ByHandError> {
     let wrong = |problem: String| ByHandError::Value {
         name: field.name.clone(),
-        value: given
-            .iter()
-            .map(f64::to_string)
-            .collect::<Vec<_>>()
-            .join(","),
+        value: given.iter().map(f64::to_string).collect::<Vec<_>>().join(","),
         problem,
     };
     match field.kind {

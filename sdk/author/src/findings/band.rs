@@ -1,10 +1,12 @@
-//! Detection of recordings without a texture in the band: what their spectra show leaks from below it, or is far weaker
-//! than what is above it.
+//! Detection of recordings without a texture in the band: what their spectra show leaks from below
+//! it, or is far weaker than what is above it.
 //!
-//! A segment of 0.2 s under a Hann window cannot tell 15 Hz from 20 Hz, nor a drift from noise. A window of a second whose side lobes
-//! are 92 dB down can (four-term Blackman-Harris; Harris 1978). Of 240 recordings of fingers, tools and microphones by third parties the segments
-//! show at most 4.3 dB more power in the band than the long windows do. Normal forces and positions of such fingers, read
-//! as a texture, show 32 dB more and above. Noise of 1 to 15 Hz shows 11 dB more and above.
+//! A segment of 0.2 s under a Hann window cannot tell 15 Hz from 20 Hz, nor a drift from noise. A
+//! window of a second whose side lobes are 92 dB down can (four-term Blackman-Harris; Harris 1978).
+//! Of 240 recordings of fingers, tools and microphones by third parties the segments show at most
+//! 4.3 dB more power in the band than the long windows do. Normal forces and positions of such
+//! fingers, read as a texture, show 32 dB more and above. Noise of 1 to 15 Hz shows 11 dB more and
+//! above.
 
 use std::f64::consts::TAU;
 
@@ -18,16 +20,19 @@ use crate::segments::{SEGMENTS_PER_S, SegmentChoice, choose_segments};
 use crate::spectrum::without_line;
 use htex_recording::rules::{RECORDING_ABOVE_BAND, RECORDING_BELOW_BAND};
 
-/// Least ratio of the power that segments show in the band to that of long windows: 7 dB, so that four fifths of it leak.
+/// Least ratio of the power that segments show in the band to that of long windows: 7 dB, so that
+/// four fifths of it leak.
 const LEAKS: f64 = 5.0;
-/// Least ratio of the power above the band to that in it: 30 dB. White noise at 192 kHz has 20 dB; the microphones that were
-/// tried have up to 3.3 dB, and the current of a motor 5.1 dB.
+/// Least ratio of the power above the band to that in it: 30 dB. White noise at 192 kHz has 20 dB;
+/// the microphones that were tried have up to 3.3 dB, and the current of a motor 5.1 dB.
 const ABOVE: f64 = 1000.0;
 /// Segments in a long window: one second.
 const LONG: usize = SEGMENTS_PER_S as usize;
-/// Least power in the band that leaks, of a recording whose largest value is 1; below it is what rounding leaves of a constant.
+/// Least power in the band that leaks, of a recording whose largest value is 1; below it is what
+/// rounding leaves of a constant.
 const LEAST: f64 = 1e-24;
-/// Most samples of a long window, for memory; at a rate at which a segment has more than half of it, nothing is checked.
+/// Most samples of a long window, for memory; at a rate at which a segment has more than half of
+/// it, nothing is checked.
 const MOST: usize = 1 << 22;
 /// Four-term Blackman-Harris window.
 const COSINES: [f64; 4] = [0.35875, -0.48829, 0.14128, -0.01168];
@@ -109,10 +114,7 @@ impl Powers {
             first.min(samples - long_len)
         };
         let long = Reader::new(recording, blackman_harris(long_len), true);
-        Some(Self {
-            shown: shown.inside,
-            long: long.mean(due.map(around)),
-        })
+        Some(Self { shown: shown.inside, long: long.mean(due.map(around)) })
     }
 }
 
@@ -136,12 +138,7 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     fn new(recording: &'a Recording, window: Vec<f64>, is_level: bool) -> Self {
         let values = recording.axes.iter().flatten();
-        Self {
-            recording,
-            window,
-            largest: values.fold(0.0, |most, x| most.max(x.abs())),
-            is_level,
-        }
+        Self { recording, window, largest: values.fold(0.0, |most, x| most.max(x.abs())), is_level }
     }
 
     /// Returns the mean powers of the stretches that begin at these samples.
@@ -169,10 +166,7 @@ impl<'a> Reader<'a> {
             }
         }
         let scale = 1.0 / (count * squares * len as f64);
-        Power {
-            inside: scale * sum.inside,
-            above: scale * sum.above,
-        }
+        Power { inside: scale * sum.inside, above: scale * sum.above }
     }
 
     fn windowed(&self, stretch: &[f64]) -> Vec<f64> {

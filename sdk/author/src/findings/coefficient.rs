@@ -9,12 +9,13 @@ use htex_recording::rules::RECORDING_FRICTION_COEFFICIENT;
 
 /// Fewest windows of 0.2 s of sliding from which the dependence on the force is told.
 const FEWEST: usize = 20;
-/// Least standard deviation of the logarithm of the normal force: 5 %. Of recordings in which a finger keeps to a
-/// force it is 2 to 3 %.
+/// Least standard deviation of the logarithm of the normal force: 5 %. Of recordings in which a
+/// finger keeps to a force it is 2 to 3 %.
 const LEAST_SPREAD: f64 = 0.05;
-/// Largest exponent of the normal force, with two standard errors, at which the lateral force does not change with
-/// it. Of forces it is 0.97 to 1.03 on simulated surfaces and on three free motions of a finger, of their coefficients -0.03 to 0.03;
-/// a finger whose friction is its area of contact has 2/3.
+/// Largest exponent of the normal force, with two standard errors, at which the lateral force does
+/// not change with it. Of forces it is 0.97 to 1.03 on simulated surfaces and on three free motions
+/// of a finger, of their coefficients -0.03 to 0.03; a finger whose friction is its area of contact
+/// has 2/3.
 const LARGEST_EXPONENT: f64 = 0.25;
 
 /// Defines the finding of this module, for `spec/recording-findings.md`.
@@ -27,7 +28,8 @@ pub(super) fn definition() -> String {
     )
 }
 
-/// Regresses the logarithm of the lateral force on that of the normal force, over windows in which the finger slides.
+/// Regresses the logarithm of the lateral force on that of the normal force, over windows in which
+/// the finger slides.
 pub(super) fn judge(recording: &Recording, findings: &mut Findings) {
     let Some(line) = logarithms(recording).and_then(|windows| Line::through(&windows)) else {
         return;

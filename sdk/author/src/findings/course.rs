@@ -1,4 +1,5 @@
-//! Detection of signals whose course no finger causes: a straight line, and values that alternate from sample to sample.
+//! Detection of signals whose course no finger causes: a straight line, and values that alternate
+//! from sample to sample.
 
 use htex_finding::Findings;
 
@@ -6,15 +7,17 @@ use super::axis_words;
 use crate::{Recording, segment_len};
 use htex_recording::rules::{RECORDING_ALTERNATES, RECORDING_RAMP};
 
-/// Fewest segments of a recording that is checked: 1 s. The friction of a finger may rise along a line for less.
+/// Fewest segments of a recording that is checked: 1 s. The friction of a finger may rise along a
+/// line for less.
 const FEWEST_SEGMENTS: usize = 5;
-/// Least part of the variance along a line: a ramp. Of 240 recordings of fingers, tools and microphones by third parties, which last 0.8 to
-/// 19 s, none has more than 0.80, and the normal force of a finger no more than 0.84.
+/// Least part of the variance along a line: a ramp. Of 240 recordings of fingers, tools and
+/// microphones by third parties, which last 0.8 to 19 s, none has more than 0.80, and the normal
+/// force of a finger no more than 0.84.
 const ALONG_LINE: f64 = 0.99;
 /// Longest alternation, samples: four channels in one column.
 const LONGEST: usize = 4;
-/// Least part of the variance that depends only on the number of the sample within such a period. The recordings by third parties have at
-/// most 0.0005.
+/// Least part of the variance that depends only on the number of the sample within such a period.
+/// The recordings by third parties have at most 0.0005.
 const BY_PLACE: f64 = 0.5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.

@@ -6,8 +6,9 @@ use super::quantile::median;
 use crate::SegmentSpectra;
 use htex_recording::rules::RECORDING_LEVELS_DIFFER;
 
-/// Ratio of a recording's level to the median of its condition from which it differs: 8 dB. Of ten slides over each of 20 materials
-/// by a robot, none is further than 5.0 dB from its material's median; the two furthest slides of a material differ by 6.2 dB.
+/// Ratio of a recording's level to the median of its condition from which it differs: 8 dB. Of ten
+/// slides over each of 20 materials by a robot, none is further than 5.0 dB from its material's
+/// median; the two furthest slides of a material differ by 6.2 dB.
 const DIFFERS: f64 = 2.511_886_431_509_58;
 
 /// Defines the finding of this module, for `spec/recording-findings.md`.
@@ -17,7 +18,8 @@ pub(super) fn definition() -> String {
         .to_owned()
 }
 
-/// Level of what is read of a recording: RMS over its segments, in its unit but for a constant factor.
+/// Level of what is read of a recording: RMS over its segments, in its unit but for a constant
+/// factor.
 pub(crate) fn level_of(part: &SegmentSpectra) -> f64 {
     let bins = part.spectra.iter().flatten();
     let sum: f64 = bins.map(htex_dsp::spectrum::Complex::<f64>::norm_sqr).sum();

@@ -6,21 +6,25 @@ use super::{axis_words, pointer};
 use crate::{Recording, segment_len};
 use htex_recording::rules::{RECORDING_CLIPPED, RECORDING_COARSE};
 
-/// Number of different values below which a signal counts as coarsely quantised: at 4 bits the quantisation
-/// noise is 26 dB below full scale (6.02 · 4 + 1.76), close to the scatter of the spectrum itself.
+/// Number of different values below which a signal counts as coarsely quantised: at 4 bits the
+/// quantisation noise is 26 dB below full scale (6.02 · 4 + 1.76), close to the scatter of the
+/// spectrum itself.
 const FEWEST_LEVELS: usize = 16;
-/// Part of all samples on an extreme value that counts as clipping. Noise clipped at 2.3 times its RMS, which
-/// is this often, has a distortion of -24 dB; less clipping does not justify another recording.
+/// Part of all samples on an extreme value that counts as clipping. Noise clipped at 2.3 times its
+/// RMS, which is this often, has a distortion of -24 dB; less clipping does not justify another
+/// recording.
 const CLIPPED: f64 = 0.01;
-/// Least ratio of the samples on the extreme value to those in the range next to it ([`BESIDE`]). At the top
-/// of a quantised sine the ratio is two.
+/// Least ratio of the samples on the extreme value to those in the range next to it ([`BESIDE`]).
+/// At the top of a quantised sine the ratio is two.
 const OVER_BESIDE: usize = 4;
-/// Width of that range relative to the whole range, at least one step of the converter. A texture on a plateau
-/// covers a few percent of the whole range densely and must not count as one value.
+/// Width of that range relative to the whole range, at least one step of the converter. A texture
+/// on a plateau covers a few percent of the whole range densely and must not count as one value.
 const BESIDE: f64 = 0.001;
-/// Least number of separate visits to the limit; a signal that reaches it once or twice is stuck instead.
+/// Least number of separate visits to the limit; a signal that reaches it once or twice is stuck
+/// instead.
 const FEWEST_VISITS: usize = 3;
-/// Least distance of a limit from zero, as a part of the mean magnitude; values closer to zero are rest.
+/// Least distance of a limit from zero, as a part of the mean magnitude; values closer to zero are
+/// rest.
 const REST: f64 = 0.5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -62,10 +66,8 @@ pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings)
             return Levels::Coarse;
         }
     }
-    let mut clips: Vec<Clip> = [1.0, -1.0]
-        .into_iter()
-        .filter_map(|side| clip(values, side))
-        .collect();
+    let mut clips: Vec<Clip> =
+        [1.0, -1.0].into_iter().filter_map(|side| clip(values, side)).collect();
     if clips.iter().map(|clip| clip.visits).sum::<usize>() < FEWEST_VISITS {
         clips.clear();
     }
@@ -137,10 +139,5 @@ fn clip(values: &[f64], side: f64) -> Option<Clip> {
         before = on;
     }
     let clipped = count as f64 >= CLIPPED * values.len() as f64 && count >= OVER_BESIDE * near;
-    clipped.then_some(Clip {
-        level: side * top,
-        count,
-        visits,
-        first: first?,
-    })
+    clipped.then_some(Clip { level: side * top, count, visits, first: first? })
 }

@@ -28,8 +28,9 @@ pub use page::findings_page;
 pub(crate) use quantile::quantile;
 pub(crate) use segments::judge_segments;
 
-/// Checks a recording's signals: clipping, stuck sensors, spikes, ramps, alternation, signals without a texture in the band, and forces and
-/// speeds that a finger cannot have. Findings of the time column are included.
+/// Checks a recording's signals: clipping, stuck sensors, spikes, ramps, alternation, signals
+/// without a texture in the band, and forces and speeds that a finger cannot have. Findings of the
+/// time column are included.
 ///
 /// ```
 /// use htex_author::{Recording, recording_findings};
@@ -63,12 +64,7 @@ pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     }
     plausible::judge_speed(recording, &mut findings);
     let found = findings.into_list();
-    recording
-        .clock_findings
-        .iter()
-        .cloned()
-        .chain(found)
-        .collect()
+    recording.clock_findings.iter().cloned().chain(found).collect()
 }
 
 /// Names an axis in running text: `lateral_x force`, `signal_z`.

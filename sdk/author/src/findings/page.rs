@@ -56,11 +56,5 @@ pub fn findings_page() -> String {
         segments::definition(),
         differing::definition(),
     ];
-    rules_page(
-        &format!(
-            "{HEAD}\n## Thresholds\n\n{}\n## Codes\n",
-            definitions.concat()
-        ),
-        RULES,
-    )
+    rules_page(&format!("{HEAD}\n## Thresholds\n\n{}\n## Codes\n", definitions.concat()), RULES)
 }

@@ -8,14 +8,14 @@ use htex_recording::rules::{
     RECORDING_FRICTION_IMPLAUSIBLE, RECORDING_SPEED_IMPLAUSIBLE, RECORDING_SPEED_ZERO,
 };
 
-/// Largest ratio of lateral to normal force. Fingers on smooth, wet glass reach 3 to 5 at light touch, where
-/// adhesion dominates; twice that allows for offsets of the sensors.
+/// Largest ratio of lateral to normal force. Fingers on smooth, wet glass reach 3 to 5 at light
+/// touch, where adhesion dominates; twice that allows for offsets of the sensors.
 const LARGEST_FRICTION: f64 = 10.0;
-/// Speed below which the finger stands still, mm/s: at this speed it takes a quarter of an hour to stretch the skin by
-/// the millimetre that it yields.
+/// Speed below which the finger stands still, mm/s: at this speed it takes a quarter of an hour to
+/// stretch the skin by the millimetre that it yields.
 const STILL_MM_S: f64 = 1e-3;
-/// Range of exploration speeds, mm/s: the slowest tribometers for fingers run at 1; a fully swinging arm
-/// reaches 2 m/s.
+/// Range of exploration speeds, mm/s: the slowest tribometers for fingers run at 1; a fully
+/// swinging arm reaches 2 m/s.
 const HANDS_MM_S: [f64; 2] = [1.0, 2000.0];
 /// Quantile of the speed that is checked; slower samples may be turns and pauses.
 const SLIDING: f64 = 0.75;
@@ -51,9 +51,7 @@ pub(super) fn judge_speed(recording: &Recording, findings: &mut Findings) {
     let Some(speed) = &recording.speed_mm_s else {
         return;
     };
-    let fastest = speed
-        .iter()
-        .fold(0.0, |most: f64, speed| most.max(speed.abs()));
+    let fastest = speed.iter().fold(0.0, |most: f64, speed| most.max(speed.abs()));
     if fastest < STILL_MM_S {
         findings.add(RECORDING_SPEED_ZERO, "/speed", format!(
             "the speed does not exceed {fastest} mm/s in {:.2} s; remove the column, or give the speed",

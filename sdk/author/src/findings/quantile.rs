@@ -1,6 +1,7 @@
 //! Quantiles of long signals.
 
-/// Most values that are sorted. Quantiles of so many evenly spaced samples scatter by less than a percent.
+/// Most values that are sorted. Quantiles of so many evenly spaced samples scatter by less than a
+/// percent.
 const MOST: usize = 20_000;
 
 /// Defines a quantile, for `spec/recording-findings.md`.
@@ -11,13 +12,10 @@ pub(super) fn definition() -> String {
     )
 }
 
-/// Returns the quantile `part` (0 to 1) of the values; of long signals, of evenly spaced samples. `None` if there are
-/// no values.
+/// Returns the quantile `part` (0 to 1) of the values; of long signals, of evenly spaced samples.
+/// `None` if there are no values.
 pub(crate) fn quantile(part: f64, len: usize, value: impl Fn(usize) -> f64) -> Option<f64> {
-    let mut values: Vec<f64> = (0..len)
-        .step_by(len.div_ceil(MOST).max(1))
-        .map(value)
-        .collect();
+    let mut values: Vec<f64> = (0..len).step_by(len.div_ceil(MOST).max(1)).map(value).collect();
     let last = values.len().checked_sub(1)?;
     let at = (part * last as f64).round() as usize;
     Some(*values.select_nth_unstable_by(at, f64::total_cmp).1)

@@ -8,8 +8,8 @@ use htex_recording::rules::{
     RECORDING_READ_IN_WINDOWS, RECORDING_SWEEPS_CUT_OFF, RECORDING_UNEVEN,
 };
 
-/// Ratio to the median level of all segments above which a segment is too loud: 12 dB. Force and speed within
-/// 10 % cause about 1 dB, seams and knots of a material a few.
+/// Ratio to the median level of all segments above which a segment is too loud: 12 dB. Force and
+/// speed within 10 % cause about 1 dB, seams and knots of a material a few.
 const LOUD: f64 = 4.0;
 /// Loud segments are reported only if they are at most one in this many.
 const EXCEPTION: usize = 4;
@@ -66,10 +66,7 @@ fn seconds_read(recording: &Recording, part: &SegmentSpectra) -> String {
 
 fn judge_levels(recording: &Recording, part: &SegmentSpectra, findings: &mut Findings) {
     let level = |bins: &Vec<_>| {
-        bins.iter()
-            .map(htex_dsp::spectrum::Complex::<f64>::norm_sqr)
-            .sum::<f64>()
-            .sqrt()
+        bins.iter().map(htex_dsp::spectrum::Complex::<f64>::norm_sqr).sum::<f64>().sqrt()
     };
     let levels: Vec<f64> = part.spectra.iter().map(level).collect();
     let usual = median(&levels).unwrap_or(0.0);
@@ -80,10 +77,7 @@ fn judge_levels(recording: &Recording, part: &SegmentSpectra, findings: &mut Fin
         .filter(|(_, level)| usual > 0.0 && **level > LOUD * usual)
         .map(|(start, level)| (*start, *level))
         .collect();
-    let Some((first, _)) = loud
-        .first()
-        .filter(|_| loud.len() <= levels.len() / EXCEPTION)
-    else {
+    let Some((first, _)) = loud.first().filter(|_| loud.len() <= levels.len() / EXCEPTION) else {
         return;
     };
     let place = |(start, level): &(usize, f64)| {

@@ -1,8 +1,9 @@
 //! Detection of single outliers: a few far ones of any form, and many that are one sample each.
 //!
-//! A texture has sharp corners of its own (stick and slip), so many corners say nothing. But its corners last several samples, and
-//! repairing one sample does not remove them. Of 240 recordings by third parties, none has more than four samples that a repair removes at 12 times the usual corner,
-//! and at five times no more than 0.1 % (the current of a motor: 0.62 %).
+//! A texture has sharp corners of its own (stick and slip), so many corners say nothing. But its
+//! corners last several samples, and repairing one sample does not remove them. Of 240 recordings
+//! by third parties, none has more than four samples that a repair removes at 12 times the usual
+//! corner, and at five times no more than 0.1 % (the current of a motor: 0.62 %).
 
 use htex_finding::Findings;
 use htex_format::Quantity;
@@ -14,8 +15,9 @@ use htex_recording::rules::{RECORDING_FORCE_OUTLIER, RECORDING_SPIKE};
 
 /// Length of the blocks in which the largest second difference is searched, seconds.
 const BLOCK_S: f64 = 0.1;
-/// Ratio to the usual second difference above which a sample is a spike. With 100 times the usual energy, one sample
-/// raises the highest bands of a segment by about 1.5 dB at 20 kHz and by 7 dB at 1 kHz.
+/// Ratio to the usual second difference above which a sample is a spike. With 100 times the usual
+/// energy, one sample raises the highest bands of a segment by about 1.5 dB at 20 kHz and by 7 dB
+/// at 1 kHz.
 const SPIKE: f64 = 10.0;
 /// Quantile of the blocks that counts as usual: three quarters of a recording may be rest.
 const USUAL: f64 = 0.75;
@@ -23,17 +25,19 @@ const USUAL: f64 = 0.75;
 const RARE: f64 = 0.1;
 /// Number of spikes that are always reported.
 const FEW: usize = 3;
-/// Step of a normal force, relative to its median, below which it is not a spike: quantised forces are often
-/// constant except for single steps.
+/// Step of a normal force, relative to its median, below which it is not a spike: quantised forces
+/// are often constant except for single steps.
 const FORCE_STEP: f64 = 0.05;
 /// Distance in samples within which spikes count as one.
 const NEIGHBOURS: usize = 2;
-/// Ratio of a corner to the corners that stay after the sample is repaired, from which the sample is an outlier by itself.
+/// Ratio of a corner to the corners that stay after the sample is repaired, from which the sample
+/// is an outlier by itself.
 const REPAIRED: f64 = 2.0;
 /// Standard deviation of normal numbers over the median of their magnitudes.
 const NORMAL: f64 = 1.4826;
-/// Samples that are outliers by themselves, of which there are too many: how many standard deviations their corners have, and their least part of all samples. At six
-/// standard deviations of white noise, which make a corner of five, 0.75 % raise its level by 1 dB.
+/// Samples that are outliers by themselves, of which there are too many: how many standard
+/// deviations their corners have, and their least part of all samples. At six standard deviations
+/// of white noise, which make a corner of five, 0.75 % raise its level by 1 dB.
 const SMALL: (f64, f64) = (5.0, 0.0075);
 /// As [`SMALL`], with a number of samples.
 const LARGE: (f64, usize) = (12.0, 6);
@@ -84,16 +88,12 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
             places(recording, Quantity::NormalForce, values, &spikes),
             values.iter().sum::<f64>() / values.len() as f64
         );
-        findings.add(
-            RECORDING_FORCE_OUTLIER,
-            pointer(recording, "normal", *first),
-            message,
-        );
+        findings.add(RECORDING_FORCE_OUTLIER, pointer(recording, "normal", *first), message);
     }
 }
 
-/// Returns the sample with the largest second difference of each block that exceeds both the usual one and a floor, or single samples if
-/// they are more.
+/// Returns the sample with the largest second difference of each block that exceeds both the usual
+/// one and a floor, or single samples if they are more.
 fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     let block = ((BLOCK_S * rate_hz) as usize).max(8);
     let sharpest: Vec<(usize, f64)> = (0..values.len())
@@ -134,9 +134,7 @@ fn many(values: &[f64], block: usize, floor: f64) -> Vec<usize> {
     let single = |ratio: f64| -> Vec<usize> {
         let limit = floor.max(ratio * usual);
         let is_single = |at: &usize| corners[at - 1] > limit && is_single(values, *at);
-        (3..values.len().saturating_sub(3))
-            .filter(is_single)
-            .collect()
+        (3..values.len().saturating_sub(3)).filter(is_single).collect()
     };
     let large = single(LARGE.0);
     let small = single(SMALL.0);
@@ -166,7 +164,8 @@ fn corner(w: &[f64]) -> f64 {
     (w[1] - 0.5 * (w[0] + w[2])).abs()
 }
 
-/// Returns the sample of a block that differs most from the mean of its neighbours, and the difference.
+/// Returns the sample of a block that differs most from the mean of its neighbours, and the
+/// difference.
 fn sharpest(values: &[f64], start: usize, block: usize) -> Option<(usize, f64)> {
     let from = start.saturating_sub(1);
     let reach = &values[from..(start + block + 1).min(values.len())];

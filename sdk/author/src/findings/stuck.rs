@@ -9,17 +9,18 @@ use super::{axis_words, pointer};
 use crate::Recording;
 use htex_recording::rules::{RECORDING_SILENT, RECORDING_STUCK};
 
-/// Shortest stretch of one value that counts as a stuck sensor, seconds: longer than a turn of the hand (0.1
-/// to 0.3 s), and two and a half segments.
+/// Shortest stretch of one value that counts as a stuck sensor, seconds: longer than a turn of the
+/// hand (0.1 to 0.3 s), and two and a half segments.
 const STUCK_S: f64 = 0.5;
 /// Shortest reported stretch of one value near zero, seconds: pauses between sweeps are shorter.
 const SILENT_S: f64 = 1.0;
-/// Distance from zero, as a part of the mean magnitude, above which a value is friction; smaller values are rest.
+/// Distance from zero, as a part of the mean magnitude, above which a value is friction; smaller
+/// values are rest.
 const FRICTION: f64 = 0.5;
 /// Part of the mean speed below which the finger is at rest.
 const RESTS: f64 = 0.1;
-/// Part of the samples at which a normal force must change for its sensor to resolve noise. Coarsely quantised
-/// forces and set points may stay constant.
+/// Part of the samples at which a normal force must change for its sensor to resolve noise.
+/// Coarsely quantised forces and set points may stay constant.
 const LIVELY: f64 = 0.5;
 
 /// Defines the findings of this module, for `spec/recording-findings.md`.
@@ -79,18 +80,8 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     let held: usize = runs.iter().map(Range::len).sum();
     let changes = values.windows(2).filter(|pair| pair[0] != pair[1]).count();
     if changes as f64 > LIVELY * (values.len() - held) as f64 {
-        let message = sentence(
-            recording,
-            "normal force",
-            Quantity::NormalForce,
-            values,
-            &runs,
-        );
-        findings.add(
-            RECORDING_STUCK,
-            pointer(recording, "normal", first.start),
-            message,
-        );
+        let message = sentence(recording, "normal force", Quantity::NormalForce, values, &runs);
+        findings.add(RECORDING_STUCK, pointer(recording, "normal", first.start), message);
     }
 }
 
@@ -109,11 +100,7 @@ fn finger(recording: &Recording, run: &Range<usize>) -> Finger {
     };
     let (usual, here) = (mean_size(speed), mean_size(&speed[run.clone()]));
     if usual > 0.0 {
-        if here > RESTS * usual {
-            Finger::Moves
-        } else {
-            Finger::Rests
-        }
+        if here > RESTS * usual { Finger::Moves } else { Finger::Rests }
     } else {
         Finger::Unknown
     }
@@ -147,11 +134,7 @@ fn sentence(
     runs: &[Range<usize>],
 ) -> String {
     let held: usize = runs.iter().map(Range::len).sum();
-    let longest = runs
-        .iter()
-        .max_by_key(|run| run.len())
-        .cloned()
-        .unwrap_or_default();
+    let longest = runs.iter().max_by_key(|run| run.len()).cloned().unwrap_or_default();
     format!(
         "the {words} is constant for {:.2} of {:.2} s, longest at {:.4} {} from {:.3} to {:.3} s; leave it out, \
          or record again",

@@ -4,13 +4,15 @@ use htex_dsp::order;
 
 use super::lines::{FEWEST, Lines};
 
-/// Windows from which a cell is not widened. In third octaves the power of as many windows of noise scatters by 0.5 dB
-/// (RMS over 17 bands from 20 Hz).
+/// Windows from which a cell is not widened. In third octaves the power of as many windows of noise
+/// scatters by 0.5 dB (RMS over 17 bands from 20 Hz).
 const ENOUGH: usize = 32;
-/// Ratio of speeds up to which a cell may be widened, and factor by which it may be for speeds and forces.
+/// Ratio of speeds up to which a cell may be widened, and factor by which it may be for speeds and
+/// forces.
 const WIDENED_RATIO: f64 = 1.19;
 const WIDENED: [f64; 2] = [2.0, 1.5];
-/// Distance up to which windows tell how the texture changes around a crossing, relative to that of the widest cell.
+/// Distance up to which windows tell how the texture changes around a crossing, relative to that of
+/// the widest cell.
 const SURROUNDINGS: f64 = 2.0;
 
 /// The windows around a crossing of two lines.
@@ -67,9 +69,8 @@ fn cell(at: [f64; 2], halves: [[f64; 2]; 2], motions: &[[f64; 2]], among: &[usiz
     let (inside, around) = (distances(halves), distances(wide));
     let all = || among.iter().copied();
     let own: Vec<usize> = all().filter(|i| inside[*i] < 1.0).collect();
-    let mut borrowed: Vec<usize> = all()
-        .filter(|i| inside[*i] >= 1.0 && around[*i] < 1.0)
-        .collect();
+    let mut borrowed: Vec<usize> =
+        all().filter(|i| inside[*i] >= 1.0 && around[*i] < 1.0).collect();
     order::sort_by(&mut borrowed, |a, b| around[*a].total_cmp(&around[*b]));
     borrowed.truncate(ENOUGH.saturating_sub(own.len()));
     order::sort(&mut borrowed);
@@ -86,27 +87,20 @@ fn cell(at: [f64; 2], halves: [[f64; 2]; 2], motions: &[[f64; 2]], among: &[usiz
 
 /// Returns whether the median cell has windows for a denser grid: half of [`ENOUGH`].
 pub(super) fn are_full(cells: &[Cell]) -> bool {
-    let mut counts: Vec<usize> = cells
-        .iter()
-        .map(|cell| cell.own.len() + cell.borrowed.len())
-        .collect();
+    let mut counts: Vec<usize> =
+        cells.iter().map(|cell| cell.own.len() + cell.borrowed.len()).collect();
     order::sort(&mut counts);
-    counts
-        .get(counts.len() / 2)
-        .is_some_and(|count| 2 * count >= ENOUGH)
+    counts.get(counts.len() / 2).is_some_and(|count| 2 * count >= ENOUGH)
 }
 
-/// Returns the larger of a motion's two distances from a crossing, in halves of the spacing: below 1 inside the cell.
+/// Returns the larger of a motion's two distances from a crossing, in halves of the spacing: below
+/// 1 inside the cell.
 fn distance(at: [f64; 2], halves: [[f64; 2]; 2], motion: [f64; 2]) -> f64 {
     let along = |axis: usize| {
         let difference = motion[axis] - at[axis];
         let [below, above] = halves[axis];
         // The lower edge belongs to the cell, the upper one to the next.
-        if difference < 0.0 {
-            -difference / below * (1.0 - 1e-12)
-        } else {
-            difference / above
-        }
+        if difference < 0.0 { -difference / below * (1.0 - 1e-12) } else { difference / above }
     };
     along(0).max(along(1))
 }

@@ -1,8 +1,10 @@
-//! Blocks of time that are left out in turn: each quarter of the recordings is predicted from the other three.
+//! Blocks of time that are left out in turn: each quarter of the recordings is predicted from the
+//! other three.
 //!
-//! Neighbouring cells share windows, and windows overlap, so a condition that is predicted from its neighbours is predicted from samples
-//! that it is compared with. Blocks of time share none. They are long, because a finger and its motion drift: what was
-//! felt a second before and after tells more of a block than a recording tells of what will be played.
+//! Neighbouring cells share windows, and windows overlap, so a condition that is predicted from its
+//! neighbours is predicted from samples that it is compared with. Blocks of time share none. They
+//! are long, because a finger and its motion drift: what was felt a second before and after tells
+//! more of a block than a recording tells of what will be played.
 
 use std::ops::Range;
 
@@ -21,8 +23,8 @@ pub(super) struct Fold {
     pub(super) held: Vec<usize>,
 }
 
-/// Leaves out the quarters of all recordings in turn. A window that reaches over the edge of a block, as far as it
-/// may be lengthened ([`super::paths`]), is on neither side of it.
+/// Leaves out the quarters of all recordings in turn. A window that reaches over the edge of a
+/// block, as far as it may be lengthened ([`super::paths`]), is on neither side of it.
 pub(super) fn folds(takes: &[Take], windows: &[Window]) -> [Fold; FOLDS] {
     std::array::from_fn(|block| {
         let of = |window: &Window| {
@@ -38,14 +40,8 @@ pub(super) fn folds(takes: &[Take], windows: &[Window]) -> [Fold; FOLDS] {
             reach.start >= out.start && reach.end <= out.end
         };
         Fold {
-            known: all()
-                .filter(|(_, of)| is_known(of))
-                .map(|(i, _)| i)
-                .collect(),
-            held: all()
-                .filter(|(_, of)| is_held(of))
-                .map(|(i, _)| i)
-                .collect(),
+            known: all().filter(|(_, of)| is_known(of)).map(|(i, _)| i).collect(),
+            held: all().filter(|(_, of)| is_held(of)).map(|(i, _)| i).collect(),
         }
     })
 }

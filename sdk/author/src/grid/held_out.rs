@@ -71,7 +71,8 @@ pub(super) fn held(
     Ok(all)
 }
 
-/// Averages windows over the path of 0.2 s at one speed, given by its logarithm, or each over its own 0.2 s.
+/// Averages windows over the path of 0.2 s at one speed, given by its logarithm, or each over its
+/// own 0.2 s.
 pub(super) fn averaged(
     paths: &mut Paths<'_>,
     windows: &[Window],
@@ -86,29 +87,18 @@ pub(super) fn averaged(
         spans.push(paths.span(window, log_speed));
     }
     let spectra: Vec<&[Complex<f64>]> = spectra.iter().map(Vec::as_slice).collect();
-    let Kind {
-        quantity,
-        band,
-        averaging,
-        ..
-    } = kind;
-    Ok(TextureSpectrum::of(
-        quantity, band, &spectra, &spans, averaging,
-    ))
+    let Kind { quantity, band, averaging, .. } = kind;
+    Ok(TextureSpectrum::of(quantity, band, &spectra, &spans, averaging))
 }
 
-/// Returns the differences in decibels, in third octaves, between blocks that were left out and what is played there.
+/// Returns the differences in decibels, in third octaves, between blocks that were left out and
+/// what is played there.
 pub(super) fn errors_db(played: &PlayedSpectra, held: &[Held]) -> Vec<f64> {
     let mut errors = Vec::new();
     for one in held {
         let truth = levels_db(&one.spectrum, 1.0, 1.0);
         let played = played.third_octaves_db(one.motion);
-        errors.extend(
-            played
-                .iter()
-                .zip(&truth)
-                .map(|(played, truth)| played - truth),
-        );
+        errors.extend(played.iter().zip(&truth).map(|(played, truth)| played - truth));
     }
     errors.retain(|error| error.is_finite());
     errors

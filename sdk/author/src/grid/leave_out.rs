@@ -11,9 +11,10 @@ use super::played::motion;
 use crate::conditions::Group;
 use crate::{AuthorError, agreement, read_spectrum};
 
-/// Returns for each of `conditions` conditions the error of what a player makes, at the motions near it and without a block of
-/// time, of that block: RMS over the blocks. `None` where no block has windows enough near the condition, or the rest does
-/// not reach there. `fit` returns the stored parameters and the level of a group.
+/// Returns for each of `conditions` conditions the error of what a player makes, at the motions
+/// near it and without a block of time, of that block: RMS over the blocks. `None` where no block
+/// has windows enough near the condition, or the rest does not reach there. `fit` returns the
+/// stored parameters and the level of a group.
 pub(crate) fn left_out(
     model: &LoadedModel,
     conditions: usize,
@@ -76,7 +77,8 @@ impl<'a> Played<'a> {
         })
     }
 
-    /// Returns the measures of what is played at the motion of left-out windows, against their spectrum.
+    /// Returns the measures of what is played at the motion of left-out windows, against their
+    /// spectrum.
     fn error(&self, held: &Held) -> Option<Measures> {
         let reference = held.spectrum.as_ref();
         let magnitude = self.magnitude(held.motion, reference).ok()?;
@@ -85,8 +87,8 @@ impl<'a> Played<'a> {
         is_finite.then_some(error.measures)
     }
 
-    /// Returns the magnitudes at a motion, as a recording of the voice reads them; where frequencies are scaled, as
-    /// [`htex_play::Asset::magnitude`] states them.
+    /// Returns the magnitudes at a motion, as a recording of the voice reads them; where
+    /// frequencies are scaled, as [`htex_play::Asset::magnitude`] states them.
     fn magnitude(
         &self,
         [speed, force]: [f64; 2],

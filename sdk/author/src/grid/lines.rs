@@ -8,8 +8,8 @@ use crate::findings::quantile;
 pub(super) const FEWEST: usize = 8;
 /// Parts of the windows whose speeds, and forces, a chosen grid covers.
 const COVERED: [f64; 2] = [0.01, 0.99];
-/// Largest ratio of neighbouring forces that is chosen. The level changes smoothly with the force, and players
-/// interpolate it linearly.
+/// Largest ratio of neighbouring forces that is chosen. The level changes smoothly with the force,
+/// and players interpolate it linearly.
 const FORCE_RATIO: f64 = 4.0;
 /// Ratio of the highest to the lowest speed or force up to which it counts as constant.
 const CONSTANT: f64 = 1.15;
@@ -24,8 +24,9 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// Returns the given lines, and those of axes without: equally spaced in the logarithm, over the range of 98 % of the
-    /// windows, as few as a ratio of at most `speed_ratio` between speeds and 4 between forces allows.
+    /// Returns the given lines, and those of axes without: equally spaced in the logarithm, over
+    /// the range of 98 % of the windows, as few as a ratio of at most `speed_ratio` between speeds
+    /// and 4 between forces allows.
     pub(super) fn choose(
         grid: &Grid,
         motions: &[[f64; 2]],
@@ -37,10 +38,7 @@ impl Lines {
         };
         let (speeds, forces) = (given(&grid.speed_mm_s), given(&grid.force_n));
         if motions.len() < FEWEST {
-            return Err(AuthorError::GridFew {
-                segments: motions.len(),
-                needed: FEWEST,
-            });
+            return Err(AuthorError::GridFew { segments: motions.len(), needed: FEWEST });
         }
         let [speed, force] = [0, 1].map(|axis| Covered::of(motions, axis));
         if speed.is_constant() && force.is_constant() && speeds.is_none() && forces.is_none() {
@@ -57,16 +55,14 @@ impl Lines {
         })
     }
 
-    /// Returns half the distance to the neighbours of a line, below and above; outside the outermost lines as far as inside.
+    /// Returns half the distance to the neighbours of a line, below and above; outside the
+    /// outermost lines as far as inside.
     pub(super) fn halves(lines: &[f64], i: usize) -> [f64; 2] {
         let half = |a: Option<&f64>, b: Option<&f64>| Some(0.5 * (b? - a?));
         let below = half(i.checked_sub(1).and_then(|k| lines.get(k)), lines.get(i));
         let above = half(lines.get(i), lines.get(i + 1));
         let single = libm::log(SINGLE);
-        [
-            below.or(above).unwrap_or(single),
-            above.or(below).unwrap_or(single),
-        ]
+        [below.or(above).unwrap_or(single), above.or(below).unwrap_or(single)]
     }
 }
 
@@ -103,8 +99,6 @@ impl Covered {
             return vec![0.5 * (self.low + self.high)];
         }
         let spacing = (self.high - self.low) / (count as f64 - 1.0 + 2.0 * MARGIN);
-        (0..count)
-            .map(|i| self.low + (MARGIN + i as f64) * spacing)
-            .collect()
+        (0..count).map(|i| self.low + (MARGIN + i as f64) * spacing).collect()
     }
 }

@@ -1,12 +1,15 @@
 //! A grid of conditions from recordings in which speed and force change freely.
 //!
-//! Recordings are cut into windows of 0.2 s; those with nearly constant speed and force (`steady`) are gathered in cells
-//! around the crossings of grid lines (`lines`, `cells`), and each cell with enough windows becomes a condition. Small
-//! differences between the windows' motions and the crossing are corrected: windows are read over equal paths (`paths`),
-//! and their energies by the texture's own dependence on speed and force (`slopes`). There are as many lines of speed as predict
-//! blocks of time best that were left out (`folds`, `held_out`, `search`). A player interpolates in the Delaunay mesh of the conditions, as in the Penn Haptic Texture Toolkit
-//! (Culbertson, Unwin and Kuchenbecker 2014), which fits segments of nearly constant motion and places the models in the
-//! plane of speed and force. `leave_out` measures, without a known truth, what a player makes of the conditions with a model.
+//! Recordings are cut into windows of 0.2 s; those with nearly constant speed and force (`steady`)
+//! are gathered in cells around the crossings of grid lines (`lines`, `cells`), and each cell with
+//! enough windows becomes a condition. Small differences between the windows' motions and the
+//! crossing are corrected: windows are read over equal paths (`paths`), and their energies by the
+//! texture's own dependence on speed and force (`slopes`). There are as many lines of speed as
+//! predict blocks of time best that were left out (`folds`, `held_out`, `search`). A player
+//! interpolates in the Delaunay mesh of the conditions, as in the Penn Haptic Texture Toolkit
+//! (Culbertson, Unwin and Kuchenbecker 2014), which fits segments of nearly constant motion and
+//! places the models in the plane of speed and force. `leave_out` measures, without a known truth,
+//! what a player makes of the conditions with a model.
 
 mod cells;
 mod folds;
@@ -67,20 +70,12 @@ pub(crate) fn group_grid(
         let source = &take.recording.source;
         warnings.add(source, std::mem::take(&mut steady.warnings));
         notes.add(source, std::mem::take(&mut steady.notes));
-        findings.extend(RecordingFinding::all(
-            source,
-            std::mem::take(&mut steady.findings),
-        ));
+        findings.extend(RecordingFinding::all(source, std::mem::take(&mut steady.findings)));
         sources.push(source_of(take, steady.windows.len()));
         all.push(steady);
     }
     let (quantity, band) = same_kind(&all)?;
-    let kind = Kind {
-        quantity,
-        band,
-        averaging: options.averaging,
-        contact,
-    };
+    let kind = Kind { quantity, band, averaging: options.averaging, contact };
     let looked_at = all.iter().map(|steady| steady.looked_at).sum();
     let windows: Vec<Window> = all.into_iter().flat_map(|steady| steady.windows).collect();
     let searched = Search::new(takes, options, &windows, kind).best(grid)?;
@@ -93,9 +88,7 @@ pub(crate) fn group_grid(
         notes: notes.into_notices(),
         findings,
     };
-    let Searched {
-        gathered, left_out, ..
-    } = searched;
+    let Searched { gathered, left_out, .. } = searched;
     for (cell, spectrum) in gathered.cells.iter().zip(gathered.spectra) {
         let Some(spectrum) = spectrum else {
             report.add_thin(cell);
@@ -109,10 +102,7 @@ pub(crate) fn group_grid(
             repeatability_rms_db: spectrum.repeatability_rms_db,
             segments: Some(spectrum.segments as u64),
         });
-        grouped.groups.push(Group {
-            spectrum,
-            condition,
-        });
+        grouped.groups.push(Group { spectrum, condition });
     }
     if grouped.groups.is_empty() {
         return Err(AuthorError::GridEmpty {
@@ -123,11 +113,7 @@ pub(crate) fn group_grid(
     }
     report.add_mesh(&grouped.conditions);
     judge(&report, takes, &mut grouped);
-    Ok(Gridded {
-        grouped,
-        report,
-        left_out,
-    })
+    Ok(Gridded { grouped, report, left_out })
 }
 
 /// Adds a finding where one condition predicts what was left out as well as the grid does.
@@ -162,17 +148,12 @@ fn judge(report: &GridReport, takes: &[Take], grouped: &mut Grouped) {
 /// Returns speed and force of a cell's crossing, to four digits.
 fn fit_condition(cell: &Cell) -> FitCondition {
     let [speed, force] = cell.at.map(|log| four_digits(libm::exp(log)));
-    FitCondition {
-        speed_mm_s: Some(speed),
-        force_n: Some(force),
-    }
+    FitCondition { speed_mm_s: Some(speed), force_n: Some(force) }
 }
 
 /// Returns quantity and band of all recordings, which must be the same.
 fn same_kind(all: &[Steady]) -> Result<(Quantity, Band), AuthorError> {
-    let first = all.first().ok_or(AuthorError::NoSegments {
-        source_name: String::new(),
-    })?;
+    let first = all.first().ok_or(AuthorError::NoSegments { source_name: String::new() })?;
     if all.iter().any(|one| one.quantity != first.quantity) {
         return Err(AuthorError::QuantitiesDiffer);
     }

@@ -1,9 +1,11 @@
 //! Spectra of windows over equal paths.
 //!
-//! Most of a texture's spectrum is its relief, read at the finger's speed. A window that the finger passes at another speed than
-//! that of its grid line is therefore taken as long as the finger needs for the path of 0.2 s at the line's speed: its bins
-//! then lie at the frequencies that the relief has at the line (order tracking, as for rotating machines). Lines of a weave
-//! are not blurred by the scatter of the speed within a cell; what does not follow the speed is blurred by as much.
+//! Most of a texture's spectrum is its relief, read at the finger's speed. A window that the finger
+//! passes at another speed than that of its grid line is therefore taken as long as the finger
+//! needs for the path of 0.2 s at the line's speed: its bins then lie at the frequencies that the
+//! relief has at the line (order tracking, as for rotating machines). Lines of a weave are not
+//! blurred by the scatter of the speed within a cell; what does not follow the speed is blurred by
+//! as much.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -44,16 +46,11 @@ pub(super) struct Paths<'a> {
 
 impl<'a> Paths<'a> {
     pub(super) fn new(takes: &'a [Take], options: &'a SpectrumOptions, band: Band) -> Self {
-        Self {
-            takes,
-            options,
-            band,
-            readers: BTreeMap::new(),
-            inverses: BTreeMap::new(),
-        }
+        Self { takes, options, band, readers: BTreeMap::new(), inverses: BTreeMap::new() }
     }
 
-    /// Returns the spectrum of a window over the path of 0.2 s at a speed, given by its logarithm, on the band's grid.
+    /// Returns the spectrum of a window over the path of 0.2 s at a speed, given by its logarithm,
+    /// on the band's grid.
     pub(super) fn read(
         &mut self,
         window: &Window,
@@ -77,7 +74,8 @@ impl<'a> Paths<'a> {
         Ok(bins)
     }
 
-    /// Returns the samples that are read of a window over the path of 0.2 s at a speed, given by its logarithm.
+    /// Returns the samples that are read of a window over the path of 0.2 s at a speed, given by
+    /// its logarithm.
     pub(super) fn samples(&self, window: &Window, log_speed: f64) -> Range<usize> {
         let len = self.length(window, log_speed);
         let middle = window.start + window.len / 2;
@@ -91,25 +89,17 @@ impl<'a> Paths<'a> {
     pub(super) fn span(&self, window: &Window, log_speed: f64) -> Span {
         let samples = self.samples(window, log_speed);
         let place = |sample: usize| sample as f64 / window.len as f64;
-        Span {
-            take: window.take,
-            from: place(samples.start),
-            to: place(samples.end),
-        }
+        Span { take: window.take, from: place(samples.start), to: place(samples.end) }
     }
 
-    /// Returns the number of samples of the path of 0.2 s at a speed; those of 0.2 s if the recording's rate does not suffice for the
-    /// band then.
+    /// Returns the number of samples of the path of 0.2 s at a speed; those of 0.2 s if the
+    /// recording's rate does not suffice for the band then.
     fn length(&self, window: &Window, log_speed: f64) -> usize {
         let most = libm::log(MOST);
         let ratio = libm::exp((log_speed - window.motion[0]).clamp(-most, most));
         let step = libm::round(window.len as f64 / (2.0 * STEPS)).max(1.0) * 2.0;
         let len = (libm::round(window.len as f64 * ratio / step) * step) as usize;
         let samples = self.takes[window.take].recording.samples();
-        if len / 2 >= self.band.last_bin() && len <= samples {
-            len
-        } else {
-            window.len
-        }
+        if len / 2 >= self.band.last_bin() && len <= samples { len } else { window.len }
     }
 }

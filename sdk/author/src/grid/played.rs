@@ -1,4 +1,5 @@
-//! Recorded spectra, played at other motions: what a player that loses nothing to a model makes of them.
+//! Recorded spectra, played at other motions: what a player that loses nothing to a model makes of
+//! them.
 
 use htex_format::{AtCondition, Condition, Contact};
 use htex_play::exploration::CEILING;
@@ -24,9 +25,7 @@ impl PlayedSpectra {
         contact: Contact,
     ) -> Option<Self> {
         let levels = spectra.iter();
-        let level_rms: Vec<f64> = levels
-            .map(|s| htex_dsp::grid::level_rms(&s.magnitude))
-            .collect();
+        let level_rms: Vec<f64> = levels.map(|s| htex_dsp::grid::level_rms(&s.magnitude)).collect();
         let at = |(condition, level_rms): (usize, &f64)| AtCondition {
             condition,
             level_rms: *level_rms,
@@ -63,7 +62,8 @@ impl PlayedSpectra {
     }
 }
 
-/// Returns the energies of the third octaves of a noise, its frequencies multiplied by `ratio`, in decibels over a level.
+/// Returns the energies of the third octaves of a noise, its frequencies multiplied by `ratio`, in
+/// decibels over a level.
 pub(super) fn levels_db(spectrum: &TextureSpectrum, ratio: f64, level_rms: f64) -> Vec<f64> {
     let first = spectrum.band.first_bin() as f64;
     let power = |bin: usize| {
@@ -75,21 +75,14 @@ pub(super) fn levels_db(spectrum: &TextureSpectrum, ratio: f64, level_rms: f64) 
             m.map_or(0.0, |m| m * m)
         };
         let part = place - below;
-        let above = if part > 0.0 {
-            part * at(below + 1.0)
-        } else {
-            0.0
-        };
+        let above = if part > 0.0 { part * at(below + 1.0) } else { 0.0 };
         ((1.0 - part) * at(below) + above) / ratio
     };
     let energy = |bins: std::ops::Range<usize>| {
         let sum: f64 = bins.map(power).sum();
         10.0 * libm::log10(sum / (level_rms * level_rms))
     };
-    third_octaves(spectrum.band)
-        .into_iter()
-        .map(energy)
-        .collect()
+    third_octaves(spectrum.band).into_iter().map(energy).collect()
 }
 
 /// Returns speed and force of a condition, as a player reads them.

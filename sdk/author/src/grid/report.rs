@@ -36,7 +36,8 @@ pub struct GridCell {
     pub segments: usize,
     /// Number of windows that were averaged, with those of its neighbours; 0 if it is thin.
     pub averaged: usize,
-    /// RMS over nine bands of the difference between odd and even blocks of the windows, over √2, decibels.
+    /// RMS over nine bands of the difference between odd and even blocks of the windows, over √2,
+    /// decibels.
     pub repeatability_rms_db: Option<f64>,
     pub status: CellStatus,
     /// Index of its condition in the asset.
@@ -55,10 +56,11 @@ pub struct GridReport {
     pub windows: usize,
     /// Number of steady windows.
     pub steady: usize,
-    /// RMS error of the third octaves of blocks of time that were left out, as players interpolate the recorded spectra of the rest, decibels.
-    /// `None` if the blocks have too few windows.
+    /// RMS error of the third octaves of blocks of time that were left out, as players interpolate
+    /// the recorded spectra of the rest, decibels. `None` if the blocks have too few windows.
     pub left_out_rms_db: Option<f64>,
-    /// The same of one condition for all motions, the mean of all steady windows, scaled by the law: what a grid must be better than.
+    /// The same of one condition for all motions, the mean of all steady windows, scaled by the
+    /// law: what a grid must be better than.
     pub one_condition_rms_db: Option<f64>,
     /// The cells, by speed and then by force.
     pub cells: Vec<GridCell>,
@@ -94,11 +96,8 @@ impl GridReport {
     }
 
     pub(super) fn add_fitted(&mut self, cell: &Cell, spectrum: &TextureSpectrum, condition: usize) {
-        let status = if cell.borrowed.is_empty() {
-            CellStatus::Fitted
-        } else {
-            CellStatus::Widened
-        };
+        let status =
+            if cell.borrowed.is_empty() { CellStatus::Fitted } else { CellStatus::Widened };
         self.cells.push(GridCell {
             averaged: spectrum.segments,
             repeatability_rms_db: spectrum.repeatability_rms_db,
@@ -116,18 +115,14 @@ impl GridReport {
     #[must_use]
     pub fn cell(&self, speed: usize, force: usize) -> Option<&GridCell> {
         let inside = force < self.force_n.len();
-        self.cells
-            .get(speed * self.force_n.len() + force)
-            .filter(|_| inside)
+        self.cells.get(speed * self.force_n.len() + force).filter(|_| inside)
     }
 
     /// Describes the ranges of the steady windows' motions.
     pub(super) fn motion_text(&self) -> String {
         let range = |axis: usize| {
             let values = self.motions.iter().map(|motion| motion[axis]);
-            values.fold([f64::INFINITY, 0.0], |[low, high], x| {
-                [x.min(low), x.max(high)]
-            })
+            values.fold([f64::INFINITY, 0.0], |[low, high], x| [x.min(low), x.max(high)])
         };
         let ([slow, fast], [light, firm]) = (range(0), range(1));
         format!("{slow:.4} to {fast:.4} mm/s and {light:.4} to {firm:.4} N")

@@ -27,8 +27,8 @@ impl Grid {
     /// Parses one or more texts: `auto`, `speed=40,80,160` (mm/s), `force=0.3,0.6` (N).
     ///
     /// # Errors
-    /// When a text has another form, an axis is given twice, or a line is not above 0, not finite, too large, or within
-    /// 5 % of another one.
+    /// When a text has another form, an axis is given twice, or a line is not above 0, not finite,
+    /// too large, or within 5 % of another one.
     pub fn parse<'a>(texts: impl IntoIterator<Item = &'a str>) -> Result<Self, AuthorError> {
         let mut grid = Self::default();
         for text in texts {
@@ -45,9 +45,7 @@ impl Grid {
                 _ => return Err(wrong("it is neither auto, nor speed=…, nor force=…")),
             };
             if axis.is_some() {
-                return Err(wrong(
-                    "this axis is given twice; write its lines in one list",
-                ));
+                return Err(wrong("this axis is given twice; write its lines in one list"));
             }
             *axis = Some(parse_lines(lines, most).map_err(|problem| wrong(&problem))?);
         }
@@ -66,10 +64,8 @@ impl FromStr for Grid {
 fn parse_lines(text: &str, most: f64) -> Result<Vec<f64>, String> {
     let mut lines = Vec::new();
     for part in text.split(',') {
-        let value: f64 = part
-            .trim()
-            .parse()
-            .map_err(|_| format!("{:?} is not a number", part.trim()))?;
+        let value: f64 =
+            part.trim().parse().map_err(|_| format!("{:?} is not a number", part.trim()))?;
         if !(value > 0.0 && value <= most) {
             return Err(format!("{value} is not above 0 and at most {most}"));
         }

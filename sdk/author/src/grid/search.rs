@@ -16,10 +16,11 @@ use crate::findings::quantile;
 use crate::law::law;
 use crate::{AuthorError, SpectrumOptions, Take, TextureSpectrum};
 
-/// Ratios of neighbouring speeds that are tried: an octave to a twelfth of it. Within 5 % a player treats speeds as one.
+/// Ratios of neighbouring speeds that are tried: an octave to a twelfth of it. Within 5 % a player
+/// treats speeds as one.
 const SPEED_RATIOS: [f64; 5] = [2.0, 1.41, 1.19, 1.12, 1.06];
-/// Ratio of the lines between which left-out windows are gathered to compare all grids with, and below which lines are
-/// tried only where there are windows for them.
+/// Ratio of the lines between which left-out windows are gathered to compare all grids with, and
+/// below which lines are tried only where there are windows for them.
 const COMPARED_RATIO: f64 = 1.19;
 /// Decibels by which more lines must be nearer to what was left out.
 const WORTH_DB: f64 = 0.02;
@@ -68,8 +69,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Gathers windows around the given lines, or around those of speed that predict left-out blocks best. Where no block
-    /// can be left out, the lines are a quarter of an octave apart.
+    /// Gathers windows around the given lines, or around those of speed that predict left-out
+    /// blocks best. Where no block can be left out, the lines are a quarter of an octave apart.
     pub(super) fn best(mut self, grid: &Grid) -> Result<Searched, AuthorError> {
         let lines = Lines::choose(grid, &self.motions, COMPARED_RATIO)?;
         let all: Vec<usize> = (0..self.windows.len()).collect();
@@ -98,9 +99,8 @@ impl<'a> Search<'a> {
                 break;
             }
         }
-        let (gathered, error_db) = best.ok_or(AuthorError::NoSegments {
-            source_name: String::new(),
-        })?;
+        let (gathered, error_db) =
+            best.ok_or(AuthorError::NoSegments { source_name: String::new() })?;
         Ok(Searched {
             left_out: self.left_out(&gathered)?,
             left_out_rms_db: Some(error_db).filter(|db| db.is_finite()),
@@ -113,17 +113,14 @@ impl<'a> Search<'a> {
     fn all_held(&mut self, cells: &[Cell]) -> Result<Vec<Vec<Held>>, AuthorError> {
         let (paths, windows, kind) = (&mut self.paths, self.windows, self.kind);
         let folds = self.folds.iter();
-        folds
-            .map(|fold| held(paths, windows, fold, cells, kind))
-            .collect()
+        folds.map(|fold| held(paths, windows, fold, cells, kind)).collect()
     }
 
     /// Averages the windows of all cells, of all the time and without each block.
     fn gathered(&mut self, lines: Lines, cells: Vec<Cell>) -> Result<Gathered, AuthorError> {
         let folds = self.folds.iter();
-        let cells_without: Vec<Vec<Cell>> = folds
-            .map(|fold| gather(&lines, &self.motions, &fold.known))
-            .collect();
+        let cells_without: Vec<Vec<Cell>> =
+            folds.map(|fold| gather(&lines, &self.motions, &fold.known)).collect();
         let mut spectra = Vec::with_capacity(cells.len());
         let mut without: Vec<Vec<_>> = cells_without.iter().map(|_| Vec::new()).collect();
         for (i, cell) in cells.iter().enumerate() {
@@ -133,12 +130,7 @@ impl<'a> Search<'a> {
                 spectra.push(cells.get(i).and_then(|cell| self.spectrum(&reads, cell)));
             }
         }
-        Ok(Gathered {
-            lines,
-            cells,
-            spectra,
-            without,
-        })
+        Ok(Gathered { lines, cells, spectra, without })
     }
 
     /// Averages the windows of a cell, corrected to its crossing; `None` if they are too few.
@@ -151,9 +143,7 @@ impl<'a> Search<'a> {
         let spans: Vec<_> = used.iter().map(span).collect();
         let (quantity, band) = (kind.quantity, kind.band);
         let averaging = kind.averaging;
-        Some(TextureSpectrum::of(
-            quantity, band, &spectra, &spans, averaging,
-        ))
+        Some(TextureSpectrum::of(quantity, band, &spectra, &spans, averaging))
     }
 
     /// Returns the error of a grid: of each block of time as it is played without it.
@@ -170,7 +160,8 @@ impl<'a> Search<'a> {
         rms_db(&errors)
     }
 
-    /// Returns the error of one condition for all motions: the mean of all windows at their median motion.
+    /// Returns the error of one condition for all motions: the mean of all windows at their median
+    /// motion.
     fn one_condition_db(&mut self, compared: &[Vec<Held>]) -> Result<Option<f64>, AuthorError> {
         let mut errors = Vec::new();
         for (fold, held) in self.folds.iter().zip(compared) {
@@ -205,10 +196,7 @@ impl<'a> Search<'a> {
                     continue;
                 };
                 conditions.push(condition(cell));
-                groups.push(Group {
-                    spectrum,
-                    condition: fit_condition(cell),
-                });
+                groups.push(Group { spectrum, condition: fit_condition(cell) });
             }
             let spectra: Vec<TextureSpectrum> = groups.iter().map(|g| g.spectrum.clone()).collect();
             LeftOutBlock {
@@ -228,19 +216,11 @@ fn of_conditions(held: Vec<Held>, gathered: &Gathered) -> Vec<Held> {
     let is_fitted = |cell: usize| spectra.get(cell).is_some_and(Option::is_some);
     let before = |cell: usize| spectra.iter().take(cell).flatten().count();
     let kept = held.into_iter().filter(|one| is_fitted(one.cell));
-    kept.map(|one| Held {
-        cell: before(one.cell),
-        ..one
-    })
-    .collect()
+    kept.map(|one| Held { cell: before(one.cell), ..one }).collect()
 }
 
 /// Returns the condition of a cell, by its motion alone.
 fn condition(cell: &Cell) -> Condition {
     let motion = fit_condition(cell);
-    Condition {
-        speed_mm_s: motion.speed_mm_s,
-        force_n: motion.force_n,
-        ..Condition::default()
-    }
+    Condition { speed_mm_s: motion.speed_mm_s, force_n: motion.force_n, ..Condition::default() }
 }

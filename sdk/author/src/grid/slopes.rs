@@ -1,8 +1,10 @@
 //! Correction of windows to the speed and force of their crossing.
 //!
-//! The windows are read over equal paths ([`super::paths`]). In each third-octave band the logarithm of the energy is regressed linearly on the logarithms of speed and force, over
-//! the windows around the crossing. A window's spectrum is scaled by the change that this predicts between its motion and
-//! the crossing. The windows of a cell then count equally, where firm ones would otherwise dominate the mean.
+//! The windows are read over equal paths ([`super::paths`]). In each third-octave band the
+//! logarithm of the energy is regressed linearly on the logarithms of speed and force, over the
+//! windows around the crossing. A window's spectrum is scaled by the change that this predicts
+//! between its motion and the crossing. The windows of a cell then count equally, where firm ones
+//! would otherwise dominate the mean.
 
 use htex_dsp::Band;
 use htex_dsp::spectrum::Complex;
@@ -44,7 +46,8 @@ pub(super) fn read_around(
     Ok(around)
 }
 
-/// Returns the spectra of the windows `used`, corrected to the crossing of their cell. `reads` has all windows around it.
+/// Returns the spectra of the windows `used`, corrected to the crossing of their cell. `reads` has
+/// all windows around it.
 pub(super) fn corrected(
     reads: &[Read],
     cell: &Cell,
@@ -54,10 +57,7 @@ pub(super) fn corrected(
     let octaves = third_octaves(band);
     let is_around = |read: &&Read| cell.around.binary_search(&read.index).is_ok();
     let around: Vec<&Read> = reads.iter().filter(is_around).collect();
-    let slopes: Vec<[f64; 2]> = octaves
-        .iter()
-        .map(|bins| slopes(&around, cell.at, bins))
-        .collect();
+    let slopes: Vec<[f64; 2]> = octaves.iter().map(|bins| slopes(&around, cell.at, bins)).collect();
     let correct = |window: &&Read| {
         let mut spectrum = window.spectrum.clone();
         for (bins, slope) in octaves.iter().zip(&slopes) {
@@ -72,7 +72,8 @@ pub(super) fn corrected(
     around.iter().filter(is_used).map(correct).collect()
 }
 
-/// Returns the bins of each third octave from the band's lower edge, the last one with what remains.
+/// Returns the bins of each third octave from the band's lower edge, the last one with what
+/// remains.
 pub(super) fn third_octaves(band: Band) -> Vec<std::ops::Range<usize>> {
     let grid = band.grid_hz();
     let mut bands: Vec<std::ops::Range<usize>> = Vec::new();
@@ -118,10 +119,9 @@ fn slopes(windows: &[&Read], at: [f64; 2], bins: &std::ops::Range<usize>) -> [f6
     let determinant = xx * yy - xy * xy;
     let slopes = match (xx > least, yy > least) {
         // Speed and force that rise together have no separate slopes.
-        (true, true) if determinant > 0.1 * xx * yy => [
-            (xl * yy - yl * xy) / determinant,
-            (yl * xx - xl * xy) / determinant,
-        ],
+        (true, true) if determinant > 0.1 * xx * yy => {
+            [(xl * yy - yl * xy) / determinant, (yl * xx - xl * xy) / determinant]
+        }
         (true, false) => [xl / xx, 0.0],
         (false, true) => [0.0, yl / yy],
         _ => [0.0; 2],

@@ -14,7 +14,8 @@ use crate::{AuthorError, Exploration, SpectrumOptions, Take};
 
 /// Lowest mean speed of a window in which the finger slides, mm/s.
 const SLOWEST_MM_S: f64 = 1.0;
-/// Largest deviation of speed and force from their mean within a window, relative: the paper's tolerance of a condition.
+/// Largest deviation of speed and force from their mean within a window, relative: the paper's
+/// tolerance of a condition.
 const STEADY: f64 = 0.10;
 
 /// The steady windows of one recording.
@@ -29,9 +30,9 @@ pub(super) struct Steady {
     pub(super) findings: Vec<Finding>,
 }
 
-/// Finds the half-overlapping windows of 0.2 s in which speed and force stay within 10 % of their means, and checks the
-/// recording as for a plain fit. A linear trend is removed from each window: in a free motion the friction itself rises and
-/// falls with the force.
+/// Finds the half-overlapping windows of 0.2 s in which speed and force stay within 10 % of their
+/// means, and checks the recording as for a plain fit. A linear trend is removed from each window:
+/// in a free motion the friction itself rises and falls with the force.
 pub(super) fn read_steady(
     index: usize,
     take: &Take,
@@ -48,12 +49,7 @@ pub(super) fn read_steady(
         let len = segments.len;
         segments.starts.retain(|&start| {
             let motion = steady_motion(&axes, start, len);
-            steady.extend(motion.map(|motion| Window {
-                take: index,
-                start,
-                len,
-                motion,
-            }));
+            steady.extend(motion.map(|motion| Window { take: index, start, len, motion }));
             motion.is_some()
         });
         if segments.starts.is_empty() && looked_at > 0 {
@@ -91,9 +87,7 @@ enum MotionAxis<'a> {
 impl<'a> MotionAxis<'a> {
     /// Returns the given value, else the measured signal.
     fn of(given: Option<f64>, measured: Option<Known<'a>>) -> Option<Self> {
-        given
-            .map(MotionAxis::Given)
-            .or(measured.map(MotionAxis::Measured))
+        given.map(MotionAxis::Given).or(measured.map(MotionAxis::Measured))
     }
 }
 

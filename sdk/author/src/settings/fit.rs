@@ -26,7 +26,8 @@ settings! {
     /// # Ok::<(), htex_author::settings::SettingsError>(())
     /// ```
     pub struct FitSettings {
-        /// Models by short name or id, in the order of the representations; all that are fitted by default when absent.
+        /// Models by short name or id, in the order of the representations; all that are fitted by
+        /// default when absent.
         #[cfg_attr(feature = "clap", arg(
             long = "model",
             default_value = "all",
@@ -66,8 +67,8 @@ settings! {
         ))]
         pub keep_reference: Option<bool>,
 
-        /// Grid of conditions for recordings in which speed and force change freely: `auto`, or lines such as `speed=40,80,160` and
-        /// `force=0.3,0.6`.
+        /// Grid of conditions for recordings in which speed and force change freely: `auto`, or
+        /// lines such as `speed=40,80,160` and `force=0.3,0.6`.
         #[serde(deserialize_with = "one_or_more")]
         #[schemars(with = "OneOrMore")]
         #[cfg_attr(feature = "clap", arg(
@@ -78,8 +79,8 @@ settings! {
         ))]
         pub grid: Option<Vec<String>> = "grid",
 
-        /// Whether to refuse recordings with findings that are errors or warnings: in a recipe one of the gates, in the command a flag of
-        /// reading recordings.
+        /// Whether to refuse recordings with findings that are errors or warnings: in a recipe one
+        /// of the gates, in the command a flag of reading recordings.
         #[schemars(skip)]
         #[cfg_attr(feature = "clap", arg(skip))]
         pub strict: Option<bool>,
@@ -175,8 +176,9 @@ impl FitSettings {
         models.into_iter().map(request).collect()
     }
 
-    /// Returns the reasons why models that were named could not be fitted, of all that were left out of an asset
-    /// ([`FittedAsset::skipped`](crate::FittedAsset::skipped)): a model that was taken because none was named may be left out.
+    /// Returns the reasons why models that were named could not be fitted, of all that were left
+    /// out of an asset ([`FittedAsset::skipped`](crate::FittedAsset::skipped)): a model that was
+    /// taken because none was named may be left out.
     pub fn named_of(&self, skipped: &[(String, String)]) -> Vec<String> {
         let names = || self.models.iter().flatten();
         let is_named = |id: &str| {
@@ -184,12 +186,11 @@ impl FitSettings {
             names().any(|name| name == id || name.eq_ignore_ascii_case(short))
         };
         let named = skipped.iter().filter(|(id, _)| is_named(id));
-        named
-            .map(|(id, reason)| format!("{id}: {reason}"))
-            .collect()
+        named.map(|(id, reason)| format!("{id}: {reason}")).collect()
     }
 
-    /// Returns the request of an asset that is fitted with these settings to recordings that are read with `reading`.
+    /// Returns the request of an asset that is fitted with these settings to recordings that are
+    /// read with `reading`.
     ///
     /// # Errors
     /// As [`Self::models`], and when the setup's response cannot be read.
@@ -214,10 +215,7 @@ impl FitSettings {
             .with_spectrum(reading.spectrum_options()?)
             .with_level(self.level.unwrap_or_default())
             .with_alternatives(builtin.cloned().collect())
-            .with_grid(
-                grid.transpose()
-                    .map_err(|error| SettingsError::Grid(Box::new(error)))?,
-            )
+            .with_grid(grid.transpose().map_err(|error| SettingsError::Grid(Box::new(error)))?)
             .with_strict(self.strict.unwrap_or_default())
             .with_keep_reference(self.keep_reference.unwrap_or_default())
             .with_recorded_options(recorded)
@@ -225,8 +223,9 @@ impl FitSettings {
     }
 }
 
-/// Returns the models of these names, each once. `all`, and no name, stand for those that a program takes by itself
-/// ([`Registry::by_default`]); those of them that are written in another language of the running program come last.
+/// Returns the models of these names, each once. `all`, and no name, stand for those that a program
+/// takes by itself ([`Registry::by_default`]); those of them that are written in another language
+/// of the running program come last.
 ///
 /// # Errors
 /// When a model is not known.

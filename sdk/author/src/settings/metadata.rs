@@ -6,7 +6,8 @@ use htex_finding::Severity;
 use htex_format::{Contact, Law, Manifest, check_doi, check_license};
 
 settings! {
-    /// What a texture is, who made it, and how it was recorded. An absent entry leaves what is there; an empty text removes it.
+    /// What a texture is, who made it, and how it was recorded. An absent entry leaves what is
+    /// there; an empty text removes it.
     #[cfg_attr(feature = "clap", command(next_help_heading = "Metadata"))]
     pub struct Metadata {
         /// Name of the texture. A recipe says it beside the recordings.
@@ -71,7 +72,8 @@ settings! {
         ))]
         pub finger: Option<String>,
 
-        /// Whether a finger or a tool slid over the surface, which decides what is assumed of other motions.
+        /// Whether a finger or a tool slid over the surface, which decides what is assumed of other
+        /// motions.
         #[cfg_attr(feature = "clap", arg(
             long,
             value_enum,
@@ -103,21 +105,14 @@ impl Metadata {
     /// When an entry would make the asset invalid.
     pub fn check(&self) -> Result<Vec<String>, SettingsError> {
         let refuse = |field, problem: String| Err(SettingsError::Metadata { field, problem });
-        if self
-            .name
-            .as_deref()
-            .is_some_and(|name| name.trim().is_empty())
-        {
+        if self.name.as_deref().is_some_and(|name| name.trim().is_empty()) {
             return refuse("name", "the name is empty; give one".to_owned());
         }
         let doi = self.doi.as_deref().filter(|doi| !doi.is_empty());
         if let Some(Err(error)) = doi.map(check_doi) {
             return refuse("doi", error.to_string());
         }
-        let license = self
-            .license
-            .as_deref()
-            .filter(|license| !license.is_empty());
+        let license = self.license.as_deref().filter(|license| !license.is_empty());
         match license.map(check_license) {
             Some(Err(error)) if error.rule().severity == Severity::Error => {
                 refuse("license", error.to_string())

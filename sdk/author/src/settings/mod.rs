@@ -1,7 +1,8 @@
-//! Settings by name, each defined once: what the command's flags, the Python package's keywords and recipes say, and what provenance keeps.
+//! Settings by name, each defined once: what the command's flags, the Python package's keywords and
+//! recipes say, and what provenance keeps.
 //!
-//! Everything is optional, so that settings for many textures and those of one can be laid over each other
-//! ([`ReadingSettings::over`], [`FitSettings::over`], [`Metadata::over`]).
+//! Everything is optional, so that settings for many textures and those of one can be laid over
+//! each other ([`ReadingSettings::over`], [`FitSettings::over`], [`Metadata::over`]).
 
 #[cfg(feature = "clap")]
 mod choices;

@@ -147,10 +147,7 @@ impl ReadingSettings {
             [] => Ok(vec![options; count]),
             [one] => Ok(vec![tracked(one); count]),
             all if all.len() == count => Ok(all.iter().map(tracked).collect()),
-            all => Err(SettingsError::Trackers {
-                trackers: all.len(),
-                recordings: count,
-            }),
+            all => Err(SettingsError::Trackers { trackers: all.len(), recordings: count }),
         }
     }
 
@@ -172,9 +169,7 @@ impl ReadingSettings {
             .with_segments(self.segments.unwrap_or_default())
             .with_averaging(self.averaging.unwrap_or_default())
             .with_response(
-                response
-                    .transpose()
-                    .map_err(|error| SettingsError::Response(Box::new(error)))?,
+                response.transpose().map_err(|error| SettingsError::Response(Box::new(error)))?,
             ))
     }
 }

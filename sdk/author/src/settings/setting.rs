@@ -1,4 +1,5 @@
-//! What all settings have in common: they may be absent, they are laid over each other, and an asset's provenance keeps some.
+//! What all settings have in common: they may be absent, they are laid over each other, and an
+//! asset's provenance keeps some.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -103,9 +104,11 @@ fn unless_default<T: Default + PartialEq>(value: &T, text: &str) -> Option<Strin
     (*value != T::default()).then(|| text.to_owned())
 }
 
-/// Defines a struct of settings: what is read of recipes and of keywords (serde), of the command's flags (clap), and what provenance keeps.
+/// Defines a struct of settings: what is read of recipes and of keywords (serde), of the command's
+/// flags (clap), and what provenance keeps.
 ///
-/// `= "NAME"` after a setting is its flag, under which provenance keeps it; a flag of another kind is among its attributes.
+/// `= "NAME"` after a setting is its flag, under which provenance keeps it; a flag of another kind
+/// is among its attributes.
 macro_rules! settings {
     (
         $(#[$meta:meta])*
@@ -135,7 +138,8 @@ macro_rules! settings {
                 Self { $($field: self.$field.over(under.$field),)* }
             }
 
-            /// Returns the settings that differ from their defaults, for an asset's provenance, under the names of the command's flags.
+            /// Returns the settings that differ from their defaults, for an asset's provenance,
+            /// under the names of the command's flags.
             pub fn recorded(&self) -> std::collections::BTreeMap<String, String> {
                 #[allow(unused_imports)]
                 use crate::settings::setting::Setting;

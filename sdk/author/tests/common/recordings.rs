@@ -32,7 +32,8 @@ impl Case {
         format!("{}.report.json", self.name)
     }
 
-    /// Codes that may also be found: a knock is sharp, and a gap or the end of a stuck stretch is a step.
+    /// Codes that may also be found: a knock is sharp, and a gap or the end of a stuck stretch is a
+    /// step.
     pub fn may_also_raise(&self, code: &str) -> bool {
         let also: &[&str] = match self.name {
             "recording_clock_gap" | "recording_stuck" | "recording_silent" => &["RECORDING_SPIKE"],
@@ -46,10 +47,7 @@ impl Case {
 
     /// The expected report of the recording in `folder`, as pretty JSON.
     pub fn golden(&self, folder: &Path) -> String {
-        let given = Exploration {
-            speed_mm_s: self.speed_mm_s,
-            force_n: None,
-        };
+        let given = Exploration { speed_mm_s: self.speed_mm_s, force_n: None };
         let (read, options) = (ReadOptions::default(), SpectrumOptions::default());
         let report = validate_recording(&folder.join(self.file()), &read, given, &options).unwrap();
         let arguments: Vec<String> = self
@@ -79,9 +77,8 @@ struct Columns {
 
 impl Columns {
     fn new(seconds: f64) -> Self {
-        let options = SimulationOptions::new(Surface::Vinyl)
-            .with_rate_hz(RATE_HZ)
-            .with_duration_s(seconds);
+        let options =
+            SimulationOptions::new(Surface::Vinyl).with_rate_hz(RATE_HZ).with_duration_s(seconds);
         let simulation: Simulation = simulate(&options).unwrap();
         let speed_mm_s = simulation.to_recording("").unwrap().speed_mm_s.unwrap();
         Self {
@@ -139,38 +136,20 @@ fn sample(second: f64) -> usize {
 
 pub fn cases() -> Vec<Case> {
     let short = || Columns::new(3.0);
-    let case = |name, text| Case {
-        name,
-        text,
-        speed_mm_s: None,
-    };
+    let case = |name, text| Case { name, text, speed_mm_s: None };
     vec![
         case("valid", Columns::new(4.0).with_normal()),
-        case(
-            "recording_unreadable",
-            "t_s,lateral_n\n0,0.1\n0.01,a\n".to_owned(),
-        ),
+        case("recording_unreadable", "t_s,lateral_n\n0,0.1\n0.01,a\n".to_owned()),
         case("recording_unusable", Columns::new(0.1).lateral()),
         case("recording_clock_gap", clock_gap()),
         case("recording_clock_jitter", clock_jitter()),
-        case(
-            "recording_coarse",
-            short()
-                .map_lateral(|_, f| (f * 20.0).round() / 20.0)
-                .lateral(),
-        ),
+        case("recording_coarse", short().map_lateral(|_, f| (f * 20.0).round() / 20.0).lateral()),
         case("recording_clipped", clipped()),
-        case(
-            "recording_stuck",
-            held(sample(1.0)..sample(2.26), |f| f[sample(1.0)]),
-        ),
+        case("recording_stuck", held(sample(1.0)..sample(2.26), |f| f[sample(1.0)])),
         case("recording_silent", held(0..sample(1.2), |_| 0.0)),
         case("recording_spike", spikes()),
         case("recording_spike_many", many_spikes()),
-        case(
-            "recording_ramp",
-            bare(|at, _| 0.2 + 0.03 * at as f64 / RATE_HZ),
-        ),
+        case("recording_ramp", bare(|at, _| 0.2 + 0.03 * at as f64 / RATE_HZ)),
         case(
             "recording_alternates",
             bare(|at, noise| 0.2 + 0.02 * noise + if at % 2 == 0 { 0.1 } else { -0.1 }),
@@ -178,26 +157,18 @@ pub fn cases() -> Vec<Case> {
         case("recording_below_band", bare(|at, _| 0.2 + 0.02 * below(at))),
         case("recording_above_band", above()),
         case("recording_force_outlier", outlier()),
-        case(
-            "recording_friction_implausible",
-            short().map_lateral(|_, f| 120.0 * f).with_normal(),
-        ),
+        case("recording_friction_implausible", short().map_lateral(|_, f| 120.0 * f).with_normal()),
         case("recording_friction_coefficient", coefficient()),
         case("recording_speed_zero", speed(|_| 0.0)),
         case("recording_speed_implausible", speed(|v| 1e-3 * v)),
         case("recording_sweeps_cut_off", Columns::new(3.2).lateral()),
         case("recording_read_in_windows", stroke()),
-        Case {
-            speed_mm_s: Some(80.0),
-            ..case("recording_off_target", slow_sweep())
-        },
+        Case { speed_mm_s: Some(80.0), ..case("recording_off_target", slow_sweep()) },
         case("recording_unsteady", slow_sweep()),
         case("recording_uneven", knock()),
         case(
             "recording_noted",
-            short().text("t_s,friction,mood", |c, at| {
-                format!("{:.5},7", c.lateral_n[at])
-            }),
+            short().text("t_s,friction,mood", |c, at| format!("{:.5},7", c.lateral_n[at])),
         ),
     ]
 }
@@ -213,10 +184,7 @@ fn clock_gap() -> String {
 
 /// Timestamps of a busy computer.
 fn clock_jitter() -> String {
-    let mut columns = Columns {
-        decimals: 5,
-        ..Columns::new(3.0)
-    };
+    let mut columns = Columns { decimals: 5, ..Columns::new(3.0) };
     for (at, t_s) in columns.t_s.iter_mut().enumerate() {
         *t_s += 0.45 * noise(at) / RATE_HZ;
     }
@@ -289,9 +257,8 @@ fn coefficient() -> String {
         columns.lateral_n[at] /= *normal;
         *normal *= 1.0 + 0.4 * (2.0 * at as f64 / RATE_HZ).sin();
     }
-    columns.text("t_s,friction,fz_n", |c, at| {
-        format!("{:.5},{:.4}", c.lateral_n[at], c.normal_n[at])
-    })
+    columns
+        .text("t_s,friction,fz_n", |c, at| format!("{:.5},{:.4}", c.lateral_n[at], c.normal_n[at]))
 }
 
 /// One reading of 36,870 N.
@@ -310,9 +277,7 @@ fn speed(change: fn(f64) -> f64) -> String {
 /// The first of several sweeps has three quarters of the speed.
 fn slow_sweep() -> String {
     let mut columns = Columns::new(4.0);
-    columns.speed_mm_s[..sample(1.2)]
-        .iter_mut()
-        .for_each(|v| *v *= 0.75);
+    columns.speed_mm_s[..sample(1.2)].iter_mut().for_each(|v| *v *= 0.75);
     columns.with_speed()
 }
 

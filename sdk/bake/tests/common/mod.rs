@@ -39,14 +39,8 @@ fn take(surface: Surface, (speed_mm_s, force_n): (f64, f64)) -> Take {
         .with_force_n(force_n)
         .with_duration_s(4.0);
     Take {
-        recording: simulate(&options)
-            .unwrap()
-            .to_recording("simulated")
-            .unwrap(),
-        given: Exploration {
-            speed_mm_s: Some(speed_mm_s),
-            force_n: Some(force_n),
-        },
+        recording: simulate(&options).unwrap().to_recording("simulated").unwrap(),
+        given: Exploration { speed_mm_s: Some(speed_mm_s), force_n: Some(force_n) },
     }
 }
 

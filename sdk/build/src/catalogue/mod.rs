@@ -10,7 +10,8 @@ const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
 
-/// Returns the page. Textures are played by the browser package if it lies beside the page, in `browser`, else from `sounds`.
+/// Returns the page. Textures are played by the browser package if it lies beside the page, in
+/// `browser`, else from `sounds`.
 pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
     let textures: Vec<Value> = report.textures.iter().map(texture).collect();
     let data = json!({
@@ -49,11 +50,8 @@ fn findings(report: &Report) -> Vec<Value> {
 }
 
 fn texture(texture: &TextureReport) -> Value {
-    let missed: Vec<(&str, &str)> = texture
-        .missed
-        .iter()
-        .map(|m| (&m.gate[..], &m.reason[..]))
-        .collect();
+    let missed: Vec<(&str, &str)> =
+        texture.missed.iter().map(|m| (&m.gate[..], &m.reason[..])).collect();
     let Some(asset) = &texture.asset else {
         return json!({
             "name": texture.name, "tags": [], "license": "", "author": "", "errors": [], "levels": [], "findings": [],
@@ -82,7 +80,5 @@ fn hundredths(value: f64) -> f64 {
 }
 
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

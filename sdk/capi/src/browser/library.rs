@@ -1,5 +1,6 @@
-//! Libraries whose bytes JavaScript fetches (`sdk/web/src/htexlib.js`): each call says which bytes it needs next, and is given
-//! them. Offsets are doubles, as in JavaScript: a file has less than 2^53 bytes.
+//! Libraries whose bytes JavaScript fetches (`sdk/web/src/htexlib.js`): each call says which bytes
+//! it needs next, and is given them. Offsets are doubles, as in JavaScript: a file has less than
+//! 2^53 bytes.
 
 use std::ffi::c_char;
 use std::ops::Range;
@@ -198,7 +199,8 @@ pub unsafe extern "C" fn htex_index_entries_json(
     })
 }
 
-/// The entries of the page that was read that have all that a query asks for (`LibraryQuery` in `sdk/web/src/index.d.ts`), as JSON.
+/// The entries of the page that was read that have all that a query asks for (`LibraryQuery` in
+/// `sdk/web/src/index.d.ts`), as JSON.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_find_json(
     index: u64,
@@ -260,8 +262,8 @@ unsafe fn write_entries(
     unsafe { write_text(&json, out, capacity, length) }
 }
 
-/// The bytes of a texture of the page that was read: start and end of each of at most `capacity` ranges. Writes
-/// their number to `length`.
+/// The bytes of a texture of the page that was read: start and end of each of at most `capacity`
+/// ranges. Writes their number to `length`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_ranges(
     index: u64,
@@ -285,8 +287,8 @@ pub unsafe extern "C" fn htex_index_ranges(
     })
 }
 
-/// Makes a texture of the page that was read of the bytes of its ranges, one after the other, and compares them with its
-/// hash. The texture has as many bytes.
+/// Makes a texture of the page that was read of the bytes of its ranges, one after the other, and
+/// compares them with its hash. The texture has as many bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_index_assemble(
     index: u64,

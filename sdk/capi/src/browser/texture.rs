@@ -1,4 +1,5 @@
-//! What JavaScript asks of textures and voices (`sdk/web/src/texture.js`) beyond the C interface; what has parts is JSON.
+//! What JavaScript asks of textures and voices (`sdk/web/src/texture.js`) beyond the C interface;
+//! what has parts is JSON.
 
 use std::ffi::c_char;
 
@@ -11,7 +12,8 @@ use crate::pointers::{place, slice, slice_mut, text, write_text};
 use crate::status::{Failure, guarded, htex_status};
 use crate::voice::{VOICES, htex_voice};
 
-/// Id of the model of a representation that is named by its id or short name, or of the one that a voice chooses. Loads no model.
+/// Id of the model of a representation that is named by its id or short name, or of the one that a
+/// voice chooses. Loads no model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_chosen_model(
     asset: htex_asset,
@@ -29,8 +31,8 @@ pub unsafe extern "C" fn htex_asset_chosen_model(
     })
 }
 
-/// Index of the condition at which a representation is played where no motion is given. `model` as for htex_asset_magnitude. Loads no
-/// model.
+/// Index of the condition at which a representation is played where no motion is given. `model` as
+/// for htex_asset_magnitude. Loads no model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_default_condition(
     asset: htex_asset,
@@ -64,8 +66,8 @@ pub unsafe extern "C" fn htex_asset_law_json(
     })
 }
 
-/// Parameters of a representation at a motion, by their names: numbers and lists of numbers. `model` and `at` as for
-/// htex_asset_magnitude.
+/// Parameters of a representation at a motion, by their names: numbers and lists of numbers.
+/// `model` and `at` as for htex_asset_magnitude.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_parameters_json(
     asset: htex_asset,
@@ -93,8 +95,8 @@ pub unsafe extern "C" fn htex_asset_parameters_json(
     })
 }
 
-/// Magnitudes of a representation at a recorded condition, counted from 0, as a recording of its voice reads them, on the grid of the
-/// asset's band, of which there are `len`.
+/// Magnitudes of a representation at a recorded condition, counted from 0, as a recording of its
+/// voice reads them, on the grid of the asset's band, of which there are `len`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_asset_read_magnitude(
     asset: htex_asset,
@@ -122,9 +124,8 @@ fn read_magnitude(
     condition: usize,
 ) -> Result<Vec<f64>, Failure> {
     let condition = asset.manifest().conditions.get(condition);
-    let condition = condition.ok_or(Failure::argument(
-        "the texture has no condition of this number",
-    ))?;
+    let condition =
+        condition.ok_or(Failure::argument("the texture has no condition of this number"))?;
     let motion = condition.speed_mm_s.zip(condition.force_n);
     let motion = motion.map(|(speed, force)| Motion::new(speed, force));
     let loaded = asset.loaded_model(model)?;
@@ -135,13 +136,12 @@ fn read_magnitude(
         ));
     }
     let (parameters, level_rms) = asset.parameters(model, motion)?;
-    let shape = loaded
-        .read_magnitude(&parameters, asset.band())
-        .map_err(htex::Error::from)?;
+    let shape = loaded.read_magnitude(&parameters, asset.band()).map_err(htex::Error::from)?;
     Ok(shape.iter().map(|m| m * level_rms).collect())
 }
 
-/// Magnitudes that a recording of a voice reads at the motion that is set, at frequencies in Hz; the arrays may be the same one.
+/// Magnitudes that a recording of a voice reads at the motion that is set, at frequencies in Hz;
+/// the arrays may be the same one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_magnitude(
     voice: htex_voice,
@@ -159,7 +159,8 @@ pub unsafe extern "C" fn htex_voice_magnitude(
     })
 }
 
-/// How a voice plays a motion, or the one that is set, and whether that is within the recorded conditions.
+/// How a voice plays a motion, or the one that is set, and whether that is within the recorded
+/// conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_voice_coverage_json(
     voice: htex_voice,

@@ -132,15 +132,8 @@ pub(super) unsafe fn open(
         if can.quantity == Quantity::DisplayVoltage && can.paced {
             return Err(DRIVEN);
         }
-        let rate_hz = if rate_hz == 0.0 {
-            can.default_rate_hz
-        } else {
-            rate_hz
-        };
-        let format = StreamFormat {
-            rate_hz,
-            block_frames: can.block_frames,
-        };
+        let rate_hz = if rate_hz == 0.0 { can.default_rate_hz } else { rate_hz };
+        let format = StreamFormat { rate_hz, block_frames: can.block_frames };
         let device = known.adapter.open(&settings, &format)?;
         out.id = DEVICES.insert(Open { device, rate_hz })?;
         Ok(())

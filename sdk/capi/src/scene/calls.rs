@@ -80,7 +80,8 @@ impl Source<'_> {
         }
     }
 
-    /// The quantity of the first surface's asset. A scene or an asset that cannot be read is an error of loading it.
+    /// The quantity of the first surface's asset. A scene or an asset that cannot be read is an
+    /// error of loading it.
     fn quantity(&self) -> Option<Quantity> {
         let first = |bytes: &[u8]| {
             let scene = read_scene(bytes, &Limits::default(), &mut Default::default())?;
@@ -151,20 +152,14 @@ unsafe fn open(
     out: *mut htex_scene,
 ) -> htex_status {
     guarded(|| {
-        let zeros = htex_scene_options {
-            size: 0,
-            rate_hz: 0.0,
-        };
+        let zeros = htex_scene_options { size: 0, rate_hz: 0.0 };
         let source = source()?;
         // SAFETY: the pointers are the caller's.
         let (models, asked, out) =
             unsafe { (models(open)?, options(scene_options, zeros)?, place(out)?) };
         let devices = Devices::new(htex_device_builtin::devices());
-        let around = Surroundings {
-            models: &models.registry,
-            embedded: models.embedded,
-            devices: &devices,
-        };
+        let around =
+            Surroundings { models: &models.registry, embedded: models.embedded, devices: &devices };
         let device = DeviceOverride {
             adapter: Some(ADAPTER.to_owned()),
             settings: settings(source.quantity()),
@@ -182,10 +177,7 @@ unsafe fn open(
         }
         let plan_json = serde_json::to_string(&plan)
             .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INTERNAL, error))?;
-        out.id = SCENES.insert(Playing {
-            renderer,
-            plan_json,
-        })?;
+        out.id = SCENES.insert(Playing { renderer, plan_json })?;
         Ok(())
     })
 }
@@ -260,10 +252,7 @@ pub(super) unsafe fn render(
         // SAFETY: the pointers are the caller's.
         let (out, rendered) = unsafe { (slice_mut(out, frames)?, place(rendered)?) };
         *rendered = scene.renderer.render(out);
-        scene
-            .renderer
-            .take_failure()
-            .map_or(Ok(()), |error| Err(error.into()))
+        scene.renderer.take_failure().map_or(Ok(()), |error| Err(error.into()))
     })
 }
 

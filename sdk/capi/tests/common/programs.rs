@@ -140,11 +140,7 @@ impl Project {
                 .arg(capi("unity/Runtime/Htex.cs")),
             native => compiler
                 .args(["-O1", "-Wall", "-Wextra", "-Werror", "-pedantic"])
-                .arg(if native == Language::Cxx {
-                    "-std=c++17"
-                } else {
-                    "-std=c11"
-                })
+                .arg(if native == Language::Cxx { "-std=c++17" } else { "-std=c11" })
                 .arg(&file)
                 .arg("-I")
                 .arg(capi("include"))
@@ -164,11 +160,7 @@ impl Project {
         let file = self.folder.join("empty.c");
         fs::write(&file, "int main(void) { return 0; }\n").unwrap();
         let mut compiler = Command::new(self.language.compiler().0);
-        compiler
-            .args(arguments)
-            .arg(&file)
-            .arg("-o")
-            .arg(self.folder.join("empty"));
+        compiler.args(arguments).arg(&file).arg("-o").arg(self.folder.join("empty"));
         compiler.output().is_ok_and(|built| built.status.success())
     }
 

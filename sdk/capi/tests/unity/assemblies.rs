@@ -1,4 +1,5 @@
-//! The assemblies of the Unity package, compiled by mono as their `.asmdef` files say, against stubs of Unity.
+//! The assemblies of the Unity package, compiled by mono as their `.asmdef` files say, against
+//! stubs of Unity.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,12 +8,8 @@ use std::process::Command;
 use serde_json::Value;
 
 /// What Unity defines for all targets.
-const ALWAYS: [&str; 4] = [
-    "UNITY_5_3_OR_NEWER",
-    "UNITY_2021_2_OR_NEWER",
-    "UNITY_2021_3_OR_NEWER",
-    "UNITY_INCLUDE_TESTS",
-];
+const ALWAYS: [&str; 4] =
+    ["UNITY_5_3_OR_NEWER", "UNITY_2021_2_OR_NEWER", "UNITY_2021_3_OR_NEWER", "UNITY_INCLUDE_TESTS"];
 
 /// What Unity compiles for.
 pub struct Target {
@@ -28,26 +25,14 @@ pub const EDITOR: Target = Target {
 };
 
 pub const PLAYERS: [Target; 4] = [
-    Target {
-        name: "ios",
-        defines: &["UNITY_IOS", "ENABLE_IL2CPP"],
-        is_editor: false,
-    },
+    Target { name: "ios", defines: &["UNITY_IOS", "ENABLE_IL2CPP"], is_editor: false },
     Target {
         name: "android",
         defines: &["UNITY_ANDROID", "ENABLE_IL2CPP", "HTEX_BURST"],
         is_editor: false,
     },
-    Target {
-        name: "web",
-        defines: &["UNITY_WEBGL", "ENABLE_IL2CPP"],
-        is_editor: false,
-    },
-    Target {
-        name: "linux",
-        defines: &["UNITY_STANDALONE_LINUX", "HTEX_BURST"],
-        is_editor: false,
-    },
+    Target { name: "web", defines: &["UNITY_WEBGL", "ENABLE_IL2CPP"], is_editor: false },
+    Target { name: "linux", defines: &["UNITY_STANDALONE_LINUX", "HTEX_BURST"], is_editor: false },
 ];
 
 /// Assemblies in the order of their references.
@@ -59,11 +44,7 @@ const ASMDEFS: [&str; 4] = [
 ];
 
 /// Assemblies of others that may be referred to. The stubs of Unity stand in for them.
-const OTHERS: [&str; 3] = [
-    "Unity.Burst",
-    "UnityEngine.TestRunner",
-    "UnityEditor.TestRunner",
-];
+const OTHERS: [&str; 3] = ["Unity.Burst", "UnityEngine.TestRunner", "UnityEditor.TestRunner"];
 
 /// Compiles sources in C# to a file of a folder; a warning is an error.
 pub fn compile(folder: &Path, out: &str, sources: &[PathBuf], arguments: &[String]) {
@@ -87,10 +68,7 @@ fn words(words: &[&str]) -> Vec<String> {
 
 /// Compiles the stubs: Unity, its editor, and the program that runs tests.
 pub fn compile_stubs(folder: &Path, hosts: &Path) {
-    let engine = [
-        hosts.join("unity/UnityEngine.cs"),
-        hosts.join("NativeArray.cs"),
-    ];
+    let engine = [hosts.join("unity/UnityEngine.cs"), hosts.join("NativeArray.cs")];
     compile(folder, "UnityEngine.dll", &engine, &words(&["-unsafe"]));
     let engine = "-r:UnityEngine.dll";
     let editor = [hosts.join("unity/UnityEditor.cs")];
@@ -101,12 +79,9 @@ pub fn compile_stubs(folder: &Path, hosts: &Path) {
 
 /// The C# files of a folder, not of those in it.
 pub fn sources(folder: &Path) -> Vec<PathBuf> {
-    let files = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path());
-    let mut files: Vec<_> = files
-        .filter(|path| path.extension().is_some_and(|extension| extension == "cs"))
-        .collect();
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut files: Vec<_> =
+        files.filter(|path| path.extension().is_some_and(|extension| extension == "cs")).collect();
     files.sort();
     assert!(!files.is_empty(), "{}", folder.display());
     files
@@ -117,7 +92,8 @@ fn texts<'a>(asmdef: &'a Value, key: &str) -> Vec<&'a str> {
     list.map(|text| text.as_str().unwrap()).collect()
 }
 
-/// Compiles the assemblies of a target, and the scripts of the sample; returns the names of the assemblies.
+/// Compiles the assemblies of a target, and the scripts of the sample; returns the names of the
+/// assemblies.
 pub fn compile_package(package: &Path, folder: &Path, target: &Target) -> Vec<String> {
     let defines = ALWAYS.iter().chain(target.defines);
     let mut always: Vec<String> = defines.map(|name| format!("-d:{name}")).collect();

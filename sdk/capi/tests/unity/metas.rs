@@ -1,4 +1,5 @@
-//! The `.meta` files of the Unity package: the GUID of each file and folder, and how Unity imports it.
+//! The `.meta` files of the Unity package: the GUID of each file and folder, and how Unity imports
+//! it.
 //!
 //! A GUID is that of a path, so that it stays the same: references in scenes of users are by GUID.
 
@@ -61,23 +62,13 @@ pub const PLUGINS: [Plugin; 5] = [
 ];
 
 /// The platforms that a library says it is not for.
-const PLATFORMS: [&str; 7] = [
-    "Android",
-    "Editor",
-    "Linux64",
-    "OSXUniversal",
-    "Win",
-    "Win64",
-    "iOS",
-];
+const PLATFORMS: [&str; 7] =
+    ["Android", "Editor", "Linux64", "OSXUniversal", "Win", "Win64", "iOS"];
 
 /// The GUID of a path of the package.
 pub fn guid(path: &str) -> String {
     let hash = Sha256::digest(format!("org.htex.htex/{path}"));
-    hash.iter()
-        .take(16)
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    hash.iter().take(16).map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The `.meta` files that a package has, by their paths.
@@ -95,8 +86,8 @@ pub fn all(package: &Path) -> BTreeMap<String, String> {
     metas.collect()
 }
 
-/// All that Unity imports, and whether it is a folder. Unity sees no folder whose name ends with `~`, but copies samples with their
-/// `.meta` files to a project.
+/// All that Unity imports, and whether it is a folder. Unity sees no folder whose name ends with
+/// `~`, but copies samples with their `.meta` files to a project.
 fn walk(package: &Path, folder: &str, assets: &mut BTreeMap<String, bool>) {
     for entry in fs::read_dir(package.join(folder)).unwrap() {
         let entry = entry.unwrap();
@@ -178,11 +169,8 @@ impl Plugin {
             "" => String::new(),
             system => format!("        OS: {system}\n"),
         };
-        let settings: String = self
-            .settings
-            .iter()
-            .map(|line| format!("        {line}\n"))
-            .collect();
+        let settings: String =
+            self.settings.iter().map(|line| format!("        {line}\n")).collect();
         format!(
             "PluginImporter:\n  externalObjects: {{}}\n  serializedVersion: 2\n  iconMap: {{}}\n  executionOrder: {{}}\n  \
              defineConstraints: []\n  isPreloaded: 0\n  isOverridable: 0\n  isExplicitlyReferenced: 0\n  validateReferences: 1\n  \

@@ -45,11 +45,9 @@ pub(crate) fn descriptor(case: &Case) -> Found {
     }
     let (fields, options) = (descriptor.fields.len(), descriptor.options.len());
     let identity = format!("{} {}", descriptor.id, descriptor.version);
-    Ok(Finding::passed(format!(
-        "{identity}: {fields} fields, {options} fit options"
-    ))
-    .with("fields", fields as f64)
-    .with("options", options as f64))
+    Ok(Finding::passed(format!("{identity}: {fields} fields, {options} fit options"))
+        .with("fields", fields as f64)
+        .with("options", options as f64))
 }
 
 fn wrong_in(descriptor: &Descriptor) -> Option<String> {
@@ -64,9 +62,7 @@ fn wrong_in(descriptor: &Descriptor) -> Option<String> {
             return Some(format!("`{name}`: names consist of a-z, 0-9 and _"));
         }
         if unit.is_empty() {
-            return Some(format!(
-                "`{name}` has no unit; `1` is the unit of a pure number"
-            ));
+            return Some(format!("`{name}` has no unit; `1` is the unit of a pure number"));
         }
     }
     let field = descriptor.fields.iter();
@@ -105,9 +101,7 @@ fn wrong_default(option: &FitOption) -> Option<String> {
     let FitOption { name, default, .. } = option;
     if !(option.min..=option.max).contains(default) {
         let (min, max) = (option.min, option.max);
-        return Some(format!(
-            "`{name}`: the default {default} is not in {min} to {max}"
-        ));
+        return Some(format!("`{name}`: the default {default} is not in {min} to {max}"));
     }
     if option.integer && default.fract() != 0.0 {
         return Some(format!("`{name}`: the default {default} is not an integer"));

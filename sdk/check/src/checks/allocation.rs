@@ -109,14 +109,10 @@ fn native(case: &Case, sets: &[Fitted], voice: &mut ModelVoice, out: &mut [f32])
             BLOCKS / BETWEEN
         )),
     };
-    Ok(finding
-        .with("calls", calls as f64)
-        .with("calls_of_a_new_voice", of_a_voice as f64))
+    Ok(finding.with("calls", calls as f64).with("calls_of_a_new_voice", of_a_voice as f64))
 }
 
 #[cfg(not(all(target_os = "linux", target_pointer_width = "64")))]
 fn native(_: &Case, _: &[Fitted], _: &mut ModelVoice, _: &mut [f32]) -> Found {
-    Ok(Finding::skipped(
-        "calls of the allocator are counted on 64-bit Linux only",
-    ))
+    Ok(Finding::skipped("calls of the allocator are counted on 64-bit Linux only"))
 }

@@ -27,15 +27,16 @@ pub(crate) fn kept_to(case: &Case) -> Found {
     Ok(Finding::passed(message).with("refused", refused as f64))
 }
 
-/// Names the array of a native library's call that touches what is behind it. The engine of modules has a handler of its own, and the
-/// limits of the checks put guards into the module's memory.
+/// Names the array of a native library's call that touches what is behind it. The engine of modules
+/// has a handler of its own, and the limits of the checks put guards into the module's memory.
 fn watch(case: &Case) {
     if !matches!(case.model.origin(), Origin::Wasm(_)) {
         fence::watch();
     }
 }
 
-/// Calls with every capacity that is worth trying: the same length, the beginning of the same values, and nothing beyond.
+/// Calls with every capacity that is worth trying: the same length, the beginning of the same
+/// values, and nothing beyond.
 fn capacities<T: Number>(
     call: &'static str,
     whole: &[T],
@@ -91,9 +92,7 @@ fn fits(case: &Case) -> Result<Vec<f64>, Finding> {
         magnitude.unchanged(&spectrum, "magnitude")?;
         return Ok(whole);
     }
-    Err(Finding::failed(
-        "the model cannot be fitted to any reference spectrum",
-    ))
+    Err(Finding::failed("the model cannot be fitted to any reference spectrum"))
 }
 
 fn descriptors(case: &Case) -> Result<(), Finding> {
@@ -131,9 +130,7 @@ fn mixes(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     whole.truncate(len);
     let mut given = Fenced::input(&sets, call, "sets");
     let mut by = Fenced::input(&weights, call, "weights");
-    capacities(call, &whole, |out| {
-        case.model.interpolate_into(given.get(), by.get(), out)
-    })?;
+    capacities(call, &whole, |out| case.model.interpolate_into(given.get(), by.get(), out))?;
     given.unchanged(&sets, "sets")?;
     by.unchanged(&weights, "weights")
 }
@@ -142,9 +139,7 @@ fn mixes(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
 fn unusable(case: &Case, parameters: &[f64]) -> Result<usize, Finding> {
     let grid = Band::TACTILE.grid_hz();
     let spectrum: Vec<f64> = grid.iter().map(|&hz| (REFERENCES[0].curve)(hz)).collect();
-    let rate_hz = case
-        .model
-        .voice_rate_hz(parameters, Band::TACTILE, RATE_HZ)?;
+    let rate_hz = case.model.voice_rate_hz(parameters, Band::TACTILE, RATE_HZ)?;
     let arguments = ProbeArguments {
         parameters,
         band: Band::TACTILE,

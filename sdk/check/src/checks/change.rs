@@ -11,18 +11,17 @@ const SAMPLES: usize = 40_000;
 const BETWEEN: usize = 500;
 /// Largest second difference around a retune, relative to that of the sounds without retunes.
 const SHARPER: f32 = 2.0;
-/// Least distance of two magnitudes for which a retune from one to the other is measured, dB RMS: three times the allowed
-/// error of a sound.
+/// Least distance of two magnitudes for which a retune from one to the other is measured, dB RMS:
+/// three times the allowed error of a sound.
 const APART_DB: f64 = 3.0;
 /// Largest allowed sample of a sound of unit RMS.
 const LOUDEST: f32 = 100.0;
 
-/// Checks that second differences at retunes are not much larger than those of the sounds without retunes.
+/// Checks that second differences at retunes are not much larger than those of the sounds without
+/// retunes.
 pub(crate) fn retune(case: &Case) -> Found {
     let Some((a, b)) = case.two_sets()? else {
-        return Ok(Finding::skipped(
-            "all reference spectra have the same parameters",
-        ));
+        return Ok(Finding::skipped("all reference spectra have the same parameters"));
     };
     let middle = case.model.interpolate(&[&a, &b], &[0.5, 0.5]);
     let sets = [a.clone(), middle.unwrap_or(a), b];
@@ -90,9 +89,7 @@ pub(crate) fn follows(case: &Case) -> Found {
     }
     let message =
         format!("after {judged} retunes the sound is within {worst:.2} dB RMS of the magnitude");
-    Ok(Finding::passed(message)
-        .with("distance_db", worst)
-        .with("retunes", judged))
+    Ok(Finding::passed(message).with("distance_db", worst).with("retunes", judged))
 }
 
 /// Checks that interpolation reproduces the sets at its ends, and that all results can be played.
@@ -103,10 +100,7 @@ pub(crate) fn interpolate(case: &Case) -> Found {
     }
     for pair in sets.windows(2) {
         let (a, b) = (&pair[0].parameters[..], &pair[1].parameters[..]);
-        let between = format!(
-            "between `{}` and `{}`",
-            pair[0].reference, pair[1].reference
-        );
+        let between = format!("between `{}` and `{}`", pair[0].reference, pair[1].reference);
         for step in 0..=10 {
             let weight = f64::from(step) / 10.0;
             let say = |what: String| {
@@ -128,9 +122,7 @@ pub(crate) fn interpolate(case: &Case) -> Found {
         }
     }
     let pairs = sets.len() - 1;
-    Ok(Finding::passed(format!(
-        "eleven interpolations of {pairs} pairs can be played"
-    )))
+    Ok(Finding::passed(format!("eleven interpolations of {pairs} pairs can be played")))
 }
 
 /// Checks that a parameter set has a magnitude and finite samples.

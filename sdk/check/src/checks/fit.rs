@@ -38,20 +38,15 @@ pub(crate) fn reference(case: &Case) -> Found {
     if fitted == 0 {
         return Err(Finding::failed("no reference spectrum is fitted"));
     }
-    Ok(
-        Finding::passed(format!("{fitted} of {all} reference spectra are fitted"))
-            .with("fitted", found),
-    )
+    Ok(Finding::passed(format!("{fitted} of {all} reference spectra are fitted"))
+        .with("fitted", found))
 }
 
 /// Fits degenerate spectra.
 pub(crate) fn hard(case: &Case) -> Found {
     let (mut fitted, mut refused) = (0.0, 0.0);
     let wide = Band::TACTILE.grid_hz();
-    let two = Band {
-        low_hz: 100.0,
-        high_hz: 105.0,
-    };
+    let two = Band { low_hz: 100.0, high_hz: 105.0 };
     for reference in HARD {
         let spectrum: Vec<f64> = wide.iter().map(|&f| (reference.curve)(f)).collect();
         match case.fit_in(Band::TACTILE, &wide, &spectrum) {
@@ -66,10 +61,7 @@ pub(crate) fn hard(case: &Case) -> Found {
         }
     }
     match case.fit_in(two, &[100.0, 105.0], &[0.01, 0.01]) {
-        Err(HostError::Call {
-            status: Status::InvalidArgument,
-            ..
-        }) => refused += 1.0,
+        Err(HostError::Call { status: Status::InvalidArgument, .. }) => refused += 1.0,
         other => {
             let what = other.map_or_else(|e| e.to_string(), |_| "it is fitted".to_owned());
             return Err(Finding::failed(format!(
@@ -77,11 +69,9 @@ pub(crate) fn hard(case: &Case) -> Found {
             )));
         }
     }
-    Ok(
-        Finding::passed(format!("{fitted} are fitted, {refused} refused"))
-            .with("fitted", fitted)
-            .with("refused", refused),
-    )
+    Ok(Finding::passed(format!("{fitted} are fitted, {refused} refused"))
+        .with("fitted", fitted)
+        .with("refused", refused))
 }
 
 /// Checks conversion of parameters to fields and back, and storage.
@@ -93,21 +83,13 @@ pub(crate) fn round_trip(case: &Case) -> Found {
             |what: String| Finding::failed(format!("spectrum `{}`: {what}", fitted.reference));
         let values =
             Values::read(descriptor, &fitted.parameters).map_err(|e| wrong(e.to_string()))?;
-        let lists: Vec<&[f64]> = (0..descriptor.fields.len())
-            .map(|i| values.list(i))
-            .collect();
+        let lists: Vec<&[f64]> = (0..descriptor.fields.len()).map(|i| values.list(i)).collect();
         let before = case.magnitude(&fitted.parameters)?;
         if case.magnitude(&flatten(descriptor, &lists))? != before {
-            return Err(wrong(
-                "flattened parameters have another magnitude".to_owned(),
-            ));
+            return Err(wrong("flattened parameters have another magnitude".to_owned()));
         }
-        let kept: Vec<Vec<f64>> = descriptor
-            .fields
-            .iter()
-            .zip(&lists)
-            .map(|(field, list)| stored(field, list))
-            .collect();
+        let kept: Vec<Vec<f64>> =
+            descriptor.fields.iter().zip(&lists).map(|(field, list)| stored(field, list)).collect();
         let kept: Vec<&[f64]> = kept.iter().map(Vec::as_slice).collect();
         let after = case
             .magnitude(&flatten(descriptor, &kept))
@@ -131,8 +113,6 @@ pub(crate) fn with_signals(case: &Case) -> Found {
         magnitude.map_err(|error| Finding::failed(format!("{}: {error}", set.name)))?;
     }
     let count = sets.len();
-    Ok(
-        Finding::passed(format!("{count} spectra with a signal are fitted"))
-            .with("fitted", count as f64),
-    )
+    Ok(Finding::passed(format!("{count} spectra with a signal are fitted"))
+        .with("fitted", count as f64))
 }

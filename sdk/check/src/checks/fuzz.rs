@@ -1,7 +1,8 @@
 //! Random use of voices within the contract.
 //!
-//! A seed draws parameters, a band, a rate and a sequence of blocks, retunes, mixes and motions. The sequence is played twice, cut into
-//! different blocks: the samples are finite and the same. A failure names its seed, which draws the same again.
+//! A seed draws parameters, a band, a rate and a sequence of blocks, retunes, mixes and motions.
+//! The sequence is played twice, cut into different blocks: the samples are finite and the same. A
+//! failure names its seed, which draws the same again.
 
 use std::time::Instant;
 
@@ -18,13 +19,8 @@ const SEQUENCES: u64 = 16;
 /// Steps of a sequence.
 const STEPS: usize = 24;
 const FRAMES: [usize; 8] = [0, 1, 2, 7, 64, 250, 1_000, 4_096];
-const BANDS: [(f64, f64); 5] = [
-    (20.0, 1_000.0),
-    (150.0, 700.0),
-    (20.0, 200.0),
-    (5.0, 2_000.0),
-    (60.0, 65.0),
-];
+const BANDS: [(f64, f64); 5] =
+    [(20.0, 1_000.0), (150.0, 700.0), (20.0, 200.0), (5.0, 2_000.0), (60.0, 65.0)];
 /// Rates that a host wants.
 const RATES: [f64; 6] = [RATE_HZ, 48_000.0, 44_100.0, 8_000.0, 2_400.0, 1_000.0];
 /// Largest allowed sample of a sound of unit RMS.
@@ -56,13 +52,8 @@ pub(crate) fn plays(case: &Case) -> Found {
         seed = seed.wrapping_add(1);
         done += 1;
     }
-    let message = format!(
-        "{done} seeds from {} on: {played} sequences play",
-        case.seed
-    );
-    Ok(Finding::passed(message)
-        .with("seeds", done as f64)
-        .with("played", played as f64))
+    let message = format!("{done} seeds from {} on: {played} sequences play", case.seed);
+    Ok(Finding::passed(message).with("seeds", done as f64).with("played", played as f64))
 }
 
 fn by_seed(finding: Finding, seed: u64) -> Finding {
@@ -172,11 +163,7 @@ fn play(
                 all.resize(begin + frames, 0.0);
                 let mut rest = &mut all[begin..];
                 while !rest.is_empty() {
-                    let len = if is_cut {
-                        1 + cut.below(rest.len())
-                    } else {
-                        rest.len()
-                    };
+                    let len = if is_cut { 1 + cut.below(rest.len()) } else { rest.len() };
                     let (part, after) = rest.split_at_mut(len);
                     voice.render(part)?;
                     if is_cut {

@@ -6,7 +6,8 @@ use crate::case::{Case, Fitted};
 use crate::checks::arrays;
 use htex_check_runner::{Finding, Found};
 
-/// Largest allowed difference between two results for one frequency, relative to the largest magnitude.
+/// Largest allowed difference between two results for one frequency, relative to the largest
+/// magnitude.
 const TOLERANCE: f64 = 1e-9;
 
 /// Step of the fine grid, hertz.
@@ -23,11 +24,7 @@ pub(crate) fn sane(case: &Case) -> Found {
     let outside = [0.0, 1.0, 19.0, 1001.0, 5_000.0, 1e5];
     let mut asked = 0;
     arrays::magnitudes(case, &case.parameters()?)?;
-    for Fitted {
-        reference,
-        parameters,
-    } in case.fitted()?
-    {
+    for Fitted { reference, parameters } in case.fitted()? {
         let say = |what: String| Finding::failed(format!("spectrum `{reference}`: {what}"));
         let mut largest: f64 = 0.0;
         for grid in [band.grid_hz(), fine_grid()] {
@@ -44,9 +41,7 @@ pub(crate) fn sane(case: &Case) -> Found {
         let beyond = beyond.map_err(|error| say(error.to_string()))?;
         if let Some(i) = beyond.iter().position(|&m| m != 0.0) {
             let (m, f) = (beyond[i], outside[i]);
-            return Err(say(format!(
-                "{m} at {f} Hz, outside the band; it must be 0"
-            )));
+            return Err(say(format!("{m} at {f} Hz, outside the band; it must be 0")));
         }
     }
     let message = format!("{asked} magnitudes are finite and not negative");
@@ -58,21 +53,14 @@ pub(crate) fn grid(case: &Case) -> Found {
     let band = Band::TACTILE;
     let grid = band.grid_hz();
     let mut worst: f64 = 0.0;
-    for Fitted {
-        reference,
-        parameters,
-    } in case.fitted()?
-    {
+    for Fitted { reference, parameters } in case.fitted()? {
         let ask = |grid: &[f64]| case.model.magnitude(&parameters, band, grid);
         let whole = ask(&grid)?;
         let largest = whole.iter().copied().fold(0.0, f64::max);
         let ways = [
             ("one by one", by_chunks(&grid, 1, ask)?),
             ("in reversed chunks of ten", by_chunks(&grid, 10, ask)?),
-            (
-                "within a 0.5 Hz grid",
-                ask(&fine_grid())?.into_iter().step_by(10).collect(),
-            ),
+            ("within a 0.5 Hz grid", ask(&fine_grid())?.into_iter().step_by(10).collect()),
         ];
         for (way, magnitude) in ways {
             for ((m, w), f) in magnitude.iter().zip(&whole).zip(&grid) {

@@ -12,20 +12,13 @@ const FRAMES: usize = 4_000;
 const BLOCKS: [usize; 4] = [1, 7, 64, 1_000];
 /// Samples between two motions of a movement forward and back.
 const BETWEEN: usize = 50;
-const MOTION: Motion = Motion {
-    speed_mm_s: 80.0,
-    force_n: 0.5,
-    position_mm: 3.0,
-    x_mm: 2.0,
-    y_mm: -1.0,
-};
+const MOTION: Motion =
+    Motion { speed_mm_s: 80.0, force_n: 0.5, position_mm: 3.0, x_mm: 2.0, y_mm: -1.0 };
 
 /// Checks the guarantees of `htex.motion/1`.
 pub(crate) fn keeps_its_promises(case: &Case) -> Found {
     if !case.model.follows_motion() {
-        return Ok(Finding::passed(format!(
-            "the model has no extension `{MOTION_EXTENSION}`"
-        )));
+        return Ok(Finding::passed(format!("the model has no extension `{MOTION_EXTENSION}`")));
     }
     let parameters = case.parameters()?;
     bad_motions_are_refused(case, &parameters)?;
@@ -40,7 +33,8 @@ pub(crate) fn keeps_its_promises(case: &Case) -> Found {
     )))
 }
 
-/// Checks that an invalid motion and a freed handle return a status, and that the voice continues unchanged.
+/// Checks that an invalid motion and a freed handle return a status, and that the voice continues
+/// unchanged.
 fn bad_motions_are_refused(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let voices = || -> Result<ModelVoice, Finding> {
         let mut voice = case.voice(parameters, case.seed)?;
@@ -51,27 +45,9 @@ fn bad_motions_are_refused(case: &Case, parameters: &[f64]) -> Result<(), Findin
     let argument = Status::InvalidArgument;
     for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e13, -1e13] {
         let bad = [
-            (
-                "speed_mm_s",
-                Motion {
-                    speed_mm_s: x,
-                    ..MOTION
-                },
-            ),
-            (
-                "force_n",
-                Motion {
-                    force_n: x,
-                    ..MOTION
-                },
-            ),
-            (
-                "position_mm",
-                Motion {
-                    position_mm: x,
-                    ..MOTION
-                },
-            ),
+            ("speed_mm_s", Motion { speed_mm_s: x, ..MOTION }),
+            ("force_n", Motion { force_n: x, ..MOTION }),
+            ("position_mm", Motion { position_mm: x, ..MOTION }),
             ("x_mm", Motion { x_mm: x, ..MOTION }),
             ("y_mm", Motion { y_mm: x, ..MOTION }),
         ];
@@ -80,10 +56,7 @@ fn bad_motions_are_refused(case: &Case, parameters: &[f64]) -> Result<(), Findin
             refused(told.set_any_motion(motion), argument, &what)?;
         }
     }
-    let pulled = Motion {
-        force_n: -0.1,
-        ..MOTION
-    };
+    let pulled = Motion { force_n: -0.1, ..MOTION };
     refused(told.set_any_motion(pulled), argument, "force_n of -0.1")?;
     let rows = [&mut told, &mut spared].map(|voice| -> Result<Vec<f32>, Finding> {
         let mut out = vec![0.0; FRAMES];
@@ -119,7 +92,8 @@ fn refused(
     }
 }
 
-/// Checks that a constant motion gives equal samples in all block sizes, whether it is set again or not.
+/// Checks that a constant motion gives equal samples in all block sizes, whether it is set again or
+/// not.
 fn blocks_make_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let render = |block: usize| -> Result<Vec<f32>, Finding> {
         let mut voice = case.voice(parameters, case.seed)?;
@@ -150,10 +124,7 @@ fn order_makes_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Find
         let mut out = vec![0.0; FRAMES];
         let (before, behind) = out.split_at_mut(FRAMES / 2);
         voice.render(before)?;
-        let motion = Motion {
-            speed_mm_s: -40.0,
-            ..MOTION
-        };
+        let motion = Motion { speed_mm_s: -40.0, ..MOTION };
         if motion_first {
             voice.set_motion(motion)?;
         }
@@ -197,12 +168,10 @@ fn there_and_back(voice: &mut ModelVoice, samples: usize) -> Result<(), Finding>
     Ok(voice.render(&mut out)?)
 }
 
-/// Checks fits at known, partly known and unknown conditions; the last is the fit of a host without the extension.
+/// Checks fits at known, partly known and unknown conditions; the last is the fit of a host without
+/// the extension.
 fn fits_take_conditions(case: &Case) -> Result<(), Finding> {
-    let known = |speed_mm_s, force_n| FitCondition {
-        speed_mm_s,
-        force_n,
-    };
+    let known = |speed_mm_s, force_n| FitCondition { speed_mm_s, force_n };
     let conditions = [
         known(Some(80.0), Some(0.4)),
         known(Some(80.0), None),

@@ -9,7 +9,8 @@ use htex_check_runner::{Finding, Found};
 const SECONDS: f64 = 10.0;
 /// Samples between two retunes: a host may retune at each block.
 const BETWEEN: usize = 64;
-/// Allowed distance of the level from that without retunes, dB, and in standard deviations of the level of such noise.
+/// Allowed distance of the level from that without retunes, dB, and in standard deviations of the
+/// level of such noise.
 const LEVEL_DB: f64 = 0.5;
 const SPREADS: f64 = 4.0;
 /// Allowed increase of the distance from the magnitude, dB RMS.
@@ -53,7 +54,5 @@ pub(crate) fn keeps_sounding(case: &Case) -> Found {
     let message = format!(
         "with retunes every {BETWEEN} samples the level changes by {worst_db:.2} dB, the distance from the magnitude by {worst_further_db:.2} dB"
     );
-    Ok(Finding::passed(message)
-        .with("level_db", worst_db)
-        .with("further_db", worst_further_db))
+    Ok(Finding::passed(message).with("level_db", worst_db).with("further_db", worst_further_db))
 }

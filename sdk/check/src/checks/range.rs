@@ -19,18 +19,9 @@ const LOUDEST: f32 = 1_000.0;
 const BETWEEN: usize = 1_000;
 /// Further bands, in which a sound is only searched for samples that are not finite.
 const BANDS: [Band; 3] = [
-    Band {
-        low_hz: 20.0,
-        high_hz: 200.0,
-    },
-    Band {
-        low_hz: 150.0,
-        high_hz: 700.0,
-    },
-    Band {
-        low_hz: 5.0,
-        high_hz: 2_000.0,
-    },
+    Band { low_hz: 20.0, high_hz: 200.0 },
+    Band { low_hz: 150.0, high_hz: 700.0 },
+    Band { low_hz: 5.0, high_hz: 2_000.0 },
 ];
 
 fn about(set: &Set, what: &str) -> Finding {
@@ -84,23 +75,15 @@ fn summary(played: usize, refused: usize) -> Finding {
         0 => format!("{played} sets play"),
         _ => format!("{played} sets play, {refused} describe no spectrum"),
     };
-    Finding::passed(message)
-        .with("played", played as f64)
-        .with("refused", refused as f64)
+    Finding::passed(message).with("played", played as f64).with("refused", refused as f64)
 }
 
 /// The set as it is read from a file.
 fn as_stored(case: &Case, set: &Set) -> Result<Set, Finding> {
     let fields = case.model.descriptor().fields.iter();
     let lists = case.lists(&set.parameters)?;
-    let kept: Vec<Vec<f64>> = fields
-        .zip(&lists)
-        .map(|(f, list)| stored(f, list))
-        .collect();
-    Ok(Set {
-        name: format!("{}, stored in a file", set.name),
-        parameters: case.flat(&kept),
-    })
+    let kept: Vec<Vec<f64>> = fields.zip(&lists).map(|(f, list)| stored(f, list)).collect();
+    Ok(Set { name: format!("{}, stored in a file", set.name), parameters: case.flat(&kept) })
 }
 
 /// Checks that a set that has a magnitude plays: finite, at its level, and in other bands.

@@ -20,15 +20,11 @@ fn refused<T>(
 ) -> Result<(), Finding> {
     let wrong = |what: String| Err(Finding::failed(what));
     match result {
-        Err(HostError::Call { message, .. }) if message == NO_REASON => wrong(format!(
-            "`{call}` refuses {what}, and `last_error` gives no reason"
-        )),
+        Err(HostError::Call { message, .. }) if message == NO_REASON => {
+            wrong(format!("`{call}` refuses {what}, and `last_error` gives no reason"))
+        }
         Err(HostError::Call { status: told, .. }) if told == status => Ok(()),
-        Err(HostError::Call {
-            status: told,
-            message,
-            ..
-        }) => wrong(format!(
+        Err(HostError::Call { status: told, message, .. }) => wrong(format!(
             "`{call}` refuses {what} with the status {} ({message}); it must be {}",
             told as i64, status as i64
         )),
@@ -59,41 +55,24 @@ pub(crate) fn parameters(case: &Case) -> Found {
     }
     for (what, set) in &broken {
         let rate = model.voice_rate_hz(set, band, RATE_HZ);
-        refused(
-            status,
-            "magnitude",
-            what,
-            model.magnitude(set, band, &[100.0]),
-        )?;
+        refused(status, "magnitude", what, model.magnitude(set, band, &[100.0]))?;
         refused(status, "voice_rate", what, rate)?;
-        refused(
-            status,
-            "voice_new",
-            what,
-            model.voice(set, band, RATE_HZ, case.seed),
-        )?;
+        refused(status, "voice_new", what, model.voice(set, band, RATE_HZ, case.seed))?;
         refused(status, "voice_retune", what, voice.retune(set))?;
     }
     let count = broken.len();
-    Ok(
-        Finding::passed(format!("{count} invalid parameter sets are refused"))
-            .with("sets", count as f64),
-    )
+    Ok(Finding::passed(format!("{count} invalid parameter sets are refused"))
+        .with("sets", count as f64))
 }
 
 /// Returns sets with one error each, and its description.
 fn broken_sets(case: &Case, good: &[f64]) -> Result<Vec<(String, Vec<f64>)>, Finding> {
     let descriptor = case.model.descriptor();
     let values = Values::read(descriptor, good).map_err(|e| Finding::failed(e.message))?;
-    let lists: Vec<&[f64]> = (0..descriptor.fields.len())
-        .map(|i| values.list(i))
-        .collect();
+    let lists: Vec<&[f64]> = (0..descriptor.fields.len()).map(|i| values.list(i)).collect();
     let mut broken = vec![
         ("no parameters".to_owned(), Vec::new()),
-        (
-            "one number too few".to_owned(),
-            good[..good.len() - 1].to_vec(),
-        ),
+        ("one number too few".to_owned(), good[..good.len() - 1].to_vec()),
         ("one number too many".to_owned(), [good, &[1.0]].concat()),
     ];
     let mut at = 0;
@@ -105,10 +84,7 @@ fn broken_sets(case: &Case, good: &[f64]) -> Result<Vec<(String, Vec<f64>)>, Fin
             numbers[0] = number;
             let mut lists = lists.clone();
             lists[i] = &numbers;
-            broken.push((
-                format!("`{}` = {number}", field.name),
-                flatten(descriptor, &lists),
-            ));
+            broken.push((format!("`{}` = {number}", field.name), flatten(descriptor, &lists)));
         }
         if let Kind::List { max_len } = field.kind {
             for len in [-1.0, 0.5, f64::NAN, f64::from(max_len) + 1.0, 1e300] {
@@ -140,35 +116,14 @@ pub(crate) fn band(case: &Case) -> Found {
         (20.0, 2e6),
     ];
     for (low_hz, high_hz) in bands {
-        let (band, what) = (
-            Band { low_hz, high_hz },
-            format!("the band {low_hz} to {high_hz} Hz"),
-        );
+        let (band, what) = (Band { low_hz, high_hz }, format!("the band {low_hz} to {high_hz} Hz"));
         let model = &case.model;
         refused(status, "fit", &what, case.fit_in(band, &grid, &spectrum))?;
-        refused(
-            status,
-            "magnitude",
-            &what,
-            model.magnitude(&good, band, &[100.0]),
-        )?;
-        refused(
-            status,
-            "voice_rate",
-            &what,
-            model.voice_rate_hz(&good, band, RATE_HZ),
-        )?;
-        refused(
-            status,
-            "voice_new",
-            &what,
-            model.voice(&good, band, RATE_HZ, case.seed),
-        )?;
+        refused(status, "magnitude", &what, model.magnitude(&good, band, &[100.0]))?;
+        refused(status, "voice_rate", &what, model.voice_rate_hz(&good, band, RATE_HZ))?;
+        refused(status, "voice_new", &what, model.voice(&good, band, RATE_HZ, case.seed))?;
     }
-    Ok(Finding::passed(format!(
-        "{} invalid bands are refused",
-        bands.len()
-    )))
+    Ok(Finding::passed(format!("{} invalid bands are refused", bands.len())))
 }
 
 /// Checks that invalid rates are refused.
@@ -179,23 +134,10 @@ pub(crate) fn rate(case: &Case) -> Found {
     for rate_hz in rates {
         let (model, what) = (&case.model, format!("a rate of {rate_hz} Hz"));
         let band = Band::TACTILE;
-        refused(
-            status,
-            "voice_rate",
-            &what,
-            model.voice_rate_hz(&good, band, rate_hz),
-        )?;
-        refused(
-            status,
-            "voice_new",
-            &what,
-            model.voice(&good, band, rate_hz, case.seed),
-        )?;
+        refused(status, "voice_rate", &what, model.voice_rate_hz(&good, band, rate_hz))?;
+        refused(status, "voice_new", &what, model.voice(&good, band, rate_hz, case.seed))?;
     }
-    Ok(Finding::passed(format!(
-        "{} invalid rates are refused",
-        rates.len()
-    )))
+    Ok(Finding::passed(format!("{} invalid rates are refused", rates.len())))
 }
 
 /// Checks that spectra, signals and options that cannot be used are refused.
@@ -217,12 +159,7 @@ pub(crate) fn inputs(case: &Case) -> Found {
         numbers
     };
     let fit = |what: &str, status: Status, request: FitRequest<'_>| {
-        refused(
-            status,
-            "fit",
-            what,
-            case.model.fit_at(&request, FitCondition::default()),
-        )
+        refused(status, "fit", what, case.model.fit_at(&request, FitCondition::default()))
     };
     let argument = Status::InvalidArgument;
     let mut count = 0;
@@ -239,22 +176,11 @@ pub(crate) fn inputs(case: &Case) -> Found {
         (f64::NEG_INFINITY, "a frequency of -inf"),
     ] {
         let frequency_hz = &with(&grid, 7, number);
-        fit(
-            what,
-            argument,
-            FitRequest {
-                frequency_hz,
-                ..good
-            },
-        )?;
+        fit(what, argument, FitRequest { frequency_hz, ..good })?;
     }
     for bins in [0, 2] {
         let (frequency_hz, magnitude) = (&grid[..bins], &magnitude[..bins]);
-        let request = FitRequest {
-            frequency_hz,
-            magnitude,
-            ..good
-        };
+        let request = FitRequest { frequency_hz, magnitude, ..good };
         fit(&format!("{bins} bins"), argument, request)?;
     }
     for (signal, signal_rate_hz, what) in [
@@ -263,11 +189,7 @@ pub(crate) fn inputs(case: &Case) -> Found {
         (&[0.1; 3], f64::NAN, "a signal at a rate of NaN"),
         (&[0.1; 3], 0.0, "a signal at a rate of 0 Hz"),
     ] {
-        let request = FitRequest {
-            signal,
-            signal_rate_hz,
-            ..good
-        };
+        let request = FitRequest { signal, signal_rate_hz, ..good };
         fit(what, argument, request)?;
     }
     for (options, what) in wrong_options(case, &options) {
@@ -277,14 +199,10 @@ pub(crate) fn inputs(case: &Case) -> Found {
     }
     let parameters = case.parameters()?;
     for hz in [f64::NAN, f64::INFINITY] {
-        let told = case
-            .model
-            .magnitude(&parameters, Band::TACTILE, &[100.0, hz]);
+        let told = case.model.magnitude(&parameters, Band::TACTILE, &[100.0, hz]);
         refused(argument, "magnitude", &format!("a frequency of {hz}"), told)?;
     }
-    Ok(Finding::passed(format!(
-        "13 spectra and signals and {count} sets of options are refused"
-    )))
+    Ok(Finding::passed(format!("13 spectra and signals and {count} sets of options are refused")))
 }
 
 /// Options with one error each.
@@ -334,7 +252,5 @@ pub(crate) fn weights(case: &Case) -> Found {
         }
     }
     let count = wrong.len();
-    Ok(Finding::passed(format!(
-        "{count} invalid sets of weights are refused"
-    )))
+    Ok(Finding::passed(format!("{count} invalid sets of weights are refused")))
 }

@@ -23,9 +23,7 @@ pub(crate) fn reproducible(case: &Case) -> Found {
             return Err(differ(&what, at));
         }
     }
-    Ok(Finding::passed(format!(
-        "{SAMPLES} samples are equal in two voices"
-    )))
+    Ok(Finding::passed(format!("{SAMPLES} samples are equal in two voices")))
 }
 
 /// Checks that samples do not depend on block sizes.
@@ -35,10 +33,7 @@ pub(crate) fn blocks(case: &Case) -> Found {
     for block in [1, 7, 64, 1_000] {
         let other = case.samples(&parameters, case.seed, SAMPLES, block)?;
         if let Some(at) = first_difference(&whole, &other) {
-            return Err(differ(
-                &format!("blocks of {block} and one of {SAMPLES}"),
-                at,
-            ));
+            return Err(differ(&format!("blocks of {block} and one of {SAMPLES}"), at));
         }
     }
     let mut voice = case.voice(&parameters, case.seed)?;
@@ -51,9 +46,7 @@ pub(crate) fn blocks(case: &Case) -> Found {
     if let Some(at) = first_difference(&whole, &with_empty) {
         return Err(differ("with empty blocks between others", at));
     }
-    Ok(Finding::passed(
-        "samples are equal in blocks of 0, 1, 7, 64, 1000 and 9000",
-    ))
+    Ok(Finding::passed("samples are equal in blocks of 0, 1, 7, 64, 1000 and 9000"))
 }
 
 /// Checks that different seeds give different samples.
@@ -64,17 +57,13 @@ pub(crate) fn seeds(case: &Case) -> Found {
     if !same {
         return Ok(Finding::passed("two seeds give different samples"));
     }
-    let fine = case
-        .model
-        .magnitude(&parameters, Band::TACTILE, &fine_grid())?;
+    let fine = case.model.magnitude(&parameters, Band::TACTILE, &fine_grid())?;
     if is_line_spectrum(&fine) {
         return Ok(Finding::warning(
             "two seeds give equal samples; the spectrum consists of lines, which may have no random component",
         ));
     }
-    Err(Finding::failed(
-        "two seeds give equal samples: the seed is ignored",
-    ))
+    Err(Finding::failed("two seeds give equal samples: the seed is ignored"))
 }
 
 /// Checks that several voices at a time have the samples of each alone.
@@ -112,9 +101,7 @@ pub(crate) fn voices_apart(case: &Case) -> Found {
             return Err(differ(&format!("{way}, compared with it alone"), at));
         }
     }
-    Ok(Finding::passed(
-        "two voices have the samples of each alone, in turns and on threads",
-    ))
+    Ok(Finding::passed("two voices have the samples of each alone, in turns and on threads"))
 }
 
 /// Checks that a freed handle is refused.
@@ -134,10 +121,7 @@ pub(crate) fn handles(case: &Case) -> Found {
         ];
         for (call, result) in calls {
             match result {
-                Err(HostError::Call {
-                    status: Status::BadHandle,
-                    ..
-                }) => {}
+                Err(HostError::Call { status: Status::BadHandle, .. }) => {}
                 Err(HostError::Call { .. }) => others += 1.0,
                 Err(error) => return Err(error.into()),
                 Ok(()) => {

@@ -31,8 +31,7 @@ pub(crate) fn memory(case: &Case) -> Found {
         let blocks = Growth::measure(BLOCKS, "blocks", play)?;
         let make_and_free = |voices: usize| {
             for _ in 0..voices {
-                case.voice(&sets[0].parameters, case.seed)?
-                    .render(&mut [0.0; 16])?;
+                case.voice(&sets[0].parameters, case.seed)?.render(&mut [0.0; 16])?;
             }
             Ok(())
         };
@@ -43,9 +42,7 @@ pub(crate) fn memory(case: &Case) -> Found {
 /// Measures nanoseconds per sample.
 pub(crate) fn cost(case: &Case) -> Found {
     let parameters = case.parameters()?;
-    let rate_hz = case
-        .model
-        .voice_rate_hz(&parameters, Band::TACTILE, RATE_HZ)?;
+    let rate_hz = case.model.voice_rate_hz(&parameters, Band::TACTILE, RATE_HZ)?;
     let mut voice = case.voice(&parameters, case.seed)?;
     let mut out = [0.0; BLOCK];
     let mut runs = Vec::new();
@@ -61,14 +58,8 @@ pub(crate) fn cost(case: &Case) -> Found {
     runs.sort_by(f64::total_cmp);
     let ns = runs[runs.len() / 2];
     let share = ns * 1e-9 * rate_hz;
-    let message = format!(
-        "{ns:.1} ns per sample at {rate_hz} Hz: {:.3} % of one processor",
-        100.0 * share
-    );
-    let finding = if share < BUDGET {
-        Finding::passed(message)
-    } else {
-        Finding::warning(message)
-    };
+    let message =
+        format!("{ns:.1} ns per sample at {rate_hz} Hz: {:.3} % of one processor", 100.0 * share);
+    let finding = if share < BUDGET { Finding::passed(message) } else { Finding::warning(message) };
     Ok(finding.with("ns_per_sample", ns).with("rate_hz", rate_hz))
 }

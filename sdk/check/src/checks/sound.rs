@@ -11,7 +11,8 @@ use crate::signal::{
 };
 use htex_check_runner::{Finding, Found};
 
-/// Duration of the measured sounds, seconds: with a minute of noise each bin is measured within 0.2 dB.
+/// Duration of the measured sounds, seconds: with a minute of noise each bin is measured within 0.2
+/// dB.
 pub(crate) const SECONDS: f64 = 60.0;
 /// Duration of the sounds that are searched for invalid samples, seconds.
 const SEARCHED: usize = 20;
@@ -27,11 +28,9 @@ fn about(fitted: &Fitted, what: &str) -> Finding {
 }
 
 /// A part of the band in which references are fitted; two of them have peaks outside it.
-const NARROW: Band = Band {
-    low_hz: 150.0,
-    high_hz: 700.0,
-};
-/// Allowed distance of the level in that band from 1, dB: a band filter of order 4 passes as much outside the band.
+const NARROW: Band = Band { low_hz: 150.0, high_hz: 700.0 };
+/// Allowed distance of the level in that band from 1, dB: a band filter of order 4 passes as much
+/// outside the band.
 const NARROW_DB: f64 = 1.5;
 
 /// Renders one second of every reference.
@@ -57,9 +56,7 @@ pub(crate) fn clean(case: &Case) -> Found {
     let mut samples = 0.0;
     for fitted in &sets {
         let mut voice = case.voice(&fitted.parameters, case.seed)?;
-        let rate_hz = case
-            .model
-            .voice_rate_hz(&fitted.parameters, Band::TACTILE, RATE_HZ)?;
+        let rate_hz = case.model.voice_rate_hz(&fitted.parameters, Band::TACTILE, RATE_HZ)?;
         let mut out = vec![0.0f32; rate_hz as usize];
         for second in 0..SEARCHED {
             voice.render(&mut out)?;
@@ -72,17 +69,14 @@ pub(crate) fn clean(case: &Case) -> Found {
             voice.retune(&sets[second % sets.len()].parameters)?;
         }
     }
-    Ok(
-        Finding::passed(format!("{samples} samples are normal numbers or 0"))
-            .with("samples", samples),
-    )
+    Ok(Finding::passed(format!("{samples} samples are normal numbers or 0"))
+        .with("samples", samples))
 }
 
 /// Renders a minute at the rate of the recordings.
 fn listen(case: &Case, fitted: &Fitted) -> Result<Vec<f32>, Finding> {
     let mut out = vec![0.0; (SECONDS * RATE_HZ) as usize];
-    case.stream(&fitted.parameters, case.seed)?
-        .render(&mut out)?;
+    case.stream(&fitted.parameters, case.seed)?.render(&mut out)?;
     Ok(out)
 }
 
@@ -98,9 +92,7 @@ pub(crate) fn level(case: &Case) -> Found {
         let is_nearer = (read - 1.0).abs() < (in_all - 1.0).abs();
         let heard = if is_nearer { read } else { in_all };
         let fine = fine_grid();
-        let fine = case
-            .model
-            .magnitude(&fitted.parameters, Band::TACTILE, &fine)?;
+        let fine = case.model.magnitude(&fitted.parameters, Band::TACTILE, &fine)?;
         let lines = is_line_spectrum(&fine);
         let allowed = LEVEL.max(SPREADS * rms_spread(&magnitude, SECONDS));
         if !lines && (told - 1.0).abs() > LEVEL {
@@ -117,8 +109,9 @@ pub(crate) fn level(case: &Case) -> Found {
     Ok(Finding::passed(message).with("sound_rms_error", worst))
 }
 
-/// Returns the distance of a sound at [`RATE_HZ`] from a magnitude, or from the spectrum that the window measures for
-/// noise of that density, dB RMS: at the band's edge the window blurs a flank by more than the allowed distance.
+/// Returns the distance of a sound at [`RATE_HZ`] from a magnitude, or from the spectrum that the
+/// window measures for noise of that density, dB RMS: at the band's edge the window blurs a flank
+/// by more than the allowed distance.
 pub(crate) fn spectrum_distance_db(sound: &[f32], magnitude: &[f64]) -> f64 {
     let heard = measured_spectrum(sound);
     let blurred = distance_db(&heard, &read_as_noise(magnitude));

@@ -17,9 +17,7 @@ const RETUNED: usize = 5;
 fn unusable_handles(case: &Case) -> Result<(), Finding> {
     let parameters = case.parameters()?;
     let voice = |i: usize| Ok(case.voice(&parameters, case.seed.wrapping_add(i as u64))?);
-    let mut voices = (0..VOICES)
-        .map(voice)
-        .collect::<Result<Vec<_>, Finding>>()?;
+    let mut voices = (0..VOICES).map(voice).collect::<Result<Vec<_>, Finding>>()?;
     let all: Vec<usize> = (0..VOICES).collect();
     let mut out = vec![0.0; VOICES * 64];
     for (numbers, what, wanted) in [
@@ -51,9 +49,7 @@ fn unusable_handles(case: &Case) -> Result<(), Finding> {
 /// Checks that samples of a common call equal those of separate calls.
 pub(crate) fn agrees(case: &Case) -> Found {
     if !case.model.has_extension(VOICES_EXTENSION)? {
-        return Ok(Finding::passed(format!(
-            "the model has no extension `{VOICES_EXTENSION}`"
-        )));
+        return Ok(Finding::passed(format!("the model has no extension `{VOICES_EXTENSION}`")));
     }
     unusable_handles(case)?;
     let (first, second) = match case.two_sets()? {
@@ -68,7 +64,8 @@ pub(crate) fn agrees(case: &Case) -> Found {
     let (mut alone, mut together) = (make()?, make()?);
     for (block, frames) in FRAMES.into_iter().enumerate() {
         if block == RETUNED_AT {
-            // A voice may refuse, for example if its rate would change; both then continue unchanged.
+            // A voice may refuse, for example if its rate would change; both then continue
+            // unchanged.
             let retuned = [&mut alone, &mut together].map(|v| v[RETUNED].retune(&second).is_ok());
             if retuned[0] != retuned[1] {
                 return Err(Finding::failed(

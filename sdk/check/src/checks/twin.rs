@@ -17,27 +17,16 @@ pub(crate) fn agrees(case: &Case) -> Found {
             "there is no other file of this model to compare with; name one",
         ));
     };
-    let settings = Settings {
-        seed: case.seed,
-        ..Settings::default()
-    };
+    let settings = Settings { seed: case.seed, ..Settings::default() };
     let other = Case::load(&file, settings)
         .map_err(|error| Finding::failed(format!("the other file: {error}")))?;
     if case.model.descriptor() != other.model.descriptor() {
         let file = file.display();
-        return Err(Finding::failed(format!(
-            "{file} has a different descriptor"
-        )));
+        return Err(Finding::failed(format!("{file} has a different descriptor")));
     }
     let (ours, theirs) = (case.fitted()?, other.fitted()?);
-    if ours
-        .iter()
-        .map(|f| f.reference)
-        .ne(theirs.iter().map(|f| f.reference))
-    {
-        return Err(Finding::failed(
-            "the two models can be fitted to different reference spectra",
-        ));
+    if ours.iter().map(|f| f.reference).ne(theirs.iter().map(|f| f.reference)) {
+        return Err(Finding::failed("the two models can be fitted to different reference spectra"));
     }
     let (mut fits, mut sounds): (f64, f64) = (0.0, 0.0);
     for (a, b) in ours.iter().zip(&theirs) {
@@ -53,10 +42,8 @@ pub(crate) fn agrees(case: &Case) -> Found {
         let difference = |(x, y): (&f32, &f32)| f64::from((x - y).abs());
         sounds = x.iter().zip(&y).map(difference).fold(sounds, f64::max);
     }
-    let message = format!(
-        "parameters within {fits:.1e}, samples within {sounds:.1e} of {}",
-        file.display()
-    );
+    let message =
+        format!("parameters within {fits:.1e}, samples within {sounds:.1e} of {}", file.display());
     let finding = if fits > PARAMETERS || sounds > SAMPLES {
         Finding::failed(message)
     } else if fits > 0.0 || sounds > 0.0 {
@@ -64,13 +51,11 @@ pub(crate) fn agrees(case: &Case) -> Found {
     } else {
         Finding::passed(message)
     };
-    Ok(finding
-        .with("parameter_difference", fits)
-        .with("sample_difference", sounds))
+    Ok(finding.with("parameter_difference", fits).with("sample_difference", sounds))
 }
 
-/// Returns the given other file, or the file of the other kind in the same folder: `libNAME.so`, `NAME.so`
-/// and `NAME.wasm` are the same model.
+/// Returns the given other file, or the file of the other kind in the same folder: `libNAME.so`,
+/// `NAME.so` and `NAME.wasm` are the same model.
 fn other_file(case: &Case) -> Option<PathBuf> {
     if let Some(file) = &case.against {
         return Some(file.clone());
@@ -78,11 +63,7 @@ fn other_file(case: &Case) -> Option<PathBuf> {
     let stem = case.file.file_stem()?.to_str()?;
     let bare = stem.strip_prefix("lib").unwrap_or(stem);
     let is_wasm = case.file.extension()?.eq_ignore_ascii_case("wasm");
-    let suffix = if is_wasm {
-        std::env::consts::DLL_SUFFIX
-    } else {
-        ".wasm"
-    };
+    let suffix = if is_wasm { std::env::consts::DLL_SUFFIX } else { ".wasm" };
     let names = [format!("{bare}{suffix}"), format!("lib{bare}{suffix}")];
     let beside = names.iter().map(|name| case.file.with_file_name(name));
     beside.into_iter().find(|file| file.is_file())

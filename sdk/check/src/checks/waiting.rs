@@ -20,9 +20,7 @@ struct Counts {
 /// Checks that rendering, retunes and motions neither wait nor read nor write.
 pub(crate) fn none(case: &Case) -> Found {
     if Counts::now().is_none() {
-        return Ok(Finding::skipped(
-            "waits of a thread are counted on Linux only",
-        ));
+        return Ok(Finding::skipped("waits of a thread are counted on Linux only"));
     }
     let sets = case.fitted()?;
     let mut voice = case.voice(&sets[0].parameters, case.seed)?;
@@ -56,9 +54,7 @@ pub(crate) fn none(case: &Case) -> Found {
             "{message}; a call of a voice neither locks nor waits, and does no input or output"
         )),
     };
-    Ok(finding
-        .with("waits", waits as f64)
-        .with("transfers", transfers as f64))
+    Ok(finding.with("waits", waits as f64).with("transfers", transfers as f64))
 }
 
 fn motion(i: usize) -> Motion {

@@ -18,10 +18,7 @@ pub(super) struct Points {
 
 impl Points {
     pub(super) fn zeros(len: usize) -> Self {
-        Self {
-            re: alloc::vec![0.0; len],
-            im: alloc::vec![0.0; len],
-        }
+        Self { re: alloc::vec![0.0; len], im: alloc::vec![0.0; len] }
     }
 
     /// Takes over these points; the rest is zero.
@@ -60,10 +57,7 @@ impl ComplexFft {
             (length, stride) = (length / radix, stride * radix);
             stage
         });
-        Self::Stages {
-            stages: stages.collect(),
-            to: Points::zeros(len),
-        }
+        Self::Stages { stages: stages.collect(), to: Points::zeros(len) }
     }
 
     /// Replaces `x_n` by `Σ x_n exp(-2πi k n / len)`.
@@ -106,8 +100,8 @@ impl Work for Transform<'_> {
     }
 }
 
-/// One radix. Butterfly `i` reads the points `i + count j`, for each `j` below the radix, and writes the points
-/// `radix stride p + stride k + q`, for each `k`, where `i = stride p + q`.
+/// One radix. Butterfly `i` reads the points `i + count j`, for each `j` below the radix, and
+/// writes the points `radix stride p + stride k + q`, for each `k`, where `i = stride p + q`.
 #[derive(Debug, Clone)]
 pub(super) struct Stage {
     radix: usize,
@@ -132,18 +126,13 @@ impl Stage {
     #[inline(always)]
     fn run<const R: usize, B: Butterfly<R>>(&self, from: &Points, to: &mut Points) {
         let twiddles = self.twiddles.as_chunks::<R>().0;
-        let (re, im) = (
-            rows::<R>(&from.re, self.count),
-            rows::<R>(&from.im, self.count),
-        );
+        let (re, im) = (rows::<R>(&from.re, self.count), rows::<R>(&from.im, self.count));
         let out_re = to.re.chunks_exact_mut(R * self.stride);
         let out = out_re.zip(to.im.chunks_exact_mut(R * self.stride));
         for ((p, twiddle), (out_re, out_im)) in twiddles.iter().enumerate().zip(out) {
             let (re, im) = (parts(re, p, self.stride), parts(im, p, self.stride));
-            let (out_re, out_im) = (
-                rows_mut::<R>(out_re, self.stride),
-                rows_mut::<R>(out_im, self.stride),
-            );
+            let (out_re, out_im) =
+                (rows_mut::<R>(out_re, self.stride), rows_mut::<R>(out_im, self.stride));
             for q in 0..self.stride {
                 let (re, im) = B::turn(re.map(|row| row[q]), im.map(|row| row[q]));
                 for k in 0..R {
@@ -175,8 +164,8 @@ fn rows_mut<const R: usize>(to: &mut [f64], len: usize) -> [&mut [f64]; R] {
     core::array::from_fn(|_| &mut rows.next().unwrap_or_default()[..len])
 }
 
-/// Bluestein's algorithm: with `k n = (k² + n² - (k - n)²) / 2`, a transform is a convolution with the chirp
-/// `exp(-πi n² / len)`, which transforms of a longer length compute.
+/// Bluestein's algorithm: with `k n = (k² + n² - (k - n)²) / 2`, a transform is a convolution with
+/// the chirp `exp(-πi n² / len)`, which transforms of a longer length compute.
 #[derive(Debug, Clone)]
 pub(super) struct Chirp {
     /// `exp(πi n² / len)`.
@@ -201,12 +190,7 @@ impl Chirp {
             }
         }
         longer.forward(&mut kernel);
-        Self {
-            work: Points::zeros(long),
-            chirp,
-            kernel,
-            longer,
-        }
+        Self { work: Points::zeros(long), chirp, kernel, longer }
     }
 
     fn run(&mut self, points: &mut Points) {
@@ -229,8 +213,8 @@ impl Chirp {
     }
 }
 
-/// The radices whose product is `n`, and none for 0; `None` if there is a prime above 7. Large ones come first: strides
-/// are then long early.
+/// The radices whose product is `n`, and none for 0; `None` if there is a prime above 7. Large ones
+/// come first: strides are then long early.
 fn radices(mut n: usize) -> Option<Vec<usize>> {
     let mut radices = Vec::new();
     for radix in [4, 7, 5, 3, 2] {

@@ -34,11 +34,7 @@ fn power_is_one_and_stationary() {
     };
     // 5,000 independent samples for each position in the hop: standard error 2 %.
     for phase in [0, 125, 250, 499] {
-        assert!(
-            (power(phase) - 1.0).abs() < 0.1,
-            "{phase}: {}",
-            power(phase)
-        );
+        assert!((power(phase) - 1.0).abs() < 0.1, "{phase}: {}", power(phase));
     }
     // Above 1 by the power that the bins of the band miss at its lower edge.
     let total = out.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / out.len() as f64;
@@ -62,20 +58,11 @@ fn a_frame_made_early_is_the_same_frame() {
         out
     };
     let blocks = hop / 64;
-    for retunes in [
-        &[][..],
-        &[1],
-        &[blocks - 2],
-        &[blocks / 2, blocks + 1],
-        &[2, 4, 5, 3 * blocks],
-    ] {
+    for retunes in [&[][..], &[1], &[blocks - 2], &[blocks / 2, blocks + 1], &[2, 4, 5, 3 * blocks]]
+    {
         let late = played(usize::MAX, retunes);
         for prepare_at in [0, 100, hop / 2, hop - 30] {
-            assert_eq!(
-                played(prepare_at, retunes),
-                late,
-                "{prepare_at} {retunes:?}"
-            );
+            assert_eq!(played(prepare_at, retunes), late, "{prepare_at} {retunes:?}");
         }
     }
 }

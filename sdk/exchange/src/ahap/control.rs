@@ -47,7 +47,8 @@ impl Controls {
     }
 }
 
-/// The level of an event by its control. The event's parameters are looked through once, not at each point.
+/// The level of an event by its control. The event's parameters are looked through once, not at
+/// each point.
 fn level(event: &Event) -> impl Fn(f64) -> f64 {
     let intensity = event.parameter(INTENSITY, 1.0);
     move |control| (intensity * control).clamp(0.0, 1.0)
@@ -67,10 +68,8 @@ struct Control {
 
 impl Control {
     fn of(entries: &[Entry], id: &str, usual: f64) -> Self {
-        let mut curves: Vec<Vec<Point>> = entries
-            .iter()
-            .filter_map(|entry| own_curve(entry, id))
-            .collect();
+        let mut curves: Vec<Vec<Point>> =
+            entries.iter().filter_map(|entry| own_curve(entry, id)).collect();
         curves.sort_by(|a, b| start_s(a).total_cmp(&start_s(b)));
         let mut points: Vec<Point> = Vec::new();
         for curve in curves {
@@ -96,7 +95,8 @@ impl Control {
         }
     }
 
-    /// The control's points during an event and at its ends, each changed to what it makes of the event.
+    /// The control's points during an event and at its ends, each changed to what it makes of the
+    /// event.
     fn over(&self, event: &Event, made: impl Fn(f64) -> f64) -> Vec<Point> {
         let (from_s, to_s) = (event.time, event.end_s());
         let point = |time_s: f64, control: f64| Point::new(time_s, made(control));

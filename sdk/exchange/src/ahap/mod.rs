@@ -1,10 +1,13 @@
-//! `.ahap` of Apple's Core Haptics, version 1: events that are continuous or transient, and curves of control points that change them.
+//! `.ahap` of Apple's Core Haptics, version 1: events that are continuous or transient, and curves
+//! of control points that change them.
 //!
-//! Read of Apple's documentation (*Representing haptic patterns in AHAP files*; `CHHapticParameterCurve`, `CHHapticEvent.ParameterID`): an
-//! intensity control multiplies, a sharpness control adds, a control applies to all events from its first point on and is linear between
-//! points, whose times count from the curve's. Apple states neither what an intensity is nor a sharpness. Here an intensity is the square root of an
-//! amplitude, as in Meta's conversion (core/haptic_data/src/ahap.rs of facebook/meta-haptics-sdk), and a sharpness the position in a range of
-//! frequencies, as in the reference software of ISO/IEC 23090-31.
+//! Read of Apple's documentation (*Representing haptic patterns in AHAP files*;
+//! `CHHapticParameterCurve`, `CHHapticEvent.ParameterID`): an intensity control multiplies, a
+//! sharpness control adds, a control applies to all events from its first point on and is linear
+//! between points, whose times count from the curve's. Apple states neither what an intensity is
+//! nor a sharpness. Here an intensity is the square root of an amplitude, as in Meta's conversion
+//! (core/haptic_data/src/ahap.rs of facebook/meta-haptics-sdk), and a sharpness the position in a
+//! range of frequencies, as in the reference software of ISO/IEC 23090-31.
 
 mod control;
 #[cfg(feature = "export")]
@@ -117,7 +120,8 @@ impl Ahap {
     /// Reads a file.
     ///
     /// # Errors
-    /// When it is no JSON, has another version or shape, or a number is out of its range; with the place.
+    /// When it is no JSON, has another version or shape, or a number is out of its range; with the
+    /// place.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let ahap: Self = json::read(bytes)?;
         if ahap.version != 1.0 {
@@ -145,10 +149,7 @@ impl Ahap {
         if events().any(|e| !e.is_haptic()) {
             left_out.push("Its audio events are left out.".to_owned());
         }
-        if ["AttackTime", "DecayTime", "ReleaseTime", "Sustained"]
-            .into_iter()
-            .any(has)
-        {
+        if ["AttackTime", "DecayTime", "ReleaseTime", "Sustained"].into_iter().any(has) {
             left_out.push("The attack, decay and release of its events are left out.".to_owned());
         }
         let known = [INTENSITY_CONTROL, SHARPNESS_CONTROL];
@@ -166,18 +167,16 @@ impl Ahap {
         })
     }
 
-    /// Returns the vibrations for an actuator: one for each continuous event, and one with all transients.
+    /// Returns the vibrations for an actuator: one for each continuous event, and one with all
+    /// transients.
     #[must_use]
     pub fn patterns(&self, profile: &Profile) -> Vec<Pattern> {
         let controls = Controls::of(&self.pattern);
         let of = |kind: EventType| self.events().filter(move |e| e.event_type == kind);
         let continuous = of(EventType::HapticContinuous).map(|e| controls.pattern(e, profile));
         let transients = of(EventType::HapticTransient).map(|e| controls.transient(e, profile));
-        let pulses = Pattern {
-            exponent: 1,
-            transients: transients.collect(),
-            ..Pattern::default()
-        };
+        let pulses =
+            Pattern { exponent: 1, transients: transients.collect(), ..Pattern::default() };
         let pulses = Some(pulses).filter(|pulses| !pulses.transients.is_empty());
         continuous.chain(pulses).collect()
     }
@@ -185,10 +184,7 @@ impl Ahap {
     /// Refuses events and curves that together take long to play.
     fn check_work(&self) -> Result<(), Fault> {
         let controls = Controls::of(&self.pattern);
-        let points: usize = self
-            .events()
-            .map(|event| controls.points_during(event))
-            .sum();
+        let points: usize = self.events().map(|event| controls.points_during(event)).sum();
         let seconds: f64 = self.events().filter_map(|event| event.event_duration).sum();
         if points > MOST_POINTS || seconds > MOST_TOGETHER_S {
             let problem = format!(
@@ -239,10 +235,8 @@ impl Curve {
             let at = format!("{at}/ParameterCurveControlPoints/{index}");
             check_time(&at, point.time)?;
             if point.time < before {
-                let problem = format!(
-                    "{} s is before the point before; sort the points",
-                    point.time
-                );
+                let problem =
+                    format!("{} s is before the point before; sort the points", point.time);
                 return Err(Fault::new(format!("{at}/Time"), problem));
             }
             before = point.time;
@@ -267,20 +261,13 @@ impl Event {
                 INTENSITY | SHARPNESS => 0.0..=1.0,
                 _ => -MOST_S..=MOST_S,
             };
-            check_value(
-                &format!("{at}/EventParameters/{index}"),
-                parameter.value,
-                range,
-            )?;
+            check_value(&format!("{at}/EventParameters/{index}"), parameter.value, range)?;
         }
         Ok(())
     }
 
     fn is_haptic(&self) -> bool {
-        matches!(
-            self.event_type,
-            EventType::HapticContinuous | EventType::HapticTransient
-        )
+        matches!(self.event_type, EventType::HapticContinuous | EventType::HapticTransient)
     }
 
     fn parameter(&self, id: &str, usual: f64) -> f64 {

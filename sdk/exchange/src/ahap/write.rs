@@ -9,8 +9,9 @@ use crate::pattern::{Pattern, Transient};
 use crate::profile::Profile;
 
 impl Ahap {
-    /// Makes a file of a vibration whose levels are amplitudes: curves of at most [`POINTS_OF_A_CURVE`] points over events of at most
-    /// [`LONGEST_EVENT_S`]. The controls change transients, too, so that an intensity of theirs is divided by the control there, up to 1.
+    /// Makes a file of a vibration whose levels are amplitudes: curves of at most
+    /// [`POINTS_OF_A_CURVE`] points over events of at most [`LONGEST_EVENT_S`]. The controls change
+    /// transients, too, so that an intensity of theirs is divided by the control there, up to 1.
     #[must_use]
     pub fn of(pattern: &Pattern, profile: &Profile) -> Self {
         let root = |p: &Point| Point::new(p.time_s, libm::sqrt(p.value.clamp(0.0, 1.0)));
@@ -24,11 +25,7 @@ impl Ahap {
         }
         let transient = |t: &Transient| transient(t, &levels, &parts, profile);
         entries.extend(pattern.transients.iter().map(transient));
-        Self {
-            version: 1.0,
-            metadata: None,
-            pattern: entries,
-        }
+        Self { version: 1.0, metadata: None, pattern: entries }
     }
 
     /// Sets a description, in the metadata, unless it is empty.
@@ -42,7 +39,8 @@ impl Ahap {
     }
 }
 
-/// A curve in parts, of which each begins with the last point of the one before: between curves a control stays.
+/// A curve in parts, of which each begins with the last point of the one before: between curves a
+/// control stays.
 fn curves(id: &'static str, points: &[Point]) -> Vec<Entry> {
     let step = POINTS_OF_A_CURVE - 1;
     let count = points.len().saturating_sub(1).div_ceil(step).max(1);
@@ -50,10 +48,7 @@ fn curves(id: &'static str, points: &[Point]) -> Vec<Entry> {
         let from = index * step;
         let part = points.get(from..points.len().min(from + POINTS_OF_A_CURVE))?;
         let time = part.first()?.time_s;
-        let point = |p: &Point| ControlPoint {
-            time: p.time_s - time,
-            parameter_value: p.value,
-        };
+        let point = |p: &Point| ControlPoint { time: p.time_s - time, parameter_value: p.value };
         Some(Entry::ParameterCurve(Curve {
             id: id.to_owned(),
             time,
@@ -77,10 +72,7 @@ fn events(from_s: f64, to_s: f64) -> impl Iterator<Item = Entry> {
 }
 
 fn parameters(intensity: f64, sharpness: f64) -> Vec<Value> {
-    let value = |id: &str, value: f64| Value {
-        id: id.to_owned(),
-        value,
-    };
+    let value = |id: &str, value: f64| Value { id: id.to_owned(), value };
     vec![value(INTENSITY, intensity), value(SHARPNESS, sharpness)]
 }
 

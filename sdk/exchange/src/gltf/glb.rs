@@ -1,4 +1,5 @@
-//! The binary container of glTF 2.0 (specification, section 4.4): a header, a chunk of JSON, and one of bytes.
+//! The binary container of glTF 2.0 (specification, section 4.4): a header, a chunk of JSON, and
+//! one of bytes.
 
 use crate::error::Fault;
 
@@ -20,13 +21,11 @@ pub(super) struct Chunks<'a> {
     pub(super) binary: Option<&'a [u8]>,
 }
 
-/// Returns the chunks of a file, or its whole text if it is no container. Chunks of other kinds are left out, as the specification asks for.
+/// Returns the chunks of a file, or its whole text if it is no container. Chunks of other kinds are
+/// left out, as the specification asks for.
 pub(super) fn chunks(file: &[u8]) -> Result<Chunks<'_>, Fault> {
     if !file.starts_with(MAGIC) {
-        return Ok(Chunks {
-            json: file,
-            binary: None,
-        });
+        return Ok(Chunks { json: file, binary: None });
     }
     check_header(file)?;
     let json = Chunk::at(file, HEADER_BYTES)?;
@@ -38,10 +37,7 @@ pub(super) fn chunks(file: &[u8]) -> Result<Chunks<'_>, Fault> {
         true => Some(Chunk::at(file, json.end)?),
         false => None,
     };
-    Ok(Chunks {
-        json: json.bytes,
-        binary: next.filter(|c| c.kind == BINARY).map(|c| c.bytes),
-    })
+    Ok(Chunks { json: json.bytes, binary: next.filter(|c| c.kind == BINARY).map(|c| c.bytes) })
 }
 
 fn check_header(file: &[u8]) -> Result<(), Fault> {
@@ -83,21 +79,15 @@ impl<'a> Chunk<'a> {
         let rest = file.get(at + 4..).ok_or_else(short)?;
         let (kind, rest) = rest.split_first_chunk().ok_or_else(short)?;
         let bytes = rest.get(..length).ok_or_else(|| {
-            let problem = format!(
-                "the chunk has {length} bytes, and {} are left of the file",
-                rest.len()
-            );
+            let problem =
+                format!("the chunk has {length} bytes, and {} are left of the file", rest.len());
             Fault::new(place(), problem)
         })?;
         if !length.is_multiple_of(ALIGNMENT) {
             let problem = format!("the chunk has {length} bytes; it must be a multiple of 4");
             return Err(Fault::new(place(), problem));
         }
-        Ok(Self {
-            kind: *kind,
-            bytes,
-            end: at + CHUNK_HEADER_BYTES + length,
-        })
+        Ok(Self { kind: *kind, bytes, end: at + CHUNK_HEADER_BYTES + length })
     }
 }
 
@@ -105,9 +95,7 @@ impl<'a> Chunk<'a> {
 #[cfg(feature = "export")]
 pub(super) fn file(json: Vec<u8>, binary: Vec<u8>) -> Vec<u8> {
     let chunks = [(JSON, padded(json, b' ')), (BINARY, padded(binary, 0))];
-    let lengths = chunks
-        .iter()
-        .map(|(_, bytes)| CHUNK_HEADER_BYTES + bytes.len());
+    let lengths = chunks.iter().map(|(_, bytes)| CHUNK_HEADER_BYTES + bytes.len());
     let length = HEADER_BYTES + lengths.sum::<usize>();
     let mut file = Vec::with_capacity(length);
     file.extend(MAGIC);

@@ -9,8 +9,9 @@ use crate::error::Fault;
 /// The extension's name in a glTF file.
 pub const EXTENSION: &str = "HTEX_texture";
 
-/// The extension `HTEX_texture` of a material of glTF 2.0: what a finger feels that slides over surfaces of this material. Properties that are
-/// not described here, `extensions` and `extras` among them, are allowed.
+/// The extension `HTEX_texture` of a material of glTF 2.0: what a finger feels that slides over
+/// surfaces of this material. Properties that are not described here, `extensions` and `extras`
+/// among them, are allowed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Material {
@@ -18,11 +19,12 @@ pub struct Material {
     pub buffer_view: u32,
     /// Media type of these bytes.
     pub mime_type: MediaType,
-    /// Number of the set of texture coordinates that say where on the surface a point is: n of `TEXCOORD_n`.
+    /// Number of the set of texture coordinates that say where on the surface a point is: n of
+    /// `TEXCOORD_n`.
     #[serde(default)]
     pub tex_coord: u32,
-    /// Millimetres of the surface along one unit of the first and of the second texture coordinate. Without it, the geometry says how long a
-    /// way is.
+    /// Millimetres of the surface along one unit of the first and of the second texture coordinate.
+    /// Without it, the geometry says how long a way is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("items" = {"type": "number", "exclusiveMinimum": 0}))]
     pub tex_coord_size_mm: Option<[f64; 2]>,

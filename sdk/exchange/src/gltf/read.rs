@@ -80,8 +80,9 @@ struct Buffer {
 /// Reads the texture of a `.glb` or a `.gltf` file.
 ///
 /// # Errors
-/// When the file is no glTF 2.0, no material carries a texture, or several do, or its bytes are not where the file says; with the place: a JSON
-/// pointer, or a byte of a `.glb`. Whether the bytes are a valid asset is not checked.
+/// When the file is no glTF 2.0, no material carries a texture, or several do, or its bytes are not
+/// where the file says; with the place: a JSON pointer, or a byte of a `.glb`. Whether the bytes
+/// are a valid asset is not checked.
 pub fn read(file: &[u8]) -> Result<Texture, Fault> {
     if file.len() as u64 > json::MOST_BYTES {
         let most = json::MOST_BYTES;
@@ -95,10 +96,7 @@ pub fn read(file: &[u8]) -> Result<Texture, Fault> {
     material.check(&pointer)?;
     document.check_used()?;
     let bytes = document.bytes_of(material, &pointer, &chunks)?;
-    Ok(Texture {
-        material: material.clone(),
-        bytes,
-    })
+    Ok(Texture { material: material.clone(), bytes })
 }
 
 /// The copyright that a file states; `None` of a file without one, or that cannot be read.
@@ -113,11 +111,7 @@ pub(crate) fn held(file: &[u8], _: &Naming<'_>) -> Result<Held, Fault> {
         let pointer = format!("/bufferViews/{}", texture.material.buffer_view);
         Fault::new(pointer, error.to_string())
     })?;
-    Ok(Held {
-        asset,
-        bytes: Some(texture.bytes),
-        warnings: Vec::new(),
-    })
+    Ok(Held { asset, bytes: Some(texture.bytes), warnings: Vec::new() })
 }
 
 impl Document {
@@ -220,10 +214,7 @@ impl Buffer {
         };
         let there = whole.len();
         if self.byte_length > there {
-            let problem = format!(
-                "{} bytes are stated, and {there} are there",
-                self.byte_length
-            );
+            let problem = format!("{} bytes are stated, and {there} are there", self.byte_length);
             return Err(Fault::new(format!("{pointer}/byteLength"), problem));
         }
         Ok(match whole {

@@ -14,7 +14,8 @@ use crate::json::{self, MOST_BYTES};
 const SIDE_MM: f64 = 100.0;
 /// Half of it in metres, the unit of glTF.
 const HALF_M: f32 = 0.05;
-/// Corners, and texture coordinates there: the first from left to right, the second from the upper to the lower edge.
+/// Corners, and texture coordinates there: the first from left to right, the second from the upper
+/// to the lower edge.
 const CORNERS: [([f32; 3], [f32; 2]); 4] = [
     ([-HALF_M, HALF_M, 0.0], [0.0, 0.0]),
     ([-HALF_M, -HALF_M, 0.0], [0.0, 1.0]),
@@ -31,7 +32,8 @@ const UNSIGNED_SHORT: u32 = 5123;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// The asset on a rectangle, as a `.gltf` file with its buffer in it if that extension is asked for, else as a `.glb`.
+/// The asset on a rectangle, as a `.gltf` file with its buffer in it if that extension is asked
+/// for, else as a `.glb`.
 pub(crate) fn written(job: &AssetJob<'_>) -> Result<Vec<u8>, ExchangeError> {
     let asset = job.file()?;
     if asset.len() as u64 > MOST_BYTES {
@@ -82,10 +84,7 @@ struct Buffer {
 impl Buffer {
     /// Positions, normals, texture coordinates, and indices of the triangles.
     fn of_rectangle() -> Self {
-        let mut made = Self {
-            bytes: Vec::new(),
-            views: Vec::new(),
-        };
+        let mut made = Self { bytes: Vec::new(), views: Vec::new() };
         let floats = |values: Vec<f32>| -> Vec<u8> {
             values.into_iter().flat_map(f32::to_le_bytes).collect()
         };

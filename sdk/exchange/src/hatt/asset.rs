@@ -32,17 +32,11 @@ pub struct Imported<'a> {
 /// When a filter cannot be stored: its poles or zeros are too close to each other.
 pub fn asset(texture: &Texture, imported: &Imported<'_>) -> Result<Asset, Fault> {
     let registry = Registry::builtin();
-    let model = registry
-        .find(MODEL)
-        .map_err(|error| Fault::of_file(error.to_string()))?;
+    let model = registry.find(MODEL).map_err(|error| Fault::of_file(error.to_string()))?;
     let mut fields = stored_fields(model.descriptor());
     if let Some(rate) = fields.last_mut() {
         // One byte at each node: it is the same at all.
-        rate.store = StoredAs::U8(Steps {
-            scale: texture.rate_hz,
-            offset: 0.0,
-            log: false,
-        });
+        rate.store = StoredAs::U8(Steps { scale: texture.rate_hz, offset: 0.0, log: false });
     }
     let band = band(texture.rate_hz);
     let (mut at, mut parameters) = (Vec::new(), Vec::new());
@@ -77,10 +71,7 @@ pub fn asset(texture: &Texture, imported: &Imported<'_>) -> Result<Asset, Fault>
 
 /// The band of textures, as far as the filters' rate has it.
 fn band(rate_hz: f64) -> Band {
-    Band {
-        high_hz: (0.5 * rate_hz).min(Band::TACTILE.high_hz),
-        ..Band::TACTILE
-    }
+    Band { high_hz: (0.5 * rate_hz).min(Band::TACTILE.high_hz), ..Band::TACTILE }
 }
 
 fn manifest(
@@ -139,23 +130,14 @@ fn flat(node: &Node, rate_hz: f64) -> Result<Vec<f64>, Fault> {
             .ok_or_else(|| of(node, format!("the {what} lie outside the unit circle")))
     };
     let (poles, zeros) = (lines(&node.ar, "poles")?, lines(&node.ma, "zeros")?);
-    Ok([
-        &[poles.len() as f64],
-        &poles[..],
-        &[zeros.len() as f64],
-        &zeros,
-        &[rate_hz],
-    ]
-    .concat())
+    Ok([&[poles.len() as f64], &poles[..], &[zeros.len() as f64], &zeros, &[rate_hz]].concat())
 }
 
-/// The level at which the stored shape is the filter's magnitude: noise of variance s² has the one-sided density 2 s² / rate, read as
-/// magnitude² = 2 P ENBW.
+/// The level at which the stored shape is the filter's magnitude: noise of variance s² has the
+/// one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
 fn level_rms(node: &Node, stored: &[f64], rate_hz: f64, band: Band) -> Result<f64, Fault> {
     let poles = stored.get(1..=node.ar.len()).unwrap_or_default();
-    let zeros = stored
-        .get(node.ar.len() + 2..)
-        .and_then(|rest| rest.get(..node.ma.len()));
+    let zeros = stored.get(node.ar.len() + 2..).and_then(|rest| rest.get(..node.ma.len()));
     let (mut a, mut b) = (vec![0.0; node.ar.len()], vec![0.0; node.ma.len()]);
     let is_one = coefficients_of_lines(poles, &mut a)
         && zeros_of_lines(zeros.unwrap_or_default(), &mut b)

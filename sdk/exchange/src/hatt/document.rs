@@ -1,5 +1,6 @@
-//! The elements of an XML document: names, texts and lines. No document type definition, thus no entity but the five of XML, and
-//! limits of size that a model file of the toolkit, of some 0.2 MB, is far from.
+//! The elements of an XML document: names, texts and lines. No document type definition, thus no
+//! entity but the five of XML, and limits of size that a model file of the toolkit, of some 0.2 MB,
+//! is far from.
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesRef, BytesStart, Event};
@@ -26,10 +27,7 @@ pub(super) fn root(bytes: &[u8]) -> Result<Element, Fault> {
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = line_of(bytes, error.valid_up_to());
-        let place = Place {
-            line,
-            element: String::new(),
-        };
+        let place = Place { line, element: String::new() };
         Fault::at(place, "this is no UTF-8; save the file as UTF-8")
     })?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -46,8 +44,8 @@ struct Builder<'a> {
     reader: Reader<&'a [u8]>,
     /// Elements that are not closed, the outermost first.
     open: Vec<Element>,
-    /// Bytes of the innermost open element's text up to its last character that is not blank. It is kept so that no blank is
-    /// looked at twice.
+    /// Bytes of the innermost open element's text up to its last character that is not blank. It is
+    /// kept so that no blank is looked at twice.
     filled: usize,
     root: Option<Element>,
     count: usize,
@@ -128,10 +126,7 @@ impl<'a> Builder<'a> {
                 return Err(self.fault(format!("more than {MOST_ATTRIBUTES} attributes")));
             }
             let attribute = attribute.map_err(|error| self.fault(short(&error.to_string())))?;
-            attributes.push((
-                lossy(attribute.key.as_ref()),
-                lossy(attribute.value.as_ref()),
-            ));
+            attributes.push((lossy(attribute.key.as_ref()), lossy(attribute.value.as_ref())));
         }
         let line = self.line();
         self.filled = 0;
@@ -195,10 +190,8 @@ impl<'a> Builder<'a> {
             "apos" => Ok("'".to_owned()),
             "quot" => Ok("\"".to_owned()),
             _ => {
-                let words = format!(
-                    "the entity {}, which is none of the five of XML",
-                    short(&name)
-                );
+                let words =
+                    format!("the entity {}, which is none of the five of XML", short(&name));
                 Err(self.fault(words))
             }
         }
@@ -214,10 +207,7 @@ impl<'a> Builder<'a> {
         let at = at.min(self.text.len());
         let (from, line) = self.known;
         let passed = self.text.as_bytes().get(from..at).unwrap_or_default();
-        self.known = (
-            from.max(at),
-            line + passed.iter().filter(|byte| **byte == b'\n').count(),
-        );
+        self.known = (from.max(at), line + passed.iter().filter(|byte| **byte == b'\n').count());
         self.known.1
     }
 

@@ -14,10 +14,7 @@ pub(super) struct Element {
 
 impl Element {
     pub(super) fn place(&self) -> Place {
-        Place {
-            line: self.line,
-            element: self.name.clone(),
-        }
+        Place { line: self.line, element: self.name.clone() }
     }
 
     pub(super) fn fault(&self, problem: impl Into<String>) -> Fault {

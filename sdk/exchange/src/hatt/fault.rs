@@ -26,10 +26,7 @@ pub struct Place {
 
 impl Fault {
     pub(super) fn at(place: Place, problem: impl Into<String>) -> Self {
-        Self {
-            place,
-            problem: problem.into(),
-        }
+        Self { place, problem: problem.into() }
     }
 
     /// A fault of the file as a whole.

@@ -9,20 +9,23 @@ use super::fault::{Fault, Place};
 use super::work::Work;
 use super::zeros::{NotFound, inside};
 
-/// Largest difference of a line in the file from that of the coefficients, radians, without a warning.
+/// Largest difference of a line in the file from that of the coefficients, radians, without a
+/// warning.
 const LINE_ERROR: f64 = 1e-3;
 
 /// What is wrong with a file whose filters take too long.
 const TOO_MUCH: &str = "the filters up to here take too much work, by their number, their orders and their zeros outside the unit circle; split the file";
 
-/// A filter at a speed and a force: the acceleration is noise of `variance` through `gain (1 + Σ ma_i z⁻ⁱ) / (1 + Σ ar_i z⁻ⁱ)`.
+/// A filter at a speed and a force: the acceleration is noise of `variance` through
+/// `gain (1 + Σ ma_i z⁻ⁱ) / (1 + Σ ar_i z⁻ⁱ)`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     pub speed_mm_s: f64,
     pub force_n: f64,
     /// Coefficients of the denominator behind the first, which is 1.
     pub ar: Vec<f64>,
-    /// Coefficients of the numerator behind the first, which is 1; all zeros inside the unit circle.
+    /// Coefficients of the numerator behind the first, which is 1; all zeros inside the unit
+    /// circle.
     pub ma: Vec<f64>,
     /// Variance of the noise, (m/s²)²; 0 at a silent node.
     pub variance: f64,
@@ -98,10 +101,7 @@ fn coefficients(node: &Element, name: &str, is_required: bool) -> Result<Vec<f64
         return Err(list.fault(format!("the first coefficient is {first}; it is 1")));
     }
     if rest.len() > MAX_ORDER {
-        let words = format!(
-            "{} coefficients are more than {MAX_ORDER}, the most",
-            rest.len()
-        );
+        let words = format!("{} coefficients are more than {MAX_ORDER}, the most", rest.len());
         return Err(list.fault(words));
     }
     Ok(rest.to_vec())

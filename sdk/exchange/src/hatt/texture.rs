@@ -41,11 +41,7 @@ pub fn read(bytes: &[u8]) -> Result<Texture, Fault> {
         let words = "a model file of the toolkit begins with the element modelSet";
         return Err(root.fault(words));
     }
-    for (name, unit) in [
-        ("AccelUnits", "m/s^2"),
-        ("SpeedUnits", "mm/s"),
-        ("ForceUnits", "N"),
-    ] {
+    for (name, unit) in [("AccelUnits", "m/s^2"), ("SpeedUnits", "mm/s"), ("ForceUnits", "N")] {
         check_unit(&root, name, unit)?;
     }
     let mut notes = Vec::new();
@@ -70,10 +66,9 @@ pub fn read(bytes: &[u8]) -> Result<Texture, Fault> {
 /// Refuses other units than the toolkit's.
 fn check_unit(root: &Element, name: &str, unit: &str) -> Result<(), Fault> {
     match root.one(name)? {
-        Some(given) if given.text.trim() != unit => Err(given.fault(format!(
-            "{} is not {unit}, the unit of the toolkit",
-            given.quoted()
-        ))),
+        Some(given) if given.text.trim() != unit => {
+            Err(given.fault(format!("{} is not {unit}, the unit of the toolkit", given.quoted())))
+        }
         _ => Ok(()),
     }
 }
@@ -85,9 +80,7 @@ fn nodes(root: &Element, notes: &mut Vec<String>) -> Result<Vec<Node>, Fault> {
         return Err(root.fault("it has no element model"));
     }
     let mut work = Work::default();
-    let nodes = models
-        .iter()
-        .map(|model| Node::read(model, notes, &mut work));
+    let nodes = models.iter().map(|model| Node::read(model, notes, &mut work));
     let nodes = nodes.collect::<Result<Vec<Node>, Fault>>()?;
     for (name, order) in [
         ("numARCoeff", nodes.first().map_or(0, |node| node.ar.len())),
@@ -99,10 +92,9 @@ fn nodes(root: &Element, notes: &mut Vec<String>) -> Result<Vec<Node>, Fault> {
         if let Some(number) = model.one("modNum")?
             && number.count()? != i + 1
         {
-            return Err(number.fault(format!(
-                "this is model {}; they are in ascending order",
-                i + 1
-            )));
+            return Err(
+                number.fault(format!("this is model {}; they are in ascending order", i + 1))
+            );
         }
     }
     check_list(root, "speedList", &nodes, |node| node.speed_mm_s)?;
@@ -122,7 +114,8 @@ fn check_count(root: &Element, name: &str, of: &str, count: usize) -> Result<(),
     }
 }
 
-/// Compares an order in the file, if there is one: the toolkit counts without the first coefficient.
+/// Compares an order in the file, if there is one: the toolkit counts without the first
+/// coefficient.
 fn check_order(root: &Element, name: &str, order: usize) -> Result<(), Fault> {
     match root.one(name)? {
         Some(stated) if ![order, order + 1].contains(&stated.count()?) => {
@@ -180,21 +173,14 @@ fn triangles(
 ) -> Result<Vec<Triangle>, Fault> {
     let elements: Vec<&Element> = root.all("tri").collect();
     check_count(root, "numTri", "tri", elements.len())?;
-    let triangles = elements
-        .iter()
-        .map(|element| triangle(element, nodes.len()));
+    let triangles = elements.iter().map(|element| triangle(element, nodes.len()));
     let triangles = triangles.collect::<Result<Vec<Triangle>, Fault>>()?;
-    let places: Vec<[f64; 2]> = nodes
-        .iter()
-        .map(|node| [node.speed_mm_s, node.force_n])
-        .collect();
+    let places: Vec<[f64; 2]> = nodes.iter().map(|node| [node.speed_mm_s, node.force_n]).collect();
     match check_triangles(&places, &triangles) {
         Ok(()) => Ok(triangles),
         Err(error) => {
             let wrong = error.triangle().and_then(|triangle| elements.get(triangle));
-            let place = wrong
-                .map(|wrong| wrong.place().to_string())
-                .unwrap_or_default();
+            let place = wrong.map(|wrong| wrong.place().to_string()).unwrap_or_default();
             notes.push(format!(
                 "{place}the triangles are left out, and a player finds its own: {error} (models are counted from 0 here)"
             ));

@@ -1,10 +1,11 @@
 //! The work that the filters of a file take, counted over the whole file.
 
-/// Most work of a file. Its unit is a zero that is compared with another one in a round of the search for zeros; some 7 ns, so that
-/// all of it takes about 1.5 s. A file of the toolkit has some 40 filters, which take a hundredth.
+/// Most work of a file. Its unit is a zero that is compared with another one in a round of the
+/// search for zeros; some 7 ns, so that all of it takes about 1.5 s. A file of the toolkit has some
+/// 40 filters, which take a hundredth.
 const MOST_WORK: usize = 200_000_000;
-/// Work for each pair of coefficients of a polynomial whose lines are computed: each line is found by some fifty evaluations of all
-/// roots' angles.
+/// Work for each pair of coefficients of a polynomial whose lines are computed: each line is found
+/// by some fifty evaluations of all roots' angles.
 const PER_PAIR: usize = 100;
 
 /// The work that is left for the filters of a file.

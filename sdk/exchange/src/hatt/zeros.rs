@@ -1,4 +1,5 @@
-//! The mirror image of zeros outside the unit circle: noise through both has the same spectrum, but for a gain.
+//! The mirror image of zeros outside the unit circle: noise through both has the same spectrum, but
+//! for a gain.
 
 use std::f64::consts::TAU;
 
@@ -25,8 +26,8 @@ pub(super) enum NotFound {
     TooMuch,
 }
 
-/// Returns the coefficients `B_1` to `B_q` of `1 + Σ B_i z⁻ⁱ` with all zeros inside the unit circle, and the gain by which it is the
-/// polynomial given in absolute value on the circle.
+/// Returns the coefficients `B_1` to `B_q` of `1 + Σ B_i z⁻ⁱ` with all zeros inside the unit
+/// circle, and the gain by which it is the polynomial given in absolute value on the circle.
 pub(super) fn inside(coefficients: &[f64], work: &mut Work) -> Result<(Vec<f64>, f64), NotFound> {
     let mut reflection: Vec<f64> = coefficients.iter().map(|b| -b).collect();
     if step_down_in_place(&mut reflection) {
@@ -87,9 +88,7 @@ fn roots(coefficients: &[f64], work: &mut Work) -> Result<Vec<Complex<f64>>, Not
 fn value_and_slope(coefficients: &[f64], at: Complex<f64>) -> (Complex<f64>, Complex<f64>) {
     let one = Complex::new(1.0, 0.0);
     let begin = (one, Complex::new(0.0, 0.0));
-    coefficients.iter().fold(begin, |(value, slope), b| {
-        (value * at + b, slope * at + value)
-    })
+    coefficients.iter().fold(begin, |(value, slope), b| (value * at + b, slope * at + value))
 }
 
 fn turned(radius: f64, angle: f64) -> Complex<f64> {
@@ -112,23 +111,16 @@ fn product(zeros: &[Complex<f64>]) -> Vec<f64> {
 /// Whether two polynomials have the same power on the circle, but for the gain of the second.
 fn is_same(a: &[f64], b: &[f64], gain: f64) -> bool {
     let at = |i: u32| TAU / 2.0 * f64::from(i) / f64::from(COMPARED);
-    let powers = (0..=COMPARED)
-        .map(at)
-        .map(|w| (power(a, w), power(b, w) * gain * gain));
+    let powers = (0..=COMPARED).map(at).map(|w| (power(a, w), power(b, w) * gain * gain));
     let powers: Vec<(f64, f64)> = powers.collect();
     let largest = powers.iter().map(|(a, _)| *a).fold(0.0, f64::max);
-    powers
-        .iter()
-        .all(|(a, b)| (a - b).abs() <= MOST_ERROR * largest)
+    powers.iter().all(|(a, b)| (a - b).abs() <= MOST_ERROR * largest)
 }
 
 /// The squared absolute value of `1 + Σ B_i z⁻ⁱ`.
 fn power(coefficients: &[f64], angle: f64) -> f64 {
     let step = turned(1.0, -angle);
-    let sum = coefficients
-        .iter()
-        .rev()
-        .fold(Complex::new(0.0, 0.0), |sum, b| (sum + b) * step);
+    let sum = coefficients.iter().rev().fold(Complex::new(0.0, 0.0), |sum, b| (sum + b) * step);
     (sum + 1.0).norm_sqr()
 }
 
@@ -137,21 +129,16 @@ fn power(coefficients: &[f64], angle: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Zeros outside, on, and inside the circle, single and in pairs; what is inside is left as it is.
+    /// Zeros outside, on, and inside the circle, single and in pairs; what is inside is left as it
+    /// is.
     #[test]
     fn mirror_images_have_the_same_power() {
         let pair = |radius: f64, angle: f64| [turned(radius, angle), turned(radius, -angle)];
         for zeros in [
             vec![Complex::new(1.25, 0.0)],
             [pair(2.0, 0.7), pair(0.5, 2.0), pair(1.0, 1.1)].concat(),
-            [
-                &pair(1.001, 0.3)[..],
-                &[Complex::new(-1.0, 0.0), Complex::new(1.0, 0.0)],
-            ]
-            .concat(),
-            (1..9)
-                .flat_map(|i| pair(0.6 + 0.1 * f64::from(i), 0.37 * f64::from(i)))
-                .collect(),
+            [&pair(1.001, 0.3)[..], &[Complex::new(-1.0, 0.0), Complex::new(1.0, 0.0)]].concat(),
+            (1..9).flat_map(|i| pair(0.6 + 0.1 * f64::from(i), 0.37 * f64::from(i))).collect(),
         ] {
             let given = product(&zeros);
             let (found, gain) = inside(&given, &mut Work::default()).unwrap();

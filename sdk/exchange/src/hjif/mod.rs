@@ -1,9 +1,11 @@
-//! `.hjif` of MPEG (ISO/IEC 23090-31, the readable format): perceptions of channels of bands of effects of keyframes.
+//! `.hjif` of MPEG (ISO/IEC 23090-31, the readable format): perceptions of channels of bands of
+//! effects of keyframes.
 //!
-//! Read of the reference software (MPEGGroup/HapticReferenceSoftware: source/IOHaptics/src/IOJson.cpp for the keys and the rules,
-//! source/Types/src/Effect.cpp for what a keyframe sounds like, source/WaveletDecoder for wavelets), and of the names of perceptions in
-//! draft-ietf-avtcore-rtp-haptics. Keys of its earlier drafts (`tracks`, `mixing_weight`) are read, too. Of a file, the first channel of the
-//! first perception that vibrates is read.
+//! Read of the reference software (MPEGGroup/HapticReferenceSoftware:
+//! source/IOHaptics/src/IOJson.cpp for the keys and the rules, source/Types/src/Effect.cpp for what
+//! a keyframe sounds like, source/WaveletDecoder for wavelets), and of the names of perceptions in
+//! draft-ietf-avtcore-rtp-haptics. Keys of its earlier drafts (`tracks`, `mixing_weight`) are read,
+//! too. Of a file, the first channel of the first perception that vibrates is read.
 
 mod check;
 mod number;
@@ -108,11 +110,7 @@ pub struct Band {
     pub band_type: BandType,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve_type: Option<String>,
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        serialize_with = "whole_or_none"
-    )]
+    #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "whole_or_none")]
     pub block_length: Option<f64>,
     #[serde(serialize_with = "whole")]
     pub lower_frequency_limit: f64,
@@ -175,11 +173,7 @@ pub struct Keyframe {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub amplitude_modulation: Option<f64>,
     /// Hertz, or waves in a metre.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        serialize_with = "whole_or_none"
-    )]
+    #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "whole_or_none")]
     pub frequency_modulation: Option<f64>,
 }
 
@@ -219,12 +213,7 @@ const OVER_TIME: [&str; 7] = [
     "User-defined Temporal",
 ];
 /// Modalities that are read as a vibration over space.
-const OVER_SPACE: [&str; 4] = [
-    TEXTURE,
-    "VibrotactileTexture",
-    "Texture",
-    "User-defined Spatial",
-];
+const OVER_SPACE: [&str; 4] = [TEXTURE, "VibrotactileTexture", "Texture", "User-defined Spatial"];
 
 impl Hjif {
     /// Reads a file.
@@ -259,10 +248,7 @@ impl Hjif {
                 && !p.channels.is_empty()
         };
         let perception = self.perceptions.iter().find(vibrates)?;
-        let index = self
-            .perceptions
-            .iter()
-            .position(|p| std::ptr::eq(p, perception))?;
+        let index = self.perceptions.iter().position(|p| std::ptr::eq(p, perception))?;
         Some(Chosen {
             perception,
             channel: perception.channels.first()?,
@@ -275,14 +261,9 @@ impl Hjif {
     pub fn left_out(&self) -> Vec<String> {
         let mut left_out = Vec::new();
         if self.perceptions.len() > 1 {
-            left_out.push(format!(
-                "One of its {} perceptions is read.",
-                self.perceptions.len()
-            ));
+            left_out.push(format!("One of its {} perceptions is read.", self.perceptions.len()));
         }
-        let channels = self
-            .chosen()
-            .map_or(0, |chosen| chosen.perception.channels.len());
+        let channels = self.chosen().map_or(0, |chosen| chosen.perception.channels.len());
         if channels > 1 {
             left_out.push(format!("The first of {channels} channels is read."));
         }

@@ -36,11 +36,7 @@ impl Hjif {
             return Err(Fault::new("/perceptions", "no perception vibrates"));
         };
         // A file over space is played at a speed, metres in a second.
-        let speed = if self.is_over_space() {
-            speed_mm_s / 1e3
-        } else {
-            1.0
-        };
+        let speed = if self.is_over_space() { speed_mm_s / 1e3 } else { 1.0 };
         let library = chosen.perception.effect_library.iter();
         let library: Library<'_> = library.filter_map(|e| Some((e.id?, e))).collect();
         let bands = chosen.channel.bands.iter().map(|band| Timed {
@@ -56,9 +52,7 @@ impl Hjif {
             band.add_to(&mut samples);
         }
         let gain = chosen.channel.gain * chosen.channel.mixing_coefficient;
-        samples
-            .iter_mut()
-            .for_each(|x| *x = (gain * *x).clamp(-1.0, 1.0));
+        samples.iter_mut().for_each(|x| *x = (gain * *x).clamp(-1.0, 1.0));
         Ok(samples)
     }
 }
@@ -107,11 +101,7 @@ impl<'a> Timed<'a> {
 
     fn end_s(&self, placed: &Placed<'_>) -> f64 {
         let keyframes = &placed.effect.keyframes;
-        let last = keyframes
-            .iter()
-            .filter_map(|k| k.relative_position)
-            .max()
-            .unwrap_or(0);
+        let last = keyframes.iter().filter_map(|k| k.relative_position).max().unwrap_or(0);
         let own_s = match self.band.band_type {
             BandType::WaveletWave => self.block_s(keyframes.len().saturating_sub(1)),
             BandType::Transient => last as f64 * self.tick_s + TRANSIENT_S,
@@ -120,7 +110,8 @@ impl<'a> Timed<'a> {
         self.start_s(placed) + own_s
     }
 
-    /// Samples that an effect is added to, and its keyframes; a transient has its own samples at each keyframe.
+    /// Samples that an effect is added to, and its keyframes; a transient has its own samples at
+    /// each keyframe.
     fn work(&self, effect: &Effect, length_s: f64) -> f64 {
         let keyframes = effect.keyframes.len() as f64;
         let samples = length_s * self.rate_hz;
@@ -159,19 +150,13 @@ impl<'a> Timed<'a> {
     /// A curve of the keyframes' values over seconds.
     fn curve(&self, effect: &Effect, value: impl Fn(&Keyframe) -> Option<f64>) -> Vec<Point> {
         let point = |k: &Keyframe| {
-            Some(Point::new(
-                k.relative_position.unwrap_or(0) as f64 * self.tick_s,
-                value(k)?,
-            ))
+            Some(Point::new(k.relative_position.unwrap_or(0) as f64 * self.tick_s, value(k)?))
         };
         effect.keyframes.iter().filter_map(point).collect()
     }
 
     fn add_wave(&self, effect: &Effect, own: &mut [f64], clock: Clock) {
-        let (low, high) = (
-            self.band.lower_frequency_limit,
-            self.band.upper_frequency_limit,
-        );
+        let (low, high) = (self.band.lower_frequency_limit, self.band.upper_frequency_limit);
         let amplitude = self.curve(effect, |k| k.amplitude_modulation);
         let limited = |hz: f64| hz.clamp(low, high) * self.per_s;
         let frequency = self.curve(effect, |k| k.frequency_modulation.map(limited));
@@ -189,10 +174,7 @@ impl<'a> Timed<'a> {
     }
 
     fn add_block(&self, effect: &Effect, own: &mut [f64], clock: Clock) {
-        let values = effect
-            .keyframes
-            .iter()
-            .map(|k| k.amplitude_modulation.unwrap_or(0.0));
+        let values = effect.keyframes.iter().map(|k| k.amplitude_modulation.unwrap_or(0.0));
         let mut coefficients: Vec<f64> = values.collect();
         let scale = coefficients.pop().unwrap_or(0.0);
         coefficients.iter_mut().for_each(|c| *c *= scale);
@@ -244,11 +226,7 @@ struct Clock {
 impl Clock {
     fn new(from_s: f64, rate_hz: f64) -> Self {
         let first = first_from(from_s, rate_hz);
-        Self {
-            from_s,
-            rate_hz,
-            first,
-        }
+        Self { from_s, rate_hz, first }
     }
 
     /// Seconds from the effect's start to one of its samples.

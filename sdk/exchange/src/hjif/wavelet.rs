@@ -1,16 +1,14 @@
-//! The wavelets of `.hjif`: the biorthogonal 9/7 transform of Cohen, Daubechies & Feauveau (1992, *Comm. Pure Appl. Math.* 45), of a block that is
-//! extended by reflection at its ends, down to blocks of four coefficients.
+//! The wavelets of `.hjif`: the biorthogonal 9/7 transform of Cohen, Daubechies & Feauveau (1992,
+//! *Comm. Pure Appl. Math.* 45), of a block that is extended by reflection at its ends, down to
+//! blocks of four coefficients.
 //!
-//! It is computed by lifting (Daubechies & Sweldens 1998, *J. Fourier Anal. Appl.* 4): four steps and a scale, so that the inverse is exact up
-//! to rounding. Scaled as the filters of the reference software (source/FilterBank/include/Wavelet.h), whose low-pass sums to √2.
+//! It is computed by lifting (Daubechies & Sweldens 1998, *J. Fourier Anal. Appl.* 4): four steps
+//! and a scale, so that the inverse is exact up to rounding. Scaled as the filters of the reference
+//! software (source/FilterBank/include/Wavelet.h), whose low-pass sums to √2.
 
 /// The four lifting steps of the 9/7 transform.
-const STEPS: [f64; 4] = [
-    -1.586_134_342_059_924,
-    -0.052_980_118_572_961,
-    0.882_911_075_530_934,
-    0.443_506_852_043_971,
-];
+const STEPS: [f64; 4] =
+    [-1.586_134_342_059_924, -0.052_980_118_572_961, 0.882_911_075_530_934, 0.443_506_852_043_971];
 /// Scale of the low-pass after the steps.
 const SCALE: f64 = 1.149_604_398_860_241;
 /// Coefficients of the lowest band.
@@ -38,9 +36,7 @@ pub fn synthesised(coefficients: &[f64]) -> Vec<f64> {
     while len <= all.len() {
         let (low, high) = all.get(..len).unwrap_or_default().split_at(len / 2);
         let samples = backward(low, high);
-        all.iter_mut()
-            .zip(samples)
-            .for_each(|(to, from)| *to = from);
+        all.iter_mut().zip(samples).for_each(|(to, from)| *to = from);
         len *= 2;
     }
     all
@@ -69,10 +65,7 @@ fn backward(low: &[f64], high: &[f64]) -> Vec<f64> {
             lift_odd(&even, &mut odd, -predict);
         }
     }
-    even.into_iter()
-        .zip(odd)
-        .flat_map(|(even, odd)| [even, odd])
-        .collect()
+    even.into_iter().zip(odd).flat_map(|(even, odd)| [even, odd]).collect()
 }
 
 /// Adds to each odd sample a part of its neighbours; the last has one on its left alone, twice.

@@ -16,7 +16,8 @@ const BLOCK: usize = 512;
 const LEAST_RATE_HZ: f64 = 2_200.0;
 /// Resolution of a coefficient, in the largest of its block.
 const RESOLUTION: f64 = 1e-4;
-/// There is no clock in a file, so that equal inputs give equal bytes, and the format asks for a date.
+/// There is no clock in a file, so that equal inputs give equal bytes, and the format asks for a
+/// date.
 const NO_DATE: &str = "1970-01-01";
 
 /// What positions of a file are: seconds, or metres that a finger slides at a speed.
@@ -51,7 +52,8 @@ impl Space {
         self.speed_mm_s.map_or(1.0, |speed| speed / 1e3)
     }
 
-    /// Ticks of a block of wavelets: a power of two, so that the samples in a metre are a whole number.
+    /// Ticks of a block of wavelets: a power of two, so that the samples in a metre are a whole
+    /// number.
     fn block_ticks(self) -> i64 {
         let most = BLOCK as f64 * f64::from(self.timescale()) * self.per_s() / LEAST_RATE_HZ;
         match self.speed_mm_s {
@@ -104,10 +106,7 @@ pub fn waveform(samples: &[f64], profile: &Profile, space: Space, description: &
     let blocks = samples.chunks(BLOCK).enumerate().map(|(index, samples)| {
         let mut block = samples.to_vec();
         block.resize(BLOCK, 0.0);
-        effect(
-            index as i64 * space.block_ticks(),
-            coefficients(&analysed(&block)),
-        )
+        effect(index as i64 * space.block_ticks(), coefficients(&analysed(&block)))
     });
     let band = Band {
         band_type: BandType::WaveletWave,
@@ -152,11 +151,7 @@ fn effect(position: i64, keyframes: Vec<Keyframe>) -> Effect {
 }
 
 fn file(bands: Vec<Band>, profile: &Profile, space: Space, description: &str) -> Hjif {
-    let modality = if space.speed_mm_s.is_some() {
-        TEXTURE
-    } else {
-        VIBRATION
-    };
+    let modality = if space.speed_mm_s.is_some() { TEXTURE } else { VIBRATION };
     let device = ReferenceDevice {
         id: 1,
         name: profile.title.clone(),

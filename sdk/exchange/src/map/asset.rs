@@ -41,14 +41,7 @@ pub(crate) fn held(image: &Image, surface: &Surface<'_>) -> Result<Held, Fault> 
         [surface.pitch_mm, surface.speed_mm_s, surface.force_n].map(|x| f64::from(x as f32));
     let rms = htex_map::rms(image.width, pitch_mm, speed_mm_s, &grey, Band::TACTILE);
     let rms = f64::from(rms.map_err(|error| fault(&error))? as f32);
-    let numbers = [
-        image.width as f64,
-        pitch_mm,
-        speed_mm_s,
-        force_n,
-        rms,
-        grey.len() as f64,
-    ];
+    let numbers = [image.width as f64, pitch_mm, speed_mm_s, force_n, rms, grey.len() as f64];
     let flat = [&numbers[..], &grey].concat();
     let parameters =
         round_within(&fields, model.descriptor(), &flat).map_err(|error| fault(&error))?;
@@ -79,10 +72,7 @@ pub(crate) fn held(image: &Image, surface: &Surface<'_>) -> Result<Held, Fault> 
 }
 
 fn manifest(surface: &Surface<'_>, representation: Representation) -> Manifest {
-    let options = [
-        ("full-scale", surface.full_scale),
-        ("pitch", surface.pitch_mm),
-    ];
+    let options = [("full-scale", surface.full_scale), ("pitch", surface.pitch_mm)];
     Manifest {
         htex: VERSION.to_owned(),
         name: surface.naming.name.to_owned(),
@@ -100,9 +90,7 @@ fn manifest(surface: &Surface<'_>, representation: Representation) -> Manifest {
         band: Band::TACTILE,
         provenance: Provenance {
             tool: surface.naming.tool.to_owned(),
-            options: options
-                .map(|(name, value)| (name.to_owned(), value.to_string()))
-                .into(),
+            options: options.map(|(name, value)| (name.to_owned(), value.to_string())).into(),
             ..Provenance::default()
         },
         conditions: vec![Condition {

@@ -34,8 +34,8 @@ pub struct Image {
 /// Reads a PNG of grey values. Colours that are grey are read, too.
 ///
 /// # Errors
-/// When the file is no PNG, has more than 8 bits a channel, more than 255 pixels in a row or a column, colours, transparent pixels or
-/// several frames, with the place.
+/// When the file is no PNG, has more than 8 bits a channel, more than 255 pixels in a row or a
+/// column, colours, transparent pixels or several frames, with the place.
 pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     if bytes.len() > MOST_BYTES {
         let size = bytes.len();
@@ -45,17 +45,11 @@ pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     }
     let failed =
         |error: png::DecodingError| Fault::whole(format!("it is no PNG that can be read: {error}"));
-    let limits = Limits {
-        bytes: MOST_DECODED,
-    };
+    let limits = Limits { bytes: MOST_DECODED };
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
     decoder.set_transformations(Transformations::EXPAND);
     let header = decoder.read_header_info().map_err(failed)?;
-    let (width, height, depth) = (
-        header.width as usize,
-        header.height as usize,
-        header.bit_depth,
-    );
+    let (width, height, depth) = (header.width as usize, header.height as usize, header.bit_depth);
     if width > MOST_SIDE || height > MOST_SIDE {
         return Err(Fault::new(
             "IHDR",
@@ -65,20 +59,14 @@ pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
         ));
     }
     if depth == BitDepth::Sixteen {
-        return Err(Fault::new(
-            "IHDR",
-            "it has 16 bits a channel; save it with 8",
-        ));
+        return Err(Fault::new("IHDR", "it has 16 bits a channel; save it with 8"));
     }
     let mut reader = decoder.read_info().map_err(failed)?;
     let mut pixels = vec![0; reader.output_buffer_size().unwrap_or(0)];
     let frame = reader.next_frame(&mut pixels).map_err(failed)?;
     let info = reader.info();
     if info.animation_control.is_some() {
-        return Err(Fault::new(
-            "acTL",
-            "it has several frames; save one of them",
-        ));
+        return Err(Fault::new("acTL", "it has several frames; save one of them"));
     }
     pixels.truncate(frame.buffer_size());
     Ok(Image {
@@ -88,17 +76,12 @@ pub fn read(bytes: &[u8]) -> Result<Image, Fault> {
     })
 }
 
-/// The rights in the text chunks before the pixels; none of a file without any, or that cannot be read.
+/// The rights in the text chunks before the pixels; none of a file without any, or that cannot be
+/// read.
 pub(crate) fn rights(bytes: &[u8]) -> Rights {
-    let limits = Limits {
-        bytes: MOST_DECODED,
-    };
+    let limits = Limits { bytes: MOST_DECODED };
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
-    let Ok(info) = decoder
-        .read_header_info()
-        .map(|_| ())
-        .and_then(|()| decoder.read_info())
-    else {
+    let Ok(info) = decoder.read_header_info().map(|_| ()).and_then(|()| decoder.read_info()) else {
         return Rights::default();
     };
     let info = info.info();
@@ -126,10 +109,7 @@ fn grey(pixels: &[u8], color: ColorType, width: usize) -> Result<Vec<u8>, Fault>
         };
         let [red, green, blue] = colours;
         if red != green || green != blue {
-            return Err(Fault::new(
-                place(index),
-                "the pixel has a colour; save the image in grey",
-            ));
+            return Err(Fault::new(place(index), "the pixel has a colour; save the image in grey"));
         }
         match alpha {
             255 => Ok(red),
@@ -139,11 +119,7 @@ fn grey(pixels: &[u8], color: ColorType, width: usize) -> Result<Vec<u8>, Fault>
             )),
         }
     };
-    pixels
-        .chunks_exact(color.samples())
-        .enumerate()
-        .map(one)
-        .collect()
+    pixels.chunks_exact(color.samples()).enumerate().map(one).collect()
 }
 
 /// The distance of pixels; none where the file gives a shape of pixels alone.
@@ -152,10 +128,7 @@ fn pitch_mm(stated: PixelDimensions) -> Result<Option<f64>, Fault> {
         return Ok(None);
     }
     if stated.xppu != stated.yppu {
-        return Err(Fault::new(
-            "pHYs",
-            "its pixels are no squares; scale the image",
-        ));
+        return Err(Fault::new("pHYs", "its pixels are no squares; scale the image"));
     }
     let pitch_mm = 1e3 / f64::from(stated.xppu);
     match PITCH_MM.contains(&pitch_mm) {
@@ -183,11 +156,7 @@ pub(super) fn to_bytes(image: &Image, rights: &Rights) -> Result<Vec<u8>, Fault>
     encoder.set_depth(BitDepth::Eight);
     encoder.set_pixel_dims(image.pitch_mm.map(|pitch_mm| {
         let in_metre = libm::round(1e3 / pitch_mm) as u32;
-        PixelDimensions {
-            xppu: in_metre,
-            yppu: in_metre,
-            unit: Unit::Meter,
-        }
+        PixelDimensions { xppu: in_metre, yppu: in_metre, unit: Unit::Meter }
     }));
     if !rights.is_empty() {
         let text = encoder.add_itxt_chunk("Copyright".to_owned(), rights.described(""));
@@ -223,10 +192,7 @@ mod tests {
     fn a_packed_text_is_read_up_to_a_length() {
         let text =
             |blanks: usize| format!("SPDX-License-Identifier: CC0-1.0\n{}", " ".repeat(blanks));
-        assert_eq!(
-            rights(&with_text(text(1_000))).license.as_deref(),
-            Some("CC0-1.0")
-        );
+        assert_eq!(rights(&with_text(text(1_000))).license.as_deref(), Some("CC0-1.0"));
         assert!(rights(&with_text(text(MOST_TEXT))).is_empty());
     }
 }

@@ -27,7 +27,8 @@ pub(crate) struct Printed {
     pub(crate) notes: Vec<String>,
 }
 
-/// Writes a texture as an image: its own pixels, or pixels of a row that is fitted to what it plays at a motion (by default, at its default condition).
+/// Writes a texture as an image: its own pixels, or pixels of a row that is fitted to what it plays
+/// at a motion (by default, at its default condition).
 ///
 /// # Errors
 /// When the texture is silent, the speed is unknown, or 255 pixels hold nothing of it.
@@ -44,16 +45,13 @@ pub(crate) fn written(
         )),
         Some((parameters, level_rms)) => {
             let (bytes, white) = image(&parameters, level_rms, &rights)?;
-            Ok(Printed {
-                bytes,
-                lost: None,
-                notes: vec![said(&parameters, white, asset)],
-            })
+            Ok(Printed { bytes, lost: None, notes: vec![said(&parameters, white, asset)] })
         }
     }
 }
 
-/// The parameters and the level of a texture that is a map: of the model that is named, else of the one that an app plays.
+/// The parameters and the level of a texture that is a map: of the model that is named, else of the
+/// one that an app plays.
 fn own(asset: &Asset, model: Option<&str>) -> Result<Option<(Vec<f64>, f64)>, ExchangeError> {
     match asset.loaded_model(model)?.id() {
         MODEL => Ok(Some(asset.parameters(model, None)?)),
@@ -74,9 +72,7 @@ fn fitted(
         speed_mm_s: motion
             .map(|motion| motion.speed_mm_s)
             .or(default.and_then(|one| one.speed_mm_s)),
-        force_n: motion
-            .map(|motion| motion.force_n)
-            .or(default.and_then(|one| one.force_n)),
+        force_n: motion.map(|motion| motion.force_n).or(default.and_then(|one| one.force_n)),
     };
     if condition.speed_mm_s.is_none() {
         return Err(cannot(
@@ -96,9 +92,7 @@ fn fitted(
         options: &[],
     };
     let fit = map.fit_at(&request, condition).map_err(failed)?;
-    let shape = map
-        .magnitude(&fit.parameters, band, &frequency_hz)
-        .map_err(failed)?;
+    let shape = map.magnitude(&fit.parameters, band, &frequency_hz).map_err(failed)?;
     let reference = TextureSpectrum {
         quantity: asset.quantity(),
         band,
@@ -109,11 +103,7 @@ fn fitted(
         signal: Vec::new(),
         signal_rate_hz: 0.0,
     };
-    let (bytes, white) = image(
-        &fit.parameters,
-        fit.level_rms,
-        &Rights::of(asset.manifest()),
-    )?;
+    let (bytes, white) = image(&fit.parameters, fit.level_rms, &Rights::of(asset.manifest()))?;
     Ok(Printed {
         bytes,
         lost: Some(loss(&reference, shape, fit.level_rms)?),
@@ -178,8 +168,5 @@ fn said(parameters: &[f64], white: f64, asset: &Asset) -> String {
 }
 
 fn cannot(problem: &str) -> ExchangeError {
-    ExchangeError::Cannot {
-        format: "png",
-        problem: problem.to_owned(),
-    }
+    ExchangeError::Cannot { format: "png", problem: problem.to_owned() }
 }

@@ -10,10 +10,7 @@ pub struct Busy {
 
 impl Busy {
     pub fn start() -> Self {
-        Self {
-            computed: computed(),
-            start: Instant::now(),
-        }
+        Self { computed: computed(), start: Instant::now() }
     }
 
     pub fn elapsed(&self) -> Duration {

@@ -19,17 +19,16 @@ pub struct Model {
     pub force: f64,
 }
 
-/// Forty models, silent where the tool does not move or press, with a zero next to the Nyquist frequency as the toolkit's have.
+/// Forty models, silent where the tool does not move or press, with a zero next to the Nyquist
+/// frequency as the toolkit's have.
 pub fn draw(seed: u64, poles: usize, zeros: usize) -> Vec<Model> {
     let mut uniform = Uniform::new(seed);
     let mut within = |low: f64, high: f64| low + (high - low) * uniform.next_unit();
     let mut models = Vec::new();
     for row in 0..ROWS {
         for column in 0..COLUMNS {
-            let bend = 0.2
-                * f64::from(u8::from(
-                    row % (ROWS - 1) != 0 && column % (COLUMNS - 1) != 0,
-                ));
+            let bend =
+                0.2 * f64::from(u8::from(row % (ROWS - 1) != 0 && column % (COLUMNS - 1) != 0));
             let place = |at: usize, of: usize, moved: f64| (at as f64 + moved) / (of as f64 - 1.0);
             let speed = 242.346_758 * place(column, COLUMNS, within(-bend, bend));
             let force = 6.558_225 * place(row, ROWS, within(-bend, bend));
@@ -52,16 +51,16 @@ fn rounded(x: f64) -> f64 {
     format!("{x:.6}").parse().unwrap()
 }
 
-/// A polynomial with its zeros inside the circle, the last of them, if there is one, at minus a radius.
+/// A polynomial with its zeros inside the circle, the last of them, if there is one, at minus a
+/// radius.
 fn polynomial(
     order: usize,
     within: &mut impl FnMut(f64, f64) -> f64,
     radius: Option<f64>,
 ) -> Vec<f64> {
     let free = order.saturating_sub(usize::from(radius.is_some()));
-    let reflection: Vec<f64> = (0..free)
-        .map(|i| within(-0.8, 0.8) / (1.0 + 0.2 * i as f64))
-        .collect();
+    let reflection: Vec<f64> =
+        (0..free).map(|i| within(-0.8, 0.8) / (1.0 + 0.2 * i as f64)).collect();
     let mut made = vec![1.0];
     made.extend(reflection_to_coefficients(&reflection).iter().map(|a| -a));
     if let Some(radius) = radius.filter(|_| order > 0) {

@@ -1,4 +1,5 @@
-//! The rules of the formats, stated once more over plain JSON: what their own readers refuse, file by file.
+//! The rules of the formats, stated once more over plain JSON: what their own readers refuse, file
+//! by file.
 #![allow(clippy::panic)] // A broken rule fails a test.
 
 use serde_json::Value;
@@ -11,12 +12,11 @@ fn list<'a>(value: &'a Value, pointer: &str) -> &'a [Value] {
 }
 
 fn number(value: &Value, key: &str) -> f64 {
-    value[key]
-        .as_f64()
-        .unwrap_or_else(|| panic!("{key} of {value}"))
+    value[key].as_f64().unwrap_or_else(|| panic!("{key} of {value}"))
 }
 
-/// `HapticData::validate`, strict (core/haptic_data/src/v1.rs of facebook/meta-haptics-sdk), which reads 32-bit floats.
+/// `HapticData::validate`, strict (core/haptic_data/src/v1.rs of facebook/meta-haptics-sdk), which
+/// reads 32-bit floats.
 pub fn haptic(file: &Value) {
     assert_eq!(file["version"]["major"], 1);
     for key in ["minor", "patch"] {
@@ -26,11 +26,7 @@ pub fn haptic(file: &Value) {
     let amplitude = list(file, &format!("{envelopes}/amplitude"));
     assert!(amplitude.len() >= 2);
     let time = |point: &Value| number(point, "time") as f32;
-    let sorted = |points: &[Value]| {
-        points
-            .windows(2)
-            .all(|pair| time(&pair[0]) <= time(&pair[1]))
-    };
+    let sorted = |points: &[Value]| points.windows(2).all(|pair| time(&pair[0]) <= time(&pair[1]));
     assert!(sorted(amplitude) && time(&amplitude[0]) >= 0.0);
     let (start, end) = (time(&amplitude[0]), time(&amplitude[amplitude.len() - 1]));
     assert!(end > start);
@@ -50,7 +46,8 @@ pub fn haptic(file: &Value) {
     }
 }
 
-/// What Core Haptics' documentation states, and what Meta's reader of `.ahap` knows (core/haptic_data/src/ahap.rs).
+/// What Core Haptics' documentation states, and what Meta's reader of `.ahap` knows
+/// (core/haptic_data/src/ahap.rs).
 pub fn ahap(file: &Value) {
     assert_eq!(number(file, "Version"), 1.0);
     let mut seconds = 0.0;
@@ -70,10 +67,7 @@ pub fn ahap(file: &Value) {
             }
             "ParameterCurve" => {
                 let id = entry["ParameterID"].as_str().unwrap_or_default();
-                assert!(
-                    ["HapticIntensityControl", "HapticSharpnessControl"].contains(&id),
-                    "{id}"
-                );
+                assert!(["HapticIntensityControl", "HapticSharpnessControl"].contains(&id), "{id}");
                 let points = list(entry, "/ParameterCurveControlPoints");
                 assert!(!points.is_empty() && points.len() <= 16);
                 assert_eq!(number(&points[0], "Time"), 0.0);
@@ -88,27 +82,20 @@ pub fn ahap(file: &Value) {
     assert!(seconds > 0.0);
 }
 
-/// Android's builders: `createWaveform`, `WaveformEnvelopeBuilder`, `BasicEnvelopeBuilder`, and what `VibratorEnvelopeEffectInfo` guarantees.
+/// Android's builders: `createWaveform`, `WaveformEnvelopeBuilder`, `BasicEnvelopeBuilder`, and
+/// what `VibratorEnvelopeEffectInfo` guarantees.
 pub fn android(file: &Value, most_points: usize, shortest_ms: u64) {
     let timings = list(file, "/waveform/timings_ms");
     let amplitudes = list(file, "/waveform/amplitudes");
     assert_eq!(timings.len(), amplitudes.len());
     assert!(timings.iter().any(|ms| ms.as_u64() > Some(0)));
-    assert!(
-        amplitudes
-            .iter()
-            .all(|a| a.as_u64().is_some_and(|a| a <= 255))
-    );
+    assert!(amplitudes.iter().all(|a| a.as_u64().is_some_and(|a| a <= 255)));
     for (envelope, amplitude, other) in [
         ("waveform_envelope", "amplitude", "frequency_hz"),
         ("basic_envelope", "intensity", "sharpness"),
     ] {
         let points = list(file, &format!("/{envelope}/control_points"));
-        assert!(
-            !points.is_empty() && points.len() <= most_points,
-            "{}",
-            points.len()
-        );
+        assert!(!points.is_empty() && points.len() <= most_points, "{}", points.len());
         for point in points {
             let ms = point["duration_ms"].as_u64().unwrap_or_default();
             assert!((shortest_ms..=1_000).contains(&ms), "{envelope}: {ms} ms");
@@ -119,8 +106,8 @@ pub fn android(file: &Value, most_points: usize, shortest_ms: u64) {
     }
 }
 
-/// What `IOJson::loadFile` of the reference software (MPEGGroup/HapticReferenceSoftware) requires, and the rules of its check of conformance, of
-/// files of level 1 of the profile Main.
+/// What `IOJson::loadFile` of the reference software (MPEGGroup/HapticReferenceSoftware) requires,
+/// and the rules of its check of conformance, of files of level 1 of the profile Main.
 pub fn hjif(file: &Value) {
     let year = file["version"].as_str().unwrap_or_default();
     assert!(year.parse::<u32>().is_ok_and(|year| year >= 2023), "{year}");
@@ -136,20 +123,11 @@ pub fn hjif(file: &Value) {
             assert!(perception[key].is_i64(), "{key}");
         }
         assert!(perception["description"].is_string() && perception["effect_library"].is_array());
-        let modality = perception["perception_modality"]
-            .as_str()
-            .unwrap_or_default();
-        assert!(
-            ["Vibrotactile", "Vibrotactile Texture"].contains(&modality),
-            "{modality}"
-        );
+        let modality = perception["perception_modality"].as_str().unwrap_or_default();
+        assert!(["Vibrotactile", "Vibrotactile Texture"].contains(&modality), "{modality}");
         for device in list(perception, "/reference_devices") {
             assert!(device["id"].as_u64() >= Some(1) && device["name"].is_string());
-            let hertz = [
-                "minimum_frequency",
-                "resonance_frequency",
-                "maximum_frequency",
-            ];
+            let hertz = ["minimum_frequency", "resonance_frequency", "maximum_frequency"];
             assert!(hertz.map(|key| number(device, key)).is_sorted());
         }
         for channel in list(perception, "/channels") {
@@ -163,11 +141,7 @@ fn check_channel(channel: &Value, perception: &Value) {
     assert!(channel["gain"].is_number() && channel["mixing_coefficient"].is_number());
     assert!(channel["body_part_mask"].is_u64());
     let devices = list(perception, "/reference_devices");
-    assert!(
-        devices
-            .iter()
-            .any(|d| d["id"] == channel["reference_device_id"])
-    );
+    assert!(devices.iter().any(|d| d["id"] == channel["reference_device_id"]));
     let bands = list(channel, "/bands");
     assert!(!bands.is_empty() && bands.len() <= 7, "{}", bands.len());
     for band in bands {
@@ -185,11 +159,7 @@ fn check_channel(channel: &Value, perception: &Value) {
             for keyframe in list(effect, "/keyframes") {
                 assert!(keyframe["relative_position"].is_i64());
                 assert!(keyframe["amplitude_modulation"].is_number());
-                assert!(
-                    keyframe
-                        .get("frequency_modulation")
-                        .is_none_or(Value::is_i64)
-                );
+                assert!(keyframe.get("frequency_modulation").is_none_or(Value::is_i64));
             }
         }
     }

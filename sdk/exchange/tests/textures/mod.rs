@@ -8,26 +8,11 @@ use htex_simulate::{SimulationOptions, Surface, simulate};
 /// Bands of a surface.
 pub fn texture(surface: Surface) -> Asset {
     let options = SimulationOptions::new(surface).with_duration_s(4.0);
-    let recording = simulate(&options)
-        .unwrap()
-        .to_recording("simulated")
-        .unwrap();
-    let settings = FitSettings {
-        models: Some(vec!["bands".to_owned()]),
-        ..FitSettings::default()
-    };
+    let recording = simulate(&options).unwrap().to_recording("simulated").unwrap();
+    let settings = FitSettings { models: Some(vec!["bands".to_owned()]), ..FitSettings::default() };
     let registry = Registry::builtin();
     let reading = ReadingSettings::default();
-    let request = settings
-        .request(&registry, &reading, surface.name(), "tests")
-        .unwrap();
-    let given = Exploration {
-        speed_mm_s: Some(80.0),
-        force_n: Some(0.4),
-    };
-    Asset::new(
-        fit_asset(&[Take { recording, given }], &request)
-            .unwrap()
-            .asset,
-    )
+    let request = settings.request(&registry, &reading, surface.name(), "tests").unwrap();
+    let given = Exploration { speed_mm_s: Some(80.0), force_n: Some(0.4) };
+    Asset::new(fit_asset(&[Take { recording, given }], &request).unwrap().asset)
 }

@@ -1,10 +1,12 @@
 //! The reader of every TOML file: recipes, studies, calibrations and the profiles of actuators.
 //!
-//! The parser of the crate `toml` recurses. Its own bound (80 levels) counts wrongly after an error: a closing bracket without an
-//! opening one lowers its count, so 7,200 lines of `motion = { const']` overflowed a stack of 8 MiB. It counts the dots of each
-//! dotted key alone, so that 80 tables in each other with 80 names each are 6,400 levels. Therefore the brackets and dots of the
-//! text are counted before it is parsed (`nesting.rs`), and a text beyond [`MOST_LEVELS`] is an error. No other module may
-//! call the crate (`clippy.toml`; no other crate depends on it).
+//! The parser of the crate `toml` recurses. Its own bound (80 levels) counts wrongly after an
+//! error: a closing bracket without an opening one lowers its count, so 7,200 lines of
+//! `motion = { const']` overflowed a stack of 8 MiB. It counts the dots of each dotted key alone,
+//! so that 80 tables in each other with 80 names each are 6,400 levels. Therefore the brackets and
+//! dots of the text are counted before it is parsed (`nesting.rs`), and a text beyond
+//! [`MOST_LEVELS`] is an error. No other module may call the crate (`clippy.toml`; no other crate
+//! depends on it).
 #![allow(clippy::disallowed_methods)] // The one place that may call the crate `toml`.
 
 mod nesting;
@@ -42,11 +44,7 @@ impl TomlError {
     /// An error at a byte of the text.
     fn at(text: &str, byte: usize, message: String) -> Self {
         let (line, column) = place(text, byte);
-        Self {
-            line,
-            column,
-            message,
-        }
+        Self { line, column, message }
     }
 
     fn of(text: &str, error: &de::Error) -> Self {
@@ -72,15 +70,13 @@ pub fn from_str<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
     toml::from_str(text).map_err(|error| TomlError::of(text, &error))
 }
 
-/// Returns the line of each key, from 1, or `None` where the text has no such key. A path has the names of the tables that the
-/// key stands in, and the indices of arrays.
+/// Returns the line of each key, from 1, or `None` where the text has no such key. A path has the
+/// names of the tables that the key stands in, and the indices of arrays.
 pub fn lines_of_keys<'p>(
     text: &str,
     paths: impl IntoIterator<Item = &'p [String]>,
 ) -> Vec<Option<usize>> {
-    let table = check_nesting(text)
-        .ok()
-        .and_then(|()| DeTable::parse(text).ok());
+    let table = check_nesting(text).ok().and_then(|()| DeTable::parse(text).ok());
     let line = |path| {
         let at = place_of_key(table.as_ref()?.get_ref(), path)?;
         Some(place(text, at).0)

@@ -5,8 +5,8 @@ use toml_parser::lexer::{Token, TokenKind};
 
 use super::{TomlError, place};
 
-/// Deepest nesting of a TOML text: tables and arrays in each other, by brackets and by the dots of keys together. Recipes and
-/// studies have at most 8.
+/// Deepest nesting of a TOML text: tables and arrays in each other, by brackets and by the dots of
+/// keys together. Recipes and studies have at most 8.
 pub const MOST_LEVELS: usize = 24;
 
 /// An open bracket.
@@ -19,9 +19,10 @@ struct Open {
 
 /// Counts levels in a text that may have any errors.
 ///
-/// The parser recurses at an opening bracket, and returns at the closing bracket of the same kind or at the end. In a text whose
-/// brackets match, each of its calls thus has an open bracket here. It puts a value below the last key that it read, which after an
-/// error may be any key since the bracket was opened: the longest one counts.
+/// The parser recurses at an opening bracket, and returns at the closing bracket of the same kind
+/// or at the end. In a text whose brackets match, each of its calls thus has an open bracket here.
+/// It puts a value below the last key that it read, which after an error may be any key since the
+/// bracket was opened: the longest one counts.
 #[derive(Default)]
 struct Nesting {
     open: Vec<Open>,
@@ -35,7 +36,8 @@ struct Nesting {
     after_dot: bool,
 }
 
-/// Refuses a text that is nested deeper than [`MOST_LEVELS`], or in which a bracket is closed by another kind of bracket.
+/// Refuses a text that is nested deeper than [`MOST_LEVELS`], or in which a bracket is closed by
+/// another kind of bracket.
 pub(super) fn check_nesting(text: &str) -> Result<(), TomlError> {
     let mut nesting = Nesting::default();
     let source = Source::new(text);
@@ -86,11 +88,7 @@ impl Nesting {
     fn enter(&mut self, kind: TokenKind, start: usize) {
         self.run = 0;
         self.inside += 1;
-        self.open.push(Open {
-            kind,
-            start,
-            dots: 0,
-        });
+        self.open.push(Open { kind, start, dots: 0 });
     }
 
     fn leave(&mut self, kind: TokenKind, text: &str) -> Result<(), String> {

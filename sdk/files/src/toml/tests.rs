@@ -18,7 +18,8 @@ fn read(text: &str) -> Result<Value, TomlError> {
     thread.unwrap().join().unwrap()
 }
 
-/// All lines of up to three of these pieces, repeated: brackets, keys, values, quotes, comments, and errors of each.
+/// All lines of up to three of these pieces, repeated: brackets, keys, values, quotes, comments,
+/// and errors of each.
 #[test]
 fn no_text_overflows_a_small_stack() {
     let pieces = [
@@ -67,10 +68,7 @@ fn what_is_nested_too_deeply_is_named_with_its_place() {
     let both = format!("[{}]\n{} = 1", names(8), names(13));
     let crossed = "a = [\n  { b = 1 ],\n]".to_owned();
     for (text, error) in [
-        (
-            unclosed,
-            "line 1, column 18: expected `}`, which closes the `{` of line 1, column 10",
-        ),
+        (unclosed, "line 1, column 18: expected `}`, which closes the `{` of line 1, column 10"),
         (
             "x = { y\n".repeat(7_200),
             "line 25, column 5: tables and arrays are nested deeper than 24 levels here; the first open bracket is in line 1, column 5",
@@ -87,14 +85,8 @@ fn what_is_nested_too_deeply_is_named_with_its_place() {
             format!("{} = 1", names(100_000)),
             "line 1, column 26: tables and arrays are nested deeper than 24 levels here",
         ),
-        (
-            both,
-            "line 2, column 26: tables and arrays are nested deeper than 24 levels here",
-        ),
-        (
-            crossed,
-            "line 2, column 11: expected `}`, which closes the `{` of line 2, column 3",
-        ),
+        (both, "line 2, column 26: tables and arrays are nested deeper than 24 levels here"),
+        (crossed, "line 2, column 11: expected `}`, which closes the `{` of line 2, column 3"),
     ] {
         let refused = read(&text).map_err(|error| error.to_string());
         assert_eq!(refused, Err(error.to_owned()), "{:.60}", text);
@@ -104,11 +96,7 @@ fn what_is_nested_too_deeply_is_named_with_its_place() {
 #[test]
 fn the_deepest_texts_are_read() {
     let deep = |open: &str, close: &str, levels: usize| {
-        read(&format!(
-            "a = {}1{}",
-            open.repeat(levels),
-            close.repeat(levels)
-        ))
+        read(&format!("a = {}1{}", open.repeat(levels), close.repeat(levels)))
     };
     assert!(deep("[", "]", MOST_LEVELS).is_ok());
     assert!(deep("{a=", "}", MOST_LEVELS).is_ok());

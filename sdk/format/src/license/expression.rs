@@ -1,5 +1,5 @@
-//! The grammar of SPDX expressions. The lists are those of the crate `spdx`, which also has the full names of all licences, four times
-//! as many bytes; a test compares both.
+//! The grammar of SPDX expressions. The lists are those of the crate `spdx`, which also has the
+//! full names of all licences, four times as many bytes; a test compares both.
 
 use core::cmp::Ordering;
 
@@ -55,7 +55,8 @@ const fn unexpected(last: Option<Token>) -> &'static str {
     }
 }
 
-/// Checks an expression against the grammar; returns the first id that is not listed, if there is one.
+/// Checks an expression against the grammar; returns the first id that is not listed, if there is
+/// one.
 ///
 /// # Errors
 /// What is wrong.
@@ -129,9 +130,8 @@ fn token(first: char, text: &str, follows_space: bool) -> Result<(Token, usize),
 
 /// `LicenseRef-NAME` or `AdditionRef-NAME`, after `DocumentRef-NAME:` if it is of another document.
 fn reference(word: &str) -> Option<(Token, usize)> {
-    let document = word
-        .split_once(':')
-        .filter(|(document, _)| document.starts_with("DocumentRef-"));
+    let document =
+        word.split_once(':').filter(|(document, _)| document.starts_with("DocumentRef-"));
     let (before, own) = match document {
         Some((document, own)) => (document.len() + 1, own),
         None => (0, word),
@@ -148,16 +148,13 @@ fn is_of_id(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '-' || c == '.'
 }
 
-/// Whether a line of a list is this. The lists are in the order of their bytes, so that a half is left out at each step: every asset with a
-/// licence asks as it is opened.
+/// Whether a line of a list is this. The lists are in the order of their bytes, so that a half is
+/// left out at each step: every asset with a licence asks as it is opened.
 fn is_listed(mut list: &str, id: &str) -> bool {
     while !list.is_empty() {
         let (before, after) = list.split_at_checked(list.len() / 2).unwrap_or_default();
         let begin = before.rfind('\n').map_or(0, |end| end + 1);
-        let length = after
-            .find('\n')
-            .map_or(list.len(), |end| before.len() + end)
-            - begin;
+        let length = after.find('\n').map_or(list.len(), |end| before.len() + end) - begin;
         let listed = list.get(begin..begin + length).unwrap_or_default();
         list = match listed.cmp(id) {
             Ordering::Equal => return true,
@@ -169,9 +166,7 @@ fn is_listed(mut list: &str, id: &str) -> bool {
 }
 
 fn is_gnu(id: &str) -> bool {
-    ["AGPL-", "GFDL-", "GPL-", "LGPL-"]
-        .iter()
-        .any(|family| id.starts_with(family))
+    ["AGPL-", "GFDL-", "GPL-", "LGPL-"].iter().any(|family| id.starts_with(family))
 }
 
 #[cfg(test)]
@@ -185,20 +180,14 @@ mod tests {
     use super::*;
 
     /// The standard's grammar and list; deprecated ids are still licences.
-    const LISTED: ParseMode = ParseMode {
-        allow_deprecated: true,
-        ..ParseMode::STRICT
-    };
+    const LISTED: ParseMode = ParseMode { allow_deprecated: true, ..ParseMode::STRICT };
 
     /// What the crate `spdx` says of an expression.
     fn expected(license: &str) -> Result<Option<String>, String> {
         let Err(unlisted) = Expression::parse_mode(license, LISTED) else {
             return Ok(None);
         };
-        let any_id = ParseMode {
-            allow_unknown: true,
-            ..LISTED
-        };
+        let any_id = ParseMode { allow_unknown: true, ..LISTED };
         match Expression::parse_mode(license, any_id) {
             Ok(_) => Ok(license.get(unlisted.span).map(str::to_owned)),
             Err(error) => Err(error.reason.to_string()),

@@ -6,14 +6,8 @@ use super::raw_zip::Entry;
 
 pub(super) fn archives() -> Vec<Named> {
     vec![
-        (
-            "archive_invalid",
-            b"This is no archive, but a text.".to_vec(),
-        ),
-        (
-            "archive_invalid_cut_off",
-            with_bytes(|b| b.truncate(b.len() - 9)),
-        ),
+        ("archive_invalid", b"This is no archive, but a text.".to_vec()),
+        ("archive_invalid_cut_off", with_bytes(|b| b.truncate(b.len() - 9))),
         (
             "archive_invalid_directory",
             with_bytes(|b| {
@@ -21,10 +15,7 @@ pub(super) fn archives() -> Vec<Named> {
                 b[directory] = b'Q';
             }),
         ),
-        (
-            "archive_extra_data_after",
-            with_bytes(|b| b.extend(b"more")),
-        ),
+        ("archive_extra_data_after", with_bytes(|b| b.extend(b"more"))),
         (
             "archive_extra_data_before",
             with_bytes(|b| {
@@ -69,26 +60,11 @@ pub(super) fn entries() -> Vec<Named> {
                 p[1] = Entry::stored("manifest.json", b"{}");
             }),
         ),
-        (
-            "entry_encrypted",
-            changed(|e| *e = e.clone().with(|h| h.flags = 1)),
-        ),
-        (
-            "entry_compression_unknown",
-            changed(|e| *e = e.clone().with(|h| h.method = 93)),
-        ),
-        (
-            "entry_data_descriptor",
-            changed(|e| *e = e.clone().with(|h| h.flags = 8)),
-        ),
-        (
-            "entry_extra_field",
-            changed(|e| e.central.extra = vec![0x55, 0x54, 0, 0]),
-        ),
-        (
-            "entry_extra_field_local",
-            changed(|e| e.local.extra = vec![0x55, 0x54, 0, 0]),
-        ),
+        ("entry_encrypted", changed(|e| *e = e.clone().with(|h| h.flags = 1))),
+        ("entry_compression_unknown", changed(|e| *e = e.clone().with(|h| h.method = 93))),
+        ("entry_data_descriptor", changed(|e| *e = e.clone().with(|h| h.flags = 8))),
+        ("entry_extra_field", changed(|e| e.central.extra = vec![0x55, 0x54, 0, 0])),
+        ("entry_extra_field_local", changed(|e| e.local.extra = vec![0x55, 0x54, 0, 0])),
         (
             "entry_header_mismatch_stored",
             changed(|e| {
@@ -125,14 +101,8 @@ pub(super) fn entries() -> Vec<Named> {
         ),
         ("mimetype_missing", with_parts(|p| p.truncate_front(1))),
         ("mimetype_not_first", with_parts(|p| p.swap(0, 1))),
-        (
-            "mimetype_compressed",
-            with_parts(|p| p[0] = deflated(&p[0])),
-        ),
-        (
-            "mimetype_wrong",
-            with_parts(|p| p[0] = Entry::stored("mimetype", b"application/zip")),
-        ),
+        ("mimetype_compressed", with_parts(|p| p[0] = deflated(&p[0]))),
+        ("mimetype_wrong", with_parts(|p| p[0] = Entry::stored("mimetype", b"application/zip"))),
         (
             "manifest_missing",
             with_parts(|p| {
@@ -153,7 +123,8 @@ impl TruncateFront for Vec<Entry> {
     }
 }
 
-/// Returns the entry with its data as a deflate stream of one stored block (RFC 1951, section 3.2.4).
+/// Returns the entry with its data as a deflate stream of one stored block (RFC 1951, section
+/// 3.2.4).
 fn deflated(entry: &Entry) -> Entry {
     let length = entry.data.len() as u16;
     let mut data = vec![1];

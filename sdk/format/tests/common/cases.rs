@@ -76,71 +76,21 @@ pub fn cases() -> Vec<Case> {
 pub(super) type Named = (&'static str, Vec<u8>);
 
 fn case(name: &str, bytes: Vec<u8>) -> Case {
-    Case {
-        name: name.to_owned(),
-        bytes,
-        limits: Limits::default(),
-    }
+    Case { name: name.to_owned(), bytes, limits: Limits::default() }
 }
 
 /// Valid files, with limits below what they take.
 fn limited() -> Vec<Case> {
     let sound = asset(1, vec![sbeta(1)]).to_bytes().unwrap();
     let default = Limits::default();
-    let case = |name: &str, limits| Case {
-        name: name.to_owned(),
-        bytes: sound.clone(),
-        limits,
-    };
+    let case = |name: &str, limits| Case { name: name.to_owned(), bytes: sound.clone(), limits };
     vec![
-        case(
-            "file_too_large",
-            Limits {
-                file_bytes: 400,
-                ..default
-            },
-        ),
-        case(
-            "archive_too_many_entries",
-            Limits {
-                entries: 2,
-                ..default
-            },
-        ),
-        case(
-            "archive_too_large",
-            Limits {
-                total_bytes: 500,
-                ..default
-            },
-        ),
-        case(
-            "entry_too_large",
-            Limits {
-                entry_bytes: 500,
-                ..default
-            },
-        ),
-        case(
-            "entry_ratio",
-            Limits {
-                ratio: 1,
-                ..default
-            },
-        ),
-        case(
-            "json_too_deep_limit",
-            Limits {
-                json_depth: 4,
-                ..default
-            },
-        ),
-        case(
-            "values_too_many",
-            Limits {
-                values: 1,
-                ..default
-            },
-        ),
+        case("file_too_large", Limits { file_bytes: 400, ..default }),
+        case("archive_too_many_entries", Limits { entries: 2, ..default }),
+        case("archive_too_large", Limits { total_bytes: 500, ..default }),
+        case("entry_too_large", Limits { entry_bytes: 500, ..default }),
+        case("entry_ratio", Limits { ratio: 1, ..default }),
+        case("json_too_deep_limit", Limits { json_depth: 4, ..default }),
+        case("values_too_many", Limits { values: 1, ..default }),
     ]
 }

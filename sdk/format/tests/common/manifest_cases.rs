@@ -24,25 +24,15 @@ pub(super) fn manifests() -> Vec<Named> {
             m["representations"][0]["fields"][0]["store"] = json!({ "u8": steps, "u16": steps })
         }),
         ("json_type_null", |m| m["author"] = json!(null)),
-        ("json_type_fraction", |m| {
-            m["representations"][0]["at"][0]["condition"] = json!(0.5)
-        }),
-        ("json_type_missing", |m| {
-            drop(m.as_object_mut().unwrap().remove("band"))
-        }),
+        ("json_type_fraction", |m| m["representations"][0]["at"][0]["condition"] = json!(0.5)),
+        ("json_type_missing", |m| drop(m.as_object_mut().unwrap().remove("band"))),
         ("json_unknown_key", |m| m["licence"] = json!("CC0-1.0")),
-        ("json_unknown_key_inside", |m| {
-            m["band"]["lo_hz"] = json!(20)
-        }),
-        ("version_missing", |m| {
-            drop(m.as_object_mut().unwrap().remove("htex"))
-        }),
+        ("json_unknown_key_inside", |m| m["band"]["lo_hz"] = json!(20)),
+        ("version_missing", |m| drop(m.as_object_mut().unwrap().remove("htex"))),
         ("version_invalid", |m| m["htex"] = json!("1")),
         ("version_unsupported", |m| m["htex"] = json!("2.0")),
         ("name_empty", |m| m["name"] = json!(" ")),
-        ("license_missing", |m| {
-            drop(m.as_object_mut().unwrap().remove("license"))
-        }),
+        ("license_missing", |m| drop(m.as_object_mut().unwrap().remove("license"))),
         ("quantity_unknown", |m| m["quantity"] = json!("friction")),
         ("name_empty_and_others", |m| {
             m["name"] = json!("");
@@ -58,9 +48,7 @@ pub(super) fn manifests() -> Vec<Named> {
             m["reference"] = json!({ "file": "absent.bin" });
             m["extensions"] = json!({ "LOOK": {} });
         }),
-        ("unit_unknown_acceleration", |m| {
-            m["quantity"] = json!("acceleration")
-        }),
+        ("unit_unknown_acceleration", |m| m["quantity"] = json!("acceleration")),
         ("doi_invalid", |m| {
             m["doi"] = json!("https://doi.org/10.5281/zenodo.1234567");
         }),
@@ -80,67 +68,40 @@ pub(super) fn manifests() -> Vec<Named> {
         }),
         ("license_invalid", |m| m["license"] = json!("CC BY 4.0")),
         ("license_unknown", |m| m["license"] = json!("CC-BY-9.0")),
-        ("field_unknown", |m| {
-            m["representations"][0]["fields"][0]["name"] = json!("alfa")
-        }),
-        ("field_unit_wrong", |m| {
-            m["representations"][0]["fields"][1]["unit"] = json!("Hz")
-        }),
+        ("field_unknown", |m| m["representations"][0]["fields"][0]["name"] = json!("alfa")),
+        ("field_unit_wrong", |m| m["representations"][0]["fields"][1]["unit"] = json!("Hz")),
         ("level_invalid_displacement", |m| {
             m["quantity"] = json!("displacement");
             m["unit"] = json!("m");
             m["representations"][0]["at"][0]["level_rms"] = json!(101);
         }),
         ("unit_unknown", |m| m["unit"] = json!("mN")),
-        ("band_invalid", |m| {
-            m["band"] = json!({ "low_hz": 1000, "high_hz": 20 })
-        }),
-        ("source_invalid", |m| {
-            m["provenance"]["recordings"][0]["rate_hz"] = json!(0)
-        }),
-        ("source_path", |m| {
-            m["provenance"]["recordings"][0]["file"] = json!("/home/me/a.csv")
-        }),
+        ("band_invalid", |m| m["band"] = json!({ "low_hz": 1000, "high_hz": 20 })),
+        ("source_invalid", |m| m["provenance"]["recordings"][0]["rate_hz"] = json!(0)),
+        ("source_path", |m| m["provenance"]["recordings"][0]["file"] = json!("/home/me/a.csv")),
         ("conditions_empty", |m| m["conditions"] = json!([])),
-        ("condition_invalid", |m| {
-            m["conditions"][0]["speed_mm_s"] = json!(-40)
-        }),
+        ("condition_invalid", |m| m["conditions"][0]["speed_mm_s"] = json!(-40)),
         ("condition_duplicate", |m| m["conditions"] = json!([{}, {}])),
         ("condition_duplicate_absent", |m| {
             m["conditions"] = json!([{}, { "speed_mm_s": 0, "force_n": 0 }])
         }),
-        ("representations_empty", |m| {
-            m["representations"] = json!([])
-        }),
-        ("model_id_invalid", |m| {
-            m["representations"][0]["model"] = json!("sBeta")
-        }),
+        ("representations_empty", |m| m["representations"] = json!([])),
+        ("model_id_invalid", |m| m["representations"][0]["model"] = json!("sBeta")),
         ("model_duplicate", |m| {
             let twin = m["representations"][0].clone();
             m["representations"].as_array_mut().unwrap().push(twin);
         }),
-        ("model_version_invalid", |m| {
-            m["representations"][0]["model_version"] = json!("1")
-        }),
-        ("field_name_empty", |m| {
-            m["representations"][0]["fields"][0]["name"] = json!("")
-        }),
-        ("field_duplicate", |m| {
-            m["representations"][0]["fields"][0]["name"] = json!("beta")
-        }),
+        ("model_version_invalid", |m| m["representations"][0]["model_version"] = json!("1")),
+        ("field_name_empty", |m| m["representations"][0]["fields"][0]["name"] = json!("")),
+        ("field_duplicate", |m| m["representations"][0]["fields"][0]["name"] = json!("beta")),
         ("store_invalid", |m| {
             m["representations"][0]["fields"][0]["store"] = json!({ "u16": { "scale": 0 } });
         }),
         ("at_empty", |m| m["representations"][0]["at"] = json!([])),
-        ("condition_index_invalid", |m| {
-            m["representations"][0]["at"][0]["condition"] = json!(1)
-        }),
+        ("condition_index_invalid", |m| m["representations"][0]["at"][0]["condition"] = json!(1)),
         ("condition_index_duplicate", |m| {
             let twin = m["representations"][0]["at"][0].clone();
-            m["representations"][0]["at"]
-                .as_array_mut()
-                .unwrap()
-                .push(twin);
+            m["representations"][0]["at"].as_array_mut().unwrap().push(twin);
         }),
         ("store_invalid_packed", |m| {
             m["representations"][0]["fields"][0]["store"] = json!({ "packed": { "scale": 1 } });
@@ -148,9 +109,7 @@ pub(super) fn manifests() -> Vec<Named> {
         ("quality_invalid_distance", |m| {
             m["representations"][0]["at"][0]["quality"]["log_spectral_distance_db"] = json!(-1);
         }),
-        ("level_invalid", |m| {
-            m["representations"][0]["at"][0]["level_rms"] = json!(-0.1)
-        }),
+        ("level_invalid", |m| m["representations"][0]["at"][0]["level_rms"] = json!(-0.1)),
         ("quality_invalid", |m| {
             m["representations"][0]["at"][0]["quality"]["band_error_db"] = json!([0.5, 1.5]);
         }),
@@ -164,30 +123,20 @@ pub(super) fn manifests() -> Vec<Named> {
             m["reference"] = json!({ "file": "parameters/sbeta.bin" });
             m["representations"][0]["parameters"] = json!("absent.bin");
         }),
-        ("extension_name_invalid", |m| {
-            m["extensions"] = json!({ "LOOK": {} })
-        }),
-        ("extension_required_unknown", |m| {
-            m["extensions_required"] = json!(["com.example.X/1"])
-        }),
+        ("extension_name_invalid", |m| m["extensions"] = json!({ "LOOK": {} })),
+        ("extension_required_unknown", |m| m["extensions_required"] = json!(["com.example.X/1"])),
         ("findings_truncated", |m| {
             m["conditions"] = (0..120).map(|i| json!({ "force_n": -1 - i })).collect();
         }),
     ];
-    let mut files: Vec<Named> = changes
-        .into_iter()
-        .map(|(n, c)| (n, with_manifest(c)))
-        .collect();
+    let mut files: Vec<Named> = changes.into_iter().map(|(n, c)| (n, with_manifest(c))).collect();
     files.push(("reference_invalid", with_reference_of(-1.0)));
     let alpha = json!({ "name": "alpha", "store": "f32" });
     let list = json!({ "name": "beta", "list": true, "store": "f32" });
     files.push(("json_unknown_key_store", with_store_key("1.0")));
     files.push(("field_missing", with_fields(json!([alpha]), &block()[..4])));
     let block = [&block()[..4], &[1], &block()[4..]].concat();
-    files.push((
-        "field_kind_wrong",
-        with_fields(json!([alpha, list]), &block),
-    ));
+    files.push(("field_kind_wrong", with_fields(json!([alpha, list]), &block)));
     files
 }
 

@@ -40,10 +40,7 @@ pub fn asset(conditions: usize, fitted: Vec<Fitted>) -> Asset {
             contact: Contact::Unknown,
             quantity: Quantity::LateralForce,
             unit: Quantity::LateralForce.unit().to_owned(),
-            band: Band {
-                low_hz: 20.0,
-                high_hz: 1000.0,
-            },
+            band: Band { low_hz: 20.0, high_hz: 1000.0 },
             provenance: Provenance {
                 made: None,
                 tool: "htex 0.1.0".to_owned(),
@@ -80,7 +77,8 @@ fn condition(i: usize) -> Condition {
     }
 }
 
-/// Creates a representation whose fields are (name, unit, list length, store); length 0 is a scalar.
+/// Creates a representation whose fields are (name, unit, list length, store); length 0 is a
+/// scalar.
 pub fn fitted(model: &str, conditions: usize, fields: &[(&str, &str, usize, StoredAs)]) -> Fitted {
     let stored: Vec<StoredField> = fields.iter().map(field).collect();
     let representation = Representation {
@@ -96,12 +94,7 @@ pub fn fitted(model: &str, conditions: usize, fields: &[(&str, &str, usize, Stor
 }
 
 fn field(&(name, unit, length, store): &(&str, &str, usize, StoredAs)) -> StoredField {
-    StoredField {
-        name: name.to_owned(),
-        unit: unit.to_owned(),
-        list: length > 0,
-        store,
-    }
+    StoredField { name: name.to_owned(), unit: unit.to_owned(), list: length > 0, store }
 }
 
 fn flat(
@@ -134,9 +127,7 @@ fn value(field: &str, i: f64, condition: f64) -> f64 {
 }
 
 fn at(i: usize) -> AtCondition {
-    let errors = [
-        -0.8123, 1.2456, -0.1034, 0.5678, -2.3091, 0.0412, 1.0897, -0.6543, 0.3216,
-    ];
+    let errors = [-0.8123, 1.2456, -0.1034, 0.5678, -2.3091, 0.0412, 1.0897, -0.6543, 0.3216];
     AtCondition {
         condition: i,
         level_rms: 0.0731529846 + 0.01 * i as f64,
@@ -163,19 +154,12 @@ fn at(i: usize) -> AtCondition {
 
 /// Steps without a logarithm.
 pub fn steps(scale: f64) -> Steps {
-    Steps {
-        scale,
-        offset: 0.0,
-        log: false,
-    }
+    Steps { scale, offset: 0.0, log: false }
 }
 
 /// Two 32-bit floats.
 pub fn sbeta(conditions: usize) -> Fitted {
-    let fields = [
-        ("alpha", "", 0, StoredAs::F32),
-        ("beta", "", 0, StoredAs::F32),
-    ];
+    let fields = [("alpha", "", 0, StoredAs::F32), ("beta", "", 0, StoredAs::F32)];
     fitted("sbeta", conditions, &fields)
 }
 
@@ -193,20 +177,13 @@ pub fn bands(conditions: usize) -> Fitted {
 pub fn five(conditions: usize) -> Vec<Fitted> {
     let hertz = StoredAs::U16(steps(0.03125));
     let order = StoredAs::U16(steps(0.001));
-    let amplitude = StoredAs::U16(Steps {
-        scale: 0.0002,
-        offset: -10.0,
-        log: true,
-    });
+    let amplitude = StoredAs::U16(Steps { scale: 0.0002, offset: -10.0, log: true });
     let whole = StoredAs::U8(steps(1.0));
     vec![
         fitted(
             "ar",
             conditions,
-            &[
-                ("coefficients", "", 6, StoredAs::F64),
-                ("model_rate_hz", "Hz", 0, StoredAs::F32),
-            ],
+            &[("coefficients", "", 6, StoredAs::F64), ("model_rate_hz", "Hz", 0, StoredAs::F32)],
         ),
         fitted(
             "mfcc",
@@ -241,10 +218,6 @@ pub fn five(conditions: usize) -> Vec<Fitted> {
 
 /// A reference for the given number of conditions, newtons.
 pub fn reference(conditions: usize) -> Vec<Vec<f32>> {
-    let spectrum = |c: usize| {
-        (0..197)
-            .map(move |i| 0.01 / (1.0 + (i + c) as f32))
-            .collect()
-    };
+    let spectrum = |c: usize| (0..197).map(move |i| 0.01 / (1.0 + (i + c) as f32)).collect();
     (0..conditions).map(spectrum).collect()
 }

@@ -25,14 +25,8 @@ pub(super) fn with_plugin(change: impl Fn(&mut Asset)) -> Vec<u8> {
 
 pub(super) fn plugins() -> Vec<Named> {
     vec![
-        (
-            "plugin_invalid",
-            with_plugin(|a| a.manifest.plugins[0].blake3.make_ascii_uppercase()),
-        ),
-        (
-            "plugin_duplicate",
-            with_plugin(|a| a.manifest.plugins.extend_from_within(..)),
-        ),
+        ("plugin_invalid", with_plugin(|a| a.manifest.plugins[0].blake3.make_ascii_uppercase())),
+        ("plugin_duplicate", with_plugin(|a| a.manifest.plugins.extend_from_within(..))),
         (
             "plugin_unused",
             with_plugin(|a| {
@@ -47,10 +41,7 @@ pub(super) fn plugins() -> Vec<Named> {
                 a.manifest.plugins[0] = Plugin::new("org.htex.sbeta", "1.0.0", &a.plugins[0]);
             }),
         ),
-        (
-            "plugin_hash_mismatch",
-            with_plugin(|a| a.plugins[0].push(0)),
-        ),
+        ("plugin_hash_mismatch", with_plugin(|a| a.plugins[0].push(0))),
         (
             "plugin_signature_invalid",
             with_plugin(|a| a.manifest.plugins[0].version = "1.0.1".to_owned()),

@@ -31,11 +31,7 @@ impl Entry {
             size: data.len() as u32,
             ..Header::default()
         };
-        Self {
-            local: header.clone(),
-            central: header,
-            data: data.to_vec(),
-        }
+        Self { local: header.clone(), central: header, data: data.to_vec() }
     }
 
     /// Applies the same change to both headers.
@@ -103,7 +99,5 @@ fn put(out: &mut Vec<u8>, value: u32, bytes: usize) {
 
 fn crc32(bytes: &[u8]) -> u32 {
     let shift = |crc: u32| (crc >> 1) ^ (0xEDB8_8320 * (crc & 1));
-    !bytes.iter().fold(!0u32, |crc, &b| {
-        (0..8).fold(crc ^ u32::from(b), |c, _| shift(c))
-    })
+    !bytes.iter().fold(!0u32, |crc, &b| (0..8).fold(crc ^ u32::from(b), |c, _| shift(c)))
 }

@@ -10,14 +10,8 @@ pub(super) fn texts() -> Vec<Named> {
     let deep = format!("{}{}", "[".repeat(40), "]".repeat(40));
     vec![
         ("json_syntax", with_text(b"{\"htex\": \"1.0\",}")),
-        (
-            "json_syntax_utf8",
-            with_text(b"{\"htex\": \"1.0\", \"name\": \"\xFF\"}"),
-        ),
-        (
-            "json_syntax_not_finite",
-            with_text(text.replacen("20.0", "1e999", 1).as_bytes()),
-        ),
+        ("json_syntax_utf8", with_text(b"{\"htex\": \"1.0\", \"name\": \"\xFF\"}")),
+        ("json_syntax_not_finite", with_text(text.replacen("20.0", "1e999", 1).as_bytes())),
         ("json_syntax_surrogate", with(r#""author":"\ud800""#)),
         ("json_too_deep", with_text(deep.as_bytes())),
         ("json_type_twice", with_text(twice.as_bytes())),
@@ -25,14 +19,8 @@ pub(super) fn texts() -> Vec<Named> {
             "json_type_twice_extension",
             with(r#""extensions":{"com.example.LOOK/1":[{"a~b":{"x":1,"x":1}}]}"#),
         ),
-        (
-            "json_type_twice_unknown",
-            with(r#""friction":{"static":0.4,"static":0.4}"#),
-        ),
-        (
-            "valid_null_in_extension",
-            with(r#""extensions":{"com.example.LOOK/1":{"colour":null}}"#),
-        ),
+        ("json_type_twice_unknown", with(r#""friction":{"static":0.4,"static":0.4}"#)),
+        ("valid_null_in_extension", with(r#""extensions":{"com.example.LOOK/1":{"colour":null}}"#)),
         (
             "valid_whole_numbers",
             with_text(
@@ -44,9 +32,6 @@ pub(super) fn texts() -> Vec<Named> {
         ("parameters_invalid_short", with_block(&block()[..7])),
         ("parameters_invalid_long", with_block(&[0; 9])),
         ("parameters_invalid_packed", with_packed(&[1, 0x1F, 0xE1])),
-        (
-            "parameters_not_finite",
-            with_block(&[0, 0, 0xC0, 0x7F, 0, 0, 0, 0]),
-        ),
+        ("parameters_not_finite", with_block(&[0, 0, 0xC0, 0x7F, 0, 0, 0, 0])),
     ]
 }

@@ -8,49 +8,26 @@ use super::raw_zip::archive;
 use super::{asset, sbeta};
 
 /// Speeds, mm/s, and forces, newtons: the corners of a rectangle, and one on its lower edge.
-pub(super) const RECTANGLE: [[f64; 2]; 5] = [
-    [40.0, 0.4],
-    [160.0, 0.4],
-    [160.0, 1.2],
-    [40.0, 1.2],
-    [100.0, 0.4],
-];
+pub(super) const RECTANGLE: [[f64; 2]; 5] =
+    [[40.0, 0.4], [160.0, 0.4], [160.0, 1.2], [40.0, 1.2], [100.0, 0.4]];
 
 /// Triangles that are not Delaunay's, in both senses of turning.
 pub(super) const FLIPPED: [[usize; 3]; 3] = [[0, 3, 4], [4, 1, 3], [1, 2, 3]];
 
 /// Five corners of a star around the last.
-const STAR: [[f64; 2]; 6] = [
-    [160.0, 0.6],
-    [119.0, 1.17],
-    [51.0, 0.95],
-    [51.0, 0.25],
-    [119.0, 0.03],
-    [100.0, 0.6],
-];
+const STAR: [[f64; 2]; 6] =
+    [[160.0, 0.6], [119.0, 1.17], [51.0, 0.95], [51.0, 0.25], [119.0, 0.03], [100.0, 0.6]];
 
 /// The corners of a rectangle, and one inside.
-const PEAK: [[f64; 2]; 5] = [
-    [40.0, 0.4],
-    [160.0, 0.4],
-    [160.0, 1.2],
-    [40.0, 1.2],
-    [100.0, 0.7],
-];
+const PEAK: [[f64; 2]; 5] = [[40.0, 0.4], [160.0, 0.4], [160.0, 1.2], [40.0, 1.2], [100.0, 0.7]];
 
 /// Assets whose triangles break a rule each.
 pub(super) fn triangles() -> Vec<Named> {
     let of =
         |conditions: &[[f64; 2]], triangles: &[[usize; 3]]| with_triangles(conditions, triangles);
     vec![
-        (
-            "triangles_invalid_corner",
-            of(&RECTANGLE, &[[0, 3, 4], [4, 5, 3], [1, 2, 3]]),
-        ),
-        (
-            "triangles_invalid_two_equal",
-            of(&RECTANGLE, &[[0, 3, 4], [4, 1, 3], [1, 2, 1]]),
-        ),
+        ("triangles_invalid_corner", of(&RECTANGLE, &[[0, 3, 4], [4, 5, 3], [1, 2, 3]])),
+        ("triangles_invalid_two_equal", of(&RECTANGLE, &[[0, 3, 4], [4, 1, 3], [1, 2, 1]])),
         (
             "triangles_invalid_unknown_force",
             changed(&RECTANGLE, &FLIPPED, |manifest| {
@@ -58,26 +35,14 @@ pub(super) fn triangles() -> Vec<Named> {
                 condition.unwrap().remove("force_n");
             }),
         ),
-        (
-            "triangles_invalid_flat",
-            of(&RECTANGLE, &[[0, 3, 4], [0, 4, 1], [4, 1, 3], [1, 2, 3]]),
-        ),
+        ("triangles_invalid_flat", of(&RECTANGLE, &[[0, 3, 4], [0, 4, 1], [4, 1, 3], [1, 2, 3]])),
         (
             "triangles_invalid_overlap",
             of(&RECTANGLE, &[[0, 3, 4], [4, 1, 3], [4, 2, 1], [1, 2, 3]]),
         ),
-        (
-            "triangles_invalid_gap",
-            of(&RECTANGLE, &[[0, 3, 4], [1, 2, 3]]),
-        ),
-        (
-            "triangles_invalid_unreached",
-            of(&RECTANGLE, &[[0, 3, 4], [4, 1, 3]]),
-        ),
-        (
-            "triangles_invalid_not_convex",
-            of(&PEAK, &[[0, 4, 3], [3, 4, 2], [2, 4, 1]]),
-        ),
+        ("triangles_invalid_gap", of(&RECTANGLE, &[[0, 3, 4], [1, 2, 3]])),
+        ("triangles_invalid_unreached", of(&RECTANGLE, &[[0, 3, 4], [4, 1, 3]])),
+        ("triangles_invalid_not_convex", of(&PEAK, &[[0, 4, 3], [3, 4, 2], [2, 4, 1]])),
         (
             "triangles_invalid_apart",
             of(
@@ -87,10 +52,7 @@ pub(super) fn triangles() -> Vec<Named> {
         ),
         (
             "triangles_invalid_twice_around",
-            of(
-                &STAR,
-                &[[5, 0, 2], [5, 2, 4], [5, 4, 1], [5, 1, 3], [5, 3, 0]],
-            ),
+            of(&STAR, &[[5, 0, 2], [5, 2, 4], [5, 4, 1], [5, 1, 3], [5, 3, 0]]),
         ),
         (
             "condition_invalid_with_triangles",

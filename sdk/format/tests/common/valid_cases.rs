@@ -12,21 +12,13 @@ use super::{asset, bands, five, reference, sbeta};
 
 pub(super) fn valid() -> Vec<Named> {
     let mut with_reference = asset(2, vec![sbeta(2)]);
-    with_reference.manifest.reference = Some(Reference {
-        file: "reference.bin".to_owned(),
-    });
+    with_reference.manifest.reference = Some(Reference { file: "reference.bin".to_owned() });
     with_reference.reference = Some(reference(2));
     let mut extended = asset(1, vec![sbeta(1)]);
     let colour = json!({ "colour": "#a08060" });
-    extended
-        .manifest
-        .extensions
-        .insert("com.example.LOOK/1".to_owned(), colour);
+    extended.manifest.extensions.insert("com.example.LOOK/1".to_owned(), colour);
     vec![
-        (
-            "valid_minimal",
-            asset(1, vec![sbeta(1)]).to_bytes().unwrap(),
-        ),
+        ("valid_minimal", asset(1, vec![sbeta(1)]).to_bytes().unwrap()),
         ("valid_five_models", asset(1, five(1)).to_bytes().unwrap()),
         ("valid_conditions", asset(3, five(3)).to_bytes().unwrap()),
         ("valid_packed", asset(2, vec![bands(2)]).to_bytes().unwrap()),

@@ -104,10 +104,7 @@ impl Usage {
     /// Counts one more instance in the budget.
     fn new(budget: &Arc<Budget>) -> Result<Self, BudgetError> {
         budget.take_instance()?;
-        Ok(Self {
-            budget: Arc::clone(budget),
-            memory_bytes: 0,
-        })
+        Ok(Self { budget: Arc::clone(budget), memory_bytes: 0 })
     }
 
     /// Counts the memory that the instance has grown by.

@@ -1,4 +1,5 @@
-//! The functions that JavaScript provides (`sdk/web/src/guests.js`) for the modules of models as *guests*.
+//! The functions that JavaScript provides (`sdk/web/src/guests.js`) for the modules of models as
+//! *guests*.
 #![allow(unsafe_code)]
 
 mod raw {
@@ -12,7 +13,8 @@ mod raw {
         pub(super) fn instance_free(instance: u32);
         /// Size of the instance's memory, bytes.
         pub(super) fn instance_memory(instance: u32) -> usize;
-        /// Calls the export of an index with `len` arguments, of types as in `typed`; 0 if it returns.
+        /// Calls the export of an index with `len` arguments, of types as in `typed`; 0 if it
+        /// returns.
         pub(super) fn instance_call(
             instance: u32,
             function: u32,

@@ -1,11 +1,12 @@
 //! Models in WASM modules, run by the browser or Node.js that runs this program.
 //!
-//! As with the engine of the feature `wasm`: a module imports nothing, its memory and tables are limited, each voice has a
-//! separate instance, and an instance that trapped is not called again. A call cannot be interrupted from here: one that
-//! took longer than its limit is an error afterwards, and an endless loop ends with the worker that runs it
-//! (`sdk/web/src/guarded.js`).
+//! As with the engine of the feature `wasm`: a module imports nothing, its memory and tables are
+//! limited, each voice has a separate instance, and an instance that trapped is not called again. A
+//! call cannot be interrupted from here: one that took longer than its limit is an error
+//! afterwards, and an endless loop ends with the worker that runs it (`sdk/web/src/guarded.js`).
 //!
-//! This is a second engine for the loader in `wasm` (`calls.rs`, `model.rs`, `voice.rs`), not a second loader.
+//! This is a second engine for the loader in `wasm` (`calls.rs`, `model.rs`, `voice.rs`), not a
+//! second loader.
 
 #[path = "../wasm/allowance.rs"]
 mod allowance;

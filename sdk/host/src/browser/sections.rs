@@ -1,4 +1,5 @@
-//! Limits of memory and tables, written into a module: a browser enforces the limits that a module states, and no others.
+//! Limits of memory and tables, written into a module: a browser enforces the limits that a module
+//! states, and no others.
 
 use crate::WasmLimits;
 
@@ -33,9 +34,7 @@ pub(super) enum SectionError {
 
 /// The module with at most the memory and the table elements of `limits`.
 pub(super) fn limited(module: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, SectionError> {
-    let mut rest = module
-        .strip_prefix(b"\0asm\x01\0\0\0")
-        .ok_or(SectionError::Header)?;
+    let mut rest = module.strip_prefix(b"\0asm\x01\0\0\0").ok_or(SectionError::Header)?;
     let mut out = module[..8].to_vec();
     while let Some((&id, behind)) = rest.split_first() {
         let invalid = SectionError::Invalid { id };
@@ -103,16 +102,9 @@ fn within(id: u8, mut body: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, Secti
         }
         out.push(HAS_MAXIMUM);
         push(&mut out, least);
-        push(
-            &mut out,
-            stated.min(u32::try_from(most).unwrap_or(u32::MAX)),
-        );
+        push(&mut out, stated.min(u32::try_from(most).unwrap_or(u32::MAX)));
     }
-    if body.is_empty() {
-        Ok(out)
-    } else {
-        Err(invalid)
-    }
+    if body.is_empty() { Ok(out) } else { Err(invalid) }
 }
 
 fn byte(rest: &mut &[u8]) -> Option<u8> {
@@ -167,15 +159,10 @@ mod tests {
 
     #[test]
     fn memories_and_tables_get_maxima() {
-        let limits = WasmLimits::default()
-            .with_memory_bytes(10 * PAGE)
-            .with_table_elements(300);
+        let limits = WasmLimits::default().with_memory_bytes(10 * PAGE).with_table_elements(300);
         for (text, expected) in [
             ("(module (memory 1) (table 2 funcref))", vec![300, 10]),
-            (
-                "(module (memory 1 4) (table 2 200 funcref) (table 1 externref))",
-                vec![200, 300, 4],
-            ),
+            ("(module (memory 1 4) (table 2 200 funcref) (table 1 externref))", vec![200, 300, 4]),
             ("(module (memory 10 65536) (func (export \"f\")))", vec![10]),
             (
                 "(module (table 300 funcref) (func $f) (elem (i32.const 0) $f) (memory 0) (data (i32.const 0) \"\"))",
@@ -193,10 +180,7 @@ mod tests {
         let limits = WasmLimits::default().with_memory_bytes(10 * PAGE);
         for (text, words) in [
             ("(module (memory 11))", "memory is limited to 655360 bytes"),
-            (
-                "(module (table 10001 funcref))",
-                "limited to 10000 elements",
-            ),
+            ("(module (table 10001 funcref))", "limited to 10000 elements"),
             ("(module (import \"a\" \"b\" (func)))", "import nothing"),
             ("(module (memory 1) (memory 1))", "of a kind"),
             ("(module (memory i64 1))", "of a kind"),

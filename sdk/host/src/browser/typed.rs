@@ -19,20 +19,14 @@ pub(super) struct TypedFunc<P, R> {
 
 impl<P: Parameters, R: Returned> TypedFunc<P, R> {
     pub(super) const fn new(index: u32) -> Self {
-        Self {
-            index,
-            of: PhantomData,
-        }
+        Self { index, of: PhantomData }
     }
 
     pub(super) fn call(&self, instance: &GuestInstance, parameters: P) -> Result<R, Fault> {
         let mut slots = Slots::default();
         parameters.push(&mut slots);
         let (types, values) = (&slots.types[..slots.len], &slots.values[..slots.len]);
-        instance
-            .call(self.index, types, values, R::TYPE)
-            .map(R::of)
-            .map_err(Fault::Trap)
+        instance.call(self.index, types, values, R::TYPE).map(R::of).map_err(Fault::Trap)
     }
 }
 

@@ -9,8 +9,8 @@ const TIMES: f64 = 10.0;
 /// The time at the start, which is also the most.
 const FIRST: Duration = Duration::from_secs(1);
 
-/// The time of one voice: a second, and ten times the duration of its samples. Rendering therefore takes at most a time
-/// proportional to the duration of the samples.
+/// The time of one voice: a second, and ten times the duration of its samples. Rendering therefore
+/// takes at most a time proportional to the duration of the samples.
 #[derive(Debug)]
 pub(super) struct Allowance {
     left: Duration,
@@ -19,10 +19,7 @@ pub(super) struct Allowance {
 
 impl Allowance {
     pub(super) fn new(rate_hz: f64) -> Self {
-        Self {
-            left: FIRST,
-            per_sample_s: TIMES / rate_hz.max(1.0),
-        }
+        Self { left: FIRST, per_sample_s: TIMES / rate_hz.max(1.0) }
     }
 
     pub(super) fn earn(&mut self, samples: usize) {

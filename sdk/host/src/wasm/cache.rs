@@ -1,10 +1,11 @@
 //! Compiled modules on disk.
 //!
-//! A file is named by the module's hash and the engine's, and begins with a keyed hash of its name and its content, which
-//! detects damaged files and files of other users. [`WasmCache`] documents who is trusted.
+//! A file is named by the module's hash and the engine's, and begins with a keyed hash of its name
+//! and its content, which detects damaged files and files of other users. [`WasmCache`] documents
+//! who is trusted.
 //!
-//! The files are run as machine code. A folder that belongs to another user, or that others may write to, is not used,
-//! and a file without a tag by this user's key ([`Key`]) is compiled again.
+//! The files are run as machine code. A folder that belongs to another user, or that others may
+//! write to, is not used, and a file without a tag by this user's key ([`Key`]) is compiled again.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
@@ -30,7 +31,8 @@ pub(super) struct Cache {
 }
 
 impl Cache {
-    /// Opens the cache, and creates its folder and key if absent; `None` if the cache is off, or not this user's alone.
+    /// Opens the cache, and creates its folder and key if absent; `None` if the cache is off, or
+    /// not this user's alone.
     pub(super) fn of(cache: &WasmCache) -> Option<Self> {
         let folder = match cache {
             WasmCache::User => folders::cache()?.join("wasm"),
@@ -50,8 +52,9 @@ impl Cache {
         if self.key.tag(&name, artifact) != *<&[u8; HASH]>::try_from(tag).ok()? {
             return None;
         }
-        // SAFETY: the artifact is the output of `serialize` for this module: its tag was made with a key that only this
-        // user can read. The engine refuses artifacts of other versions and settings.
+        // SAFETY: the artifact is the output of `serialize` for this module: its tag was made with
+        // a key that only this user can read. The engine refuses artifacts of other versions and
+        // settings.
         unsafe { Module::deserialize(engine, artifact) }.ok()
     }
 
@@ -198,11 +201,7 @@ mod tests {
         let theirs = ["notes.txt", "model.cwasm", "1.cwasm"].map(|name| place.folder().join(name));
         let long_ago = std::time::SystemTime::UNIX_EPOCH;
         for path in theirs.iter().chain([&first]) {
-            let open = std::fs::File::options()
-                .write(true)
-                .create(true)
-                .truncate(false)
-                .open(path);
+            let open = std::fs::File::options().write(true).create(true).truncate(false).open(path);
             open.unwrap().set_modified(long_ago).unwrap();
         }
         let cache = place.cache().unwrap();

@@ -1,4 +1,5 @@
-//! The calls of the model ABI on an instance: arrays are copied into its buffer, and results out of it.
+//! The calls of the model ABI on an instance: arrays are copied into its buffer, and results out of
+//! it.
 
 use htex_model::{Band, Motion};
 
@@ -100,15 +101,7 @@ impl Instance {
         let returned = self.call(
             Deadline::Call,
             |f| &f.magnitude,
-            (
-                at,
-                parameters.len() as u32,
-                low,
-                high,
-                frequency,
-                out,
-                bins as u32,
-            ),
+            (at, parameters.len() as u32, low, high, frequency, out, bins as u32),
         )?;
         self.unharmed(after, "bins", bins)?;
         self.read(out, &mut magnitude[..bins])?;
@@ -130,14 +123,7 @@ impl Instance {
         let returned = self.call(
             Deadline::Call,
             |f| &f.interpolate,
-            (
-                sets.0,
-                sets.1,
-                weights.0,
-                weights.1,
-                out,
-                parameters.len() as u32,
-            ),
+            (sets.0, sets.1, weights.0, weights.1, out, parameters.len() as u32),
         )?;
         self.unharmed(after, "capacity", parameters.len())?;
         self.read(out, parameters)?;
@@ -152,11 +138,7 @@ impl Instance {
     ) -> Result<f64, Fault> {
         let (at, len) = self.pass(parameters)?;
         let (low, high) = band.edges();
-        self.call(
-            Deadline::Call,
-            |f| &f.voice_rate,
-            (at, len, low, high, wanted_hz),
-        )
+        self.call(Deadline::Call, |f| &f.voice_rate, (at, len, low, high, wanted_hz))
     }
 
     pub(super) fn voice_new(
@@ -166,15 +148,12 @@ impl Instance {
         rate_hz: f64,
         seed: u64,
     ) -> Result<i64, Fault> {
-        // Allocated once for the voice, unless it is retuned to a parameter set that is longer than a block.
+        // Allocated once for the voice, unless it is retuned to a parameter set that is longer than
+        // a block.
         self.buffer(4 * BLOCK)?;
         let (at, len) = self.pass(parameters)?;
         let (low, high) = band.edges();
-        self.call(
-            Deadline::Call,
-            |f| &f.voice_new,
-            (at, len, low, high, rate_hz, seed),
-        )
+        self.call(Deadline::Call, |f| &f.voice_new, (at, len, low, high, rate_hz, seed))
     }
 
     /// Renders at most [`BLOCK`] samples.
@@ -198,13 +177,7 @@ impl Instance {
         if !self.follows_motion() {
             return Ok(0);
         }
-        let Motion {
-            speed_mm_s,
-            force_n,
-            position_mm,
-            x_mm,
-            y_mm,
-        } = motion;
+        let Motion { speed_mm_s, force_n, position_mm, x_mm, y_mm } = motion;
         self.call_if(
             Deadline::Render,
             |f| Some(&f.motion.as_ref()?.set),

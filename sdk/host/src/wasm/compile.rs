@@ -12,7 +12,8 @@ use super::process;
 use crate::sandbox::Sandbox;
 use crate::{WasmCompiler, WasmLimits};
 
-/// Time on the slowest machine that keeps the limit, in the time on the machine where the estimate was measured.
+/// Time on the slowest machine that keeps the limit, in the time on the machine where the estimate
+/// was measured.
 const SLOWER: f64 = 3.0;
 
 /// Returns the highest effort that the time limit allows.
@@ -25,10 +26,7 @@ fn effort_within(limits: &WasmLimits, bytes: &[u8]) -> Result<Effort, CompileErr
     } else if quick <= limits.compile {
         Ok(Effort::Quick)
     } else {
-        Err(CompileError::TooSlow {
-            ms: quick.as_millis(),
-            allowed_ms: limits.compile.as_millis(),
-        })
+        Err(CompileError::TooSlow { ms: quick.as_millis(), allowed_ms: limits.compile.as_millis() })
     }
 }
 
@@ -76,8 +74,8 @@ fn compile(
         WasmCompiler::Here => here(engine, bytes),
         WasmCompiler::Program(program, arguments) => {
             let artifact = process::compile((program, arguments), bytes, limits, effort, time)?;
-            // SAFETY: the compiler that the caller named has just written the artifact, to a pipe that no other process
-            // has open.
+            // SAFETY: the compiler that the caller named has just written the artifact, to a pipe
+            // that no other process has open.
             Ok(unsafe { Module::deserialize(engine, artifact) }?)
         }
     }

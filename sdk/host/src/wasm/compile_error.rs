@@ -46,21 +46,18 @@ pub(super) enum CompileError {
 impl From<wasmtime::Error> for CompileError {
     /// An error of the engine, with its causes.
     fn from(error: wasmtime::Error) -> Self {
-        Self::Engine {
-            what: format!("{error:#}"),
-        }
+        Self::Engine { what: format!("{error:#}") }
     }
 }
 
 impl From<BinaryReaderError> for CompileError {
     fn from(error: BinaryReaderError) -> Self {
-        Self::Invalid {
-            what: error.to_string(),
-        }
+        Self::Invalid { what: error.to_string() }
     }
 }
 
-/// An error of the process that compiles modules for a host ([`serve_compiler`](crate::serve_compiler)).
+/// An error of the process that compiles modules for a host
+/// ([`serve_compiler`](crate::serve_compiler)).
 ///
 /// ```
 /// let error = htex_host::serve_compiler(&[]).unwrap_err();

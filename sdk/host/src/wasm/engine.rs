@@ -1,9 +1,9 @@
 //! The engine that compiles and runs modules, and the clock that interrupts modules.
 //!
-//! Time limits are wasmtime's epochs, counted by a thread with at most 20 ticks a second under the default limits, so
-//! an endless loop is stopped on every machine. Instructions (`fuel`) are deterministic and can be counted as well. A
-//! limit of memory costs no time while a module runs: the engine reserves addresses, and no access is compared with a
-//! bound.
+//! Time limits are wasmtime's epochs, counted by a thread with at most 20 ticks a second under the
+//! default limits, so an endless loop is stopped on every machine. Instructions (`fuel`) are
+//! deterministic and can be counted as well. A limit of memory costs no time while a module runs:
+//! the engine reserves addresses, and no access is compared with a bound.
 
 use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -33,13 +33,12 @@ struct Clock {
 
 static CLOCKS: Mutex<Vec<Clock>> = Mutex::new(Vec::new());
 
-/// Waits until the threads of engines without modules have ended, at most 50 ms each: a program that unloads this code calls this
-/// before.
+/// Waits until the threads of engines without modules have ended, at most 50 ms each: a program
+/// that unloads this code calls this before.
 pub fn end_wasm_clocks() {
     let clocks = std::mem::take(&mut *CLOCKS.lock().unwrap_or_else(PoisonError::into_inner));
-    let (live, ended): (Vec<Clock>, Vec<Clock>) = clocks
-        .into_iter()
-        .partition(|clock| clock.engine.upgrade().is_some());
+    let (live, ended): (Vec<Clock>, Vec<Clock>) =
+        clocks.into_iter().partition(|clock| clock.engine.upgrade().is_some());
     for clock in ended {
         // The thread only counts: it cannot have panicked.
         let _ = clock.thread.join();
@@ -72,24 +71,18 @@ impl ClockedEngine {
         let thread = std::thread::Builder::new()
             .name("htex-wasm-clock".to_owned())
             .spawn(counting)
-            .map_err(|error| CompileError::Clock {
-                what: error.to_string(),
-            })?;
+            .map_err(|error| CompileError::Clock { what: error.to_string() })?;
         let mut clocks = CLOCKS.lock().unwrap_or_else(PoisonError::into_inner);
         clocks.retain(|clock| !clock.thread.is_finished());
-        clocks.push(Clock {
-            engine: engine.weak(),
-            thread,
-        });
+        clocks.push(Clock { engine: engine.weak(), thread });
         Ok(Self { engine, tick })
     }
 
-    /// Converts a time to ticks: rounded up, and one more because the first tick may come immediately.
+    /// Converts a time to ticks: rounded up, and one more because the first tick may come
+    /// immediately.
     pub(super) fn ticks(&self, time: Duration) -> u64 {
         let ticks = time.as_nanos().div_ceil(self.tick.as_nanos().max(1));
-        u64::try_from(ticks)
-            .unwrap_or(u64::MAX / 2)
-            .saturating_add(1)
+        u64::try_from(ticks).unwrap_or(u64::MAX / 2).saturating_add(1)
     }
 }
 
@@ -106,7 +99,8 @@ pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, Comp
         .consume_fuel(limits.fuel.is_some())
         .max_wasm_stack(limits.stack_bytes)
         .signals_based_traps(limits.engine == WasmEngine::Signals)
-        // Relaxed operations have different results on different machines; calls use one 32-bit memory.
+        // Relaxed operations have different results on different machines; calls use one 32-bit
+        // memory.
         .wasm_relaxed_simd(false)
         .wasm_memory64(false)
         .wasm_multi_memory(false);
@@ -115,7 +109,5 @@ pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, Comp
 
 /// Compiles a module in this process.
 pub(super) fn here(engine: &Engine, bytes: &[u8]) -> Result<Module, CompileError> {
-    Module::new(engine, bytes).map_err(|error| CompileError::Invalid {
-        what: format!("{error:#}"),
-    })
+    Module::new(engine, bytes).map_err(|error| CompileError::Invalid { what: format!("{error:#}") })
 }

@@ -1,11 +1,13 @@
 //! An upper bound of the time that compiling a module takes, computed before compilation.
 //!
-//! The compiler's time and memory grow faster than a module: with the operators of one function, with values that are
-//! live across branches or merge where blocks end, and with nested blocks. Each of these is a term of the sum. For the
-//! modules that it was compared with, the sum is a bound within a factor of three.
+//! The compiler's time and memory grow faster than a module: with the operators of one function,
+//! with values that are live across branches or merge where blocks end, and with nested blocks.
+//! Each of these is a term of the sum. For the modules that it was compared with, the sum is a
+//! bound within a factor of three.
 //!
-//! Above the bound a module is compiled without optimisation and with a single-pass register allocator
-//! ([`super::engine::Effort::Quick`]), which is nearly linear; above that one it is refused.
+//! Above the bound a module is compiled without optimisation and with a single-pass register
+//! allocator ([`super::engine::Effort::Quick`]), which is nearly linear; above that one it is
+//! refused.
 
 use wasmparser::{
     BinaryReaderError, FuncValidator, FunctionBody, Operator, OperatorsReader, Parser, Payload,
@@ -26,8 +28,8 @@ pub(super) struct Estimate {
 /// Estimates the compilation time of a module.
 ///
 /// # Errors
-/// When it is not a valid module of WebAssembly 2.0, the version that models may use (specification of the model ABI,
-/// section 7).
+/// When it is not a valid module of WebAssembly 2.0, the version that models may use (specification
+/// of the model ABI, section 7).
 pub(super) fn estimate(module: &[u8]) -> Result<Estimate, CompileError> {
     let mut validator = Validator::new_with_features(WasmFeatures::WASM2);
     let mut all = Estimate::default();
@@ -133,8 +135,7 @@ impl Cost {
             }
             Operator::BrTable { targets } => {
                 let all = targets.targets().flatten();
-                all.chain([targets.default()])
-                    .for_each(|to| self.branch(to, live));
+                all.chain([targets.default()]).for_each(|to| self.branch(to, live));
             }
             _ => {}
         }
@@ -155,7 +156,8 @@ impl Cost {
         self.us.quick_us += live * (0.7 + 0.00005 * depth);
     }
 
-    /// At a merge point, a local that was assigned in the block may have a different value on each path.
+    /// At a merge point, a local that was assigned in the block may have a different value on each
+    /// path.
     fn leave(&mut self) {
         let Some(block) = self.around.pop() else {
             return;
@@ -193,11 +195,7 @@ impl Cost {
 
 impl Block {
     fn new(is_loop: bool, ways: f64) -> Self {
-        Self {
-            is_loop,
-            ways,
-            assigned: 0.0,
-        }
+        Self { is_loop, ways, assigned: 0.0 }
     }
 }
 
@@ -234,8 +232,8 @@ fn more_us(operator: &Operator<'_>) -> f64 {
 mod tests {
     use super::*;
 
-    /// A function of a hundred nested blocks, each with assignments and with branches to outer blocks, took 1.25 s of
-    /// processor time to compile with all optimisations.
+    /// A function of a hundred nested blocks, each with assignments and with branches to outer
+    /// blocks, took 1.25 s of processor time to compile with all optimisations.
     #[test]
     fn branches_out_of_nested_blocks_take_long() {
         let (mut body, mut n) = (String::new(), 0);
@@ -260,9 +258,6 @@ mod tests {
         let text = format!("(module (memory 1) (func (param i32) (local{locals}) {body}))");
         let module = wat::parse_str(text).unwrap_or_default();
         let optimised_us = estimate(&module).map(|found| found.optimised_us);
-        assert!(
-            optimised_us.clone().is_ok_and(|us| us > 0.5 * 1.25e6),
-            "{optimised_us:?}"
-        );
+        assert!(optimised_us.clone().is_ok_and(|us| us > 0.5 * 1.25e6), "{optimised_us:?}");
     }
 }

@@ -40,39 +40,11 @@ pub(super) struct MotionFunctions {
     pub(super) fit: TypedFunc<MotionFitParams, i64>,
 }
 
-type FitParams = (
-    f64,
-    f64,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    f64,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-);
+type FitParams =
+    (f64, f64, Usize, Usize, Usize, Usize, Usize, f64, Usize, Usize, Usize, Usize, Usize);
 
-type MotionFitParams = (
-    f64,
-    f64,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    f64,
-    Usize,
-    Usize,
-    f64,
-    f64,
-    Usize,
-    Usize,
-    Usize,
-);
+type MotionFitParams =
+    (f64, f64, Usize, Usize, Usize, Usize, Usize, f64, Usize, Usize, f64, f64, Usize, Usize, Usize);
 
 type MagnitudeParams = (Usize, Usize, f64, f64, Usize, Usize, Usize);
 
@@ -101,9 +73,6 @@ impl Functions {
 
 impl MotionFunctions {
     fn of(module: &mut impl Find) -> Result<Self, Fault> {
-        Ok(Self {
-            set: module.find("htex_motion_1_set")?,
-            fit: module.find("htex_motion_1_fit")?,
-        })
+        Ok(Self { set: module.find("htex_motion_1_set")?, fit: module.find("htex_motion_1_fit")? })
     }
 }

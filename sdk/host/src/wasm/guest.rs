@@ -31,13 +31,8 @@ impl Guest {
         let raw = Instance::new(&mut store, &module.module, &[]);
         module.budget.spend(start.elapsed());
         let raw = raw.map_err(|error| Fault::Start(Box::new(fault(error))))?;
-        let memory = raw
-            .get_memory(&mut store, "memory")
-            .ok_or(Fault::NoMemory)?;
-        let mut exports = Exports {
-            store: &mut store,
-            raw: &raw,
-        };
+        let memory = raw.get_memory(&mut store, "memory").ok_or(Fault::NoMemory)?;
+        let mut exports = Exports { store: &mut store, raw: &raw };
         let functions = Functions::of(&mut exports, module.shared.follows_motion())?;
         Ok((Self { store, memory }, functions))
     }
@@ -107,15 +102,10 @@ impl Find for Exports<'_> {
         name: &'static str,
     ) -> Result<TypedFunc<P, R>, Fault> {
         let function = self.raw.get_func(&mut *self.store, name);
-        let function = function.ok_or_else(|| Fault::NoFunction {
-            name: name.to_owned(),
-        })?;
+        let function = function.ok_or_else(|| Fault::NoFunction { name: name.to_owned() })?;
         function
             .typed(&*self.store)
-            .map_err(|error| Fault::Signature {
-                name: name.to_owned(),
-                what: format!("{error:#}"),
-            })
+            .map_err(|error| Fault::Signature { name: name.to_owned(), what: format!("{error:#}") })
     }
 }
 

@@ -1,5 +1,5 @@
-//! One instance of a module: its functions, and a buffer in its memory for arguments and results. Shared by both engines, whose
-//! part is `guest`.
+//! One instance of a module: its functions, and a buffer in its memory for arguments and results.
+//! Shared by both engines, whose part is `guest`.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -37,13 +37,7 @@ impl Instance {
     /// Makes an instance, which runs the module's start function.
     pub(super) fn new(module: &Arc<WasmModule>) -> Result<Self, Fault> {
         let (guest, functions) = Guest::new(module)?;
-        Ok(Self {
-            module: Arc::clone(module),
-            guest,
-            functions,
-            allowance: None,
-            buffer: (0, 0),
-        })
+        Ok(Self { module: Arc::clone(module), guest, functions, allowance: None, buffer: (0, 0) })
     }
 
     /// Makes this the instance of a voice, which renders at a rate and has a separate time limit.
@@ -118,8 +112,8 @@ impl Instance {
         self.guest.memory_bytes()
     }
 
-    /// Returns the address of a buffer of at least `bytes`, a multiple of 8, in the module's memory. The buffer is
-    /// reallocated only for more bytes.
+    /// Returns the address of a buffer of at least `bytes`, a multiple of 8, in the module's
+    /// memory. The buffer is reallocated only for more bytes.
     pub(super) fn buffer(&mut self, bytes: usize) -> Result<Usize, Fault> {
         let bytes = match self.module.limits.guards {
             true => bytes + GUARD.len(),
@@ -128,10 +122,7 @@ impl Instance {
         if bytes <= self.buffer.1 as usize {
             return Ok(self.buffer.0);
         }
-        let too_much = || Fault::TooManyBytes {
-            bytes,
-            most: self.module.limits.memory_bytes,
-        };
+        let too_much = || Fault::TooManyBytes { bytes, most: self.module.limits.memory_bytes };
         let bytes = bytes.next_power_of_two();
         let fits = bytes <= self.module.limits.memory_bytes;
         let len = Usize::try_from(bytes).ok().filter(|_| fits);
@@ -167,7 +158,8 @@ impl Instance {
         }
     }
 
-    /// Fails if a call wrote to the guard bytes behind an array of `len` values, which is the argument `bound`.
+    /// Fails if a call wrote to the guard bytes behind an array of `len` values, which is the
+    /// argument `bound`.
     pub(super) fn unharmed(
         &self,
         behind: Usize,

@@ -1,9 +1,9 @@
 //! Models in WASM modules, in a sandbox.
 //!
-//! A module imports nothing, so it has no access to files, clocks or threads. Its memory, stack and time are limited
-//! ([`WasmLimits`](crate::WasmLimits)), and so is its compilation. Each voice has a separate instance with separate
-//! memory: a trap does not affect other voices, and rendering takes no lock. All other calls share one instance, which
-//! is recreated after a trap.
+//! A module imports nothing, so it has no access to files, clocks or threads. Its memory, stack and
+//! time are limited ([`WasmLimits`](crate::WasmLimits)), and so is its compilation. Each voice has
+//! a separate instance with separate memory: a trap does not affect other voices, and rendering
+//! takes no lock. All other calls share one instance, which is recreated after a trap.
 
 mod allowance;
 mod cache;

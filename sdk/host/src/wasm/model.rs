@@ -39,7 +39,8 @@ impl WasmModel {
             message: fault.to_string(),
         })?;
         check_marker(origin, marker)?;
-        // A module that fails here does not have the extension, and a failed instance is not used again.
+        // A module that fails here does not have the extension, and a failed instance is not used
+        // again.
         let shared = match instance.extension(MotionTable::ID.as_bytes()) {
             Ok(1) => {
                 module.shared.require_motion();
@@ -48,11 +49,7 @@ impl WasmModel {
             Ok(_) => Some(instance),
             Err(_) => None,
         };
-        Ok(Self {
-            module,
-            marker,
-            shared: Mutex::new(shared),
-        })
+        Ok(Self { module, marker, shared: Mutex::new(shared) })
     }
 
     /// Calls the shared instance; `failed` converts a status to the result of a failed call.
@@ -64,17 +61,16 @@ impl WasmModel {
     ) -> T {
         let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         // The instance is taken out, so that a fault drops it.
-        let result = shared
-            .take()
-            .map_or_else(|| Instance::new(&self.module), Ok)
-            .and_then(|mut instance| {
+        let result = shared.take().map_or_else(|| Instance::new(&self.module), Ok).and_then(
+            |mut instance| {
                 let returned = call(&mut instance)?;
                 if is_negative(returned) {
                     remember(instance.last_error()?);
                 }
                 *shared = Some(instance);
                 Ok(returned)
-            });
+            },
+        );
         result.unwrap_or_else(|fault| {
             remember(fault.to_string());
             failed(Fault::STATUS)
@@ -89,10 +85,9 @@ impl WasmModel {
 /// An instance of a module that is loaded: it may lack a function.
 fn first(module: &Arc<WasmModule>, origin: &str) -> Result<Instance, HostError> {
     match Instance::new(module) {
-        Err(Fault::NoFunction { name }) => Err(HostError::NoFunction {
-            path: origin.to_owned(),
-            name,
-        }),
+        Err(Fault::NoFunction { name }) => {
+            Err(HostError::NoFunction { path: origin.to_owned(), name })
+        }
         other => other.loading(origin),
     }
 }
@@ -157,9 +152,7 @@ impl RawModel for WasmModel {
     ) -> Result<Box<dyn RawVoice>, i64> {
         let Some(place) = self.module.shared.place(self.module.limits.voices) else {
             let most = self.module.limits.voices;
-            remember(format!(
-                "a WASM model may have {most} voices at a time; free some"
-            ));
+            remember(format!("a WASM model may have {most} voices at a time; free some"));
             return Err(Status::TooManyVoices as i64);
         };
         match WasmVoice::new(&self.module, place, (parameters, band), rate_hz, seed) {

@@ -25,9 +25,7 @@ impl WasmModule {
     pub(super) fn new(bytes: &[u8], sandbox: &Sandbox) -> Result<Self, CompileError> {
         let limits = &sandbox.limits;
         if bytes.len() > limits.module_bytes {
-            return Err(CompileError::TooLarge {
-                bytes: limits.module_bytes,
-            });
+            return Err(CompileError::TooLarge { bytes: limits.module_bytes });
         }
         let module = compile::compiled(bytes, sandbox)?;
         check_imports(&module)?;

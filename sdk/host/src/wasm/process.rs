@@ -53,23 +53,20 @@ pub(super) fn compile(
     match result {
         Ok(Some(bytes)) => match bytes.split_first() {
             Some((&COMPILED, artifact)) => Ok(artifact.to_vec()),
-            Some((_, message)) => Err(CompileError::Engine {
-                what: String::from_utf8_lossy(message).into_owned(),
-            }),
-            None => Err(CompileError::NoReply {
-                bytes: limits.compile_bytes,
-            }),
+            Some((_, message)) => {
+                Err(CompileError::Engine { what: String::from_utf8_lossy(message).into_owned() })
+            }
+            None => Err(CompileError::NoReply { bytes: limits.compile_bytes }),
         },
-        Err(RecvTimeoutError::Timeout) => Err(CompileError::Timeout {
-            ms: time.as_millis(),
-        }),
+        Err(RecvTimeoutError::Timeout) => Err(CompileError::Timeout { ms: time.as_millis() }),
         Ok(None) | Err(RecvTimeoutError::Disconnected) => Err(CompileError::NoOutput),
     }
 }
 
-/// Compiles the module on standard input and writes the result to standard output. A host starts the program of
-/// [`WasmCompiler::Program`](crate::WasmCompiler) with the arguments given there, and these `arguments` after them. On
-/// Unix the process first limits its memory and its processor time.
+/// Compiles the module on standard input and writes the result to standard output. A host starts
+/// the program of [`WasmCompiler::Program`](crate::WasmCompiler) with the arguments given there,
+/// and these `arguments` after them. On Unix the process first limits its memory and its processor
+/// time.
 ///
 /// ```no_run
 /// let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -80,7 +77,8 @@ pub(super) fn compile(
 /// ```
 ///
 /// # Errors
-/// When the arguments are not those of a host of this version, the limits cannot be set, or a pipe breaks.
+/// When the arguments are not those of a host of this version, the limits cannot be set, or a pipe
+/// breaks.
 pub fn serve_compiler(arguments: &[String]) -> Result<(), CompilerError> {
     let request = Request::read(arguments).ok_or(CompilerError::Arguments)?;
     request.limit_this_process()?;
@@ -154,11 +152,7 @@ impl Request {
             },
             ..WasmLimits::default()
         };
-        let effort = if self.quick {
-            Effort::Quick
-        } else {
-            Effort::Optimised
-        };
+        let effort = if self.quick { Effort::Quick } else { Effort::Optimised };
         let module = here(&engine(&limits, effort)?, module)?;
         Ok(module.serialize()?)
     }
@@ -174,14 +168,8 @@ impl Request {
         ];
         for (resource, most) in bounds {
             let most = Some(most);
-            setrlimit(
-                resource,
-                Rlimit {
-                    current: most,
-                    maximum: most,
-                },
-            )
-            .map_err(|error| CompilerError::Limits(error.into()))?;
+            setrlimit(resource, Rlimit { current: most, maximum: most })
+                .map_err(|error| CompilerError::Limits(error.into()))?;
         }
         Ok(())
     }

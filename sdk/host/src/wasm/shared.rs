@@ -24,9 +24,7 @@ impl Shared {
     /// Counts one more voice; `None` when there are `most`.
     pub(super) fn place(self: &Arc<Self>, most: usize) -> Option<VoicePlace> {
         let take = |n: usize| (n < most).then_some(n + 1);
-        let taken = self
-            .voices
-            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, take);
+        let taken = self.voices.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take);
         taken.ok().map(|_| VoicePlace(Arc::clone(self)))
     }
 }

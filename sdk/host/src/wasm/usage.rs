@@ -38,8 +38,8 @@ impl Drop for Usage {
     }
 }
 
-/// An instance that exceeds a limit is stopped: an error here is a trap, while `false` would only be the result of its
-/// instruction.
+/// An instance that exceeds a limit is stopped: an error here is a trap, while `false` would only
+/// be the result of its instruction.
 impl ResourceLimiter for Usage {
     fn memory_growing(
         &mut self,
@@ -51,9 +51,7 @@ impl ResourceLimiter for Usage {
             wasmtime::bail!("its memory is limited to {} bytes", self.most_memory_bytes);
         }
         let more = desired.saturating_sub(self.memory_bytes);
-        self.budget
-            .take_memory(more)
-            .map_err(wasmtime::Error::new)?;
+        self.budget.take_memory(more).map_err(wasmtime::Error::new)?;
         self.memory_bytes += more;
         Ok(true)
     }

@@ -1,7 +1,7 @@
 //! A voice in a separate instance, which is not called again after a trap.
 //!
-//! Arguments are copied into a buffer in the module's memory, which is allocated once per voice, and samples are copied
-//! out once per call.
+//! Arguments are copied into a buffer in the module's memory, which is allocated once per voice,
+//! and samples are copied out once per call.
 
 use std::sync::Arc;
 
@@ -44,13 +44,7 @@ impl WasmVoice {
             return Err(fault(Fault::HandleZero));
         }
         instance.limit_as_voice(rate_hz);
-        Ok(Self {
-            instance,
-            handle,
-            last_error: String::new(),
-            faulted: false,
-            _place: place,
-        })
+        Ok(Self { instance, handle, last_error: String::new(), faulted: false, _place: place })
     }
 
     /// Converts a result to a status, and stores the text of an error.

@@ -17,11 +17,7 @@ pub const FUNCTIONS: &[(&str, &str, &str)] = &[
            (memory.copy (local.get 0) (i32.const 16) (i32.const $LEN))))
          (i64.const $LEN)",
     ),
-    (
-        "last_error",
-        "(param i32 i32) (result i64)",
-        "(i64.const 0)",
-    ),
+    ("last_error", "(param i32 i32) (result i64)", "(i64.const 0)"),
     (
         "fit",
         "(param f64 f64 i32 i32 i32 i32 i32 f64 i32 i32 i32 i32 i32) (result i64)",
@@ -41,27 +37,15 @@ pub const FUNCTIONS: &[(&str, &str, &str)] = &[
         "(f64.store (local.get 4) (f64.load (local.get 0)))
          (i64.const 1)",
     ),
-    (
-        "voice_rate",
-        "(param i32 i32 f64 f64 f64) (result f64)",
-        "(local.get 4)",
-    ),
-    (
-        "voice_new",
-        "(param i32 i32 f64 f64 f64 i64) (result i64)",
-        "(i64.const 1)",
-    ),
+    ("voice_rate", "(param i32 i32 f64 f64 f64) (result f64)", "(local.get 4)"),
+    ("voice_new", "(param i32 i32 f64 f64 f64 i64) (result i64)", "(i64.const 1)"),
     (
         "voice_render",
         "(param i64 i32 i32) (result i64)",
         "(memory.fill (local.get 1) (i32.const 0x3e) (i32.shl (local.get 2) (i32.const 2)))
          (i64.const 0)",
     ),
-    (
-        "voice_retune",
-        "(param i64 i32 i32) (result i64)",
-        "(i64.const 0)",
-    ),
+    ("voice_retune", "(param i64 i32 i32) (result i64)", "(i64.const 0)"),
     ("voice_free", "(param i64) (result i64)", "(i64.const 0)"),
     ("extension", "(param i32 i32) (result i64)", "(i64.const 0)"),
     (
@@ -76,7 +60,8 @@ pub const FUNCTIONS: &[(&str, &str, &str)] = &[
 /// Value of the model's samples: the bytes 3e3e3e3e.
 pub const SAMPLE: f32 = f32::from_bits(0x3e3e_3e3e);
 
-/// Returns the text of a model of this version, with other bodies for some functions and additional module fields.
+/// Returns the text of a model of this version, with other bodies for some functions and additional
+/// module fields.
 pub fn text(version: &str, changed: &[(&str, &str)], fields: &str) -> String {
     let json = format!(
         r#"{{"id":"{ID}","name":"H","version":"{version}","summary":"S.","fields":[{{"name":"x","unit":"1","kind":{{"type":"scalar"}},"min":0,"max":1,"store":{{"type":"f32"}},"description":"X."}}]}}"#
@@ -88,10 +73,7 @@ pub fn text(version: &str, changed: &[(&str, &str)], fields: &str) -> String {
 pub fn with_descriptor(json: &str, changed: &[(&str, &str)], fields: &str) -> String {
     let mut functions = String::new();
     for (name, signature, body) in FUNCTIONS {
-        let body = changed
-            .iter()
-            .find(|(n, _)| n == name)
-            .map_or(*body, |(_, b)| b);
+        let body = changed.iter().find(|(n, _)| n == name).map_or(*body, |(_, b)| b);
         let body = body.replace("$LEN", &json.len().to_string());
         functions += &format!("(func (export \"htex_model_{name}\") {signature} {body})\n");
     }

@@ -1,18 +1,21 @@
 //! A folder of files, served on this machine alone: the studio.
 //!
-//! All files are read at the start, so that no request names a file of the disk, and links are refused: the folder may come from
-//! somebody else, and its scripts would read what they lead to.
+//! All files are read at the start, so that no request names a file of the disk, and links are
+//! refused: the folder may come from somebody else, and its scripts would read what they lead to.
 //!
-//! The address is `http://NAME.localhost:PORT/`. The name is a keyed hash of the folder, by a key that only this user can read. A browser
-//! keeps service workers and stored textures for each name. So no other program can leave a script at this address, a page of one folder
-//! cannot read what the page of another one stored, and the name of a folder stays the same from one time to the next. Requests by any
-//! other name, also by `127.0.0.1`, are refused.
+//! The address is `http://NAME.localhost:PORT/`. The name is a keyed hash of the folder, by a key
+//! that only this user can read. A browser keeps service workers and stored textures for each name.
+//! So no other program can leave a script at this address, a page of one folder cannot read what
+//! the page of another one stored, and the name of a folder stays the same from one time to the
+//! next. Requests by any other name, also by `127.0.0.1`, are refused.
 //!
-//! A page cannot lead its tab elsewhere, so that its scripts cannot carry away what a user drops on it. No header forbids that: browsers
-//! never had `navigate-to`, and a sandbox without `allow-top-navigation` binds only frames. So each page begins with `stay.js`, which
-//! cancels what leads to another origin, by the Navigation API. A browser without it (`'navigation' in window` is false) cannot be
-//! told. Service workers, which could answer with a page of their own, are refused. Not covered are names that a browser looks up
-//! ahead of time (`dns-prefetch`) and WebRTC.
+//! A page cannot lead its tab elsewhere, so that its scripts cannot carry away what a user drops on
+//! it. No header forbids that: browsers never had `navigate-to`, and a sandbox without
+//! `allow-top-navigation` binds only frames. So each page begins with `stay.js`, which cancels what
+//! leads to another origin, by the Navigation API. A browser without it (`'navigation' in window`
+//! is false) cannot be told. Service workers, which could answer with a page of their own, are
+//! refused. Not covered are names that a browser looks up ahead of time (`dns-prefetch`) and
+//! WebRTC.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -36,7 +39,8 @@ const MOST_DEPTH: usize = 4;
 /// The page that `/` is.
 const INDEX: &str = "index.html";
 
-/// The script that keeps a page at its address, and what each page begins with; a second doctype is ignored.
+/// The script that keeps a page at its address, and what each page begins with; a second doctype is
+/// ignored.
 const STAY: &str = include_str!("stay.js");
 const STAY_NAME: &str = "htex-stay.js";
 const BEGINNING: &str = "<!doctype html><script src=\"/htex-stay.js\"></script>";
@@ -79,21 +83,19 @@ pub struct ServedFolder {
 }
 
 impl ServedFolder {
-    /// Serves a folder's files on this machine; port 0 is any that is free. `key` is the user's: with the same one, the address of the
-    /// folder is the same.
+    /// Serves a folder's files on this machine; port 0 is any that is free. `key` is the user's:
+    /// with the same one, the address of the folder is the same.
     ///
     /// # Errors
-    /// If the folder has no `index.html`, a file is a link, cannot be read or is too large, or the port is taken.
+    /// If the folder has no `index.html`, a file is a link, cannot be read or is too large, or the
+    /// port is taken.
     pub fn open(folder: &Path, port: u16, key: &Key) -> Result<Self, FolderError> {
         let mut files = BTreeMap::new();
         read(&OwnFolder::new(folder), "", 0, &mut files)?;
         if !files.contains_key(INDEX) {
             return Err(wrong(folder, format!("there is no {INDEX}")));
         }
-        let failed = |error: std::io::Error| PageError {
-            port,
-            problem: error.to_string(),
-        };
+        let failed = |error: std::io::Error| PageError { port, problem: error.to_string() };
         let (listener, port) = listen(port).map_err(failed)?;
         let mut files = files.into_iter().map(begun).collect::<BTreeMap<_, _>>();
         files.insert(STAY_NAME.to_owned(), Bytes::from_static(STAY.as_bytes()));
@@ -101,10 +103,7 @@ impl ServedFolder {
         let url = format!("http://{host}/");
         let shelf = Files { host, files };
         let server = Server::start(listener, Arc::new(shelf)).map_err(failed)?;
-        Ok(Self {
-            url,
-            _server: server,
-        })
+        Ok(Self { url, _server: server })
     }
 
     /// The address of the folder's page.
@@ -123,7 +122,8 @@ fn begun((name, bytes): (String, Bytes)) -> (String, Bytes) {
     (name, begun.into())
 }
 
-/// The name at which a folder is served: 32 hexadecimal digits, which only who has the key can know.
+/// The name at which a folder is served: 32 hexadecimal digits, which only who has the key can
+/// know.
 fn name(folder: &Path, key: &Key) -> String {
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let tag = key.tag("page", folder.as_os_str().as_encoded_bytes());
@@ -131,10 +131,7 @@ fn name(folder: &Path, key: &Key) -> String {
 }
 
 fn wrong(path: &Path, problem: impl ToString) -> FolderError {
-    FolderError::Folder {
-        path: path.to_owned(),
-        problem: problem.to_string(),
-    }
+    FolderError::Folder { path: path.to_owned(), problem: problem.to_string() }
 }
 
 /// Reads the files of a folder and of its folders, by their paths in an address.
@@ -238,10 +235,7 @@ mod tests {
 
     /// The host of a page.
     fn host_of(served: &ServedFolder) -> &str {
-        served
-            .url()
-            .trim_start_matches("http://")
-            .trim_end_matches('/')
+        served.url().trim_start_matches("http://").trim_end_matches('/')
     }
 
     /// The reply to the head of a request.
@@ -250,11 +244,7 @@ mod tests {
         let port: u16 = own.split_once(':').unwrap().1.parse().unwrap();
         let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
         let host = if host.is_empty() { own } else { host };
-        write!(
-            stream,
-            "{request} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"
-        )
-        .unwrap();
+        write!(stream, "{request} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
         let mut reply = Vec::new();
         stream.read_to_end(&mut reply).unwrap();
         String::from_utf8_lossy(&reply).into_owned()
@@ -272,10 +262,7 @@ mod tests {
         let served = ServedFolder::open(&folder, 0, &key).unwrap();
         let page = ask(&served, "GET /", "");
         assert!(page.starts_with("HTTP/1.1 200"), "{page}");
-        assert!(
-            page.contains("script-src 'self' 'wasm-unsafe-eval';"),
-            "{page}"
-        );
+        assert!(page.contains("script-src 'self' 'wasm-unsafe-eval';"), "{page}");
         let begun = format!("{BEGINNING}<title>page</title>");
         assert!(page.ends_with(&begun), "{page}");
         let module = ask(&served, "GET /assets/a.wasm", "");
@@ -287,10 +274,7 @@ mod tests {
             ("POST /", "405"),
         ] {
             let reply = ask(&served, request, "");
-            assert!(
-                reply.starts_with(&format!("HTTP/1.1 {code}")),
-                "{request}: {reply}"
-            );
+            assert!(reply.starts_with(&format!("HTTP/1.1 {code}")), "{request}: {reply}");
         }
         let port = host_of(&served).split_once(':').unwrap().1;
         let by_number = format!("127.0.0.1:{port}");
@@ -301,7 +285,8 @@ mod tests {
         }
     }
 
-    /// A folder has the same name as long as the user has the same key; every other folder, and every other user, has another one.
+    /// A folder has the same name as long as the user has the same key; every other folder, and
+    /// every other user, has another one.
     #[test]
     fn the_name_is_of_the_user_and_of_the_folder() {
         let outer = tempfile::tempdir().unwrap();
@@ -335,10 +320,7 @@ mod tests {
             std::os::unix::fs::symlink(target, folder.join(link)).unwrap();
             let error = ServedFolder::open(&folder, 0, &Key::passing().unwrap());
             let error = error.err().unwrap().to_string();
-            assert!(
-                error.contains(link) && error.contains("is a symbolic link"),
-                "{error}"
-            );
+            assert!(error.contains(link) && error.contains("is a symbolic link"), "{error}");
         }
     }
 
@@ -347,9 +329,6 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let key = Key::passing().unwrap();
         let error = ServedFolder::open(folder.path(), 0, &key).err().unwrap();
-        assert!(
-            error.to_string().contains("there is no index.html"),
-            "{error}"
-        );
+        assert!(error.to_string().contains("there is no index.html"), "{error}");
     }
 }

@@ -1,4 +1,5 @@
-//! What a request must have, and the tab that owns the page. Nothing of a request but its head is known here.
+//! What a request must have, and the tab that owns the page. Nothing of a request but its head is
+//! known here.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -31,8 +32,9 @@ pub(super) enum Asked {
 pub(super) type Refusal = (StatusCode, &'static str);
 
 impl Gate {
-    /// The gate of a page whose path begins with a token, at a name that no page had before. At a port that the system chose the number
-    /// of this machine is also accepted, for browsers that do not resolve the other one.
+    /// The gate of a page whose path begins with a token, at a name that no page had before. At a
+    /// port that the system chose the number of this machine is also accepted, for browsers that do
+    /// not resolve the other one.
     pub(super) fn new(token: &str, name: &str, port: u16, is_chosen: bool) -> Self {
         let number = (!is_chosen).then(|| format!("127.0.0.1:{port}"));
         Self {
@@ -41,12 +43,11 @@ impl Gate {
         }
     }
 
-    /// The addresses of the page, of which the first one is safe from what other programs left in the browser.
+    /// The addresses of the page, of which the first one is safe from what other programs left in
+    /// the browser.
     pub(super) fn urls(&self) -> Vec<String> {
         let hosts = self.hosts.iter();
-        hosts
-            .map(|host| format!("http://{host}{}", self.root))
-            .collect()
+        hosts.map(|host| format!("http://{host}{}", self.root)).collect()
     }
 
     /// Decides by the head of a request, whose body has not been read.
@@ -66,8 +67,9 @@ impl Gate {
     }
 }
 
-/// The host of a server of this machine by a name that only its user knows. A browser keeps scripts (service workers) and data for each
-/// name: what another program left at `127.0.0.1` has no part in this one.
+/// The host of a server of this machine by a name that only its user knows. A browser keeps scripts
+/// (service workers) and data for each name: what another program left at `127.0.0.1` has no part
+/// in this one.
 pub(super) fn host(name: &str, port: u16) -> String {
     format!("{name}.localhost:{port}")
 }

@@ -1,8 +1,9 @@
 //! Pages of a session: a server on this machine alone, for one browser tab.
 //!
-//! The address holds a random token, and requests with another host name or origin are refused before they are read, so that other pages in the
-//! browser and other users of the machine can neither see nor answer, nor delay anything. One tab owns the page, until it is closed or silent for
-//! 8 s; others are refused. Each tab may stop the session at any time: a button, and Escape.
+//! The address holds a random token, and requests with another host name or origin are refused
+//! before they are read, so that other pages in the browser and other users of the machine can
+//! neither see nor answer, nor delay anything. One tab owns the page, until it is closed or silent
+//! for 8 s; others are refused. Each tab may stop the session at any time: a button, and Escape.
 
 mod folder;
 mod gate;

@@ -1,10 +1,11 @@
 //! The server of a page, on 127.0.0.1 alone.
 //!
-//! Any program of this machine may connect, and nothing that it does delays the owner of the page: `hyper`, with a runtime of one thread of
-//! its own, hands a request over before its body comes. The gate decides by the head; a body of at most 4096 bytes is read after that; head and
-//! body have a second. Of 64 connections the oldest one that has not passed the gate makes room for the next. `hyper` is in the
-//! command for its stores; `tiny_http` reads a body before anyone can refuse it, has no deadlines, and takes a thread for
-//! each connection.
+//! Any program of this machine may connect, and nothing that it does delays the owner of the page:
+//! `hyper`, with a runtime of one thread of its own, hands a request over before its body comes.
+//! The gate decides by the head; a body of at most 4096 bytes is read after that; head and body
+//! have a second. Of 64 connections the oldest one that has not passed the gate makes room for the
+//! next. `hyper` is in the command for its stores; `tiny_http` reads a body before anyone can
+//! refuse it, has no deadlines, and takes a thread for each connection.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -125,11 +126,7 @@ impl LocalPage {
         };
         let urls = desk.gate.urls();
         let started = Server::start(listener.0, Arc::new(desk));
-        Ok(Self {
-            owner,
-            urls,
-            _server: started.map_err(|error| failed(error.to_string()))?,
-        })
+        Ok(Self { owner, urls, _server: started.map_err(|error| failed(error.to_string()))? })
     }
 
     /// What the user is asked to open.
@@ -180,13 +177,8 @@ impl Server {
             });
             // The runtime goes, and all connections with it, whatever they wait for.
         };
-        let thread = std::thread::Builder::new()
-            .name("htex-page".to_owned())
-            .spawn(serving)?;
-        Ok(Self {
-            end: Some(end),
-            thread: Some(thread),
-        })
+        let thread = std::thread::Builder::new().name("htex-page".to_owned()).spawn(serving)?;
+        Ok(Self { end: Some(end), thread: Some(thread) })
     }
 }
 
@@ -300,7 +292,8 @@ fn reply(code: StatusCode, kind: &'static str, body: impl Into<Bytes>) -> Respon
     response
 }
 
-/// The reply to a request that is refused, after which the connection is closed: its body was not read.
+/// The reply to a request that is refused, after which the connection is closed: its body was not
+/// read.
 fn refused((code, why): Refusal) -> Response<Full<Bytes>> {
     let mut response = reply(code, TEXT, why);
     let close = HeaderValue::from_static("close");

@@ -14,7 +14,8 @@ use crate::record::write::reading;
 /// Longest JSON that is read, bytes; that of a take has a few thousand.
 pub(crate) const MOST_BYTES: u64 = 1 << 20;
 
-/// A recording of `htex record` or of a study, with the settings that read it: columns, rate, quantity and the tracker's file.
+/// A recording of `htex record` or of a study, with the settings that read it: columns, rate,
+/// quantity and the tracker's file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KnownTake {
     pub recording: PathBuf,
@@ -22,8 +23,8 @@ pub struct KnownTake {
 }
 
 impl KnownTake {
-    /// Finds a take by its recording, or by the JSON beside it. `None` if there is no such JSON, or if it is of a recording in another
-    /// format.
+    /// Finds a take by its recording, or by the JSON beside it. `None` if there is no such JSON, or
+    /// if it is of a recording in another format.
     ///
     /// # Errors
     /// [`RecordError::Content`] if the JSON is of a take and has another version or unknown keys.
@@ -51,10 +52,7 @@ impl KnownTake {
             false => return Ok(None),
         };
         let settings = settings(&recording, &header);
-        Ok(Some(Self {
-            recording,
-            settings,
-        }))
+        Ok(Some(Self { recording, settings }))
     }
 
     /// Returns the take's settings, and of those that were given what is not about its columns.
@@ -73,13 +71,11 @@ impl KnownTake {
     }
 }
 
-/// The header of a take in the JSON beside its recording; `None` if the file is not of a take. What is not of this version is
-/// [`io::ErrorKind::InvalidData`].
+/// The header of a take in the JSON beside its recording; `None` if the file is not of a take. What
+/// is not of this version is [`io::ErrorKind::InvalidData`].
 pub(crate) fn header(beside: &Path) -> io::Result<Option<TakeHeader>> {
     let mut bytes = Vec::new();
-    open_regular(beside)?
-        .take(MOST_BYTES)
-        .read_to_end(&mut bytes)?;
+    open_regular(beside)?.take(MOST_BYTES).read_to_end(&mut bytes)?;
     let mut json = serde_json::from_slice::<Value>(&bytes).unwrap_or_default();
     let take = json.get_mut("take").map(Value::take);
     let take = take.filter(|take| take.get("htex_take").is_some());

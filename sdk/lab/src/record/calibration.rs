@@ -10,18 +10,13 @@ use crate::record::error::RecordError;
 /// Axes of a six-axis sensor.
 pub const AXES: usize = 6;
 /// Names and units of the axes.
-const NAMES: [(&str, &str); AXES] = [
-    ("fx", "N"),
-    ("fy", "N"),
-    ("fz", "N"),
-    ("tx", "N m"),
-    ("ty", "N m"),
-    ("tz", "N m"),
-];
+const NAMES: [(&str, &str); AXES] =
+    [("fx", "N"), ("fy", "N"), ("fz", "N"), ("tx", "N m"), ("ty", "N m"), ("tz", "N m")];
 /// Longest file, bytes.
 const MOST_BYTES: u64 = 1 << 16;
 
-/// The matrix of a six-axis sensor: forces (N) and torques (N m) are the matrix times the volts of its six channels.
+/// The matrix of a six-axis sensor: forces (N) and torques (N m) are the matrix times the volts of
+/// its six channels.
 ///
 /// ```
 /// # use htex_lab::record::Calibration;
@@ -43,7 +38,8 @@ struct File {
 }
 
 impl Calibration {
-    /// Reads a file: CSV with six lines of six numbers (`#` begins a comment), or TOML with `matrix = [[…], …]`.
+    /// Reads a file: CSV with six lines of six numbers (`#` begins a comment), or TOML with
+    /// `matrix = [[…], …]`.
     ///
     /// # Errors
     /// [`RecordError::Content`] if it cannot be read, or is not a matrix of full rank.
@@ -60,9 +56,7 @@ impl Calibration {
     }
 
     fn of(path: &Path, text: &str) -> Result<Self, Problem> {
-        let is_toml = path
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+        let is_toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
         let matrix = match is_toml {
             true => htex_files::toml::from_str::<File>(text)?.matrix,
             false => lines(text)?,
@@ -92,11 +86,11 @@ impl Calibration {
     /// Returns forces and torques of the volts of the six channels.
     #[must_use]
     pub fn forces(&self, volts: [f64; AXES]) -> [f64; AXES] {
-        self.rows
-            .map(|row| row.iter().zip(volts).map(|(m, v)| m * v).sum())
+        self.rows.map(|row| row.iter().zip(volts).map(|(m, v)| m * v).sum())
     }
 
-    /// Names and units of the axes; with several sensors the names have the sensor's number, from 1: `fx1`.
+    /// Names and units of the axes; with several sensors the names have the sensor's number, from
+    /// 1: `fx1`.
     pub(crate) fn names(sensor: Option<usize>) -> [(String, String); AXES] {
         let number = sensor.map(|n| n.to_string()).unwrap_or_default();
         NAMES.map(|(name, unit)| (format!("{name}{number}"), unit.to_owned()))
@@ -123,9 +117,7 @@ fn lines(text: &str) -> Result<Vec<Vec<f64>>, String> {
         if line.is_empty() {
             continue;
         }
-        let cells = line
-            .split([',', ';', '\t', ' '])
-            .filter(|cell| !cell.is_empty());
+        let cells = line.split([',', ';', '\t', ' ']).filter(|cell| !cell.is_empty());
         let number = |cell: &str| cell.trim().parse::<f64>().ok();
         let row = cells.map(|cell| {
             number(cell).ok_or_else(|| format!("line {}: {cell:?} is not a number", index + 1))

@@ -1,7 +1,9 @@
-//! How much of a take is of use: the share in which the finger slides on its target, and its sweeps.
+//! How much of a take is of use: the share in which the finger slides on its target, and its
+//! sweeps.
 //!
-//! The spectrum of a take is that of the middles of its sweeps, in which the finger may be on target although it was lifted for the
-//! rest. A finger that was lifted from 3.2 s of 10 s left three sweeps, whose middles kept to the target.
+//! The spectrum of a take is that of the middles of its sweeps, in which the finger may be on
+//! target although it was lifted for the rest. A finger that was lifted from 3.2 s of 10 s left
+//! three sweeps, whose middles kept to the target.
 
 use htex_author::recording::Sums;
 use htex_author::{Recording, Segments, sliding};
@@ -12,9 +14,10 @@ use crate::record::guide::Guidance;
 
 /// Half the length of the means by which a take is judged (50 ms in all), seconds.
 const HALF_MEAN_S: f64 = 0.025;
-/// Lowest speed at which the finger moves on its target, as a part of it: it turns between sweeps, and in a stroke of minimum jerk
-/// (T. Flash, N. Hogan 1985, Journal of Neuroscience 5), as hands make them, the speed rises and falls all the time: at most 0.31 of the
-/// stroke are within 10 % of a target speed, and 0.57 above half of it.
+/// Lowest speed at which the finger moves on its target, as a part of it: it turns between sweeps,
+/// and in a stroke of minimum jerk (T. Flash, N. Hogan 1985, Journal of Neuroscience 5), as hands
+/// make them, the speed rises and falls all the time: at most 0.31 of the stroke are within 10 % of
+/// a target speed, and 0.57 above half of it.
 const LOWEST_SPEED: f64 = 0.5;
 /// Rounding that is no difference, relative.
 const ROUNDING: f64 = 1e-9;
@@ -23,7 +26,8 @@ const ROUNDING: f64 = 1e-9;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Required {
-    /// Least share of the take in which the finger slides on its target, 0 to 1 ([`Coverage::on_target`]); 0 asks for nothing.
+    /// Least share of the take in which the finger slides on its target, 0 to 1
+    /// ([`Coverage::on_target`]); 0 asks for nothing.
     #[schemars(range(min = 0, max = 1))]
     pub on_target: f64,
     /// Fewest complete sweeps; 0 asks for none.
@@ -32,16 +36,15 @@ pub struct Required {
 
 impl Required {
     /// Nothing is asked for.
-    pub const NOTHING: Self = Self {
-        on_target: 0.0,
-        sweeps: 0,
-    };
-    /// The share that is asked for unless another one is given. Simulated takes of 10 s over 83 mm, of five surfaces with four seeds each,
-    /// had 0.65 (at 240 mm/s) to 0.95 (at 20 mm/s), and at most 0.47 when the finger was lifted for the second half.
+    pub const NOTHING: Self = Self { on_target: 0.0, sweeps: 0 };
+    /// The share that is asked for unless another one is given. Simulated takes of 10 s over 83 mm,
+    /// of five surfaces with four seeds each, had 0.65 (at 240 mm/s) to 0.95 (at 20 mm/s), and at
+    /// most 0.47 when the finger was lifted for the second half.
     pub const USUAL_ON_TARGET: f64 = 0.5;
 
-    /// The sweeps that are asked for unless another number is given: half of the strokes that the target makes in a take of this length
-    /// (seconds), but for the first and the last one, which its ends cut off; 0 without a target speed, where no strokes are shown.
+    /// The sweeps that are asked for unless another number is given: half of the strokes that the
+    /// target makes in a take of this length (seconds), but for the first and the last one, which
+    /// its ends cut off; 0 without a target speed, where no strokes are shown.
     #[must_use]
     pub fn usual_sweeps(guidance: &Guidance, seconds: f64) -> u32 {
         let strokes = guidance.turns(seconds).unwrap_or(0);
@@ -79,8 +82,9 @@ impl Target {
 /// The use of a take. Shares are of its length, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
-    /// Share in which the finger slides on its target: with a friction of half the mean or more, at half of the target speed or more and
-    /// at most the tolerance above it, and with a force within the tolerance; each as a mean over 50 ms, where there is a target.
+    /// Share in which the finger slides on its target: with a friction of half the mean or more, at
+    /// half of the target speed or more and at most the tolerance above it, and with a force within
+    /// the tolerance; each as a mean over 50 ms, where there is a target.
     pub on_target: f64,
     /// Share in which the finger slides.
     pub sliding: f64,
@@ -103,16 +107,8 @@ impl Coverage {
     ) -> Self {
         let half = (HALF_MEAN_S * recording.rate_hz).round() as usize;
         let slides = sliding(recording);
-        let speed = within(
-            recording.speed_mm_s.as_deref(),
-            speed.map(Target::moving),
-            half,
-        );
-        let force = within(
-            recording.normal_n.as_deref(),
-            force.map(Target::range),
-            half,
-        );
+        let speed = within(recording.speed_mm_s.as_deref(), speed.map(Target::moving), half);
+        let force = within(recording.normal_n.as_deref(), force.map(Target::range), half);
         let holds = |signal: &Option<Vec<bool>>, at: usize| signal.as_ref().is_none_or(|on| on[at]);
         let all = (0..slides.len()).map(|at| slides[at] && holds(&speed, at) && holds(&force, at));
         let all: Vec<bool> = all.collect();
@@ -131,10 +127,7 @@ impl Coverage {
     pub(crate) fn lacks(&self, required: Required) -> Vec<String> {
         let share = (self.on_target < required.on_target).then(|| self.share_lacking(required));
         let sweeps = (self.sweeps < required.sweeps as usize).then(|| {
-            format!(
-                "complete sweeps: {}, at least {} asked for",
-                self.sweeps, required.sweeps
-            )
+            format!("complete sweeps: {}, at least {} asked for", self.sweeps, required.sweeps)
         });
         share.into_iter().chain(sweeps).collect()
     }
@@ -158,7 +151,8 @@ impl Coverage {
     }
 }
 
-/// Whether the mean over 50 ms around each sample is within a range; `None` without a range or values.
+/// Whether the mean over 50 ms around each sample is within a range; `None` without a range or
+/// values.
 fn within(values: Option<&[f64]>, range: Option<[f64; 2]>, half: usize) -> Option<Vec<bool>> {
     let (values, [low, high]) = (values?, range?);
     let means = Sums::of(values.iter().copied());

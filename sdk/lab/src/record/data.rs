@@ -13,17 +13,11 @@ use crate::record::names;
 use crate::record::setup::LONGEST_S;
 
 /// Roles of the axes of the texture's signal.
-const AXES: [&str; 7] = [
-    "lateral",
-    "lateral_x",
-    "lateral_y",
-    "signal",
-    "signal_x",
-    "signal_y",
-    "signal_z",
-];
+const AXES: [&str; 7] =
+    ["lateral", "lateral_x", "lateral_y", "signal", "signal_x", "signal_y", "signal_z"];
 
-/// What a take was recorded with; the first line of a part file, and the object `take` of the JSON beside a recording.
+/// What a take was recorded with; the first line of a part file, and the object `take` of the JSON
+/// beside a recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct TakeHeader {
@@ -57,7 +51,8 @@ pub struct TakeHeader {
     pub signals: Vec<(String, String)>,
     /// Means that were subtracted from the signals; empty without tare.
     pub tare: Vec<f64>,
-    /// Signals of the tracker, without the time: role and unit, each role once; empty without a tracker.
+    /// Signals of the tracker, without the time: role and unit, each role once; empty without a
+    /// tracker.
     #[schemars(with = "Vec<SignalText>")]
     pub tracker: Vec<(String, String)>,
     pub target_speed_mm_s: Option<f64>,
@@ -127,11 +122,7 @@ impl TakeData {
             0 => 0,
             signals => signals + 1,
         };
-        Self {
-            header,
-            signals,
-            tracker: vec![Vec::new(); tracked],
-        }
+        Self { header, signals, tracker: vec![Vec::new(); tracked] }
     }
 
     #[must_use]
@@ -155,8 +146,8 @@ impl TakeData {
         spread(&mut self.signals, frames);
     }
 
-    /// Appends interleaved rows of the tracker. Rows that are not finite, or not later than those before, are left out: a position
-    /// cannot be interpolated over them.
+    /// Appends interleaved rows of the tracker. Rows that are not finite, or not later than those
+    /// before, are left out: a position cannot be interpolated over them.
     pub(crate) fn extend_tracker(&mut self, rows: &[f64]) {
         for row in rows.chunks_exact(self.tracker.len().max(1)) {
             let last_s = self.tracker.first().and_then(|time_s| time_s.last());
@@ -171,7 +162,8 @@ impl TakeHeader {
     /// Reads a header of this version.
     ///
     /// # Errors
-    /// What is wrong, if it has another version, other keys, or values that no session would have written.
+    /// What is wrong, if it has another version, other keys, or values that no session would have
+    /// written.
     pub fn of_json(json: Value) -> Result<Self, String> {
         let version = &json["htex_take"];
         if *version != 1 {
@@ -210,18 +202,9 @@ impl TakeHeader {
         let is_whole = self.rate_hz.fract() == 0.0 && self.rate_hz <= f64::from(u32::MAX);
         let checks = [
             (self.number >= 1, "its number is 0; takes count from 1"),
-            (
-                names::check(&self.name).is_ok(),
-                "its name is no name of a take",
-            ),
-            (
-                self.rate_hz > 0.0 && self.rate_hz <= MAX_RATE_HZ,
-                "its sample rate is out of range",
-            ),
-            (
-                self.seconds > 0.0 && self.seconds <= LONGEST_S,
-                "its length is out of range",
-            ),
+            (names::check(&self.name).is_ok(), "its name is no name of a take"),
+            (self.rate_hz > 0.0 && self.rate_hz <= MAX_RATE_HZ, "its sample rate is out of range"),
+            (self.seconds > 0.0 && self.seconds <= LONGEST_S, "its length is out of range"),
             (
                 (0.0..=1.0).contains(&self.required.on_target),
                 "the share on target that it requires is out of range",
@@ -231,14 +214,8 @@ impl TakeHeader {
                 has_known_roles(&self.signals) && has_known_roles(&self.tracker),
                 "its signals are not those of a take",
             ),
-            (
-                has_units(&self.signals) && has_units(&self.tracker),
-                "its units are no units",
-            ),
-            (
-                self.format != Format::Wav || is_whole,
-                "its sample rate is not that of a WAV",
-            ),
+            (has_units(&self.signals) && has_units(&self.tracker), "its units are no units"),
+            (self.format != Format::Wav || is_whole, "its sample rate is not that of a WAV"),
         ];
         let failed = checks.into_iter().find(|(holds, _)| !holds);
         failed.map(|(_, problem)| problem)
@@ -251,7 +228,8 @@ impl TakeHeader {
     }
 }
 
-/// Indices of the signals that are the axes of the texture's signal, in the order of [`AXES`]; without any, that of the normal force.
+/// Indices of the signals that are the axes of the texture's signal, in the order of [`AXES`];
+/// without any, that of the normal force.
 pub(crate) fn texture_axes(signals: &[(String, String)]) -> Vec<usize> {
     let position = |role: &&str| signals.iter().position(|(own, _)| own == role);
     let axes: Vec<usize> = AXES.iter().filter_map(position).collect();

@@ -65,11 +65,7 @@ pub enum RecordError {
     },
     /// A value of the setup is out of range.
     #[error("{what} is {value}; {allowed}")]
-    Setup {
-        what: &'static str,
-        value: String,
-        allowed: &'static str,
-    },
+    Setup { what: &'static str, value: String, allowed: &'static str },
     /// A calibration matrix, a part file or the JSON beside a recording cannot be used.
     #[error(transparent)]
     Content(#[from] htex_files::ContentError),

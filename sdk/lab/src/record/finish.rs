@@ -30,16 +30,9 @@ pub(crate) fn with_kept(error: RecordError, kept: Option<Recorded>) -> RecordErr
     let after_s = kept.as_ref().map_or(0.0, |kept| kept.recorded_s);
     let kept = kept.map(|kept| kept.file);
     match error {
-        RecordError::Ended { seconds, .. } => RecordError::Ended {
-            after_s,
-            seconds,
-            kept,
-        },
+        RecordError::Ended { seconds, .. } => RecordError::Ended { after_s, seconds, kept },
         RecordError::Left { .. } => RecordError::Left { kept },
-        error => RecordError::Interrupted {
-            error: Box::new(error),
-            kept,
-        },
+        error => RecordError::Interrupted { error: Box::new(error), kept },
     }
 }
 
@@ -67,14 +60,13 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, Rec
         }
     };
     let name = path.file_name().unwrap_or_default();
-    OwnFolder::new(folder)
-        .remove(Path::new(name))
-        .writing(path)?;
+    OwnFolder::new(folder).remove(Path::new(name)).writing(path)?;
     Ok(recorded)
 }
 
-/// Makes recordings of the takes that a killed program left in a folder, and returns them. A take that lacked only its renaming is
-/// judged as it would have been. Takes that another program is recording are left alone.
+/// Makes recordings of the takes that a killed program left in a folder, and returns them. A take
+/// that lacked only its renaming is judged as it would have been. Takes that another program is
+/// recording are left alone.
 ///
 /// # Errors
 /// When a part file is damaged in its header, or a recording cannot be written.

@@ -1,11 +1,13 @@
-//! What the person who records is shown: the target's motion, a metronome, their own finger, and whether the force is right.
+//! What the person who records is shown: the target's motion, a metronome, their own finger, and
+//! whether the force is right.
 
 use serde::Serialize;
 
 /// The target of a recording, for showing it.
 ///
-/// The target moves back and forth at its speed over a stroke, as a square on a screen; the metronome beats at each turn. It is in
-/// motion before the take begins, so that the finger can follow it by then.
+/// The target moves back and forth at its speed over a stroke, as a square on a screen; the
+/// metronome beats at each turn. It is in motion before the take begins, so that the finger can
+/// follow it by then.
 ///
 /// ```
 /// use htex_lab::record::{Force, Guidance};
@@ -69,7 +71,8 @@ pub struct Moment<'a> {
     pub of_s: f64,
     /// Normal force, newtons: the absolute mean of the last 50 ms, by whose means a take is judged.
     pub force_n: Option<f64>,
-    /// The finger's place on the axis along which it moves most, mm from its outermost place so far.
+    /// The finger's place on the axis along which it moves most, mm from its outermost place so
+    /// far.
     pub position_mm: Option<f64>,
     /// The samples since the moment before, of each axis of the texture's signal, in its unit.
     pub texture: &'a [&'a [f64]],
@@ -86,7 +89,8 @@ impl Phase {
         }
     }
 
-    /// The time of the target's motion: seconds since the take began, negative in its countdown; `None` where there is no motion.
+    /// The time of the target's motion: seconds since the take began, negative in its countdown;
+    /// `None` where there is no motion.
     #[must_use]
     pub fn motion_s(self, elapsed_s: f64, of_s: f64) -> Option<f64> {
         match self {
@@ -98,8 +102,8 @@ impl Phase {
 }
 
 impl Guidance {
-    /// The target's position at a time, mm; `None` without a target speed. The motion is at 0 mm at 0 s and the same before
-    /// and after it, so that a countdown leads into its take.
+    /// The target's position at a time, mm; `None` without a target speed. The motion is at 0 mm at
+    /// 0 s and the same before and after it, so that a countdown leads into its take.
     #[must_use]
     pub fn target_mm(&self, at_s: f64) -> Option<f64> {
         let way_mm = self.speed_mm_s? * at_s.abs();
@@ -107,7 +111,8 @@ impl Guidance {
         Some(into_mm.min(2.0 * self.stroke_mm - into_mm))
     }
 
-    /// Turns of the target until a time, at each of which the metronome beats; `None` without a target speed.
+    /// Turns of the target until a time, at each of which the metronome beats; `None` without a
+    /// target speed.
     #[must_use]
     pub fn turns(&self, at_s: f64) -> Option<i64> {
         Some((self.speed_mm_s? * at_s / self.stroke_mm).floor() as i64)

@@ -44,8 +44,9 @@ pub struct Verdict {
     pub findings: Vec<String>,
 }
 
-/// Judges a take: mean, minimum and maximum of speed and normal force over the middles of its sweeps (as `htex fit` chooses
-/// them) must be within the tolerance of their targets. Minimum and maximum are those of means of 50 ms, as in
+/// Judges a take: mean, minimum and maximum of speed and normal force over the middles of its
+/// sweeps (as `htex fit` chooses them) must be within the tolerance of their targets. Minimum and
+/// maximum are those of means of 50 ms, as in
 /// [`htex_author::Spread`]: faster changes are the texture's, and between sweeps the finger turns. The take must also have what its header
 /// requires ([`crate::record::Required`]).
 #[must_use]
@@ -63,9 +64,9 @@ pub fn judge(data: &TakeData) -> Verdict {
             for (what, unit, target, measured) in targets {
                 let Some(target) = target else { continue };
                 let reason = match measured {
-                    None => Some(format!(
-                        "the {what} is not known: the tracker has sent no position"
-                    )),
+                    None => {
+                        Some(format!("the {what} is not known: the tracker has sent no position"))
+                    }
                     Some(measured) => differs(what, unit, target, measured),
                 };
                 verdict.reasons.extend(reason);
@@ -98,10 +99,7 @@ fn targets(header: &TakeHeader) -> [Option<Target>; 2] {
 
 fn reading(data: &TakeData) -> Result<(Reading, Recording), Box<dyn Error>> {
     let recording = recording(data)?;
-    let take = Take {
-        recording,
-        given: Exploration::default(),
-    };
+    let take = Take { recording, given: Exploration::default() };
     let reading = read_take(&take, &SpectrumOptions::default(), false)?;
     Ok((reading, take.recording))
 }
@@ -124,15 +122,9 @@ fn recording(data: &TakeData) -> Result<Recording, RecordingError> {
 
 /// The finger's speed at each sample, mm/s: the tracker's, else the source's.
 fn speed(data: &TakeData) -> Option<Vec<f64>> {
-    let at_s: Vec<f64> = (0..data.frames())
-        .map(|i| i as f64 / data.header.rate_hz)
-        .collect();
+    let at_s: Vec<f64> = (0..data.frames()).map(|i| i as f64 / data.header.rate_hz).collect();
     let tracked = |role: &str| {
-        let at = data
-            .header
-            .tracker
-            .iter()
-            .position(|(own, _)| own == role)?;
+        let at = data.header.tracker.iter().position(|(own, _)| own == role)?;
         Some(&data.tracker[at + 1][..])
     };
     let of = |role: &str| data.header.signal(role).map(|at| &data.signals[at][..]);
@@ -142,30 +134,22 @@ fn speed(data: &TakeData) -> Option<Vec<f64>> {
         None => (&at_s, of("speed"), [of("x"), of("y")]),
     };
     if let Some(speed) = speed {
-        return Some(
-            at_s.iter()
-                .map(|t| interpolated(time_s, speed, *t).abs())
-                .collect(),
-        );
+        return Some(at_s.iter().map(|t| interpolated(time_s, speed, *t).abs()).collect());
     }
     let first_s = *time_s.first()?;
     let from_first: Vec<f64> = time_s.iter().map(|t| t - first_s).collect();
     let axes = position.iter().flatten();
-    let velocities: Vec<Vec<f64>> = axes
-        .map(|axis| velocity(&from_first, axis, at_s.iter().map(|t| t - first_s)))
-        .collect();
+    let velocities: Vec<Vec<f64>> =
+        axes.map(|axis| velocity(&from_first, axis, at_s.iter().map(|t| t - first_s))).collect();
     let first = velocities.first()?;
     Some(match velocities.get(1) {
         None => first.iter().map(|v| v.abs()).collect(),
-        Some(second) => first
-            .iter()
-            .zip(second)
-            .map(|(a, b)| libm::hypot(*a, *b))
-            .collect(),
+        Some(second) => first.iter().zip(second).map(|(a, b)| libm::hypot(*a, *b)).collect(),
     })
 }
 
-/// The value at a time between rows of ascending times, on a straight line; beyond them the first or the last.
+/// The value at a time between rows of ascending times, on a straight line; beyond them the first
+/// or the last.
 fn interpolated(time_s: &[f64], values: &[f64], at_s: f64) -> f64 {
     let after = time_s.partition_point(|t| *t <= at_s);
     match (after.checked_sub(1), after < values.len()) {
@@ -197,9 +181,7 @@ fn measure(verdict: &mut Verdict, reading: &Reading, recording: &Recording) {
     verdict.force_n = measured(reading.spread.force_n, recording.normal_n.as_ref());
     verdict.segments = reading.part.segments.starts.len();
     let findings = reading.findings.iter();
-    verdict.findings = findings
-        .map(|f| format!("{}: {}", f.code, f.message))
-        .collect();
+    verdict.findings = findings.map(|f| format!("{}: {}", f.code, f.message)).collect();
 }
 
 /// What differs from a target by more than the tolerance, if anything does.
@@ -207,15 +189,10 @@ fn differs(what: &str, unit: &str, target: Target, measured: Measured) -> Option
     let Measured { mean, min, max } = measured;
     let values = [("mean", mean), ("minimum", min), ("maximum", max)];
     let wrong = values.iter().filter(|(_, value)| !target.is_met(*value));
-    let wrong: Vec<String> = wrong
-        .map(|(name, value)| format!("{name} {value:.4}"))
-        .collect();
+    let wrong: Vec<String> = wrong.map(|(name, value)| format!("{name} {value:.4}")).collect();
     (!wrong.is_empty()).then(|| {
         let [low, high] = target.range();
-        format!(
-            "{what}: {} {unit}, allowed is {low:.4} to {high:.4} {unit}",
-            wrong.join(", ")
-        )
+        format!("{what}: {} {unit}, allowed is {low:.4} to {high:.4} {unit}", wrong.join(", "))
     })
 }
 
@@ -225,13 +202,8 @@ fn untracked(data: &TakeData) -> Option<String> {
     let end_s = data.recorded_s();
     let (first_s, last_s) = (*time_s.first()?, *time_s.last()?);
     if first_s > UNTRACKED_S || last_s < end_s - UNTRACKED_S {
-        return Some(format!(
-            "the tracker covers {first_s:.2} to {last_s:.2} s of {end_s:.2} s"
-        ));
+        return Some(format!("the tracker covers {first_s:.2} to {last_s:.2} s of {end_s:.2} s"));
     }
     let gap = time_s.windows(2).find(|pair| pair[1] - pair[0] > GAP_S)?;
-    Some(format!(
-        "the tracker has sent nothing from {:.2} to {:.2} s",
-        gap[0], gap[1]
-    ))
+    Some(format!("the tracker has sent nothing from {:.2} to {:.2} s", gap[0], gap[1]))
 }

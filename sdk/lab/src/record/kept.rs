@@ -21,8 +21,8 @@ struct Beside {
     take: TakeHeader,
 }
 
-/// Returns the texture spectrum of the newest take of a name that a folder keeps, as `htex fit` would read it; `None` without one of
-/// this quantity, and if its files cannot be read any more.
+/// Returns the texture spectrum of the newest take of a name that a folder keeps, as `htex fit`
+/// would read it; `None` without one of this quantity, and if its files cannot be read any more.
 #[must_use]
 pub fn kept_spectrum(folder: &Path, name: &str, quantity: Quantity) -> Option<LiveSpectrum> {
     let number = names::kept_number(folder, name)?;
@@ -35,10 +35,8 @@ pub fn kept_spectrum(folder: &Path, name: &str, quantity: Quantity) -> Option<Li
     }
     let file = folder.join(format!("{stem}.{}", take.format.extension()));
     let options = settings_of(&file, &take).read_options(1).ok()?.pop()?;
-    let take = Take {
-        recording: read_recording(&file, &options).ok()?,
-        given: Exploration::default(),
-    };
+    let take =
+        Take { recording: read_recording(&file, &options).ok()?, given: Exploration::default() };
     let reading = read_take(&take, &SpectrumOptions::default(), false).ok()?;
     let texture = TextureSpectrum::average(&[reading.part], Averaging::Rms).ok()?;
     Some(LiveSpectrum::of(&texture))

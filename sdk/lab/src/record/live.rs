@@ -8,17 +8,19 @@ use htex_author::{
 use htex_dsp::bands::{BAND_COUNT, BandBank};
 use htex_format::Quantity;
 
-/// Length of the signal that the spectrum is of, seconds: three segments of 0.2 s, each overlapping the one before by half.
+/// Length of the signal that the spectrum is of, seconds: three segments of 0.2 s, each overlapping
+/// the one before by half.
 const LIVE_S: f64 = 0.4;
 /// Decibels of a magnitude of zero.
 const SILENCE_DB: f64 = -200.0;
-/// Part of a magnitude² sum that is the square of an RMS value: the Hann window spreads a sinusoid over 1.5 times its power.
+/// Part of a magnitude² sum that is the square of an RMS value: the Hann window spreads a sinusoid
+/// over 1.5 times its power.
 const SQUARED_RMS: f64 = 1.0 / 3.0;
 
 /// The newest samples of a texture's signal: 0.4 s.
 ///
-/// Its spectrum has the numbers that `htex fit` would read from these samples as windows, without a setup's response: mean removed, Hann
-/// window, FFT, axes folded into one, root of the mean power.
+/// Its spectrum has the numbers that `htex fit` would read from these samples as windows, without a
+/// setup's response: mean removed, Hann window, FFT, axes folded into one, root of the mean power.
 ///
 /// ```
 /// use htex_format::Quantity;
@@ -47,8 +49,8 @@ pub struct LiveSignal {
 pub struct LiveSpectrum {
     /// Frequencies, hertz: multiples of 5 Hz from 20 to 1000 Hz, or to half the sample rate.
     pub frequency_hz: Vec<f64>,
-    /// Magnitude at each of them, decibels relative to one unit of the quantity; a sinusoid of amplitude A on the grid has
-    /// 20 log10 A, and -200 dB is the lowest value.
+    /// Magnitude at each of them, decibels relative to one unit of the quantity; a sinusoid of
+    /// amplitude A on the grid has 20 log10 A, and -200 dB is the lowest value.
     pub level_db: Vec<f64>,
     /// RMS in each of nine half-overlapping bands, decibels relative to one unit.
     pub band_db: Vec<f64>,
@@ -58,11 +60,7 @@ impl LiveSignal {
     /// A signal without samples; the rate is in hertz.
     #[must_use]
     pub fn new(quantity: Quantity, rate_hz: f64) -> Self {
-        Self {
-            quantity,
-            rate_hz,
-            axes: Vec::new(),
-        }
+        Self { quantity, rate_hz, axes: Vec::new() }
     }
 
     /// Takes the next samples of each axis.
@@ -80,7 +78,8 @@ impl LiveSignal {
         self.axes.clear();
     }
 
-    /// The spectrum; `None` until there are 0.2 s, and of samples that are no recording, such as infinite ones.
+    /// The spectrum; `None` until there are 0.2 s, and of samples that are no recording, such as
+    /// infinite ones.
     #[must_use]
     pub fn spectrum(&self) -> Option<LiveSpectrum> {
         let axes = self.axes.iter().map(|axis| axis.iter().copied().collect());

@@ -41,11 +41,7 @@ pub(crate) fn check(name: &str) -> Result<(), RecordError> {
 /// The number after the largest of the takes of this name, whatever became of them.
 pub(crate) fn next_number(folder: &Path, name: &str) -> std::io::Result<u32> {
     let mut largest = 0;
-    for folder in [
-        folder.to_owned(),
-        folder.join(REJECTED),
-        folder.join(INCOMPLETE),
-    ] {
+    for folder in [folder.to_owned(), folder.join(REJECTED), folder.join(INCOMPLETE)] {
         largest = largest.max(largest_number(&files(&folder)?, name).unwrap_or(0));
     }
     Ok(largest.saturating_add(1))
@@ -58,9 +54,7 @@ pub(crate) fn kept_number(folder: &Path, name: &str) -> Option<u32> {
 
 fn largest_number(files: &[PathBuf], name: &str) -> Option<u32> {
     let stems = files.iter().filter_map(|file| file.file_stem());
-    stems
-        .filter_map(|stem| number(&stem.to_string_lossy(), name))
-        .max()
+    stems.filter_map(|stem| number(&stem.to_string_lossy(), name)).max()
 }
 
 fn number(stem: &str, name: &str) -> Option<u32> {
@@ -70,9 +64,8 @@ fn number(stem: &str, name: &str) -> Option<u32> {
 /// Part files of a folder, in the order of their names.
 pub(crate) fn parts(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     let is_part = |path: &PathBuf| {
-        let is_hidden = path
-            .file_name()
-            .is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        let is_hidden =
+            path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
         path.extension().is_some_and(|extension| extension == PART) && !is_hidden
     };
     let mut parts: Vec<PathBuf> = files(folder)?.into_iter().filter(is_part).collect();

@@ -1,4 +1,5 @@
-//! The guidance on a page ([`crate::page`]): the newest state of a session, which the recording stores and the page asks for.
+//! The guidance on a page ([`crate::page`]): the newest state of a session, which the recording
+//! stores and the page asks for.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -127,7 +128,8 @@ struct Changing {
 }
 
 impl GuidePage {
-    /// Serves the page of a session on this machine; port 0 is any that is free. `rate_hz` is the source's rate.
+    /// Serves the page of a session on this machine; port 0 is any that is free. `rate_hz` is the
+    /// source's rate.
     ///
     /// # Errors
     /// [`RecordError::Page`] if the port is taken or there are no random numbers.
@@ -160,10 +162,7 @@ impl GuidePage {
                 now: None,
                 signal: LiveSignal::new(setup.quantity, rate_hz),
                 kept_db: kept.map(|kept| kept.level_db),
-                scale: Scale {
-                    top_db: f64::NEG_INFINITY,
-                    at: Instant::now(),
-                },
+                scale: Scale { top_db: f64::NEG_INFINITY, at: Instant::now() },
                 takes: Vec::new(),
                 end: None,
                 is_end_shown: false,
@@ -233,14 +232,8 @@ impl GuidePage {
     /// Shows the end of the session, and waits until the page has it, if it is open.
     pub fn end(&self, recorded: &Result<Recorded, RecordError>) {
         self.shown.lock().end = Some(match recorded {
-            Ok(take) => End {
-                is_kept: true,
-                text: take.file.display().to_string(),
-            },
-            Err(error) => End {
-                is_kept: false,
-                text: error.to_string(),
-            },
+            Ok(take) => End { is_kept: true, text: take.file.display().to_string() },
+            Err(error) => End { is_kept: false, text: error.to_string() },
         });
         self.served.wait_for_end(|| self.shown.lock().is_end_shown);
     }
@@ -307,10 +300,7 @@ impl Content for Shown {
         let spectrum = signal.spectrum();
         let changing = self.changing(now, has_ended, spectrum);
         let mut state = self.lock();
-        let highest = changing
-            .level_db
-            .iter()
-            .chain(state.kept_db.iter().flatten());
+        let highest = changing.level_db.iter().chain(state.kept_db.iter().flatten());
         let highest_db = highest.copied().fold(f64::NEG_INFINITY, f64::max);
         let top_db = state.scale.follow(highest_db);
         json!({
@@ -327,13 +317,11 @@ impl Content for Shown {
 }
 
 impl Scale {
-    /// Rises with the spectrum at once and falls slowly; the top is a multiple of 10 dB, and `None` before there is a spectrum.
+    /// Rises with the spectrum at once and falls slowly; the top is a multiple of 10 dB, and `None`
+    /// before there is a spectrum.
     fn follow(&mut self, highest_db: f64) -> Option<f64> {
         let fallen_db = self.top_db - SCALE_FALL_DB_S * self.at.elapsed().as_secs_f64();
-        *self = Self {
-            top_db: fallen_db.max(highest_db),
-            at: Instant::now(),
-        };
+        *self = Self { top_db: fallen_db.max(highest_db), at: Instant::now() };
         let top_db = SCALE_STEP_DB * (self.top_db / SCALE_STEP_DB).ceil();
         top_db.is_finite().then_some(top_db.max(LOWEST_TOP_DB))
     }

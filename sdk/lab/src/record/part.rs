@@ -1,8 +1,8 @@
 //! The part file of a take that is being recorded: append-only, and on disk every second.
 //!
-//! The first line is the header as JSON. After it come chunks: a byte of their kind, the number of bytes (u32), that many bytes of
-//! f64, and the first eight bytes of the BLAKE3 hash of all these; all little-endian. A chunk that a crash left incomplete or damaged
-//! ends the file for a reader.
+//! The first line is the header as JSON. After it come chunks: a byte of their kind, the number of
+//! bytes (u32), that many bytes of f64, and the first eight bytes of the BLAKE3 hash of all these;
+//! all little-endian. A chunk that a crash left incomplete or damaged ends the file for a reader.
 
 use std::fs::{File, TryLockError};
 use std::io::{Read, Write};
@@ -65,7 +65,8 @@ impl PartFile {
         &self.path
     }
 
-    /// Takes interleaved frames; writes and flushes to disk each time that a second of them is there.
+    /// Takes interleaved frames; writes and flushes to disk each time that a second of them is
+    /// there.
     ///
     /// # Errors
     /// [`RecordError::File`].
@@ -108,17 +109,17 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
     let start = bytes.len();
     bytes.push(kind);
     bytes.extend((size_of_val(values) as u32).to_le_bytes());
-    values
-        .iter()
-        .for_each(|value| bytes.extend(value.to_le_bytes()));
+    values.iter().for_each(|value| bytes.extend(value.to_le_bytes()));
     let hash = blake3::hash(&bytes[start..]);
     bytes.extend(&hash.as_bytes()[..HASH]);
 }
 
-/// Reads a part file, not through a link: all whole chunks. `None` if its header is incomplete, so that nothing was recorded.
+/// Reads a part file, not through a link: all whole chunks. `None` if its header is incomplete, so
+/// that nothing was recorded.
 ///
 /// # Errors
-/// [`RecordError::Content`] if it cannot be read or is no part file; [`RecordError::Busy`] while another program writes it.
+/// [`RecordError::Content`] if it cannot be read or is no part file; [`RecordError::Busy`] while
+/// another program writes it.
 pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
     let opened = OwnFolder::of_file(path).and_then(|(folder, name)| folder.open(&name));
     let mut file = opened.in_file(path)?;

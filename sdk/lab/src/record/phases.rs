@@ -11,7 +11,8 @@ use crate::record::reader::{Block, Reader};
 
 pub(crate) type Take<'a> = dyn FnMut(&Block) -> Result<(), RecordError> + 'a;
 
-/// Time over which the force is shown as a mean, seconds: that of the means by which a take is judged.
+/// Time over which the force is shown as a mean, seconds: that of the means by which a take is
+/// judged.
 const FORCE_S: f64 = 0.05;
 
 /// Whether a session goes on.
@@ -34,11 +35,7 @@ pub(crate) struct Span {
 
 impl Span {
     pub(crate) fn new(phase: Phase, number: u32, of_s: f64) -> Self {
-        Self {
-            phase,
-            number,
-            of_s,
-        }
+        Self { phase, number, of_s }
     }
 }
 
@@ -69,11 +66,7 @@ impl Phases {
         watch: &mut dyn FnMut(&Moment<'_>) -> Next,
         take: &mut Take<'_>,
     ) -> Result<(), RecordError> {
-        let Span {
-            phase,
-            number,
-            of_s,
-        } = span;
+        let Span { phase, number, of_s } = span;
         let rate_hz = self.reader.source.rate_hz();
         let frames = (of_s * rate_hz).round() as u64;
         let mut done = 0;
@@ -138,10 +131,7 @@ struct RunningMean {
 
 impl RunningMean {
     fn new(most: usize) -> Self {
-        Self {
-            newest: VecDeque::with_capacity(most),
-            most,
-        }
+        Self { newest: VecDeque::with_capacity(most), most }
     }
 
     fn take(&mut self, values: &[f64]) {

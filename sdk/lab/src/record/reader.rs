@@ -54,14 +54,7 @@ impl Inputs {
 
 impl Reader {
     pub(crate) fn new(source: Box<dyn Source>, inputs: Inputs, seconds: f64) -> Self {
-        Self {
-            source,
-            inputs,
-            seconds,
-            read: 0,
-            samples: Vec::new(),
-            since: None,
-        }
+        Self { source, inputs, seconds, read: 0, samples: Vec::new(), since: None }
     }
 
     /// Time of the next sample since the source was started, seconds.
@@ -86,11 +79,7 @@ impl Reader {
             Delivered::Frames(0) => return Ok(None),
             Delivered::Frames(frames) => frames,
             Delivered::End => {
-                return Err(RecordError::Ended {
-                    after_s: 0.0,
-                    seconds: self.seconds,
-                    kept: None,
-                });
+                return Err(RecordError::Ended { after_s: 0.0, seconds: self.seconds, kept: None });
             }
         };
         self.since = None;
@@ -112,9 +101,7 @@ impl Block {
     /// The values frame by frame.
     pub(crate) fn interleaved(&self) -> Vec<f64> {
         let rows = self.values.first().map_or(0, Vec::len);
-        (0..rows)
-            .flat_map(|row| self.values.iter().map(move |values| values[row]))
-            .collect()
+        (0..rows).flat_map(|row| self.values.iter().map(move |values| values[row])).collect()
     }
 
     /// Interleaved rows of the tracker with times since `begin_s`; those before are left out.

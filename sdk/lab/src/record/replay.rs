@@ -11,7 +11,8 @@ use htex_device::{
     Settings, Source, SourceAdapter,
 };
 
-/// The adapter of files: any that [`read_channels`] reads. Its channels are the columns but the time.
+/// The adapter of files: any that [`read_channels`] reads. Its channels are the columns but the
+/// time.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Replay;
 
@@ -30,9 +31,7 @@ static DESCRIPTOR: LazyLock<Descriptor> = LazyLock::new(|| Descriptor {
         ),
         setting(
             "pace",
-            SettingKind::Choice {
-                values: vec!["real".to_owned(), "fast".to_owned()],
-            },
+            SettingKind::Choice { values: vec!["real".to_owned(), "fast".to_owned()] },
             Some("real"),
             "Whether samples come at their rate, or as fast as they are read.",
         ),
@@ -94,11 +93,7 @@ impl Replay {
         let pace = if fast { "fast" } else { "real" };
         let given = [("path", path), ("pace", pace)];
         let given = given.map(|(name, value)| (name.to_owned(), value.to_owned()));
-        Self.open(&Settings::resolve(
-            &DESCRIPTOR,
-            None,
-            &BTreeMap::from(given),
-        )?)
+        Self.open(&Settings::resolve(&DESCRIPTOR, None, &BTreeMap::from(given))?)
     }
 }
 

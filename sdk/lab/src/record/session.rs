@@ -42,13 +42,9 @@ impl Session {
     ) -> Result<Self, RecordError> {
         check(&setup, source.rate_hz())?;
         let moves = |roles: &[(String, String)]| {
-            roles
-                .iter()
-                .any(|(role, _)| matches!(&role[..], "x" | "y" | "speed"))
+            roles.iter().any(|(role, _)| matches!(&role[..], "x" | "y" | "speed"))
         };
-        let is_tracked = tracker
-            .as_ref()
-            .is_some_and(|tracker| moves(&tracker.signals()));
+        let is_tracked = tracker.as_ref().is_some_and(|tracker| moves(&tracker.signals()));
         if setup.target.speed_mm_s.is_some() && !is_tracked && !moves(&signals.list()) {
             return Err(RecordError::NotMeasured {
                 what: "speed",
@@ -65,18 +61,15 @@ impl Session {
         own.make_folder(Path::new("")).writing(&setup.folder)?;
         let inputs = Inputs { signals, tracker };
         let reader = Reader::new(source, inputs, setup.seconds);
-        Ok(Self {
-            setup,
-            phases: Phases::new(reader),
-        })
+        Ok(Self { setup, phases: Phases::new(reader) })
     }
 
-    /// Records takes until one keeps to its target, and returns that. `watch` is called for each block of samples, `told` for
-    /// each take that is complete.
+    /// Records takes until one keeps to its target, and returns that. `watch` is called for each
+    /// block of samples, `told` for each take that is complete.
     ///
     /// # Errors
-    /// [`RecordError::OffTarget`] when no take did; errors of the source, after which what was recorded is in the folder
-    /// `incomplete`; [`RecordError::Left`] when `watch` ends the session.
+    /// [`RecordError::OffTarget`] when no take did; errors of the source, after which what was
+    /// recorded is in the folder `incomplete`; [`RecordError::Left`] when `watch` ends the session.
     pub fn record(
         &mut self,
         watch: &mut dyn FnMut(&Moment<'_>) -> Next,
@@ -114,14 +107,13 @@ impl Session {
     fn tare(&mut self, watch: &mut dyn FnMut(&Moment<'_>) -> Next) -> Result<(), RecordError> {
         self.phases.reader.inputs.signals.tare(&[]);
         let (mut sums, mut count) = (vec![0.0; self.phases.reader.inputs.signals.list().len()], 0);
-        self.phases
-            .run(Span::new(Phase::Tare, 0, TARE_S), watch, &mut |block| {
-                for (sum, values) in sums.iter_mut().zip(&block.values) {
-                    *sum += values.iter().sum::<f64>();
-                }
-                count += block.values.first().map_or(0, Vec::len);
-                Ok(())
-            })?;
+        self.phases.run(Span::new(Phase::Tare, 0, TARE_S), watch, &mut |block| {
+            for (sum, values) in sums.iter_mut().zip(&block.values) {
+                *sum += values.iter().sum::<f64>();
+            }
+            count += block.values.first().map_or(0, Vec::len);
+            Ok(())
+        })?;
         let means: Vec<f64> = sums.iter().map(|sum| sum / count.max(1) as f64).collect();
         self.phases.reader.inputs.signals.tare(&means);
         Ok(())

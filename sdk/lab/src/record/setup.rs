@@ -52,7 +52,8 @@ pub enum Tare {
     Never,
     /// Before the first take.
     Once,
-    /// Before each take. Before the second one and those after it there is the time of a countdown to lift the finger.
+    /// Before each take. Before the second one and those after it there is the time of a countdown
+    /// to lift the finger.
     Each,
 }
 
@@ -61,11 +62,7 @@ pub(crate) fn check(setup: &Setup, rate_hz: f64) -> Result<(), RecordError> {
     names::check(&setup.name)?;
     let refuse = |what, value: f64, allowed| {
         let value = value.to_string();
-        Err(RecordError::Setup {
-            what,
-            value,
-            allowed,
-        })
+        Err(RecordError::Setup { what, value, allowed })
     };
     let frames = setup.seconds * rate_hz;
     if !(setup.seconds <= LONGEST_S && frames.round() >= 2.0) {
@@ -76,11 +73,7 @@ pub(crate) fn check(setup: &Setup, rate_hz: f64) -> Result<(), RecordError> {
         );
     }
     if !(0.0..=LONGEST_S).contains(&setup.countdown_s) {
-        return refuse(
-            "the countdown",
-            setup.countdown_s,
-            "0 to 3600 s are allowed",
-        );
+        return refuse("the countdown", setup.countdown_s, "0 to 3600 s are allowed");
     }
     if !(setup.tolerance > 0.0 && setup.tolerance < 1.0) {
         return refuse(
@@ -96,10 +89,8 @@ pub(crate) fn check(setup: &Setup, rate_hz: f64) -> Result<(), RecordError> {
             "it is 0 to 1, as in 0.5 for half of a take",
         );
     }
-    let targets = [
-        ("the target speed", setup.target.speed_mm_s),
-        ("the target force", setup.target.force_n),
-    ];
+    let targets =
+        [("the target speed", setup.target.speed_mm_s), ("the target force", setup.target.force_n)];
     for (what, target) in targets {
         if let Some(target) = target.filter(|target| !(*target > 0.0 && *target <= 1e4)) {
             return refuse(what, target, "it is above 0 and at most 10,000");

@@ -8,7 +8,8 @@ use htex_format::Quantity;
 use crate::record::calibration::{AXES, Calibration};
 use crate::record::error::RecordError;
 
-/// Conversion of a source's channels: calibration of six-axis sensors, then the map to roles, then tare.
+/// Conversion of a source's channels: calibration of six-axis sensors, then the map to roles, then
+/// tare.
 #[derive(Debug)]
 pub struct Signals {
     width: usize,
@@ -21,12 +22,14 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// Makes the conversion. The n-th calibration is of the n-th six channels, which become `fx, fy, fz, tx, ty, tz` (of several
-    /// sensors `fx1`, `fx2` and so on); other channels keep their names. The map, or the names, assign them to roles: two sensors
-    /// are summed by `lateral_x=fx1+fx2`.
+    /// Makes the conversion. The n-th calibration is of the n-th six channels, which become
+    /// `fx, fy, fz, tx, ty, tz` (of several sensors `fx1`, `fx2` and so on); other channels keep
+    /// their names. The map, or the names, assign them to roles: two sensors are summed by
+    /// `lateral_x=fx1+fx2`.
     ///
     /// # Errors
-    /// When there are fewer channels than the calibrations need, or the channels do not fit the map.
+    /// When there are fewer channels than the calibrations need, or the channels do not fit the
+    /// map.
     pub fn new(
         source: &str,
         channels: &[Channel],
@@ -44,9 +47,7 @@ impl Signals {
         let names = named(channels, calibrations.len());
         let map = RowMap::new(source, &names, map, quantity)?;
         let roles = map.roles();
-        let kept: Vec<usize> = (0..roles.len())
-            .filter(|i| roles[*i] != Role::Time)
-            .collect();
+        let kept: Vec<usize> = (0..roles.len()).filter(|i| roles[*i] != Role::Time).collect();
         Ok(Self {
             width: channels.len(),
             calibrations,
@@ -87,13 +88,12 @@ impl Signals {
         &self.offsets
     }
 
-    /// Subtracts these means from now on, instead of those before, and none if there are none; positions and speeds are left as they are.
+    /// Subtracts these means from now on, instead of those before, and none if there are none;
+    /// positions and speeds are left as they are.
     pub fn tare(&mut self, means: &[f64]) {
         let moves = |role: &Role| matches!(role, Role::Speed | Role::X | Role::Y);
         let pairs = self.roles.iter().zip(means);
-        self.offsets = pairs
-            .map(|(role, mean)| if moves(role) { 0.0 } else { *mean })
-            .collect();
+        self.offsets = pairs.map(|(role, mean)| if moves(role) { 0.0 } else { *mean }).collect();
     }
 
     /// Returns the values of each signal, from interleaved samples of all channels.
@@ -115,11 +115,8 @@ impl Signals {
             }
         }
         let mut all = self.map.values(&channels);
-        let mut values: Vec<Vec<f64>> = self
-            .kept
-            .iter()
-            .map(|i| std::mem::take(&mut all[*i]))
-            .collect();
+        let mut values: Vec<Vec<f64>> =
+            self.kept.iter().map(|i| std::mem::take(&mut all[*i])).collect();
         for (values, offset) in values.iter_mut().zip(&self.offsets) {
             values.iter_mut().for_each(|value| *value -= offset);
         }

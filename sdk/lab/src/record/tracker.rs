@@ -17,14 +17,15 @@ pub trait TrackerRows: Send {
     /// Role and unit of each signal, without the time.
     fn signals(&self) -> Vec<(String, String)>;
 
-    /// Appends the rows that have come: the time on the source's clock (s), which ascends, then each signal. `now_s` is the time of the
-    /// last sample of the source.
+    /// Appends the rows that have come: the time on the source's clock (s), which ascends, then
+    /// each signal. `now_s` is the time of the last sample of the source.
     ///
     /// # Errors
     /// When the tracker delivers what is no position.
     fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), RecordError>;
 
-    /// The clock of the source begins at 0 s again: another source is read, or the same one anew. Rows that have come are forgotten.
+    /// The clock of the source begins at 0 s again: another source is read, or the same one anew.
+    /// Rows that have come are forgotten.
     fn restart(&mut self);
 }
 
@@ -44,17 +45,12 @@ impl TableTracker {
     /// When it cannot be read, or has neither.
     pub fn open(path: &Path, map: Option<&ColumnMap>) -> Result<Self, RecordError> {
         let table = read_channels(path, &ReadOptions::default())?;
-        let names: Vec<(String, String)> = table
-            .names
-            .iter()
-            .map(|name| (name.clone(), String::new()))
-            .collect();
+        let names: Vec<(String, String)> =
+            table.names.iter().map(|name| (name.clone(), String::new())).collect();
         let file = path.file_name().unwrap_or_default().to_string_lossy();
         let map = RowMap::of_motion(&file, &names, map)?;
         let roles = map.roles();
-        let moves: Vec<usize> = (0..roles.len())
-            .filter(|i| roles[*i] != Role::Time)
-            .collect();
+        let moves: Vec<usize> = (0..roles.len()).filter(|i| roles[*i] != Role::Time).collect();
         let signal = |i: &usize| (roles[*i].name().to_owned(), map.unit(roles[*i]).to_owned());
         let rows = table.channels.first().map_or(0, Vec::len);
         let time_s = match table.time_s {
@@ -64,11 +60,7 @@ impl TableTracker {
         let mut columns = vec![time_s];
         let mut values = map.values(&table.channels);
         columns.extend(moves.iter().map(|i| std::mem::take(&mut values[*i])));
-        Ok(Self {
-            signals: moves.iter().map(signal).collect(),
-            columns,
-            next: 0,
-        })
+        Ok(Self { signals: moves.iter().map(signal).collect(), columns, next: 0 })
     }
 }
 
@@ -95,7 +87,8 @@ const MOST_LINE_BYTES: usize = 4096;
 /// Most lines that wait: a minute at 1 kHz.
 const MOST_LINES: usize = 60_000;
 
-/// A tracker that sends lines `x_mm y_mm`: a pipe, a serial port. Rows get the time of their arrival.
+/// A tracker that sends lines `x_mm y_mm`: a pipe, a serial port. Rows get the time of their
+/// arrival.
 #[derive(Debug)]
 pub struct LineTracker {
     name: String,
@@ -116,11 +109,7 @@ impl LineTracker {
                 }
             }
         });
-        Self {
-            name: name.to_owned(),
-            lines,
-            last_s: f64::NEG_INFINITY,
-        }
+        Self { name: name.to_owned(), lines, last_s: f64::NEG_INFINITY }
     }
 }
 
@@ -157,10 +146,7 @@ impl TrackerRows for LineTracker {
 }
 
 fn position(line: &str) -> Option<[f64; 2]> {
-    let words = line
-        .split([' ', '\t', ',', ';'])
-        .map(str::trim)
-        .filter(|w| !w.is_empty());
+    let words = line.split([' ', '\t', ',', ';']).map(str::trim).filter(|w| !w.is_empty());
     let numbers: Vec<f64> = words.map(|w| w.parse().ok()).collect::<Option<_>>()?;
     let numbers: [f64; 2] = numbers.try_into().ok()?;
     numbers.iter().all(|n| n.is_finite()).then_some(numbers)

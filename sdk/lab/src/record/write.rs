@@ -46,9 +46,9 @@ pub(crate) fn write_take(
     })
 }
 
-/// Writes a recording, the tracker's rows, and JSON beside it into a folder `inside` the user's, each file beside its name and then
-/// renamed. `beside` gets the arguments of
-/// `htex fit` that read the recording.
+/// Writes a recording, the tracker's rows, and JSON beside it into a folder `inside` the user's,
+/// each file beside its name and then renamed. `beside` gets the arguments of `htex fit` that read
+/// the recording.
 ///
 /// # Errors
 /// [`RecordError::File`].
@@ -79,9 +79,7 @@ pub(crate) fn write_signals(
         Format::Npy => npy(data, file),
         Format::Wav => wav(data, file),
     })?;
-    put(&inside.join(format!("{stem}.json")), &|file| {
-        file.write_all(beside.as_bytes())
-    })?;
+    put(&inside.join(format!("{stem}.json")), &|file| file.write_all(beside.as_bytes()))?;
     Ok(Written { recording, fit })
 }
 
@@ -94,11 +92,7 @@ fn flags(header: &TakeHeader) -> Vec<String> {
         flags.extend(["--quantity".to_owned(), name]);
     }
     flags.extend(map.into_iter().flat_map(|map| ["--map".to_owned(), map]));
-    flags.extend(
-        rate_hz
-            .into_iter()
-            .flat_map(|hz| ["--rate".to_owned(), hz.to_string()]),
-    );
+    flags.extend(rate_hz.into_iter().flat_map(|hz| ["--rate".to_owned(), hz.to_string()]));
     flags
 }
 
@@ -114,9 +108,7 @@ pub(crate) fn reading(header: &TakeHeader) -> (Option<String>, Option<f64>) {
 /// The roles of the columns of a format without names.
 fn column_map(header: &TakeHeader) -> String {
     let signals = header.signals.iter().enumerate();
-    let map: Vec<String> = signals
-        .map(|(at, (role, _))| format!("{role}=#{}:1", at + 1))
-        .collect();
+    let map: Vec<String> = signals.map(|(at, (role, _))| format!("{role}=#{}:1", at + 1)).collect();
     map.join(",")
 }
 
@@ -128,11 +120,7 @@ fn column(role: &str, unit: &str, quantity: Quantity) -> String {
         Quantity::Displacement => "disp",
         Quantity::LateralForce | Quantity::NormalForce => "signal",
     };
-    format!(
-        "{}_{}",
-        role.replace("signal", base),
-        unit.replace('/', "_")
-    )
+    format!("{}_{}", role.replace("signal", base), unit.replace('/', "_"))
 }
 
 fn csv(data: &TakeData, file: &mut File) -> io::Result<()> {
@@ -196,9 +184,7 @@ fn wav(data: &TakeData, file: &mut File) -> io::Result<()> {
     let mut writer = hound::WavWriter::new(BufWriter::new(file), spec).map_err(io::Error::other)?;
     for row in 0..data.frames() {
         for values in &data.signals {
-            writer
-                .write_sample(values[row] as f32)
-                .map_err(io::Error::other)?;
+            writer.write_sample(values[row] as f32).map_err(io::Error::other)?;
         }
     }
     writer.finalize().map_err(io::Error::other)

@@ -15,8 +15,8 @@ const END: f64 = 0.05;
 const QUIET: f64 = 0.01;
 const OVER_NOISE: f64 = 3.0;
 
-/// Whether a hit's output, after its windows, still sounds at the end: more than 1 % of its largest value (RMS), and
-/// more than three times the noise of the `before` samples before the trigger.
+/// Whether a hit's output, after its windows, still sounds at the end: more than 1 % of its largest
+/// value (RMS), and more than three times the noise of the `before` samples before the trigger.
 fn outlasts(output: &[f64], before: usize) -> bool {
     let end = ((END * output.len() as f64) as usize).max(1);
     let tail = spread(&output[output.len() - end.min(output.len())..]);
@@ -50,10 +50,7 @@ pub(crate) fn count_used(
     options: &ResponseOptions,
 ) -> Result<usize, ResponseError> {
     let pieces = || cuts.iter().flatten().map(|cut| &cut.piece);
-    let (found, is_hits) = (
-        pieces().count(),
-        matches!(options.excitation, Excitation::Hits(_)),
-    );
+    let (found, is_hits) = (pieces().count(), matches!(options.excitation, Excitation::Hits(_)));
     if let (0, Some(first)) = (found, records.first()) {
         let rest = Baseline::of(first.channel(Channel::Input));
         let (largest, noise) = (rest.largest, rest.noise);
@@ -96,10 +93,9 @@ pub(crate) fn average(
     (spectra, outlasting)
 }
 
-/// The largest distance from rest, by which a channel is divided so that no power over- or underflows.
+/// The largest distance from rest, by which a channel is divided so that no power over- or
+/// underflows.
 pub(crate) fn scale_of(records: &[Record], channel: Channel) -> f64 {
-    let largest = records
-        .iter()
-        .map(|record| Baseline::of(record.channel(channel)).largest);
+    let largest = records.iter().map(|record| Baseline::of(record.channel(channel)).largest);
     largest.fold(0.0, f64::max)
 }

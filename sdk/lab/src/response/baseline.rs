@@ -8,8 +8,8 @@ const NORMAL: f64 = 1.482_602_218_505_602;
 pub(crate) struct Baseline {
     /// The median.
     pub(crate) level: f64,
-    /// RMS of the noise, by the median absolute deviation, on which hits have no influence while they fill less than
-    /// half of the recording.
+    /// RMS of the noise, by the median absolute deviation, on which hits have no influence while
+    /// they fill less than half of the recording.
     pub(crate) noise: f64,
     /// Largest distance from the level.
     pub(crate) largest: f64,
@@ -22,11 +22,7 @@ impl Baseline {
         let deviations: Vec<f64> = values.iter().map(|value| (value - level).abs()).collect();
         let largest = deviations.iter().copied().fold(0.0, f64::max);
         let noise = NORMAL * median(deviations);
-        Self {
-            level,
-            noise,
-            largest,
-        }
+        Self { level, noise, largest }
     }
 }
 

@@ -39,10 +39,7 @@ pub enum ResponseError {
     Columns { problem: String },
     /// A recording cannot be used.
     #[error("{file}: {problem}")]
-    Record {
-        file: String,
-        problem: RecordProblem,
-    },
+    Record { file: String, problem: RecordProblem },
     /// There is no recording.
     #[error("no recording is given; give at least one with input and output")]
     Nothing,
@@ -155,10 +152,7 @@ pub enum RecordProblem {
 
 impl RecordProblem {
     pub(crate) fn of(self, file: impl Into<String>) -> ResponseError {
-        ResponseError::Record {
-            file: file.into(),
-            problem: self,
-        }
+        ResponseError::Record { file: file.into(), problem: self }
     }
 
     fn hint(&self) -> Hint {

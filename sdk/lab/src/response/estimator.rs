@@ -1,25 +1,29 @@
 //! Estimators of a response from averaged spectra.
 //!
-//! Total least squares (`Hv`) depends on units, so each channel is divided by the root of its power in the band.
+//! Total least squares (`Hv`) depends on units, so each channel is divided by the root of its power
+//! in the band.
 
 use std::fmt;
 
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
-/// An estimator of a frequency response from the auto spectra `Gxx` and `Gyy` and the cross spectrum `Gxy` of input and
-/// output. All three have the phase of `Gxy`, and `|H1| <= |Hv| <= |H2|`; without noise they are equal.
+/// An estimator of a frequency response from the auto spectra `Gxx` and `Gyy` and the cross
+/// spectrum `Gxy` of input and output. All three have the phase of `Gxy`, and
+/// `|H1| <= |Hv| <= |H2|`; without noise they are equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Estimator {
-    /// `Gxy / Gxx`: unbiased by noise in the output, too low with noise in the input (Bendat & Piersol, chapter 6).
+    /// `Gxy / Gxx`: unbiased by noise in the output, too low with noise in the input (Bendat &
+    /// Piersol, chapter 6).
     H1,
     /// `Gyy / Gyx`: unbiased by noise in the input, too high with noise in the output.
     H2,
-    /// Total least squares (Rocklin, Crowley and Vold, 1985): for noise in both channels. Each channel is divided by the
-    /// root of its power in the band first, so that the result does not depend on units; it is unbiased if the white
-    /// noise of both channels is equal relative to that power.
+    /// Total least squares (Rocklin, Crowley and Vold, 1985): for noise in both channels. Each
+    /// channel is divided by the root of its power in the band first, so that the result does not
+    /// depend on units; it is unbiased if the white noise of both channels is equal relative to
+    /// that power.
     Hv,
 }
 
@@ -44,7 +48,8 @@ pub(crate) struct Bin {
 }
 
 impl Bin {
-    /// Returns the magnitude of the response; 0 where the estimator is not defined, as without any input.
+    /// Returns the magnitude of the response; 0 where the estimator is not defined, as without any
+    /// input.
     pub(crate) fn magnitude(&self, estimator: Estimator) -> f64 {
         let cross = self.gxy.norm_sqr().sqrt();
         let magnitude = match estimator {
@@ -58,7 +63,8 @@ impl Bin {
         }
     }
 
-    /// The slope of the principal axis of the scaled spectral matrix: `(b - a + sqrt((b - a)² + 4 c²)) / 2c`.
+    /// The slope of the principal axis of the scaled spectral matrix:
+    /// `(b - a + sqrt((b - a)² + 4 c²)) / 2c`.
     fn total_least_squares(&self, cross: f64) -> f64 {
         let (x, y) = (self.input_power, self.output_power);
         let unit = (y / x).sqrt();
@@ -77,8 +83,8 @@ impl Bin {
         libm::atan2(self.gxy.im, self.gxy.re)
     }
 
-    /// Returns the coherence `|Gxy|² / (Gxx Gyy)`, 0 to 1: the part of the output's power that the input explains; 0
-    /// without power.
+    /// Returns the coherence `|Gxy|² / (Gxx Gyy)`, 0 to 1: the part of the output's power that the
+    /// input explains; 0 without power.
     pub(crate) fn coherence(&self) -> f64 {
         let power = self.gxx * self.gyy;
         match power > 0.0 {
@@ -95,7 +101,8 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// H1 <= Hv <= H2 for every spectral matrix, whatever the units; and each is the gain without noise.
+        /// H1 <= Hv <= H2 for every spectral matrix, whatever the units; and each is the gain
+        /// without noise.
         #[test]
         fn estimators_are_ordered(
             gxx in 1e-6..1e6_f64, gyy in 1e-6..1e6_f64, coherence in 0.01..1.0_f64, phase in -3.0..3.0_f64,
@@ -113,13 +120,8 @@ mod tests {
 
     #[test]
     fn bins_without_power_have_no_response() {
-        let bin = Bin {
-            gxx: 0.0,
-            gyy: 0.0,
-            gxy: Complex::ZERO,
-            input_power: 1.0,
-            output_power: 1.0,
-        };
+        let bin =
+            Bin { gxx: 0.0, gyy: 0.0, gxy: Complex::ZERO, input_power: 1.0, output_power: 1.0 };
         for estimator in [Estimator::H1, Estimator::H2, Estimator::Hv] {
             assert_eq!(bin.magnitude(estimator), 0.0);
         }

@@ -21,15 +21,11 @@ pub(crate) fn windows(record: &Record, len: usize, options: &ResponseOptions) ->
     ];
     let last = (input.len() + 1).saturating_sub(len);
     let starts = || (0..last).step_by((len / 2).max(1));
-    let rms: Vec<f64> = starts()
-        .map(|start| spread(&input[start..start + len]))
-        .collect();
+    let rms: Vec<f64> = starts().map(|start| spread(&input[start..start + len])).collect();
     let strongest = rms.iter().copied().fold(0.0, f64::max);
     let cut = |(start, rms): (usize, f64)| {
         let samples = start..start + len;
-        let overload = overloads
-            .iter()
-            .find_map(|all| all.within(record, &samples));
+        let overload = overloads.iter().find_map(|all| all.within(record, &samples));
         let silent = (rms < SILENT * strongest).then_some(Reason::Silent);
         let piece = Piece {
             file: record.file().to_owned(),
@@ -37,11 +33,7 @@ pub(crate) fn windows(record: &Record, len: usize, options: &ResponseOptions) ->
             peak: farthest(&input[samples.clone()]),
             thrown_out: overload.or(silent),
         };
-        Cut {
-            samples,
-            trigger: start,
-            piece,
-        }
+        Cut { samples, trigger: start, piece }
     };
     starts().zip(rms).map(cut).collect()
 }
@@ -49,10 +41,7 @@ pub(crate) fn windows(record: &Record, len: usize, options: &ResponseOptions) ->
 /// Standard deviation.
 pub(crate) fn spread(values: &[f64]) -> f64 {
     let mean = mean(values);
-    let squares: f64 = values
-        .iter()
-        .map(|value| (value - mean) * (value - mean))
-        .sum();
+    let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
     (squares / values.len().max(1) as f64).sqrt()
 }
 
@@ -82,36 +71,19 @@ impl Weights {
     /// Of a continuous drive: a periodic Hann window; the whole window's mean is removed.
     pub(crate) fn hann(len: usize) -> Self {
         let hann = htex_dsp::window::hann_periodic(len);
-        Self {
-            input: hann.clone(),
-            output: hann,
-            rest: len,
-        }
+        Self { input: hann.clone(), output: hann, rest: len }
     }
 
     /// Of hits: force window and exponential window; the mean before the trigger is removed.
     pub(crate) fn of_hits(len: usize, rate_hz: f64, hit: &HitOptions) -> Self {
         let before = (hit.pre_trigger_s * rate_hz).round() as usize;
         let after_s = |at: usize| at.saturating_sub(before) as f64 / rate_hz;
-        let exponential = |at| {
-            hit.exponential_s
-                .map_or(1.0, |tau_s| libm::exp(-after_s(at) / tau_s))
-        };
-        let force = |at| {
-            hit.force_window_s
-                .map_or(1.0, |end_s| force(after_s(at), end_s))
-        };
+        let exponential =
+            |at| hit.exponential_s.map_or(1.0, |tau_s| libm::exp(-after_s(at) / tau_s));
+        let force = |at| hit.force_window_s.map_or(1.0, |end_s| force(after_s(at), end_s));
         let output: Vec<f64> = (0..len).map(exponential).collect();
-        let input = output
-            .iter()
-            .enumerate()
-            .map(|(at, weight)| weight * force(at))
-            .collect();
-        Self {
-            input,
-            output,
-            rest: before,
-        }
+        let input = output.iter().enumerate().map(|(at, weight)| weight * force(at)).collect();
+        Self { input, output, rest: before }
     }
 
     /// Returns the weighted samples of a window. `scale` divides them.
@@ -130,9 +102,7 @@ impl Weights {
         // Without samples before the trigger, the first one is at rest or nearly so.
         let rest = mean(&values[..self.rest.clamp(1, values.len())]);
         let weighted = values.iter().zip(weights);
-        weighted
-            .map(|(value, weight)| weight * (value - rest) / scale)
-            .collect()
+        weighted.map(|(value, weight)| weight * (value - rest) / scale).collect()
     }
 }
 

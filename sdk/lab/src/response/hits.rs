@@ -10,13 +10,15 @@ use super::overload::Overloads;
 use super::pieces::{Cut, Piece, Reason};
 use super::record::Record;
 
-/// Least ratio of a hit's level, and of a second contact's, to the noise: normal noise at a gigahertz exceeds it less
-/// than once a day.
+/// Least ratio of a hit's level, and of a second contact's, to the noise: normal noise at a
+/// gigahertz exceeds it less than once a day.
 pub(crate) const ABOVE_NOISE: f64 = 8.0;
 
-/// Finds the hits of a record, with windows of `len` samples; none where the largest input is within the noise.
+/// Finds the hits of a record, with windows of `len` samples; none where the largest input is
+/// within the noise.
 ///
-/// A hit begins where the input first reaches the trigger level, and the next one is searched behind its window.
+/// A hit begins where the input first reaches the trigger level, and the next one is searched
+/// behind its window.
 pub(crate) fn hits(
     record: &Record,
     len: usize,
@@ -41,13 +43,7 @@ pub(crate) fn hits(
         let samples = start..start + len;
         let inside = start..samples.end.min(input.len());
         let peak = peak(&input[inside.clone()], rest.level);
-        let window = Window {
-            record,
-            trigger,
-            before,
-            samples: &samples,
-            inside: &inside,
-        };
+        let window = Window { record, trigger, before, samples: &samples, inside: &inside };
         let rise = (hit.double * peak.abs()).max(least);
         let thrown_out = window
             .cut_off()
@@ -55,26 +51,15 @@ pub(crate) fn hits(
             .or_else(|| window.double(rest.level, peak, rise));
         from = inside.end.max(trigger + 1);
         let (file, time_s) = (record.file().to_owned(), record.second(trigger));
-        let piece = Piece {
-            file,
-            time_s,
-            peak,
-            thrown_out,
-        };
-        found.push(Cut {
-            samples,
-            trigger,
-            piece,
-        });
+        let piece = Piece { file, time_s, peak, thrown_out };
+        found.push(Cut { samples, trigger, piece });
     }
     found
 }
 
 /// The first sample that is at least `level` from rest.
 fn trigger(input: &[f64], rest: f64, level: f64) -> Option<usize> {
-    input
-        .iter()
-        .position(|value| (value - rest).abs() >= level && *value != rest)
+    input.iter().position(|value| (value - rest).abs() >= level && *value != rest)
 }
 
 /// The value farthest from rest, from there.

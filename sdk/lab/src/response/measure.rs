@@ -15,18 +15,16 @@ use super::spectra::Spectra;
 /// Measures the response of a setup from records of its input and output.
 ///
 /// # Errors
-/// Options out of range; no records, or records of different rates; a record shorter than a window; no hits, or fewer
-/// than two that can be used; a magnitude that no response file may hold.
+/// Options out of range; no records, or records of different rates; a record shorter than a window;
+/// no hits, or fewer than two that can be used; a magnitude that no response file may hold.
 pub fn measure(
     records: &[Record],
     options: &ResponseOptions,
 ) -> Result<MeasuredResponse, ResponseError> {
     let rate_hz = common_rate(records)?;
     let len = options.check(rate_hz)?;
-    let cuts: Vec<Vec<Cut>> = records
-        .iter()
-        .map(|record| cut(record, len, options))
-        .collect::<Result<_, _>>()?;
+    let cuts: Vec<Vec<Cut>> =
+        records.iter().map(|record| cut(record, len, options)).collect::<Result<_, _>>()?;
     let without_hits = without_hits(records, &cuts);
     let used = count_used(records, &cuts, options)?;
     let (spectra, outlasting) = average(records, &cuts, len, options);
@@ -42,10 +40,7 @@ pub fn measure(
         averages: used,
         pieces: cuts.into_iter().flatten().map(|cut| cut.piece).collect(),
         frequency_hz: bins.clone().map(|bin| bin as f64 * resolution_hz).collect(),
-        magnitude: in_band
-            .iter()
-            .map(|bin| scale * bin.magnitude(options.estimator))
-            .collect(),
+        magnitude: in_band.iter().map(|bin| scale * bin.magnitude(options.estimator)).collect(),
         phase_rad: unwrapped(in_band.iter().map(Bin::phase_rad)),
         coherence: in_band.iter().map(Bin::coherence).collect(),
         relative_error: Vec::new(),
@@ -60,10 +55,7 @@ pub fn measure(
 
 fn common_rate(records: &[Record]) -> Result<f64, ResponseError> {
     let first = records.first().ok_or(ResponseError::Nothing)?;
-    match records
-        .iter()
-        .find(|record| record.rate_hz() != first.rate_hz())
-    {
+    match records.iter().find(|record| record.rate_hz() != first.rate_hz()) {
         None => Ok(first.rate_hz()),
         Some(other) => Err(ResponseError::Rates {
             first: first.file().to_owned(),

@@ -37,7 +37,8 @@ pub struct MeasuredResponse {
     /// Coherence, 0 to 1.
     pub coherence: Vec<f64>,
     /// Standard deviation of the magnitude relative to it, at most 1:
-    /// `sqrt(1 - coherence) / sqrt(2 coherence averages)` (Bendat & Piersol, chapter 9). It counts random errors alone.
+    /// `sqrt(1 - coherence) / sqrt(2 coherence averages)` (Bendat & Piersol, chapter 9). It counts
+    /// random errors alone.
     pub relative_error: Vec<f64>,
     /// The largest magnitude; none if it is at an edge of the band.
     pub peak: Option<Peak>,
@@ -61,30 +62,21 @@ impl MeasuredResponse {
     pub(crate) fn finish(&mut self, options: &ResponseOptions) -> Result<(), ResponseError> {
         let is_valid =
             |magnitude: f64| magnitude == 0.0 || (SMALLEST..=LARGEST).contains(&magnitude);
-        if let Some(at) = self
-            .magnitude
-            .iter()
-            .position(|magnitude| !is_valid(*magnitude))
-        {
+        if let Some(at) = self.magnitude.iter().position(|magnitude| !is_valid(*magnitude)) {
             let (frequency_hz, magnitude) = (self.frequency_hz[at], self.magnitude[at]);
-            return Err(ResponseError::Magnitude {
-                frequency_hz,
-                magnitude,
-            });
+            return Err(ResponseError::Magnitude { frequency_hz, magnitude });
         }
         let averages = independent(options, self.averages);
-        let error = |coherence: &f64| {
-            ((1.0 - coherence) / (2.0 * coherence * averages))
-                .sqrt()
-                .min(1.0)
-        };
+        let error =
+            |coherence: &f64| ((1.0 - coherence) / (2.0 * coherence * averages)).sqrt().min(1.0);
         self.relative_error = self.coherence.iter().map(error).collect();
         self.peak = Peak::of(&self.frequency_hz, &self.magnitude);
         Ok(())
     }
 }
 
-/// Number of independent averages: Hann windows with half overlap share a part of their power (Welch 1967).
+/// Number of independent averages: Hann windows with half overlap share a part of their power
+/// (Welch 1967).
 fn independent(options: &ResponseOptions, used: usize) -> f64 {
     let used = used as f64;
     match options.excitation {

@@ -1,16 +1,20 @@
-//! The frequency response of a recording rig or a finger display, estimated from recordings of its input and output.
+//! The frequency response of a recording rig or a finger display, estimated from recordings of its
+//! input and output.
 //!
-//! The input is a hammer's force in separate hits, or a continuous drive of a display. Each hit, or each window of a
-//! continuous drive, is transformed; the averaged auto and cross spectra give the response ([`Estimator`]) and the
-//! coherence. Hits that would falsify the average are thrown out, each with its time and [`Reason`].
+//! The input is a hammer's force in separate hits, or a continuous drive of a display. Each hit, or
+//! each window of a continuous drive, is transformed; the averaged auto and cross spectra give the
+//! response ([`Estimator`]) and the coherence. Hits that would falsify the average are thrown out,
+//! each with its time and [`Reason`].
 //!
 //! Sources of the formulas:
-//! - J. S. Bendat, A. G. Piersol, *Random Data*, 4th ed., Wiley 2010: spectra of segments (section 11.5), H1 and
-//!   coherence (chapter 6), random errors (chapter 9).
-//! - G. T. Rocklin, J. Crowley, H. Vold, *A comparison of H1, H2 and Hv frequency response functions*, IMAC III, 1985.
-//! - W. A. Fladung, *Windows used for impact testing*, IMAC XV, 1997: force and exponential windows.
-//! - P. D. Welch, *The use of fast Fourier transform for the estimation of power spectra*, IEEE Trans. Audio
-//!   Electroacoust. 15, 1967: overlapping windows.
+//! - J. S. Bendat, A. G. Piersol, *Random Data*, 4th ed., Wiley 2010: spectra of segments (section
+//!   11.5), H1 and coherence (chapter 6), random errors (chapter 9).
+//! - G. T. Rocklin, J. Crowley, H. Vold, *A comparison of H1, H2 and Hv frequency response
+//!   functions*, IMAC III, 1985.
+//! - W. A. Fladung, *Windows used for impact testing*, IMAC XV, 1997: force and exponential
+//!   windows.
+//! - P. D. Welch, *The use of fast Fourier transform for the estimation of power spectra*, IEEE
+//!   Trans. Audio Electroacoust. 15, 1967: overlapping windows.
 //!
 //! ```
 //! use htex_lab::response::{Record, ResponseOptions, measure};

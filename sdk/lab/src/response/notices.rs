@@ -12,7 +12,8 @@ const COHERENT: f64 = 0.9;
 /// Distance of stretches of low coherence, relative to their frequency, up to which they are one.
 const NEAR: f64 = 0.1;
 
-/// Returns the warnings about a measured response. `outlasting` is the number of hits whose response has not died out.
+/// Returns the warnings about a measured response. `outlasting` is the number of hits whose
+/// response has not died out.
 pub(crate) fn notices(
     measured: &MeasuredResponse,
     options: &ResponseOptions,
@@ -52,12 +53,11 @@ pub(crate) fn notices(
 pub(crate) fn without_hits(records: &[Record], cuts: &[Vec<Cut>]) -> Vec<String> {
     let both = records.iter().zip(cuts);
     let empty = both.filter(|(_, cuts)| cuts.is_empty());
-    empty
-        .map(|(record, _)| format!("{}: no hit found.", record.file()))
-        .collect()
+    empty.map(|(record, _)| format!("{}: no hit found.", record.file())).collect()
 }
 
-/// The stretches of low coherence. Those nearer to each other than a tenth of their frequency are one.
+/// The stretches of low coherence. Those nearer to each other than a tenth of their frequency are
+/// one.
 fn incoherent(measured: &MeasuredResponse) -> Option<String> {
     let mut stretches: Vec<(f64, f64)> = Vec::new();
     let both = measured.frequency_hz.iter().zip(&measured.coherence);

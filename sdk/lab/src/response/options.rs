@@ -14,8 +14,8 @@ const FEWEST_SAMPLES: f64 = 16.0;
 pub struct ResponseOptions {
     pub excitation: Excitation,
     pub estimator: Estimator,
-    /// Length of a window, seconds; the response is on a grid of the inverse, hertz. A multiple of 0.2 s puts all
-    /// multiples of 5 Hz, the grid of texture spectra, on it.
+    /// Length of a window, seconds; the response is on a grid of the inverse, hertz. A multiple of
+    /// 0.2 s puts all multiples of 5 Hz, the grid of texture spectra, on it.
     pub window_s: f64,
     /// Lowest frequency of the response, hertz.
     pub low_hz: f64,
@@ -34,8 +34,8 @@ pub struct ResponseOptions {
 pub enum Excitation {
     /// Separate hits of an impact hammer.
     Hits(HitOptions),
-    /// A drive without pause, such as noise or a sweep: windows with half overlap, each with its mean removed and
-    /// multiplied by a periodic Hann window.
+    /// A drive without pause, such as noise or a sweep: windows with half overlap, each with its
+    /// mean removed and multiplied by a periodic Hann window.
     Continuous,
 }
 
@@ -45,16 +45,18 @@ pub enum Excitation {
 pub struct HitOptions {
     /// Part of the window before the trigger, seconds. The mean of both channels there is removed.
     pub pre_trigger_s: f64,
-    /// Level that starts a hit, relative to the largest input of its recording. It is at least 8 times the noise.
+    /// Level that starts a hit, relative to the largest input of its recording. It is at least 8
+    /// times the noise.
     pub trigger: f64,
-    /// Size of a second contact in the window, relative to the hit, from which the hit is a double one. It is at least
-    /// 8 times the noise.
+    /// Size of a second contact in the window, relative to the hit, from which the hit is a double
+    /// one. It is at least 8 times the noise.
     pub double: f64,
-    /// Force window: the input is kept until this time after the trigger, seconds, then fades to zero over a quarter
-    /// of it (half a cosine). It removes the noise of the input between hits.
+    /// Force window: the input is kept until this time after the trigger, seconds, then fades to
+    /// zero over a quarter of it (half a cosine). It removes the noise of the input between hits.
     pub force_window_s: Option<f64>,
-    /// Exponential window: both channels are multiplied by `exp(-t / this)` after the trigger, seconds. Responses that
-    /// outlast the window are forced to end, and their damping rises by its inverse, in 1/s.
+    /// Exponential window: both channels are multiplied by `exp(-t / this)` after the trigger,
+    /// seconds. Responses that outlast the window are forced to end, and their damping rises by its
+    /// inverse, in 1/s.
     pub exponential_s: Option<f64>,
 }
 
@@ -92,7 +94,8 @@ impl HitOptions {
         self
     }
 
-    /// Sets the levels of a hit (relative to the largest input) and of a second contact (relative to the hit).
+    /// Sets the levels of a hit (relative to the largest input) and of a second contact (relative
+    /// to the hit).
     #[must_use]
     pub fn with_levels(mut self, trigger: f64, double: f64) -> Self {
         (self.trigger, self.double) = (trigger, double);
@@ -153,7 +156,8 @@ impl ResponseOptions {
         self
     }
 
-    /// Returns the number of samples of a window; refuses options that no recording can be measured with.
+    /// Returns the number of samples of a window; refuses options that no recording can be measured
+    /// with.
     pub(crate) fn check(&self, rate_hz: f64) -> Result<usize, ResponseError> {
         let samples = (self.window_s * rate_hz).round();
         let enough = format!("a window needs {FEWEST_SAMPLES} samples or more, at {rate_hz} Hz");
@@ -177,14 +181,8 @@ impl ResponseOptions {
             high,
             "it must be finite and above the lowest",
         )?;
-        positive(
-            ("the limit of the input", Hint::new(&["input_limit"])),
-            self.input_limit,
-        )?;
-        positive(
-            ("the limit of the output", Hint::new(&["output_limit"])),
-            self.output_limit,
-        )?;
+        positive(("the limit of the input", Hint::new(&["input_limit"])), self.input_limit)?;
+        positive(("the limit of the output", Hint::new(&["output_limit"])), self.output_limit)?;
         if let Excitation::Hits(hits) = &self.excitation {
             hits.check(self.window_s)?;
         }
@@ -197,20 +195,14 @@ impl HitOptions {
         let inside = (0.0..0.5 * window_s).contains(&self.pre_trigger_s);
         let half = "it must be 0 or more, and below half of the window";
         require(
-            (
-                "the time before the trigger (s)",
-                Hint::new(&["pre_trigger"]),
-            ),
+            ("the time before the trigger (s)", Hint::new(&["pre_trigger"])),
             self.pre_trigger_s,
             inside,
             half,
         )?;
         for (option, level) in [
             (("the trigger", Hint::new(&["trigger"])), self.trigger),
-            (
-                ("the level of a double hit", Hint::new(&["double"])),
-                self.double,
-            ),
+            (("the level of a double hit", Hint::new(&["double"])), self.double),
         ] {
             require(
                 option,
@@ -219,25 +211,14 @@ impl HitOptions {
                 "it is relative and must be between 0 and 1",
             )?;
         }
-        positive(
-            ("the force window (s)", Hint::new(&["force_window"])),
-            self.force_window_s,
-        )?;
-        positive(
-            ("the exponential window (s)", Hint::new(&["exponential"])),
-            self.exponential_s,
-        )
+        positive(("the force window (s)", Hint::new(&["force_window"])), self.force_window_s)?;
+        positive(("the exponential window (s)", Hint::new(&["exponential"])), self.exponential_s)
     }
 }
 
 fn positive(option: (&'static str, Hint), value: Option<f64>) -> Result<(), ResponseError> {
     let value = value.unwrap_or(1.0);
-    require(
-        option,
-        value,
-        value.is_finite() && value > 0.0,
-        "it must be finite and above 0",
-    )
+    require(option, value, value.is_finite() && value > 0.0, "it must be finite and above 0")
 }
 
 fn require(
@@ -250,10 +231,5 @@ fn require(
         return Ok(());
     }
     let problem = problem.to_owned();
-    Err(ResponseError::Option {
-        option,
-        hint,
-        value,
-        problem,
-    })
+    Err(ResponseError::Option { option, hint, value, problem })
 }

@@ -7,10 +7,11 @@ use super::error::Channel;
 use super::pieces::Reason;
 use super::record::Record;
 
-/// Equal samples in a row at a channel's highest or lowest value from which it counts as clipped. The top of a pulse
-/// repeats a converter's code two or three times.
+/// Equal samples in a row at a channel's highest or lowest value from which it counts as clipped.
+/// The top of a pulse repeats a converter's code two or three times.
 const IN_A_ROW: usize = 4;
-/// Part of the largest excursion that a clipped value must reach: a signal at rest repeats its lowest value too.
+/// Part of the largest excursion that a clipped value must reach: a signal at rest repeats its
+/// lowest value too.
 const AWAY: f64 = 0.5;
 /// Part of a given limit from which a sample is at it.
 const AT_LIMIT: f64 = 0.999;
@@ -23,8 +24,8 @@ pub(crate) struct Overloads {
 }
 
 impl Overloads {
-    /// Finds samples at or beyond a given limit, or else four or more equal ones in a row at the highest or the lowest
-    /// value.
+    /// Finds samples at or beyond a given limit, or else four or more equal ones in a row at the
+    /// highest or the lowest value.
     pub(crate) fn find(record: &Record, channel: Channel, limit: Option<f64>) -> Self {
         let values = record.channel(channel);
         let stretches = match limit {
@@ -38,22 +39,14 @@ impl Overloads {
     pub(crate) fn find_given(record: &Record, channel: Channel, limit: Option<f64>) -> Self {
         match limit {
             Some(_) => Self::find(record, channel, limit),
-            None => Self {
-                channel,
-                stretches: Vec::new(),
-            },
+            None => Self { channel, stretches: Vec::new() },
         }
     }
 
     /// Returns the first overload within a part of the record.
     pub(crate) fn within(&self, record: &Record, part: &Range<usize>) -> Option<Reason> {
-        let next = self
-            .stretches
-            .partition_point(|stretch| stretch.end <= part.start);
-        let stretch = self
-            .stretches
-            .get(next)
-            .filter(|stretch| stretch.start < part.end)?;
+        let next = self.stretches.partition_point(|stretch| stretch.end <= part.start);
+        let stretch = self.stretches.get(next).filter(|stretch| stretch.start < part.end)?;
         let at = stretch.start.max(part.start);
         Some(Reason::Overload {
             channel: self.channel,
@@ -82,12 +75,7 @@ fn repeated(values: &[f64]) -> Vec<Range<usize>> {
 fn runs(values: &[f64], fewest: usize, is_so: impl Fn(f64) -> bool) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = None;
-    for (at, value) in values
-        .iter()
-        .map(|value| Some(*value))
-        .chain([None])
-        .enumerate()
-    {
+    for (at, value) in values.iter().map(|value| Some(*value)).chain([None]).enumerate() {
         match (start, value.is_some_and(&is_so)) {
             (None, true) => start = Some(at),
             (Some(from), false) => {

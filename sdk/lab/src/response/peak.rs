@@ -1,14 +1,14 @@
 //! The largest magnitude, between the points of the grid.
 //!
-//! It is found in 1/magnitude², which is a parabola for a resonance. The file holds the grid alone, since its readers
-//! interpolate.
+//! It is found in 1/magnitude², which is a parabola for a resonance. The file holds the grid alone,
+//! since its readers interpolate.
 
 use serde::Serialize;
 
 /// The largest magnitude of a response.
 ///
-/// It is interpolated by a parabola through `1 / magnitude²` at the largest point and its two neighbours, which is the
-/// form of a lightly damped resonance.
+/// It is interpolated by a parabola through `1 / magnitude²` at the largest point and its two
+/// neighbours, which is the form of a lightly damped resonance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Peak {
     pub frequency_hz: f64,
@@ -19,14 +19,11 @@ pub struct Peak {
 }
 
 impl Peak {
-    /// Finds the peak; none if the magnitude is largest at the first or last frequency, or zero beside the largest.
+    /// Finds the peak; none if the magnitude is largest at the first or last frequency, or zero
+    /// beside the largest.
     pub(crate) fn of(frequency_hz: &[f64], magnitude: &[f64]) -> Option<Self> {
         let larger = |best: usize, at: usize| {
-            if magnitude[at] > magnitude[best] {
-                at
-            } else {
-                best
-            }
+            if magnitude[at] > magnitude[best] { at } else { best }
         };
         let top = (0..magnitude.len()).reduce(larger)?;
         let (before, after) = (top.checked_sub(1)?, top + 1);
@@ -36,17 +33,9 @@ impl Peak {
             return None;
         }
         let bend = y0 - 2.0 * y1 + y2;
-        let shift = if bend > 0.0 {
-            0.5 * (y0 - y2) / bend
-        } else {
-            0.0
-        };
+        let shift = if bend > 0.0 { 0.5 * (y0 - y2) / bend } else { 0.0 };
         let least = y1 - 0.25 * (y0 - y2) * shift;
-        let magnitude = if least > 0.0 {
-            1.0 / least.sqrt()
-        } else {
-            magnitude[top]
-        };
+        let magnitude = if least > 0.0 { 1.0 / least.sqrt() } else { magnitude[top] };
         Some(Self {
             frequency_hz: frequency_hz[top] + shift * step_hz,
             magnitude,

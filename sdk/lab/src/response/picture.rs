@@ -11,14 +11,11 @@ const LOW_HEIGHT: f64 = 170.0;
 /// Colour of the standard deviation.
 const DEVIATION: &str = "#a0a0a0";
 
-/// Draws magnitude in decibels with its standard deviation, phase in degrees, and coherence, as one SVG.
+/// Draws magnitude in decibels with its standard deviation, phase in degrees, and coherence, as one
+/// SVG.
 #[must_use]
 pub fn response_picture(measured: &MeasuredResponse, title: &str) -> String {
-    let plots = [
-        magnitude(measured, title),
-        phase(measured),
-        coherence(measured),
-    ];
+    let plots = [magnitude(measured, title), phase(measured), coherence(measured)];
     stacked(&format!("Frequency response: {title}"), &plots)
 }
 
@@ -35,16 +32,11 @@ fn magnitude(measured: &MeasuredResponse, title: &str) -> Plot {
     plot.series.push(above.behind().colored(DEVIATION));
     plot.series.push(below.behind().colored(DEVIATION));
     let name = format!("{} of {} averages", measured.estimator, measured.averages);
-    plot.series
-        .push(Series::line(&name, curve(&|_| 1.0)).colored(series_color(0)));
+    plot.series.push(Series::line(&name, curve(&|_| 1.0)).colored(series_color(0)));
     if let Some(peak) = &measured.peak {
-        let name = format!(
-            "largest: {:.2} dB at {:.2} Hz",
-            peak.magnitude_db, peak.frequency_hz
-        );
+        let name = format!("largest: {:.2} dB at {:.2} Hz", peak.magnitude_db, peak.frequency_hz);
         let point = vec![(peak.frequency_hz, peak.magnitude_db)];
-        plot.series
-            .push(Series::scatter(&name, point).colored(series_color(1)));
+        plot.series.push(Series::scatter(&name, point).colored(series_color(1)));
     }
     plot
 }

@@ -1,7 +1,7 @@
 //! The parts of recordings that are averaged, or thrown out.
 //!
-//! A response is an average of pieces with a time and, where one is thrown out, a reason, so that a measurement can be
-//! judged without its samples.
+//! A response is an average of pieces with a time and, where one is thrown out, a reason, so that a
+//! measurement can be judged without its samples.
 
 use std::fmt;
 use std::ops::Range;
@@ -10,7 +10,8 @@ use serde::Serialize;
 
 use super::error::Channel;
 
-/// A hit, or a window of a continuous drive: the part of a recording that one transform is taken of.
+/// A hit, or a window of a continuous drive: the part of a recording that one transform is taken
+/// of.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Piece {
     pub file: String,
@@ -55,29 +56,16 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::DoubleHit { second_s } => {
-                write!(
-                    f,
-                    "double hit: second contact at {second_s:.4} s, within the window"
-                )
+                write!(f, "double hit: second contact at {second_s:.4} s, within the window")
             }
-            Self::Overload {
-                channel,
-                at_s,
-                value,
-            } => {
-                write!(
-                    f,
-                    "overload: the {channel} is at its limit of {value:.4} at {at_s:.4} s"
-                )
+            Self::Overload { channel, at_s, value } => {
+                write!(f, "overload: the {channel} is at its limit of {value:.4} at {at_s:.4} s")
             }
             Self::StartsLate => {
                 f.write_str("cut off: the recording starts within the time before the trigger")
             }
             Self::EndsEarly { missing_s } => {
-                write!(
-                    f,
-                    "cut off: the recording ends {missing_s:.3} s before the window does"
-                )
+                write!(f, "cut off: the recording ends {missing_s:.3} s before the window does")
             }
             Self::Silent => {
                 f.write_str("silent: the drive is below a tenth of its strongest window")

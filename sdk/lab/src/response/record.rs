@@ -11,8 +11,8 @@ const LARGEST: f64 = 1e12;
 
 /// Input and output of a setup, recorded together.
 ///
-/// Both channels have the same length, finite samples of at most 1e12, and are not constant. Their units are free: the
-/// response is in the output's unit over the input's.
+/// Both channels have the same length, finite samples of at most 1e12, and are not constant. Their
+/// units are free: the response is in the output's unit over the input's.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     file: String,
@@ -26,8 +26,8 @@ impl Record {
     /// Creates a record of a file's channels, which start at 0 s.
     ///
     /// # Errors
-    /// A rate that is not above 0 and at most 1e9 Hz, channels of different lengths, samples that are not finite or
-    /// beyond 1e12, and a constant or empty channel.
+    /// A rate that is not above 0 and at most 1e9 Hz, channels of different lengths, samples that
+    /// are not finite or beyond 1e12, and a constant or empty channel.
     pub fn new(
         file: impl Into<String>,
         rate_hz: f64,
@@ -37,18 +37,12 @@ impl Record {
         let file = file.into();
         match check(rate_hz, &input, &output) {
             Err(problem) => Err(problem.of(file)),
-            Ok(()) => Ok(Self {
-                file,
-                rate_hz,
-                start_s: 0.0,
-                input,
-                output,
-            }),
+            Ok(()) => Ok(Self { file, rate_hz, start_s: 0.0, input, output }),
         }
     }
 
-    /// Creates a record of a recording that was read with [`column_map`]: its first axis is the input, its second the
-    /// output.
+    /// Creates a record of a recording that was read with [`column_map`]: its first axis is the
+    /// input, its second the output.
     ///
     /// # Errors
     /// As [`Self::new`]; and if the recording has not two axes.
@@ -113,11 +107,7 @@ fn check_channel(channel: Channel, values: &[f64]) -> Result<(), RecordProblem> 
     let is_sound = |value: &f64| value.abs() <= LARGEST;
     if let Some(sample) = values.iter().position(|value| !is_sound(value)) {
         let value = values[sample];
-        return Err(RecordProblem::Sample {
-            channel,
-            sample,
-            value,
-        });
+        return Err(RecordProblem::Sample { channel, sample, value });
     }
     let value = values.first().copied().unwrap_or(0.0);
     if values.iter().all(|other| *other == value) {
@@ -126,8 +116,9 @@ fn check_channel(channel: Channel, values: &[f64]) -> Result<(), RecordProblem> 
     Ok(())
 }
 
-/// Returns the map by which a recording's input and output are read: `COLUMN`, `COLUMN:SCALE` or an expression each, and
-/// `others`, a map of further roles such as `time=stamp_ms:0.001`. Without a scale, values are as they are in the file.
+/// Returns the map by which a recording's input and output are read: `COLUMN`, `COLUMN:SCALE` or an
+/// expression each, and `others`, a map of further roles such as `time=stamp_ms:0.001`. Without a
+/// scale, values are as they are in the file.
 ///
 /// ```
 /// let map = htex_lab::response::column_map("hammer_V:22.5", "fx1+fx2", None)?;
@@ -156,17 +147,13 @@ pub fn column_map(
         return Err(ResponseError::Columns { problem });
     }
     entries.extend(others.iter().cloned());
-    ColumnMap::new(entries).map_err(|error| ResponseError::Columns {
-        problem: problem_of(error),
-    })
+    ColumnMap::new(entries).map_err(|error| ResponseError::Columns { problem: problem_of(error) })
 }
 
 /// A scale of 1 in place of none: a column's unit does not matter.
 fn entry(channel: Channel, role: Role, text: &str) -> Result<MapEntry, ResponseError> {
-    let mut entry = MapEntry::parse(role, text).map_err(|error| ResponseError::Column {
-        channel,
-        problem: problem_of(error),
-    })?;
+    let mut entry = MapEntry::parse(role, text)
+        .map_err(|error| ResponseError::Column { channel, problem: problem_of(error) })?;
     entry.scale = entry.scale.or(Some(1.0));
     Ok(entry)
 }

@@ -3,8 +3,8 @@
 use htex_dsp::fft::RealFft;
 use num_complex::Complex;
 
-/// Averaged auto and cross spectra of input and output, at each bin, without a common factor: only ratios are used
-/// (Bendat & Piersol, section 11.5).
+/// Averaged auto and cross spectra of input and output, at each bin, without a common factor: only
+/// ratios are used (Bendat & Piersol, section 11.5).
 #[derive(Debug)]
 pub(crate) struct Spectra {
     fft: RealFft,

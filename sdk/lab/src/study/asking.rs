@@ -35,7 +35,8 @@ pub enum View {
         texture: String,
         /// The method, which says which keys there are.
         method: GainMethod,
-        /// Whether the level still rises to where the texture is felt: all keys have a meaning then.
+        /// Whether the level still rises to where the texture is felt: all keys have a meaning
+        /// then.
         rising: bool,
         /// The present gain, decibels relative to the maximum.
         gain_db: f64,
@@ -48,14 +49,16 @@ pub enum View {
     Done,
 }
 
-/// A question or a matching takes no answer for this long: the second press of a key that answered the one before.
+/// A question or a matching takes no answer for this long: the second press of a key that answered
+/// the one before.
 const GUARD: Duration = Duration::from_millis(300);
-/// What begins a trial or ends a rest takes no key for this long: both begin by the same key, and a double press, of which the second
-/// one comes within 0.5 s, is to do one of them.
+/// What begins a trial or ends a rest takes no key for this long: both begin by the same key, and a
+/// double press, of which the second one comes within 0.5 s, is to do one of them.
 const LONG_GUARD: Duration = Duration::from_millis(600);
 
 impl View {
-    /// Time after it is shown in which a press is no answer: it was meant for what was shown before.
+    /// Time after it is shown in which a press is no answer: it was meant for what was shown
+    /// before.
     pub fn guard(&self) -> Duration {
         match self {
             Self::Question { .. } | Self::Matching { .. } => GUARD,
@@ -78,7 +81,8 @@ pub enum Key {
 
 /// The one who is asked. A key that a person presses within [`View::guard`] is none.
 pub trait Asker {
-    /// Shows what there is now. Keys that were pressed before are forgotten. `done` of `all` trials are rated.
+    /// Shows what there is now. Keys that were pressed before are forgotten. `done` of `all` trials
+    /// are rated.
     fn show(&mut self, view: &View, done: usize, all: usize);
 
     /// The next key since the last [`Self::show`], if there is one.
@@ -119,7 +123,8 @@ pub struct Played {
 pub trait Rig {
     type Error: From<StudyError> + std::fmt::Display;
 
-    /// Plays, and calls `ends` for each block; when that returns true, playing ends as soon as it can.
+    /// Plays, and calls `ends` for each block; when that returns true, playing ends as soon as it
+    /// can.
     ///
     /// # Errors
     /// Of the renderer and of the device.
@@ -129,14 +134,16 @@ pub trait Rig {
         ends: &mut dyn FnMut() -> bool,
     ) -> Result<Played, Self::Error>;
 
-    /// What the device was given in the last [`Self::play`] that ended with an error, and the drive of a display, volts; `None` if the
-    /// device was not opened.
+    /// What the device was given in the last [`Self::play`] that ended with an error, and the drive
+    /// of a display, volts; `None` if the device was not opened.
     fn output_before_error(&mut self) -> Option<(Option<f64>, OutputLevels)>;
 
-    /// Whether an error of [`Self::play`] is that of a device that ran dry, so that playing again may succeed.
+    /// Whether an error of [`Self::play`] is that of a device that ran dry, so that playing again
+    /// may succeed.
     fn ran_dry(error: &Self::Error) -> bool;
 
-    /// Tells the person who conducts the session what happened in a trial; the participant's view has the same notice.
+    /// Tells the person who conducts the session what happened in a trial; the participant's view
+    /// has the same notice.
     fn tell(&self, notice: &str);
 
     /// The nine-band error of a representation, decibels, if its asset says it.

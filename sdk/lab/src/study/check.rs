@@ -20,9 +20,7 @@ pub(crate) fn check(study: &Study, findings: &mut Findings) {
     let count = study.attributes.len();
     let range = |what: &str| format!("{count} {what}; write 1 to 32");
     let fits = (1..=32).contains(&count);
-    findings.require(fits, rule::STUDY_NUMBER_INVALID, "/attributes", || {
-        range("attributes")
-    });
+    findings.require(fits, rule::STUDY_NUMBER_INVALID, "/attributes", || range("attributes"));
     check_numbers(study, findings);
     check_matching(&study.gain, findings);
     let scale = &study.scale;
@@ -40,12 +38,9 @@ pub(crate) fn check(study: &Study, findings: &mut Findings) {
 fn check_participants(participants: &Participants, findings: &mut Findings) {
     let count = participants.count();
     let fits = (1..=MOST_PARTICIPANTS).contains(&count);
-    findings.require(
-        fits,
-        rule::STUDY_PARTICIPANTS_INVALID,
-        "/participants",
-        || format!("there are {count} participants; write 1 to {MOST_PARTICIPANTS}"),
-    );
+    findings.require(fits, rule::STUDY_PARTICIPANTS_INVALID, "/participants", || {
+        format!("there are {count} participants; write 1 to {MOST_PARTICIPANTS}")
+    });
     let Participants::Names(names) = participants else {
         return;
     };
@@ -81,9 +76,7 @@ fn check_models(study: &Study, findings: &mut Findings) {
     let count = study.models.len();
     let rule = rule::STUDY_MODELS_INVALID;
     let fits = (1..=64).contains(&count);
-    findings.require(fits, rule, "/models", || {
-        format!("there are {count} models; write 1 to 64")
-    });
+    findings.require(fits, rule, "/models", || format!("there are {count} models; write 1 to 64"));
     check_names("models", study.models.iter().cloned(), findings);
     let named = study.models.iter().enumerate();
     let named = named.map(|(i, model)| (format!("/models/{i}"), model));

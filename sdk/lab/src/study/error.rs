@@ -64,8 +64,8 @@ pub enum StudyError {
         "recording what is felt: {0}; the trial is repeated when the same command is run again"
     )]
     Felt(#[from] RecordError),
-    /// A recording of what was felt is not the one that was rated, or a recording or an asset has no spectrum that an analysis
-    /// can use.
+    /// A recording of what was felt is not the one that was rated, or a recording or an asset has
+    /// no spectrum that an analysis can use.
     #[error(transparent)]
     Content(#[from] htex_files::ContentError),
     /// There are no recordings of what was felt.

@@ -34,13 +34,15 @@ pub struct Export {
     pub ratings: usize,
     /// Trials whose motion was off the study's target, as the column `off_target` says.
     pub off_target: usize,
-    /// What an analysis must know: sessions that are not complete, trials off their target, devices with different settings.
+    /// What an analysis must know: sessions that are not complete, trials off their target, devices
+    /// with different settings.
     pub warnings: Vec<String>,
     /// Participants whose sessions are not complete, each a sentence, which the warnings have, too.
     pub incomplete: Vec<String>,
 }
 
-/// What becomes of trials whose speed or force was off the study's target in the table of spectra. Their ratings are always exported.
+/// What becomes of trials whose speed or force was off the study's target in the table of spectra.
+/// Their ratings are always exported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum OffTarget {
@@ -51,11 +53,13 @@ pub enum OffTarget {
     LeaveOut,
 }
 
-/// Reads all answers in a folder. Training is left out. With several attributes, `attribute` names the one whose ratings are wanted.
+/// Reads all answers in a folder. Training is left out. With several attributes, `attribute` names
+/// the one whose ratings are wanted.
 ///
 /// # Errors
-/// [`StudyError::NoAnswers`] if the folder has none; [`StudyError::OtherVersion`] if they are of several versions of a study, or of
-/// simulated and of real participants; [`StudyError::Attribute`]; errors of reading.
+/// [`StudyError::NoAnswers`] if the folder has none; [`StudyError::OtherVersion`] if they are of
+/// several versions of a study, or of simulated and of real participants;
+/// [`StudyError::Attribute`]; errors of reading.
 pub fn export(folder: &Path, attribute: Option<&str>) -> Result<Export, StudyError> {
     let sessions = sessions_of(folder)?;
     let answers = sessions.iter().flat_map(|session| &session.answers);
@@ -81,11 +85,7 @@ pub(crate) fn sessions_of(folder: &Path) -> Result<Vec<Answers>, StudyError> {
             _ => None,
         });
         let answers = answers.collect();
-        sessions.push(Answers {
-            file,
-            header,
-            answers,
-        });
+        sessions.push(Answers { file, header, answers });
     }
     same_study(&sessions)?;
     Ok(sessions)
@@ -101,9 +101,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     }
     files.sort();
     match files.is_empty() {
-        true => Err(StudyError::NoAnswers {
-            folder: folder.to_owned(),
-        }),
+        true => Err(StudyError::NoAnswers { folder: folder.to_owned() }),
         false => Ok(files),
     }
 }
@@ -142,9 +140,9 @@ fn chosen(all: &BTreeSet<String>, wanted: Option<&str>) -> Result<String, StudyE
         Some(found) => Ok(found.clone()),
         // There is nothing to export yet.
         None if all.is_empty() => Ok(String::new()),
-        None => Err(StudyError::Attribute {
-            known: Vec::from_iter(all.iter().cloned()).join(", "),
-        }),
+        None => {
+            Err(StudyError::Attribute { known: Vec::from_iter(all.iter().cloned()).join(", ") })
+        }
     }
 }
 
@@ -154,9 +152,7 @@ fn table(sessions: &[Answers], attribute: &str, folder: &Path) -> Result<Export,
     let (mut ratings, mut off_target) = (0, 0);
     let (mut incomplete, mut warnings) = (Vec::new(), Vec::new());
     for session in sessions {
-        let Answers {
-            header, answers, ..
-        } = session;
+        let Answers { header, answers, .. } = session;
         if answers.len() < header.ratings {
             incomplete.push(format!(
                 "{} is not complete: {} of {} ratings",
@@ -212,10 +208,7 @@ impl Answers {
             Some((answer.number, felt.is_off_target()?))
         });
         let recorded: BTreeSet<(u32, bool)> = recorded.collect();
-        (
-            recorded.iter().filter(|(_, off)| *off).count(),
-            recorded.len(),
-        )
+        (recorded.iter().filter(|(_, off)| *off).count(), recorded.len())
     }
 }
 
@@ -233,8 +226,6 @@ fn row(header: &Header, answer: &Answer) -> [String; COLUMNS.len()] {
         answer.gain_db.map_or(String::new(), |db| format!("{db}")),
         yes(answer.simulated || header.simulated.is_some()),
         // Without a recording of speed or force it is not known.
-        (answer.felt.as_ref())
-            .and_then(FeltFile::is_off_target)
-            .map_or(String::new(), yes),
+        (answer.felt.as_ref()).and_then(FeltFile::is_off_target).map_or(String::new(), yes),
     ]
 }

@@ -1,6 +1,7 @@
 //! Recording of what is felt while a trial plays: a source is read in a thread of its own.
 //!
-//! The source is opened anew for each trial, so that a trial's recording does not depend on the ones before it.
+//! The source is opened anew for each trial, so that a trial's recording does not depend on the
+//! ones before it.
 //!
 //! A session that was killed has the same bytes as one that was not, if device and source have.
 
@@ -52,8 +53,8 @@ pub struct FeltSetup {
     pub format: Format,
     /// Program and version.
     pub tool: String,
-    /// Whether a recording begins with the first sample of the source instead of the first that is played: trials without waiting have
-    /// no clock in common with the source.
+    /// Whether a recording begins with the first sample of the source instead of the first that is
+    /// played: trials without waiting have no clock in common with the source.
     pub is_fast: bool,
 }
 
@@ -82,8 +83,8 @@ struct Shared {
 }
 
 impl Felt {
-    /// Makes a recorder, and the folder of its recordings, in which nothing of a program that was killed is left. `signals` are those of
-    /// the source, whose rate is `rate_hz`.
+    /// Makes a recorder, and the folder of its recordings, in which nothing of a program that was
+    /// killed is left. `signals` are those of the source, whose rate is `rate_hz`.
     ///
     /// # Errors
     /// [`RecordError::File`], and [`RecordError::Setup`] if the format cannot have this rate.
@@ -99,13 +100,7 @@ impl Felt {
         let inside = Path::new(&setup.participant).join(FOLDER);
         remove_unfinished(&own, &inside).writing(setup.folder.join(&inside))?;
         let inputs = Some(Inputs { signals, tracker });
-        Ok(Self {
-            setup,
-            open,
-            rate_hz,
-            inputs,
-            running: None,
-        })
+        Ok(Self { setup, open, rate_hz, inputs, running: None })
     }
 
     /// The source, for the header of answers.
@@ -190,7 +185,8 @@ impl Felt {
         }
     }
 
-    /// The first sample that is played is at the display in so many seconds: the recording begins there.
+    /// The first sample that is played is at the display in so many seconds: the recording begins
+    /// there.
     pub fn sounds(&self, lead_s: f64) {
         if let Some(running) = &self.running {
             // Only the first time counts.
@@ -210,8 +206,8 @@ impl Felt {
         running.is_some_and(|running| running.shared.failed.load(Ordering::Acquire))
     }
 
-    /// Waits for the end of the recording, writes it and JSON beside it, and returns it when both are on disk; `None` if nothing was
-    /// recorded.
+    /// Waits for the end of the recording, writes it and JSON beside it, and returns it when both
+    /// are on disk; `None` if nothing was recorded.
     ///
     /// # Errors
     /// Those of the source, and [`RecordError::File`].
@@ -250,11 +246,7 @@ impl Felt {
         Ok(Some(FeltFile {
             file: format!("{participant}/{FOLDER}/{}", file.to_string_lossy()),
             blake3: hash(&written.recording)?,
-            compared: data
-                .header
-                .target_speed_mm_s
-                .or(data.header.target_force_n)
-                .is_some(),
+            compared: data.header.target_speed_mm_s.or(data.header.target_force_n).is_some(),
             off_target: verdict.reasons,
         }))
     }
@@ -324,9 +316,7 @@ fn take(reader: &mut Reader, data: &mut TakeData, shared: &Shared) -> Result<(),
         };
         let Some(begin_s) = begin else { continue };
         block.check(&data.header)?;
-        let before = ((begin_s - block.begin_s) * data.header.rate_hz)
-            .round()
-            .max(0.0) as usize;
+        let before = ((begin_s - block.begin_s) * data.header.rate_hz).round().max(0.0) as usize;
         let width = data.header.signals.len();
         let values = block.interleaved();
         data.extend(&values[(before * width).min(values.len())..]);
@@ -338,19 +328,15 @@ fn take(reader: &mut Reader, data: &mut TakeData, shared: &Shared) -> Result<(),
 
 /// Frames that come before the recording begins.
 fn lead(reader: &Reader, begin_s: f64, data: &TakeData) -> usize {
-    ((begin_s - reader.now_s()) * data.header.rate_hz)
-        .round()
-        .max(0.0) as usize
+    ((begin_s - reader.now_s()) * data.header.rate_hz).round().max(0.0) as usize
 }
 
 /// The error of a source that has ended, with what was recorded until then.
 fn after(error: RecordError, data: &TakeData) -> RecordError {
     match error {
-        RecordError::Ended { seconds, kept, .. } => RecordError::Ended {
-            after_s: data.recorded_s(),
-            seconds,
-            kept,
-        },
+        RecordError::Ended { seconds, kept, .. } => {
+            RecordError::Ended { after_s: data.recorded_s(), seconds, kept }
+        }
         error => error,
     }
 }

@@ -31,11 +31,13 @@ pub struct Reference {
 /// A table of spectra.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FeltSpectra {
-    /// The table as CSV: participant, texture, model, then a magnitude at 20, 25, …, 1000 Hz; at its end a line for each real texture.
+    /// The table as CSV: participant, texture, model, then a magnitude at 20, 25, …, 1000 Hz; at
+    /// its end a line for each real texture.
     pub csv: String,
     /// Recordings that were read.
     pub recordings: usize,
-    /// Recordings of trials whose motion was off the study's target; [`OffTarget`] says whether they were read.
+    /// Recordings of trials whose motion was off the study's target; [`OffTarget`] says whether
+    /// they were read.
     pub off_target: usize,
     /// What an analysis must know, each a sentence.
     pub warnings: Vec<String>,
@@ -56,7 +58,8 @@ impl Reference {
         Ok(Self::average(&[reading.part], options).in_file(file)?)
     }
 
-    /// The spectrum that was recorded for an asset, at its condition nearest to a motion, or at its first one.
+    /// The spectrum that was recorded for an asset, at its condition nearest to a motion, or at its
+    /// first one.
     ///
     /// # Errors
     /// [`StudyError::Content`] if the asset cannot be read or does not have it.
@@ -85,19 +88,12 @@ impl Reference {
         options: &SpectrumOptions,
     ) -> Result<Self, Box<dyn Error>> {
         let spectrum = TextureSpectrum::average(parts, options.averaging)?;
-        Ok(Self::whole(
-            spectrum.band,
-            spectrum.quantity,
-            spectrum.magnitude,
-        )?)
+        Ok(Self::whole(spectrum.band, spectrum.quantity, spectrum.magnitude)?)
     }
 
     fn whole(band: Band, quantity: Quantity, magnitude: Vec<f64>) -> Result<Self, String> {
         match band == Band::TACTILE {
-            true => Ok(Self {
-                quantity,
-                magnitude,
-            }),
+            true => Ok(Self { quantity, magnitude }),
             false => Err(format!(
                 "its spectrum is one of {} to {} Hz, and the table has 20 to 1000 Hz; record at 2000 Hz or more",
                 band.low_hz, band.high_hz
@@ -106,12 +102,15 @@ impl Reference {
     }
 }
 
-/// The spectra of a folder of answers: for each participant, texture and model, the recordings of all its trials are read and averaged as
-/// `htex fit` reads recordings of one condition; `off_target` says what becomes of trials off the study's target. `recorded` has the real textures by name.
+/// The spectra of a folder of answers: for each participant, texture and model, the recordings of
+/// all its trials are read and averaged as `htex fit` reads recordings of one condition;
+/// `off_target` says what becomes of trials off the study's target. `recorded` has the real
+/// textures by name.
 ///
 /// # Errors
-/// Those of [`crate::study::export()`]; [`StudyError::NotRecorded`]; [`StudyError::Content`] if a recording is not the one of its trial, or
-/// has no spectrum, or the spectrum of a real texture is missing.
+/// Those of [`crate::study::export()`]; [`StudyError::NotRecorded`]; [`StudyError::Content`] if a
+/// recording is not the one of its trial, or has no spectrum, or the spectrum of a real texture is
+/// missing.
 pub fn felt_spectra(
     folder: &Path,
     recorded: &BTreeMap<String, Reference>,
@@ -166,9 +165,7 @@ pub fn felt_spectra(
         }
     }
     if recordings + off == 0 {
-        return Err(StudyError::NotRecorded {
-            folder: folder.to_owned(),
-        });
+        return Err(StudyError::NotRecorded { folder: folder.to_owned() });
     }
     for texture in &textures {
         let Some(reference) = recorded.get(texture) else {
@@ -183,17 +180,9 @@ pub fn felt_spectra(
     }
     if quantities.len() > 1 {
         let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name()).collect();
-        warnings.push(format!(
-            "the spectra are of several quantities: {}",
-            names.join(", ")
-        ));
+        warnings.push(format!("the spectra are of several quantities: {}", names.join(", ")));
     }
-    Ok(FeltSpectra {
-        csv: table(folder, &rows)?,
-        recordings,
-        off_target: off,
-        warnings,
-    })
+    Ok(FeltSpectra { csv: table(folder, &rows)?, recordings, off_target: off, warnings })
 }
 
 /// The spectra of a recording, which must be the one of its trial.
@@ -202,21 +191,14 @@ fn part(
     felt: &FeltFile,
     options: &SpectrumOptions,
 ) -> Result<SegmentSpectra, StudyError> {
-    let file: PathBuf = felt
-        .file
-        .split('/')
-        .fold(folder.to_owned(), |path, part| path.join(part));
+    let file: PathBuf = felt.file.split('/').fold(folder.to_owned(), |path, part| path.join(part));
     let other = |problem: &str| {
         let problem = format!(
             "it is not the recording that was made in the trial ({problem}); restore it from a copy"
         );
         StudyError::from(ContentError::new(&file, problem))
     };
-    if felt
-        .file
-        .split('/')
-        .any(|part| matches!(part, "" | "." | ".."))
-    {
+    if felt.file.split('/').any(|part| matches!(part, "" | "." | "..")) {
         return Err(other("its name leaves the folder of answers"));
     }
     if hash(&file)? != felt.blake3 {
@@ -233,11 +215,9 @@ fn part(
 fn take(file: &Path, header: &TakeHeader) -> Result<Take, Box<dyn Error>> {
     let options = settings_of(file, header).read_options(1)?;
     let options = options.into_iter().next().unwrap_or_default();
-    // Of a participant's motion all is read: the tolerance of 10 % is the rule for recordings of textures.
-    Ok(Take {
-        recording: read_recording(file, &options)?,
-        given: Exploration::default(),
-    })
+    // Of a participant's motion all is read: the tolerance of 10 % is the rule for recordings of
+    // textures.
+    Ok(Take { recording: read_recording(file, &options)?, given: Exploration::default() })
 }
 
 fn row(participant: &str, texture: &str, model: &str, spectrum: &Reference) -> Vec<String> {

@@ -37,7 +37,8 @@ pub struct Study {
     /// Name of the study.
     #[serde(default)]
     pub name: String,
-    /// Seed of the orders and of the samples that are played: the same seed gives the same study on every machine.
+    /// Seed of the orders and of the samples that are played: the same seed gives the same study on
+    /// every machine.
     #[serde(default)]
     pub seed: u64,
     /// The participants: a number, which stands for P01, P02, …, or names.
@@ -50,8 +51,8 @@ pub struct Study {
     #[serde(default = "paper_models")]
     #[schemars(length(min = 1, max = 64), inner(regex(pattern = NAME), length(max = 100)))]
     pub models: Vec<String>,
-    /// A further model, the best there is (`bands`), which is played and rated like the others and marked in the results: participants who
-    /// rate it low are unreliable.
+    /// A further model, the best there is (`bands`), which is played and rated like the others and
+    /// marked in the results: participants who rate it low are unreliable.
     #[serde(default)]
     pub hidden_reference: Option<String>,
     /// Trials of each texture with each model.
@@ -68,8 +69,9 @@ pub struct Study {
     /// The phases that take place; their order is fixed.
     #[serde(default = "all_phases")]
     pub phases: Vec<Phase>,
-    /// Level at which each texture starts in the training and in the gain matching, decibels relative to the maximum. It rises from
-    /// there until the participant feels the texture. Nothing is played stronger before the participant asks for it.
+    /// Level at which each texture starts in the training and in the gain matching, decibels
+    /// relative to the maximum. It rises from there until the participant feels the texture.
+    /// Nothing is played stronger before the participant asks for it.
     #[serde(default = "start")]
     #[schemars(range(min = -120, max = 0))]
     pub start_db: f64,
@@ -89,7 +91,8 @@ pub struct Study {
     /// Rests during the testing; none when absent.
     #[serde(default)]
     pub rests: Option<Rests>,
-    /// White noise in headphones while a texture is felt, against its sound; none when absent. The page plays it.
+    /// White noise in headphones while a texture is felt, against its sound; none when absent. The
+    /// page plays it.
     #[serde(default)]
     pub masking_noise: Option<MaskingNoise>,
     /// The motion of the finger, as in a scene: constant, a trace, or `live`.
@@ -106,10 +109,7 @@ pub enum Participants {
     Count(#[schemars(range(min = 1, max = 1000))] u32),
     /// Names of letters, digits, `-` and `_`.
     Names(
-        #[schemars(
-            length(min = 1, max = 1000),
-            inner(regex(pattern = "^[A-Za-z0-9_-]{1,64}$"))
-        )]
+        #[schemars(length(min = 1, max = 1000), inner(regex(pattern = "^[A-Za-z0-9_-]{1,64}$")))]
         Vec<String>,
     ),
 }
@@ -135,12 +135,14 @@ pub enum Order {
     Random,
     /// Each repetition is a block in which every texture with every model occurs once, shuffled.
     BlockedByRepetition,
-    /// All trials of one texture follow each other; textures and the trials of each are shuffled. The real texture is exchanged least often.
+    /// All trials of one texture follow each other; textures and the trials of each are shuffled.
+    /// The real texture is exchanged least often.
     BlockedByTexture,
-    /// Each repetition is a row of a Latin square: over as many rows as there are conditions, each condition is once at each place.
+    /// Each repetition is a row of a Latin square: over as many rows as there are conditions, each
+    /// condition is once at each place.
     LatinSquare,
-    /// Each repetition is a row of a Williams square: a Latin square in which, over all rows, each condition also follows each other one
-    /// equally often (Williams 1949).
+    /// Each repetition is a row of a Williams square: a Latin square in which, over all rows, each
+    /// condition also follows each other one equally often (Williams 1949).
     WilliamsSquare,
 }
 
@@ -166,10 +168,13 @@ pub struct Training {
     pub trials: u32,
 }
 
-/// The phase `gain`: each texture is matched in one model, and the gain is adopted for the others (paper, "Gain matching task").
+/// The phase `gain`: each texture is matched in one model, and the gain is adopted for the others
+/// (paper, "Gain matching task").
 ///
-/// The paper starts at the maximum. Here the level first rises from `start_db` until the participant feels the texture, and the matching
-/// starts from the level found. A gain is in decibels relative to the maximum: `device.drive_v`, `gain_db` or `level_dbfs`, else a display's limit, 0 dB or -18 dBFS.
+/// The paper starts at the maximum. Here the level first rises from `start_db` until the
+/// participant feels the texture, and the matching starts from the level found. A gain is in
+/// decibels relative to the maximum: `device.drive_v`, `gain_db` or `level_dbfs`, else a display's
+/// limit, 0 dB or -18 dBFS.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Matching {
@@ -197,7 +202,8 @@ pub struct Matching {
     pub reversals: u32,
 }
 
-/// Method of matching a gain. All of them start at the level at which the participant felt the texture.
+/// Method of matching a gain. All of them start at the level at which the participant felt the
+/// texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GainMethod {
@@ -206,8 +212,8 @@ pub enum GainMethod {
     Descending,
     /// Up and down, until the texture is accepted.
     Adjustment,
-    /// The participant says whether the texture should be stronger or weaker; large steps until the first reversal, then small ones
-    /// (one up, one down).
+    /// The participant says whether the texture should be stronger or weaker; large steps until the
+    /// first reversal, then small ones (one up, one down).
     Staircase,
 }
 
@@ -289,9 +295,7 @@ impl<'de> Visitor<'de> for CountOrNames {
 
     fn visit_u64<E: serde::de::Error>(self, count: u64) -> Result<Participants, E> {
         // More than there may be stay more than there may be.
-        Ok(Participants::Count(
-            u32::try_from(count).unwrap_or(u32::MAX),
-        ))
+        Ok(Participants::Count(u32::try_from(count).unwrap_or(u32::MAX)))
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Participants, A::Error> {
@@ -371,19 +375,12 @@ impl Default for Matching {
 
 impl Default for Scale {
     fn default() -> Self {
-        Self {
-            min: 0,
-            max: highest(),
-            low: different(),
-            high: same(),
-        }
+        Self { min: 0, max: highest(), low: different(), high: same() }
     }
 }
 
 fn paper_models() -> Vec<String> {
-    ["ar", "mfcc", "speak", "sbeta", "sslope"]
-        .map(str::to_owned)
-        .to_vec()
+    ["ar", "mfcc", "speak", "sbeta", "sslope"].map(str::to_owned).to_vec()
 }
 
 fn all_phases() -> Vec<Phase> {

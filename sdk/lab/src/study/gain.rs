@@ -21,8 +21,9 @@ pub enum GainKey {
     Accept,
 }
 
-/// The level of one texture: it rises from a weak start until the participant feels the texture, and is then matched to the real
-/// texture, starting from the level found. Levels are in decibels relative to the maximum.
+/// The level of one texture: it rises from a weak start until the participant feels the texture,
+/// and is then matched to the real texture, starting from the level found. Levels are in decibels
+/// relative to the maximum.
 ///
 /// ```
 /// use htex_lab::study::{GainKey, Match, Matching};
@@ -71,12 +72,10 @@ impl Match {
         }
     }
 
-    /// A rise from `start_db` alone: its result is the level at which the texture is felt. The steps come from `settings`.
+    /// A rise from `start_db` alone: its result is the level at which the texture is felt. The
+    /// steps come from `settings`.
     pub fn rise(settings: &Matching, start_db: f64) -> Self {
-        Self {
-            ends_when_felt: true,
-            ..Self::new(settings, start_db)
-        }
+        Self { ends_when_felt: true, ..Self::new(settings, start_db) }
     }
 
     /// The present gain; the result once it is found.
@@ -98,7 +97,8 @@ impl Match {
         self.settings.method
     }
 
-    /// Whether the key has a meaning now. While the level rises all have one: weaker is never refused there.
+    /// Whether the key has a meaning now. While the level rises all have one: weaker is never
+    /// refused there.
     pub fn takes(&self, key: GainKey) -> bool {
         takes(self.settings.method, self.is_rising(), key)
     }
@@ -173,10 +173,7 @@ mod tests {
         use GainMethod::{Adjustment, Descending, Staircase};
         for method in [Descending, Adjustment, Staircase] {
             for wanted_db in [-1.0, -7.3, -20.5] {
-                let settings = Matching {
-                    method,
-                    ..Matching::default()
-                };
+                let settings = Matching { method, ..Matching::default() };
                 let mut matching = Match::new(&settings, -20.0);
                 while matching.is_rising() {
                     let key = match matching.gain_db() < 0.0 {
@@ -205,15 +202,13 @@ mod tests {
         }
     }
 
-    /// No method plays more than its start before the participant asks for more, and a matching starts where the texture was felt.
+    /// No method plays more than its start before the participant asks for more, and a matching
+    /// starts where the texture was felt.
     #[test]
     fn every_method_starts_weak_and_goes_on_from_the_level_that_is_felt() {
         use GainMethod::{Adjustment, Descending, Staircase};
         for method in [Descending, Adjustment, Staircase] {
-            let settings = Matching {
-                method,
-                ..Matching::default()
-            };
+            let settings = Matching { method, ..Matching::default() };
             let mut matching = Match::new(&settings, -20.0);
             assert_eq!(matching.gain_db(), -20.0);
             let rise = [GainKey::MuchStronger, GainKey::Stronger, GainKey::Weaker];

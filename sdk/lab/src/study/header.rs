@@ -12,7 +12,8 @@ use crate::study::plan::ParticipantPlan;
 use crate::study::read::files_of;
 
 impl Header {
-    /// The header of a participant's session; `path` is the study's file, whose contents and whose files' contents are hashed.
+    /// The header of a participant's session; `path` is the study's file, whose contents and whose
+    /// files' contents are hashed.
     ///
     /// # Errors
     /// [`StudyError::File`] if one of the files cannot be read.

@@ -21,7 +21,8 @@ pub enum Line {
     Header(Box<Header>),
     /// A session begins; sessions with a simulated clock, which has no date, are not marked.
     Session(Began),
-    /// A key press while the level of a texture rises, before it is felt; in the training and in the gain matching.
+    /// A key press while the level of a texture rises, before it is felt; in the training and in
+    /// the gain matching.
     Rise(Rise),
     /// A rating in the training, which is not a result.
     Training(Answer),
@@ -54,7 +55,8 @@ pub struct Header {
     /// BLAKE3 hashes, hexadecimal, of the study's file and of all files that it names.
     pub files: BTreeMap<String, String>,
     pub device: DeviceUsed,
-    /// Date and time in UTC at which the file was begun (`2026-11-25T10:25:25Z`); absent with a simulated clock.
+    /// Date and time in UTC at which the file was begun (`2026-11-25T10:25:25Z`); absent with a
+    /// simulated clock.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub begun: Option<String>,
     /// Ratings of a complete session.
@@ -101,8 +103,9 @@ pub struct DeviceUsed {
     pub adapter: String,
     /// Its profile; empty if there is none.
     pub profile: String,
-    /// All its settings, such as the gain of an amplifier: given ones, those of the profile and defaults. Left out are names of files that a
-    /// trial is played to, and `buffer_ms` where the motion is not live: then nobody feels how long samples wait.
+    /// All its settings, such as the gain of an amplifier: given ones, those of the profile and
+    /// defaults. Left out are names of files that a trial is played to, and `buffer_ms` where the
+    /// motion is not live: then nobody feels how long samples wait.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
     /// Largest magnitude that it takes, in its unit (of a display volts); absent without a limit.
@@ -135,9 +138,7 @@ impl DeviceUsed {
             let value = of.get(name).filter(|value| !value.is_empty());
             value.map_or("not set".to_owned(), String::clone)
         };
-        let differs = names
-            .into_iter()
-            .filter(|name| was.get(*name) != is.get(*name));
+        let differs = names.into_iter().filter(|name| was.get(*name) != is.get(*name));
         differs
             .map(|name| {
                 format!(
@@ -181,14 +182,17 @@ pub struct SourceUsed {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FeltFile {
-    /// The recording in the folder of answers, with `/` between folders: `P07/felt/trial-0017-vinyl-ar.npy`.
+    /// The recording in the folder of answers, with `/` between folders:
+    /// `P07/felt/trial-0017-vinyl-ar.npy`.
     pub file: String,
     /// BLAKE3 hash of the recording, hexadecimal.
     pub blake3: String,
-    /// How speed or force left the study's motion by more than 10 %, each a phrase; absent if they did not, or have no target.
+    /// How speed or force left the study's motion by more than 10 %, each a phrase; absent if they
+    /// did not, or have no target.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub off_target: Vec<String>,
-    /// Whether speed or force was measured and compared with the study's motion; absent if neither was.
+    /// Whether speed or force was measured and compared with the study's motion; absent if neither
+    /// was.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub compared: bool,
 }
@@ -221,9 +225,11 @@ pub struct Answer {
     pub rating: u8,
     /// Time from the question to the answer, milliseconds.
     pub response_ms: u64,
-    /// Time of the answer, milliseconds since 1970 in UTC; of a simulated clock since the start of the session.
+    /// Time of the answer, milliseconds since 1970 in UTC; of a simulated clock since the start of
+    /// the session.
     pub at_ms: u64,
-    /// Gain that it was played with, decibels relative to the maximum; absent without gain matching.
+    /// Gain that it was played with, decibels relative to the maximum; absent without gain
+    /// matching.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_db: Option<f64>,
     /// Drive of a display at which it was played, volts.
@@ -328,7 +334,8 @@ pub struct Stopped {
     pub texture: String,
     pub model: String,
     pub reason: StopReason,
-    /// Gain that it was played with, decibels relative to the maximum; absent without gain matching.
+    /// Gain that it was played with, decibels relative to the maximum; absent without gain
+    /// matching.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_db: Option<f64>,
     /// Drive of a display, volts.
@@ -366,7 +373,8 @@ impl Line {
     /// Reads a line.
     ///
     /// # Errors
-    /// What is wrong, if it is no line of an answer, has other keys or values, or is a header of another version.
+    /// What is wrong, if it is no line of an answer, has other keys or values, or is a header of
+    /// another version.
     pub fn parse(text: &[u8]) -> Result<Self, String> {
         let line: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
         match &line {

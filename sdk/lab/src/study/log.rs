@@ -24,13 +24,15 @@ pub struct Log {
 }
 
 impl Log {
-    /// Opens the answers of a session, or begins them, and returns them without the header. Opening changes nothing of a file that is
-    /// there: a last line that a crash left incomplete is removed by the first [`Self::append`], when the header and all whole lines
-    /// are known to be of this session. A link is never followed.
+    /// Opens the answers of a session, or begins them, and returns them without the header. Opening
+    /// changes nothing of a file that is there: a last line that a crash left incomplete is removed
+    /// by the first [`Self::append`], when the header and all whole lines are known to be of this
+    /// session. A link is never followed.
     ///
     /// # Errors
-    /// [`StudyError::OtherVersion`] if they were begun with another header; [`StudyError::Busy`] while another program has them open;
-    /// [`StudyError::Line`] if a line is damaged; errors of the file system, also for a link or a pipe.
+    /// [`StudyError::OtherVersion`] if they were begun with another header; [`StudyError::Busy`]
+    /// while another program has them open; [`StudyError::Line`] if a line is damaged; errors of
+    /// the file system, also for a link or a pipe.
     pub fn open(path: &Path, header: &Header) -> Result<(Self, Vec<Line>), StudyError> {
         let (folder, name) = place(path).reading(path)?;
         let mut file = match folder.open_to_append(&name) {
@@ -52,10 +54,7 @@ impl Log {
         let mut bytes = Vec::new();
         let read = file.read_to_end(&mut bytes);
         read.reading(path)?;
-        let whole = bytes
-            .iter()
-            .rposition(|b| *b == b'\n')
-            .map_or(0, |end| end + 1);
+        let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
         let (begun, lines) = parse(path, &bytes[..whole])?;
         same_version(path, &begun, header)?;
         let log = Self {
@@ -69,7 +68,8 @@ impl Log {
     /// Appends a line, and returns when it is on disk.
     ///
     /// # Errors
-    /// [`StudyError::File`]; the line may then be incomplete, and is removed when the file is opened again.
+    /// [`StudyError::File`]; the line may then be incomplete, and is removed when the file is
+    /// opened again.
     pub fn append(&mut self, line: &Line) -> Result<(), StudyError> {
         let text = text(line).writing(&self.path)?;
         let synced = self.whole_lines().and_then(|()| {
@@ -94,13 +94,11 @@ impl Log {
     }
 }
 
-/// Reads a file of answers: its header and its lines. An incomplete last line, of a session that is running or was killed, is left out.
+/// Reads a file of answers: its header and its lines. An incomplete last line, of a session that is
+/// running or was killed, is left out.
 pub(crate) fn read(path: &Path) -> Result<(Header, Vec<Line>), StudyError> {
     let bytes = std::fs::read(path).reading(path)?;
-    let whole = bytes
-        .iter()
-        .rposition(|b| *b == b'\n')
-        .map_or(0, |end| end + 1);
+    let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
     parse(path, &bytes[..whole])
 }
 
@@ -114,7 +112,8 @@ fn place(path: &Path) -> io::Result<(OwnFolder, PathBuf)> {
     Ok((OwnFolder::private(folder.path()), name))
 }
 
-/// Writes the header under a temporary name and renames it, so that no file is without. It is on disk then.
+/// Writes the header under a temporary name and renames it, so that no file is without. It is on
+/// disk then.
 fn begin(path: &Path, header: &Header) -> Result<(), StudyError> {
     let begun = place(path).and_then(|(folder, name)| {
         let text = text(&Line::Header(Box::new(header.clone())))?;
@@ -124,11 +123,8 @@ fn begin(path: &Path, header: &Header) -> Result<(), StudyError> {
 }
 
 fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), StudyError> {
-    let damaged = |line: usize, problem: String| StudyError::Line {
-        file: path.to_owned(),
-        line,
-        problem,
-    };
+    let damaged =
+        |line: usize, problem: String| StudyError::Line { file: path.to_owned(), line, problem };
     let mut lines = bytes
         .split(|b| *b == b'\n')
         .enumerate()
@@ -166,10 +162,7 @@ fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), StudyEr
     } else {
         return Ok(());
     };
-    Err(StudyError::OtherVersion {
-        file: path.to_owned(),
-        changed,
-    })
+    Err(StudyError::OtherVersion { file: path.to_owned(), changed })
 }
 
 /// What differs between two sources.

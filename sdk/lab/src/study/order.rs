@@ -18,7 +18,8 @@ pub(crate) fn conditions(study: &Study) -> Vec<Condition> {
     (0..study.textures.len()).flat_map(of).collect()
 }
 
-/// The conditions of all trials of a participant, in order; `index` is the participant's place in the list.
+/// The conditions of all trials of a participant, in order; `index` is the participant's place in
+/// the list.
 pub(crate) fn order(study: &Study, index: usize, name: &str) -> Vec<Condition> {
     let all = conditions(study);
     let mut dice = Dice::new(study.seed, &["order", name]);
@@ -57,8 +58,8 @@ fn by_texture(all: &[Condition], study: &Study, dice: &mut Dice) -> Vec<Conditio
     trials
 }
 
-/// Rows of a square, one for each repetition of each participant, one participant after another. Which condition is which symbol, and
-/// the order of the rows, are shuffled for the whole study.
+/// Rows of a square, one for each repetition of each participant, one participant after another.
+/// Which condition is which symbol, and the order of the rows, are shuffled for the whole study.
 fn rows(
     study: &Study,
     all: &[Condition],
@@ -75,16 +76,18 @@ fn rows(
     own.flatten().map(|symbol| all[symbols[*symbol]]).collect()
 }
 
-/// A Latin square: n rows of n symbols, each symbol once in each row and in each column. Rows and columns of a cyclic square are
-/// interchanged by fixed random permutations, since in a cyclic one each symbol would always follow the same one.
+/// A Latin square: n rows of n symbols, each symbol once in each row and in each column. Rows and
+/// columns of a cyclic square are interchanged by fixed random permutations, since in a cyclic one
+/// each symbol would always follow the same one.
 fn latin(count: usize) -> Vec<Vec<usize>> {
     let columns = Dice::new(count as u64, &["columns"]).permutation(count);
     let row = |row| columns.iter().map(|at| (row + at) % count).collect();
     (0..count).map(row).collect()
 }
 
-/// A Williams square: n rows for an even number of symbols, 2n for an odd one; each ordered pair of different symbols is adjacent equally
-/// often (Williams 1949, "Experimental designs balanced for the estimation of residual effects of treatments").
+/// A Williams square: n rows for an even number of symbols, 2n for an odd one; each ordered pair of
+/// different symbols is adjacent equally often (Williams 1949, "Experimental designs balanced for
+/// the estimation of residual effects of treatments").
 fn williams(count: usize) -> Vec<Vec<usize>> {
     // 0, 1, n-1, 2, n-2, …: all differences between neighbours are different.
     let first: Vec<usize> = (0..count)
@@ -97,10 +100,8 @@ fn williams(count: usize) -> Vec<Vec<usize>> {
     let row = |add: usize| first.iter().map(|at| (at + add) % count).collect();
     let mut rows: Vec<Vec<usize>> = (0..count).map(row).collect();
     if count % 2 == 1 {
-        let mirrored: Vec<Vec<usize>> = rows
-            .iter()
-            .map(|row| row.iter().rev().copied().collect())
-            .collect();
+        let mirrored: Vec<Vec<usize>> =
+            rows.iter().map(|row| row.iter().rev().copied().collect()).collect();
         rows.extend(mirrored);
     }
     rows

@@ -1,5 +1,6 @@
-//! The page of a session ([`crate::page`]), which asks. Each view has a number, and an answer names the number that it is for: a second
-//! press of a key, or one for a view that is gone, is not an answer.
+//! The page of a session ([`crate::page`]), which asks. Each view has a number, and an answer names
+//! the number that it is for: a second press of a key, or one for a view that is gone, is not an
+//! answer.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -13,7 +14,8 @@ use crate::study::asking::{Asker, Key, View};
 use crate::study::error::StudyError;
 use crate::study::gain::{GainKey, takes};
 
-/// A page that has said nothing of its finger for this long may be gone, and its finger counts as lifted.
+/// A page that has said nothing of its finger for this long may be gone, and its finger counts as
+/// lifted.
 const SILENT: Duration = Duration::from_millis(300);
 
 /// What a page is for.
@@ -86,10 +88,7 @@ impl Page {
     pub fn open(options: PageOptions) -> Result<Self, StudyError> {
         let port = options.port;
         let asked = Arc::new(Asked(Mutex::new(State::new(options))));
-        Ok(Self {
-            served: LocalPage::open(port, Arc::clone(&asked))?,
-            asked,
-        })
+        Ok(Self { served: LocalPage::open(port, Arc::clone(&asked))?, asked })
     }
 
     pub fn address(&self) -> String {
@@ -218,10 +217,7 @@ impl State {
     fn touch(&mut self, body: &Value) {
         let speed_mm_s = body.get("speed_mm_s").and_then(Value::as_f64);
         let is_down = body.get("down").and_then(Value::as_bool).unwrap_or(false);
-        let touched = Touched {
-            speed_mm_s: speed_mm_s.unwrap_or(f64::NAN),
-            is_down,
-        };
+        let touched = Touched { speed_mm_s: speed_mm_s.unwrap_or(f64::NAN), is_down };
         self.touched = Some((touched, Instant::now()));
     }
 }
@@ -250,15 +246,13 @@ mod tests {
     use super::*;
     use crate::study::file::Phase;
 
-    /// A double press, of which the second one comes 0.15 to 0.45 s after the first one: it ends the rest, and begins no trial.
+    /// A double press, of which the second one comes 0.15 to 0.45 s after the first one: it ends
+    /// the rest, and begins no trial.
     #[test]
     fn a_double_press_at_a_rest_begins_no_trial() {
         let mut state = State::new(PageOptions::default());
-        let ready = View::Ready {
-            phase: Phase::Testing,
-            texture: "vinyl".to_owned(),
-            notice: None,
-        };
+        let ready =
+            View::Ready { phase: Phase::Testing, texture: "vinyl".to_owned(), notice: None };
         let pressed = |state: &mut State| {
             state.press(&json!({ "step": state.step, "key": "go" }));
             state.keys.pop_front()

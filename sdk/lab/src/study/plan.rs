@@ -24,7 +24,8 @@ pub struct ParticipantPlan {
     pub participant: String,
     /// Trials for practice; empty without that phase.
     pub training: Vec<Trial>,
-    /// Textures in the order in which they are matched, in the study's matching model; empty without that phase.
+    /// Textures in the order in which they are matched, in the study's matching model; empty
+    /// without that phase.
     pub gain: Vec<String>,
     /// The trials that are rated.
     pub trials: Vec<Trial>,

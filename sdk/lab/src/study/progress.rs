@@ -1,6 +1,7 @@
 //! How far a session is: computed from its plan and its lines.
 //!
-//! Neither the plan nor the progress is stored: a session that was killed cannot disagree with its file.
+//! Neither the plan nor the progress is stored: a session that was killed cannot disagree with its
+//! file.
 
 use crate::study::Study;
 use crate::study::file::{Attribute, Phase};
@@ -16,7 +17,8 @@ const LEVEL_TOLERANCE_DB: f64 = 1e-6;
 pub enum Step {
     /// A trial is played, unless it just was, and rated by an attribute.
     Rate(Phase, Trial, Attribute),
-    /// The level of a texture rises until it is felt, before its first trial for practice; or its gain is matched.
+    /// The level of a texture rises until it is felt, before its first trial for practice; or its
+    /// gain is matched.
     Match {
         phase: Phase,
         texture: String,
@@ -34,7 +36,8 @@ pub enum Step {
     Done,
 }
 
-/// A session's progress. Lines that were read and lines that are recorded are applied by the same function.
+/// A session's progress. Lines that were read and lines that are recorded are applied by the same
+/// function.
 #[derive(Debug)]
 pub(crate) struct Progress {
     training: usize,
@@ -101,10 +104,7 @@ impl Progress {
         if let Some(rests) = study.rests.as_ref().filter(|_| is_between && left > 0) {
             let due = trials_done as u32 / rests.every.max(1);
             if due > self.rests {
-                return Step::Rest {
-                    after: due * rests.every,
-                    seconds: rests.seconds,
-                };
+                return Step::Rest { after: due * rests.every, seconds: rests.seconds };
             }
         }
         rate(Phase::Testing, &plan.trials, self.answers, study).unwrap_or(Step::Done)
@@ -120,8 +120,8 @@ impl Progress {
         (!level.matching.is_found()).then(|| level.step(Phase::Training))
     }
 
-    /// The level that was found for a texture, for the trials of a phase: decibels relative to the maximum, and the RMS that it belongs
-    /// to.
+    /// The level that was found for a texture, for the trials of a phase: decibels relative to the
+    /// maximum, and the RMS that it belongs to.
     pub(crate) fn found(&self, phase: Phase, texture: &str) -> Option<(f64, f64)> {
         let levels = match phase {
             Phase::Training => &self.rises,
@@ -155,12 +155,7 @@ impl Progress {
                 belongs(&trial, &attribute.name, answer, study)?;
                 self.answers += 1;
             }
-            (
-                Step::Match {
-                    phase, matching, ..
-                },
-                Line::Rise(rise),
-            ) if matching.is_rising() => {
+            (Step::Match { phase, matching, .. }, Line::Rise(rise)) if matching.is_rising() => {
                 self.rise(phase, rise)?;
             }
             (Step::Match { matching, .. }, Line::Gain(matched)) if !matching.is_rising() => {
@@ -191,9 +186,7 @@ impl Progress {
         let level = open.find(|one| one.texture == line.texture && one.model == line.model);
         let level = level.filter(|_| phase == line.phase);
         let wrong = || format!("this key for {} does not come next", line.texture);
-        level
-            .ok_or_else(wrong)?
-            .press(line.key, line.gain_db, line.reference_rms)
+        level.ok_or_else(wrong)?.press(line.key, line.gain_db, line.reference_rms)
     }
 
     fn press(&mut self, line: &Matched) -> Result<(), String> {
@@ -201,9 +194,7 @@ impl Progress {
         let mut open = self.gains.iter_mut();
         let level = open.find(|level| !level.matching.is_found());
         let level = level.filter(|level| level.texture == line.texture);
-        level
-            .ok_or_else(wrong)?
-            .press(line.key, line.gain_db, line.reference_rms)
+        level.ok_or_else(wrong)?.press(line.key, line.gain_db, line.reference_rms)
     }
 }
 
@@ -217,7 +208,8 @@ impl Level {
         }
     }
 
-    /// Takes a key, after which the level is `gain_db`: else the line belongs to other rules than ours, and nobody knows what was felt.
+    /// Takes a key, after which the level is `gain_db`: else the line belongs to other rules than
+    /// ours, and nobody knows what was felt.
     fn press(&mut self, key: GainKey, gain_db: f64, reference_rms: f64) -> Result<(), String> {
         let mut pressed = self.matching.clone();
         if !pressed.press(key) {
@@ -268,12 +260,9 @@ fn stops(step: &Step, line: &Stopped) -> Result<(), String> {
         Step::Rate(phase, trial, _) => {
             (*phase, &trial.texture, &trial.model) == (line.phase, &line.texture, &line.model)
         }
-        Step::Match {
-            phase,
-            texture,
-            model,
-            ..
-        } => (*phase, texture, model) == (line.phase, &line.texture, &line.model),
+        Step::Match { phase, texture, model, .. } => {
+            (*phase, texture, model) == (line.phase, &line.texture, &line.model)
+        }
         Step::Rest { .. } | Step::Done => false,
     };
     let (texture, model) = (&line.texture, &line.model);

@@ -51,8 +51,8 @@ impl Dice {
         all
     }
 
-    /// A number of mean 0 and standard deviation 1, the sum of twelve uniform ones less 6: nearly normal within ±3, and exact on
-    /// every machine.
+    /// A number of mean 0 and standard deviation 1, the sum of twelve uniform ones less 6: nearly
+    /// normal within ±3, and exact on every machine.
     pub(crate) fn normal(&mut self) -> f64 {
         let unit = |bits: u64| (bits >> 11) as f64 / (1u64 << 53) as f64;
         (0..12).map(|_| unit(self.bits())).sum::<f64>() - 6.0

@@ -36,8 +36,8 @@ const DOCUMENT: Document = Document {
     },
 };
 
-/// Reads a study and checks it without the files it names. Returns `None`, with a finding that states the reason, if it cannot be
-/// used. Never panics.
+/// Reads a study and checks it without the files it names. Returns `None`, with a finding that
+/// states the reason, if it cannot be used. Never panics.
 pub fn read_study(bytes: &[u8], findings: &mut Findings) -> Option<Study> {
     if bytes.len() > MOST_BYTES {
         let message = format!("the study has more than {MOST_BYTES} bytes");
@@ -88,8 +88,9 @@ fn check_phase_tables(study: &Study, value: &Value, findings: &mut Findings) {
     }
 }
 
-/// Checks the files of a study, and its motion and device, by the rules of scenes: each texture is opened with each model as it will be
-/// played. `path` is the study's file, and `device` the one that it is run with; a rehearsal checks the study's own.
+/// Checks the files of a study, and its motion and device, by the rules of scenes: each texture is
+/// opened with each model as it will be played. `path` is the study's file, and `device` the one
+/// that it is run with; a rehearsal checks the study's own.
 pub fn check_files(
     study: &Study,
     path: &Path,
@@ -131,7 +132,8 @@ fn models(study: &Study) -> Vec<(String, &str)> {
     listed.chain(reference).chain(gain).collect()
 }
 
-/// The files that determine what a study plays, as they are named there: assets, the trace, and the response of the device.
+/// The files that determine what a study plays, as they are named there: assets, the trace, and the
+/// response of the device.
 pub fn files_of(study: &Study) -> Vec<PathBuf> {
     let assets = study.textures.iter().map(|texture| texture.asset.clone());
     let trace = match &study.motion {

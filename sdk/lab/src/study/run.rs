@@ -15,8 +15,9 @@ use crate::study::stimulus::Stimulus;
 
 /// Time between two looks at the keys while nothing plays.
 const LOOK: Duration = Duration::from_millis(5);
-/// How often something is played again after the device ran dry: another program takes the processor for a moment, seldom three times in
-/// a row; a buffer that is too small runs dry each time.
+/// How often something is played again after the device ran dry: another program takes the
+/// processor for a moment, seldom three times in a row; a buffer that is too small runs dry each
+/// time.
 const MOST_REPEATS: u32 = 2;
 
 /// How a run ended.
@@ -56,12 +57,9 @@ pub fn run<R: Rig>(
     loop {
         let goes_on = match run.session.step() {
             Step::Rate(phase, trial, attribute) => run.rate(phase, &trial, &attribute)?,
-            Step::Match {
-                phase,
-                texture,
-                model,
-                matching,
-            } => run.matching(phase, &texture, &model, &matching)?,
+            Step::Match { phase, texture, model, matching } => {
+                run.matching(phase, &texture, &model, &matching)?
+            }
             Step::Rest { seconds, .. } => run.rest(seconds)?,
             Step::Done => {
                 run.show(&View::Done);
@@ -80,7 +78,8 @@ struct Run<'r, 's, R: Rig> {
     asker: &'r mut dyn Asker,
     clock: &'r mut dyn Clock,
     simulated: Option<&'r SimulatedParticipant>,
-    /// What was felt last, by the name of its file: a trial before its questions, or a texture that is being matched.
+    /// What was felt last, by the name of its file: a trial before its questions, or a texture that
+    /// is being matched.
     felt: Option<(Phase, String)>,
     /// How the trial that was felt last was played.
     presented: Presented,
@@ -119,11 +118,7 @@ impl<R: Rig> Run<'_, '_, R> {
         }
         let texture = texture.to_owned();
         let notice = self.notice.take();
-        self.show(&View::Ready {
-            phase,
-            texture,
-            notice,
-        });
+        self.show(&View::Ready { phase, texture, notice });
         self.wait(|key| (key == Key::Go).then_some(())).is_some()
     }
 
@@ -145,7 +140,8 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(true)
     }
 
-    /// Plays a trial to its end, from its beginning when the device ran dry; false when the session is left.
+    /// Plays a trial to its end, from its beginning when the device ran dry; false when the session
+    /// is left.
     fn play(&mut self, phase: Phase, stimulus: &Stimulus) -> Result<bool, R::Error> {
         self.presented = Presented::default();
         let mut left = false;
@@ -186,9 +182,7 @@ impl<R: Rig> Run<'_, '_, R> {
             false => StopReason::Interrupted,
         };
         let at_ms = self.clock.now_ms();
-        let Played {
-            drive_v, output, ..
-        } = played;
+        let Played { drive_v, output, .. } = played;
         self.session.stopped(reason, drive_v, Some(output), at_ms)?;
         Ok(false)
     }
@@ -207,7 +201,8 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(())
     }
 
-    /// Plays once; `None` if the device ran dry, and it is to be played again. [`Presented::repeats`] counts.
+    /// Plays once; `None` if the device ran dry, and it is to be played again.
+    /// [`Presented::repeats`] counts.
     fn attempt(
         &mut self,
         stimulus: &Stimulus,
@@ -227,10 +222,7 @@ impl<R: Rig> Run<'_, '_, R> {
             return Err(StudyError::RanDry { times, error }.into());
         }
         self.presented.repeats += 1;
-        self.say(format!(
-            "the device ran dry, and {} is played again ({error})",
-            stimulus.file
-        ));
+        self.say(format!("the device ran dry, and {} is played again ({error})", stimulus.file));
         Ok(None)
     }
 
@@ -238,11 +230,7 @@ impl<R: Rig> Run<'_, '_, R> {
     fn tell_off_target(&mut self, stimulus: &Stimulus) {
         let reasons = self.presented.felt.as_ref().map(|felt| &felt.off_target);
         if let Some(reasons) = reasons.filter(|reasons| !reasons.is_empty()) {
-            self.say(format!(
-                "{} was off its target: {}",
-                stimulus.file,
-                reasons.join("; ")
-            ));
+            self.say(format!("{} was off its target: {}", stimulus.file, reasons.join("; ")));
         }
     }
 
@@ -263,13 +251,9 @@ impl<R: Rig> Run<'_, '_, R> {
         let notice = self.notice.take();
         if let Some(simulated) = self.simulated {
             let (texture, model) = (&trial.texture, &trial.model);
-            let error_db =
-                self.rig
-                    .band_error_db(texture, model)
-                    .ok_or_else(|| StudyError::NoBandError {
-                        texture: texture.clone(),
-                        model: model.clone(),
-                    })?;
+            let error_db = self.rig.band_error_db(texture, model).ok_or_else(|| {
+                StudyError::NoBandError { texture: texture.clone(), model: model.clone() }
+            })?;
             let response_ms = simulated.response_ms(phase, trial, &asked.name);
             self.clock.pass(Duration::from_millis(response_ms));
             let rating = simulated.rating(phase, trial, &asked.name, error_db, &scale);
@@ -277,11 +261,7 @@ impl<R: Rig> Run<'_, '_, R> {
         }
         let attribute = asked.clone();
         let range = scale.min..=scale.max;
-        self.show(&View::Question {
-            attribute,
-            scale,
-            notice,
-        });
+        self.show(&View::Question { attribute, scale, notice });
         let start_ms = self.clock.now_ms();
         let rating = self.wait(|key| match key {
             Key::Digit(digit) if range.contains(&digit) => Some(digit),
@@ -299,9 +279,7 @@ impl<R: Rig> Run<'_, '_, R> {
         model: &str,
         matching: &Match,
     ) -> Result<bool, R::Error> {
-        let stimulus = self
-            .session
-            .matching_stimulus(phase, texture, model, matching);
+        let stimulus = self.session.matching_stimulus(phase, texture, model, matching);
         let this = (phase, stimulus.file.clone());
         if self.felt.as_ref() != Some(&this) {
             if !self.ready(phase, texture) {
@@ -313,10 +291,7 @@ impl<R: Rig> Run<'_, '_, R> {
         let (key, played) = match self.simulated {
             Some(simulated) => {
                 let seconds = self.session.study().trial_s;
-                let stimulus = Stimulus {
-                    seconds: Some(seconds),
-                    ..stimulus
-                };
+                let stimulus = Stimulus { seconds: Some(seconds), ..stimulus };
                 let played = loop {
                     if let Some(played) = self.attempt(&stimulus, &mut |_| false)? {
                         break played;

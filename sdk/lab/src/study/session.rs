@@ -16,7 +16,8 @@ use crate::study::plan::{ParticipantPlan, Trial};
 use crate::study::progress::{Progress, Step};
 use crate::study::stimulus::Stimulus;
 
-/// A participant's session, and the open file of its answers. What it records is on disk when a method returns.
+/// A participant's session, and the open file of its answers. What it records is on disk when a
+/// method returns.
 #[derive(Debug)]
 pub struct Session<'a> {
     study: &'a Study,
@@ -217,18 +218,13 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Records a key of a rising level or of the gain matching, and how the texture was played before the key.
+    /// Records a key of a rising level or of the gain matching, and how the texture was played
+    /// before the key.
     ///
     /// # Errors
     /// As [`Self::rate`].
     pub fn press(&mut self, key: GainKey, played: &Played, at_ms: u64) -> Result<(), StudyError> {
-        let Step::Match {
-            phase,
-            texture,
-            model,
-            mut matching,
-        } = self.step()
-        else {
+        let Step::Match { phase, texture, model, mut matching } = self.step() else {
             return Err(self.misplaced("no gain is matched now"));
         };
         let was_rising = matching.is_rising();
@@ -283,12 +279,9 @@ impl<'a> Session<'a> {
                 let gain_db = self.stimulus(phase, &trial).gain_db;
                 (phase, trial.texture, trial.model, gain_db)
             }
-            Step::Match {
-                phase,
-                texture,
-                model,
-                matching,
-            } => (phase, texture, model, Some(matching.gain_db())),
+            Step::Match { phase, texture, model, matching } => {
+                (phase, texture, model, Some(matching.gain_db()))
+            }
             Step::Rest { .. } | Step::Done => return Err(self.misplaced("nothing plays now")),
         };
         self.record(Line::Stopped(Stopped {
@@ -313,11 +306,7 @@ impl<'a> Session<'a> {
             return Err(self.misplaced("there is no rest now"));
         };
         let simulated = self.is_simulated;
-        self.record(Line::Rest {
-            after,
-            at_ms,
-            simulated,
-        })
+        self.record(Line::Rest { after, at_ms, simulated })
     }
 
     /// Applies the line first, so that only valid ones are written.
@@ -328,20 +317,14 @@ impl<'a> Session<'a> {
     }
 
     fn misplaced(&self, problem: &str) -> StudyError {
-        StudyError::Line {
-            file: self.log.path().to_owned(),
-            line: 0,
-            problem: problem.to_owned(),
-        }
+        StudyError::Line { file: self.log.path().to_owned(), line: 0, problem: problem.to_owned() }
     }
 }
 
-/// The name of a trial's recording: its phase, number, texture and model, in characters that every file system takes.
+/// The name of a trial's recording: its phase, number, texture and model, in characters that every
+/// file system takes.
 fn felt_name(phase: &str, trial: &Trial) -> String {
-    let name = format!(
-        "{phase}-{:04}-{}-{}",
-        trial.number, trial.texture, trial.model
-    );
+    let name = format!("{phase}-{:04}-{}-{}", trial.number, trial.texture, trial.model);
     let plain = |c: char| match c.is_ascii_alphanumeric() || "-_.".contains(c) {
         true => c,
         false => '_',

@@ -17,8 +17,9 @@ const NOISE: f64 = 0.1;
 /// Range of the gains that they accept, dB below the maximum.
 const GAIN_DB: (f64, f64) = (-18.0, -2.0);
 
-/// A simulated participant: ratings fall with the nine-band error of the representation, the paper's best predictor of similarity. Each
-/// rating depends on the seed, the participant and the trial alone, not on what was rated before.
+/// A simulated participant: ratings fall with the nine-band error of the representation, the
+/// paper's best predictor of similarity. Each rating depends on the seed, the participant and the
+/// trial alone, not on what was rated before.
 #[derive(Debug, Clone)]
 pub struct SimulatedParticipant {
     seed: u64,
@@ -33,10 +34,7 @@ impl SimulatedParticipant {
 
     /// Its entry in the header of answers.
     pub fn header(&self) -> Simulated {
-        Simulated {
-            seed: self.seed,
-            rule: RULE.split_whitespace().collect::<Vec<_>>().join(" "),
-        }
+        Simulated { seed: self.seed, rule: RULE.split_whitespace().collect::<Vec<_>>().join(" ") }
     }
 
     /// Its rating of a trial of a phase whose representation has this nine-band error, dB.

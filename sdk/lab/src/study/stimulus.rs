@@ -8,7 +8,8 @@ use htex_scene::file::{DeviceChoice, Levels, Surface};
 
 use crate::study::file::Study;
 
-/// Level of a sound that stands for the maximum where the study names none, decibels relative to full scale.
+/// Level of a sound that stands for the maximum where the study names none, decibels relative to
+/// full scale.
 const SOUND_DBFS: f64 = -18.0;
 
 /// A texture in a model, and how it is played.
@@ -22,20 +23,19 @@ pub struct Stimulus {
     pub seed: u64,
     /// Gain relative to the maximum, decibels; `None`: as the study's device plays.
     pub gain_db: Option<f64>,
-    /// The RMS at which the gain was found, in the assets' unit, for devices whose levels are `own`.
+    /// The RMS at which the gain was found, in the assets' unit, for devices whose levels are
+    /// `own`.
     pub reference_rms: Option<f64>,
     /// Name of the recording of what is felt, without extension; `None` if it is not recorded.
     pub felt: Option<String>,
-    /// Name for a file that it is played to: `rise-vinyl`, `training-0003`, `gain-vinyl`, `trial-0017`.
+    /// Name for a file that it is played to: `rise-vinyl`, `training-0003`, `gain-vinyl`,
+    /// `trial-0017`.
     pub file: String,
 }
 
 /// The scene of a texture in a model, as the bytes of a scene file beside the study.
 pub fn scene_of(study: &Study, asset: &Path, model: &str) -> Vec<u8> {
-    let surface = Surface {
-        representation: model.to_owned(),
-        ..Surface::everywhere(asset)
-    };
+    let surface = Surface { representation: model.to_owned(), ..Surface::everywhere(asset) };
     let scene = Scene {
         htex_scene: htex_scene::file::VERSION.to_owned(),
         surfaces: vec![surface],
@@ -50,14 +50,15 @@ pub fn scene_of(study: &Study, asset: &Path, model: &str) -> Vec<u8> {
     serde_json::to_vec(&scene).unwrap_or_default()
 }
 
-/// The drive of a display to which nothing sets a gain, volts: `drive_v` of the study, or the limit.
+/// The drive of a display to which nothing sets a gain, volts: `drive_v` of the study, or the
+/// limit.
 pub fn full_drive(device: &DeviceChoice, able: &Capabilities) -> Option<f64> {
     let is_display = able.quantity == Quantity::DisplayVoltage;
     device.drive_v.or(able.limit).filter(|_| is_display)
 }
 
-/// Sets a gain on a scene's device, relative to the maximum: a display's `drive_v` or its limit, the `gain_db` of other forces, or the
-/// level of a sound. Returns the drive of a display, volts.
+/// Sets a gain on a scene's device, relative to the maximum: a display's `drive_v` or its limit,
+/// the `gain_db` of other forces, or the level of a sound. Returns the drive of a display, volts.
 pub fn set_gain(
     device: &mut DeviceChoice,
     able: &Capabilities,

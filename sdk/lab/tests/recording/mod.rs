@@ -86,13 +86,8 @@ pub fn session(
     tracker: Option<Box<dyn TrackerRows>>,
 ) -> Result<Session, RecordError> {
     let source = open(source);
-    let signals = Signals::new(
-        "source.csv",
-        source.channels(),
-        Vec::new(),
-        None,
-        Quantity::LateralForce,
-    )?;
+    let signals =
+        Signals::new("source.csv", source.channels(), Vec::new(), None, Quantity::LateralForce)?;
     let setup = Setup {
         folder: folder.to_owned(),
         name: settings.name.to_owned(),
@@ -134,11 +129,7 @@ pub fn record_with(
 /// A CSV without times has the rate of the tests.
 fn open(path: &Path) -> Box<dyn htex_device::Source> {
     use htex_device::{Settings, SourceAdapter};
-    let given = [
-        ("path", path.to_str().unwrap()),
-        ("pace", "fast"),
-        ("rate_hz", "2000"),
-    ];
+    let given = [("path", path.to_str().unwrap()), ("pace", "fast"), ("rate_hz", "2000")];
     let given = given.map(|(name, value)| (name.to_owned(), value.to_owned()));
     let settings = Settings::resolve(Replay.descriptor(), None, &given.into()).unwrap();
     Replay.open(&settings).unwrap()

@@ -32,9 +32,8 @@ impl Case {
 }
 
 fn overrides(limits: &Limits) -> BTreeMap<String, u64> {
-    let all = super::cases::limits(limits)
-        .into_iter()
-        .zip(super::cases::limits(&Limits::default()));
+    let all =
+        super::cases::limits(limits).into_iter().zip(super::cases::limits(&Limits::default()));
     all.filter(|(ours, default)| ours != default)
         .map(|((name, ours), _)| (name.to_owned(), ours))
         .collect()
@@ -55,14 +54,9 @@ pub fn limits(limits: &Limits) -> [(&'static str, u64); 7] {
 
 /// All conformance files.
 pub fn cases() -> Vec<Case> {
-    let named = valid()
-        .into_iter()
-        .chain(files())
-        .chain(pages())
-        .chain(entries());
-    let mut cases: Vec<Case> = named
-        .map(|(name, bytes)| case(name, bytes, Limits::default()))
-        .collect();
+    let named = valid().into_iter().chain(files()).chain(pages()).chain(entries());
+    let mut cases: Vec<Case> =
+        named.map(|(name, bytes)| case(name, bytes, Limits::default())).collect();
     cases.extend(limited());
     cases
 }
@@ -70,18 +64,12 @@ pub fn cases() -> Vec<Case> {
 type Named = (&'static str, Vec<u8>);
 
 fn case(name: &str, bytes: Vec<u8>, limits: Limits) -> Case {
-    Case {
-        name: name.to_owned(),
-        bytes,
-        limits,
-    }
+    Case { name: name.to_owned(), bytes, limits }
 }
 
 /// Four textures: three in folders, one of them at two speeds.
 pub fn four() -> Vec<Texture> {
-    let mut four = ["felt", "wood/birch", "wood/oak", "wood/Ölweide"]
-        .map(texture)
-        .to_vec();
+    let mut four = ["felt", "wood/birch", "wood/oak", "wood/Ölweide"].map(texture).to_vec();
     four[1].speeds_mm_s = vec![40.0, 120.0];
     four[1].tags = Vec::new();
     four[3].tags = vec!["wood".to_owned()];
@@ -129,10 +117,7 @@ fn files() -> Vec<Named> {
     };
     let header = |change: fn(&mut Vec<u8>)| raw().with(|raw| raw.header = Some(change)).bytes();
     vec![
-        (
-            "library_unrecognised",
-            b"This is no library, but a text.".to_vec(),
-        ),
+        ("library_unrecognised", b"This is no library, but a text.".to_vec()),
         ("library_unrecognised_empty", Vec::new()),
         (
             "library_unrecognised_as_text",
@@ -140,45 +125,18 @@ fn files() -> Vec<Named> {
                 bytes.remove(4);
             }),
         ),
-        (
-            "library_truncated",
-            changed(|bytes| bytes.truncate(bytes.len() - 9)),
-        ),
-        (
-            "library_truncated_header",
-            changed(|bytes| bytes.truncate(100)),
-        ),
+        ("library_truncated", changed(|bytes| bytes.truncate(bytes.len() - 9))),
+        ("library_truncated_header", changed(|bytes| bytes.truncate(100))),
         ("library_extra_data", changed(|bytes| bytes.extend(b"more"))),
-        (
-            "library_version_unsupported",
-            header(|header| header[8] = 2),
-        ),
+        ("library_version_unsupported", header(|header| header[8] = 2)),
         ("library_header_checksum", changed(|bytes| bytes[81] ^= 1)),
-        (
-            "library_header_invalid_gap",
-            header(|header| header[32] += 1),
-        ),
-        (
-            "library_header_invalid_reserved",
-            header(|header| header[13] = 1),
-        ),
-        (
-            "library_header_invalid_overflow",
-            header(|header| header[72..80].fill(0xff)),
-        ),
-        (
-            "library_header_invalid_counts",
-            header(|header| header[80..84].fill(0)),
-        ),
+        ("library_header_invalid_gap", header(|header| header[32] += 1)),
+        ("library_header_invalid_reserved", header(|header| header[13] = 1)),
+        ("library_header_invalid_overflow", header(|header| header[72..80].fill(0xff))),
+        ("library_header_invalid_counts", header(|header| header[80..84].fill(0))),
         ("library_count_wrong", header(|header| header[80] += 1)),
-        (
-            "library_count_wrong_leaves",
-            header(|header| header[88] += 1),
-        ),
-        (
-            "library_index_changed",
-            raw().with(|raw| raw.index_blake3 = Some([7; 32])).bytes(),
-        ),
+        ("library_count_wrong_leaves", header(|header| header[88] += 1)),
+        ("library_index_changed", raw().with(|raw| raw.index_blake3 = Some([7; 32])).bytes()),
         (
             "library_entries_too_many",
             header(|header| header[80..88].copy_from_slice(&(1u64 << 40).to_le_bytes())),
@@ -192,9 +150,7 @@ fn pages() -> Vec<Named> {
         raw().with(|raw| raw.pages = vec![(number, change)]).bytes()
     };
     let stream = |number: usize, change: fn(&mut Vec<u8>)| {
-        raw()
-            .with(|raw| raw.streams = vec![(number, change)])
-            .bytes()
+        raw().with(|raw| raw.streams = vec![(number, change)]).bytes()
     };
     vec![
         ("library_page_checksum", {
@@ -203,29 +159,15 @@ fn pages() -> Vec<Named> {
             bytes
         }),
         ("library_page_corrupt", stream(1, |stream| stream[0] = 7)),
-        (
-            "library_page_corrupt_follows",
-            stream(2, |stream| stream.extend(b"more")),
-        ),
-        (
-            "library_page_corrupt_endless",
-            stream(0, |stream| stream[0] = 0),
-        ),
+        ("library_page_corrupt_follows", stream(2, |stream| stream.extend(b"more"))),
+        ("library_page_corrupt_endless", stream(0, |stream| stream[0] = 0)),
         (
             "library_page_corrupt_longer",
-            stream(0, |stream| {
-                stream.splice(0..0, [0, 1, 0, 0xfe, 0xff, 7]).for_each(drop)
-            }),
+            stream(0, |stream| stream.splice(0..0, [0, 1, 0, 0xfe, 0xff, 7]).for_each(drop)),
         ),
         ("library_page_invalid_root", page(0, |page| page.push(0))),
-        (
-            "library_page_invalid_root_name",
-            page(0, |page| page[0] = 0xff),
-        ),
-        (
-            "library_page_invalid_leaf",
-            page(1, |page| page.truncate(page.len() - 1)),
-        ),
+        ("library_page_invalid_root_name", page(0, |page| page[0] = 0xff)),
+        ("library_page_invalid_leaf", page(1, |page| page.truncate(page.len() - 1))),
         ("library_page_invalid_count", page(1, |page| page[0] = 0x7f)),
         ("library_page_invalid_none", page(1, |page| page[0] = 0)),
         ("library_page_invalid_words", page(1, |page| page[3] = b'~')),
@@ -240,10 +182,7 @@ fn pages() -> Vec<Named> {
                 page[low] ^= 1;
             }),
         ),
-        (
-            "library_name_invalid_library",
-            raw().with(|raw| raw.name = b"Bell\x07".to_vec()).bytes(),
-        ),
+        ("library_name_invalid_library", raw().with(|raw| raw.name = b"Bell\x07".to_vec()).bytes()),
         (
             "library_order_invalid_separators",
             raw()
@@ -252,9 +191,7 @@ fn pages() -> Vec<Named> {
         ),
         (
             "library_order_invalid_leaf",
-            raw()
-                .with(|raw| raw.separators = Some(vec![Vec::new(), b"wood/z".to_vec()]))
-                .bytes(),
+            raw().with(|raw| raw.separators = Some(vec![Vec::new(), b"wood/z".to_vec()])).bytes(),
         ),
     ]
 }
@@ -263,10 +200,7 @@ fn pages() -> Vec<Named> {
 fn entries() -> Vec<Named> {
     let changed = |change: fn(&mut Raw)| raw().with(change).bytes();
     vec![
-        (
-            "library_name_invalid",
-            changed(|raw| raw.leaves[0][0].name = b"../felt".to_vec()),
-        ),
+        ("library_name_invalid", changed(|raw| raw.leaves[0][0].name = b"../felt".to_vec())),
         (
             "library_name_invalid_device",
             changed(|raw| raw.leaves[0][0].name = b"aux.felt".to_vec()),
@@ -275,18 +209,12 @@ fn entries() -> Vec<Named> {
             "library_name_invalid_superscript",
             changed(|raw| raw.leaves[0][0].name = "com².felt".into()),
         ),
-        (
-            "library_name_invalid_long",
-            changed(|raw| raw.leaves[0][0].name = vec![b'f'; 251]),
-        ),
+        ("library_name_invalid_long", changed(|raw| raw.leaves[0][0].name = vec![b'f'; 251])),
         (
             "library_name_invalid_folder",
             changed(|raw| raw.leaves[0][0].name = b"felt.htex/felt".to_vec()),
         ),
-        (
-            "library_names_alike",
-            changed(|raw| raw.leaves[0][0].name = "WOOD/ÖLWEIDE".into()),
-        ),
+        ("library_names_alike", changed(|raw| raw.leaves[0][0].name = "WOOD/ÖLWEIDE".into())),
         (
             "library_names_alike_decomposed",
             changed(|raw| raw.leaves[0][0].name = "WOOD/O\u{308}LWEIDE".into()),
@@ -299,22 +227,13 @@ fn entries() -> Vec<Named> {
             "library_name_invalid_invisible",
             changed(|raw| raw.leaves[0][0].name = "bark\u{2060}".into()),
         ),
-        (
-            "library_page_invalid_utf8",
-            changed(|raw| raw.leaves[0][0].name = b"\xff".to_vec()),
-        ),
-        (
-            "library_order_invalid",
-            changed(|raw| raw.leaves[0][0].name = b"wood/elm".to_vec()),
-        ),
+        ("library_page_invalid_utf8", changed(|raw| raw.leaves[0][0].name = b"\xff".to_vec())),
+        ("library_order_invalid", changed(|raw| raw.leaves[0][0].name = b"wood/elm".to_vec())),
         (
             "library_order_invalid_duplicate",
             changed(|raw| raw.leaves[0][0].name = b"wood/birch".to_vec()),
         ),
-        (
-            "library_range_invalid_end",
-            changed(|raw| raw.leaves[1][1].own += 1),
-        ),
+        ("library_range_invalid_end", changed(|raw| raw.leaves[1][1].own += 1)),
         (
             "library_range_invalid_gap",
             changed(|raw| {
@@ -322,14 +241,8 @@ fn entries() -> Vec<Named> {
                 raw.leaves[1][1].own += 1;
             }),
         ),
-        (
-            "library_range_invalid_rest",
-            changed(|raw| raw.payload.push(0)),
-        ),
-        (
-            "library_range_invalid_object",
-            changed(|raw| raw.leaves[0][0].cuts = vec![(0, 0, 1)]),
-        ),
+        ("library_range_invalid_rest", changed(|raw| raw.payload.push(0))),
+        ("library_range_invalid_object", changed(|raw| raw.leaves[0][0].cuts = vec![(0, 0, 1)])),
         (
             "library_range_invalid_cut",
             changed(|raw| {
@@ -338,10 +251,7 @@ fn entries() -> Vec<Named> {
             }),
         ),
         ("library_range_invalid_overlap", overlapping()),
-        (
-            "library_page_invalid_object",
-            changed(|raw| raw.leaves[0][0].cuts = vec![(0, 0, 0)]),
-        ),
+        ("library_page_invalid_object", changed(|raw| raw.leaves[0][0].cuts = vec![(0, 0, 0)])),
         (
             "library_page_invalid_conditions",
             changed(|raw| raw.leaves[0][0].speeds = Some((9.0, 8.0))),
@@ -350,22 +260,10 @@ fn entries() -> Vec<Named> {
             "library_page_invalid_nan",
             changed(|raw| raw.leaves[0][0].forces = Some((1.0, f64::INFINITY))),
         ),
-        (
-            "library_page_invalid_contact",
-            changed(|raw| raw.leaves[0][0].law.0 |= 3),
-        ),
-        (
-            "library_page_invalid_exponent",
-            changed(|raw| raw.leaves[0][0].law.1[1] = 4.5),
-        ),
-        (
-            "library_entry_wrong_law",
-            changed(|raw| raw.leaves[0][0].law.1[0] = 1.0),
-        ),
-        (
-            "library_object_unused",
-            changed(|raw| raw.shared = vec![1, 2, 3]),
-        ),
+        ("library_page_invalid_contact", changed(|raw| raw.leaves[0][0].law.0 |= 3)),
+        ("library_page_invalid_exponent", changed(|raw| raw.leaves[0][0].law.1[1] = 4.5)),
+        ("library_entry_wrong_law", changed(|raw| raw.leaves[0][0].law.1[0] = 1.0)),
+        ("library_object_unused", changed(|raw| raw.shared = vec![1, 2, 3])),
         ("library_asset_changed", changed(|raw| raw.payload[40] ^= 1)),
         ("library_asset_changed_shared", {
             let mut bytes = pack("Shared", &sharing()).1;
@@ -404,14 +302,9 @@ fn overlapping() -> Vec<u8> {
                 (row.at, row.own) = (0, 0);
             }
             leaf[0].cuts = vec![(0, 0, first as u64)];
-            leaf[1].cuts = vec![
-                (0, first as u64, 10),
-                (0, first as u64 + 10, second as u64 - 10),
-            ];
+            leaf[1].cuts = vec![(0, first as u64, 10), (0, first as u64 + 10, second as u64 - 10)];
             let overlapped = raw.shared[first - 1..first + 10].to_vec();
-            leaf[0]
-                .cuts
-                .push((0, first as u64 - 1, overlapped.len() as u64));
+            leaf[0].cuts.push((0, first as u64 - 1, overlapped.len() as u64));
             let all = [&raw.shared[..first], &overlapped].concat();
             leaf[0].hash = *blake3::hash(&all).as_bytes();
             let removed = (first + second) as u64;

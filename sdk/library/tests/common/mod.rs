@@ -51,12 +51,10 @@ impl Texture {
     /// The bytes of its `.htex` file.
     pub fn bytes(&self) -> Vec<u8> {
         let conditions = self.speeds_mm_s.iter();
-        let conditions: Vec<_> = conditions
-            .map(|speed| json!({ "speed_mm_s": speed, "force_n": 0.5 }))
-            .collect();
-        let at: Vec<_> = (0..conditions.len())
-            .map(|i| json!({ "condition": i, "level_rms": 0.02 }))
-            .collect();
+        let conditions: Vec<_> =
+            conditions.map(|speed| json!({ "speed_mm_s": speed, "force_n": 0.5 })).collect();
+        let at: Vec<_> =
+            (0..conditions.len()).map(|i| json!({ "condition": i, "level_rms": 0.02 })).collect();
         let manifest: Manifest = serde_json::from_value(json!({
             "htex": "1.0",
             "name": self.name,

@@ -1,4 +1,5 @@
-//! An encoder of libraries that shares no code with the crate's and writes whatever it is told, with valid checksums.
+//! An encoder of libraries that shares no code with the crate's and writes whatever it is told,
+//! with valid checksums.
 
 use super::Texture;
 
@@ -46,11 +47,7 @@ pub struct Row {
 impl Raw {
     /// A library of these textures with leaves of so many entries; nothing is shared.
     pub fn of(textures: &[Texture], in_leaf: usize) -> Self {
-        let mut raw = Self {
-            name: b"Raw".to_vec(),
-            version: (1, 0),
-            ..Self::default()
-        };
+        let mut raw = Self { name: b"Raw".to_vec(), version: (1, 0), ..Self::default() };
         let mut rows: Vec<Row> = Vec::new();
         for texture in textures {
             let bytes = texture.bytes();
@@ -59,10 +56,7 @@ impl Raw {
                 name: texture.name.clone().into_bytes(),
                 tags: texture.tags.clone(),
                 models: vec!["org.htex.sbeta".to_owned()],
-                speeds: Some((
-                    speeds.clone().fold(f64::MAX, f64::min),
-                    speeds.fold(0.0, f64::max),
-                )),
+                speeds: Some((speeds.clone().fold(f64::MAX, f64::min), speeds.fold(0.0, f64::max))),
                 forces: Some((0.5, 0.5)),
                 // Nothing is stated: unknown, all assumed.
                 law: (0b10_10_10_10, [0.0, 0.75, 0.5]),
@@ -94,12 +88,7 @@ impl Raw {
         header.extend(self.version.1.to_le_bytes());
         header.extend([0; 4]);
         let mut at = 128u64;
-        let lengths = [
-            root.len(),
-            leaves.concat().len(),
-            self.shared.len(),
-            self.payload.len(),
-        ];
+        let lengths = [root.len(), leaves.concat().len(), self.shared.len(), self.payload.len()];
         for length in lengths {
             header.extend(at.to_le_bytes());
             header.extend((length as u64).to_le_bytes());
@@ -131,11 +120,7 @@ impl Raw {
         text(&mut page, &self.name);
         varint(&mut page, leaves.len() as u64);
         let whole = |(i, leaf): (usize, &Vec<Row>)| {
-            if i == 0 {
-                Vec::new()
-            } else {
-                leaf[0].name.clone()
-            }
+            if i == 0 { Vec::new() } else { leaf[0].name.clone() }
         };
         let separators = self.leaves.iter().enumerate().map(whole).collect();
         let mut before = Vec::new();
@@ -143,26 +128,20 @@ impl Raw {
             following(&mut page, &before, separator);
             before = separator.clone();
         }
-        leaves
-            .iter()
-            .for_each(|leaf| varint(&mut page, leaf.len() as u64));
+        leaves.iter().for_each(|leaf| varint(&mut page, leaf.len() as u64));
         page
     }
 
     fn leaf(&self, leaf: usize) -> Vec<u8> {
         let rows = &self.leaves[leaf];
-        let words = rows
-            .iter()
-            .flat_map(|row| row.tags.iter().chain(&row.models));
+        let words = rows.iter().flat_map(|row| row.tags.iter().chain(&row.models));
         let mut words: Vec<String> = words.cloned().collect();
         words.sort();
         words.dedup();
         let mut page = Vec::new();
         varint(&mut page, rows.len() as u64);
         varint(&mut page, words.len() as u64);
-        words
-            .iter()
-            .for_each(|word| text(&mut page, word.as_bytes()));
+        words.iter().for_each(|word| text(&mut page, word.as_bytes()));
         let mut before = Vec::new();
         for row in rows {
             following(&mut page, &before, &row.name);
@@ -172,10 +151,7 @@ impl Raw {
             for row in rows {
                 varint(&mut page, chosen(row).len() as u64);
                 for word in chosen(row) {
-                    varint(
-                        &mut page,
-                        words.iter().position(|w| *w == word).unwrap() as u64,
-                    );
+                    varint(&mut page, words.iter().position(|w| *w == word).unwrap() as u64);
                 }
             }
         }
@@ -270,8 +246,6 @@ pub fn stored(data: &[u8]) -> Vec<u8> {
 /// CRC-32 as ZIP and PNG have it, bit by bit.
 pub fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0u32, |crc, byte| {
-        (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
-            (crc >> 1) ^ (0xEDB8_8320 * (crc & 1))
-        })
+        (0..8).fold(crc ^ u32::from(*byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 * (crc & 1)))
     })
 }

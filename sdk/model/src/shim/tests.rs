@@ -45,13 +45,7 @@ impl MotionVoice for Counter {
 fn a_bad_motion_leaves_the_voice_as_it_was() {
     let state = State::<Counting>::new(b"");
     let handle = state.voice_new(Input(Some(&[])), (20.0, 1_000.0), 2_000.0, 100);
-    let good = Motion {
-        speed_mm_s: -80.0,
-        force_n: 0.4,
-        position_mm: -7.0,
-        x_mm: 3.0,
-        y_mm: -4.0,
-    };
+    let good = Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm: -7.0, x_mm: 3.0, y_mm: -4.0 };
     // SAFETY: one thread.
     let set = |handle, motion| unsafe { state.motion_set(handle, motion) };
     let next = || {
@@ -76,10 +70,7 @@ fn a_bad_motion_leaves_the_voice_as_it_was() {
             assert_eq!(set(handle, motion), invalid, "{motion:?}");
         }
     }
-    let pulled = Motion {
-        force_n: -0.1,
-        ..good
-    };
+    let pulled = Motion { force_n: -0.1, ..good };
     assert_eq!(set(handle, pulled), invalid);
     assert_eq!(set(handle + 1, good), Status::BadHandle as i64);
     assert_eq!(next(), 100.0);
@@ -90,14 +81,8 @@ fn a_bad_motion_leaves_the_voice_as_it_was() {
 #[test]
 fn extensions_are_those_the_model_has() {
     let has = |id: &str, motion| extension(Input(Some(id.as_bytes())), motion);
-    assert_eq!(
-        [has("htex.motion/1", true), has("htex.motion/1", false)],
-        [1, 0]
-    );
-    assert_eq!(
-        [has("htex.voices/1", true), has("htex.voices/1", false)],
-        [1, 1]
-    );
+    assert_eq!([has("htex.motion/1", true), has("htex.motion/1", false)], [1, 0]);
+    assert_eq!([has("htex.voices/1", true), has("htex.voices/1", false)], [1, 1]);
     assert_eq!([has("htex.motion/2", true), has("", true)], [0, 0]);
 }
 
@@ -141,10 +126,7 @@ fn voices_are_rendered_together_or_not_at_all() {
     }
     assert_eq!(render(&[], 3), (0, std::vec![]));
     assert_eq!(render(&[a, b], 0), (0, std::vec![]));
-    assert_eq!(
-        render(&[b, a], 2),
-        (0, std::vec![200.0, 201.0, 100.0, 101.0])
-    );
+    assert_eq!(render(&[b, a], 2), (0, std::vec![200.0, 201.0, 100.0, 101.0]));
     // SAFETY: null is refused before it is read.
     let null =
         unsafe { state.voices_render(Input(Some(&[a])), 2, Output::new(core::ptr::null_mut(), 2)) };

@@ -7,8 +7,8 @@ use super::ON_SIDE;
 /// Largest coordinate, so that all computed numbers are finite.
 const FAR: f64 = 1e100;
 
-/// Coordinates of speeds or forces, relative to the largest recorded one. They ascend, and are constant over equal
-/// values.
+/// Coordinates of speeds or forces, relative to the largest recorded one. They ascend, and are
+/// constant over equal values.
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
     groups: Vec<Group>,
@@ -24,27 +24,19 @@ struct Group {
 }
 
 impl Axis {
-    /// Makes an axis of one or more recorded values, not negative. If `merged`, values that are equal within the
-    /// tolerance have the same coordinate.
+    /// Makes an axis of one or more recorded values, not negative. If `merged`, values that are
+    /// equal within the tolerance have the same coordinate.
     pub(super) fn new(mut values: Vec<f64>, merged: bool) -> Self {
         htex_dsp::order::sort_by(&mut values, f64::total_cmp);
         let largest = values.last().copied().unwrap_or(0.0);
         // The inverse of the smallest numbers is not finite.
-        let scale = if largest > 0.0 {
-            (1.0 / largest).min(f64::MAX)
-        } else {
-            1.0
-        };
+        let scale = if largest > 0.0 { (1.0 / largest).min(f64::MAX) } else { 1.0 };
         let is_one = |a: &f64, x: f64| a == &x || (merged && Condition::is_same(*a, x));
         let mut groups: Vec<Group> = Vec::new();
         for x in values {
             match groups.last_mut() {
                 Some(group) if is_one(&group.low, x) => group.high = x,
-                _ => groups.push(Group {
-                    low: x,
-                    high: x,
-                    place: 0.0,
-                }),
+                _ => groups.push(Group { low: x, high: x, place: 0.0 }),
             }
         }
         for group in &mut groups {
@@ -53,7 +45,8 @@ impl Axis {
         Self { groups, scale }
     }
 
-    /// Returns, of the values with a coordinate, the one that is nearest to `x`; beyond the recorded values, the last of them.
+    /// Returns, of the values with a coordinate, the one that is nearest to `x`; beyond the
+    /// recorded values, the last of them.
     pub(super) fn value(&self, place: f64, x: f64) -> f64 {
         let is_at = |group: &&Group| (group.place - place).abs() <= ON_SIDE;
         if let Some(group) = self.groups.iter().find(is_at) {

@@ -35,17 +35,11 @@ pub(super) fn meshed(conditions: &[[f64; 2]], axes: [Axis; 2], places: &[[f64; 2
     for (i, side) in sides.iter_mut().enumerate() {
         take_slivers(i, side, &mut faces, &edges, &places);
     }
-    Mesh {
-        only: places.first().copied().unwrap_or_default(),
-        numbers,
-        axes,
-        faces,
-        sides,
-    }
+    Mesh { only: places.first().copied().unwrap_or_default(), numbers, axes, faces, sides }
 }
 
-/// Returns the numbers and coordinates of all conditions, in ascending order of their coordinates: what is made of them does
-/// not depend on their own order.
+/// Returns the numbers and coordinates of all conditions, in ascending order of their coordinates:
+/// what is made of them does not depend on their own order.
 pub(super) fn sorted(conditions: &[[f64; 2]], places: &[[f64; 2]]) -> (Vec<usize>, Vec<[f64; 2]>) {
     let numbers = order::order(conditions.len(), &|a, b| {
         let by_motion = || ascends(&conditions[a], &conditions[b]);
@@ -76,19 +70,21 @@ fn are_apart(places: &[[f64; 2]]) -> bool {
 }
 
 type Triangles = (Vec<Face>, Vec<[usize; 2]>);
-/// A triangulation with a hierarchy of hints: the time to locate a point is logarithmic in the number of points.
+/// A triangulation with a hierarchy of hints: the time to locate a point is logarithmic in the
+/// number of points.
 type Delaunay = DelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGenerator<f64>>;
 
-/// Largest distance from a line that is attributed to rounding, relative to the largest speed and force.
+/// Largest distance from a line that is attributed to rounding, relative to the largest speed and
+/// force.
 const ROUNDING: f64 = 1e-9;
 /// Most points that are inserted in ascending order.
 const FEW: usize = 1000;
 
 /// Returns the order in which points are inserted; `None` if all lie on the given line.
 ///
-/// Inserting a point into a line takes time proportional to the points on it, so of many points three that span a
-/// triangle are first. The others follow in pseudo-random order: an insertion then changes six triangles on average, and
-/// in other orders up to all of them.
+/// Inserting a point into a line takes time proportional to the points on it, so of many points
+/// three that span a triangle are first. The others follow in pseudo-random order: an insertion
+/// then changes six triangles on average, and in other orders up to all of them.
 pub(super) fn order(places: &[[f64; 2]], line: &Side) -> Option<Vec<usize>> {
     let distance = |i: usize| line.distance2(places[i]);
     let farthest = (0..places.len()).max_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
@@ -123,15 +119,10 @@ fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
             index.push(i);
         }
     }
-    let face = |corners: [usize; 3]| Face {
-        corners,
-        places: corners.map(|i| places[i]),
-        side: None,
-    };
-    let triangles: Vec<[usize; 3]> = mesh
-        .inner_faces()
-        .map(|f| f.vertices().map(|v| index[v.fix().index()]))
-        .collect();
+    let face =
+        |corners: [usize; 3]| Face { corners, places: corners.map(|i| places[i]), side: None };
+    let triangles: Vec<[usize; 3]> =
+        mesh.inner_faces().map(|f| f.vertices().map(|v| index[v.fix().index()])).collect();
     let faces: Vec<Face> = fanned(&triangles, places).into_iter().map(face).collect();
     let corner = |v: spade::handles::FixedVertexHandle| index[v.index()];
     let mut edges: Vec<[usize; 2]> = mesh
@@ -143,15 +134,17 @@ fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
     (!faces.is_empty()).then_some((faces, edges))
 }
 
-/// Returns the line between the two extreme points, with the conditions on it; `None` if all points are equal.
+/// Returns the line between the two extreme points, with the conditions on it; `None` if all points
+/// are equal.
 pub(super) fn line(places: &[[f64; 2]]) -> Option<Side> {
     let spread = |axis: usize| {
-        let [low, high] = places.iter().fold([f64::INFINITY, 0.0], |[low, high], p| {
-            [low.min(p[axis]), high.max(p[axis])]
-        });
+        let [low, high] = places
+            .iter()
+            .fold([f64::INFINITY, 0.0], |[low, high], p| [low.min(p[axis]), high.max(p[axis])]);
         high - low
     };
-    // Ordered along the axis of larger extent: along the other, rounding errors may determine the order.
+    // Ordered along the axis of larger extent: along the other, rounding errors may determine the
+    // order.
     let along = usize::from(spread(1) > spread(0));
     let ordered = |a: &usize, b: &usize| {
         let (a, b) = (places[*a], places[*b]);
@@ -180,21 +173,15 @@ fn take_slivers(
     edges: &Edges,
     places: &[[f64; 2]],
 ) {
-    let ends = side
-        .conditions
-        .iter()
-        .copied()
-        .zip(side.feet.iter().copied());
+    let ends = side.conditions.iter().copied().zip(side.feet.iter().copied());
     // The conditions that follow along the side, the next one last.
     let mut ahead: Vec<(usize, f64)> = ends.rev().collect();
     let mut behind: Vec<(usize, f64)> = ahead.pop().into_iter().collect();
     while let (Some(from), Some(to)) = (behind.last(), ahead.last()) {
-        let sliver = edges
-            .beside([from.0, to.0], faces)
-            .filter(|(_, condition)| {
-                let foot = side.foot(places[*condition]);
-                from.1 < foot && foot < to.1 && is_same(places[*condition], side.at(foot))
-            });
+        let sliver = edges.beside([from.0, to.0], faces).filter(|(_, condition)| {
+            let foot = side.foot(places[*condition]);
+            from.1 < foot && foot < to.1 && is_same(places[*condition], side.at(foot))
+        });
         match sliver {
             Some((face, condition)) => {
                 faces[face].side = Some(index);
@@ -224,16 +211,9 @@ impl Edges {
     fn beside(&self, ends: [usize; 2], faces: &[Face]) -> Option<(usize, usize)> {
         let edge = ascending(ends);
         let first = self.0.partition_point(|(other, _)| *other < edge);
-        let over = self.0[first..]
-            .iter()
-            .take_while(|(other, _)| *other == edge);
-        let (_, face) = over
-            .into_iter()
-            .find(|(_, face)| faces[*face].side.is_none())?;
-        let third = faces[*face]
-            .corners
-            .into_iter()
-            .find(|c| !ends.contains(c))?;
+        let over = self.0[first..].iter().take_while(|(other, _)| *other == edge);
+        let (_, face) = over.into_iter().find(|(_, face)| faces[*face].side.is_none())?;
+        let third = faces[*face].corners.into_iter().find(|c| !ends.contains(c))?;
         Some((*face, third))
     }
 }

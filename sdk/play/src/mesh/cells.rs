@@ -1,8 +1,10 @@
-//! One triangulation where there are several: conditions on one circle, as the corners of a grid's cells.
+//! One triangulation where there are several: conditions on one circle, as the corners of a grid's
+//! cells.
 //!
-//! Four points on a circle have two Delaunay triangulations. The edge between two triangles is undecided when its two
-//! opposite angles sum to half a turn; the triangles at undecided edges are one cell, which is fanned from its first
-//! condition. The angles do not depend on the order of the conditions, nor on which of the triangulations was found.
+//! Four points on a circle have two Delaunay triangulations. The edge between two triangles is
+//! undecided when its two opposite angles sum to half a turn; the triangles at undecided edges are
+//! one cell, which is fanned from its first condition. The angles do not depend on the order of the
+//! conditions, nor on which of the triangulations was found.
 
 use std::collections::BTreeMap;
 
@@ -10,17 +12,18 @@ use htex_dsp::order;
 
 use super::area;
 
-/// Largest deviation of the sum of two opposite angles from half a turn, radians, that is attributed to rounding.
+/// Largest deviation of the sum of two opposite angles from half a turn, radians, that is
+/// attributed to rounding.
 const ON_CIRCLE: f64 = 1e-9;
 
 /// Corners of a triangle, counterclockwise.
 type Corners = [usize; 3];
 
-/// Returns the triangles with each cell fanned from its lowest index; places are in ascending order of their first
-/// coordinate, then their second.
+/// Returns the triangles with each cell fanned from its lowest index; places are in ascending order
+/// of their first coordinate, then their second.
 ///
-/// A cell of which a fan would turn a triangle over keeps its triangles: this occurs only where rounding bends a line,
-/// on the hull, and such triangles are not interpolated in.
+/// A cell of which a fan would turn a triangle over keeps its triangles: this occurs only where
+/// rounding bends a line, on the hull, and such triangles are not interpolated in.
 pub(super) fn fanned(triangles: &[Corners], places: &[[f64; 2]]) -> Vec<Corners> {
     let mut fanned = Vec::with_capacity(triangles.len());
     for cell in cells(triangles, places).into_values() {

@@ -58,6 +58,5 @@ fn outer(triangles: &[[usize; 3]]) -> impl Iterator<Item = [usize; 2]> {
     let (mut all, mut neighbours) = (BTreeSet::new(), BTreeSet::new());
     all.extend(triangles.iter().flat_map(edges));
     neighbours.extend(all.iter().map(|[from, to]: &[usize; 2]| [*to, *from]));
-    all.into_iter()
-        .filter(move |edge| !neighbours.contains(edge))
+    all.into_iter().filter(move |edge| !neighbours.contains(edge))
 }

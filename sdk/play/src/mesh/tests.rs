@@ -15,20 +15,11 @@ fn corners_edges_middle_and_outside_of_a_square() {
     assert_eq!(at(&mesh, 1e300, 1e300), [(3, 1.0)]);
     let beside = at(&mesh, 100.0, 0.0);
     assert_eq!(beside.len(), 2);
-    assert!(
-        beside
-            .iter()
-            .all(|(i, w)| *i < 2 && (w - 0.5).abs() < 1e-12)
-    );
+    assert!(beside.iter().all(|(i, w)| *i < 2 && (w - 0.5).abs() < 1e-12));
     // Inside: the weighted mean of the conditions is the point.
     for (speed, force) in [(60.0, 0.3), (100.0, 0.5), (149.0, 0.79)] {
         let weights = at(&mesh, speed, force);
-        let mean = |axis: usize| {
-            weights
-                .iter()
-                .map(|(i, w)| square[*i][axis] * w)
-                .sum::<f64>()
-        };
+        let mean = |axis: usize| weights.iter().map(|(i, w)| square[*i][axis] * w).sum::<f64>();
         assert!((mean(0) - speed).abs() < 1e-9 && (mean(1) - force).abs() < 1e-12);
     }
 }
@@ -47,23 +38,14 @@ fn one_condition_and_conditions_on_a_line() {
     }
 }
 
-/// A narrow triangle beside two edges belongs to the edge of the lower conditions, in any order of the conditions.
+/// A narrow triangle beside two edges belongs to the edge of the lower conditions, in any order of
+/// the conditions.
 #[test]
 fn a_triangle_beside_two_edges_belongs_to_the_first() {
     let places = [[10.0, 0.1], [97.0, 1.0], [100.0, 0.97]];
-    for order in [
-        [0, 1, 2],
-        [0, 2, 1],
-        [1, 0, 2],
-        [1, 2, 0],
-        [2, 0, 1],
-        [2, 1, 0],
-    ] {
+    for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
         let mesh = Mesh::new(&order.map(|i: usize| places[i]));
-        let mixed: Vec<usize> = at(&mesh, 55.0, 0.55)
-            .iter()
-            .map(|(i, _)| order[*i])
-            .collect();
+        let mixed: Vec<usize> = at(&mesh, 55.0, 0.55).iter().map(|(i, _)| order[*i]).collect();
         // On the edge from the first condition to the second the third one lies between them.
         assert_eq!(mixed, [0, 2], "{order:?}");
     }
@@ -78,26 +60,18 @@ fn conditions_that_are_the_same_stay_apart() {
     }
 }
 
-/// The largest number of conditions of an asset, in arrangements with slow insertions: on one line, on lines that change
-/// every triangle, in narrow triangles, and around a common corner of all triangles.
+/// The largest number of conditions of an asset, in arrangements with slow insertions: on one line,
+/// on lines that change every triangle, in narrow triangles, and around a common corner of all
+/// triangles.
 fn many(count: usize) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     let part = |i: usize| i as f64 / count as f64;
     let mixed = |i: usize| (i * 7919) % count;
     let all = |place: &dyn Fn(usize) -> [f64; 2]| (0..count).map(place).collect();
     let circle = |i: usize| [part(i).cos(), part(i).sin()].map(|x| 2.0 + x);
     vec![
-        (
-            "one line: one force",
-            all(&|i| [10.0 + part(mixed(i)), 0.4]),
-        ),
-        (
-            "one line: one speed",
-            all(&|i| [80.0, 0.4 + part(mixed(i))]),
-        ),
-        (
-            "one line, bent by rounding",
-            all(&|i| [10.0 + i as f64, 1.0 + 1.1 * i as f64]),
-        ),
+        ("one line: one force", all(&|i| [10.0 + part(mixed(i)), 0.4])),
+        ("one line: one speed", all(&|i| [80.0, 0.4 + part(mixed(i))])),
+        ("one line, bent by rounding", all(&|i| [10.0 + i as f64, 1.0 + 1.1 * i as f64])),
         (
             "a line and one beside",
             all(&|i| [10.0 + part(i), if i + 1 == count { 0.9 } else { 0.4 }]),
@@ -105,22 +79,12 @@ fn many(count: usize) -> Vec<(&'static str, Vec<[f64; 2]>)> {
         (
             "a cross",
             all(&|i| {
-                if i % 2 == 0 {
-                    [100.0, 0.2 + part(i)]
-                } else {
-                    [100.0 + part(i), 0.7]
-                }
+                if i % 2 == 0 { [100.0, 0.2 + part(i)] } else { [100.0 + part(i), 0.7] }
             }),
         ),
         ("an arc", all(&circle)),
-        (
-            "an arc and its centre",
-            all(&|i| if i == 0 { [2.0; 2] } else { circle(i) }),
-        ),
-        (
-            "a grid",
-            all(&|i| [10.0 + (i % 100) as f64, 1.0 + (i / 100) as f64]),
-        ),
+        ("an arc and its centre", all(&|i| if i == 0 { [2.0; 2] } else { circle(i) })),
+        ("a grid", all(&|i| [10.0 + (i % 100) as f64, 1.0 + (i / 100) as f64])),
     ]
 }
 
@@ -128,17 +92,16 @@ fn many(count: usize) -> Vec<(&'static str, Vec<[f64; 2]>)> {
 #[test]
 fn conditions_on_a_slanted_line_are_each_met() {
     for steep in [-0.019, 0.011, 1.1] {
-        let points: Vec<[f64; 2]> = (0..50)
-            .map(|i| [10.0 + f64::from(i), 1.0 + steep * f64::from(i)])
-            .collect();
+        let points: Vec<[f64; 2]> =
+            (0..50).map(|i| [10.0 + f64::from(i), 1.0 + steep * f64::from(i)]).collect();
         for (i, [speed, force]) in points.iter().enumerate() {
             assert_eq!(at(&Mesh::new(&points), *speed, *force), [(i, 1.0)]);
         }
     }
 }
 
-/// The time for many conditions is nearly proportional to their number: without the chosen order each of these takes
-/// from 5 s to a minute, and with it some tenths of a second.
+/// The time for many conditions is nearly proportional to their number: without the chosen order
+/// each of these takes from 5 s to a minute, and with it some tenths of a second.
 #[test]
 fn many_conditions_are_each_met_and_none_costs_as_much_as_all() {
     let count = 40_000;
@@ -167,24 +130,17 @@ fn of_many_places_three_that_span_a_triangle_go_first() {
     }
 }
 
-/// A square, four corners of a slanted one, and eight conditions on a circle: each has several Delaunay triangulations,
-/// of which the fan from the condition of least speed, then least force, is used.
+/// A square, four corners of a slanted one, and eight conditions on a circle: each has several
+/// Delaunay triangulations, of which the fan from the condition of least speed, then least force,
+/// is used.
 #[test]
 fn conditions_on_a_circle_are_fanned_from_the_lowest() {
     let square: &[[f64; 2]] = &[[150.0, 0.8], [50.0, 0.8], [150.0, 0.2], [50.0, 0.2]];
     let slanted: &[[f64; 2]] = &[[140.0, 1.0], [100.0, 0.2], [40.0, 0.5], [200.0, 0.7]];
-    let octagon: Vec<[f64; 2]> = [
-        [1, 4],
-        [4, 1],
-        [4, -1],
-        [-1, 4],
-        [-4, 1],
-        [-4, -1],
-        [1, -4],
-        [-1, -4],
-    ]
-    .map(|[x, y]| [f64::from(6 + x) * 20.0, f64::from(6 + y) * 0.1])
-    .to_vec();
+    let octagon: Vec<[f64; 2]> =
+        [[1, 4], [4, 1], [4, -1], [-1, 4], [-4, 1], [-4, -1], [1, -4], [-1, -4]]
+            .map(|[x, y]| [f64::from(6 + x) * 20.0, f64::from(6 + y) * 0.1])
+            .to_vec();
     for (points, apex, count) in [(square, 3, 2), (slanted, 2, 2), (&octagon, 5, 6)] {
         let triangles: Vec<[usize; 3]> = Mesh::new(points).triangles().collect();
         assert_eq!(triangles.len(), count);
@@ -192,11 +148,7 @@ fn conditions_on_a_circle_are_fanned_from_the_lowest() {
     }
     // Not on a circle: the Delaunay triangulation decides.
     let kite = [[150.0, 0.85], [50.0, 0.8], [150.0, 0.2], [50.0, 0.2]];
-    assert!(
-        Mesh::new(&kite)
-            .triangles()
-            .all(|t| t.contains(&1) && t.contains(&2))
-    );
+    assert!(Mesh::new(&kite).triangles().all(|t| t.contains(&1) && t.contains(&2)));
 }
 
 /// Two conditions have half the weight each.
@@ -207,7 +159,8 @@ fn halves(mesh: &Mesh, [speed, force]: [f64; 2], conditions: [usize; 2]) {
     assert!(which == conditions && near, "{weights:?}");
 }
 
-/// The diagonal that is stored, not Delaunay's; nothing is grouped, and outside the nearest point of an outer edge is played.
+/// The diagonal that is stored, not Delaunay's; nothing is grouped, and outside the nearest point
+/// of an outer edge is played.
 #[test]
 fn stored_triangles_replace_those_that_are_found() {
     let square = [[40.0, 0.4], [40.0, 1.2], [160.0, 1.2], [160.0, 0.4]];
@@ -253,8 +206,8 @@ fn meant() -> impl Strategy<Value = Vec<[f64; 2]>> {
     prop_oneof![1 => across, 3 => grid]
 }
 
-/// Conditions of a moving hand, within 1 % of the intended ones, and their levels: powers of speed and force, within
-/// 0.5 dB.
+/// Conditions of a moving hand, within 1 % of the intended ones, and their levels: powers of speed
+/// and force, within 0.5 dB.
 fn measured() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<f64>)> {
     let scattered = meant().prop_flat_map(|points| {
         let near = |[v, f]: [f64; 2]| [v * 0.99..v * 1.01, f * 0.99..f * 1.01];
@@ -272,7 +225,8 @@ fn measured() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<f64>)> {
     })
 }
 
-/// Conditions as intended or as measured, some of them twice within the tolerance, in their order and in another.
+/// Conditions as intended or as measured, some of them twice within the tolerance, in their order
+/// and in another.
 fn in_two_orders() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<usize>)> {
     let points = prop_oneof![meant(), measured().prop_map(|(points, _)| points)];
     points.prop_flat_map(|points| {
@@ -316,8 +270,8 @@ proptest! {
         }
     }
 
-    /// For all measured lines and grids: each condition is reproduced, has most of the weight close to it, and weights
-    /// are continuous.
+    /// For all measured lines and grids: each condition is reproduced, has most of the weight close
+    /// to it, and weights are continuous.
     #[test]
     fn measured_conditions_are_met_and_nothing_jumps(
         (points, levels) in measured(), places in motions(),
@@ -345,15 +299,16 @@ proptest! {
         }
     }
 
-    /// What a mesh finds itself is valid where it is stored, and stored in any order it has the same weights; at each condition only its
-    /// own is not zero, and nothing jumps.
+    /// What a mesh finds itself is valid where it is stored, and stored in any order it has the
+    /// same weights; at each condition only its own is not zero, and nothing jumps.
     #[test]
     fn found_triangles_can_be_stored((points, order) in in_two_orders(), places in motions(), turn in any::<bool>()) {
         let (axes, coordinates) = build::placed(&points, false);
         let unmerged = build::meshed(&points, axes, &coordinates);
         let found: Vec<[usize; 3]> = unmerged.triangles().collect();
         let Ok(stored) = Mesh::with_triangles(&points, &found) else {
-            // Conditions on one line, some of them beside it by rounding, have no triangles to store.
+            // Conditions on one line, some of them beside it by rounding, have no triangles to
+            // store.
             prop_assert!(found.iter().any(|t| is_flat(&points, *t)), "{points:?}: {found:?}");
             return Ok(());
         };
@@ -376,7 +331,8 @@ proptest! {
             let theirs: Vec<(usize, f64)> = at(&other, motion[0], motion[1])
                 .into_iter().map(|(i, w)| (order[i], w)).collect();
             prop_assert_eq!(at(&stored, motion[0], motion[1]), theirs, "at {:?}", motion);
-            // A step of 1e-9 of the ranges changes no weight by more than the narrowest triangle's height allows.
+            // A step of 1e-9 of the ranges changes no weight by more than the narrowest triangle's
+            // height allows.
             let beside = stored.weights(motion[0] + 1e-9 * most(0), motion[1]);
             let step = beside.iter().map(|(i, w)| (w - weight_of(&stored, motion, i)).abs());
             prop_assert!(step.fold(0.0, f64::max) < 1e-3, "at {:?}", motion);

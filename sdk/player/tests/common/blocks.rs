@@ -33,11 +33,8 @@ pub struct Plan {
 /// Noise of level 1 and 2 with two different filters.
 pub fn noise() -> Plan {
     let next = |decay: f32| move |c: &f32| Some(c * decay);
-    let filter = |decay: f32| {
-        std::iter::successors(Some(32_000.0), next(decay))
-            .take(9)
-            .map(|c| c as i16)
-    };
+    let filter =
+        |decay: f32| std::iter::successors(Some(32_000.0), next(decay)).take(9).map(|c| c as i16);
     let weights = [30_000, 0, -2_000, 32_767];
     Plan {
         kind: 1,
@@ -58,15 +55,12 @@ pub fn noise() -> Plan {
         rows: vec![0.0, 0.0, 1.0, 0.0, -0.1, 0.6, 0.6, -0.1],
         levels: vec![1.0, 2.0],
         numbers: vec![5e-10, 5e-10],
-        integers: weights
-            .into_iter()
-            .chain(filter(0.5))
-            .chain(filter(-0.7))
-            .collect(),
+        integers: weights.into_iter().chain(filter(0.5)).chain(filter(-0.7)).collect(),
     }
 }
 
-/// Two sinusoids of level 1 at both conditions, at 0.05 and 0.1, and at 0.1 and 0.2 cycles per sample.
+/// Two sinusoids of level 1 at both conditions, at 0.05 and 0.1, and at 0.1 and 0.2 cycles per
+/// sample.
 pub fn tones() -> Plan {
     Plan {
         kind: 2,
@@ -87,13 +81,7 @@ pub fn tones() -> Plan {
 impl Plan {
     /// The block without its checksum.
     pub fn content(&self) -> Vec<u8> {
-        let parts = [
-            &self.speeds,
-            &self.forces,
-            &self.rows,
-            &self.levels,
-            &self.numbers,
-        ];
+        let parts = [&self.speeds, &self.forces, &self.rows, &self.levels, &self.numbers];
         let numbers = parts.into_iter().flatten().flat_map(|x| x.to_le_bytes());
         let integers = self.integers.iter().flat_map(|x| x.to_le_bytes());
         let mut numbers: Vec<u8> = numbers.chain(integers).collect();

@@ -1,4 +1,5 @@
-//! Blocks of `spec/baked-conformance`, what is done with them, and what a player renders or refuses.
+//! Blocks of `spec/baked-conformance`, what is done with them, and what a player renders or
+//! refuses.
 #![allow(dead_code)] // Each suite uses a part of it.
 
 use htex_player::{Block, OpenError, Player};
@@ -62,7 +63,8 @@ fn rule(bytes: &[u8]) -> Option<&'static str> {
     })
 }
 
-/// Motions on a grid, between, beyond and at rest, readings of no finger and no numbers, and changes during changes.
+/// Motions on a grid, between, beyond and at rest, readings of no finger and no numbers, and
+/// changes during changes.
 fn steps(rate_hz: f32) -> Vec<Step> {
     let held = (0.1 * rate_hz) as usize;
     vec![
@@ -200,12 +202,10 @@ fn noise_grid() -> Plan {
         });
         side.collect::<Vec<_>>()
     });
-    let weights = scattered(filters * conditions)
-        .zip(0..)
-        .map(|(x, i)| match i % 3 {
-            0 => 32_767,
-            _ => (20_000.0 * x) as i16,
-        });
+    let weights = scattered(filters * conditions).zip(0..).map(|(x, i)| match i % 3 {
+        0 => 32_767,
+        _ => (20_000.0 * x) as i16,
+    });
     Plan {
         up: 3,
         row: 8,
@@ -261,15 +261,7 @@ fn noise_rate(rate_hz: f32, up: u16, row: u16, glide: u16) -> Plan {
         1 => vec![],
         _ => rows(up.into(), row.into()),
     };
-    Plan {
-        rate_hz,
-        up,
-        row,
-        glide,
-        quantity: 4,
-        rows,
-        ..noise_grid()
-    }
+    Plan { rate_hz, up, row, glide, quantity: 4, rows, ..noise_grid() }
 }
 
 fn tones_fixed() -> Plan {
@@ -306,23 +298,15 @@ fn tones_random() -> Plan {
     }
 }
 
-/// Sinusoids that the law would raise above the highest frequency, and a level that it would raise above the ceiling.
+/// Sinusoids that the law would raise above the highest frequency, and a level that it would raise
+/// above the ceiling.
 fn tones_law() -> Plan {
-    Plan {
-        law: [4.0, -4.0, 4.0],
-        ceiling: 3.0,
-        highest: 0.4,
-        ..tones_fixed()
-    }
+    Plan { law: [4.0, -4.0, 4.0], ceiling: 3.0, highest: 0.4, ..tones_fixed() }
 }
 
 /// A level in the grid that is above the ceiling.
 fn tones_low_ceiling() -> Plan {
-    Plan {
-        law: [-2.0, 1.5, 0.0],
-        ceiling: 0.6,
-        ..tones_fixed()
-    }
+    Plan { law: [-2.0, 1.5, 0.0], ceiling: 0.6, ..tones_fixed() }
 }
 
 fn sound() -> Vec<(&'static str, Plan)> {
@@ -371,14 +355,8 @@ fn hostile() -> Vec<(&'static str, Vec<u8>)> {
         ("refused_truncated", changed(|b| b.truncate(b.len() - 4))),
         ("refused_length_of_header", changed(|b| b[8] = 40)),
         ("refused_changed_byte", changed(|b| b[60] ^= 1)),
-        (
-            "refused_missing_integers",
-            noise_with(|p| p.integers.truncate(19)),
-        ),
-        (
-            "refused_too_many_levels",
-            noise_with(|p| p.levels.push(0.0)),
-        ),
+        ("refused_missing_integers", noise_with(|p| p.integers.truncate(19))),
+        ("refused_too_many_levels", noise_with(|p| p.levels.push(0.0))),
         ("refused_kind", noise_with(|p| p.kind = 3)),
         ("refused_flags", noise_with(|p| p.flags = 1)),
         ("refused_rate", noise_with(|p| p.rate_hz = f32::NAN)),
@@ -395,10 +373,7 @@ fn hostile() -> Vec<(&'static str, Vec<u8>)> {
         ("refused_ceiling", noise_with(|p| p.ceiling = f32::INFINITY)),
         ("refused_full_scale", noise_with(|p| p.full_scale = 0.0)),
         ("refused_highest", noise_with(|p| p.highest = 0.6)),
-        (
-            "refused_equal_speeds",
-            noise_with(|p| p.speeds = vec![80.0, 80.0]),
-        ),
+        ("refused_equal_speeds", noise_with(|p| p.speeds = vec![80.0, 80.0])),
         ("refused_speed", noise_with(|p| p.speeds[1] = 1001.0)),
         ("refused_force", noise_with(|p| p.forces[0] = 0.0)),
         ("refused_level", noise_with(|p| p.levels[0] = -1.0)),

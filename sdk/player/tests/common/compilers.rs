@@ -31,11 +31,7 @@ pub fn run(command: &mut Command) -> String {
     let done = command.output().unwrap();
     let error = String::from_utf8_lossy(&done.stderr);
     let output = String::from_utf8_lossy(&done.stdout);
-    assert!(
-        done.status.success(),
-        "{command:?}: {error}{output}{}",
-        done.status
-    );
+    assert!(done.status.success(), "{command:?}: {error}{output}{}", done.status);
     output.into_owned()
 }
 
@@ -100,11 +96,8 @@ pub const CORTEX_M4F: Board = Board {
 };
 
 /// Without a floating-point unit and loads at any alignment; 16 kB of RAM.
-pub const CORTEX_M0: Board = Board {
-    options: "-mcpu=cortex-m0 -mthumb",
-    machine: "microbit",
-    ..CORTEX_M4F
-};
+pub const CORTEX_M0: Board =
+    Board { options: "-mcpu=cortex-m0 -mthumb", machine: "microbit", ..CORTEX_M4F };
 
 pub const RISCV32: Board = Board {
     compiler: "riscv64-unknown-elf-gcc",
@@ -137,11 +130,7 @@ impl Board {
     pub fn run(&self, program: &Path, bytes: &[u8]) -> String {
         let loaded = program.with_extension("bin");
         std::fs::write(&loaded, bytes).unwrap();
-        let loader = format!(
-            "loader,file={},addr={},force-raw=on",
-            loaded.display(),
-            self.loaded
-        );
+        let loader = format!("loader,file={},addr={},force-raw=on", loaded.display(), self.loaded);
         let mut qemu = Command::new("timeout");
         qemu.arg("300").arg(self.emulator).arg("-M");
         qemu.args(self.machine.split_whitespace());
@@ -152,7 +141,8 @@ impl Board {
         run(&mut qemu)
     }
 
-    /// Compiles with `more` options, plays cases on the board, and compares the hash of all results with that of the player of this crate.
+    /// Compiles with `more` options, plays cases on the board, and compares the hash of all results
+    /// with that of the player of this crate.
     pub fn compare(&self, name: &str, more: &str, cases: &[Case]) {
         let sources = ["cases.c", "cases_on_board.c", "board.c"];
         let program = self.program(&sources, more, name);

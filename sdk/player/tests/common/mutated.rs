@@ -44,11 +44,7 @@ pub fn random() -> impl Strategy<Value = (Vec<u8>, bool)> {
         let all = plan.levels.iter_mut().chain(&mut plan.numbers);
         for (x, word) in all.zip(&words) {
             let random = f32::from_bits(*word);
-            *x = if mild {
-                (*word as f32 / u32::MAX as f32) * 5e-8
-            } else {
-                random
-            };
+            *x = if mild { (*word as f32 / u32::MAX as f32) * 5e-8 } else { random };
         }
         for (x, word) in plan.integers.iter_mut().zip(words) {
             *x = word as i16;
@@ -115,9 +111,5 @@ pub fn case(block: Vec<u8>) -> Case {
         let motion = Step::SetMotion(speed, force);
         [motion, Step::Render(97), Step::RenderI16(31, speed)]
     });
-    Case {
-        block,
-        seed: 1,
-        steps: steps.collect(),
-    }
+    Case { block, seed: 1, steps: steps.collect() }
 }

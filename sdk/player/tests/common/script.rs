@@ -4,14 +4,8 @@ use htex_player::Player;
 
 pub const SEED: u32 = 7;
 /// Motions: mm/s and newtons, within and beyond conditions, and a finger at rest.
-const MOTIONS: [(f32, f32); 6] = [
-    (80.0, 0.4),
-    (55.5, 0.25),
-    (0.0, 0.0),
-    (101.25, 0.5),
-    (1e6, 100.0),
-    (-60.0, 0.3),
-];
+const MOTIONS: [(f32, f32); 6] =
+    [(80.0, 0.4), (55.5, 0.25), (0.0, 0.0), (101.25, 0.5), (1e6, 100.0), (-60.0, 0.3)];
 /// Lengths of buffers.
 const LENGTHS: [usize; 4] = [64, 1, 33, 200];
 

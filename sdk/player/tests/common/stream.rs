@@ -1,4 +1,5 @@
-//! Cases for the player in C, as `c/tests/cases.c` reads them, and what the player of this crate makes of them.
+//! Cases for the player in C, as `c/tests/cases.c` reads them, and what the player of this crate
+//! makes of them.
 #![allow(dead_code)] // Each suite uses a part of it.
 
 use htex_player::{Block, OpenError, Player};
@@ -42,8 +43,8 @@ pub fn encoded(cases: &[Case]) -> Vec<u8> {
     bytes
 }
 
-/// What a player makes of each case: the status of opening; then rate and full scale, of each motion the status and the level, and
-/// all samples.
+/// What a player makes of each case: the status of opening; then rate and full scale, of each
+/// motion the status and the level, and all samples.
 pub fn expected(cases: &[Case]) -> Vec<Vec<u8>> {
     cases.iter().map(played).collect()
 }
@@ -60,11 +61,7 @@ fn played(case: &Case) -> Vec<u8> {
     for step in &case.steps {
         match *step {
             Step::SetMotion(speed, force) => {
-                let refused = if player.set_motion(speed, force) {
-                    0
-                } else {
-                    -2
-                };
+                let refused = if player.set_motion(speed, force) { 0 } else { -2 };
                 bytes.extend(i32::to_le_bytes(refused));
                 bytes.extend(player.level().to_le_bytes());
             }

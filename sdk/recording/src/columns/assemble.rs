@@ -26,10 +26,9 @@ pub(crate) fn assemble(
     options: &ReadOptions,
 ) -> Result<Assembled, Fault> {
     match (sheet.layout(), &options.map) {
-        (Layout::Channels { are_integers }, None) => Ok(Assembled {
-            recording: by_order(file, sheet, are_integers, options)?,
-            time_s: None,
-        }),
+        (Layout::Channels { are_integers }, None) => {
+            Ok(Assembled { recording: by_order(file, sheet, are_integers, options)?, time_s: None })
+        }
         _ => by_name(file, sheet, options),
     }
 }
@@ -37,10 +36,8 @@ pub(crate) fn assemble(
 fn by_name(file: &str, sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<Assembled, Fault> {
     let mut selection = select(sheet.columns(), options.map.as_ref(), options.quantity)?;
     let mut signals = Signals::read(sheet, &selection)?;
-    let mut noticed = Noticed {
-        warnings: std::mem::take(&mut selection.warnings),
-        ..Noticed::default()
-    };
+    let mut noticed =
+        Noticed { warnings: std::mem::take(&mut selection.warnings), ..Noticed::default() };
     noticed.warnings.extend(signals.warnings());
     let time_s = signals.take(Role::Time);
     let own_hz = match &time_s {

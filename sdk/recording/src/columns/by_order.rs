@@ -8,8 +8,8 @@ use crate::options::ReadOptions;
 use crate::recording::Recording;
 use crate::sheet::Sheet;
 
-/// Assigns channels. Of a force: one is lateral, two are lateral x and y, three are x, y and normal. Of other
-/// quantities the channels are axes. Scales to the quantity's unit.
+/// Assigns channels. Of a force: one is lateral, two are lateral x and y, three are x, y and
+/// normal. Of other quantities the channels are axes. Scales to the quantity's unit.
 pub(crate) fn by_order(
     file: &str,
     sheet: &mut dyn Sheet,

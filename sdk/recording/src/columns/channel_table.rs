@@ -27,7 +27,8 @@ pub struct ChannelTable {
     pub channels: Vec<Vec<f64>>,
 }
 
-/// Reads all channels of a file. The rate is the given one, the file's, or that of its column of times, which is no channel.
+/// Reads all channels of a file. The rate is the given one, the file's, or that of its column of
+/// times, which is no channel.
 ///
 /// # Errors
 /// As [`read_recording`](crate::read_recording).
@@ -63,12 +64,7 @@ fn table(file: &str, sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<Cha
         let problem = "there is no channel beside the time".to_owned();
         return Err(sheet.columns().refuse(problem).into());
     }
-    Ok(ChannelTable {
-        rate_hz,
-        time_s,
-        names,
-        channels: columns,
-    })
+    Ok(ChannelTable { rate_hz, time_s, names, channels: columns })
 }
 
 /// Returns the first column whose name is that of a time, and its factor to seconds.

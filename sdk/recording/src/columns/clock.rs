@@ -10,17 +10,18 @@ use crate::sheet::Sheet;
 
 /// Ratio to the median step above which a step is a gap, if the clock is otherwise even.
 const GAP: f64 = 1.5;
-/// The same for an uneven clock, where short steps make up for a long one. Of the steps of a Poisson process, one in
-/// a thousand is longer.
+/// The same for an uneven clock, where short steps make up for a long one. Of the steps of a
+/// Poisson process, one in a thousand is longer.
 const GAP_UNEVEN: f64 = 10.0;
-/// Interquartile range of the steps, relative to the median, above which a clock is uneven: normal scatter of
-/// this width puts one step in 200,000 beyond [`GAP`].
+/// Interquartile range of the steps, relative to the median, above which a clock is uneven: normal
+/// scatter of this width puts one step in 200,000 beyond [`GAP`].
 const UNEVEN: f64 = 0.15;
 /// Jitter of the steps (rms over mean) above which a warning is given.
 const JITTER: f64 = 0.01;
 /// Relative difference between column and option above which a warning is given.
 const DISAGREE: f64 = 1e-3;
-/// Relative distance from an integer rate within which the integer is used: printed times are rounded.
+/// Relative distance from an integer rate within which the integer is used: printed times are
+/// rounded.
 const WHOLE: f64 = 1e-5;
 
 /// Defines the findings of the time column, for `spec/recording-findings.md`.
@@ -157,9 +158,5 @@ fn longest_step(mut steps: Vec<f64>) -> f64 {
 /// Returns the integer that a rate is nearly equal to, or the rate.
 pub(crate) fn snap(rate_hz: f64) -> f64 {
     let whole = rate_hz.round();
-    if (rate_hz - whole).abs() <= WHOLE * whole {
-        whole
-    } else {
-        rate_hz
-    }
+    if (rate_hz - whole).abs() <= WHOLE * whole { whole } else { rate_hz }
 }

@@ -8,9 +8,10 @@
 //! column  = '#' number | '"' any '"' | "'" any "'" | path | name
 //! ```
 //!
-//! A name begins with neither a digit nor an operator; spaces and units in brackets belong to it, as in `Fx [mN]` and
-//! `Lateral Force (m/s)`. A path begins with `/` and ends at a space or another operator, as in `/run1/fx`. Products and
-//! quotients of columns are allowed, so an expression need not be linear.
+//! A name begins with neither a digit nor an operator; spaces and units in brackets belong to it,
+//! as in `Fx [mN]` and `Lateral Force (m/s)`. A path begins with `/` and ends at a space or another
+//! operator, as in `/run1/fx`. Products and quotients of columns are allowed, so an expression need
+//! not be linear.
 //!
 //! It is evaluated row by row, and a result that is not finite is an error with its row.
 
@@ -23,8 +24,8 @@ const MOST_DEEP: usize = 32;
 /// Most numbers, columns and operators: a stack of this size is enough to evaluate them.
 const MOST_STEPS: usize = 256;
 
-/// What a role's values are computed from: a column, or sums, differences, products and quotients of columns and
-/// numbers.
+/// What a role's values are computed from: a column, or sums, differences, products and quotients
+/// of columns and numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expression {
     text: String,
@@ -95,11 +96,7 @@ impl Expression {
 
     /// Parses tokens of `text`, of which there is at least one.
     pub(crate) fn parse(text: &str, tokens: &[Token]) -> Result<Self, Problem> {
-        let mut parser = Parser {
-            tokens,
-            steps: Vec::new(),
-            depth: 0,
-        };
+        let mut parser = Parser { tokens, steps: Vec::new(), depth: 0 };
         parser.sum()?;
         if let Some(token) = parser.tokens.first() {
             let what = match token.kind {
@@ -115,10 +112,7 @@ impl Expression {
             [only] => text.get(only.start..only.end),
             [] => None,
         };
-        Ok(Self {
-            text: whole.unwrap_or_default().to_owned(),
-            steps: parser.steps,
-        })
+        Ok(Self { text: whole.unwrap_or_default().to_owned(), steps: parser.steps })
     }
 }
 
@@ -162,9 +156,7 @@ impl Parser<'_> {
 
     fn signed(&mut self) -> Result<(), Problem> {
         let Some((token, rest)) = self.tokens.split_first() else {
-            return Err(Problem::at_end(
-                "a number or a column is missing at the end",
-            ));
+            return Err(Problem::at_end("a number or a column is missing at the end"));
         };
         self.depth += 1;
         if self.depth > MOST_DEEP {
@@ -187,9 +179,7 @@ impl Parser<'_> {
 
     fn operand(&mut self) -> Result<(), Problem> {
         let Some((token, rest)) = self.tokens.split_first() else {
-            return Err(Problem::at_end(
-                "a number or a column is missing at the end",
-            ));
+            return Err(Problem::at_end("a number or a column is missing at the end"));
         };
         self.tokens = rest;
         match &token.kind {
@@ -198,13 +188,7 @@ impl Parser<'_> {
             TokenKind::Open => {
                 self.sum()?;
                 match self.tokens.split_first() {
-                    Some((
-                        Token {
-                            kind: TokenKind::Close,
-                            ..
-                        },
-                        rest,
-                    )) => self.tokens = rest,
+                    Some((Token { kind: TokenKind::Close, .. }, rest)) => self.tokens = rest,
                     Some((other, _)) => {
                         return Err(Problem::at(
                             other,
@@ -215,10 +199,7 @@ impl Parser<'_> {
                 }
                 Ok(())
             }
-            _ => Err(Problem::at(
-                token,
-                "a number or a column is missing before this",
-            )),
+            _ => Err(Problem::at(token, "a number or a column is missing before this")),
         }
     }
 
@@ -249,15 +230,14 @@ enum Operation {
 impl Formula {
     /// Returns the columns in the order of their use, with repetitions.
     pub(crate) fn columns(&self) -> impl Iterator<Item = usize> {
-        self.operations
-            .iter()
-            .filter_map(|operation| match operation {
-                Operation::Column(column) => Some(*column),
-                _ => None,
-            })
+        self.operations.iter().filter_map(|operation| match operation {
+            Operation::Column(column) => Some(*column),
+            _ => None,
+        })
     }
 
-    /// Returns the value in each of `rows` rows, times `scale`; `of` returns the values of a column.
+    /// Returns the value in each of `rows` rows, times `scale`; `of` returns the values of a
+    /// column.
     pub(crate) fn values<'a>(
         &self,
         rows: usize,

@@ -25,9 +25,9 @@ pub(crate) fn whole_column(
 
 pub(crate) fn find(columns: &Columns, column: &ColumnRef) -> Result<usize, ReadProblem> {
     let found: Vec<usize> = match column {
-        ColumnRef::Number(number) => (0..columns.width())
-            .filter(|column| column + 1 == *number)
-            .collect(),
+        ColumnRef::Number(number) => {
+            (0..columns.width()).filter(|column| column + 1 == *number).collect()
+        }
         ColumnRef::Name(name) => columns.by_name(name),
     };
     match found.as_slice() {
@@ -60,7 +60,6 @@ pub(crate) fn no_scale(name: &str, role: Role, unit: &Unit, quantity: Quantity) 
 
 pub(crate) fn two_columns(columns: &Columns, role: Role, a: usize, b: usize) -> ReadProblem {
     let (a, b) = (columns.name(a), columns.name(b));
-    columns.refuse(format!(
-        "{a:?} and {b:?} both match {role}; map one of them, as in {role}=COLUMN"
-    ))
+    columns
+        .refuse(format!("{a:?} and {b:?} both match {role}; map one of them, as in {role}=COLUMN"))
 }

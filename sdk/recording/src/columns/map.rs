@@ -89,8 +89,8 @@ pub struct MapEntry {
     pub role: Role,
     /// The column, or what is computed from columns.
     pub values: Expression,
-    /// Factor to the role's unit (N, the quantity's, mm/s, s, mm). Without it a column has the unit in its name, and the values of an
-    /// expression are in the role's unit.
+    /// Factor to the role's unit (N, the quantity's, mm/s, s, mm). Without it a column has the unit
+    /// in its name, and the values of an expression are in the role's unit.
     pub scale: Option<f64>,
 }
 
@@ -117,24 +117,18 @@ impl MapEntry {
         }
         let (values, scale) = split_scale(&tokens).map_err(refuse)?;
         if values.is_empty() {
-            return Err(refuse(Problem {
-                at: None,
-                what: "a column name is missing".into(),
-            }));
+            return Err(refuse(Problem { at: None, what: "a column name is missing".into() }));
         }
-        Ok(Self {
-            role,
-            values: Expression::parse(text, values).map_err(refuse)?,
-            scale,
-        })
+        Ok(Self { role, values: Expression::parse(text, values).map_err(refuse)?, scale })
     }
 }
 
 /// The user's assignment of columns to roles.
 ///
-/// A role's values are a column or an expression: sums, differences, products and quotients of numbers and columns, with
-/// parentheses. Columns are given by name, by number (`#3`), by path (`/run1/fx`), or in quotes if the name contains an
-/// operator. A text that is the name of a column as a whole is that column.
+/// A role's values are a column or an expression: sums, differences, products and quotients of
+/// numbers and columns, with parentheses. Columns are given by name, by number (`#3`), by path
+/// (`/run1/fx`), or in quotes if the name contains an operator. A text that is the name of a column
+/// as a whole is that column.
 ///
 /// ```
 /// # use htex_recording::ColumnMap;
@@ -153,7 +147,8 @@ impl ColumnMap {
     /// Creates a map of entries.
     ///
     /// # Errors
-    /// [`ReadProblem::Map`] if a role or a column is given twice, or a single axis together with several.
+    /// [`ReadProblem::Map`] if a role or a column is given twice, or a single axis together with
+    /// several.
     pub fn new(entries: impl IntoIterator<Item = MapEntry>) -> Result<Self, ReadError> {
         let mut map = Self::default();
         for entry in entries {
@@ -174,10 +169,9 @@ impl ColumnMap {
             if other.role == entry.role {
                 return Err(format!("role {} is given twice", entry.role));
             }
-            if let (Some(column), true) = (
-                entry.values.column(),
-                other.values.column() == entry.values.column(),
-            ) {
+            if let (Some(column), true) =
+                (entry.values.column(), other.values.column() == entry.values.column())
+            {
                 return Err(format!("column {column} is given twice"));
             }
         }
@@ -188,10 +182,7 @@ impl ColumnMap {
     fn check_axes(&self) -> Result<(), String> {
         let has = |role| self.entries.iter().any(|entry| entry.role == role);
         let lateral = (Role::Lateral, &[Role::LateralX, Role::LateralY][..]);
-        let signal = (
-            Role::Signal,
-            &[Role::SignalX, Role::SignalY, Role::SignalZ][..],
-        );
+        let signal = (Role::Signal, &[Role::SignalX, Role::SignalY, Role::SignalZ][..]);
         for (one, several) in [lateral, signal] {
             if has(one) && several.iter().any(|role| has(*role)) {
                 return Err(format!(
@@ -231,10 +222,7 @@ fn map_error(problem: String) -> ReadError {
 /// Parses the tokens of `ROLE=EXPRESSION[:SCALE]`.
 fn parse_entry(text: &str, tokens: &[Token]) -> Result<MapEntry, Problem> {
     let nowhere = |what: String| Problem { at: None, what };
-    let Some(equals) = tokens
-        .iter()
-        .position(|token| token.kind == TokenKind::Equals)
-    else {
+    let Some(equals) = tokens.iter().position(|token| token.kind == TokenKind::Equals) else {
         return Err(match tokens {
             [] => nowhere("an entry between commas is empty".into()),
             [first, ..] => Problem::at(first, "this entry has no '='"),
@@ -251,11 +239,7 @@ fn parse_entry(text: &str, tokens: &[Token]) -> Result<MapEntry, Problem> {
         let what = "a column name is missing after '='";
         return Err(Problem::at(&tokens[equals], what));
     }
-    Ok(MapEntry {
-        role,
-        values: Expression::parse(text, values)?,
-        scale,
-    })
+    Ok(MapEntry { role, values: Expression::parse(text, values)?, scale })
 }
 
 fn parse_role(text: &str) -> Result<Role, String> {
@@ -273,21 +257,8 @@ fn split_scale(tokens: &[Token]) -> Result<(&[Token], Option<f64>), Problem> {
         return Ok((tokens, None));
     };
     let (sign, number) = match &tokens[colon + 1..] {
-        [
-            Token {
-                kind: TokenKind::Minus,
-                ..
-            },
-            number,
-        ] => (-1.0, number),
-        [
-            Token {
-                kind: TokenKind::Plus,
-                ..
-            },
-            number,
-        ]
-        | [number] => (1.0, number),
+        [Token { kind: TokenKind::Minus, .. }, number] => (-1.0, number),
+        [Token { kind: TokenKind::Plus, .. }, number] | [number] => (1.0, number),
         _ => return Err(not_a_scale(&tokens[colon])),
     };
     match number.kind {

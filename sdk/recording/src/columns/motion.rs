@@ -2,14 +2,14 @@
 
 use crate::sums::Sums;
 
-/// Length of the moving average of the position and of the difference for the speed, seconds. Trackers are slow
-/// (60 Hz is common): in a shorter window the speed shows their steps.
+/// Length of the moving average of the position and of the difference for the speed, seconds.
+/// Trackers are slow (60 Hz is common): in a shorter window the speed shows their steps.
 const WINDOW_S: f64 = 0.05;
 
 /// Returns the speed in mm/s of each sample, from one or two coordinates in mm of equal length.
 ///
-/// The position is averaged over 50 ms, and its difference is taken over 50 ms around each sample; both
-/// windows are shorter at the ends.
+/// The position is averaged over 50 ms, and its difference is taken over 50 ms around each sample;
+/// both windows are shorter at the ends.
 pub fn speed_mm_s(coordinates_mm: &[&[f64]], rate_hz: f64) -> Vec<f64> {
     let [first, others @ ..] = coordinates_mm else {
         return Vec::new();
@@ -24,7 +24,8 @@ pub fn speed_mm_s(coordinates_mm: &[&[f64]], rate_hz: f64) -> Vec<f64> {
     speed
 }
 
-/// Returns the difference of the averaged position over `2 half` samples around each sample, fewer at the ends.
+/// Returns the difference of the averaged position over `2 half` samples around each sample, fewer
+/// at the ends.
 fn velocity(position: &[f64], half: usize, rate_hz: f64) -> impl Iterator<Item = f64> {
     let position = moving_average(position, half);
     let last = position.len().saturating_sub(1);

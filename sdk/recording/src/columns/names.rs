@@ -39,14 +39,8 @@ const NAMES: [(Role, &[&str]); 8] = [
             "shear_force",
         ],
     ),
-    (
-        Role::LateralX,
-        &["fx", "f_x", "force_x", "x_force", "lateral_x", "friction_x"],
-    ),
-    (
-        Role::LateralY,
-        &["fy", "f_y", "force_y", "y_force", "lateral_y", "friction_y"],
-    ),
+    (Role::LateralX, &["fx", "f_x", "force_x", "x_force", "lateral_x", "friction_x"]),
+    (Role::LateralY, &["fy", "f_y", "force_y", "y_force", "lateral_y", "friction_y"]),
     (
         Role::Normal,
         &[
@@ -64,40 +58,10 @@ const NAMES: [(Role, &[&str]); 8] = [
             "load",
         ],
     ),
-    (
-        Role::Speed,
-        &[
-            "speed",
-            "velocity",
-            "vel",
-            "finger_speed",
-            "sliding_speed",
-            "scan_speed",
-        ],
-    ),
+    (Role::Speed, &["speed", "velocity", "vel", "finger_speed", "sliding_speed", "scan_speed"]),
     (Role::Time, &["t", "time", "timestamp", "elapsed"]),
-    (
-        Role::X,
-        &[
-            "x",
-            "pos_x",
-            "x_pos",
-            "position_x",
-            "x_position",
-            "finger_x",
-        ],
-    ),
-    (
-        Role::Y,
-        &[
-            "y",
-            "pos_y",
-            "y_pos",
-            "position_y",
-            "y_position",
-            "finger_y",
-        ],
-    ),
+    (Role::X, &["x", "pos_x", "x_pos", "position_x", "x_position", "finger_x"]),
+    (Role::Y, &["y", "pos_y", "y_pos", "position_y", "y_position", "finger_y"]),
 ];
 
 /// Unit suffixes after an underscore, each before its own suffixes.
@@ -150,7 +114,8 @@ fn normalise(name: &str) -> String {
         .replace('^', "")
 }
 
-/// Returns the axis of a motion's quantity that a name stands for: `accel`, `ax`, `velocity_y`, `z_disp`.
+/// Returns the axis of a motion's quantity that a name stands for: `accel`, `ax`, `velocity_y`,
+/// `z_disp`.
 fn signal_role(name: &str, quantity: Quantity) -> Option<Role> {
     let bases: &[&str] = match quantity {
         Quantity::LateralForce | Quantity::NormalForce => return None,
@@ -172,18 +137,13 @@ fn signal_role(name: &str, quantity: Quantity) -> Option<Role> {
 }
 
 fn known_role(name: &str) -> Option<Role> {
-    NAMES
-        .iter()
-        .find(|(_, names)| names.contains(&name))
-        .map(|(role, _)| *role)
+    NAMES.iter().find(|(_, names)| names.contains(&name)).map(|(role, _)| *role)
 }
 
 /// Splits `fx_[n]`, `fx(n)` and `fx_n` into `fx` and `n`.
 fn split_unit(name: &str) -> Option<(&str, &str)> {
     for (open, close) in [('[', ']'), ('(', ')')] {
-        if let Some((base, unit)) = name
-            .strip_suffix(close)
-            .and_then(|name| name.rsplit_once(open))
+        if let Some((base, unit)) = name.strip_suffix(close).and_then(|name| name.rsplit_once(open))
         {
             return Some((base.trim_end_matches('_'), unit.trim_matches('_')));
         }
@@ -245,11 +205,7 @@ mod tests {
             ("Fn_N", Role::Normal, Unit::Scale(1.0)),
             ("Lateral Force (N)", Role::Lateral, Unit::Scale(1.0)),
             ("lateral_V", Role::Lateral, Unit::Volts),
-            (
-                "normal [counts]",
-                Role::Normal,
-                Unit::Unknown("counts".into()),
-            ),
+            ("normal [counts]", Role::Normal, Unit::Unknown("counts".into())),
             ("speed_mm_s", Role::Speed, Unit::Scale(1.0)),
             ("Velocity (m/s)", Role::Speed, Unit::Scale(1e3)),
             ("speed_cm_s", Role::Speed, Unit::Scale(10.0)),
@@ -264,51 +220,16 @@ mod tests {
             assert_eq!(recognise(name, Quantity::LateralForce), None, "{name}");
         }
         let motions = [
-            (
-                "ax [m/s²]",
-                Quantity::Acceleration,
-                Role::SignalX,
-                Unit::Scale(1.0),
-            ),
-            (
-                "acc_z_g",
-                Quantity::Acceleration,
-                Role::SignalZ,
-                Unit::Scale(GRAVITY_M_S2),
-            ),
-            (
-                "Y accel (mm/s^2)",
-                Quantity::Acceleration,
-                Role::SignalY,
-                Unit::Scale(1e-3),
-            ),
+            ("ax [m/s²]", Quantity::Acceleration, Role::SignalX, Unit::Scale(1.0)),
+            ("acc_z_g", Quantity::Acceleration, Role::SignalZ, Unit::Scale(GRAVITY_M_S2)),
+            ("Y accel (mm/s^2)", Quantity::Acceleration, Role::SignalY, Unit::Scale(1e-3)),
             ("accel", Quantity::Acceleration, Role::Signal, Unit::Unsaid),
             ("a_v", Quantity::Acceleration, Role::Signal, Unit::Volts),
-            (
-                "velocity_mm_s",
-                Quantity::Velocity,
-                Role::Signal,
-                Unit::Scale(1e-3),
-            ),
-            (
-                "speed_mm_s",
-                Quantity::Velocity,
-                Role::Speed,
-                Unit::Scale(1.0),
-            ),
-            (
-                "disp_um",
-                Quantity::Displacement,
-                Role::Signal,
-                Unit::Scale(1e-6),
-            ),
+            ("velocity_mm_s", Quantity::Velocity, Role::Signal, Unit::Scale(1e-3)),
+            ("speed_mm_s", Quantity::Velocity, Role::Speed, Unit::Scale(1.0)),
+            ("disp_um", Quantity::Displacement, Role::Signal, Unit::Scale(1e-6)),
             ("x_mm", Quantity::Displacement, Role::X, Unit::Scale(1.0)),
-            (
-                "fz_n",
-                Quantity::Acceleration,
-                Role::Normal,
-                Unit::Scale(1.0),
-            ),
+            ("fz_n", Quantity::Acceleration, Role::Normal, Unit::Scale(1.0)),
         ];
         for (name, quantity, role, unit) in motions {
             assert_eq!(recognise(name, quantity), Some((role, unit)), "{name}");

@@ -11,7 +11,8 @@ use crate::columns::select::{Selection, Values, select, select_motion};
 use crate::error::ReadProblem;
 use crate::sheet::Columns;
 
-/// Conversion of channels to the values of roles, in the roles' units, by the rules of files: a map, then the names of channels.
+/// Conversion of channels to the values of roles, in the roles' units, by the rules of files: a
+/// map, then the names of channels.
 ///
 /// ```
 /// use htex_recording::{ColumnMap, Role, RowMap};
@@ -33,7 +34,8 @@ pub struct RowMap {
 }
 
 impl RowMap {
-    /// Selects from channels, each a name and a unit, which is empty if it is not known. A unit in the name takes precedence.
+    /// Selects from channels, each a name and a unit, which is empty if it is not known. A unit in
+    /// the name takes precedence.
     ///
     /// # Errors
     /// [`ReadProblem::Columns`] as for a file with these columns; `source` is its name in messages.
@@ -43,9 +45,8 @@ impl RowMap {
         map: Option<&ColumnMap>,
         quantity: Quantity,
     ) -> Result<Self, ReadError> {
-        let mut row_map = Self::with(source, channels, map, quantity, |columns| {
-            select(columns, map, quantity)
-        })?;
+        let mut row_map =
+            Self::with(source, channels, map, quantity, |columns| select(columns, map, quantity))?;
         let is_unused = |warning: &Notice| warning.starts_with("Columns not used");
         let warnings = &mut row_map.selection.warnings;
         warnings.retain(|warning| !is_unused(warning));
@@ -76,10 +77,7 @@ impl RowMap {
         let names = channels.iter().map(|(name, _)| name.clone());
         let columns = Columns::new(names, None);
         let selected = select(&columns).and_then(|selection| {
-            let mut row_map = Self {
-                selection,
-                quantity,
-            };
+            let mut row_map = Self { selection, quantity };
             row_map.take_units(&columns, channels, map)?;
             Ok(row_map)
         });
@@ -111,11 +109,8 @@ impl RowMap {
                     return Err(columns.refuse(problem));
                 }
             }
-            let assumed = format!(
-                "Column {:?} ({}) has no unit",
-                columns.name(column),
-                chosen.role
-            );
+            let assumed =
+                format!("Column {:?} ({}) has no unit", columns.name(column), chosen.role);
             let warnings = &mut self.selection.warnings;
             warnings.retain(|warning| !warning.text.starts_with(&assumed));
         }
@@ -150,7 +145,8 @@ impl RowMap {
         &self.selection.warnings
     }
 
-    /// Returns the values of each role, from the samples of each channel, of equal lengths. A quotient by zero is not finite.
+    /// Returns the values of each role, from the samples of each channel, of equal lengths. A
+    /// quotient by zero is not finite.
     #[must_use]
     pub fn values(&self, channels: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let rows = channels.first().map_or(0, Vec::len);

@@ -28,11 +28,7 @@ pub(crate) enum Values {
 
 impl Chosen {
     fn new(role: Role, column: usize, scale: f64) -> Self {
-        Self {
-            role,
-            values: Values::Column(column),
-            scale,
-        }
+        Self { role, values: Values::Column(column), scale }
     }
 
     /// Returns the columns, in the order of their use, with repetitions.
@@ -66,10 +62,7 @@ pub(crate) fn select_motion(
     columns: &Columns,
     map: Option<&ColumnMap>,
 ) -> Result<Selection, ReadProblem> {
-    let mut selection = Selection {
-        is_motion: true,
-        ..Selection::default()
-    };
+    let mut selection = Selection { is_motion: true, ..Selection::default() };
     for entry in map.map_or(&[][..], ColumnMap::entries) {
         selection.take_mapped(columns, entry)?;
     }
@@ -100,10 +93,7 @@ pub(crate) fn select(
     map: Option<&ColumnMap>,
     quantity: Quantity,
 ) -> Result<Selection, ReadProblem> {
-    let mut selection = Selection {
-        quantity,
-        ..Selection::default()
-    };
+    let mut selection = Selection { quantity, ..Selection::default() };
     for entry in map.map_or(&[][..], ColumnMap::entries) {
         selection.take_mapped(columns, entry)?;
     }
@@ -195,7 +185,8 @@ impl Selection {
         Ok(Chosen::new(role, column, scale))
     }
 
-    /// The numbers of the columns are taken as they are in the file, since a factor between units may be part of the expression.
+    /// The numbers of the columns are taken as they are in the file, since a factor between units
+    /// may be part of the expression.
     fn mapped_formula(
         &mut self,
         columns: &Columns,
@@ -220,10 +211,7 @@ impl Selection {
         }
         Ok(Chosen {
             role,
-            values: Values::Formula {
-                formula,
-                text: entry.values.to_string(),
-            },
+            values: Values::Formula { formula, text: entry.values.to_string() },
             scale: entry.scale.unwrap_or(1.0),
         })
     }
@@ -259,7 +247,8 @@ impl Selection {
         Ok(refused)
     }
 
-    /// Returns the columns whose names have a role. Once a column is selected, they are in its group or in one around it.
+    /// Returns the columns whose names have a role. Once a column is selected, they are in its
+    /// group or in one around it.
     fn candidates(&self, columns: &Columns, role: Role) -> Vec<usize> {
         let is_candidate = |column: &usize| {
             !self.claims(*column)
@@ -273,18 +262,15 @@ impl Selection {
         };
         // Another run of the same file has columns of the same names.
         let group = columns.group(first);
-        let around: Vec<usize> = all
-            .filter(|column| group.starts_with(columns.group(*column)))
-            .collect();
-        let nearest = around
-            .iter()
-            .map(|column| columns.group(*column).len())
-            .max();
+        let around: Vec<usize> =
+            all.filter(|column| group.starts_with(columns.group(*column))).collect();
+        let nearest = around.iter().map(|column| columns.group(*column).len()).max();
         let is_nearest = |column: &usize| Some(columns.group(*column).len()) == nearest;
         around.into_iter().filter(is_nearest).collect()
     }
 
-    /// Returns the roles that names may fill: several axes before a single one; position only without a speed.
+    /// Returns the roles that names may fill: several axes before a single one; position only
+    /// without a speed.
     fn open_roles(&self, columns: &Columns) -> Vec<Role> {
         let named = |role| !self.candidates(columns, role).is_empty();
         let mut roles = Vec::new();
@@ -305,11 +291,7 @@ impl Selection {
         }
         if !self.has(Role::Speed) && !self.has(Role::X) && !self.has(Role::Y) {
             let speed = named(Role::Speed);
-            roles.extend(if speed {
-                &[Role::Speed][..]
-            } else {
-                &[Role::X, Role::Y]
-            });
+            roles.extend(if speed { &[Role::Speed][..] } else { &[Role::X, Role::Y] });
         }
         roles
     }
@@ -368,12 +350,10 @@ impl Selection {
     }
 
     fn warn_of_unused(&mut self, columns: &Columns) {
-        let unused: Vec<usize> = (0..columns.width())
-            .filter(|column| !self.claims(*column))
-            .collect();
+        let unused: Vec<usize> =
+            (0..columns.width()).filter(|column| !self.claims(*column)).collect();
         if !unused.is_empty() {
-            self.warnings
-                .push(format!("Columns not used: {}.", columns.list_of(&unused)).into());
+            self.warnings.push(format!("Columns not used: {}.", columns.list_of(&unused)).into());
         }
     }
 }

@@ -52,17 +52,11 @@ pub(crate) struct Problem {
 
 impl Problem {
     pub(crate) fn at(token: &Token, what: impl Into<String>) -> Self {
-        Self {
-            at: Some(token.start),
-            what: what.into(),
-        }
+        Self { at: Some(token.start), what: what.into() }
     }
 
     pub(crate) fn at_end(what: impl Into<String>) -> Self {
-        Self {
-            at: None,
-            what: what.into(),
-        }
+        Self { at: None, what: what.into() }
     }
 
     /// Returns the sentence with the place in the text, in characters from 1.
@@ -84,23 +78,18 @@ pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, Problem> {
             continue;
         }
         let before = tokens.last().map(|token| &token.kind);
-        let ends_operand = matches!(
-            before,
-            Some(TokenKind::Number(_) | TokenKind::Column(_) | TokenKind::Close)
-        );
+        let ends_operand =
+            matches!(before, Some(TokenKind::Number(_) | TokenKind::Column(_) | TokenKind::Close));
         let (kind, length) = token(&text[at..], next, ends_operand)
             .map_err(|what| Problem { at: Some(at), what })?;
-        tokens.push(Token {
-            kind,
-            start: at,
-            end: at + length,
-        });
+        tokens.push(Token { kind, start: at, end: at + length });
         at += length;
     }
     Ok(tokens)
 }
 
-/// Returns the token at the start of a text, and its length in bytes. `ends_operand` says that an operator may follow.
+/// Returns the token at the start of a text, and its length in bytes. `ends_operand` says that an
+/// operator may follow.
 fn token(text: &str, first: char, ends_operand: bool) -> Result<(TokenKind, usize), String> {
     if let Some(operator) = operator(first)
         && (first != '/' || ends_operand || !path_follows(text))
@@ -117,9 +106,8 @@ fn token(text: &str, first: char, ends_operand: bool) -> Result<(TokenKind, usiz
         '#' => numbered(text),
         '"' | '\'' => {
             let inner = &text[1..];
-            let length = inner
-                .find(first)
-                .ok_or_else(|| format!("the quote {first} is not closed"))?;
+            let length =
+                inner.find(first).ok_or_else(|| format!("the quote {first} is not closed"))?;
             Ok((name(&inner[..length]), length + 2))
         }
         _ => match number(text) {
@@ -161,19 +149,15 @@ fn path_follows(text: &str) -> bool {
 }
 
 fn numbered(text: &str) -> Result<(TokenKind, usize), String> {
-    let length = 1 + text[1..]
-        .find(|c: char| !c.is_alphanumeric())
-        .unwrap_or(text.len() - 1);
+    let length = 1 + text[1..].find(|c: char| !c.is_alphanumeric()).unwrap_or(text.len() - 1);
     match text[1..length].parse() {
         Ok(number) if number > 0 => Ok((TokenKind::Column(ColumnRef::Number(number)), length)),
-        _ => Err(format!(
-            "{:?} is not a column number; the first column is #1",
-            &text[..length]
-        )),
+        _ => Err(format!("{:?} is not a column number; the first column is #1", &text[..length])),
     }
 }
 
-/// Returns the number at the start and its length; `None` where a name begins with digits, as in `5V_supply`.
+/// Returns the number at the start and its length; `None` where a name begins with digits, as in
+/// `5V_supply`.
 fn number(text: &str) -> Option<(f64, usize)> {
     let bytes = text.as_bytes();
     let digits = |from: usize| {
@@ -199,8 +183,7 @@ fn number(text: &str) -> Option<(f64, usize)> {
     }
     let next = text[length..].chars().next();
     let ends = next.is_none_or(|c| c.is_whitespace() || operator(c).is_some());
-    ends.then(|| text[..length].parse().ok())?
-        .map(|value| (value, length))
+    ends.then(|| text[..length].parse().ok())?.map(|value| (value, length))
 }
 
 /// Returns the length of the name at the start: up to an operator outside brackets.

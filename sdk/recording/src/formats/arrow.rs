@@ -1,7 +1,9 @@
-//! Arrow IPC: files (Feather version 2) and streams. Numeric columns; the values of others are passed over.
+//! Arrow IPC: files (Feather version 2) and streams. Numeric columns; the values of others are
+//! passed over.
 //!
-//! Layout: "Arrow Columnar Format", section "Serialization and Interprocess Communication". The metadata are verified flatbuffers of the
-//! crate `arrow-ipc`; its reader is not used, because it takes the sizes in a file as they are.
+//! Layout: "Arrow Columnar Format", section "Serialization and Interprocess Communication". The
+//! metadata are verified flatbuffers of the crate `arrow-ipc`; its reader is not used, because it
+//! takes the sizes in a file as they are.
 
 use std::io::{self, Read};
 
@@ -67,10 +69,7 @@ struct Message {
 impl Arrow {
     /// Reads the schema, and where the batches are.
     pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
-        let (is_file, is_old) = (
-            opened.front.starts_with(FILE),
-            opened.front.starts_with(b"FEA1"),
-        );
+        let (is_file, is_old) = (opened.front.starts_with(FILE), opened.front.starts_with(b"FEA1"));
         let source = Shared::new(opened.random()?)?;
         let mut arrow = Self {
             columns: Columns::default(),
@@ -93,10 +92,7 @@ impl Arrow {
     fn read_footer(&mut self) -> Result<(), (u64, ArrowError)> {
         let length = self.source.length();
         let tail_at = length.saturating_sub(10);
-        let tail = self
-            .source
-            .read(tail_at, 10)
-            .map_err(|error| (tail_at, error.into()))?;
+        let tail = self.source.read(tail_at, 10).map_err(|error| (tail_at, error.into()))?;
         if tail[4..] != *FILE {
             let problem = "the file does not end with ARROW1; it seems truncated, copy it again";
             return Err((tail_at, ArrowError::Layout(problem)));
@@ -107,20 +103,14 @@ impl Arrow {
             let bytes = metadata(&self.source, at, size)?;
             let footer =
                 root_as_footer(&bytes).map_err(|error| ArrowError::Metadata(error.to_string()))?;
-            let schema = footer.schema().ok_or(ArrowError::Layout(
-                "the footer has no schema; write the file again",
-            ))?;
+            let schema = footer
+                .schema()
+                .ok_or(ArrowError::Layout("the footer has no schema; write the file again"))?;
             let blocks: Vec<[i64; 3]> = footer
                 .recordBatches()
                 .into_iter()
                 .flatten()
-                .map(|block| {
-                    [
-                        block.offset(),
-                        block.metaDataLength().into(),
-                        block.bodyLength(),
-                    ]
-                })
+                .map(|block| [block.offset(), block.metaDataLength().into(), block.bodyLength()])
                 .collect();
             Ok((Schema::of(&schema), blocks))
         };
@@ -145,9 +135,7 @@ impl Arrow {
         let mut at = 0;
         let mut is_first = true;
         while at + 8 <= self.source.length() {
-            let next = self
-                .read_message(at, is_first)
-                .map_err(|error| (at, error))?;
+            let next = self.read_message(at, is_first).map_err(|error| (at, error))?;
             match next {
                 None => return Ok(()),
                 Some(next) => at = next,
@@ -157,7 +145,8 @@ impl Arrow {
         Ok(())
     }
 
-    /// Reads the message at a place of a stream and returns the place of the next one; `None` at the end of the stream.
+    /// Reads the message at a place of a stream and returns the place of the next one; `None` at
+    /// the end of the stream.
     fn read_message(&mut self, at: u64, is_first: bool) -> Result<Option<u64>, ArrowError> {
         let prefix = self.source.read(at, 8)?;
         if prefix[..4] != MESSAGE {
@@ -165,9 +154,7 @@ impl Arrow {
                 "no message begins here; the stream is damaged, write it again",
             ));
         }
-        let size = u64::from(u32::from_le_bytes([
-            prefix[4], prefix[5], prefix[6], prefix[7],
-        ]));
+        let size = u64::from(u32::from_le_bytes([prefix[4], prefix[5], prefix[6], prefix[7]]));
         if size == 0 {
             return Ok(None);
         }
@@ -186,19 +173,12 @@ impl Arrow {
             _ => {}
         }
         if message.header_as_record_batch().is_some() {
-            self.add_batch(Message {
-                metadata: at,
-                metadata_bytes: size + 8,
-                body,
-                body_bytes,
-            })?;
+            self.add_batch(Message { metadata: at, metadata_bytes: size + 8, body, body_bytes })?;
         }
         let left = self.source.length().saturating_sub(body);
         match body_bytes <= left {
             true => Ok(Some(body + body_bytes)),
-            false => Err(ArrowError::Layout(
-                "the stream ends inside this message; copy it again",
-            )),
+            false => Err(ArrowError::Layout("the stream ends inside this message; copy it again")),
         }
     }
 
@@ -224,9 +204,7 @@ impl Arrow {
         let root = root.map_err(|error| ArrowError::Metadata(error.to_string()))?;
         match root.header_as_record_batch() {
             Some(batch) => read(&batch),
-            None => Err(ArrowError::Layout(
-                "a block is not a batch of rows; write the file again",
-            )),
+            None => Err(ArrowError::Layout("a block is not a batch of rows; write the file again")),
         }
     }
 
@@ -245,9 +223,7 @@ impl Arrow {
         let size = kind.size() as u64;
         let wanted = batch.rows.saturating_mul(size);
         let (validity, numbers) = self.with_batch(batch.message, |metadata| {
-            let codec = metadata
-                .compression()
-                .map(|compression| compression.codec());
+            let codec = metadata.compression().map(|compression| compression.codec());
             let nodes = metadata.nodes().filter(|nodes| column.node < nodes.len());
             let nulls = nodes.map(|nodes| nodes.get(column.node).null_count());
             let buffer = |index: usize| {
@@ -263,28 +239,23 @@ impl Arrow {
                 0 => None,
                 _ => Some(self.buffer(batch.message, bits, codec, batch.rows.div_ceil(8))?),
             };
-            Ok((
-                validity,
-                self.buffer(batch.message, numbers, codec, wanted)?,
-            ))
+            Ok((validity, self.buffer(batch.message, numbers, codec, wanted)?))
         })?;
         let is_there = |row: usize| {
             let bits = validity.as_ref().and_then(|bits| bits.get(row / 8));
             bits.is_none_or(|bits| bits >> (row % 8) & 1 == 1)
         };
-        values.extend(
-            numbers
-                .chunks_exact(kind.size())
-                .enumerate()
-                .map(|(row, bytes)| match is_there(row) {
-                    true => kind.value(bytes, self.schema.endian),
-                    false => f64::NAN,
-                }),
-        );
+        values.extend(numbers.chunks_exact(kind.size()).enumerate().map(|(row, bytes)| {
+            match is_there(row) {
+                true => kind.value(bytes, self.schema.endian),
+                false => f64::NAN,
+            }
+        }));
         Ok(())
     }
 
-    /// Returns the first `wanted` bytes of a buffer, decompressed. The stated length of compressed bytes is not relied on.
+    /// Returns the first `wanted` bytes of a buffer, decompressed. The stated length of compressed
+    /// bytes is not relied on.
     fn buffer(
         &self,
         message: Message,
@@ -320,9 +291,7 @@ impl Arrow {
         // A length of -1 marks bytes that are not compressed.
         match i64::from_le_bytes(*stated) {
             -1 => compressed.take(wanted).read_to_end(&mut decompressed)?,
-            _ => FrameDecoder::new(compressed)
-                .take(wanted)
-                .read_to_end(&mut decompressed)?,
+            _ => FrameDecoder::new(compressed).take(wanted).read_to_end(&mut decompressed)?,
         };
         match decompressed.len() as u64 == wanted {
             true => Ok(decompressed),
@@ -337,10 +306,7 @@ impl Sheet for Arrow {
     }
 
     fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, Fault> {
-        let rows = self
-            .batches
-            .iter()
-            .fold(0_u64, |sum, batch| sum.saturating_add(batch.rows));
+        let rows = self.batches.iter().fold(0_u64, |sum, batch| sum.saturating_add(batch.rows));
         self.limit.check(rows.saturating_mul(wanted.len() as u64))?;
         let mut columns = vec![Vec::new(); wanted.len()];
         for (values, index) in columns.iter_mut().zip(wanted) {
@@ -352,10 +318,7 @@ impl Sheet for Arrow {
                     .map_err(|problem| damaged(self.columns.name(*index), &problem))?;
             }
         }
-        Ok(Numbers {
-            columns,
-            ..Numbers::default()
-        })
+        Ok(Numbers { columns, ..Numbers::default() })
     }
 }
 

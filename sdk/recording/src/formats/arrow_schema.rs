@@ -16,10 +16,7 @@ pub(crate) struct Schema {
 
 impl Default for Schema {
     fn default() -> Self {
-        Self {
-            columns: Vec::new(),
-            endian: Endian::Little,
-        }
+        Self { columns: Vec::new(), endian: Endian::Little }
     }
 }
 
@@ -46,10 +43,7 @@ struct Extent {
 impl Schema {
     /// Counts the nodes and buffers of a schema's fields.
     pub(crate) fn of(schema: &arrow_ipc::Schema<'_>) -> Self {
-        let mut place = Some(Extent {
-            nodes: 0,
-            buffers: 0,
-        });
+        let mut place = Some(Extent { nodes: 0, buffers: 0 });
         let fields = schema.fields().into_iter().flatten();
         let columns = fields.map(|field| {
             let here = place;
@@ -120,10 +114,7 @@ fn extent(field: &Field<'_>, depth: usize) -> Option<Extent> {
     let own = match field.type_type() {
         // The values of a dictionary are in messages of their own, the batch has indices.
         _ if field.dictionary().is_some() => {
-            return Some(Extent {
-                nodes: 1,
-                buffers: 2,
-            });
+            return Some(Extent { nodes: 1, buffers: 2 });
         }
         Type::Null => 0,
         Type::Struct_ | Type::FixedSizeList => 1,
@@ -141,10 +132,7 @@ fn extent(field: &Field<'_>, depth: usize) -> Option<Extent> {
         | Type::FixedSizeBinary => 2,
         _ => return None,
     };
-    let mut sum = Extent {
-        nodes: 1,
-        buffers: own,
-    };
+    let mut sum = Extent { nodes: 1, buffers: own };
     for child in field.children().into_iter().flatten() {
         let inner = extent(&child, depth + 1)?;
         sum.nodes = sum.nodes.checked_add(inner.nodes)?;

@@ -1,5 +1,5 @@
-//! Reading of files in blocks of whole lines: a reused buffer takes less memory and time than one as large as the
-//! file.
+//! Reading of files in blocks of whole lines: a reused buffer takes less memory and time than one
+//! as large as the file.
 
 use std::io::Read;
 
@@ -49,8 +49,8 @@ impl<'a> Blocks<'a> {
         Ok(&self.buffer[..self.filled])
     }
 
-    /// Returns the next lines, which follow `before` others; `None` at the end. A line longer than a block is returned in
-    /// pieces, the first of which exceeds the limit of a line.
+    /// Returns the next lines, which follow `before` others; `None` at the end. A line longer than
+    /// a block is returned in pieces, the first of which exceeds the limit of a line.
     pub(crate) fn next(&mut self, before: usize) -> Result<Option<&str>, Fault> {
         self.front()?;
         let filled = &self.buffer[..self.filled];
@@ -64,18 +64,15 @@ impl<'a> Blocks<'a> {
         Ok((!block.is_empty()).then_some(block))
     }
 
-    /// Returns the first lines, without a byte order mark: as many as contain two rows, if there are two.
+    /// Returns the first lines, without a byte order mark: as many as contain two rows, if there
+    /// are two.
     pub(crate) fn head(&mut self) -> Result<String, Fault> {
         let (mut head, mut rows, mut before) = (String::new(), 0, 0);
         while rows < 2 {
             let Some(block) = self.next(before)? else {
                 break;
             };
-            let block = if before == 0 {
-                without_mark(block)
-            } else {
-                block
-            };
+            let block = if before == 0 { without_mark(block) } else { block };
             head.push_str(block);
             let mut lines = Lines::behind(block, before, false);
             // A line that is too long is reported when it is parsed.

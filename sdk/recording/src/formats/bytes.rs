@@ -73,11 +73,7 @@ pub(crate) struct ByteReader<R> {
 
 impl<R: Read> ByteReader<R> {
     pub(crate) fn new(source: R, endian: Endian) -> Self {
-        Self {
-            source,
-            endian,
-            at: 0,
-        }
+        Self { source, endian, at: 0 }
     }
 
     pub(crate) fn array<const N: usize>(&mut self) -> io::Result<[u8; N]> {

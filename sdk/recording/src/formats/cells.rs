@@ -7,7 +7,8 @@ pub(crate) enum Delimiter {
     Whitespace,
 }
 
-/// Returns the delimiter that gives the first two rows the same number of cells, and the most of them.
+/// Returns the delimiter that gives the first two rows the same number of cells, and the most of
+/// them.
 pub(crate) fn sniff(first: &str, second: &str) -> Delimiter {
     let count = |line, delimiter| {
         let mut cells = Vec::new();
@@ -26,10 +27,7 @@ pub(crate) fn sniff(first: &str, second: &str) -> Delimiter {
     if agreed(&Delimiter::Whitespace) {
         return Delimiter::Whitespace;
     }
-    bytes
-        .into_iter()
-        .max_by_key(most)
-        .unwrap_or(Delimiter::Byte(b','))
+    bytes.into_iter().max_by_key(most).unwrap_or(Delimiter::Byte(b','))
 }
 
 pub(crate) fn split<'a>(line: &'a str, delimiter: Delimiter, cells: &mut Vec<&'a str>) {
@@ -56,10 +54,7 @@ fn split_bytes<'a>(line: &'a str, delimiter: u8, cells: &mut Vec<&'a str>) {
 
 fn bare(cell: &str) -> &str {
     let cell = cell.trim_ascii();
-    match cell
-        .strip_prefix('"')
-        .and_then(|cell| cell.strip_suffix('"'))
-    {
+    match cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')) {
         Some(inner) => inner.trim_ascii(),
         None => cell,
     }

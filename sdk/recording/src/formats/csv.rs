@@ -34,12 +34,7 @@ impl<'a> Csv<'a> {
         let mut blocks = Blocks::new(opened.stream(), limit);
         let head = blocks.head()?;
         let (table, start) = layout(&head)?;
-        Ok(Self {
-            table,
-            head,
-            start,
-            blocks,
-        })
+        Ok(Self { table, head, start, blocks })
     }
 }
 
@@ -70,7 +65,8 @@ fn layout(head: &str) -> Result<(Table, Start), Fault> {
     Ok((Table::new(columns, delimiter), start))
 }
 
-/// Returns the header that `numpy.savetxt` writes: the comment before the numbers, with the same number of cells.
+/// Returns the header that `numpy.savetxt` writes: the comment before the numbers, with the same
+/// number of cells.
 fn commented_header(
     comment: Option<&str>,
     delimiter: Delimiter,
@@ -111,11 +107,7 @@ impl Sheet for Csv<'_> {
         if rows < 2 {
             return Err(ReadProblem::TooFewRows { rows }.into());
         }
-        Ok(Numbers {
-            columns,
-            simulated,
-            ..Numbers::default()
-        })
+        Ok(Numbers { columns, simulated, ..Numbers::default() })
     }
 
     fn place(&self, row: usize) -> Place {

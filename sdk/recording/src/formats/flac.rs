@@ -13,10 +13,7 @@ use crate::value_limit::ValueLimit;
 
 /// Opens a FLAC file, whose blocks are then decoded one by one.
 pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
-    let options = FlacReaderOptions {
-        metadata_only: false,
-        read_vorbis_comment: false,
-    };
+    let options = FlacReaderOptions { metadata_only: false, read_vorbis_comment: false };
     let reader = FlacReader::new_ext(opened.stream(), options)
         .map_err(|error| broken("header", format!("not a readable FLAC file: {error}")))?;
     let info = reader.streaminfo();
@@ -66,14 +63,10 @@ impl<R: Read> Decoded<R> {
         self.before += u64::from(self.block.duration());
         let buffer = std::mem::replace(&mut self.block, Block::empty()).into_buffer();
         let place = |at: u64| format!("sample {at} (counted from 0)");
-        let block = self
-            .reader
-            .blocks()
-            .read_next_or_eof(buffer)
-            .map_err(|error| {
-                let problem = format!("the file ends or breaks here: {error}; copy it again");
-                broken(&place(self.before), problem)
-            })?;
+        let block = self.reader.blocks().read_next_or_eof(buffer).map_err(|error| {
+            let problem = format!("the file ends or breaks here: {error}; copy it again");
+            broken(&place(self.before), problem)
+        })?;
         let Some(block) = block else {
             return match self.expected {
                 Some(expected) if self.before < expected => {
@@ -86,11 +79,8 @@ impl<R: Read> Decoded<R> {
             };
         };
         if block.channels() as usize != self.width {
-            let problem = format!(
-                "{} channels follow {}; export it again",
-                block.channels(),
-                self.width
-            );
+            let problem =
+                format!("{} channels follow {}; export it again", block.channels(), self.width);
             return Err(broken(&place(self.before), problem));
         }
         self.block = block;

@@ -1,7 +1,7 @@
 //! HDF5, and MATLAB's version 7.3, which is HDF5: data sets addressed by path.
 //!
-//! `hdf5-reader` bounds chunks, headers and depth, has no C code and follows no links to other files. `hdf5` binds the
-//! C library, and `hdf5-pure` is a writer of 120,000 lines too.
+//! `hdf5-reader` bounds chunks, headers and depth, has no C code and follows no links to other
+//! files. `hdf5` binds the C library, and `hdf5-pure` is a writer of 120,000 lines too.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -28,8 +28,8 @@ const AT_ONCE: u64 = 64 << 10;
 /// Largest chunk, and largest object header, bytes.
 const MOST_CHUNK: usize = 256 << 20;
 const MOST_HEADER: usize = 4 << 20;
-/// Most bytes of numbers for each byte of the file. Deflate, the filter of HDF5 and MATLAB, reaches 1032; parts of a data set that
-/// were never written take no bytes at all.
+/// Most bytes of numbers for each byte of the file. Deflate, the filter of HDF5 and MATLAB, reaches
+/// 1032; parts of a data set that were never written take no bytes at all.
 const MOST_EXPANSION: u64 = 2048;
 
 /// An opened file.
@@ -62,21 +62,12 @@ impl Hdf5 {
             .with_max_chunk_bytes(MOST_CHUNK)
             .with_max_read_bytes(MOST_CHUNK)
             .with_max_object_header_bytes(MOST_HEADER);
-        let mut scan = Scan {
-            arrays: Arrays::new('/'),
-            seen: HashSet::new(),
-            objects: 0,
-        };
+        let mut scan = Scan { arrays: Arrays::new('/'), seen: HashSet::new(), objects: 0 };
         let hdf5 = Hdf5File::from_storage_with_options(Arc::new(SharedFile(shared)), options);
         let root = hdf5.and_then(|hdf5| hdf5.root_group());
         let root = root.map_err(|error| damaged("/", &error))?;
         scan.group(&root, "", 0)?;
-        Ok(Self {
-            columns: scan.arrays.columns(),
-            arrays: scan.arrays,
-            limit,
-            bytes,
-        })
+        Ok(Self { columns: scan.arrays.columns(), arrays: scan.arrays, limit, bytes })
     }
 }
 
@@ -90,16 +81,11 @@ impl Sheet for Hdf5 {
     }
 
     fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, Fault> {
-        let columns = self
-            .arrays
-            .numbers(self.limit, wanted, |dataset, shape, keep| {
-                fits(self.bytes, dataset, shape)?;
-                read(dataset, shape, keep).map_err(|error| damaged(dataset.name(), &error))
-            })?;
-        Ok(Numbers {
-            columns,
-            ..Numbers::default()
-        })
+        let columns = self.arrays.numbers(self.limit, wanted, |dataset, shape, keep| {
+            fits(self.bytes, dataset, shape)?;
+            read(dataset, shape, keep).map_err(|error| damaged(dataset.name(), &error))
+        })?;
+        Ok(Numbers { columns, ..Numbers::default() })
     }
 }
 
@@ -138,13 +124,9 @@ impl Scan {
     }
 
     fn attributes(&mut self, path: &str, attributes: Vec<Attribute>) {
-        for attribute in attributes
-            .iter()
-            .filter(|attribute| is_rate_name(&attribute.name))
-        {
+        for attribute in attributes.iter().filter(|attribute| is_rate_name(&attribute.name)) {
             if let Ok(value) = attribute.read_as_f64() {
-                self.arrays
-                    .add_scalar(&format!("{path}/{}", &attribute.name), value);
+                self.arrays.add_scalar(&format!("{path}/{}", &attribute.name), value);
             }
         }
     }
@@ -182,10 +164,8 @@ impl Scan {
 fn is_number(kind: &Datatype) -> bool {
     matches!(
         kind,
-        Datatype::FixedPoint {
-            size: 1 | 2 | 4 | 8,
-            ..
-        } | Datatype::FloatingPoint { size: 4 | 8, .. }
+        Datatype::FixedPoint { size: 1 | 2 | 4 | 8, .. }
+            | Datatype::FloatingPoint { size: 4 | 8, .. }
     )
 }
 
@@ -216,11 +196,7 @@ fn read(
     let mut from = 0;
     while from < shape.samples {
         let to = (from + at_once).min(shape.samples);
-        let part = |start, end| SliceInfoElem::Slice {
-            start,
-            end,
-            step: 1,
-        };
+        let part = |start, end| SliceInfoElem::Slice { start, end, step: 1 };
         let (time, channels) = (part(from, to), part(0, shape.channels));
         let selections = match (dataset.ndim(), shape.is_planar) {
             (1, _) => vec![time],
@@ -271,9 +247,7 @@ fn typed<T: H5Type + Copy>(
     to_f64: impl Fn(T) -> f64,
 ) -> hdf5_reader::error::Result<()> {
     let values = dataset.read_slice::<T>(part)?;
-    (0..)
-        .zip(values.iter())
-        .for_each(|(index, value)| keep(index, to_f64(*value)));
+    (0..).zip(values.iter()).for_each(|(index, value)| keep(index, to_f64(*value)));
     Ok(())
 }
 

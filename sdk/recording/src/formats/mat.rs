@@ -1,8 +1,9 @@
 //! MATLAB files of version 5 (`save -v6` and `-v7`): numeric matrices, also in structs.
 //!
-//! Layout: "MAT-File Format", MathWorks; a header of 128 bytes, then elements, each a tag of type and size with its data. Compressed
-//! elements are zlib streams with one element. Nothing is decompressed into memory: the file is read once for the names, and the
-//! variables that are used once more.
+//! Layout: "MAT-File Format", MathWorks; a header of 128 bytes, then elements, each a tag of type
+//! and size with its data. Compressed elements are zlib streams with one element. Nothing is
+//! decompressed into memory: the file is read once for the names, and the variables that are used
+//! once more.
 //!
 //! The reader is the project's own: `matfile` has no structs and reads a whole file.
 
@@ -63,20 +64,11 @@ impl Mat {
         let input = opened.random()?;
         let mut scan = Scan {
             arrays: Arrays::new('.'),
-            element: Element {
-                at: HEADER,
-                bytes: 0,
-                is_compressed: false,
-            },
+            element: Element { at: HEADER, bytes: 0, is_compressed: false },
             scanned: 0,
         };
-        let mut mat = Self {
-            columns: Columns::default(),
-            arrays: Arrays::new('.'),
-            limit,
-            endian,
-            input,
-        };
+        let mut mat =
+            Self { columns: Columns::default(), arrays: Arrays::new('.'), limit, endian, input };
         let scanned = mat.scan(&mut scan);
         scanned.map_err(|problem| damaged(scan.element.at, &problem))?;
         mat.columns = scan.arrays.columns();
@@ -90,16 +82,11 @@ impl Mat {
             self.input.seek(SeekFrom::Start(scan.element.at))?;
             let mut tag = ByteReader::new(&mut self.input, self.endian);
             let (kind, bytes) = (tag.u32()?, u64::from(tag.u32()?));
-            scan.element = Element {
-                at: scan.element.at + 8,
-                bytes,
-                is_compressed: kind == COMPRESSED,
-            };
+            scan.element =
+                Element { at: scan.element.at + 8, bytes, is_compressed: kind == COMPRESSED };
             if scan.element.at + bytes > length {
                 let left = length - scan.element.at;
-                return Err(MatError::Size(format!(
-                    "{bytes} bytes where {left} are left"
-                )));
+                return Err(MatError::Size(format!("{bytes} bytes where {left} are left")));
             }
             match kind {
                 COMPRESSED => {
@@ -115,11 +102,7 @@ impl Mat {
                 // Other elements at the top are not variables.
                 _ => {}
             }
-            let padding = if kind == COMPRESSED {
-                0
-            } else {
-                bytes.wrapping_neg() % 8
-            };
+            let padding = if kind == COMPRESSED { 0 } else { bytes.wrapping_neg() % 8 };
             scan.element.at += bytes + padding;
         }
         Ok(())
@@ -152,17 +135,13 @@ impl Sheet for Mat {
             let mut read = || {
                 let mut inside = ByteReader::new(self.inside(data.element)?, endian);
                 inside.skip(data.before)?;
-                inside.values(data.kind, shape.samples * shape.channels, |at, value| {
-                    keep(at, value)
-                })
+                inside
+                    .values(data.kind, shape.samples * shape.channels, |at, value| keep(at, value))
             };
             read().map_err(|error| damaged(data.element.at, &error.into()))
         });
         self.arrays = arrays;
-        Ok(Numbers {
-            columns: columns?,
-            ..Numbers::default()
-        })
+        Ok(Numbers { columns: columns?, ..Numbers::default() })
     }
 }
 
@@ -241,11 +220,7 @@ impl Scan {
             )));
         }
         if let Some(shape) = Shape::of(columns, rows) {
-            let data = Data {
-                element: self.element,
-                before: inside.at,
-                kind,
-            };
+            let data = Data { element: self.element, before: inside.at, kind };
             if !self.arrays.add(name, shape, data) {
                 return Err(MatError::TooMany);
             }
@@ -275,9 +250,7 @@ impl Scan {
             return Err(MatError::Size("field names of length 0".to_owned()));
         }
         let fields: Vec<String> = names.chunks(width.max(1)).map(up_to_nul).collect();
-        let count = sizes
-            .iter()
-            .try_fold(1_u64, |n, size| n.checked_mul((*size).into()));
+        let count = sizes.iter().try_fold(1_u64, |n, size| n.checked_mul((*size).into()));
         let count = count.filter(|count| fields.is_empty() || *count <= MOST_COLUMNS as u64);
         let count = count.ok_or(MatError::TooMany)?;
         if fields.is_empty() {

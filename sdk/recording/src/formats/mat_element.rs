@@ -25,10 +25,7 @@ pub(crate) enum MatError {
     #[error("the file ends or cannot be decompressed here: {0}; copy it again")]
     Io(#[from] io::Error),
     #[error("{found} is not {expected} of a MATLAB 5 file; save it again")]
-    Unexpected {
-        found: String,
-        expected: &'static str,
-    },
+    Unexpected { found: String, expected: &'static str },
     #[error("a size in the file is wrong ({0}); save it again")]
     Size(String),
     #[error("more than {MOST_COLUMNS} variables; save those of the recording alone")]
@@ -64,11 +61,7 @@ impl Tag {
             });
         }
         let bytes = inside.u32()?;
-        Ok(Self {
-            kind: word,
-            bytes,
-            padding: bytes.wrapping_neg() % 8,
-        })
+        Ok(Self { kind: word, bytes, padding: bytes.wrapping_neg() % 8 })
     }
 
     fn length(&self) -> u64 {
@@ -87,9 +80,7 @@ pub(crate) fn words(
     if tag.kind != kind || tag.bytes > most || tag.bytes % 4 != 0 {
         return Err(unexpected(tag.kind, expected));
     }
-    let words = (0..tag.bytes / 4)
-        .map(|_| inside.u32())
-        .collect::<Result<_, _>>()?;
+    let words = (0..tag.bytes / 4).map(|_| inside.u32()).collect::<Result<_, _>>()?;
     inside.skip(tag.padding.into())?;
     Ok(words)
 }
@@ -131,8 +122,5 @@ pub(crate) fn number_type(kind: u32) -> Option<NumberType> {
 }
 
 pub(crate) fn unexpected(kind: u32, expected: &'static str) -> MatError {
-    MatError::Unexpected {
-        found: format!("type {kind}"),
-        expected,
-    }
+    MatError::Unexpected { found: format!("type {kind}"), expected }
 }

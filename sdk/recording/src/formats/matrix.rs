@@ -36,21 +36,13 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
-    /// Returns the shape of an array of `outer` blocks of `inner` values that are next to each other in the file; `None` for a
-    /// single value, nothing, and more than [`MOST_CHANNELS`].
+    /// Returns the shape of an array of `outer` blocks of `inner` values that are next to each
+    /// other in the file; `None` for a single value, nothing, and more than [`MOST_CHANNELS`].
     pub(crate) fn of(outer: u64, inner: u64) -> Option<Self> {
         let is_planar = inner >= outer;
-        let (channels, samples) = if is_planar {
-            (outer, inner)
-        } else {
-            (inner, outer)
-        };
+        let (channels, samples) = if is_planar { (outer, inner) } else { (inner, outer) };
         let is_signal = samples > 1 && (1..=MOST_CHANNELS).contains(&channels);
-        is_signal.then_some(Self {
-            samples,
-            channels,
-            is_planar,
-        })
+        is_signal.then_some(Self { samples, channels, is_planar })
     }
 
     /// Returns channel and sample of a value, by its index in the file.
@@ -85,7 +77,8 @@ impl<T> Arrays<T> {
         }
     }
 
-    /// Adds an array. A single channel has its name, several have `name#1` and so on. False when there are too many columns.
+    /// Adds an array. A single channel has its name, several have `name#1` and so on. False when
+    /// there are too many columns.
     #[must_use]
     pub(crate) fn add(&mut self, name: &str, shape: Shape, array: T) -> bool {
         for channel in 0..shape.channels {
@@ -112,8 +105,8 @@ impl<T> Arrays<T> {
         Columns::new(self.names.iter().cloned(), Some(self.separator))
     }
 
-    /// Returns the rate that is stated nearest to the wanted columns: in their group or array, or in one around it. Different rates at the
-    /// same distance are an error.
+    /// Returns the rate that is stated nearest to the wanted columns: in their group or array, or
+    /// in one around it. Different rates at the same distance are an error.
     pub(crate) fn rate_hz(
         &self,
         columns: &Columns,
@@ -124,11 +117,8 @@ impl<T> Arrays<T> {
         };
         let mut around = array_name(&columns.name(*first)).to_owned();
         loop {
-            let group = |name: &str| {
-                name.rfind(self.separator)
-                    .map_or("", |at| &name[..at])
-                    .to_owned()
-            };
+            let group =
+                |name: &str| name.rfind(self.separator).map_or("", |at| &name[..at]).to_owned();
             let mut here = self.rates.iter().filter(|(name, _)| group(name) == around);
             if let Some((name, rate_hz)) = here.next() {
                 return match here.find(|(_, other)| other != rate_hz) {
@@ -147,7 +137,8 @@ impl<T> Arrays<T> {
         }
     }
 
-    /// Reads the wanted columns: `read` reads an array and passes each value with its index in the file. Each array is read once.
+    /// Reads the wanted columns: `read` reads an array and passes each value with its index in the
+    /// file. Each array is read once.
     pub(crate) fn numbers(
         &self,
         limit: ValueLimit,
@@ -155,11 +146,7 @@ impl<T> Arrays<T> {
         mut read: impl FnMut(&T, Shape, &mut dyn FnMut(u64, f64)) -> Result<(), Fault>,
     ) -> Result<Vec<Vec<f64>>, Fault> {
         let of = |column: &usize| self.columns.get(*column).copied().unwrap_or((0, 0));
-        let samples = |column| {
-            self.arrays
-                .get(of(column).0)
-                .map_or(0, |(shape, _)| shape.samples)
-        };
+        let samples = |column| self.arrays.get(of(column).0).map_or(0, |(shape, _)| shape.samples);
         limit.check(wanted.iter().map(samples).fold(0, u64::saturating_add))?;
         let mut numbers = vec![Vec::new(); wanted.len()];
         for (index, (shape, array)) in self.arrays.iter().enumerate() {

@@ -141,12 +141,7 @@ pub const FORMATS: &[Format] = &[
         name: "HDF5 (MATLAB 7.3)",
         extensions: &["hdf5", "h5"],
         // A block of the user may precede the file, of 512 bytes in those of MATLAB 7.3.
-        signatures: &[
-            (0, HDF5_START),
-            (512, HDF5_START),
-            (1024, HDF5_START),
-            (2048, HDF5_START),
-        ],
+        signatures: &[(0, HDF5_START), (512, HDF5_START), (1024, HDF5_START), (2048, HDF5_START)],
         feature: "lab-files",
         open: reader!("lab-files", hdf5::Hdf5::open),
     },
@@ -163,9 +158,7 @@ impl Format {
         let is_named = |format: &&Self| extension.is_some_and(|e| format.extensions.contains(&e));
         let mut formats = FORMATS.iter();
         let signed = formats.find(is_signed);
-        signed
-            .or_else(|| FORMATS.iter().find(is_named))
-            .unwrap_or(&CSV)
+        signed.or_else(|| FORMATS.iter().find(is_named)).unwrap_or(&CSV)
     }
 
     fn is_signed(&self, front: &[u8]) -> bool {

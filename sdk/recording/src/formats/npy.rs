@@ -43,8 +43,8 @@ fn shape(shape: &[u64]) -> Result<(u64, usize), NpyError> {
     }
 }
 
-/// Returns the values in the order of the file, with integers as fractions of full scale; a file that is too short is an
-/// error after its last value.
+/// Returns the values in the order of the file, with integers as fractions of full scale; a file
+/// that is too short is an error after its last value.
 fn values(
     mut bytes: impl Read,
     header: Header,

@@ -123,7 +123,5 @@ fn shape(text: &str) -> Result<Vec<u64>, NpyError> {
     }
     let sizes = inside.split(',').map(str::trim);
     let sizes = sizes.filter(|size| !size.is_empty()).map(str::parse);
-    sizes
-        .collect::<Result<_, _>>()
-        .map_err(|_| NpyError::NotPlain)
+    sizes.collect::<Result<_, _>>().map_err(|_| NpyError::NotPlain)
 }

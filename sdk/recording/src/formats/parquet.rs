@@ -1,6 +1,7 @@
 //! Parquet: numeric columns without lists.
 //!
-//! The crate `parquet` asserts what a damaged file may break in three places, which are checked here before.
+//! The crate `parquet` asserts what a damaged file may break in three places, which are checked
+//! here before.
 
 use std::io::{BufReader, Read};
 
@@ -56,10 +57,7 @@ impl ChunkReader for SharedFile {
             let header = self.0.read(start, left.min(LONGEST_HEADER))?;
             struct_len(&header).map_err(|problem| ParquetError::General(problem.to_owned()))?;
         }
-        Ok(BufReader::new(From {
-            source: self.0.clone(),
-            at: start,
-        }))
+        Ok(BufReader::new(From { source: self.0.clone(), at: start }))
     }
 
     fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes> {
@@ -96,12 +94,7 @@ impl Parquet {
             .filter(|(_, column)| is_number(column))
             .map(|(leaf, column)| (name(column), leaf))
             .unzip();
-        Ok(Self {
-            columns: Columns::with_parts(names),
-            leaves,
-            limit,
-            reader,
-        })
+        Ok(Self { columns: Columns::with_parts(names), leaves, limit, reader })
     }
 
     fn read(&self, column: usize) -> std::result::Result<Vec<f64>, Fault> {
@@ -143,7 +136,8 @@ impl Parquet {
     }
 }
 
-/// Refuses a footer that is not a whole structure; one whose length is not that of the file's is left to the library.
+/// Refuses a footer that is not a whole structure; one whose length is not that of the file's is
+/// left to the library.
 fn check_footer(source: &Shared) -> Result<()> {
     let Some(end) = source.length().checked_sub(END) else {
         return Ok(());
@@ -158,9 +152,7 @@ fn check_footer(source: &Shared) -> Result<()> {
     };
     let footer = source.read(start, length)?;
     let whole = struct_len(&footer);
-    whole
-        .map(drop)
-        .map_err(|problem| ParquetError::General(problem.to_owned()))
+    whole.map(drop).map_err(|problem| ParquetError::General(problem.to_owned()))
 }
 
 /// Refuses a chunk of a column that the library cannot read, or does not check.
@@ -172,9 +164,7 @@ fn check(chunk: &ColumnChunkMetaData) -> std::result::Result<(), String> {
             "it is compressed by {name}, which is not read; write it with snappy (in pyarrow: compression='snappy')"
         ));
     }
-    let start = chunk
-        .dictionary_page_offset()
-        .unwrap_or(chunk.data_page_offset());
+    let start = chunk.dictionary_page_offset().unwrap_or(chunk.data_page_offset());
     if start < 0 || chunk.compressed_size() < 0 {
         return Err(
             "its place in the file is negative; the footer is damaged, copy the file again"
@@ -192,10 +182,7 @@ struct CheckedPages {
 
 impl CheckedPages {
     fn new(pages: Box<dyn PageReader>) -> Self {
-        Self {
-            pages,
-            has_dictionary: false,
-        }
+        Self { pages, has_dictionary: false }
     }
 }
 
@@ -251,7 +238,8 @@ struct Append<'a> {
 }
 
 impl Append<'_> {
-    /// Appends all values of a chunk, with NaN where there is none; the inner error is that of the limit.
+    /// Appends all values of a chunk, with NaN where there is none; the inner error is that of the
+    /// limit.
     fn all<T: DataType>(
         &mut self,
         mut reader: ColumnReaderImpl<T>,
@@ -273,8 +261,7 @@ impl Append<'_> {
             for row in 0..records {
                 let is_there = levels.get(row).is_none_or(|level| *level == self.levels);
                 let value = if is_there { present.next() } else { None };
-                self.values
-                    .push(value.map_or(f64::NAN, |value| to_f64(*value)));
+                self.values.push(value.map_or(f64::NAN, |value| to_f64(*value)));
             }
             if let Err(error) = self.limit.check(self.values.len() as u64) {
                 return Ok(Err(error));
@@ -304,10 +291,8 @@ impl Sheet for Parquet {
 fn is_number(column: &ColumnDescriptor) -> bool {
     let is_plain = !matches!(column.converted_type(), ConvertedType::DECIMAL);
     let physical = column.physical_type();
-    let is_number = matches!(
-        physical,
-        Physical::INT32 | Physical::INT64 | Physical::FLOAT | Physical::DOUBLE
-    );
+    let is_number =
+        matches!(physical, Physical::INT32 | Physical::INT64 | Physical::FLOAT | Physical::DOUBLE);
     is_number && is_plain && column.max_rep_level() == 0
 }
 

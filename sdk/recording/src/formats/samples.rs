@@ -68,9 +68,7 @@ impl Sheet for Samples<'_> {
     }
 
     fn layout(&self) -> Layout {
-        Layout::Channels {
-            are_integers: self.are_integers,
-        }
+        Layout::Channels { are_integers: self.are_integers }
     }
 
     fn rate_hz(&self, _: &[usize]) -> Result<Option<f64>, Fault> {
@@ -78,10 +76,7 @@ impl Sheet for Samples<'_> {
     }
 
     fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, Fault> {
-        Ok(Numbers {
-            columns: self.channels(wanted)?,
-            ..Numbers::default()
-        })
+        Ok(Numbers { columns: self.channels(wanted)?, ..Numbers::default() })
     }
 }
 

@@ -14,10 +14,7 @@ pub(crate) struct Shared {
 
 impl Shared {
     pub(crate) fn new(input: Random) -> io::Result<Self> {
-        Ok(Self {
-            length: input.len()?,
-            input: Arc::new(Mutex::new(input)),
-        })
+        Ok(Self { length: input.len()?, input: Arc::new(Mutex::new(input)) })
     }
 
     /// Returns the number of bytes.

@@ -1,7 +1,8 @@
 //! Rows of numbers in delimited text.
 //!
-//! The cells are split here instead of by the `csv` crate: rows are plain numbers, one pass splits and parses
-//! them in half the time that crate takes, and messages need line numbers as in an editor.
+//! The cells are split here instead of by the `csv` crate: rows are plain numbers, one pass splits
+//! and parses them in half the time that crate takes, and messages need line numbers as in an
+//! editor.
 
 use crate::error::{Fault, Place, ReadProblem, cell};
 use crate::formats::cells::{Delimiter, split};
@@ -18,17 +19,14 @@ const MAX_SHOWN: usize = 40;
 pub(crate) struct Table {
     pub(crate) columns: Columns,
     delimiter: Delimiter,
-    /// Rows whose line is not the one after the previous row, with their lines; the first row is always listed.
+    /// Rows whose line is not the one after the previous row, with their lines; the first row is
+    /// always listed.
     runs: Vec<(usize, usize)>,
 }
 
 impl Table {
     pub(crate) fn new(columns: Columns, delimiter: Delimiter) -> Self {
-        Self {
-            columns,
-            delimiter,
-            runs: Vec::new(),
-        }
+        Self { columns, delimiter, runs: Vec::new() }
     }
 
     /// Reads the rows of a block, up to the limit of numbers.

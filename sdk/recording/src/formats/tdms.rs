@@ -1,9 +1,11 @@
 //! TDMS, the files of LabVIEW: channels in groups, with their rate.
 //!
-//! Layout: "TDMS File Format Internal Structure", National Instruments; segments, each with the objects that it changes, and raw data in
-//! chunks. The directory of all segments is read first, then the channels that are used.
+//! Layout: "TDMS File Format Internal Structure", National Instruments; segments, each with the
+//! objects that it changes, and raw data in chunks. The directory of all segments is read first,
+//! then the channels that are used.
 //!
-//! The reader is the project's own: `tdms` unwraps what a damaged file may lack, and reads files alone.
+//! The reader is the project's own: `tdms` unwraps what a damaged file may lack, and reads files
+//! alone.
 
 use std::io::{Seek, SeekFrom};
 
@@ -30,18 +32,13 @@ impl Tdms {
     pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
         let mut input = opened.random()?;
         let mut directory = Directory::new(limit);
-        directory
-            .read(&mut input)
-            .map_err(|problem| damaged(directory.place(), &problem))?;
+        directory.read(&mut input).map_err(|problem| damaged(directory.place(), &problem))?;
         let channels: Vec<Channel> = directory
             .channels
             .into_iter()
             .filter(|channel| channel.samples > 0 || channel.refused.is_some())
             .collect();
-        let names = channels
-            .iter()
-            .map(|channel| (channel.name.clone(), channel.part))
-            .collect();
+        let names = channels.iter().map(|channel| (channel.name.clone(), channel.part)).collect();
         Ok(Self {
             columns: Columns::with_parts(names),
             channels,
@@ -58,8 +55,7 @@ impl Tdms {
         let mut values = Vec::new();
         for piece in &channel.pieces {
             for chunk in 0..piece.chunks {
-                self.input
-                    .seek(SeekFrom::Start(piece.start + chunk * piece.chunk_bytes))?;
+                self.input.seek(SeekFrom::Start(piece.start + chunk * piece.chunk_bytes))?;
                 read_chunk(&mut self.input, piece, &mut values)?;
             }
         }
@@ -99,9 +95,7 @@ impl Sheet for Tdms {
 
     /// Returns the inverse of `wf_increment`, which must be that of all channels.
     fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, Fault> {
-        let channels = wanted
-            .iter()
-            .filter_map(|column| self.channels.get(*column));
+        let channels = wanted.iter().filter_map(|column| self.channels.get(*column));
         let mut first: Option<(&Channel, f64)> = None;
         for channel in channels {
             let Some(step_s) = channel.increment_s else {
@@ -137,11 +131,7 @@ impl Sheet for Tdms {
             chosen().map(read).collect()
         });
         self.channels = channels;
-        Ok(Numbers {
-            columns: read?,
-            warnings: self.warnings.clone(),
-            ..Numbers::default()
-        })
+        Ok(Numbers { columns: read?, warnings: self.warnings.clone(), ..Numbers::default() })
     }
 }
 

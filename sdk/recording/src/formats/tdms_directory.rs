@@ -148,10 +148,7 @@ impl Directory {
         let is_complete = size != INCOMPLETE;
         let size = if is_complete { size } else { left };
         if size > left || metadata > size {
-            return Err(TdmsError::Short {
-                wanted: size.max(metadata),
-                left,
-            });
+            return Err(TdmsError::Short { wanted: size.max(metadata), left });
         }
         Ok(Segment {
             contents,
@@ -198,11 +195,7 @@ impl Directory {
         let bad = || TdmsError::Path(htex_finding::plain(path).into_owned());
         let parts = parts(path).ok_or_else(bad)?;
         let [group, own] = &parts[..] else {
-            return if parts.len() < 2 {
-                Ok(None)
-            } else {
-                Err(bad())
-            };
+            return if parts.len() < 2 { Ok(None) } else { Err(bad()) };
         };
         if self.channels.len() == MOST_CHANNELS {
             return Err(TdmsError::TooManyChannels);
@@ -281,9 +274,8 @@ impl Directory {
             .iter()
             .filter_map(|channel| Some((*channel, self.channels[*channel].layout?)))
             .collect();
-        let chunk_bytes = layouts
-            .iter()
-            .fold(0_u64, |sum, (_, layout)| sum.saturating_add(layout.bytes));
+        let chunk_bytes =
+            layouts.iter().fold(0_u64, |sum, (_, layout)| sum.saturating_add(layout.bytes));
         if chunk_bytes == 0 {
             return Err(TdmsError::Layout(
                 "the segment has values, but no channel has any; the file is damaged, copy it again",
@@ -304,9 +296,7 @@ impl Directory {
         let is_interleaved = segment.contents & INTERLEAVED != 0;
         let rows = layouts.first().map_or(0, |(_, layout)| layout.values);
         if is_interleaved
-            && layouts
-                .iter()
-                .any(|(_, layout)| layout.values != rows || layout.kind.is_none())
+            && layouts.iter().any(|(_, layout)| layout.values != rows || layout.kind.is_none())
         {
             return Err(TdmsError::Layout(
                 "interleaved channels have different lengths; the file is damaged, copy it again",
@@ -348,9 +338,7 @@ impl Directory {
             return Err(TdmsError::TooManyPieces);
         }
         let own = &mut self.channels[channel];
-        own.samples = own
-            .samples
-            .saturating_add(piece.values.saturating_mul(piece.chunks));
+        own.samples = own.samples.saturating_add(piece.values.saturating_mul(piece.chunks));
         own.pieces.push(piece);
         Ok(())
     }

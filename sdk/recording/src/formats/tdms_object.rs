@@ -1,4 +1,5 @@
-//! The parts of a TDMS object: its path, the layout of its values, its attributes; and the errors of a file.
+//! The parts of a TDMS object: its path, the layout of its values, its attributes; and the errors
+//! of a file.
 
 use std::io::{self, Read};
 
@@ -62,11 +63,7 @@ pub(crate) fn layout(reader: &mut ByteReader<impl Read>) -> Result<Layout, TdmsE
         (Some(number), _) => number.size() as u64,
         (None, 0x20) => {
             let bytes = reader.u64()?;
-            return Ok(Layout {
-                kind: None,
-                values,
-                bytes,
-            });
+            return Ok(Layout { kind: None, values, bytes });
         }
         (None, 0) => 0,
         (None, 0x21) => 1,
@@ -82,11 +79,7 @@ pub(crate) fn layout(reader: &mut ByteReader<impl Read>) -> Result<Layout, TdmsE
     let bytes = bytes.ok_or(TdmsError::Layout(
         "a channel has too many values; the file is damaged, copy it again",
     ))?;
-    Ok(Layout {
-        kind: number,
-        values,
-        bytes,
-    })
+    Ok(Layout { kind: number, values, bytes })
 }
 
 /// Reads past the index of raw DAQmx data.

@@ -13,12 +13,7 @@ pub(crate) fn without_mark(text: &str) -> &str {
 /// Returns the bytes, which follow `before` lines, as text; refuses NUL and invalid UTF-8.
 pub(crate) fn checked(bytes: &[u8], before: usize) -> Result<&str, Fault> {
     let refuse = |position: usize, what| {
-        let line = before
-            + 1
-            + bytes[..position]
-                .iter()
-                .filter(|byte| **byte == b'\n')
-                .count();
+        let line = before + 1 + bytes[..position].iter().filter(|byte| **byte == b'\n').count();
         ReadProblem::NotText { what }.at(Place::Line(line))
     };
     if bytes.contains(&0) {
@@ -49,12 +44,7 @@ impl<'a> Lines<'a> {
 
     /// Lines of a text that follows others, which may have contained "simulated".
     pub(crate) fn behind(text: &'a str, number: usize, simulated: bool) -> Self {
-        Self {
-            rest: text,
-            number,
-            comment: None,
-            simulated,
-        }
+        Self { rest: text, number, comment: None, simulated }
     }
 
     /// Returns the next line with cells, without its line end; `None` at the end of the file.
@@ -91,10 +81,7 @@ impl<'a> Lines<'a> {
         self.rest = rest;
         self.number += 1;
         if line.len() > MAX_LINE {
-            let problem = ReadProblem::LongLine {
-                bytes: line.len(),
-                limit: MAX_LINE,
-            };
+            let problem = ReadProblem::LongLine { bytes: line.len(), limit: MAX_LINE };
             return Err(problem.at(Place::Line(self.number)));
         }
         Ok(line.strip_suffix('\r').unwrap_or(line))

@@ -1,5 +1,7 @@
-//! Lengths in Thrift's compact protocol (<https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md>), by which
-//! Parquet writes its headers. The library that reads them takes as many turns for a list as it claims to have elements.
+//! Lengths in Thrift's compact protocol
+//! (<https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md>), by which
+//! Parquet writes its headers. The library that reads them takes as many turns for a list as it
+//! claims to have elements.
 
 /// Deepest nesting of structures and lists.
 const DEEPEST: usize = 32;

@@ -27,9 +27,7 @@ pub fn at(rate_hz: f64) -> ReadOptions {
 }
 
 pub fn mapped(map: &str, rate_hz: Option<f64>) -> ReadOptions {
-    ReadOptions::default()
-        .with_rate_hz(rate_hz)
-        .with_map(map.parse::<ColumnMap>().unwrap())
+    ReadOptions::default().with_rate_hz(rate_hz).with_map(map.parse::<ColumnMap>().unwrap())
 }
 
 pub fn read(
@@ -42,10 +40,7 @@ pub fn read(
 }
 
 pub fn has_warning(recording: &Recording, words: &str) -> bool {
-    recording
-        .warnings
-        .iter()
-        .any(|warning| warning.contains(words))
+    recording.warnings.iter().any(|warning| warning.contains(words))
 }
 
 pub fn wav(spec: hound::WavSpec, samples: &[f64]) -> Vec<u8> {
@@ -65,17 +60,9 @@ pub fn wav(spec: hound::WavSpec, samples: &[f64]) -> Vec<u8> {
 }
 
 pub fn spec(channels: u16, bits_per_sample: u16) -> hound::WavSpec {
-    let sample_format = if bits_per_sample == 32 {
-        hound::SampleFormat::Float
-    } else {
-        hound::SampleFormat::Int
-    };
-    hound::WavSpec {
-        channels,
-        sample_rate: 44_100,
-        bits_per_sample,
-        sample_format,
-    }
+    let sample_format =
+        if bits_per_sample == 32 { hound::SampleFormat::Float } else { hound::SampleFormat::Int };
+    hound::WavSpec { channels, sample_rate: 44_100, bits_per_sample, sample_format }
 }
 
 pub fn npy(header: &str, data: &[u8]) -> Vec<u8> {

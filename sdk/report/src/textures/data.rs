@@ -17,7 +17,8 @@ pub struct TextureReport {
     pub command: String,
 }
 
-/// Of some textures, how many a model keeps below the difference threshold, and how many within what the recording varies.
+/// Of some textures, how many a model keeps below the difference threshold, and how many within
+/// what the recording varies.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Share {
     /// The model's short name.
@@ -36,7 +37,8 @@ pub struct Share {
 pub struct Measure {
     /// Caption of the table.
     pub caption: String,
-    /// Whether it is a correlation, of which 1 is the best, instead of an error in decibels, of which 0 is.
+    /// Whether it is a correlation, of which 1 is the best, instead of an error in decibels, of
+    /// which 0 is.
     pub is_correlation: bool,
     /// Whether it is compared with the recording's own repeatability.
     pub repeats: bool,
@@ -46,13 +48,15 @@ pub struct Measure {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Texture {
     pub name: String,
-    /// Whether it was computed instead of recorded; the page states this wherever it names the texture.
+    /// Whether it was computed instead of recorded; the page states this wherever it names the
+    /// texture.
     pub simulated: bool,
     /// The unit of its magnitudes: `"N"`, `"m/s2"`, `"m/s"`, `"m"`.
     pub unit: String,
     /// Speed and force: `"80 mm/s, 0.40 N"`.
     pub condition: String,
-    /// What slid over it, and how frequencies and level follow a motion that was not recorded; empty if it is not said.
+    /// What slid over it, and how frequencies and level follow a motion that was not recorded;
+    /// empty if it is not said.
     pub law: String,
     /// Size of the recording's file, bytes.
     pub recording_bytes: u64,
@@ -81,7 +85,8 @@ pub struct ModelResult {
     pub color: String,
     /// The model's magnitude at the texture's frequencies, in the texture's unit.
     pub magnitude: Vec<f64>,
-    /// What the measures of the report found, in their order; one that is not known may be left out at the end.
+    /// What the measures of the report found, in their order; one that is not known may be left out
+    /// at the end.
     pub measured: Vec<Option<f64>>,
     /// Text below its spectrum.
     pub note: String,
@@ -89,8 +94,8 @@ pub struct ModelResult {
     pub band_error_db: Vec<f64>,
     /// Size of the parameters, bytes.
     pub payload_bytes: usize,
-    /// Frequency (hertz) and amplitude (in the texture's unit) of each sinusoid of a model that is a sum of
-    /// sinusoids; drawn instead of the magnitude.
+    /// Frequency (hertz) and amplitude (in the texture's unit) of each sinusoid of a model that is
+    /// a sum of sinusoids; drawn instead of the magnitude.
     pub lines: Option<Vec<(f64, f64)>>,
 }
 
@@ -110,11 +115,7 @@ impl TextureReport {
 impl Texture {
     /// Returns the name, marked if it is simulated.
     pub(crate) fn header(&self) -> String {
-        if self.simulated {
-            format!("{} (simulated)", self.name)
-        } else {
-            self.name.clone()
-        }
+        if self.simulated { format!("{} (simulated)", self.name) } else { self.name.clone() }
     }
 
     /// Returns the unit of the plots and the factor to it from the texture's unit, chosen so that
@@ -139,8 +140,6 @@ impl Texture {
 
     /// Returns the result of the model called `short_name`.
     pub(crate) fn model(&self, short_name: &str) -> Option<&ModelResult> {
-        self.models
-            .iter()
-            .find(|model| model.short_name == short_name)
+        self.models.iter().find(|model| model.short_name == short_name)
     }
 }

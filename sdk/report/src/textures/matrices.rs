@@ -11,10 +11,7 @@ const WITHIN: &str = "\u{a0}*";
 
 /// Error of the darkest shade, decibels.
 const DARKEST_DB: f64 = 12.0;
-const CORRELATIONS: HeatScale = HeatScale::Sequential {
-    low: 0.0,
-    high: 1.0,
-};
+const CORRELATIONS: HeatScale = HeatScale::Sequential { low: 0.0, high: 1.0 };
 
 /// A table for each measure that is known of a model.
 pub(super) fn summary(report: &TextureReport) -> String {
@@ -46,11 +43,7 @@ fn table(report: &TextureReport, at: usize, measure: &Measure) -> Table {
             return Cell::Missing;
         };
         let own = texture.repeatability_rms_db.filter(|_| measure.repeats);
-        let mark = if own.is_some_and(|own| value <= own) {
-            WITHIN
-        } else {
-            ""
-        };
+        let mark = if own.is_some_and(|own| value <= own) { WITHIN } else { "" };
         Cell::Shaded(value, mark)
     };
     let mut table = by_model(report, cell);
@@ -73,20 +66,14 @@ fn by_model(report: &TextureReport, cell: impl Fn(&Texture, &ModelResult) -> Cel
     let row = |texture: &Texture| {
         let found = models.iter().map(|model| texture.model(&model.short_name));
         let cells = found.map(|model| model.map_or(Cell::Missing, |m| cell(texture, m)));
-        Row {
-            header: texture.header(),
-            cells: cells.collect(),
-        }
+        Row { header: texture.header(), cells: cells.collect() }
     };
     Table {
         caption: String::new(),
         corner: "texture".to_owned(),
         columns: models.iter().map(|model| model.model.clone()).collect(),
         rows: report.textures.iter().map(row).collect(),
-        scale: HeatScale::Sequential {
-            low: 0.0,
-            high: DARKEST_DB,
-        },
+        scale: HeatScale::Sequential { low: 0.0, high: DARKEST_DB },
         decimals: 1,
     }
 }
@@ -100,21 +87,13 @@ pub(super) fn bands(report: &TextureReport) -> String {
     );
     let fitted = report.textures.iter().filter(|t| !t.models.is_empty());
     let tables: String = fitted.map(|t| band_table(t).to_html()).collect();
-    note + "\n"
-        + &Element::new("div")
-            .set("class", "tables")
-            .raw(&tables)
-            .render()
+    note + "\n" + &Element::new("div").set("class", "tables").raw(&tables).render()
 }
 
 fn band_table(texture: &Texture) -> Table {
     let row = |model: &ModelResult| Row {
         header: model.model.clone(),
-        cells: model
-            .band_error_db
-            .iter()
-            .map(|db| Cell::Shaded(*db, ""))
-            .collect(),
+        cells: model.band_error_db.iter().map(|db| Cell::Shaded(*db, "")).collect(),
     };
     Table {
         caption: format!("{}: error / dB", texture.title()),
@@ -126,8 +105,8 @@ fn band_table(texture: &Texture) -> Table {
     }
 }
 
-/// Returns the centres of the nine bands: the inner nine of eleven points evenly spaced in log frequency
-/// from 20 to 1000 Hz.
+/// Returns the centres of the nine bands: the inner nine of eleven points evenly spaced in log
+/// frequency from 20 to 1000 Hz.
 fn band_centres_hz() -> impl Iterator<Item = f64> {
     (1..=9).map(|i| 20.0 * 50f64.powf(f64::from(i) / 10.0))
 }
@@ -139,9 +118,6 @@ mod tests {
     #[test]
     fn the_fifth_band_is_centred_in_the_tactile_band() {
         let centres: Vec<String> = band_centres_hz().map(|hz| fixed(hz, 0)).collect();
-        assert_eq!(
-            centres,
-            ["30", "44", "65", "96", "141", "209", "309", "457", "676"]
-        );
+        assert_eq!(centres, ["30", "44", "65", "96", "141", "209", "309", "457", "676"]);
     }
 }

@@ -44,20 +44,13 @@ pub fn texture_report(report: &TextureReport) -> String {
 
 fn simulation_notice(report: &TextureReport) -> String {
     let all = &report.textures;
-    let names: Vec<&str> = all
-        .iter()
-        .filter(|t| t.simulated)
-        .map(|t| t.name.as_str())
-        .collect();
+    let names: Vec<&str> = all.iter().filter(|t| t.simulated).map(|t| t.name.as_str()).collect();
     let text = match (names.len(), names.len() == all.len()) {
         (0, _) => return String::new(),
         (_, true) => "All textures on this page are simulated: computed, not recorded from a finger on a surface.".to_owned(),
         _ => format!("Simulated, not recorded from a finger on a surface: {}.", names.join(", ")),
     };
-    Element::new("p")
-        .set("class", "notice")
-        .text(&text)
-        .render()
+    Element::new("p").set("class", "notice").text(&text).render()
 }
 
 fn how_to_read(page: &mut Page) {
@@ -85,16 +78,9 @@ fn warnings(page: &mut Page, report: &TextureReport) {
     page.heading("Warnings");
     let named = |texture: &Texture| {
         let name = texture.header();
-        let all = texture
-            .warnings
-            .iter()
-            .map(|text| format!("{name}: {text}"));
+        let all = texture.warnings.iter().map(|text| format!("{name}: {text}"));
         all.collect::<Vec<_>>()
     };
     let all: Vec<String> = report.textures.iter().flat_map(named).collect();
-    page.html(&if all.is_empty() {
-        paragraph("None.")
-    } else {
-        list(&all)
-    });
+    page.html(&if all.is_empty() { paragraph("None.") } else { list(&all) });
 }

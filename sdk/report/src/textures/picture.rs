@@ -12,8 +12,8 @@ const PANEL: (f64, f64) = (230.0, 190.0);
 /// Height of the caption below the panels, pixels.
 const CAPTION_PX: f64 = 26.0;
 
-/// Draws each texture's recording, overlaid with each of the named models, as a self-contained SVG. The panel of a texture
-/// without a model is empty.
+/// Draws each texture's recording, overlaid with each of the named models, as a self-contained SVG.
+/// The panel of a texture without a model is empty.
 pub fn spectra_picture(textures: &[Texture], short_names: &[&str]) -> String {
     let width = PANEL.0 * textures.len() as f64;
     let height = PANEL.1 * short_names.len() as f64 + CAPTION_PX;
@@ -28,10 +28,7 @@ pub fn spectra_picture(textures: &[Texture], short_names: &[&str]) -> String {
         .set("width", &px(width))
         .set("height", &px(height))
         .set("role", "img")
-        .set(
-            "aria-label",
-            "Spectra of recordings, and of models over them",
-        )
+        .set("aria-label", "Spectra of recordings, and of models over them")
         .set("font-family", FONT)
         .set("font-size", &px(TEXT_PX))
         .set("fill", INK)
@@ -50,11 +47,7 @@ fn texture_panels(texture: &Texture, short_names: &[&str]) -> Vec<(usize, Plot)>
     let top = top(texture, found.iter().map(|(_, model)| *model));
     let panel = |(row, model): (usize, &ModelResult)| {
         let title = format!("{}: {} bytes", texture.name, model.payload_bytes);
-        let plot = Plot {
-            width: PANEL.0,
-            height: PANEL.1,
-            ..overlay(&title, texture, model, top)
-        };
+        let plot = Plot { width: PANEL.0, height: PANEL.1, ..overlay(&title, texture, model, top) };
         (row, plot)
     };
     found.into_iter().map(panel).collect()
@@ -79,8 +72,5 @@ fn caption(textures: &[Texture], short_names: &[&str], height: f64) -> Element {
         "Grey: {kind}. Colour: models, row by row {}, with the bytes of their parameters.",
         names.join(", ")
     );
-    Element::new("text")
-        .set("x", "24")
-        .set("y", &px(height - 9.0))
-        .text(&text)
+    Element::new("text").set("x", "24").set("y", &px(height - 9.0)).text(&text)
 }

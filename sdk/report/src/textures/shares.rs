@@ -1,4 +1,5 @@
-//! Table of the textures that a model keeps below the difference threshold, and of those within what the recording varies.
+//! Table of the textures that a model keeps below the difference threshold, and of those within
+//! what the recording varies.
 
 use super::data::{Share, TextureReport};
 use crate::page::paragraph;
@@ -15,20 +16,13 @@ pub(super) fn table(report: &TextureReport) -> String {
     if report.shares.is_empty() {
         return String::new();
     }
-    let columns = [
-        "below the difference threshold",
-        "the same, sensitive finger",
-        "within repeatability",
-    ];
+    let columns =
+        ["below the difference threshold", "the same, sensitive finger", "within repeatability"];
     let table = Table {
         caption: CAPTION.to_owned(),
         corner: "model".to_owned(),
         columns: columns.map(str::to_owned).to_vec(),
-        rows: report
-            .shares
-            .iter()
-            .map(|share| row(report, share))
-            .collect(),
+        rows: report.shares.iter().map(|share| row(report, share)).collect(),
         scale: HeatScale::None,
         decimals: 0,
     };
@@ -37,19 +31,12 @@ pub(super) fn table(report: &TextureReport) -> String {
 
 fn row(report: &TextureReport, share: &Share) -> Row {
     let models = report.models();
-    let known = models
-        .iter()
-        .find(|model| model.short_name == share.short_name);
-    let counts = [
-        share.below_difference_threshold,
-        share.below_if_sensitive,
-        share.within_repeatability,
-    ];
+    let known = models.iter().find(|model| model.short_name == share.short_name);
+    let counts =
+        [share.below_difference_threshold, share.below_if_sensitive, share.within_repeatability];
     let cell = |count: usize| Cell::Text(format!("{count} of {}", share.textures), String::new());
     Row {
-        header: known
-            .map_or(&share.short_name, |model| &model.model)
-            .to_owned(),
+        header: known.map_or(&share.short_name, |model| &model.model).to_owned(),
         cells: counts.map(cell).to_vec(),
     }
 }

@@ -26,17 +26,11 @@ pub(super) fn table(report: &TextureReport) -> String {
 fn row(texture: &Texture, models: &[&ModelResult]) -> Row {
     let recording = Cell::Text(bytes(texture.recording_bytes), String::new());
     let asset = size(texture, texture.asset_bytes);
-    let payload = |short_name: &str| {
-        texture
-            .model(short_name)
-            .map(|model| model.payload_bytes as u64)
-    };
+    let payload =
+        |short_name: &str| texture.model(short_name).map(|model| model.payload_bytes as u64);
     let sizes = models.iter().map(|model| payload(&model.short_name));
     let sizes = sizes.map(|found| found.map_or(Cell::Missing, |count| size(texture, count)));
-    Row {
-        header: texture.header(),
-        cells: [recording, asset].into_iter().chain(sizes).collect(),
-    }
+    Row { header: texture.header(), cells: [recording, asset].into_iter().chain(sizes).collect() }
 }
 
 fn size(texture: &Texture, count: u64) -> Cell {

@@ -36,9 +36,7 @@ fn key(report: &TextureReport) -> Element {
 }
 
 fn key_entry(color: &str, name: &str) -> Element {
-    let swatch = svg::line(0.0, 5.0, 24.0, 5.0)
-        .set("stroke", color)
-        .set("stroke-width", "3");
+    let swatch = svg::line(0.0, 5.0, 24.0, 5.0).set("stroke", color).set("stroke-width", "3");
     let swatch = Element::new("svg")
         .set("width", "24")
         .set("height", "10")
@@ -49,19 +47,14 @@ fn key_entry(color: &str, name: &str) -> Element {
 
 fn row(texture: &Texture) -> Element {
     let top = top(texture, &texture.models);
-    let models = texture
-        .models
-        .iter()
-        .map(|model| model_panel(texture, model, top));
+    let models = texture.models.iter().map(|model| model_panel(texture, model, top));
     // All in one row, or in two rows of equal length.
     let all = 1 + texture.models.len();
     let half = if all > 4 { all.div_ceil(2) } else { all };
     let panels = Element::new("div")
         .set("class", "panels")
         .set("style", &format!("--all: {all}; --half: {half}"));
-    let panels = panels
-        .child(&recording_panel(texture, top))
-        .children(models);
+    let panels = panels.child(&recording_panel(texture, top)).children(models);
     Element::new("section")
         .set("class", "row")
         .child(&row_heading(texture))
@@ -82,34 +75,18 @@ fn row_heading(texture: &Texture) -> Element {
     } else {
         heading
     };
-    heading.child(
-        &Element::new("span")
-            .set("class", "detail")
-            .text(&texture.condition),
-    )
+    heading.child(&Element::new("span").set("class", "detail").text(&texture.condition))
 }
 
 fn recording_panel(texture: &Texture, top: f64) -> Element {
-    let title = if texture.simulated {
-        "simulated recording"
-    } else {
-        "recording"
-    };
+    let title = if texture.simulated { "simulated recording" } else { "recording" };
     let series = Series::line(title, curve(texture, &texture.recorded));
-    let note = texture
-        .repeatability_rms_db
-        .map(|db| format!("varies by {} dB RMS", fixed(db, 1)));
-    panel(
-        plot(texture, title, vec![series], top),
-        &note.unwrap_or_default(),
-    )
+    let note = texture.repeatability_rms_db.map(|db| format!("varies by {} dB RMS", fixed(db, 1)));
+    panel(plot(texture, title, vec![series], top), &note.unwrap_or_default())
 }
 
 fn model_panel(texture: &Texture, model: &ModelResult, top: f64) -> Element {
-    panel(
-        overlay(&model.model, texture, model, top),
-        &model_note(texture, model, top),
-    )
+    panel(overlay(&model.model, texture, model, top), &model_note(texture, model, top))
 }
 
 /// Plots a model over the recording.
@@ -117,19 +94,13 @@ pub(super) fn overlay(title: &str, texture: &Texture, model: &ModelResult, top: 
     let backdrop = Series::line("recording", curve(texture, &texture.recorded));
     let (scale, _) = texture.plotted();
     let front = match &model.lines {
-        Some(lines) => Series::stems(
-            &model.model,
-            lines.iter().map(|(f, a)| (*f, a * scale)).collect(),
-        ),
+        Some(lines) => {
+            Series::stems(&model.model, lines.iter().map(|(f, a)| (*f, a * scale)).collect())
+        }
         None => Series::line(&model.model, curve(texture, &model.magnitude)),
     };
     let front = front.colored(&model.color);
-    plot(
-        texture,
-        title,
-        vec![backdrop.behind().colored(BACKDROP), front],
-        top,
-    )
+    plot(texture, title, vec![backdrop.behind().colored(BACKDROP), front], top)
 }
 
 fn model_note(texture: &Texture, model: &ModelResult, top: f64) -> String {
@@ -146,20 +117,12 @@ fn model_note(texture: &Texture, model: &ModelResult, top: f64) -> String {
 fn plot(texture: &Texture, title: &str, series: Vec<Series>, top: f64) -> Plot {
     let x = Axis::log("frequency / Hz").with_range(20.0, 1000.0);
     let y = Axis::linear(&format!("magnitude / {}", texture.plotted().1)).with_range(0.0, top);
-    Plot {
-        series,
-        width: PANEL.0,
-        height: PANEL.1,
-        legend: false,
-        ..Plot::new(title, x, y)
-    }
+    Plot { series, width: PANEL.0, height: PANEL.1, legend: false, ..Plot::new(title, x, y) }
 }
 
 fn panel(plot: Plot, note: &str) -> Element {
     let width = format!("max-width:{}px", px(2.0 * plot.width));
-    let figure = Element::new("figure")
-        .set("style", &width)
-        .raw(&plot.to_svg());
+    let figure = Element::new("figure").set("style", &width).raw(&plot.to_svg());
     figure.child(&Element::new("figcaption").text(note))
 }
 
@@ -174,9 +137,7 @@ fn curve(texture: &Texture, magnitude: &[f64]) -> Vec<(f64, f64)> {
 pub(super) fn top<'a>(texture: &Texture, models: impl IntoIterator<Item = &'a ModelResult>) -> f64 {
     let (scale, _) = texture.plotted();
     let recorded = highest(texture.recorded.iter().copied(), scale);
-    let models = models
-        .into_iter()
-        .filter_map(|model| highest(drawn(model), scale));
+    let models = models.into_iter().filter_map(|model| highest(drawn(model), scale));
     let models = models.fold(0.0, f64::max);
     let highest = recorded.map_or(models, |r| models.min(OVERSHOOT * r).max(r));
     if highest > 0.0 { 1.05 * highest } else { 1.0 }
@@ -184,16 +145,8 @@ pub(super) fn top<'a>(texture: &Texture, models: impl IntoIterator<Item = &'a Mo
 
 /// Returns the values that a panel draws of a model, in the texture's unit.
 fn drawn(model: &ModelResult) -> impl Iterator<Item = f64> + '_ {
-    let lines = model
-        .lines
-        .iter()
-        .flatten()
-        .map(|(_, amplitude)| *amplitude);
-    let curve = if model.lines.is_some() {
-        &[]
-    } else {
-        model.magnitude.as_slice()
-    };
+    let lines = model.lines.iter().flatten().map(|(_, amplitude)| *amplitude);
+    let curve = if model.lines.is_some() { &[] } else { model.magnitude.as_slice() };
     lines.chain(curve.iter().copied())
 }
 

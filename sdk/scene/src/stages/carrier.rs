@@ -7,11 +7,8 @@ use crate::requirements::Requirements;
 /// Samples after which the oscillator restarts from its exact phase.
 const RENEW: u32 = 1024;
 
-pub(crate) const ENTRY: Entry = Entry {
-    effect: Effect::Carrier,
-    name: "carrier",
-    place: StagePlace::Device { need, build },
-};
+pub(crate) const ENTRY: Entry =
+    Entry { effect: Effect::Carrier, name: "carrier", place: StagePlace::Device { need, build } };
 
 fn need(required: &Requirements) -> Need {
     match required.device.carrier_hz {
@@ -21,22 +18,12 @@ fn need(required: &Requirements) -> Need {
 }
 
 fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
-    let carrier_hz = required
-        .device
-        .carrier_hz
-        .filter(|_| !neutral)
-        .unwrap_or(0.0);
+    let carrier_hz = required.device.carrier_hz.filter(|_| !neutral).unwrap_or(0.0);
     let cycles = carrier_hz / required.rate_hz;
     // A phase in 64-bit fixed point does not drift.
     let step = (cycles.fract() * 2f64.powi(64)) as u64;
     let (sin, cos) = libm::sincos(std::f64::consts::TAU * cycles);
-    Box::new(Carrier {
-        step,
-        turn: [cos, sin],
-        phase: 0,
-        at: [1.0, 0.0],
-        left: RENEW,
-    })
+    Box::new(Carrier { step, turn: [cos, sin], phase: 0, at: [1.0, 0.0], left: RENEW })
 }
 
 struct Carrier {

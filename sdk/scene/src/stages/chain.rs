@@ -1,7 +1,7 @@
 //! A chain of stages, with counts and times of each.
 //!
-//! Stages pull: a stage requests the samples that it needs from its source, so that a rate converter is a stage like
-//! any other and the samples are the same for all block sizes.
+//! Stages pull: a stage requests the samples that it needs from its source, so that a rate
+//! converter is a stage like any other and the samples are the same for all block sizes.
 
 use std::time::Instant;
 
@@ -33,13 +33,7 @@ pub struct StageRun {
 
 impl Slot {
     pub(crate) fn new(name: &'static str, surface: Option<usize>, stage: Box<dyn Stage>) -> Self {
-        Self {
-            name,
-            surface,
-            stage,
-            blocks: 0,
-            ns: 0,
-        }
+        Self { name, surface, stage, blocks: 0, ns: 0 }
     }
 
     pub(crate) fn follow(&mut self, context: &Context) {

@@ -1,5 +1,6 @@
-//! Compensation of the response of finger and display, so that the friction on the finger has the texture's
-//! spectrum: the gain is 1/|H| where |H| is large, and is limited by the depth below the maximum in the band.
+//! Compensation of the response of finger and display, so that the friction on the finger has the
+//! texture's spectrum: the gain is 1/|H| where |H| is large, and is limited by the depth below the
+//! maximum in the band.
 
 use htex_dsp::fir::Fir;
 use htex_dsp::resample::UnusableRates;

@@ -1,5 +1,5 @@
-//! Silence without contact or slip, and at the start and end of a scene on a device that people touch or
-//! hear.
+//! Silence without contact or slip, and at the start and end of a scene on a device that people
+//! touch or hear.
 
 use htex_device::Quantity;
 use htex_dsp::glide::Glide;
@@ -9,11 +9,8 @@ use super::{Context, Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
 use crate::requirements::Requirements;
 
-pub(crate) const ENTRY: Entry = Entry {
-    effect: Effect::Contact,
-    name: "contact",
-    place: StagePlace::Device { need, build },
-};
+pub(crate) const ENTRY: Entry =
+    Entry { effect: Effect::Contact, name: "contact", place: StagePlace::Device { need, build } };
 
 fn need(required: &Requirements) -> Need {
     if required.live {
@@ -31,11 +28,7 @@ fn need(required: &Requirements) -> Need {
 
 fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     let ramp = (CONTACT_RAMP_S * required.rate_hz).ceil() as u32;
-    Box::new(Contact {
-        neutral,
-        ramp,
-        gain: Glide::new(if neutral { 1.0 } else { 0.0 }, ramp),
-    })
+    Box::new(Contact { neutral, ramp, gain: Glide::new(if neutral { 1.0 } else { 0.0 }, ramp) })
 }
 
 struct Contact {
@@ -54,9 +47,7 @@ impl Stage for Contact {
                 // The last of them is zero, like the first one of a scene.
                 self.gain.set_within(0.0, (left as u32).saturating_sub(1));
             }
-            _ => self
-                .gain
-                .set(if context.finger.slides() { 1.0 } else { 0.0 }),
+            _ => self.gain.set(if context.finger.slides() { 1.0 } else { 0.0 }),
         }
     }
 

@@ -1,5 +1,5 @@
-//! Cross-fades between surfaces, and fades at their edges: equal power, since textures are uncorrelated. A
-//! surface that is not touched is not rendered.
+//! Cross-fades between surfaces, and fades at their edges: equal power, since textures are
+//! uncorrelated. A surface that is not touched is not rendered.
 
 use htex_dsp::glide::Glide;
 
@@ -32,9 +32,7 @@ pub(crate) struct Crossfade {
 impl Crossfade {
     pub(crate) fn new(rate_hz: f64, touched: bool) -> Self {
         let weight = if touched { 1.0 } else { 0.0 };
-        Self {
-            weight: Glide::new(weight, (FADE_S * rate_hz).ceil() as u32),
-        }
+        Self { weight: Glide::new(weight, (FADE_S * rate_hz).ceil() as u32) }
     }
 
     pub(crate) fn set(&mut self, touched: bool) {

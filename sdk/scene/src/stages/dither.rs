@@ -1,5 +1,5 @@
-//! Triangular dither of one step in either direction, which makes the rounding error of integer files
-//! independent of the signal.
+//! Triangular dither of one step in either direction, which makes the rounding error of integer
+//! files independent of the signal.
 
 use htex_device::Quantity;
 use rand_core::{Rng, SeedableRng};
@@ -9,11 +9,8 @@ use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
 use crate::requirements::Requirements;
 
-pub(crate) const ENTRY: Entry = Entry {
-    effect: Effect::Dither,
-    name: "dither",
-    place: StagePlace::Device { need, build },
-};
+pub(crate) const ENTRY: Entry =
+    Entry { effect: Effect::Dither, name: "dither", place: StagePlace::Device { need, build } };
 
 fn need(required: &Requirements) -> Need {
     match (required.device.step, required.device.quantity) {

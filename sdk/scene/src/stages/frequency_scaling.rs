@@ -1,4 +1,5 @@
-//! Scaling of frequencies with the scanning speed outside the recorded speeds, by the law of the asset.
+//! Scaling of frequencies with the scanning speed outside the recorded speeds, by the law of the
+//! asset.
 
 use std::sync::Arc;
 
@@ -14,10 +15,7 @@ use crate::requirements::Requirements;
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::FrequencyScaling,
     name: "frequency_scaling",
-    place: StagePlace::Surface {
-        need,
-        build: Some(build),
-    },
+    place: StagePlace::Surface { need, build: Some(build) },
 };
 
 fn need(_: &Requirements, played: &PlayedSurface) -> Need {
@@ -63,23 +61,19 @@ struct FrequencyScaling {
     scales: bool,
     warp: Warp,
     ratio: f64,
-    /// Output samples per source sample, so that higher frequencies of a faster finger stay below the Nyquist
-    /// frequency.
+    /// Output samples per source sample, so that higher frequencies of a faster finger stay below
+    /// the Nyquist frequency.
     oversampling: f64,
 }
 
 impl Stage for FrequencyScaling {
     fn follow(&mut self, context: &Context) {
         if self.scales && context.finger.slides() {
-            self.ratio = self
-                .motions
-                .scaling(context.finger.motion(), CEILING)
-                .frequency;
+            self.ratio = self.motions.scaling(context.finger.motion(), CEILING).frequency;
         }
     }
 
     fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
-        self.warp
-            .process(self.ratio / self.oversampling, out, source);
+        self.warp.process(self.ratio / self.oversampling, out, source);
     }
 }

@@ -1,5 +1,5 @@
-//! Conversion from the textures' unit to the device's: a stated gain, the level of a preview, or the radicand
-//! of a drive.
+//! Conversion from the textures' unit to the device's: a stated gain, the level of a preview, or
+//! the radicand of a drive.
 
 use htex_device::Quantity;
 
@@ -7,21 +7,18 @@ use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
 use crate::requirements::Requirements;
 
-/// Assumed peak of a stream, in units of its RMS. Normally distributed noise exceeds it once in 150,000
-/// samples on either side, ten equal sinusoids never.
+/// Assumed peak of a stream, in units of its RMS. Normally distributed noise exceeds it once in
+/// 150,000 samples on either side, ten equal sinusoids never.
 pub(crate) const HEADROOM: f64 = 4.5;
 
 /// RMS in the textures' unit below which a stream counts as silent: its gain would not be finite.
 const LEAST_RMS: f64 = 1e-20;
 
-pub(crate) const ENTRY: Entry = Entry {
-    effect: Effect::Gain,
-    name: "gain",
-    place: StagePlace::Device { need, build },
-};
+pub(crate) const ENTRY: Entry =
+    Entry { effect: Effect::Gain, name: "gain", place: StagePlace::Device { need, build } };
 
-/// Mapping of a force to an electrovibration drive: V = sqrt(gain · force + shift), from V = V_g sqrt(y + 1),
-/// where y is the force over [`HEADROOM`] times its RMS and V_g = drive / sqrt(2).
+/// Mapping of a force to an electrovibration drive: V = sqrt(gain · force + shift), from V = V_g
+/// sqrt(y + 1), where y is the force over [`HEADROOM`] times its RMS and V_g = drive / sqrt(2).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Drive {
     /// V² per unit of the textures.
@@ -33,10 +30,7 @@ pub(crate) struct Drive {
 impl Drive {
     pub(crate) fn of(required: &Requirements) -> Self {
         let half = required.drive_v * required.drive_v / 2.0;
-        Self {
-            gain: brings_level_to(half / HEADROOM, required),
-            shift: half,
-        }
+        Self { gain: brings_level_to(half / HEADROOM, required), shift: half }
     }
 }
 

@@ -16,10 +16,7 @@ pub(crate) struct Level {
 impl Level {
     pub(crate) fn new(played: &PlayedSurface, level_rms: f64) -> Self {
         let ramp = (RAMP_S * played.rate_hz).ceil() as u32;
-        Self {
-            gain: played.gain,
-            level: Glide::new((played.gain * level_rms) as f32, ramp),
-        }
+        Self { gain: played.gain, level: Glide::new((played.gain * level_rms) as f32, ramp) }
     }
 }
 

@@ -1,4 +1,5 @@
-//! Scaling of the level with speed and normal force outside the recorded motions, by the law of the asset.
+//! Scaling of the level with speed and normal force outside the recorded motions, by the law of the
+//! asset.
 
 use std::sync::Arc;
 
@@ -17,10 +18,7 @@ const RAMP_S: f64 = 0.010;
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::LevelScaling,
     name: "level_scaling",
-    place: StagePlace::Surface {
-        need,
-        build: Some(build),
-    },
+    place: StagePlace::Surface { need, build: Some(build) },
 };
 
 fn need(_: &Requirements, played: &PlayedSurface) -> Need {

@@ -1,5 +1,5 @@
-//! Clipping at the device's limit and at the drive of a display. Clipped samples are counted; NaN becomes
-//! zero.
+//! Clipping at the device's limit and at the drive of a display. Clipped samples are counted; NaN
+//! becomes zero.
 
 use htex_device::Quantity;
 
@@ -7,11 +7,8 @@ use super::{Entry, Need, Stage, StagePlace, Statistics};
 use crate::file::Effect;
 use crate::requirements::Requirements;
 
-pub(crate) const ENTRY: Entry = Entry {
-    effect: Effect::Limiter,
-    name: "limiter",
-    place: StagePlace::Device { need, build },
-};
+pub(crate) const ENTRY: Entry =
+    Entry { effect: Effect::Limiter, name: "limiter", place: StagePlace::Device { need, build } };
 
 fn need(required: &Requirements) -> Need {
     let unit = required.device.quantity.unit();
@@ -32,11 +29,7 @@ fn limit(required: &Requirements) -> Option<f64> {
             let most = limit.min(required.drive_v);
             let step = required.device.step.unwrap_or(0.0);
             let steps = (most / step).floor();
-            Some(if step > 0.0 && steps > 0.0 {
-                steps * step
-            } else {
-                most
-            })
+            Some(if step > 0.0 && steps > 0.0 { steps * step } else { most })
         }
         (_, limit) => limit,
     }
@@ -44,20 +37,13 @@ fn limit(required: &Requirements) -> Option<f64> {
 
 fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     let limit = limit(required).filter(|_| !neutral);
-    Box::new(Limiter {
-        limit: limit.map_or(f32::INFINITY, at_most),
-        held: 0,
-    })
+    Box::new(Limiter { limit: limit.map_or(f32::INFINITY, at_most), held: 0 })
 }
 
 /// The largest 32-bit float not above a number.
 fn at_most(limit: f64) -> f32 {
     let near = limit as f32;
-    if f64::from(near) > limit {
-        near.next_down()
-    } else {
-        near
-    }
+    if f64::from(near) > limit { near.next_down() } else { near }
 }
 
 struct Limiter {

@@ -1,8 +1,9 @@
 //! The stages of a chain: one file per effect, with the condition under which it is needed.
 //!
-//! An effect that is constant needs no stage: a constant factor of frequencies is part of the resampler's ratio, one of
-//! the level is part of the level. Linear effects of a texture run at the model's rate, before the one resampling; frequency
-//! scaling alone reads at a changing ratio there. An effect that a scene forces on without need is neutral, bit by bit or to 1e-6 of full
+//! An effect that is constant needs no stage: a constant factor of frequencies is part of the
+//! resampler's ratio, one of the level is part of the level. Linear effects of a texture run at the
+//! model's rate, before the one resampling; frequency scaling alone reads at a changing ratio
+//! there. An effect that a scene forces on without need is neutral, bit by bit or to 1e-6 of full
 //! scale (`sdk/scene/tests/equivalence.rs`): leaving it out is only an optimisation.
 
 mod carrier;
@@ -90,8 +91,8 @@ impl Need {
     }
 }
 
-/// Stage of the chain where an effect is applied, with the functions that decide whether it is needed and
-/// that build it. `neutral`: the effect is not needed and must not change any sample.
+/// Stage of the chain where an effect is applied, with the functions that decide whether it is
+/// needed and that build it. `neutral`: the effect is not needed and must not change any sample.
 #[derive(Debug)]
 pub(crate) enum StagePlace {
     /// Per surface, at the model's rate, before surfaces are mixed.
@@ -101,10 +102,7 @@ pub(crate) enum StagePlace {
         build: Option<BuildFor>,
     },
     /// Per mix of surfaces of one rate; the need is that of one of them.
-    Mix {
-        need: fn(&Requirements, &PlayedSurface) -> Need,
-        build: BuildMix,
-    },
+    Mix { need: fn(&Requirements, &PlayedSurface) -> Need, build: BuildMix },
     /// Once, after mixing, at the device's rate.
     Device {
         need: fn(&Requirements) -> Need,

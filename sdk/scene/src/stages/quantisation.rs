@@ -22,10 +22,7 @@ fn need(required: &Requirements) -> Need {
 
 fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     let step = required.device.step.filter(|step| !neutral && *step > 0.0);
-    Box::new(Quantisation {
-        step,
-        limit: required.device.limit.unwrap_or(f64::INFINITY),
-    })
+    Box::new(Quantisation { step, limit: required.device.limit.unwrap_or(f64::INFINITY) })
 }
 
 struct Quantisation {

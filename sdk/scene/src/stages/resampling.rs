@@ -1,4 +1,5 @@
-//! Conversion from the rate of the models to the rate of the device, once for all surfaces of a rate.
+//! Conversion from the rate of the models to the rate of the device, once for all surfaces of a
+//! rate.
 
 use htex_dsp::resample::{Resampler, UnusableRates, Work};
 
@@ -27,22 +28,15 @@ fn need(required: &Requirements, played: &PlayedSurface) -> Need {
             played.mix_rate_hz * played.fixed_ratio,
             required.rate_hz
         )),
-        Ok(None) => Need::no(format!(
-            "model and device run at {:.0} Hz",
-            required.rate_hz
-        )),
+        Ok(None) => Need::no(format!("model and device run at {:.0} Hz", required.rate_hz)),
     }
 }
 
-/// Input rate, output rate and highest frequency of a surface's converter, hertz; a constant speed is
-/// included in the ratio.
+/// Input rate, output rate and highest frequency of a surface's converter, hertz; a constant speed
+/// is included in the ratio.
 fn rates(required: &Requirements, played: &PlayedSurface) -> (f64, f64, f64) {
     let ratio = played.fixed_ratio;
-    (
-        played.mix_rate_hz * ratio,
-        required.rate_hz,
-        played.top_hz * ratio,
-    )
+    (played.mix_rate_hz * ratio, required.rate_hz, played.top_hz * ratio)
 }
 
 /// Work per sample of the device; `None` if no conversion is needed.

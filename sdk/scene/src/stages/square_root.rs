@@ -1,9 +1,9 @@
-//! Shift and square root: the friction that an electrovibration display adds is proportional to the square of
-//! its voltage: V = V_g sqrt(y + |min y|) cos(2 pi f_c t). (The paper, Electrovibration rendering, prints
-//! min|y|, which allows negative radicands.)
+//! Shift and square root: the friction that an electrovibration display adds is proportional to the
+//! square of its voltage: V = V_g sqrt(y + |min y|) cos(2 pi f_c t). (The paper, Electrovibration
+//! rendering, prints min|y|, which allows negative radicands.)
 //!
-//! The minimum of a stream is not known in advance. The shift is [`HEADROOM`] times the RMS of the scene's
-//! loudest surface instead; radicands that are still negative are set to zero and counted.
+//! The minimum of a stream is not known in advance. The shift is [`HEADROOM`] times the RMS of the
+//! scene's loudest surface instead; radicands that are still negative are set to zero and counted.
 //!
 //! A shift that followed the minimum would be felt.
 
@@ -31,10 +31,7 @@ fn need(required: &Requirements) -> Need {
 fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     match neutral {
         true => Box::new(Unchanged),
-        false => Box::new(SquareRoot {
-            shift: Drive::of(required).shift as f32,
-            held: 0,
-        }),
+        false => Box::new(SquareRoot { shift: Drive::of(required).shift as f32, held: 0 }),
     }
 }
 

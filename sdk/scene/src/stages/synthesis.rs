@@ -12,10 +12,7 @@ pub(crate) struct Synthesis {
 
 impl Synthesis {
     pub(crate) fn new(source: SampleSource) -> Self {
-        Self {
-            source,
-            failed: None,
-        }
+        Self { source, failed: None }
     }
 
     /// Retunes the voice to a motion and returns the level there. If the model fails, the voice
@@ -30,8 +27,8 @@ impl Synthesis {
         }
     }
 
-    /// Tells a model that follows the motion itself where the finger is, so many seconds after the first sample. A model
-    /// that refuses it plays on as before, and says so.
+    /// Tells a model that follows the motion itself where the finger is, so many seconds after the
+    /// first sample. A model that refuses it plays on as before, and says so.
     pub(crate) fn set_finger(&mut self, finger: Finger, at_s: f64) {
         if let Err(error) = self.source.set_finger(finger, at_s) {
             self.failed.get_or_insert(error);

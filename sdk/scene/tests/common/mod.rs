@@ -32,12 +32,7 @@ pub fn nine() -> &'static Asset {
         let (speed, force) = ((i % 3) as f64, (i / 3) as f64);
         (60.0 + 30.0 * speed, 0.3 + 0.15 * force)
     };
-    ASSET.get_or_init(|| {
-        asset(
-            Simulated::CoarseFabric,
-            &[0, 1, 2, 3, 4, 5, 6, 7, 8].map(known),
-        )
-    })
+    ASSET.get_or_init(|| asset(Simulated::CoarseFabric, &[0, 1, 2, 3, 4, 5, 6, 7, 8].map(known)))
 }
 
 /// An asset of three speeds, between which conditions were computed.
@@ -54,14 +49,8 @@ fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Asset {
             .with_force_n(force_n)
             .with_duration_s(4.0);
         Take {
-            recording: simulate(&options)
-                .unwrap()
-                .to_recording("simulated")
-                .unwrap(),
-            given: Exploration {
-                speed_mm_s: Some(speed_mm_s),
-                force_n: Some(force_n),
-            },
+            recording: simulate(&options).unwrap().to_recording("simulated").unwrap(),
+            given: Exploration { speed_mm_s: Some(speed_mm_s), force_n: Some(force_n) },
         }
     };
     let request = AssetRequest::new("simulated")
@@ -104,19 +93,13 @@ pub fn surface() -> Surface {
 }
 
 pub fn constant(speed_mm_s: f64, force_n: f64) -> Motion {
-    Motion::Constant(Constant {
-        speed_mm_s,
-        force_n,
-        from_mm: None,
-        direction_deg: 0.0,
-    })
+    Motion::Constant(Constant { speed_mm_s, force_n, from_mm: None, direction_deg: 0.0 })
 }
 
-/// A trace at 200 rows per second from position along x (mm) and force (newtons) as functions of time.
+/// A trace at 200 rows per second from position along x (mm) and force (newtons) as functions of
+/// time.
 pub fn trace(duration_s: f64, x_mm: impl Fn(f64) -> f64, force_n: impl Fn(f64) -> f64) -> Trace {
-    let t_s: Vec<f64> = (0..=(duration_s * 200.0) as usize + 1)
-        .map(|i| i as f64 / 200.0)
-        .collect();
+    let t_s: Vec<f64> = (0..=(duration_s * 200.0) as usize + 1).map(|i| i as f64 / 200.0).collect();
     Trace::new(TraceColumns {
         x_mm: t_s.iter().map(|t| x_mm(*t)).collect(),
         y_mm: vec![0.0; t_s.len()],
@@ -139,10 +122,7 @@ pub fn traced(asset: &Asset, trace: Trace, duration_s: f64) -> LoadedScene {
 pub fn file() -> Capabilities {
     Capabilities {
         quantity: Quantity::LateralForce,
-        rates: Rates::Range {
-            min_hz: 100.0,
-            max_hz: 1e6,
-        },
+        rates: Rates::Range { min_hz: 100.0, max_hz: 1e6 },
         default_rate_hz: 20_000.0,
         limit: None,
         step: None,
@@ -154,11 +134,7 @@ pub fn file() -> Capabilities {
 
 /// A file of 16-bit integers, 4 N full scale.
 pub fn integer_file() -> Capabilities {
-    Capabilities {
-        limit: Some(4.0),
-        step: Some(4.0 / 32_768.0),
-        ..file()
-    }
+    Capabilities { limit: Some(4.0), step: Some(4.0 / 32_768.0), ..file() }
 }
 
 /// An electrovibration display behind a 16-bit converter.

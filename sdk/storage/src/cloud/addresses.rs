@@ -1,9 +1,11 @@
-//! Which addresses a request may go to: the one rule for arguments, for what files name, and for redirects.
+//! Which addresses a request may go to: the one rule for arguments, for what files name, and for
+//! redirects.
 //!
-//! A person may name any address in an argument or in a variable of the environment. What a file names, such as a recipe, and what a
-//! server redirects to may be an address of the world alone, or the server that the person named: else anybody's file would make
-//! requests in the person's network, to the machine itself, and to the metadata service of its cloud. The rule is about the address
-//! that a name resolves to, which is the one that is connected to, not about the name.
+//! A person may name any address in an argument or in a variable of the environment. What a file
+//! names, such as a recipe, and what a server redirects to may be an address of the world alone, or
+//! the server that the person named: else anybody's file would make requests in the person's
+//! network, to the machine itself, and to the metadata service of its cloud. The rule is about the
+//! address that a name resolves to, which is the one that is connected to, not about the name.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 
@@ -26,7 +28,8 @@ pub(super) struct NotFollowed(pub(super) &'static str);
 pub(super) const INNER: &str = "it leads to an address of this machine or network, which only a person names: give that URL as an argument \
                                 if you mean it";
 
-/// Whether an address is none of the world: of this machine, of its network, of a provider's, of several machines, or of none.
+/// Whether an address is none of the world: of this machine, of its network, of a provider's, of
+/// several machines, or of none.
 pub(super) fn is_inner(address: IpAddr) -> bool {
     match address.to_canonical() {
         IpAddr::V4(v4) => is_inner_v4(v4),
@@ -66,7 +69,8 @@ fn is_inner_v6(v6: Ipv6Addr) -> bool {
         || a & 0xFFC0 == 0xFEC0
         || (a, b) == (0x2001, 0xDB8)
         || a & 0xFFF0 == 0x3FF0
-        // NAT64 (RFC 6052) and its local prefix (RFC 8215), IPv4-compatible (RFC 4291), 6to4 (RFC 3056).
+        // NAT64 (RFC 6052) and its local prefix (RFC 8215), IPv4-compatible (RFC 4291), 6to4 (RFC
+        // 3056).
         || ((a, b, c, d, e, f) == (0x64, 0xFF9B, 0, 0, 0, 0) && is_inner_v4(v4(g, h)))
         || (a, b, c) == (0x64, 0xFF9B, 1)
         || ((a, b, c, d, e, f) == (0, 0, 0, 0, 0, 0) && is_inner_v4(v4(g, h)))
@@ -182,10 +186,7 @@ mod tests {
             "::ffff:8.8.8.8",
         ];
         for address in outer {
-            assert!(
-                address.parse().is_ok_and(|address| !is_inner(address)),
-                "{address}"
-            );
+            assert!(address.parse().is_ok_and(|address| !is_inner(address)), "{address}");
         }
         assert!(is_inner_number("[::1]") && !is_inner_number("example.org"));
     }

@@ -1,5 +1,5 @@
-//! The HTTP clients: TLS by rustls, time limits, and the addresses that are connected to. They follow no redirect: [`super::redirects`]
-//! does, by another client.
+//! The HTTP clients: TLS by rustls, time limits, and the addresses that are connected to. They
+//! follow no redirect: [`super::redirects`] does, by another client.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;

@@ -1,6 +1,7 @@
 //! From a failed request to one error that says what to do.
 //!
-//! Messages are made from a status and a code alone: responses and the library's own errors quote signatures and keys.
+//! Messages are made from a status and a code alone: responses and the library's own errors quote
+//! signatures and keys.
 
 use std::io;
 use std::time::Instant;
@@ -38,7 +39,8 @@ impl From<object_store::Error> for Fail {
 }
 
 impl Store {
-    /// The error of a failure. Texts of the library and of the server are not quoted: they may hold signatures and keys.
+    /// The error of a failure. Texts of the library and of the server are not quoted: they may hold
+    /// signatures and keys.
     pub(super) fn explain(&self, fail: Fail, begun: Instant) -> StorageError {
         use object_store::Error;
         let seconds = begun.elapsed().as_secs_f64();
@@ -61,15 +63,7 @@ impl Store {
                 StorageProblem::NoRanges
             }
             // After a body that broke off, a good response is one of another version of the file.
-            Fail::Body
-                if matches!(
-                    last,
-                    Last::Status {
-                        status: 200..=299,
-                        ..
-                    }
-                ) =>
-            {
+            Fail::Body if matches!(last, Last::Status { status: 200..=299, .. }) => {
                 StorageProblem::Changed
             }
             Fail::Request(_) | Fail::Body => self.by_last(last, seconds),
@@ -110,11 +104,7 @@ impl Store {
     }
 
     fn unavailable(&self, what: String, seconds: f64) -> StorageProblem {
-        StorageProblem::Unavailable {
-            what,
-            requests: self.log.requests(),
-            seconds,
-        }
+        StorageProblem::Unavailable { what, requests: self.log.requests(), seconds }
     }
 
     fn denied(&self, what: String, code: Option<&str>) -> StorageProblem {
@@ -122,10 +112,7 @@ impl Store {
             LocalOrRemote::Remote(uri) => uri.scheme,
             LocalOrRemote::Local(_) => Scheme::Https,
         };
-        StorageProblem::Denied {
-            what,
-            advice: self.advice(scheme, code),
-        }
+        StorageProblem::Denied { what, advice: self.advice(scheme, code) }
     }
 
     fn advice(&self, scheme: Scheme, code: Option<&str>) -> String {
@@ -166,10 +153,7 @@ fn words(last: &Last) -> String {
     match last {
         Last::Nothing => "no response".to_owned(),
         Last::Status { status, code: None } => format!("status {status}"),
-        Last::Status {
-            status,
-            code: Some(code),
-        } => format!("status {status}, {code}"),
+        Last::Status { status, code: Some(code) } => format!("status {status}, {code}"),
         Last::Cut(cause) => cause.clone(),
         Last::NotFollowed(reason) => (*reason).to_owned(),
     }

@@ -1,7 +1,7 @@
 //! The requests of one file, counted and remembered for its errors.
 //!
-//! This is the layer below the library, which remembers how the last request ended: the library retries, and its errors
-//! do not say so.
+//! This is the layer below the library, which remembers how the last request ended: the library
+//! retries, and its errors do not say so.
 
 use std::error::Error;
 use std::pin::Pin;
@@ -60,10 +60,7 @@ impl Log {
     }
 
     pub(crate) fn last(&self) -> Last {
-        self.last
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clone()
+        self.last.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     fn ended(&self, last: Last) {
@@ -91,7 +88,8 @@ fn cause(error: &HttpError) -> Last {
     })
 }
 
-/// Most bytes of one answer to a list request; a page of 1,000 keys of 1,024 bytes has 3 MB at most with its escapes.
+/// Most bytes of one answer to a list request; a page of 1,000 keys of 1,024 bytes has 3 MB at most
+/// with its escapes.
 const MOST_LIST_BYTES: usize = 16 << 20;
 
 /// How requests are sent.
@@ -127,10 +125,7 @@ pub(crate) struct Connector {
 
 impl HttpConnector for Connector {
     fn connect(&self, _: &ClientOptions) -> object_store::Result<HttpClient> {
-        Ok(HttpClient::new(Logged {
-            client: self.client.clone(),
-            log: Arc::clone(&self.log),
-        }))
+        Ok(HttpClient::new(Logged { client: self.client.clone(), log: Arc::clone(&self.log) }))
     }
 }
 
@@ -141,7 +136,8 @@ struct Logged {
 }
 
 impl Logged {
-    /// Whether a request is for a list of a store, whose answer is read into memory: S3 and Google by `list-type`, Azure by `comp`.
+    /// Whether a request is for a list of a store, whose answer is read into memory: S3 and Google
+    /// by `list-type`, Azure by `comp`.
     fn is_list(&self, request: &HttpRequest) -> bool {
         let query = request.uri().query().unwrap_or_default();
         let is = |part: &str| part.starts_with("list-type=") || part == "comp=list";
@@ -182,9 +178,7 @@ impl HttpService for Logged {
         let text = text.map(|text| text.to_bytes()).unwrap_or_default();
         let named = parts.headers.get("x-ms-error-code");
         let named = named.and_then(|code| Some(code.to_str().ok()?.to_owned()));
-        let code = named
-            .or_else(|| code_in(&text))
-            .filter(|code| is_code(code));
+        let code = named.or_else(|| code_in(&text)).filter(|code| is_code(code));
         self.log.ended(Last::Status { status, code });
         Ok(HttpResponse::from_parts(parts, text.into()))
     }
@@ -197,7 +191,8 @@ fn code_in(document: &[u8]) -> Option<String> {
     Some(rest.split_once("</Code>")?.0.to_owned())
 }
 
-/// Whether a word can be shown: the rest of the document may quote the request, its signature included.
+/// Whether a word can be shown: the rest of the document may quote the request, its signature
+/// included.
 fn is_code(word: &str) -> bool {
     (1..=48).contains(&word.len()) && word.chars().all(|c| c.is_ascii_alphabetic())
 }

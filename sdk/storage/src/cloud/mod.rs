@@ -59,24 +59,12 @@ impl Store {
         };
         // The server of a store is named in the environment.
         let client = match uri.scheme.is_read_only() {
-            true => Client::Web(Following {
-                first: of(by)?,
-                world: of(NamedBy::Other)?,
-                by,
-            }),
+            true => Client::Web(Following { first: of(by)?, world: of(NamedBy::Other)?, by }),
             false => Client::Store(of(NamedBy::Person)?),
         };
         let log = Arc::new(Log::default());
-        let connector = Connector {
-            client,
-            log: Arc::clone(&log),
-        };
-        let parts = Parts {
-            uri,
-            settings,
-            variables,
-            connector,
-        };
+        let connector = Connector { client, log: Arc::clone(&log) };
+        let parts = Parts { uri, settings, variables, connector };
         let opened = parts.open().map_err(problem)?;
         Ok(Self {
             store: opened.store,
@@ -99,11 +87,9 @@ impl Store {
         let here = self.clone();
         let found = self.run(async move { Ok(here.store.head(&here.key).await?) });
         match found {
-            Ok(meta) => Ok(Some(Stat {
-                bytes: meta.size,
-                modified: modified(&meta),
-                etag: meta.e_tag,
-            })),
+            Ok(meta) => {
+                Ok(Some(Stat { bytes: meta.size, modified: modified(&meta), etag: meta.e_tag }))
+            }
             Err(error) if matches!(error.problem, StorageProblem::Missing) => Ok(None),
             Err(error) => Err(error),
         }
@@ -135,10 +121,7 @@ impl Store {
                 }
                 let name = meta.location.as_ref();
                 let prefix = here.key.as_ref();
-                let relative = name
-                    .strip_prefix(prefix)
-                    .unwrap_or(name)
-                    .trim_start_matches('/');
+                let relative = name.strip_prefix(prefix).unwrap_or(name).trim_start_matches('/');
                 if !listing::matches(&pattern, relative) {
                     continue;
                 }
@@ -171,7 +154,8 @@ impl Store {
     ) -> Result<T, StorageError> {
         let begun = Instant::now();
         let (send, receive) = mpsc::sync_channel(1);
-        // The caller may itself be a task, where blocking on the runtime would panic: the thread waits for a channel.
+        // The caller may itself be a task, where blocking on the runtime would panic: the thread
+        // waits for a channel.
         runtime(&self.location)?.spawn(async move {
             let done = tokio::time::timeout(limit, work).await;
             let _ = send.send(done.unwrap_or(Err(Fail::Slow)));
@@ -187,10 +171,7 @@ fn runtime(location: &Location) -> Result<&'static Runtime, StorageError> {
     let runtime = RUNTIME.get_or_init(|| {
         let mut builder = Builder::new_multi_thread();
         builder.worker_threads(THREADS).thread_name("htex-storage");
-        builder
-            .enable_all()
-            .build()
-            .map_err(|error| error.to_string())
+        builder.enable_all().build().map_err(|error| error.to_string())
     });
     runtime.as_ref().map_err(|error| {
         let problem = format!("no threads for the network: {error}");

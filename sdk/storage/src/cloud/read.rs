@@ -27,11 +27,7 @@ impl Version {
             Some(_) => 0,
             None => meta.last_modified.timestamp_millis(),
         };
-        Self {
-            bytes: meta.size,
-            etag: meta.e_tag.clone(),
-            modified,
-        }
+        Self { bytes: meta.size, etag: meta.e_tag.clone(), modified }
     }
 
     /// The tag for `If-Match`, which compares strong ones only.
@@ -101,10 +97,7 @@ impl Store {
 
     async fn whole<S: Sink>(self, mut sink: S, most_bytes: u64) -> Result<S, Fail> {
         for attempt in 0.. {
-            let found = self
-                .store
-                .get_opts(&self.key, GetOptions::default())
-                .await?;
+            let found = self.store.get_opts(&self.key, GetOptions::default()).await?;
             let version = Version::of(&found.meta);
             self.check_size(version.bytes, most_bytes)?;
             sink.start_over()?;
@@ -153,7 +146,8 @@ impl Store {
         Ok(ReadPart { bytes, version: is })
     }
 
-    /// Whether the last range began after the end of the file: the first byte of an empty file does.
+    /// Whether the last range began after the end of the file: the first byte of an empty file
+    /// does.
     fn is_beyond_end(&self) -> bool {
         matches!(self.log.last(), Last::Status { status: 416, .. })
     }
@@ -161,23 +155,14 @@ impl Store {
     fn check_size(&self, bytes: u64, most_bytes: u64) -> Result<(), Fail> {
         match bytes <= most_bytes {
             true => Ok(()),
-            false => Err(Fail::Own(
-                StorageProblem::TooLarge { most_bytes }.at(&self.location),
-            )),
+            false => Err(Fail::Own(StorageProblem::TooLarge { most_bytes }.at(&self.location))),
         }
     }
 }
 
 impl ReadPart {
     fn of_empty() -> Self {
-        let version = Version {
-            bytes: 0,
-            etag: None,
-            modified: 0,
-        };
-        Self {
-            bytes: Vec::new(),
-            version,
-        }
+        let version = Version { bytes: 0, etag: None, modified: 0 };
+        Self { bytes: Vec::new(), version }
     }
 }

@@ -21,8 +21,9 @@ pub(super) struct Following {
 }
 
 impl Following {
-    /// Sends a request, and follows what it is redirected to: neither from HTTPS to HTTP nor to an address of this machine or network,
-    /// but those of the same server. No request says where it comes from, whose query may be a signature.
+    /// Sends a request, and follows what it is redirected to: neither from HTTPS to HTTP nor to an
+    /// address of this machine or network, but those of the same server. No request says where it
+    /// comes from, whose query may be a signature.
     pub(super) async fn call(&self, request: HttpRequest) -> Result<HttpResponse, HttpError> {
         let (method, headers) = (request.method().clone(), request.headers().clone());
         let first = url(&request.uri().to_string())?;
@@ -65,20 +66,16 @@ fn target(
             | StatusCode::TEMPORARY_REDIRECT
             | StatusCode::PERMANENT_REDIRECT
     );
-    let Some(to) = response
-        .headers()
-        .get(header::LOCATION)
-        .filter(|_| moved && is_read)
-    else {
+    let Some(to) = response.headers().get(header::LOCATION).filter(|_| moved && is_read) else {
         return Ok(None);
     };
     let to = to.to_str().ok().and_then(|to| at.join(to).ok());
     let to = to.ok_or_else(|| refused("it redirects to what is no URL"))?;
     match (at.scheme(), to.scheme()) {
         (_, "https") | ("http", "http") => Ok(Some(to)),
-        ("https", "http") => Err(refused(
-            "it redirects from HTTPS to HTTP; name the other URL if you mean it",
-        )),
+        ("https", "http") => {
+            Err(refused("it redirects from HTTPS to HTTP; name the other URL if you mean it"))
+        }
         _ => Err(refused("it redirects to another protocol")),
     }
 }
@@ -90,9 +87,7 @@ fn again(method: &Method, to: &Url, headers: &HeaderMap) -> Result<HttpRequest, 
         request = request.header(name, value);
     }
     let body = object_store::client::HttpRequestBody::empty();
-    request
-        .body(body)
-        .map_err(|_| refused("it redirects to what is no URL"))
+    request.body(body).map_err(|_| refused("it redirects to what is no URL"))
 }
 
 /// Headers about the file, which go along; others are of one server.

@@ -103,11 +103,7 @@ impl Parts<'_> {
         }
         let store = builder.build();
         let store = store.map_err(|_| "a variable of AWS_* is not valid; correct it".to_owned())?;
-        Ok(Opened {
-            store: Arc::new(store),
-            key,
-            is_signed,
-        })
+        Ok(Opened { store: Arc::new(store), key, is_signed })
     }
 
     fn gs(self) -> Result<Opened, String> {
@@ -133,9 +129,7 @@ impl Parts<'_> {
             .with_http_connector(self.connector);
         if !is_signed {
             // A credential of its own keeps the library from looking for others.
-            let none = GcpCredential {
-                bearer: String::new(),
-            };
+            let none = GcpCredential { bearer: String::new() };
             builder = builder
                 .with_credentials(Arc::new(StaticCredentialProvider::new(none)))
                 .with_skip_signature(true);
@@ -144,11 +138,7 @@ impl Parts<'_> {
         let store = store.map_err(|_| {
             "a variable of GOOGLE_* is not valid, or the file that it names; correct it".to_owned()
         })?;
-        Ok(Opened {
-            store: Arc::new(store),
-            key,
-            is_signed,
-        })
+        Ok(Opened { store: Arc::new(store), key, is_signed })
     }
 
     fn az(self) -> Result<Opened, String> {
@@ -187,24 +177,15 @@ impl Parts<'_> {
         let store = builder.build();
         let store =
             store.map_err(|_| "a variable of AZURE_* is not valid; correct it".to_owned())?;
-        Ok(Opened {
-            store: Arc::new(store),
-            key,
-            is_signed,
-        })
+        Ok(Opened { store: Arc::new(store), key, is_signed })
     }
 
     /// The whole URL is the store's, and its key is empty: escapes and query stay as they are.
     fn web(self) -> Result<Opened, String> {
-        let Uri {
-            authority, path, ..
-        } = self.uri;
+        let Uri { authority, path, .. } = self.uri;
         let query = self.uri.query.as_ref().map(|query| format!("?{query}"));
-        let url = format!(
-            "{}://{authority}/{path}{}",
-            self.uri.scheme.name(),
-            query.unwrap_or_default()
-        );
+        let url =
+            format!("{}://{authority}/{path}{}", self.uri.scheme.name(), query.unwrap_or_default());
         let wrong = || "it is not a URL; percent-encode what cannot stand in one".to_owned();
         let url: reqwest::Url = url.parse().map_err(|_| wrong())?;
         let retry = self.retry();
@@ -214,10 +195,6 @@ impl Parts<'_> {
             .with_http_connector(self.connector)
             .build()
             .map_err(|_| wrong())?;
-        Ok(Opened {
-            store: Arc::new(store),
-            key: Path::default(),
-            is_signed: false,
-        })
+        Ok(Opened { store: Arc::new(store), key: Path::default(), is_signed: false })
     }
 }

@@ -1,4 +1,5 @@
-//! Writing files that are whole or not there: one request, or parts that become a file by the last request.
+//! Writing files that are whole or not there: one request, or parts that become a file by the last
+//! request.
 
 use std::fs::File;
 use std::io::Read;
@@ -55,17 +56,14 @@ impl Store {
         self.run_within(limit, self.clone().in_parts(file))
     }
 
-    /// What the store says of the file to who reads it: its media type, and that a copy is compared before it is used, since a file
-    /// is replaced under its name.
+    /// What the store says of the file to who reads it: its media type, and that a copy is compared
+    /// before it is used, since a file is replaced under its name.
     fn attributes(&self) -> Attributes {
         let name = self.location.file_name().unwrap_or_default();
         let media_type = media_type(&name);
-        [
-            (Attribute::ContentType, media_type),
-            (Attribute::CacheControl, "no-cache"),
-        ]
-        .into_iter()
-        .collect()
+        [(Attribute::ContentType, media_type), (Attribute::CacheControl, "no-cache")]
+            .into_iter()
+            .collect()
     }
 
     /// Sends the parts and then completes the file, or takes the parts back.
@@ -89,7 +87,8 @@ impl Store {
     }
 }
 
-/// The media type of a file, by the end of its name: of the formats' specifications, and what browsers open.
+/// The media type of a file, by the end of its name: of the formats' specifications, and what
+/// browsers open.
 fn media_type(name: &str) -> &'static str {
     let end = name.rsplit_once('.').map_or("", |(_, end)| end);
     match &*end.to_ascii_lowercase() {

@@ -9,7 +9,8 @@ use htex_storage::{Location, Settings, Storage, StorageError, Variables};
 /// Most bytes of a read.
 pub const MOST: u64 = 64 << 20;
 
-/// The defaults with six retries and pauses of milliseconds, so that a test of seven requests takes no seconds.
+/// The defaults with six retries and pauses of milliseconds, so that a test of seven requests takes
+/// no seconds.
 pub fn settings() -> Settings {
     let mut settings = Settings::default();
     settings.total = Duration::from_secs(60);
@@ -39,10 +40,7 @@ pub fn at(uri: &str) -> Location {
 
 /// Bytes of which no two stretches are equal.
 pub fn bytes(len: usize) -> Vec<u8> {
-    (0..len as u32)
-        .flat_map(|i| (i.wrapping_mul(2_654_435_761)).to_le_bytes())
-        .take(len)
-        .collect()
+    (0..len as u32).flat_map(|i| (i.wrapping_mul(2_654_435_761)).to_le_bytes()).take(len).collect()
 }
 
 /// The message of an error, in which no secret is.

@@ -9,7 +9,8 @@ use crate::answer::{Answer, Files, Function};
 use crate::document::Document;
 use crate::refusal::Refusal;
 
-/// The result of a call, in memory that the caller frees: `htex_free(json, json_len)`, `htex_free(bytes, bytes_len)`.
+/// The result of a call, in memory that the caller frees: `htex_free(json, json_len)`,
+/// `htex_free(bytes, bytes_len)`.
 #[repr(C)]
 #[derive(Debug)]
 #[allow(non_camel_case_types)] // As the names of the C header.
@@ -34,10 +35,12 @@ const FUNCTIONS: &[&[(&str, Function)]] = &[
     crate::scene::FUNCTIONS,
 ];
 
-/// Calls the function of a name with a document of JSON and the bytes of files. A call that fails has a result, too.
+/// Calls the function of a name with a document of JSON and the bytes of files. A call that fails
+/// has a result, too.
 ///
 /// # Safety
-/// The pointers are the caller's: what they point to is there during the call, and `out` is written.
+/// The pointers are the caller's: what they point to is there during the call, and `out` is
+/// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn htex_author_call(
     name: *const c_char,
@@ -50,17 +53,10 @@ pub unsafe extern "C" fn htex_author_call(
     guarded(|| {
         // SAFETY: the pointers are the caller's.
         let (name, json, files, out) = unsafe {
-            (
-                needed_text(name)?,
-                slice(json, json_len)?,
-                slice(files, files_len)?,
-                place(out)?,
-            )
+            (needed_text(name)?, slice(json, json_len)?, slice(files, files_len)?, place(out)?)
         };
         // SAFETY: as above.
-        let files = files
-            .iter()
-            .map(|file| unsafe { slice(file.data, file.len) });
+        let files = files.iter().map(|file| unsafe { slice(file.data, file.len) });
         let files = files.collect::<Result<Vec<_>, Failure>>()?;
         let answer = called(name, json, &files);
         let (json, bytes) = match &answer {
@@ -78,11 +74,7 @@ pub unsafe extern "C" fn htex_author_call(
 }
 
 fn called(name: &str, json: &[u8], files: Files<'_>) -> Result<Answer, Refusal> {
-    let function = FUNCTIONS
-        .iter()
-        .copied()
-        .flatten()
-        .find(|(own, _)| *own == name);
+    let function = FUNCTIONS.iter().copied().flatten().find(|(own, _)| *own == name);
     let (_, function) =
         function.ok_or_else(|| Refusal::argument(format!("there is no function {name}")))?;
     function(Document::of_call(json)?, files)

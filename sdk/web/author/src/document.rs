@@ -1,6 +1,7 @@
 //! Documents of calls: objects of JSON, whose entries are taken by their names.
 //!
-//! They are not read by derived code, which takes a kilobyte and more for each struct. Only the tables of settings are.
+//! They are not read by derived code, which takes a kilobyte and more for each struct. Only the
+//! tables of settings are.
 
 #[cfg(feature = "make")]
 use serde::de::DeserializeOwned;
@@ -26,10 +27,7 @@ impl Document {
         match value {
             Value::Object(mut left) => {
                 left.retain(|_, value| !value.is_null());
-                Ok(Self {
-                    left,
-                    known: Vec::new(),
-                })
+                Ok(Self { left, known: Vec::new() })
             }
             Value::Null => Self::of(Value::Object(Map::new())),
             other => Err(Refusal::argument(format!("{other} is not an object"))),
@@ -88,9 +86,7 @@ impl Document {
     pub(crate) fn number(&mut self, name: &'static str) -> Result<Option<f64>, Refusal> {
         match self.take(name) {
             None => Ok(None),
-            Some(value) => number(&value)
-                .map(Some)
-                .ok_or_else(|| wrong(name, "a number")),
+            Some(value) => number(&value).map(Some).ok_or_else(|| wrong(name, "a number")),
         }
     }
 

@@ -1,9 +1,12 @@
-//! Modules of the npm package beside the player: libhtex, and one more C function, [`htex_author_call`], for what makes textures (the
-//! feature `make`, `htex-author.wasm`), of files of other haptic formats, too (`import`, `htex-import.wasm`), or for what plays scenes (`scene`,
-//! `htex-scene.wasm`). JavaScript is its only caller: `sdk/web/src/author.js`, `import.js` and `scene.js`.
+//! Modules of the npm package beside the player: libhtex, and one more C function,
+//! [`htex_author_call`], for what makes textures (the feature `make`, `htex-author.wasm`), of files
+//! of other haptic formats, too (`import`, `htex-import.wasm`), or for what plays scenes (`scene`,
+//! `htex-scene.wasm`). JavaScript is its only caller: `sdk/web/src/author.js`, `import.js` and
+//! `scene.js`.
 //!
-//! A call has a name, a document of JSON, and the bytes of files; so has its result. One function for all keeps the layout of structs out of
-//! JavaScript, and costs microseconds beside what the calls do. Names, documents and results are those of `sdk/web/src/author.d.ts` and `import.d.ts`.
+//! A call has a name, a document of JSON, and the bytes of files; so has its result. One function
+//! for all keeps the layout of structs out of JavaScript, and costs microseconds beside what the
+//! calls do. Names, documents and results are those of `sdk/web/src/author.d.ts` and `import.d.ts`.
 
 mod answer;
 mod call;

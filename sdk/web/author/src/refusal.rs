@@ -24,15 +24,8 @@ struct Told<'a> {
 impl Refusal {
     pub(crate) fn new(status: htex_status, code: &str, error: impl ToString) -> Self {
         let message = error.to_string();
-        let told = Told {
-            code,
-            message: &message,
-        };
-        Self {
-            status,
-            json: serde_json::to_vec(&told).unwrap_or_default(),
-            message,
-        }
+        let told = Told { code, message: &message };
+        Self { status, json: serde_json::to_vec(&told).unwrap_or_default(), message }
     }
 
     /// An argument or a setting is wrong.

@@ -86,17 +86,11 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     if names.len() != others.len() {
         return Err(Refusal::argument("a file is missing"));
     }
-    let named = names
-        .into_iter()
-        .zip(others.iter().map(|file| file.to_vec()));
+    let named = names.into_iter().zip(others.iter().map(|file| file.to_vec()));
     let models = models(embedded)?;
     let devices = Devices::new(htex_device_builtin::devices());
     let files = Named(named.collect());
-    let around = Surroundings {
-        models: &models,
-        embedded,
-        devices: &devices,
-    };
+    let around = Surroundings { models: &models, embedded, devices: &devices };
     let loaded = LoadedScene::from_files(scene, &files, &around, &device)?;
     let known = devices.find(&loaded.scene.device.adapter);
     let able = known
@@ -121,13 +115,7 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
         scenes.open.insert(scenes.last, open);
         scenes.last
     });
-    let opened = Opened {
-        id,
-        unit,
-        rate: plan.rate_hz,
-        plan: &plan,
-        notes,
-    };
+    let opened = Opened { id, unit, rate: plan.rate_hz, plan: &plan, notes };
     Answer::new(&opened, Vec::new())
 }
 
@@ -168,7 +156,8 @@ fn settings(given: Document) -> Result<BTreeMap<String, String>, Refusal> {
     given.rest().into_iter().map(text).collect()
 }
 
-/// Renders a scene from its start, for its own length or that which is given; the bytes are the samples.
+/// Renders a scene from its start, for its own length or that which is given; the bytes are the
+/// samples.
 pub(crate) fn render(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let id = id(&mut call)?;
     let seconds = call.number("seconds")?;
@@ -212,7 +201,8 @@ pub(crate) fn next(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> 
     })
 }
 
-/// Renders a scene at another motion, a block of samples for each line of the file: speed, force and place; the bytes are the samples.
+/// Renders a scene at another motion, a block of samples for each line of the file: speed, force
+/// and place; the bytes are the samples.
 pub(crate) fn path(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let id = id(&mut call)?;
     let block = count(&mut call, "block")?;
@@ -312,15 +302,9 @@ impl Open {
 
     /// Loads the scene for a motion that is given while it plays.
     fn live(&self) -> Result<LoadedScene, Refusal> {
-        let around = Surroundings {
-            models: &self.models,
-            embedded: self.embedded,
-            devices: &self.devices,
-        };
-        let device = DeviceOverride {
-            live: true,
-            ..self.device.clone()
-        };
+        let around =
+            Surroundings { models: &self.models, embedded: self.embedded, devices: &self.devices };
+        let device = DeviceOverride { live: true, ..self.device.clone() };
         let mut loaded = LoadedScene::from_files(&self.bytes, &self.files, &around, &device)?;
         loaded.scene.motion = Motion::Live;
         loaded.scene.duration_s = None;

@@ -38,11 +38,7 @@ fn said_of(parameters: &[f64]) -> String {
     let arma = model("arma");
     let magnitude = told(arma.magnitude(parameters, BAND, &[100.0]));
     let voice = told(arma.voice(parameters, BAND, 2_000.0, 1));
-    if magnitude == voice {
-        voice
-    } else {
-        format!("by magnitude {magnitude}; by voice {voice}")
-    }
+    if magnitude == voice { voice } else { format!("by magnitude {magnitude}; by voice {voice}") }
 }
 
 /// Lines of a pair of poles, or zeros, at a radius.
@@ -51,7 +47,8 @@ fn pair(radius: f64, hz: f64) -> Vec<f64> {
     line_spectral_frequencies(&[2.0 * radius * angle.cos(), -radius * radius]).unwrap()
 }
 
-/// Decibels by which the magnitude with zeros on the circle, at a frequency, is above what is next to it.
+/// Decibels by which the magnitude with zeros on the circle, at a frequency, is above what is next
+/// to it.
 fn notch_db(hz: f64) -> f64 {
     let line = 2.0 * PI * hz / 2_000.0;
     let parameters = set(&[], &[line, line]);
@@ -68,10 +65,8 @@ fn mixes() -> Vec<bool> {
         let place = |i: usize| (i as f64 + 1.0) / (order as f64 + 1.0);
         (0..order).map(|i| PI * place(i).powf(bend)).collect()
     };
-    let sets: Vec<Vec<f64>> = orders
-        .iter()
-        .map(|order| set(&lines(*order, 1.3), &lines(64 - order, 0.8)))
-        .collect();
+    let sets: Vec<Vec<f64>> =
+        orders.iter().map(|order| set(&lines(*order, 1.3), &lines(64 - order, 0.8))).collect();
     let pairs = sets.iter().flat_map(|a| sets.iter().map(move |b| (a, b)));
     pairs
         .map(|(a, b)| {
@@ -90,11 +85,7 @@ const CASES: &[Case] = &[
         "magnitude, render",
         none("are played"),
         || {
-            let sets = [
-                set(&[], &[]),
-                set(&pair(0.9, 200.0), &[]),
-                set(&[], &pair(0.9, 200.0)),
-            ];
+            let sets = [set(&[], &[]), set(&pair(0.9, 200.0), &[]), set(&[], &pair(0.9, 200.0))];
             failures(sets.map(|set| is_played(&set)))
         },
     ),
@@ -118,12 +109,7 @@ const CASES: &[Case] = &[
         "ARMA",
         "magnitude there",
         Bound(-100.0, "dB", "that 50 Hz beside it"),
-        || {
-            [100.0, 250.0, 500.0]
-                .map(notch_db)
-                .into_iter()
-                .fold(f64::NEG_INFINITY, f64::max)
-        },
+        || [100.0, 250.0, 500.0].map(notch_db).into_iter().fold(f64::NEG_INFINITY, f64::max),
     ),
     within(
         "poles at radius 1 - 1e-9 on and between bins",
@@ -151,13 +137,7 @@ const CASES: &[Case] = &[
         || {
             let recordings = [noise(), friction(), tone(300.0)];
             let spectra = recordings.map(|signal| spectrum(&signal));
-            let orders = [
-                ("0", "0"),
-                ("0", "6"),
-                ("6", "0"),
-                ("20", "18"),
-                ("64", "64"),
-            ];
+            let orders = [("0", "0"), ("0", "6"), ("6", "0"), ("20", "18"), ("64", "64")];
             failures(spectra.iter().flat_map(|magnitude| {
                 orders.map(|(poles, zeros)| {
                     let options = [("poles", poles), ("zeros", zeros)];
@@ -174,31 +154,17 @@ const CASES: &[Case] = &[
         "do not ascend",
         || said_of(&set(&[1.0, 1.0], &[])),
     ),
-    refused(
-        "a line of poles at 0",
-        "ARMA",
-        "magnitude and voice",
-        "do not ascend",
-        || said_of(&set(&[0.0, 1.0], &[])),
-    ),
-    refused(
-        "lines of zeros that descend",
-        "ARMA",
-        "magnitude and voice",
-        "descend",
-        || said_of(&set(&[], &[1.0, 0.5])),
-    ),
-    refused(
-        "filters of 2 kHz and 1 kHz",
-        "ARMA",
-        "mix",
-        "different model rates",
-        || {
-            let (a, mut b) = (set(&[1.0], &[]), set(&[1.0], &[]));
-            b[3] = 1_000.0;
-            told(model("arma").interpolate(&[&a, &b], &[0.5, 0.5]))
-        },
-    ),
+    refused("a line of poles at 0", "ARMA", "magnitude and voice", "do not ascend", || {
+        said_of(&set(&[0.0, 1.0], &[]))
+    }),
+    refused("lines of zeros that descend", "ARMA", "magnitude and voice", "descend", || {
+        said_of(&set(&[], &[1.0, 0.5]))
+    }),
+    refused("filters of 2 kHz and 1 kHz", "ARMA", "mix", "different model rates", || {
+        let (a, mut b) = (set(&[1.0], &[]), set(&[1.0], &[]));
+        b[3] = 1_000.0;
+        told(model("arma").interpolate(&[&a, &b], &[0.5, 0.5]))
+    }),
     refused(
         "a zero on the circle, and a filter of more zeros",
         "ARMA",

@@ -23,11 +23,7 @@ fn filter_refused(coefficients: &[f64]) -> String {
     let parameters = [&count[..], coefficients, &[2_000.0]].concat();
     let magnitude = told(ar.magnitude(&parameters, BAND, &[100.0]));
     let voice = told(ar.voice(&parameters, BAND, 2_000.0, 1));
-    if magnitude == voice {
-        voice
-    } else {
-        format!("by magnitude {magnitude}; by voice {voice}")
-    }
+    if magnitude == voice { voice } else { format!("by magnitude {magnitude}; by voice {voice}") }
 }
 
 /// Whether fits of orders up to 64 at a model rate are stable, by each method, and are played.
@@ -81,24 +77,14 @@ const CASES: &[Case] = &[
         "AR",
         "level of the fit and of four minutes played",
         Bound(1.0, "dB", "the tone's"),
-        || {
-            [100.0, 500.0, 902.5]
-                .map(tone_level)
-                .into_iter()
-                .fold(0.0, worse)
-        },
+        || [100.0, 500.0, 902.5].map(tone_level).into_iter().fold(0.0, worse),
     ),
     within(
         "friction noise, the band oversampled 1 to 500 times: model rates 2 kHz to 1 MHz",
         "AR",
         "fit by each method, orders 1 to 64, and render",
         none("all are played"),
-        || {
-            ["2000", "20000", "200000", "1000000"]
-                .map(fits_at)
-                .iter()
-                .sum()
-        },
+        || ["2000", "20000", "200000", "1000000"].map(fits_at).iter().sum(),
     ),
     within(
         "friction noise, model rates 2 kHz to 200 kHz",
@@ -198,10 +184,7 @@ const CASES: &[Case] = &[
         "magnitude",
         "InvalidParameters: the filter has no finite energy in the band",
         || {
-            let band = Band {
-                low_hz: 100.0,
-                ..BAND
-            };
+            let band = Band { low_hz: 100.0, ..BAND };
             told(model("ar").magnitude(&[1.0, 0.5, 50.0], band, &[200.0]))
         },
     ),
@@ -217,11 +200,7 @@ const CASES: &[Case] = &[
                 told(fit_with(&model("ar"), &magnitude, signal, &options))
             };
             let (none, one) = (said(&[]), said(&[1.0]));
-            if none == one {
-                none
-            } else {
-                format!("{none}; {one}")
-            }
+            if none == one { none } else { format!("{none}; {one}") }
         },
     ),
     refused(
@@ -231,12 +210,7 @@ const CASES: &[Case] = &[
         "CannotFit: the recording's segments are silent",
         || {
             let options = [("method", "burg")];
-            told(fit_with(
-                &model("ar"),
-                &spectrum(&friction()),
-                &[0.0; 100],
-                &options,
-            ))
+            told(fit_with(&model("ar"), &spectrum(&friction()), &[0.0; 100], &options))
         },
     ),
     refused(
@@ -276,27 +250,21 @@ const CASES: &[Case] = &[
             other.unwrap_or(&all[0]).clone()
         },
     ),
-    refused(
-        "a coefficient that is NaN",
-        "every model",
-        "magnitude, voice",
-        "is NaN",
-        || {
-            let said = models().into_iter().map(|model| {
-                let fitted = crate::seen::fit(&model, &spectrum(&friction())).unwrap();
-                let mut parameters = fitted.parameters;
-                // A scalar's place, or the first of a list.
-                let last = parameters.len() - 1;
-                parameters[last] = f64::NAN;
-                let grid = BAND.grid_hz();
-                [
-                    told(model.magnitude(&parameters, BAND, &grid)),
-                    told(model.voice(&parameters, BAND, 2_000.0, 1)),
-                ]
-            });
-            let all: Vec<String> = said.flatten().collect();
-            let other = all.iter().find(|text| !text.contains("is NaN"));
-            other.unwrap_or(&all[0]).clone()
-        },
-    ),
+    refused("a coefficient that is NaN", "every model", "magnitude, voice", "is NaN", || {
+        let said = models().into_iter().map(|model| {
+            let fitted = crate::seen::fit(&model, &spectrum(&friction())).unwrap();
+            let mut parameters = fitted.parameters;
+            // A scalar's place, or the first of a list.
+            let last = parameters.len() - 1;
+            parameters[last] = f64::NAN;
+            let grid = BAND.grid_hz();
+            [
+                told(model.magnitude(&parameters, BAND, &grid)),
+                told(model.voice(&parameters, BAND, 2_000.0, 1)),
+            ]
+        });
+        let all: Vec<String> = said.flatten().collect();
+        let other = all.iter().find(|text| !text.contains("is NaN"));
+        other.unwrap_or(&all[0]).clone()
+    }),
 ];

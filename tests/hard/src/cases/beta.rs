@@ -135,18 +135,13 @@ fn peaks(at: &[usize], floor: f64) -> Vec<f64> {
 }
 
 /// To peaks and bins in decibels, which is the default, and to peaks alone by magnitudes.
-const WAYS: [[(&str, &str); 2]; 2] = [
-    [("error", "decibel"), ("bins", "20")],
-    [("error", "magnitude"), ("bins", "0")],
-];
+const WAYS: [[(&str, &str); 2]; 2] =
+    [[("error", "decibel"), ("bins", "20")], [("error", "magnitude"), ("bins", "0")]];
 
 /// Whether spectra are fitted in both ways with each lower bound and played.
 fn fitted(spectra: &[Vec<f64>]) -> f64 {
     let sbeta = model("sbeta");
-    let bounds = || {
-        WAYS.into_iter()
-            .flat_map(|way| ["1", "0", "0.5"].map(|bound| (way, bound)))
-    };
+    let bounds = || WAYS.into_iter().flat_map(|way| ["1", "0", "0.5"].map(|bound| (way, bound)));
     failures(spectra.iter().flat_map(|magnitude| {
         bounds().map(|(way, bound)| {
             let options = [&way[..], &[("lower_bound", bound)]].concat();
@@ -164,15 +159,13 @@ fn fitted(spectra: &[Vec<f64>]) -> f64 {
     }))
 }
 
-/// The worst of a measure of fits of tones of 150, 500 and 747.5 Hz, in both ways with lower bounds 0.5 and 1.
+/// The worst of a measure of fits of tones of 150, 500 and 747.5 Hz, in both ways with lower bounds
+/// 0.5 and 1.
 fn of_tones(off: impl Fn(f64, &Fit) -> f64) -> f64 {
     let (sbeta, mut worst) = (model("sbeta"), 0.0);
     for hz in [150.0, 500.0, 747.5] {
         let magnitude = spectrum(&tone(hz));
-        for (way, bound) in WAYS
-            .iter()
-            .flat_map(|way| ["0.5", "1"].map(|bound| (way, bound)))
-        {
+        for (way, bound) in WAYS.iter().flat_map(|way| ["0.5", "1"].map(|bound| (way, bound))) {
             let options = [&way[..], &[("lower_bound", bound)]].concat();
             let fitted = fit_with(&sbeta, &magnitude, &[], &options);
             worst = worse(worst, fitted.map_or(f64::NAN, |fit| off(hz, &fit)));
@@ -228,11 +221,7 @@ const CASES: &[Case] = &[
                 BetaDensity::new(p, 1.0).at(0.5).is_nan()
                     && BetaDensity::new(1.0, p).at(0.5).is_nan()
             });
-            failures(
-                density
-                    .into_iter()
-                    .chain([BetaDensity::new(2.0, 2.0).at(f64::NAN).is_nan()]),
-            )
+            failures(density.into_iter().chain([BetaDensity::new(2.0, 2.0).at(f64::NAN).is_nan()]))
         },
     ),
     within(
@@ -258,11 +247,7 @@ const CASES: &[Case] = &[
             let (sbeta, set) = (model("sbeta"), [31_030.0, 1e6]);
             let magnitude = told(sbeta.magnitude(&set, BAND, &[100.0]));
             let voice = told(sbeta.voice(&set, BAND, 2_500.0, 1));
-            if magnitude == voice {
-                voice
-            } else {
-                format!("{magnitude}; {voice}")
-            }
+            if magnitude == voice { voice } else { format!("{magnitude}; {voice}") }
         },
     ),
     within(
@@ -306,13 +291,7 @@ const CASES: &[Case] = &[
         "sBeta",
         "fit in both ways, lower bounds 0, 0.5, 1",
         none("in range, played, and within 20 dB of its level"),
-        || {
-            fitted(&[
-                peaks(&[2, 190], 0.0),
-                peaks(&[100, 104], 0.1),
-                peaks(&[100, 101], 0.0),
-            ])
-        },
+        || fitted(&[peaks(&[2, 190], 0.0), peaks(&[100, 104], 0.1), peaks(&[100, 101], 0.0)]),
     ),
     within(
         "ten equal peaks; a flat spectrum; a plateau",
@@ -322,12 +301,7 @@ const CASES: &[Case] = &[
         || {
             let ten: Vec<usize> = (0..10).map(|i| 10 + 18 * i).collect();
             let plateau: Vec<usize> = (60..140).collect();
-            fitted(&[
-                peaks(&ten, 0.0),
-                peaks(&ten, 0.5),
-                peaks(&[], 1.0),
-                peaks(&plateau, 0.2),
-            ])
+            fitted(&[peaks(&ten, 0.0), peaks(&ten, 0.5), peaks(&[], 1.0), peaks(&plateau, 0.2)])
         },
     ),
     within(

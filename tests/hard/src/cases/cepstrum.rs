@@ -20,22 +20,15 @@ pub(crate) const SECTION: Section = Section {
 
 const BAND: Band = Band::TACTILE;
 /// What a recording of 200 Hz holds: 17 bins.
-const NARROW: Band = Band {
-    low_hz: 20.0,
-    high_hz: 100.0,
-};
+const NARROW: Band = Band { low_hz: 20.0, high_hz: 100.0 };
 const INVERSES: [&str; 3] = ["pinv", "nnls", "interpolate"];
 
-/// Whether a spectrum is fitted with these bands and coefficients by every inverse, at unit RMS, and
-/// with a level within 20 dB of its own.
+/// Whether a spectrum is fitted with these bands and coefficients by every inverse, at unit RMS,
+/// and with a level within 20 dB of its own.
 fn lives(magnitude: &[f64], bands: &str, coefficients: &str) -> f64 {
     let mfcc = model("mfcc");
     failures(INVERSES.map(|inverse| {
-        let options = [
-            ("bands", bands),
-            ("coefficients", coefficients),
-            ("inverse", inverse),
-        ];
+        let options = [("bands", bands), ("coefficients", coefficients), ("inverse", inverse)];
         let Ok(fitted) = fit_with(&mfcc, magnitude, &[], &options) else {
             return false;
         };
@@ -59,11 +52,7 @@ fn empty_bands(bands: &str) -> f64 {
     let (mfcc, grid) = (model("mfcc"), NARROW.grid_hz());
     let magnitude: Vec<f64> = grid.iter().map(|f| 1.0 / f).collect();
     failures(INVERSES.map(|inverse| {
-        let options = [
-            ("bands", bands),
-            ("coefficients", bands),
-            ("inverse", inverse),
-        ];
+        let options = [("bands", bands), ("coefficients", bands), ("inverse", inverse)];
         let fitted = mfcc.fit(&FitRequest {
             band: NARROW,
             frequency_hz: &grid,
@@ -190,12 +179,7 @@ const CASES: &[Case] = &[
             let energies = bank.energies(&[1.0; 17]);
             let mut power = [f64::NAN; 17];
             bank.interpolate(&energies, &mut power);
-            let empty = bank
-                .filters()
-                .row_sums()
-                .iter()
-                .filter(|s| **s == 0.0)
-                .count();
+            let empty = bank.filters().row_sums().iter().filter(|s| **s == 0.0).count();
             failures([
                 empty > 0,
                 energies.iter().all(|e| e.is_finite() && *e >= 0.0),
@@ -217,10 +201,7 @@ const CASES: &[Case] = &[
         none("unit RMS, level within 20 dB"),
         || {
             let magnitude = spectrum(&friction());
-            ["1", "10", "64"]
-                .map(|c| lives(&magnitude, "128", c))
-                .iter()
-                .sum()
+            ["1", "10", "64"].map(|c| lives(&magnitude, "128", c)).iter().sum()
         },
     ),
     within(
@@ -230,10 +211,7 @@ const CASES: &[Case] = &[
         none("unit RMS, level within 20 dB"),
         || {
             let magnitude = spectrum(&friction());
-            ["2", "3", "26"]
-                .map(|bands| lives(&magnitude, bands, "128"))
-                .iter()
-                .sum()
+            ["2", "3", "26"].map(|bands| lives(&magnitude, bands, "128")).iter().sum()
         },
     ),
     within(

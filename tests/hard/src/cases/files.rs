@@ -30,10 +30,7 @@ fn recording(rate_hz: f64, axes: Vec<f64>) -> Recording {
 pub(crate) fn fitted(recordings: Vec<(Recording, f64)>) -> Result<FittedAsset, AuthorError> {
     let take = |(recording, speed_mm_s)| Take {
         recording,
-        given: Exploration {
-            speed_mm_s: Some(speed_mm_s),
-            force_n: Some(0.4),
-        },
+        given: Exploration { speed_mm_s: Some(speed_mm_s), force_n: Some(0.4) },
     };
     let takes: Vec<Take> = recordings.into_iter().map(take).collect();
     let request = AssetRequest::new("hard")
@@ -41,8 +38,8 @@ pub(crate) fn fitted(recordings: Vec<(Recording, f64)>) -> Result<FittedAsset, A
     fit_asset(&takes, &request)
 }
 
-/// The largest sample over the level of all voices of a recording's file; NaN if what is opened is not
-/// what was stored, or fewer than `models` are in it.
+/// The largest sample over the level of all voices of a recording's file; NaN if what is opened is
+/// not what was stored, or fewer than `models` are in it.
 fn opened(recording: Recording, models: usize) -> f64 {
     let fitted = match fitted(vec![(recording, 80.0)]) {
         Ok(fitted) => fitted,
@@ -70,13 +67,9 @@ fn opened(recording: Recording, models: usize) -> f64 {
 fn played(asset: &htex::Asset, model: &str) -> f64 {
     let options = htex::VoiceOptions::default().with_model(model);
     let mut out = vec![0.0f32; 4_000];
-    let rendered = asset
-        .voice(&options)
-        .and_then(|mut voice| voice.render(&mut out));
+    let rendered = asset.voice(&options).and_then(|mut voice| voice.render(&mut out));
     match rendered {
-        Ok(()) => out
-            .iter()
-            .fold(0.0, |peak, x| worse(peak, f64::from(x.abs()))),
+        Ok(()) => out.iter().fold(0.0, |peak, x| worse(peak, f64::from(x.abs()))),
         Err(error) => {
             println!("{model}: {error}");
             f64::NAN
@@ -127,40 +120,24 @@ const CASES: &[Case] = &[
     lives("friction noise of 1e6 N", || {
         opened(recording(RATE_HZ, scaled(&friction(), 1e6)), all() - 1)
     }),
-    refused(
-        "friction noise of 1e10 N",
-        PIPELINE,
-        "store",
-        "LEVEL_INVALID",
-        || {
-            let loud = recording(RATE_HZ, scaled(&friction(), 1e10));
-            let stored = fitted(vec![(loud, 80.0)]).unwrap().asset.to_bytes();
-            stored.map_or_else(|error| format!("{error:?}"), |_| "it was done".to_owned())
-        },
-    ),
+    refused("friction noise of 1e10 N", PIPELINE, "store", "LEVEL_INVALID", || {
+        let loud = recording(RATE_HZ, scaled(&friction(), 1e10));
+        let stored = fitted(vec![(loud, 80.0)]).unwrap().asset.to_bytes();
+        stored.map_or_else(|error| format!("{error:?}"), |_| "it was done".to_owned())
+    }),
     refused(
         "noise of 1e30 N",
         PIPELINE,
         "read",
         "no recording goes beyond 1000000000000; correct its unit",
-        || {
-            words(Recording::new(
-                "hard",
-                RATE_HZ,
-                vec![scaled(&noise(), 1e30)],
-            ))
-        },
+        || words(Recording::new("hard", RATE_HZ, vec![scaled(&noise(), 1e30)])),
     ),
     lives("friction noise of 1e-30 N", || {
         opened(recording(RATE_HZ, scaled(&friction(), 1e-30)), all() - 1)
     }),
-    refused(
-        "silence",
-        PIPELINE,
-        "fit",
-        "no model could be fitted",
-        || words(fitted(vec![(recording(RATE_HZ, vec![0.0; 40_000]), 80.0)])),
-    ),
+    refused("silence", PIPELINE, "fit", "no model could be fitted", || {
+        words(fitted(vec![(recording(RATE_HZ, vec![0.0; 40_000]), 80.0)]))
+    }),
     refused(
         "a sample that is NaN or infinite",
         PIPELINE,
@@ -185,9 +162,7 @@ const CASES: &[Case] = &[
         || {
             let all = [0.0, -1.0, f64::NAN, 1e300, f64::INFINITY]
                 .map(|rate_hz| words(Recording::new("hard", rate_hz, vec![vec![0.0; 9]])));
-            let other = all
-                .iter()
-                .find(|text| !text.contains("above 0 and at most"));
+            let other = all.iter().find(|text| !text.contains("above 0 and at most"));
             other.unwrap_or(&all[0]).clone()
         },
     ),
@@ -196,12 +171,7 @@ const CASES: &[Case] = &[
         PIPELINE,
         "fit",
         "are less than one segment of 0.2 s (4000 samples)",
-        || {
-            words(fitted(vec![(
-                recording(RATE_HZ, friction()[..3_999].to_vec()),
-                80.0,
-            )]))
-        },
+        || words(fitted(vec![(recording(RATE_HZ, friction()[..3_999].to_vec()), 80.0)])),
     ),
     refused(
         "a rate of 50 Hz: nothing above 25 Hz",
@@ -228,13 +198,9 @@ const CASES: &[Case] = &[
             worse(raised(0.0), raised(1e-9))
         },
     ),
-    refused(
-        "a setup response of 0 all over",
-        PIPELINE,
-        "compensate",
-        "setup response",
-        || words(through([0.0; 5])),
-    ),
+    refused("a setup response of 0 all over", PIPELINE, "compensate", "setup response", || {
+        words(through([0.0; 5]))
+    }),
     refused(
         "a setup response of 1e-320 in a recording of 1 N",
         PIPELINE,
@@ -242,11 +208,7 @@ const CASES: &[Case] = &[
         "setup response",
         || words(through([1e-320; 5])),
     ),
-    refused(
-        "a setup response that is NaN",
-        PIPELINE,
-        "compensate",
-        "setup response",
-        || words(through([1.0, 1.0, f64::NAN, 1.0, 1.0])),
-    ),
+    refused("a setup response that is NaN", PIPELINE, "compensate", "setup response", || {
+        words(through([1.0, 1.0, f64::NAN, 1.0, 1.0]))
+    }),
 ];

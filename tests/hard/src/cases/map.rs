@@ -22,14 +22,7 @@ const STRONGEST_N: f64 = 1e6;
 /// Parameters of grey values, with the RMS that is theirs, or 1 where they have none.
 fn map(width: usize, pitch_mm: f64, grey: &[f64]) -> Vec<f64> {
     let rms = htex_map::rms(width, pitch_mm, SPEED_MM_S, grey, BAND).unwrap_or(1.0);
-    let scalars = [
-        width as f64,
-        pitch_mm,
-        SPEED_MM_S,
-        0.5,
-        rms,
-        grey.len() as f64,
-    ];
+    let scalars = [width as f64, pitch_mm, SPEED_MM_S, 0.5, rms, grey.len() as f64];
     [&scalars[..], grey].concat()
 }
 
@@ -44,13 +37,7 @@ fn voice(parameters: &[f64]) -> ModelVoice {
 }
 
 fn motion(speed_mm_s: f64, force_n: f64, [x_mm, y_mm]: [f64; 2]) -> Motion {
-    Motion {
-        speed_mm_s,
-        force_n,
-        position_mm: 0.0,
-        x_mm,
-        y_mm,
-    }
+    Motion { speed_mm_s, force_n, position_mm: 0.0, x_mm, y_mm }
 }
 
 /// The largest sample of a voice that is told motions 10 ms apart; NaN if one is not finite.
@@ -60,23 +47,16 @@ fn largest(parameters: &[f64], motions: &[Motion]) -> f64 {
         voice.set_motion(*motion).unwrap();
         let mut samples = [0.0f32; 40];
         voice.render(&mut samples).unwrap();
-        largest = samples
-            .iter()
-            .fold(largest, |most, x| crate::worse(most, f64::from(x.abs())));
+        largest = samples.iter().fold(largest, |most, x| crate::worse(most, f64::from(x.abs())));
     }
     largest
 }
 
-/// Whether a map is played, untold and told, within what its grey values can be at 16 times the force.
+/// Whether a map is played, untold and told, within what its grey values can be at 16 times the
+/// force.
 fn is_bounded(parameters: &[f64]) -> bool {
     let magnitude = model("map").magnitude(parameters, BAND, &BAND.grid_hz());
-    let places = [
-        [0.0; 2],
-        [0.3, -0.2],
-        [FARTHEST_MM; 2],
-        [-FARTHEST_MM, 0.0],
-        [0.0; 2],
-    ];
+    let places = [[0.0; 2], [0.3, -0.2], [FARTHEST_MM; 2], [-FARTHEST_MM, 0.0], [0.0; 2]];
     let motions: Vec<Motion> = places
         .into_iter()
         .flat_map(|place| {
@@ -89,7 +69,8 @@ fn is_bounded(parameters: &[f64]) -> bool {
         .collect();
     let mut untold = [0.0f32; 4_000];
     voice(parameters).render(&mut untold).unwrap();
-    // The cubic overshoots by a fourth along each axis, and the filters of the edges by less than twice.
+    // The cubic overshoots by a fourth along each axis, and the filters of the edges by less than
+    // twice.
     let most = 16.0 * 2.0 * 1.25 * 1.25 * 255.0 / parameters[4];
     let told = largest(parameters, &motions);
     magnitude.is_ok() && untold.iter().all(|x| f64::from(x.abs()) <= most) && told <= most
@@ -137,9 +118,7 @@ const CASES: &[Case] = &[
             voice.set_motion(motion(0.0, 0.5, [3.0, 2.0])).unwrap();
             let mut samples = [0.0f32; 4_000];
             voice.render(&mut samples).unwrap();
-            samples[2_000..]
-                .iter()
-                .fold(0.0, |most, x| most.max(f64::from(x.abs())))
+            samples[2_000..].iter().fold(0.0, |most, x| most.max(f64::from(x.abs())))
         },
     ),
     refused(

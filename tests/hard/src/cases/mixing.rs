@@ -24,9 +24,7 @@ const BAND: Band = Band::TACTILE;
 fn filters(order: usize, most: f64, count: u64) -> Vec<Vec<f64>> {
     let filter = |seed| {
         let mut uniform = Uniform::new(seed);
-        let k: Vec<f64> = (0..order)
-            .map(|_| most * (2.0 * uniform.next_unit() - 1.0))
-            .collect();
+        let k: Vec<f64> = (0..order).map(|_| most * (2.0 * uniform.next_unit() - 1.0)).collect();
         reflection_to_coefficients(&k)
     };
     (0..count).map(filter).collect()
@@ -54,7 +52,8 @@ fn unstable_mixes(filters: &[Vec<f64>]) -> f64 {
     failures(results)
 }
 
-/// Filters at the ends of what there is: poles near the circle at both ends and all around, and none.
+/// Filters at the ends of what there is: poles near the circle at both ends and all around, and
+/// none.
 fn extremes() -> Vec<Vec<f64>> {
     let near = 1.0 - 1e-6;
     let pair = |turn: f64| {
@@ -90,11 +89,7 @@ fn round_trip(filters: &[Vec<f64>]) -> f64 {
 fn clicks() -> Vec<f64> {
     let first = impulse();
     let delayed = std::iter::repeat_n(0.0, 60).chain(first.iter().copied());
-    first
-        .iter()
-        .zip(delayed)
-        .map(|(x, y)| x + 0.5 * y)
-        .collect()
+    first.iter().zip(delayed).map(|(x, y)| x + 0.5 * y).collect()
 }
 
 /// Whether mixes of fits to unlike recordings, at weights near 0 and 1 too, are shapes that play.
@@ -164,11 +159,7 @@ const CASES: &[Case] = &[
         "line spectral frequencies",
         "there and back",
         Bound(1e-10, "of the largest coefficient", "the filter"),
-        || {
-            (1..=16)
-                .map(|order| round_trip(&filters(order, 0.9, 8)))
-                .fold(0.0, worse)
-        },
+        || (1..=16).map(|order| round_trip(&filters(order, 0.9, 8))).fold(0.0, worse),
     ),
     within(
         "poles 1e-6 inside the circle",
@@ -231,9 +222,7 @@ const CASES: &[Case] = &[
         "InvalidArgument: weights must lie in 0 to 1 and sum to 1",
         || {
             let said = models().into_iter().flat_map(|model| {
-                let set = crate::seen::fit(&model, &spectrum(&friction()))
-                    .unwrap()
-                    .parameters;
+                let set = crate::seen::fit(&model, &spectrum(&friction())).unwrap().parameters;
                 let sets = [&set[..], &set[..]];
                 let weights = [[0.5, 0.6], [-0.5, 1.5], [f64::NAN, 1.0], [0.0, 0.0]];
                 weights.map(|weights| told(model.interpolate(&sets, &weights)))

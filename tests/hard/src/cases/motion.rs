@@ -22,10 +22,7 @@ const LIMIT_V: f64 = 150.0;
 /// Bytes of an asset of one or two conditions in all models.
 fn asset(conditions: usize) -> Asset {
     let recording = |x| Recording::new("hard", RATE_HZ, vec![x]).unwrap();
-    let takes = vec![
-        (recording(friction()), 60.0),
-        (recording(scaled(&noise(), 0.1)), 120.0),
-    ];
+    let takes = vec![(recording(friction()), 60.0), (recording(scaled(&noise(), 0.1)), 120.0)];
     let fitted = fitted(takes.into_iter().take(conditions).collect()).unwrap();
     Asset::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
 }
@@ -40,9 +37,7 @@ fn moved(motions: &[(f64, f64)], effects: Effects) -> f64 {
     let asset = asset(2);
     let mut peak = 0.0;
     for model in models() {
-        let options = VoiceOptions::default()
-            .with_model(&model)
-            .with_effects(effects);
+        let options = VoiceOptions::default().with_model(&model).with_effects(effects);
         let mut voice = asset.voice(&options).unwrap();
         let mut block = [0.0f32; 64];
         for i in 0..200 {
@@ -118,15 +113,11 @@ fn scene(conditions: usize) -> LoadedScene {
 }
 
 fn finger(speed_mm_s: f64, force_n: f64) -> Finger {
-    Finger {
-        speed_mm_s,
-        force_n,
-        at_mm: None,
-    }
+    Finger { speed_mm_s, force_n, at_mm: None }
 }
 
-/// The largest sample of a scene whose finger moves so in turns, and of what it renders when the finger
-/// moves sanely again; NaN if that is silent, or if the limiter held what was no number.
+/// The largest sample of a scene whose finger moves so in turns, and of what it renders when the
+/// finger moves sanely again; NaN if that is silent, or if the limiter held what was no number.
 fn felt(device: &Capabilities, motions: &[(f64, f64)]) -> f64 {
     let scene = scene(1);
     let plan = plan(&scene, device, &Costs::embedded()).unwrap();
@@ -158,12 +149,8 @@ fn all_but_lifted(force_n: f64) -> f64 {
     let mut scene = scene(1);
     scene.scene.effects.clear();
     scene.scene.duration_s = Some(0.1);
-    scene.scene.motion = Motion::Constant(Constant {
-        speed_mm_s: 80.0,
-        force_n,
-        from_mm: None,
-        direction_deg: 0.0,
-    });
+    scene.scene.motion =
+        Motion::Constant(Constant { speed_mm_s: 80.0, force_n, from_mm: None, direction_deg: 0.0 });
     let device = device(Quantity::Sound, 20_000.0, None);
     let plan = plan(&scene, &device, &Costs::embedded()).unwrap();
     let mut renderer = Renderer::new(&scene, &plan).unwrap();
@@ -183,14 +170,8 @@ fn scene_refused(speed_mm_s: f64, force_n: f64) -> String {
 }
 
 /// The least and the most that counts as a reading of a finger.
-const ENDS: [(f64, f64); 6] = [
-    (0.0, 0.0),
-    (1_000.0, 20.0),
-    (0.0, 20.0),
-    (1_000.0, 0.0),
-    (5e-324, 5e-324),
-    (80.0, 0.4),
-];
+const ENDS: [(f64, f64); 6] =
+    [(0.0, 0.0), (1_000.0, 20.0), (0.0, 20.0), (1_000.0, 0.0), (5e-324, 5e-324), (80.0, 0.4)];
 /// Readings of no finger, beyond `f32` and longer than one is held for.
 const BEYOND_FLOATS: [(f64, f64); 4] = [(80.0, 1e39), (1e9, 0.4), (1e300, 1e300), (80.0, 0.4)];
 
@@ -249,36 +230,21 @@ const CASES: &[Case] = &[
         "scene",
         "move and render",
         Bound(LIMIT_V, "V", "finite, and not silent for ever,"),
-        || {
-            felt(
-                &device(Quantity::DisplayVoltage, 20_000.0, Some(7_000.0)),
-                &ENDS,
-            )
-        },
+        || felt(&device(Quantity::DisplayVoltage, 20_000.0, Some(7_000.0)), &ENDS),
     ),
     within(
         "speeds and forces of 1e9, 1e39, 1e300, in turns, on a display",
         "scene",
         "move and render",
         Bound(LIMIT_V, "V", "finite, and not silent for ever,"),
-        || {
-            felt(
-                &device(Quantity::DisplayVoltage, 20_000.0, Some(7_000.0)),
-                &BEYOND_FLOATS,
-            )
-        },
+        || felt(&device(Quantity::DisplayVoltage, 20_000.0, Some(7_000.0)), &BEYOND_FLOATS),
     ),
     within(
         "speeds and forces of 1e9, 1e39, 1e300, in turns, on a device of newtons",
         "scene",
         "move and render",
         Bound(1.0, "N", "finite, and not silent for ever,"),
-        || {
-            felt(
-                &device(Quantity::LateralForce, 20_000.0, None),
-                &BEYOND_FLOATS,
-            )
-        },
+        || felt(&device(Quantity::LateralForce, 20_000.0, None), &BEYOND_FLOATS),
     ),
     refused(
         "a carrier at half the rate",
@@ -308,19 +274,10 @@ const CASES: &[Case] = &[
         "scene",
         "render",
         Bound(1.0, "of full scale", "finite, and samples"),
-        || {
-            [5e-324, 1e-300, 1e-30]
-                .map(all_but_lifted)
-                .into_iter()
-                .fold(0.0, worse)
-        },
+        || [5e-324, 1e-300, 1e-30].map(all_but_lifted).into_iter().fold(0.0, worse),
     ),
-    refused("a speed that is NaN", "scene", "move", "motion", || {
-        scene_refused(f64::NAN, 0.4)
-    }),
-    refused("a force of -1 N", "scene", "move", "motion", || {
-        scene_refused(80.0, -1.0)
-    }),
+    refused("a speed that is NaN", "scene", "move", "motion", || scene_refused(f64::NAN, 0.4)),
+    refused("a force of -1 N", "scene", "move", "motion", || scene_refused(80.0, -1.0)),
     within(
         "back strokes: speeds from -1000 to 1000 mm/s",
         "scene",

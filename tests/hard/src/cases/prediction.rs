@@ -26,10 +26,7 @@ const RIM: f64 = 1e-12;
 /// A resonance with its poles [`RIM`] inside the circle, at a 20th of the rate's turn.
 fn rim() -> [f64; 2] {
     let radius = 1.0 - RIM;
-    [
-        2.0 * radius * (std::f64::consts::TAU / 20.0).cos(),
-        -radius * radius,
-    ]
+    [2.0 * radius * (std::f64::consts::TAU / 20.0).cos(), -radius * radius]
 }
 
 /// Largest relative error of reflection coefficients and error power, ulps.
@@ -89,8 +86,8 @@ fn oversampled(times: f64) -> Vec<f64> {
     x
 }
 
-/// The largest sample that a lattice at the rim makes of a million samples of noise, over the root of
-/// their number: it adds up nearly all it was ever given.
+/// The largest sample that a lattice at the rim makes of a million samples of noise, over the root
+/// of their number: it adds up nearly all it was ever given.
 fn rim_run(reflection: &[f64]) -> f64 {
     let mut lattice = AllPoleLattice::new(reflection);
     let mut noise = htex_dsp::noise::GaussianNoise::new(3);
@@ -119,20 +116,12 @@ fn samples_to_rest() -> f64 {
 }
 
 const CASES: &[Case] = &[
-    within(
-        "white noise, order 16",
-        LEVINSON,
-        "solve",
-        Bound(100.0, "ulps", "exact"),
-        || levinson_error(&noise()[..4_000], 16),
-    ),
-    within(
-        "friction noise, order 6",
-        LEVINSON,
-        "solve",
-        Bound(1e5, "ulps", "exact"),
-        || levinson_error(&friction()[..4_000], 6),
-    ),
+    within("white noise, order 16", LEVINSON, "solve", Bound(100.0, "ulps", "exact"), || {
+        levinson_error(&noise()[..4_000], 16)
+    }),
+    within("friction noise, order 6", LEVINSON, "solve", Bound(1e5, "ulps", "exact"), || {
+        levinson_error(&friction()[..4_000], 6)
+    }),
     within(
         "a tone and noise 60 dB below, order 6",
         LEVINSON,
@@ -300,9 +289,7 @@ const CASES: &[Case] = &[
         "to coefficients and back",
         none("stable or refused, never NaN"),
         || {
-            let k: Vec<f64> = (0..64)
-                .map(|i| if i % 3 == 0 { 0.9 } else { -0.9 })
-                .collect();
+            let k: Vec<f64> = (0..64).map(|i| if i % 3 == 0 { 0.9 } else { -0.9 }).collect();
             let a = reflection_to_coefficients(&k);
             let back = coefficients_to_reflection(&a);
             let sane = back.is_none_or(|k| k.iter().all(|k| k.abs() < 1.0));

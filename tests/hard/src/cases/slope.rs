@@ -25,8 +25,8 @@ fn butterworth(ratio: &Big, order: f64) -> Big {
     big(1.0) / (big(1.0) + power).sqrt()
 }
 
-/// Decibels between digital low- and high-pass sections and the bilinear transform, where they pass more
-/// than -200 dB.
+/// Decibels between digital low- and high-pass sections and the bilinear transform, where they pass
+/// more than -200 dB.
 fn section_error_db(order: usize, cutoff_hz: f64) -> f64 {
     let tan = |hz: f64| {
         let angle = Big::pi() * big(hz) / big(RATE_HZ);
@@ -38,9 +38,7 @@ fn section_error_db(order: usize, cutoff_hz: f64) -> f64 {
             return f64::NAN;
         };
         let cascade = Cascade::new(&sections);
-        for hz in [
-            1.0, 20.0, 300.0, cutoff_hz, 1_000.0, 5_000.0, 9_000.0, 9_990.0,
-        ] {
+        for hz in [1.0, 20.0, 300.0, cutoff_hz, 1_000.0, 5_000.0, 9_000.0, 9_990.0] {
             let ratio = tan(hz) / tan(cutoff_hz);
             let ratio = if high { big(1.0) / ratio } else { ratio };
             let reference = butterworth(&ratio, order as f64).to_f64();
@@ -68,9 +66,7 @@ fn shape_error(peak_hz: f64, orders: (f64, f64)) -> f64 {
         butterworth(&above, orders.1) * butterworth(&(big(1.0) / above), orders.0)
     };
     // To the largest: the shape's scale is its level's.
-    let top = (0..grid.len())
-        .max_by(|&a, &b| found[a].total_cmp(&found[b]))
-        .unwrap();
+    let top = (0..grid.len()).max_by(|&a, &b| found[a].total_cmp(&found[b])).unwrap();
     let largest = at(grid[top]);
     let off = [0, 1, 13, 97, 195, 196].map(|i: usize| {
         let reference = at(grid[i]) / largest.clone();
@@ -83,14 +79,9 @@ fn shape_error(peak_hz: f64, orders: (f64, f64)) -> f64 {
 fn orders(magnitude: &[f64], slopes: &str) -> Option<[f64; 3]> {
     let sslope = model("sslope");
     let fitted = fit_with(&sslope, magnitude, &[], &[("slopes", slopes)]).ok()?;
-    let set = [
-        fitted.parameters[0],
-        fitted.parameters[1],
-        fitted.parameters[2],
-    ];
-    let played = sslope
-        .voice(&set, BAND, 2_500.0, 1)
-        .and_then(|mut voice| voice.render(&mut [0.0; 1_000]));
+    let set = [fitted.parameters[0], fitted.parameters[1], fitted.parameters[2]];
+    let played =
+        sslope.voice(&set, BAND, 2_500.0, 1).and_then(|mut voice| voice.render(&mut [0.0; 1_000]));
     let sane = set[1..].iter().all(|order| (0.05..=20.0).contains(order));
     (sane && played.is_ok() && fitted.level_rms > 0.0).then_some(set)
 }
@@ -104,10 +95,7 @@ fn all_ways(magnitude: &[f64], wanted: [f64; 3]) -> [bool; 3] {
 /// A spectrum that falls to both sides of a peak, by decibels a decade.
 fn roof(peak_hz: f64, db_per_decade: f64) -> Vec<f64> {
     let at = |f: f64| -db_per_decade * (f / peak_hz).log10().abs();
-    BAND.grid_hz()
-        .into_iter()
-        .map(|f| 10f64.powf(at(f) / 20.0))
-        .collect()
+    BAND.grid_hz().into_iter().map(|f| 10f64.powf(at(f) / 20.0)).collect()
 }
 
 const ENDS: &str = "1 N at 20 Hz, 1 N at 1 kHz, nothing between";
@@ -150,16 +138,15 @@ const CASES: &[Case] = &[
         none("stable and finite"),
         || {
             let results = [1.0, 20.0, 5_000.0, 9_999.0, 9_999.999].map(|cutoff_hz| {
-                [
-                    low_pass(20, cutoff_hz, RATE_HZ),
-                    high_pass(20, cutoff_hz, RATE_HZ),
-                ]
-                .map(|sections| {
-                    let sections = sections.unwrap();
-                    let mut block = crate::signals::noise();
-                    Cascade::new(&sections).process(&mut block);
-                    sections.iter().all(Biquad::is_stable) && block.iter().all(|x| x.abs() < 100.0)
-                })
+                [low_pass(20, cutoff_hz, RATE_HZ), high_pass(20, cutoff_hz, RATE_HZ)].map(
+                    |sections| {
+                        let sections = sections.unwrap();
+                        let mut block = crate::signals::noise();
+                        Cascade::new(&sections).process(&mut block);
+                        sections.iter().all(Biquad::is_stable)
+                            && block.iter().all(|x| x.abs() < 100.0)
+                    },
+                )
             });
             failures(results.into_iter().flatten())
         },
@@ -182,10 +169,7 @@ const CASES: &[Case] = &[
                 (2, 100.0, f64::INFINITY),
             ];
             failures(bad.iter().flat_map(|&(order, hz, rate)| {
-                [
-                    low_pass(order, hz, rate).is_none(),
-                    high_pass(order, hz, rate).is_none(),
-                ]
+                [low_pass(order, hz, rate).is_none(), high_pass(order, hz, rate).is_none()]
             }))
         },
     ),
@@ -291,43 +275,24 @@ const CASES: &[Case] = &[
             }))
         },
     ),
-    within(
-        ENDS,
-        "every model but sPeak",
-        "fit, magnitude",
-        none("unit RMS"),
-        || {
-            let fits = models().into_iter().filter(|m| m.short_name() != "speak");
-            failures(fits.map(|model| {
-                let fitted = crate::seen::fit(&model, &ends());
-                let shape =
-                    fitted.and_then(|f| model.magnitude(&f.parameters, BAND, &BAND.grid_hz()));
-                shape.is_ok_and(|m| (level_rms(&m) - 1.0).abs() < 1e-9)
-            }))
-        },
-    ),
-    within(
-        ENDS,
-        "sPeak",
-        "fit",
-        none("a line at each edge, as strong"),
-        || {
-            let fitted = crate::seen::fit(&model("speak"), &ends());
-            // The bins of the band read 5/6 of the power of either.
-            let amplitude = 1.2f64.sqrt();
-            let lines = [2.0, 20.0, 1000.0, 2.0, amplitude, amplitude, 1.0];
-            let equal = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-12;
-            failures([fitted.is_ok_and(|f| f.parameters.iter().zip(&lines).all(equal))])
-        },
-    ),
-    refused(
-        ENDS,
-        "nine bands, whose triangles weigh nothing there",
-        "fit",
-        "CannotFit",
-        || {
-            let nine = [("bands", "9")];
-            told(crate::seen::fit_with(&model("bands"), &ends(), &[], &nine))
-        },
-    ),
+    within(ENDS, "every model but sPeak", "fit, magnitude", none("unit RMS"), || {
+        let fits = models().into_iter().filter(|m| m.short_name() != "speak");
+        failures(fits.map(|model| {
+            let fitted = crate::seen::fit(&model, &ends());
+            let shape = fitted.and_then(|f| model.magnitude(&f.parameters, BAND, &BAND.grid_hz()));
+            shape.is_ok_and(|m| (level_rms(&m) - 1.0).abs() < 1e-9)
+        }))
+    }),
+    within(ENDS, "sPeak", "fit", none("a line at each edge, as strong"), || {
+        let fitted = crate::seen::fit(&model("speak"), &ends());
+        // The bins of the band read 5/6 of the power of either.
+        let amplitude = 1.2f64.sqrt();
+        let lines = [2.0, 20.0, 1000.0, 2.0, amplitude, amplitude, 1.0];
+        let equal = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-12;
+        failures([fitted.is_ok_and(|f| f.parameters.iter().zip(&lines).all(equal))])
+    }),
+    refused(ENDS, "nine bands, whose triangles weigh nothing there", "fit", "CannotFit", || {
+        let nine = [("bands", "9")];
+        told(crate::seen::fit_with(&model("bands"), &ends(), &[], &nine))
+    }),
 ];

@@ -27,11 +27,7 @@ fn sine_error(rate_hz: f64, hours: f64) -> f64 {
     let samples = (hours * 3600.0 * rate_hz) as u64;
     let mut worst = 0.0;
     for frequency_hz in frequencies {
-        let sine = Sine {
-            frequency_hz,
-            amplitude: 1.0,
-            phase_cycles: 0.25,
-        };
+        let sine = Sine { frequency_hz, amplitude: 1.0, phase_cycles: 0.25 };
         let mut bank = SineBank::new(rate_hz, 1, &[sine]);
         let mut block = vec![0.0f32; 65_536];
         let mut left = samples;
@@ -75,24 +71,14 @@ const CASES: &[Case] = &[
         Bound(1e-6, "of the amplitude", "256 bits"),
         || sine_error(20_000.0, 0.1),
     ),
-    within(
-        "sines at and above Nyquist, infinite",
-        "sine bank",
-        "render",
-        none("silent"),
-        || {
-            failures([1_000.0, 1e9, f64::INFINITY, f64::NAN].map(|frequency_hz| {
-                let sine = Sine {
-                    frequency_hz,
-                    amplitude: 1.0,
-                    phase_cycles: 0.0,
-                };
-                let mut out = [1.0f32; 300];
-                SineBank::new(2_000.0, 1, &[sine]).render(&mut out);
-                out.iter().all(|x| *x == 0.0)
-            }))
-        },
-    ),
+    within("sines at and above Nyquist, infinite", "sine bank", "render", none("silent"), || {
+        failures([1_000.0, 1e9, f64::INFINITY, f64::NAN].map(|frequency_hz| {
+            let sine = Sine { frequency_hz, amplitude: 1.0, phase_cycles: 0.0 };
+            let mut out = [1.0f32; 300];
+            SineBank::new(2_000.0, 1, &[sine]).render(&mut out);
+            out.iter().all(|x| *x == 0.0)
+        }))
+    }),
     within(
         "flat, rising, falling, empty; a plateau on an edge; NaN",
         "peaks",
@@ -144,13 +130,8 @@ const CASES: &[Case] = &[
         "start, retune, render",
         none("silent; finite"),
         || {
-            let curves: [fn(f64) -> f64; 5] = [
-                |_| f64::NAN,
-                |_| f64::INFINITY,
-                |_| -1.0,
-                |_| 0.0,
-                |_| 1e-320,
-            ];
+            let curves: [fn(f64) -> f64; 5] =
+                [|_| f64::NAN, |_| f64::INFINITY, |_| -1.0, |_| 0.0, |_| 1e-320];
             let play = |curve: &dyn Fn(f64) -> f64| {
                 let mut noise = ShapedNoise::new(2_500.0, BAND, 1);
                 noise.start(|_, f| curve(f));
@@ -207,19 +188,12 @@ const CASES: &[Case] = &[
         "ring out",
         none("never subnormal, exactly 0 in the end"),
         || {
-            let ringing = Biquad {
-                a1: -1.8,
-                a2: 0.9,
-                ..Biquad::IDENTITY
-            };
+            let ringing = Biquad { a1: -1.8, a2: 0.9, ..Biquad::IDENTITY };
             let mut cascade = Cascade::new(&[ringing; 3]);
             let mut block = vec![0.0; 60_000];
             block[0] = 1.0;
             cascade.process(&mut block);
-            failures([
-                !block.iter().any(|x| x.is_subnormal()),
-                block[59_999] == 0.0,
-            ])
+            failures([!block.iter().any(|x| x.is_subnormal()), block[59_999] == 0.0])
         },
     ),
     within(
@@ -228,13 +202,8 @@ const CASES: &[Case] = &[
         "convert",
         Bound(0.01, "dB", "its level"),
         || {
-            let pairs = [
-                (2e3, 2e4),
-                (2e3, 1e6),
-                (44_100.0, 2e3),
-                (2_000.001, 2e3),
-                (2e3, 48_000.0),
-            ];
+            let pairs =
+                [(2e3, 2e4), (2e3, 1e6), (44_100.0, 2e3), (2_000.001, 2e3), (2e3, 48_000.0)];
             let off = pairs.map(|(from, to)| {
                 // Whole periods of the sine in 2000 samples, or nearly.
                 let hz = if to == 1e6 { 500.0 } else { 300.0 };
@@ -250,16 +219,10 @@ const CASES: &[Case] = &[
         Bound(1e-3, "of the amplitude", "silence"),
         || converted(2e4, 1e3, 900.0),
     ),
-    within(
-        "the same rates, to a millihertz",
-        "resampler",
-        "make",
-        none("none needed"),
-        || {
-            let same = [(2e3, 2e3), (2e3, 2_000.000_1)];
-            failures(same.map(|(from, to)| matches!(Resampler::new(from, to, 1_000.0), Ok(None))))
-        },
-    ),
+    within("the same rates, to a millihertz", "resampler", "make", none("none needed"), || {
+        let same = [(2e3, 2e3), (2e3, 2_000.000_1)];
+        failures(same.map(|(from, to)| matches!(Resampler::new(from, to, 1_000.0), Ok(None))))
+    }),
     within(
         "rates of 0, negative, NaN, more than 10,000 apart",
         "resampler",

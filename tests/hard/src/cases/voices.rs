@@ -81,8 +81,8 @@ fn level_after_retune_db(model: &LoadedModel) -> f64 {
     off
 }
 
-/// By how much the correlation of neighbouring samples, which tells spectra apart, is off a new voice's
-/// after a voice was retuned from a tone to white noise, and from there to the tone.
+/// By how much the correlation of neighbouring samples, which tells spectra apart, is off a new
+/// voice's after a voice was retuned from a tone to white noise, and from there to the tone.
 fn unlike_a_new_voice(model: &LoadedModel) -> f64 {
     let [tone, noise] =
         [tone(300.0), noise()].map(|x| fit(model, &spectrum(&x)).unwrap().parameters);
@@ -137,12 +137,9 @@ const CASES: &[Case] = &[
         Bound(12.0, "× RMS", "finite, and samples"),
         || {
             let rates = [100.0, 999.0, 2_000.0, 44_100.0, 1e6];
-            let peaks = models().into_iter().map(|m| {
-                rates
-                    .map(|rate| peak_at(&m, rate))
-                    .into_iter()
-                    .fold(0.0, worse)
-            });
+            let peaks = models()
+                .into_iter()
+                .map(|m| rates.map(|rate| peak_at(&m, rate)).into_iter().fold(0.0, worse));
             peaks.fold(0.0, worse)
         },
     ),
@@ -188,16 +185,8 @@ const CASES: &[Case] = &[
         none("done"),
         || {
             let two: &[f64] = &[2.0, 0.5, 0.1, 2_000.0];
-            let most: Vec<f64> = [64.0]
-                .into_iter()
-                .chain([0.01; 64])
-                .chain([2_000.0])
-                .collect();
-            let orders = [
-                [two, &[1.0, 0.3, 2_000.0]],
-                [&[1.0, 0.3, 2_000.0], two],
-                [two, &most],
-            ];
+            let most: Vec<f64> = [64.0].into_iter().chain([0.01; 64]).chain([2_000.0]).collect();
+            let orders = [[two, &[1.0, 0.3, 2_000.0]], [&[1.0, 0.3, 2_000.0], two], [two, &most]];
             failures(orders.map(|[from, to]| retune_refused("ar", from, to) == "it was done"))
         },
     ),
@@ -209,11 +198,7 @@ const CASES: &[Case] = &[
         || {
             let bands = retune_refused("mfcc", &[1.0, 1.0, 26.0, 0.0], &[1.0, 1.0, 20.0, 0.0]);
             let inverse = retune_refused("mfcc", &[1.0, 1.0, 26.0, 0.0], &[1.0, 1.0, 26.0, 2.0]);
-            if bands == inverse {
-                bands
-            } else {
-                format!("{bands}; {inverse}")
-            }
+            if bands == inverse { bands } else { format!("{bands}; {inverse}") }
         },
     ),
     refused(
@@ -221,13 +206,7 @@ const CASES: &[Case] = &[
         "bands",
         "retune",
         "InvalidArgument: a voice cannot change its bands",
-        || {
-            retune_refused(
-                "bands",
-                &[2.0, 0.0, 9.0, 1.0, 0.0],
-                &[3.0, 0.0, 9.0, 9.0, 1.0, 0.0],
-            )
-        },
+        || retune_refused("bands", &[2.0, 0.0, 9.0, 1.0, 0.0], &[3.0, 0.0, 9.0, 9.0, 1.0, 0.0]),
     ),
     within(
         "phases at their crests, and by seed",
@@ -242,30 +221,18 @@ const CASES: &[Case] = &[
                 voice.unwrap().render(&mut out).unwrap();
                 out
             };
-            failures([
-                first(0.0, 1) == first(0.0, 2),
-                first(1.0, 1) != first(1.0, 2),
-            ])
+            failures([first(0.0, 1) == first(0.0, 2), first(1.0, 1) != first(1.0, 2)])
         },
     ),
-    refused(
-        "rates of 0, -1, NaN, 1e8 Hz",
-        "every model",
-        "voice",
-        "InvalidArgument: rate",
-        || {
-            let said = models().into_iter().flat_map(|model| {
-                let [set, _] = two_sets(&model);
-                [0.0, -1.0, f64::NAN, 1e8]
-                    .map(|rate| told(Stream::new(&model, &set, BAND, rate, 1)))
-            });
-            let all: Vec<String> = said.collect();
-            let other = all
-                .iter()
-                .find(|text| !text.contains("InvalidArgument: rate"));
-            other.unwrap_or(&all[0]).clone()
-        },
-    ),
+    refused("rates of 0, -1, NaN, 1e8 Hz", "every model", "voice", "InvalidArgument: rate", || {
+        let said = models().into_iter().flat_map(|model| {
+            let [set, _] = two_sets(&model);
+            [0.0, -1.0, f64::NAN, 1e8].map(|rate| told(Stream::new(&model, &set, BAND, rate, 1)))
+        });
+        let all: Vec<String> = said.collect();
+        let other = all.iter().find(|text| !text.contains("InvalidArgument: rate"));
+        other.unwrap_or(&all[0]).clone()
+    }),
     refused(
         "a band that ends before it begins, is NaN, begins at 0",
         "every model",
@@ -285,17 +252,11 @@ const CASES: &[Case] = &[
                     let band = Band::from(edges);
                     let voice = told(model.voice(&set, band, 2_000.0, 1));
                     let magnitude = told(model.magnitude(&set, band, &[100.0]));
-                    if voice == magnitude {
-                        voice
-                    } else {
-                        format!("{voice}; {magnitude}")
-                    }
+                    if voice == magnitude { voice } else { format!("{voice}; {magnitude}") }
                 })
             });
             let all: Vec<String> = said.collect();
-            let other = all
-                .iter()
-                .find(|text| !text.contains("InvalidArgument: band"));
+            let other = all.iter().find(|text| !text.contains("InvalidArgument: band"));
             other.unwrap_or(&all[0]).clone()
         },
     ),
@@ -342,11 +303,7 @@ const CASES: &[Case] = &[
         || {
             let none = told(model("speak").voice(&[0.0, 0.0, 0.0], BAND, 20_000.0, 1));
             let silent = told(model("speak").voice(&[1.0, 50.0, 1.0, 0.0, 0.0], BAND, 20_000.0, 1));
-            if none == silent {
-                none
-            } else {
-                format!("{none}; {silent}")
-            }
+            if none == silent { none } else { format!("{none}; {silent}") }
         },
     ),
     refused(

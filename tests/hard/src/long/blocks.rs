@@ -19,10 +19,7 @@ impl Blocks {
     /// returns how many of them were there before.
     pub fn add(&mut self, samples: &[f32]) -> u64 {
         let (blocks, _) = samples.as_chunks::<LENGTH>();
-        blocks
-            .iter()
-            .filter(|block| !self.0.insert(hash(block)))
-            .count() as u64
+        blocks.iter().filter(|block| !self.0.insert(hash(block))).count() as u64
     }
 
     /// Number of blocks.

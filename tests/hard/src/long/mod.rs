@@ -34,7 +34,8 @@ pub struct Run {
     pub broken: u64,
     /// Blocks of 64 samples that had been rendered before.
     pub repeated: u64,
-    /// Nanoseconds a sample in the fastest blocks of the first minute, rendered again, and of the last.
+    /// Nanoseconds a sample in the fastest blocks of the first minute, rendered again, and of the
+    /// last.
     pub ns_per_sample: (f64, f64),
 }
 
@@ -68,14 +69,9 @@ pub fn run(
         if done < last_minute {
             voice.render(out).unwrap();
         } else {
-            turns
-                .get_or_insert_with(|| Turns::new(fresh()))
-                .render(&mut voice, out);
+            turns.get_or_insert_with(|| Turns::new(fresh())).render(&mut voice, out);
         }
-        broken += out
-            .iter()
-            .filter(|x| !x.is_finite() || x.is_subnormal())
-            .count() as u64;
+        broken += out.iter().filter(|x| !x.is_finite() || x.is_subnormal()).count() as u64;
         power.add(out);
         if let Some(blocks) = &mut blocks {
             repeated += blocks.add(out);
@@ -92,8 +88,8 @@ pub fn run(
     }
 }
 
-/// Times the last minute of a voice and the first, rendered again by a fresh one, in turns and by their
-/// fastest blocks, since the speed of a processor changes during a day.
+/// Times the last minute of a voice and the first, rendered again by a fresh one, in turns and by
+/// their fastest blocks, since the speed of a processor changes during a day.
 struct Turns {
     fresh: ModelVoice,
     block: [f32; BLOCK],
@@ -103,11 +99,7 @@ struct Turns {
 
 impl Turns {
     fn new(fresh: ModelVoice) -> Self {
-        Self {
-            fresh,
-            block: [0.0; BLOCK],
-            fastest: [f64::INFINITY; 2],
-        }
+        Self { fresh, block: [0.0; BLOCK], fastest: [f64::INFINITY; 2] }
     }
 
     fn render(&mut self, old: &mut ModelVoice, out: &mut [f32]) {

@@ -6,17 +6,13 @@ use num_traits::ToPrimitive;
 
 use crate::exact::exact;
 
-/// Phase error of an oscillator after so many samples against exact arithmetic, cycles. The phase is
-/// read from two samples a quarter of a cycle of the oscillator's own frequency apart: from the
+/// Phase error of an oscillator after so many samples against exact arithmetic, cycles. The phase
+/// is read from two samples a quarter of a cycle of the oscillator's own frequency apart: from the
 /// amplitudes of sine and cosine that fit a stretch of samples best.
 ///
 /// `frequency_hz` is well between 0 and half of `rate_hz`.
 pub fn phase_error_cycles(frequency_hz: f64, rate_hz: f64, samples: u64) -> f64 {
-    let sine = Sine {
-        frequency_hz,
-        amplitude: 1.0,
-        phase_cycles: 0.0,
-    };
+    let sine = Sine { frequency_hz, amplitude: 1.0, phase_cycles: 0.0 };
     let mut bank = SineBank::new(rate_hz, 1, &[sine]);
     let mut block = vec![0.0f32; super::BLOCK];
     let mut left = samples;

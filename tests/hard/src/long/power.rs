@@ -13,12 +13,7 @@ pub struct Power {
 impl Power {
     /// Of parts of so many samples.
     pub fn new(part: u64) -> Self {
-        Self {
-            part: part.max(1),
-            sum: 0.0,
-            count: 0,
-            parts: Vec::new(),
-        }
+        Self { part: part.max(1), sum: 0.0, count: 0, parts: Vec::new() }
     }
 
     pub fn add(&mut self, mut samples: &[f32]) {
@@ -26,10 +21,7 @@ impl Power {
             let left = (self.part - self.count).min(samples.len() as u64) as usize;
             let (now, later) = samples.split_at(left);
             // Blocks are short, and their sums are added up in f64.
-            self.sum += now
-                .iter()
-                .map(|&x| f64::from(x) * f64::from(x))
-                .sum::<f64>();
+            self.sum += now.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();
             self.count += left as u64;
             samples = later;
             if self.count == self.part {

@@ -20,11 +20,13 @@ struct Plan {
     conditions: &'static [[f64; 2]],
     motions: &'static [[f64; 2]],
     contact: &'static str,
-    /// Exponents of frequency over speed, level over speed and level over force, where a law is stated.
+    /// Exponents of frequency over speed, level over speed and level over force, where a law is
+    /// stated.
     law: Option<[f64; 3]>,
     /// Triangles that it stores, by its conditions.
     triangles: &'static [[usize; 3]],
-    /// Levels, newtons, if they differ from the condition's number; it is then also read where no motion is given.
+    /// Levels, newtons, if they differ from the condition's number; it is then also read where no
+    /// motion is given.
     levels: Option<&'static [f64]>,
 }
 
@@ -37,8 +39,9 @@ impl Plan {
 
 const TACTILE_HZ: [f64; 2] = [20.0, 1000.0];
 
-/// Conditions of the assets of three to five are far from a line and from a circle. Those of `grid`, as measured by hand, are in
-/// neither order of a grid; those of `circle` have positions on one.
+/// Conditions of the assets of three to five are far from a line and from a circle. Those of
+/// `grid`, as measured by hand, are in neither order of a grid; those of `circle` have positions on
+/// one.
 const PLANS: [Plan; 9] = [
     Plan {
         name: "one_condition",
@@ -68,13 +71,7 @@ const PLANS: [Plan; 9] = [
         triangles: &[],
         band_hz: TACTILE_HZ,
         conditions: &[[50.0, 0.2], [150.0, 0.3], [90.0, 0.9]],
-        motions: &[
-            [95.0, 0.45],
-            [60.0, 0.3],
-            [100.0, 0.1],
-            [150.0, 0.9],
-            [10.0, 0.1],
-        ],
+        motions: &[[95.0, 0.45], [60.0, 0.3], [100.0, 0.1], [150.0, 0.9], [10.0, 0.1]],
     },
     Plan {
         name: "narrow_band",
@@ -93,20 +90,8 @@ const PLANS: [Plan; 9] = [
         levels: None,
         triangles: &[],
         band_hz: TACTILE_HZ,
-        conditions: &[
-            [40.0, 0.2],
-            [170.0, 0.25],
-            [90.0, 0.6],
-            [50.0, 1.1],
-            [190.0, 1.0],
-        ],
-        motions: &[
-            [80.0, 0.3],
-            [60.0, 0.7],
-            [120.0, 0.9],
-            [150.0, 0.6],
-            [300.0, 2.0],
-        ],
+        conditions: &[[40.0, 0.2], [170.0, 0.25], [90.0, 0.6], [50.0, 1.1], [190.0, 1.0]],
+        motions: &[[80.0, 0.3], [60.0, 0.7], [120.0, 0.9], [150.0, 0.6], [300.0, 2.0]],
     },
     Plan {
         name: "grid",
@@ -156,17 +141,12 @@ const PLANS: [Plan; 9] = [
         contact: "tool",
         law: None,
         levels: None,
-        // The other diagonal than the fan from the slow and light condition has, in both senses of turning. By its force the last
-        // condition would be grouped with the lower edge; here it is the corner of a narrow triangle.
+        // The other diagonal than the fan from the slow and light condition has, in both senses of
+        // turning. By its force the last condition would be grouped with the lower edge; here it is
+        // the corner of a narrow triangle.
         triangles: &[[3, 2, 1], [4, 1, 3], [0, 4, 1], [0, 3, 4]],
         band_hz: TACTILE_HZ,
-        conditions: &[
-            [40.0, 0.4],
-            [40.0, 1.2],
-            [160.0, 1.2],
-            [160.0, 0.4],
-            [100.0, 0.41],
-        ],
+        conditions: &[[40.0, 0.4], [40.0, 1.2], [160.0, 1.2], [160.0, 0.4], [100.0, 0.41]],
         motions: &[
             [100.0, 0.8],
             [120.0, 1.0],
@@ -180,17 +160,12 @@ const PLANS: [Plan; 9] = [
         name: "silent_first",
         contact: "tool",
         law: None,
-        // As in files of the Penn Haptic Texture Toolkit: nothing is felt at rest. The strongest level stands where no finger presses.
+        // As in files of the Penn Haptic Texture Toolkit: nothing is felt at rest. The strongest
+        // level stands where no finger presses.
         levels: Some(&[0.0, 0.09, 0.02, 0.05, 0.03]),
         triangles: &[],
         band_hz: TACTILE_HZ,
-        conditions: &[
-            [0.0, 0.0],
-            [150.0, 0.0],
-            [60.0, 0.5],
-            [150.0, 0.5],
-            [60.0, 1.2],
-        ],
+        conditions: &[[0.0, 0.0], [150.0, 0.0], [60.0, 0.5], [150.0, 0.5], [60.0, 1.2]],
         motions: &[[100.0, 0.6], [30.0, 0.2]],
     },
 ];
@@ -240,9 +215,7 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
             .collect();
         let at: Vec<Value> = (0..sets.len())
             .map(|i| {
-                let level_rms = plan
-                    .levels
-                    .map_or(0.01 * (1 + i + number) as f64, |all| all[i]);
+                let level_rms = plan.levels.map_or(0.01 * (1 + i + number) as f64, |all| all[i]);
                 json!({"condition": i, "level_rms": level_rms})
             })
             .collect();

@@ -7,9 +7,7 @@ use htex_dsp::uniform::Uniform;
 
 /// The flat array of a model for a condition of an asset.
 pub fn parameters(model: &str, band: Band, asset: usize, condition: usize) -> Vec<f64> {
-    let seed = model
-        .bytes()
-        .fold(7, |sum, byte| 31 * sum + u64::from(byte));
+    let seed = model.bytes().fold(7, |sum, byte| 31 * sum + u64::from(byte));
     let mut draw = Draw(Uniform::new(seed + (100 * asset + condition) as u64));
     match model {
         "ar" => ar(&mut draw, asset, condition),
@@ -17,11 +15,7 @@ pub fn parameters(model: &str, band: Band, asset: usize, condition: usize) -> Ve
         "mfcc" => mfcc(&mut draw, asset),
         "speak" => speak(&mut draw, asset, condition),
         "sbeta" => vec![draw.within(0.5, 8.0), draw.within(0.5, 8.0)],
-        "sslope" => vec![
-            draw.within(10.0, 1_200.0),
-            draw.within(0.3, 4.0),
-            draw.within(0.3, 4.0),
-        ],
+        "sslope" => vec![draw.within(10.0, 1_200.0), draw.within(0.3, 4.0), draw.within(0.3, 4.0)],
         "bands" => bands(&mut draw, asset),
         "map" => map(&mut draw, band, asset, condition),
         other => panic!("no parameters for {other}"),
@@ -50,11 +44,7 @@ fn ar(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
     let order = [0, 2, 4, 6, 8][asset % 5] + 2 * (condition % 3);
     let rate_hz = [2_000.0, 2_000.0, 4_000.0, 1_000.0, 1_500.0][asset % 5];
     let reflection = draw.list(order, -0.8, 0.8);
-    [
-        list(&reflection_to_coefficients(&reflection)),
-        vec![rate_hz],
-    ]
-    .concat()
+    [list(&reflection_to_coefficients(&reflection)), vec![rate_hz]].concat()
 }
 
 /// Orders 0 to 12 of poles and 0 to 6 of zeros, within an asset too.
@@ -71,13 +61,9 @@ fn arma(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
 
 /// All three inverses; fewer coefficients than bands, and more.
 fn mfcc(draw: &mut Draw, asset: usize) -> Vec<f64> {
-    let (count, bands, inverse) = [
-        (10, 26.0, 0.0),
-        (10, 26.0, 1.0),
-        (13, 40.0, 2.0),
-        (12, 9.0, 1.0),
-        (5, 12.0, 0.0),
-    ][asset % 5];
+    let (count, bands, inverse) =
+        [(10, 26.0, 0.0), (10, 26.0, 1.0), (13, 40.0, 2.0), (12, 9.0, 1.0), (5, 12.0, 0.0)]
+            [asset % 5];
     let mut cepstrum = draw.list(count, -1.0, 1.0);
     cepstrum[0] = draw.within(-40.0, -20.0);
     cepstrum[1] = draw.within(0.0, 6.0);
@@ -86,13 +72,7 @@ fn mfcc(draw: &mut Draw, asset: usize) -> Vec<f64> {
 
 /// As many lines at all conditions of an asset, or not; some outside the band.
 fn speak(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
-    let count = 3
-        + asset
-        + if asset.is_multiple_of(2) {
-            0
-        } else {
-            condition
-        };
+    let count = 3 + asset + if asset.is_multiple_of(2) { 0 } else { condition };
     let mut frequency_hz = draw.list(count, 35.0, 430.0);
     frequency_hz[count - 1] = draw.within(5.0, 1_200.0);
     let amplitude = draw.list(count, 0.05, 1.0);
@@ -102,13 +82,8 @@ fn speak(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
 
 /// Both layouts, one knot to many; the same layout and count at all conditions of an asset.
 fn bands(draw: &mut Draw, asset: usize) -> Vec<f64> {
-    let (count, step_db, layout) = [
-        (9, 0.5, 0.0),
-        (30, 1.0, 1.0),
-        (5, 0.5, 1.0),
-        (7, 0.25, 0.0),
-        (64, 0.5, 1.0),
-    ][asset % 5];
+    let (count, step_db, layout) =
+        [(9, 0.5, 0.0), (30, 1.0, 1.0), (5, 0.5, 1.0), (7, 0.25, 0.0), (64, 0.5, 1.0)][asset % 5];
     let below: Vec<f64> = draw.list(count, 0.0, 30.0);
     let below: Vec<f64> = below.iter().map(|db| (db / step_db).round()).collect();
     [list(&below), vec![step_db, layout]].concat()

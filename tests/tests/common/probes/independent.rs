@@ -1,5 +1,6 @@
-//! A reader and player of all specifications, written in Python from their text by someone who had not read the sources
-//! (`tests/peers/independent`), agrees on every conformance file, and on the verdict on every changed document.
+//! A reader and player of all specifications, written in Python from their text by someone who had
+//! not read the sources (`tests/peers/independent`), agrees on every conformance file, and on the
+//! verdict on every changed document.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -16,9 +17,7 @@ fn a_reader_written_from_the_text_agrees() {
     let folder = tempfile::tempdir().unwrap();
     let probes = folder.path().join("probes.jsonl");
     let mut own = Command::new(std::env::current_exe().unwrap());
-    let write = own
-        .arg("have_the_ranges_of_their_schema")
-        .env("HTEX_PROBES_OUT", &probes);
+    let write = own.arg("have_the_ranges_of_their_schema").env("HTEX_PROBES_OUT", &probes);
     assert!(write.status().unwrap().success());
     let output = Command::new(&python)
         .args(["-m", "independent"])
@@ -34,18 +33,15 @@ fn a_reader_written_from_the_text_agrees() {
     println!("{told}");
 }
 
-/// The Python with the packages of `tests/peers/independent/requirements.txt` that the environment names, else that of `.ci/run`,
-/// else the system's.
+/// The Python with the packages of `tests/peers/independent/requirements.txt` that the environment
+/// names, else that of `.ci/run`, else the system's.
 fn python() -> Option<PathBuf> {
     let named = std::env::var_os("HTEX_PYTHON").map(PathBuf::from);
     let own = workspace().join("target/peers/bin/python");
     let known = named.into_iter().chain([own, "python3".into()]);
     let has = |python: &PathBuf| {
         let output = Command::new(python)
-            .args([
-                "-c",
-                "import numpy, scipy, blake3, cryptography, jsonschema",
-            ])
+            .args(["-c", "import numpy, scipy, blake3, cryptography, jsonschema"])
             .output();
         output.is_ok_and(|output| output.status.success())
     };

@@ -122,14 +122,8 @@ pub(in crate::prove) fn bare(options: &[&str]) -> Result<()> {
     fs::write(work.join("page.py"), PAGE)?;
     fs::write(work.join("script.sh"), SCRIPT.replace("NAME", &unpacked))?;
     let mut chroot = Command::new("chroot");
-    chroot
-        .arg(&root)
-        .args(["/bin/sh", "/htex/script.sh"])
-        .env_clear();
-    run(chroot
-        .env("PATH", "/usr/sbin:/usr/bin:/bin")
-        .env("HOME", "/root")
-        .env("LC_ALL", "C.UTF-8"))
+    chroot.arg(&root).args(["/bin/sh", "/htex/script.sh"]).env_clear();
+    run(chroot.env("PATH", "/usr/sbin:/usr/bin:/bin").env("HOME", "/root").env("LC_ALL", "C.UTF-8"))
 }
 
 /// The wheel for the root, and what it takes, for the Python that the root has.
@@ -145,10 +139,7 @@ fn wheels(released: &Path, processor: &Processor, work: &Path) -> Result<()> {
     pip.args(["--python-version", "3.11"]);
     if processor.name != std::env::consts::ARCH {
         for version in MANYLINUX {
-            pip.args([
-                "--platform",
-                &format!("manylinux_{version}_{}", processor.name),
-            ]);
+            pip.args(["--platform", &format!("manylinux_{version}_{}", processor.name)]);
         }
     }
     run(pip.args(["--dest", "wheels"]).arg(wheel))

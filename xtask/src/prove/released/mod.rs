@@ -50,7 +50,8 @@ endforeach()
 ";
 
 impl Compiler {
-    /// Builds the player in C against the unpacked archive, by pkg-config and by CMake, into a folder.
+    /// Builds the player in C against the unpacked archive, by pkg-config and by CMake, into a
+    /// folder.
     fn players(&self, prefix: &Path, work: &Path) -> Result<()> {
         let source = workspace().join("sdk/capi/examples/play.c");
         let build = work.join("built");

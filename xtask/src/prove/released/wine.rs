@@ -36,11 +36,8 @@ const SAME: [&str; 3] = [
 ];
 
 /// The players in C, and the folder of the library that each finds beside it.
-const PLAYERS: [(&str, &str); 3] = [
-    ("play_pkg_config", "lib"),
-    ("play_htex", "lib"),
-    ("play_whole", "lib/whole"),
-];
+const PLAYERS: [(&str, &str); 3] =
+    [("play_pkg_config", "lib"), ("play_htex", "lib"), ("play_whole", "lib/whole")];
 
 /// Uses what is released for Windows under Wine.
 pub(in crate::prove) fn wine(options: &[&str]) -> Result<()> {
@@ -51,10 +48,7 @@ pub(in crate::prove) fn wine(options: &[&str]) -> Result<()> {
     let (archive, stem) = archive(&released, "-x86_64-windows.zip")?;
     let work = std::path::absolute(target().join("wine"))?;
     emptied(&work)?;
-    run(program("python3", &work)
-        .args(["-m", "zipfile", "-e"])
-        .arg(archive)
-        .arg("."))?;
+    run(program("python3", &work).args(["-m", "zipfile", "-e"]).arg(archive).arg("."))?;
     let prefix = work.join(format!("{stem}-x86_64-windows"));
     // In the working folder, which Windows looks through for libraries, too.
     fs::write(work.join("primitives.c"), PRIMITIVES)?;
@@ -78,10 +72,7 @@ pub(in crate::prove) fn wine(options: &[&str]) -> Result<()> {
     for (name, library) in PLAYERS {
         let folder = work.join(name);
         fs::create_dir_all(&folder)?;
-        fs::copy(
-            prefix.join(library).join("htex.dll"),
-            folder.join("htex.dll"),
-        )?;
+        fs::copy(prefix.join(library).join("htex.dll"), folder.join("htex.dll"))?;
         let player = folder.join(format!("{name}.exe"));
         fs::rename(work.join(format!("{name}.exe")), &player)?;
         wine_runs(&work, &player, &format!("vinyl.htex {name}.f32"))?;
@@ -105,10 +96,8 @@ fn read(folder: &Path, name: &str) -> Result<Vec<u8>> {
 fn wine_runs(work: &Path, exe: &Path, line: &str) -> Result<()> {
     let mut wine = program("wine", work);
     wine.arg(exe).args(line.split_whitespace());
-    run(wine
-        .env("WINEDEBUG", "-all")
-        .env("WINEPREFIX", work.join("prefix")))
-    .context("the package wine64")
+    run(wine.env("WINEDEBUG", "-all").env("WINEPREFIX", work.join("prefix")))
+        .context("the package wine64")
 }
 
 /// The command of this machine writes the same recording, asset and samples.

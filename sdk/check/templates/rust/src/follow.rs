@@ -1,9 +1,9 @@
-//! A voice that follows the finger itself, by the extension `htex.motion/1`: a host then scales neither
-//! frequencies with the speed nor the level with the force.
+//! A voice that follows the finger itself, by the extension `htex.motion/1`: a host then scales
+//! neither frequencies with the speed nor the level with the force.
 //!
-//! In this template the level is proportional to the speed, and 1 at 100 mm/s. A model may also use the position, for
-//! example for a pattern that is fixed to the surface; [`FitInput::condition`](htex_model::FitInput) contains the speed
-//! and force of the recording.
+//! In this template the level is proportional to the speed, and 1 at 100 mm/s. A model may also use
+//! the position, for example for a pattern that is fixed to the surface;
+//! [`FitInput::condition`](htex_model::FitInput) contains the speed and force of the recording.
 
 use htex_model::{Error, Motion, MotionVoice, Values, Voice};
 use htex_shaped::ShapedVoice;
@@ -15,7 +15,8 @@ pub struct Following {
     noise: ShapedVoice<Shape>,
     level: f32,
     goal: f32,
-    /// Fraction of the remaining difference to the target that each sample adds: nearly all of it in 10 ms.
+    /// Fraction of the remaining difference to the target that each sample adds: nearly all of it
+    /// in 10 ms.
     part: f32,
 }
 

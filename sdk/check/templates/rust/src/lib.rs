@@ -1,8 +1,10 @@
-//! {{LABEL}} ({{ID}}), initially one resonance. The spectrum is that of a two-pole band-pass filter,
-//! `1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)²)`, played as noise of that shape.
+//! {{LABEL}} ({{ID}}), initially one resonance. The spectrum is that of a two-pole band-pass
+//! filter, `1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)²)`, played as noise of that
+//! shape.
 //!
-//! `cargo build --release` builds the native library, and with `--target wasm32-unknown-unknown` the
-//! WASM module, which does not link the standard library and is therefore small enough for an asset.
+//! `cargo build --release` builds the native library, and with `--target wasm32-unknown-unknown`
+//! the WASM module, which does not link the standard library and is therefore small enough for an
+//! asset.
 #![no_std]
 
 extern crate alloc;
@@ -150,7 +152,8 @@ impl Curve for Shape {
     }
 }
 
-/// Returns the resonance with the least squared error, searched from several centres in logarithmic parameters.
+/// Returns the resonance with the least squared error, searched from several centres in logarithmic
+/// parameters.
 fn best_shape(frequency_hz: &[f64], magnitude: &[f64], band: Band) -> Shape {
     let shape = |x: &[f64; 2]| Shape {
         centre_hz: libm::exp(x[0]).clamp(CENTRE_HZ.0, CENTRE_HZ.1),

@@ -12,9 +12,7 @@ const MOST_BLOCK: usize = 1 << 16;
 
 /// The ids of a library's effects that a band may refer to.
 pub(super) fn basis_ids(library: &[Effect]) -> BTreeSet<i64> {
-    let basis = library
-        .iter()
-        .filter(|e| e.effect_type == EffectType::Basis);
+    let basis = library.iter().filter(|e| e.effect_type == EffectType::Basis);
     basis.filter_map(|effect| effect.id).collect()
 }
 
@@ -57,10 +55,9 @@ pub(super) fn check(
 fn check_reference(effect: &Effect, known: &BTreeSet<i64>, at: &str) -> Result<(), Fault> {
     match effect.id.is_some_and(|id| known.contains(&id)) {
         true => Ok(()),
-        false => Err(Fault::new(
-            format!("{at}/id"),
-            "the effect library has no basis effect of this id",
-        )),
+        false => {
+            Err(Fault::new(format!("{at}/id"), "the effect library has no basis effect of this id"))
+        }
     }
 }
 
@@ -68,12 +65,7 @@ pub(super) fn check_effect(effect: &Effect, at: &str) -> Result<(), Fault> {
     let position = effect.position as f64;
     let of = || format!("{at}/position");
     within(of, "the position", position, 0.0..=MOST_TICKS)?;
-    within(
-        || format!("{at}/phase"),
-        "the phase",
-        effect.phase,
-        -1e3..=1e3,
-    )?;
+    within(|| format!("{at}/phase"), "the phase", effect.phase, -1e3..=1e3)?;
     let mut before = 0;
     for (index, keyframe) in effect.keyframes.iter().enumerate() {
         let at = format!("{at}/keyframes/{index}");

@@ -1,5 +1,6 @@
-//! The rules of a file: those of the reference software's check of conformance (source/IOHaptics/src/IOJson.cpp, `semanticConformanceCheck…`) that
-//! concern what is read, and limits.
+//! The rules of a file: those of the reference software's check of conformance
+//! (source/IOHaptics/src/IOJson.cpp, `semanticConformanceCheck…`) that concern what is read, and
+//! limits.
 
 mod band;
 
@@ -37,12 +38,7 @@ pub(super) fn check(hjif: &Hjif) -> Result<(), Fault> {
         false => 1.0..=MOST_TIMESCALE,
     };
     let timescale = f64::from(hjif.timescale);
-    within(
-        || "/timescale".to_owned(),
-        "the timescale",
-        timescale,
-        timescales,
-    )?;
+    within(|| "/timescale".to_owned(), "the timescale", timescale, timescales)?;
     if hjif.perceptions.is_empty() {
         let problem = "there is no perception; a file has one or more";
         return Err(Fault::new("/perceptions", problem));
@@ -88,30 +84,19 @@ fn check_perception(perception: &Perception, kind: Kind, at: &str) -> Result<(),
     let of = || format!("{at}/unit_exponent");
     within(of, "the exponent", exponent, -9.0..=3.0)?;
     let devices = &perception.reference_devices;
-    unique(
-        &format!("{at}/reference_devices"),
-        devices.iter().map(|d| Some(d.id)),
-    )?;
+    unique(&format!("{at}/reference_devices"), devices.iter().map(|d| Some(d.id)))?;
     for (index, device) in devices.iter().enumerate() {
         check_device(device, &format!("{at}/reference_devices/{index}"))?;
     }
     let library = &perception.effect_library;
-    unique(
-        &format!("{at}/effect_library"),
-        library.iter().map(|e| e.id),
-    )?;
+    unique(&format!("{at}/effect_library"), library.iter().map(|e| e.id))?;
     for (index, effect) in library.iter().enumerate() {
         band::check_effect(effect, &format!("{at}/effect_library/{index}"))?;
     }
     let channels = &perception.channels;
     let of = || format!("{at}/channels");
     let most = kind.most_channels as f64;
-    within(
-        of,
-        "the number of channels",
-        channels.len() as f64,
-        0.0..=most,
-    )?;
+    within(of, "the number of channels", channels.len() as f64, 0.0..=most)?;
     unique(&of(), channels.iter().map(|c| Some(c.id)))?;
     let known: BTreeSet<i64> = band::basis_ids(library);
     let devices: BTreeSet<i64> = devices.iter().map(|device| device.id).collect();
@@ -120,19 +105,9 @@ fn check_perception(perception: &Perception, kind: Kind, at: &str) -> Result<(),
         check_channel(channel, &devices, &at)?;
         let most = kind.most_bands as f64;
         let count = channel.bands.len() as f64;
-        within(
-            || format!("{at}/bands"),
-            "the number of bands",
-            count,
-            0.0..=most,
-        )?;
+        within(|| format!("{at}/bands"), "the number of bands", count, 0.0..=most)?;
         for (index, band) in channel.bands.iter().enumerate() {
-            band::check(
-                band,
-                &known,
-                kind.is_parametric,
-                &format!("{at}/bands/{index}"),
-            )?;
+            band::check(band, &known, kind.is_parametric, &format!("{at}/bands/{index}"))?;
         }
     }
     Ok(())
@@ -163,12 +138,7 @@ fn check_device(device: &ReferenceDevice, at: &str) -> Result<(), Fault> {
     let mut least = 0.0;
     for (key, frequency) in frequencies {
         if let Some(hertz) = frequency {
-            within(
-                || format!("{at}/{key}"),
-                "the frequency",
-                hertz,
-                least..=MOST_HZ,
-            )?;
+            within(|| format!("{at}/{key}"), "the frequency", hertz, least..=MOST_HZ)?;
             least = hertz;
         }
     }

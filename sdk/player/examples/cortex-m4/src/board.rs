@@ -12,7 +12,8 @@ const SYST_RVR: *mut u32 = 0xE000_E014 as *mut u32;
 const SYST_CVR: *mut u32 = 0xE000_E018 as *mut u32;
 /// The timer counts down from its largest value.
 const RELOAD: u32 = 0x00FF_FFFF;
-/// Instructions of a tick: with `-icount shift=0` an instruction takes 1 ns, and the timer has 25 MHz.
+/// Instructions of a tick: with `-icount shift=0` an instruction takes 1 ns, and the timer has 25
+/// MHz.
 const IN_TICK: u32 = 40;
 
 unsafe extern "C" {
@@ -33,9 +34,7 @@ unsafe impl Sync for Vector {}
 static VECTORS: [Vector; 16] = {
     const FAULT: Vector = Vector { handler: fault };
     let mut vectors = [FAULT; 16];
-    vectors[0] = Vector {
-        address: &raw const stack_top,
-    };
+    vectors[0] = Vector { address: &raw const stack_top };
     vectors[1] = Vector { handler: reset };
     vectors
 };

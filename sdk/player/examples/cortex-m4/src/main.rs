@@ -1,6 +1,8 @@
-//! Plays the block at [`BLOCK`] by the script of the tests and prints a hash of its samples and the instructions per sample.
+//! Plays the block at [`BLOCK`] by the script of the tests and prints a hash of its samples and the
+//! instructions per sample.
 //!
-//! `docs/microcontroller.md` has the commands; `sdk/bake/tests/board.rs` compares the hash with that of the host.
+//! `docs/microcontroller.md` has the commands; `sdk/bake/tests/board.rs` compares the hash with
+//! that of the host.
 #![no_std]
 #![no_main]
 

@@ -52,10 +52,7 @@ pub(crate) struct DescribedNotice<'a> {
 
 impl<'a> DescribedNotice<'a> {
     fn of(notice: &'a Notice) -> Self {
-        Self {
-            text: &notice.text,
-            settings: settings(notice.hint),
-        }
+        Self { text: &notice.text, settings: settings(notice.hint) }
     }
 }
 

@@ -41,11 +41,7 @@ pub(crate) fn felt(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
     }
     let band = reference.band();
     let grid = band.grid_hz();
-    let spectrum = SpectrumRef {
-        band,
-        frequency_hz: &grid,
-        magnitude: &first,
-    };
+    let spectrum = SpectrumRef { band, frequency_hz: &grid, magnitude: &first };
     let by = |listener: &Listener| difference(spectrum, &second, reference.quantity(), listener);
     let told = told(by(&Listener::default()), &by(&Listener::sensitive()));
     Answer::new(&told, Vec::new())
@@ -89,9 +85,7 @@ pub(crate) fn threshold(mut call: Document, _: Files<'_>) -> Result<Answer, Refu
     let quantity = quantity(call.text("quantity")?)?;
     let frequencies = call.list("frequencies")?;
     call.finish()?;
-    let hertz = frequencies
-        .iter()
-        .map(|value| number(value).filter(|hertz| *hertz > 0.0));
+    let hertz = frequencies.iter().map(|value| number(value).filter(|hertz| *hertz > 0.0));
     let hertz: Option<Vec<f64>> = hertz.collect();
     let hertz = hertz.ok_or_else(|| Refusal::argument("frequencies are numbers above 0, Hz"))?;
     let listener = Listener::default();

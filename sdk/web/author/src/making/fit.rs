@@ -105,9 +105,7 @@ impl<'a> Report<'a> {
         Self {
             ranked: ranked(&models),
             models,
-            skipped: skipped
-                .map(|(model, reason)| Skipped { model, reason })
-                .collect(),
+            skipped: skipped.map(|(model, reason)| Skipped { model, reason }).collect(),
             conditions: &manifest.conditions,
             spectra: fitted.spectra.iter().map(describe::spectrum).collect(),
             findings: findings

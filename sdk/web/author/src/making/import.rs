@@ -113,10 +113,7 @@ fn described(format: &'static Format) -> Option<Described<'static>> {
 }
 
 fn asked(missing: Vec<Missing>) -> Vec<Asked> {
-    let one = |missing: Missing| Asked {
-        setting: named(missing.setting),
-        words: missing.words,
-    };
+    let one = |missing: Missing| Asked { setting: named(missing.setting), words: missing.words };
     missing.into_iter().map(one).collect()
 }
 
@@ -178,10 +175,8 @@ fn only<'a>(name: &str, files: Files<'a>) -> Result<&'a [u8], Refusal> {
     };
     if bytes.len() as u64 > MOST_BYTES {
         let name = htex_finding::plain(name);
-        let sentence = format!(
-            "{name}: it has {} bytes, and at most {MOST_BYTES} are read",
-            bytes.len()
-        );
+        let sentence =
+            format!("{name}: it has {} bytes, and at most {MOST_BYTES} are read", bytes.len());
         return Err(Refusal::file(sentence));
     }
     Ok(bytes)

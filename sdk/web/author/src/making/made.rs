@@ -29,9 +29,7 @@ fn answer(asset: &Asset) -> Result<Answer, Refusal> {
 pub(crate) fn make(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let registry = Registry::builtin();
     let models = call.list("representations")?.into_iter();
-    let models = models
-        .map(|value| model(value, &registry))
-        .collect::<Result<_, _>>()?;
+    let models = models.map(|value| model(value, &registry)).collect::<Result<_, _>>()?;
     let quantity = quantity(call.text("quantity")?)?;
     let band = band(&call.list("band")?)?;
     let metadata = metadata(call.object("metadata")?)?;
@@ -53,15 +51,9 @@ pub(crate) fn quantity(name: Option<String>) -> Result<Quantity, Refusal> {
         return Ok(Quantity::default());
     };
     Quantity::from_name(&name).ok_or_else(|| {
-        let known: Vec<&str> = Quantity::ALL
-            .iter()
-            .map(|quantity| quantity.name())
-            .collect();
+        let known: Vec<&str> = Quantity::ALL.iter().map(|quantity| quantity.name()).collect();
         let name = htex_finding::plain(&name);
-        Refusal::argument(format!(
-            "{name} is no quantity; there are {}",
-            known.join(", ")
-        ))
+        Refusal::argument(format!("{name} is no quantity; there are {}", known.join(", ")))
     })
 }
 
@@ -85,10 +77,7 @@ fn model(value: Value, registry: &Registry) -> Result<ByHandModel, Refusal> {
     let at = given.list("conditions")?.into_iter().map(at);
     let at = at.collect::<Result<_, _>>()?;
     given.finish()?;
-    Ok(ByHandModel {
-        model: registry.find(&name)?.clone(),
-        at,
-    })
+    Ok(ByHandModel { model: registry.find(&name)?.clone(), at })
 }
 
 fn at(value: Value) -> Result<ByHandAt, Refusal> {
@@ -109,17 +98,11 @@ fn at(value: Value) -> Result<ByHandAt, Refusal> {
         };
         let numbers = numbers.ok_or_else(|| {
             let name = htex_finding::plain(&name);
-            Refusal::argument(format!(
-                "the parameter {name} is a number, or a list of numbers"
-            ))
+            Refusal::argument(format!("the parameter {name} is a number, or a list of numbers"))
         })?;
         values.insert(name, numbers);
     }
-    Ok(ByHandAt {
-        condition,
-        values,
-        level_rms,
-    })
+    Ok(ByHandAt { condition, values, level_rms })
 }
 
 /// Makes a texture between two others, the files; the bytes are the asset.
@@ -134,14 +117,8 @@ pub(crate) fn mix(mut call: Document, files: Files<'_>) -> Result<Answer, Refusa
     let (first, first_hash) = opened(a)?;
     let (second, second_hash) = opened(b)?;
     let mixed = by_hand::mix(
-        MixedAsset {
-            asset: &first,
-            blake3: &first_hash,
-        },
-        MixedAsset {
-            asset: &second,
-            blake3: &second_hash,
-        },
+        MixedAsset { asset: &first, blake3: &first_hash },
+        MixedAsset { asset: &second, blake3: &second_hash },
         weight,
         metadata.name.as_deref().unwrap_or("mix"),
         TOOL,

@@ -40,11 +40,8 @@ pub(crate) const FUNCTIONS: &[(&str, Function)] = &[
 
 /// What makes textures of files of other formats.
 #[cfg(feature = "import")]
-pub(crate) const IMPORTS: &[(&str, Function)] = &[
-    ("asks", import::asks),
-    ("formats", import::formats),
-    ("import", import::import),
-];
+pub(crate) const IMPORTS: &[(&str, Function)] =
+    &[("asks", import::asks), ("formats", import::formats), ("import", import::import)];
 
 /// Program and version, for an asset's provenance: those of the command.
 const TOOL: &str = concat!("htex ", env!("CARGO_PKG_VERSION"));

@@ -46,15 +46,8 @@ struct Range {
 
 impl<'a> Model<'a> {
     fn of(model: &'a LoadedModel) -> Self {
-        let Descriptor {
-            id,
-            name,
-            version,
-            summary,
-            fields,
-            options,
-            keeps_level,
-        } = model.descriptor();
+        let Descriptor { id, name, version, summary, fields, options, keeps_level } =
+            model.descriptor();
         let usual = model.usual();
         Self {
             id,
@@ -76,11 +69,7 @@ fn parameter<'a>(field: &'a Field, usual: &[Usual]) -> Parameter<'a> {
         kind: field.kind,
         min: field.min,
         max: field.max,
-        usual: own.map(|usual| Range {
-            min: usual.min,
-            max: usual.max,
-            scale: usual.scale.name(),
-        }),
+        usual: own.map(|usual| Range { min: usual.min, max: usual.max, scale: usual.scale.name() }),
         default: field.default,
         description: &field.description,
     }

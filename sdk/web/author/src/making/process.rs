@@ -116,12 +116,7 @@ impl<'a> Processed<'a> {
             [recording.second(part.start), recording.second(part.end)]
         };
         Self {
-            columns: Columns {
-                columns: Vec::new(),
-                rate_hz: None,
-                map: "",
-                problem: None,
-            },
+            columns: Columns { columns: Vec::new(), rate_hz: None, map: "", problem: None },
             rate_hz: recording.rate_hz,
             duration_s: recording.duration_s(),
             simulated: recording.simulated,
@@ -143,7 +138,8 @@ impl<'a> Processed<'a> {
     }
 }
 
-/// Signals in at most 1000 steps of time: of each the least and the greatest of each step, in single precision.
+/// Signals in at most 1000 steps of time: of each the least and the greatest of each step, in
+/// single precision.
 #[derive(Serialize, Default)]
 struct Picture {
     from_s: f64,
@@ -159,10 +155,8 @@ impl Picture {
         let per_step = samples.div_ceil(STEPS).max(1);
         let axes = ["signal", "signal_y", "signal_z"];
         let axes = axes.into_iter().zip(recording.axes.iter().map(Some));
-        let motion = [
-            ("normal", recording.normal_n.as_ref()),
-            ("speed", recording.speed_mm_s.as_ref()),
-        ];
+        let motion =
+            [("normal", recording.normal_n.as_ref()), ("speed", recording.speed_mm_s.as_ref())];
         let mut picture = Self {
             from_s: recording.second(0),
             step_s: per_step as f64 / recording.rate_hz,

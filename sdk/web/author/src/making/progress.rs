@@ -21,7 +21,8 @@ pub(crate) fn start(steps: usize) {
     STEPS.set((0, steps as u32));
 }
 
-/// Tells that the next step begins: what is done, and with what. Nothing is told of a call that does not count steps.
+/// Tells that the next step begins: what is done, and with what. Nothing is told of a call that
+/// does not count steps.
 pub(crate) fn begin(what: &str, with: &str) {
     let (done, of) = STEPS.get();
     if of > 0 {

@@ -28,7 +28,8 @@ struct Condition {
     force: Option<f64>,
 }
 
-/// Makes a loop of each recording; the bytes are their samples in single precision, one loop after the other.
+/// Makes a loop of each recording; the bytes are their samples in single precision, one loop after
+/// the other.
 pub(crate) fn recorded(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let names = call.object("files")?;
     let conditions = call.list("conditions")?.into_iter().map(given);
@@ -54,10 +55,7 @@ pub(crate) fn recorded(mut call: Document, files: Files<'_>) -> Result<Answer, R
 fn told<'a>(recording: &'a str, made: &RecordedLoop) -> Loop<'a> {
     Loop {
         recording,
-        condition: Condition {
-            speed: made.condition.speed_mm_s,
-            force: made.condition.force_n,
-        },
+        condition: Condition { speed: made.condition.speed_mm_s, force: made.condition.force_n },
         quantity: made.quantity,
         unit: made.quantity.unit(),
         rate_hz: made.rate_hz,

@@ -21,10 +21,7 @@ pub(crate) struct Given {
 
 pub(crate) fn given(condition: Value) -> Result<Given, Refusal> {
     let mut condition = Document::of(condition)?;
-    let given = Given {
-        speed: condition.number("speed")?,
-        force: condition.number("force")?,
-    };
+    let given = Given { speed: condition.number("speed")?, force: condition.number("force")? };
     condition.finish()?;
     Ok(given)
 }
@@ -42,16 +39,15 @@ pub(crate) struct Reading<'a> {
 }
 
 impl<'a> Reading<'a> {
-    /// Takes the settings of reading. The files are the recordings, then the response, then the trackers, as they are named.
+    /// Takes the settings of reading. The files are the recordings, then the response, then the
+    /// trackers, as they are named.
     pub(crate) fn new(
         mut names: Document,
         settings: &mut Document,
         files: Files<'a>,
     ) -> Result<Self, Refusal> {
-        let given = Given {
-            speed: settings.number("speed_mm_s")?,
-            force: settings.number("force_n")?,
-        };
+        let given =
+            Given { speed: settings.number("speed_mm_s")?, force: settings.number("force_n")? };
         let strict = settings.flag("strict")?;
         let settings: ReadingSettings = settings.table(ReadingSettings::NAMES)?;
         if settings.response.is_some() || settings.tracker.is_some() {
@@ -64,11 +60,7 @@ impl<'a> Reading<'a> {
         let trackers = names.texts("trackers")?;
         names.finish()?;
         let mut files = files.iter().copied();
-        let mut next = || {
-            files
-                .next()
-                .ok_or_else(|| Refusal::argument("a file is missing"))
-        };
+        let mut next = || files.next().ok_or_else(|| Refusal::argument("a file is missing"));
         let recordings = recordings.into_iter().map(|name| Ok((name, next()?)));
         let recordings = recordings.collect::<Result<Vec<_>, Refusal>>()?;
         let mut spectrum = settings.spectrum_options()?;
@@ -76,10 +68,8 @@ impl<'a> Reading<'a> {
             spectrum.response = Some(response_from_bytes(name, next()?)?);
         }
         let named = trackers.iter().map(PathBuf::from).collect();
-        let settings = ReadingSettings {
-            tracker: (!trackers.is_empty()).then_some(named),
-            ..settings
-        };
+        let settings =
+            ReadingSettings { tracker: (!trackers.is_empty()).then_some(named), ..settings };
         let mut options = settings.read_options(recordings.len())?;
         let tracked = trackers.iter().map(|_| next());
         let tracked = tracked.collect::<Result<Vec<_>, _>>()?;
@@ -89,15 +79,7 @@ impl<'a> Reading<'a> {
             let tracker = own.tracker.take().zip(bytes);
             own.tracker = tracker.map(|(tracker, bytes)| tracker.with_bytes(*bytes));
         }
-        Ok(Self {
-            settings,
-            spectrum,
-            strict,
-            response,
-            given,
-            recordings,
-            options,
-        })
+        Ok(Self { settings, spectrum, strict, response, given, recordings, options })
     }
 
     /// The name of the first recording without its extension.
@@ -125,11 +107,7 @@ impl<'a> Reading<'a> {
         let takes = self.recordings.iter().zip(&self.options).enumerate();
         let take = |(i, ((name, bytes), options)): (usize, (&(String, &[u8]), &ReadOptions))| {
             progress::begin("read", name);
-            let own = conditions
-                .get(i)
-                .or(conditions.first())
-                .copied()
-                .unwrap_or_default();
+            let own = conditions.get(i).or(conditions.first()).copied().unwrap_or_default();
             let recording: Recording = recording_from_bytes(Path::new(name), bytes, options)?;
             Ok(Take {
                 recording,

@@ -1,4 +1,5 @@
-//! The models of a texture that was made, with what is felt of the difference from what they were fitted to.
+//! The models of a texture that was made, with what is felt of the difference from what they were
+//! fitted to.
 
 use htex_author::FeltError;
 use htex_format::{Asset, LeftOut, Quality};

@@ -40,11 +40,8 @@ pub(crate) fn validate(mut call: Document, files: Files<'_>) -> Result<Answer, R
     } else {
         ("recording", of_recording(path, bytes)?)
     };
-    let validated = Validated {
-        kind,
-        valid: report.valid,
-        findings: describe::findings(&report.findings),
-    };
+    let validated =
+        Validated { kind, valid: report.valid, findings: describe::findings(&report.findings) };
     Answer::new(&validated, Vec::new())
 }
 
@@ -60,9 +57,7 @@ fn of_texture(bytes: &[u8]) -> Report {
 fn of_recording(path: &Path, bytes: &[u8]) -> Result<Report, Refusal> {
     let (read, spectrum) = (ReadOptions::default(), SpectrumOptions::default());
     let given = Exploration::default();
-    Ok(validate_recording_bytes(
-        path, bytes, &read, given, &spectrum,
-    )?)
+    Ok(validate_recording_bytes(path, bytes, &read, given, &spectrum)?)
 }
 
 #[derive(Serialize)]

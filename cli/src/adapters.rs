@@ -117,10 +117,7 @@ pub(crate) fn descriptor_text(descriptor: &Descriptor) -> String {
     let Descriptor { id, name, version, summary, .. } = descriptor;
     let settings: String = descriptor.settings.iter().map(setting).collect();
     let profiles: String = descriptor.profiles.iter().map(profile).collect();
-    let none = |text: String| match text.is_empty() {
-        true => "  none\n".to_owned(),
-        false => text,
-    };
+    let none = |text: String| if text.is_empty() { "  none\n".to_owned() } else { text };
     let (settings, profiles) = (none(settings), none(profiles));
     format!("{name} ({id} {version})\n{summary}\n\nsettings\n{settings}\nprofiles\n{profiles}")
 }

@@ -306,10 +306,7 @@ impl Spread {
 impl RepresentationSummary {
     /// The representation at all its conditions.
     fn all(&self) -> &[AtSummary] {
-        match self.at.is_empty() {
-            true => std::slice::from_ref(&self.first),
-            false => &self.at,
-        }
+        if self.at.is_empty() { std::slice::from_ref(&self.first) } else { &self.at }
     }
 
     /// Counts the conditions whose difference is below the difference threshold, and those within

@@ -46,10 +46,7 @@ pub(crate) fn with_quoted(text: &str) -> Cow<'_, str> {
             rest = after;
         }
     }
-    match result.is_empty() {
-        true => Cow::Borrowed(text),
-        false => Cow::Owned(result + rest),
-    }
+    if result.is_empty() { Cow::Borrowed(text) } else { Cow::Owned(result + rest) }
 }
 
 /// Whether a quotation begins with this option.

@@ -103,12 +103,13 @@ fn check_format(location: &Location, argument: Option<&clap::Arg>) -> Result<(),
         return Ok(());
     };
     let is_format = |extension: &String| FORMATS.contains(&&extension[..]);
-    match is_format(&written) && is_format(&given) && written != given {
-        true => Err(format!(
+    if is_format(&written) && is_format(&given) && written != given {
+        Err(format!(
             "{location}: {} is written here, and .{given} is another format; name a file that ends in .{written}",
             written.to_ascii_uppercase()
-        )),
-        false => Ok(()),
+        ))
+    } else {
+        Ok(())
     }
 }
 

@@ -79,9 +79,10 @@ impl Output {
         for file in written.filter(|s| s.kind == SettingKind::Path) {
             ready.check_output(Path::new(settings.text(&file.name)))?;
         }
-        let device: Box<dyn Device> = match is_wanted(&ready.capabilities) {
-            true => Box::new(Guarded::open(&ready.device, settings, &format, guardian()?)?),
-            false => ready.device.adapter.open(settings, &format)?,
+        let device: Box<dyn Device> = if is_wanted(&ready.capabilities) {
+            Box::new(Guarded::open(&ready.device, settings, &format, guardian()?)?)
+        } else {
+            ready.device.adapter.open(settings, &format)?
         };
         let output = Self::new(device, frames as usize, plan.rate_hz);
         Ok(Self { clocked: ready.capabilities.paced, ..output })

@@ -185,10 +185,7 @@ fn hold(name: &str, options: &[(&str, &str)]) {
         prop_assume!(stored.is_some());
         let stored = stored.unwrap();
         let played: Vec<f64> = stored.shape.iter().map(|m| m * stored.default_n).collect();
-        let recorded = match model.descriptor().keeps_level {
-            true => stored.fitted_n,
-            false => rms(&magnitude),
-        };
+        let recorded = if model.descriptor().keeps_level { stored.fitted_n } else { rms(&magnitude) };
         let part = model.played_part(&stored.parameters, BAND).unwrap();
         prop_assert!(off_db(part * rms(&played), recorded) < 0.02);
         let wanted = wanted(&model, &options, &grid, &magnitude, &stored);

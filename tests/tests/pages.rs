@@ -86,9 +86,10 @@ fn the_tests_that_the_pages_name_are_there() {
         for row in rows {
             let shown = row.trim_end_matches(" |").rsplit(" | ").next().unwrap();
             for test in code(shown) {
-                let is_there = match test.contains('/') {
-                    true => root.join(test).is_file(),
-                    false => known.contains(test) || test.starts_with('-'),
+                let is_there = if test.contains('/') {
+                    root.join(test).is_file()
+                } else {
+                    known.contains(test) || test.starts_with('-')
                 };
                 assert!(is_there, "{name}: {test} does not exist: {row}");
                 seen += 1;
@@ -146,9 +147,10 @@ fn each_threat_has_its_test() {
         let named: Vec<&str> = code(shown).collect();
         assert!(!named.is_empty(), "{kind}: no test is named");
         for name in named {
-            let is_test = match name.contains('/') {
-                true => name.contains("/tests/") && root.join(name).is_file(),
-                false => tests.contains(name) || is_target(name),
+            let is_test = if name.contains('/') {
+                name.contains("/tests/") && root.join(name).is_file()
+            } else {
+                tests.contains(name) || is_target(name)
             };
             assert!(is_test, "{kind}: {name} is no test");
         }

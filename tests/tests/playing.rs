@@ -19,9 +19,12 @@ const NEAR: f64 = 1e-9;
 fn generated_files_are_fresh() {
     let files = playing::files();
     for (path, bytes) in &files {
-        file_with(path, bytes, |kept| match path.ends_with(".json") {
-            true => near(&parsed(kept), &parsed(bytes)),
-            false => kept == bytes,
+        file_with(path, bytes, |kept| {
+            if path.ends_with(".json") {
+                near(&parsed(kept), &parsed(bytes))
+            } else {
+                kept == bytes
+            }
         });
     }
     for folder in [playing::MODELS, playing::CASES] {

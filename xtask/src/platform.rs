@@ -142,9 +142,10 @@ impl Build {
 
     /// Cargo with `build` or `rustc`.
     pub fn cargo(&self, verb: &str) -> Command {
-        let mut command = match self.is_by_zig() {
-            false => Command::new(cargo()),
-            true => Command::new(tools().join("cargo-zigbuild")),
+        let mut command = if self.is_by_zig() {
+            Command::new(tools().join("cargo-zigbuild"))
+        } else {
+            Command::new(cargo())
         };
         // The subcommands of cargo-zigbuild.
         let is_build = self.is_by_zig() && verb == "build";
@@ -234,9 +235,10 @@ impl Build {
 
     /// Where cargo puts what it builds by a profile.
     pub fn output(&self, profile: &str) -> PathBuf {
-        match self.is_release() {
-            false => target().join(profile),
-            true => target().join(self.platform.triple).join(profile),
+        if self.is_release() {
+            target().join(self.platform.triple).join(profile)
+        } else {
+            target().join(profile)
         }
     }
 
@@ -252,10 +254,7 @@ impl Build {
 
     /// A program of the binary utilities of the platform, such as `ld`.
     pub fn utility(&self, name: &str) -> Command {
-        let prefix = match self.is_release() {
-            false => "",
-            true => self.platform.utilities,
-        };
+        let prefix = if self.is_release() { self.platform.utilities } else { "" };
         Command::new(format!("{prefix}{name}"))
     }
 }

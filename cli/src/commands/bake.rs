@@ -115,9 +115,10 @@ impl Bake {
             )]);
         }
         warn_of_frequencies(&baked);
-        match self.json {
-            true => print_json(&report(&baked, self.rate))?,
-            false => print(&text(&self.output, &baked, self.rate))?,
+        if self.json {
+            print_json(&report(&baked, self.rate))?
+        } else {
+            print(&text(&self.output, &baked, self.rate))?
         }
         Ok(Exit::SUCCESS)
     }
@@ -133,9 +134,10 @@ impl Bake {
             let [speed, force] = axes("--at", text, |value| value.trim().parse().ok())?;
             motions.push(Motion::new(speed, force));
         }
-        match motions.is_empty() {
-            true => Ok(None),
-            false => Grid::of_conditions(&motions).map(Some).of(&self.asset),
+        if motions.is_empty() {
+            Ok(None)
+        } else {
+            Grid::of_conditions(&motions).map(Some).of(&self.asset)
         }
     }
 }

@@ -141,9 +141,10 @@ impl Build {
             // A folder in which not even that can be written is what `failure` is about.
             let _ = report_failure(to.folder(), &tool(), &lines);
         }
-        match self.json {
-            true => print_json(&serde_json::json!({ "textures": 0, "error": lines })),
-            false => Ok(()),
+        if self.json {
+            print_json(&serde_json::json!({ "textures": 0, "error": lines }))
+        } else {
+            Ok(())
         }
     }
 

@@ -115,10 +115,8 @@ impl Export {
         let unknown = || Failure::Usage(format!("--to {}: there is no such format", self.to));
         let format = Format::named(&self.to).ok_or_else(unknown)?;
         format.check_export(self.given.settings.iter().map(String::as_str))?;
-        let exported = match is_scene(&self.asset) {
-            true => self.of_scene(format)?,
-            false => self.of_asset(format)?,
-        };
+        let exported =
+            if is_scene(&self.asset) { self.of_scene(format)? } else { self.of_asset(format)? };
         write_file(&self.output, &exported.bytes)?;
         self.tell(&exported)?;
         Ok(Exit::SUCCESS)
@@ -220,10 +218,7 @@ fn limited(played: &Played) -> String {
 /// What is lost, in words.
 fn lost(lost: &Loss) -> String {
     let felt = &lost.difference.felt.error;
-    let threshold = match felt.below_difference_threshold {
-        true => "below",
-        false => "above",
-    };
+    let threshold = if felt.below_difference_threshold { "below" } else { "above" };
     let nine_bands = lost.difference.quality.get(Measure::NineBand);
     format!(
         "\nlost: felt {:.1} dB RMS, {:.1} dB at most, {:+.1} dB together ({threshold} the difference threshold), \

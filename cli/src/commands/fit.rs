@@ -181,12 +181,13 @@ pub(crate) fn all_named_were_fitted(
     skipped: &[(String, String)],
 ) -> Result<Exit, Failure> {
     let named = fit.named_of(skipped);
-    match named.is_empty() {
-        true => Ok(Exit::SUCCESS),
-        false => Err(Failure::Other(format!(
+    if named.is_empty() {
+        Ok(Exit::SUCCESS)
+    } else {
+        Err(Failure::Other(format!(
             "a model named by `--model` could not be fitted, and the asset holds only the others: {}",
             named.join("; ")
-        ))),
+        )))
     }
 }
 

@@ -17,9 +17,10 @@ pub(crate) struct Formats {
 
 impl Formats {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        match self.json {
-            true => print_json(&json!({ "formats": FORMATS, "profiles": &*PROFILES }))?,
-            false => print(&text())?,
+        if self.json {
+            print_json(&json!({ "formats": FORMATS, "profiles": &*PROFILES }))?
+        } else {
+            print(&text())?
         }
         Ok(Exit::SUCCESS)
     }

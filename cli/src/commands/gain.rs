@@ -161,10 +161,7 @@ fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>
 
 fn opened(ready: &Ready, plan: &htex_scene::Plan) -> Result<Output, Failure> {
     let output = Output::open(ready, plan)?;
-    Ok(match ready.capabilities.paced {
-        true => output,
-        false => output.paced(),
-    })
+    Ok(if ready.capabilities.paced { output } else { output.paced() })
 }
 
 /// Plays until there is a request, then fades to silence.

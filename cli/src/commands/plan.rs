@@ -74,10 +74,8 @@ fn name(name: &str, surface: Option<usize>) -> String {
 }
 
 fn text(plan: &Planned) -> String {
-    let moves = match plan.constant {
-        true => "nothing changes while it plays",
-        false => "it follows the finger",
-    };
+    let moves =
+        if plan.constant { "nothing changes while it plays" } else { "it follows the finger" };
     let mut text = format!("{} Hz, {moves}\n\n  ns/sample  stage\n", plan.rate_hz);
     for stage in &plan.stages {
         let (name, reason) = (name(stage.name, stage.surface), &stage.reason);

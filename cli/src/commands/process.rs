@@ -66,10 +66,7 @@ impl Process {
 
 /// The source of the segments.
 fn origin(reading: &Reading) -> &'static str {
-    match reading.part.segments.from_sweeps {
-        true => "sweeps",
-        false => "windows",
-    }
+    if reading.part.segments.from_sweeps { "sweeps" } else { "windows" }
 }
 
 /// The segments that are read, seconds in the file.

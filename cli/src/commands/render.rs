@@ -126,9 +126,10 @@ impl Render {
     fn open(&self, ready: &Ready, rate_hz: f64) -> Result<Opened, Failure> {
         let known = ready.devices.find("org.htex.file")?;
         let is_file = ready.device.descriptor().id == known.descriptor().id;
-        let mut given = match is_file {
-            true => ready.settings().iter().map(|(k, v)| (k.to_owned(), v.to_owned())).collect(),
-            false => like(&ready.capabilities, &self.scene),
+        let mut given = if is_file {
+            ready.settings().iter().map(|(k, v)| (k.to_owned(), v.to_owned())).collect()
+        } else {
+            like(&ready.capabilities, &self.scene)
         };
         let aside = match &self.output {
             Some(output) => Aside::of(output)?,

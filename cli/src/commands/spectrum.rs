@@ -85,9 +85,10 @@ impl Spectrum {
         let grid = htex::Band::TACTILE.grid_hz();
         let motion = self.choice.motion(&asset).of(&self.asset)?;
         let model = self.choice.model.as_deref();
-        let (magnitude, effects) = match self.unscaled {
-            true => (asset.recorded_magnitude(model, motion, &grid), htex::Effects::NONE),
-            false => (asset.magnitude(model, motion, &grid), htex::Effects::default()),
+        let (magnitude, effects) = if self.unscaled {
+            (asset.recorded_magnitude(model, motion, &grid), htex::Effects::NONE)
+        } else {
+            (asset.magnitude(model, motion, &grid), htex::Effects::default())
         };
         let magnitude = magnitude.of(&self.asset)?;
         let beyond = self.choice.beyond(&asset, effects);

@@ -81,10 +81,7 @@ impl Synth {
             .with_motion(self.choice.motion(&asset).of(&self.asset)?)
             .with_synthesis(self.quality)
             .with_ceiling(self.ceiling)
-            .with_effects(match self.as_recorded {
-                true => Effects::NONE,
-                false => Effects::default(),
-            });
+            .with_effects(if self.as_recorded { Effects::NONE } else { Effects::default() });
         options.model = self.choice.model.as_deref();
         let beyond = self.choice.beyond(&asset, options.effects).of(&self.asset)?;
         warn(&Vec::from_iter(beyond));

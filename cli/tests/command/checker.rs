@@ -140,10 +140,7 @@ fn checked(file: &Path, timeout_s: u64) -> Report {
 /// The checks of sounds with more seeds: a level or spectrum with a small error fails with some.
 fn checked_by_seeds(file: &Path) {
     let sounds = ["level", "spectrum", "narrow-band"].map(String::from);
-    let seeds: &[u64] = match xtask::prove::whole() {
-        true => &[0, 1, 2, u64::MAX],
-        false => &[u64::MAX],
-    };
+    let seeds: &[u64] = if xtask::prove::whole() { &[0, 1, 2, u64::MAX] } else { &[u64::MAX] };
     for &seed in seeds {
         let report = check_some(file, 120, seed, Some(sounds.to_vec()));
         assert!(report.ok, "seed {seed}: {}", report);

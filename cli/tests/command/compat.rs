@@ -61,10 +61,7 @@ fn played(place: &Place, line: &str) -> String {
         Some(block) => of_block(&fs::read(place.path(block)).unwrap()),
         None => {
             // An asset is written to a file of its own extension.
-            let out = match line.starts_with("lib cat") {
-                true => "out.htex",
-                false => "out.wav",
-            };
+            let out = if line.starts_with("lib cat") { "out.htex" } else { "out.wav" };
             run(place, &line.replace("out.wav", out));
             let bytes = fs::read(place.path(out)).unwrap();
             fs::remove_file(place.path(out)).unwrap();

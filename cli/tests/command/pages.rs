@@ -116,13 +116,12 @@ fn recipes_on_pages_are_read() {
     let recipes = texts("docs/libraries.md", "toml");
     assert_eq!(recipes.len(), 4);
     for block in recipes {
-        let library = match block.contains("[library]") {
-            true => "",
-            false => "[library]\nname = \"vinyls\"\n",
-        };
-        let textures = match block.contains("[[textures]]") {
-            true => "",
-            false => "[[textures]]\nrecordings = \"rec/*.csv\"\n",
+        let library =
+            if block.contains("[library]") { "" } else { "[library]\nname = \"vinyls\"\n" };
+        let textures = if block.contains("[[textures]]") {
+            ""
+        } else {
+            "[[textures]]\nrecordings = \"rec/*.csv\"\n"
         };
         let recipe = format!("{library}{block}{textures}");
         htex_build::Recipe::parse(&recipe).unwrap_or_else(|error| panic!("{recipe}\n{error}"));

@@ -221,10 +221,7 @@ impl Traps {
     fn recipe(&self, random: &mut Random) -> String {
         let mut text = format!(
             "[library]\nname = \"{}\"\n",
-            match random.one_in(16) {
-                true => random.of(&["../lib", "a/b", "", "lib.part"]),
-                false => "lib",
-            }
+            if random.one_in(16) { random.of(&["../lib", "a/b", "", "lib.part"]) } else { "lib" }
         );
         if random.one_in(12) {
             text += &format!("plugins = [\"{}\"]\n", self.path(random));

@@ -54,9 +54,10 @@ fn what_a_file_may_ask_of_devices() {
 #[test]
 fn a_command_without_sound_says_how_to_get_it() {
     let run = Place::new().run(&["device", "info", "audio"]);
-    match cfg!(feature = "audio") {
-        true => assert_eq!(run.code(), 0, "{}", run.error()),
-        false => assert!(run.error().contains("--features audio"), "{}", run.error()),
+    if cfg!(feature = "audio") {
+        assert_eq!(run.code(), 0, "{}", run.error())
+    } else {
+        assert!(run.error().contains("--features audio"), "{}", run.error())
     }
 }
 

@@ -197,10 +197,9 @@ fn what_fails_is_said_and_leaves_nothing() {
     bench.server.put("surfaces/large.htex", vec![0; 17 << 20]);
     bench.run(&["info", "s3://surfaces/large.htex"]).failed(1, &["more than"]);
     std::fs::remove_file(bench.server.path("surfaces/large.htex")).unwrap();
-    bench.server.fail(|_, request| match request.method == "GET" {
-        true => Fault::Stall(1_000),
-        false => Fault::None,
-    });
+    bench
+        .server
+        .fail(|_, request| if request.method == "GET" { Fault::Stall(1_000) } else { Fault::None });
     with("HTEX_STORAGE_TIMEOUT_S", "0.5").failed(1, &[uri, "not done within 0.5 s"]);
     assert_eq!(bench.server.files(), before);
     assert!(bench.copies().is_empty());
@@ -210,9 +209,8 @@ fn what_fails_is_said_and_leaves_nothing() {
 #[test]
 fn a_result_that_cannot_be_written_is_kept() {
     let bench = Bench::new();
-    bench.server.fail(|_, request| match request.method == "PUT" {
-        true => Fault::Status(403, "AccessDenied"),
-        false => Fault::None,
+    bench.server.fail(|_, request| {
+        if request.method == "PUT" { Fault::Status(403, "AccessDenied") } else { Fault::None }
     });
     let done = bench.run(&[
         "fit",

@@ -139,10 +139,8 @@ fn a_recipe_runs_no_native_code() {
     }
     // From a server, too, and under the name of a file elsewhere.
     let bytes = RECIPE.replace("\"surfaces\"", "\"surfaces\"\nplugins = [\"m.so\"]");
-    let (url, _) = server(move |request| match request.contains(".toml") {
-        true => ok(&bytes),
-        false => ok("\u{7f}ELF"),
-    });
+    let (url, _) =
+        server(move |request| if request.contains(".toml") { ok(&bytes) } else { ok("\u{7f}ELF") });
     let run = place.run(&["build", &format!("{url}/library.toml"), "-o", "dist"]);
     assert!(run.code() == 1 && !place.path("loaded").exists(), "{}", run.error());
     // A person's word loads it; it is no model, which is said.
@@ -310,10 +308,8 @@ fn a_recipe_names_no_inner_address() {
     assert_eq!(requests.load(Ordering::SeqCst), 0);
     let own = RECIPE.replace("rec/*.csv", "rec/a.csv");
     let csv = fs::read_to_string(place.path("rec/a.csv")).unwrap();
-    let (url, _) = server(move |request| match request.contains(".toml") {
-        true => ok(&own),
-        false => ok(&csv),
-    });
+    let (url, _) =
+        server(move |request| if request.contains(".toml") { ok(&own) } else { ok(&csv) });
     let run = place.run(&["build", &format!("{url}/library.toml"), "-o", "dist"]);
     assert_eq!(run.code(), 0, "{}", run.error());
 }

@@ -14,11 +14,10 @@ const FIELDS: &str = concat!(
 );
 
 fn descriptor(version: &str, has_tilt: bool) -> String {
-    let tilt = match has_tilt {
-        true => {
-            r#",{"name":"tilt","unit":"1","kind":{"type":"scalar"},"min":0,"max":0.2,"store":{"type":"f32"},"default":0,"description":"T."}"#
-        }
-        false => "",
+    let tilt = if has_tilt {
+        r#",{"name":"tilt","unit":"1","kind":{"type":"scalar"},"min":0,"max":0.2,"store":{"type":"f32"},"default":0,"description":"T."}"#
+    } else {
+        ""
     };
     format!(
         r#"{{"id":"{ID}","name":"H","version":"{version}","summary":"S.","fields":[{FIELDS}{tilt}]}}"#

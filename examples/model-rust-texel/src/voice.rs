@@ -44,10 +44,7 @@ impl Ramp {
         let value = self.value;
         if self.left > 0.0 {
             self.left -= 1.0;
-            self.value = match self.left > 0.0 {
-                true => value + self.step,
-                false => self.target,
-            };
+            self.value = if self.left > 0.0 { value + self.step } else { self.target };
         }
         value
     }

@@ -42,10 +42,7 @@ impl Kept {
 /// wait.
 pub(crate) fn write_lines(coefficients: &[f64], lines: &mut [f64]) -> bool {
     let order = coefficients.len();
-    let kept = match (1..=KEPT_ORDER).contains(&order) {
-        true => KEPT.try_lock(),
-        false => None,
-    };
+    let kept = if (1..=KEPT_ORDER).contains(&order) { KEPT.try_lock() } else { None };
     let Some(mut kept) = kept else {
         return find_lines(coefficients, lines);
     };

@@ -98,10 +98,7 @@ impl Filter {
         let (own, beyond) = self.reflection.split_at_mut(poles.len());
         own.copy_from_slice(self.poles.coefficients());
         beyond.fill(0.0);
-        match step_down_in_place(own) {
-            true => Ok(()),
-            false => Err(unstable()),
-        }
+        if step_down_in_place(own) { Ok(()) } else { Err(unstable()) }
     }
 
     /// `A_1` to `A_p`.

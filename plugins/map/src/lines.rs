@@ -33,14 +33,15 @@ impl Lines {
     /// As [`Self::of`], and when the stated RMS is not that of the grey values.
     pub(crate) fn stated(map: &Map<'_>, band: Band) -> Result<Self, Error> {
         let lines = Self::of(map, band)?;
-        match (map.rms - lines.rms).abs() <= TOLERANCE * lines.rms {
-            true => Ok(lines),
-            false => Err(Error::parameters(text![
+        if (map.rms - lines.rms).abs() <= TOLERANCE * lines.rms {
+            Ok(lines)
+        } else {
+            Err(Error::parameters(text![
                 "`rms` is ",
                 map.rms,
                 ", and that of `grey` is ",
                 lines.rms
-            ])),
+            ]))
         }
     }
 
@@ -55,9 +56,12 @@ impl Lines {
             .map(|x| (libm::cos(step * x as f64), libm::sin(step * x as f64)))
             .collect();
         let power: Vec<f64> = (1..=most)
-            .map(|waves| match inside(waves) {
-                true => mean_square(map, &turns, waves) * passed(waves as f64 / map.width as f64),
-                false => 0.0,
+            .map(|waves| {
+                if inside(waves) {
+                    mean_square(map, &turns, waves) * passed(waves as f64 / map.width as f64)
+                } else {
+                    0.0
+                }
             })
             .collect();
         let mut lines = Self { fundamental_hz, power, rms: 1.0 };

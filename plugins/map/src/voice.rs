@@ -162,9 +162,10 @@ impl MapVoice {
 
     /// Gain of a motion's force.
     fn gain_of(&self, motion: Motion) -> f64 {
-        match self.surface.force_n > 0.0 {
-            true => (motion.force_n / self.surface.force_n).min(MOST_GAIN),
-            false => 1.0,
+        if self.surface.force_n > 0.0 {
+            (motion.force_n / self.surface.force_n).min(MOST_GAIN)
+        } else {
+            1.0
         }
     }
 

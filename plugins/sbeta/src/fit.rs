@@ -81,10 +81,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         0 => to_peaks(peaks, input, &relative),
         _ => to_peaks_and_bins(&peaks, bins, input, &relative),
     };
-    let level = match fitted.highest > HIGHEST {
-        true => fitted.level / fitted.highest,
-        false => fitted.level,
-    };
+    let level = if fitted.highest > HIGHEST { fitted.level / fitted.highest } else { fitted.level };
     Ok(Fit { parameters: vec![fitted.alpha, fitted.beta], level_rms: largest * level })
 }
 
@@ -111,10 +108,7 @@ fn to_peaks(peaks: Vec<Peak>, input: &FitInput<'_>, relative: &[f64]) -> Fitted 
     let points = [peaks, bins].concat();
     let second = Fitted::to(&points, input);
     let distance = |fitted: &Fitted| least_decibels(&points, &fitted.profile(input.band)).1;
-    match distance(&first) < distance(&second) {
-        true => first,
-        false => second,
-    }
+    if distance(&first) < distance(&second) { first } else { second }
 }
 
 /// A density, the RMS of its magnitude, and its maximum over the bins, relative to the spectrum's
@@ -197,10 +191,8 @@ fn search_points(points: &[Peak], band: Band, bound: f64, distance: Distance) ->
         let start = [alpha, beta].map(|s: f64| htex_dsp::root::sqrt((s - bound).max(0.0)));
         minimize(cost, start, &options)
     };
-    let better = |best: Minimum<2>, next: Minimum<2>| match next.value < best.value {
-        true => next,
-        false => best,
-    };
+    let better =
+        |best: Minimum<2>, next: Minimum<2>| if next.value < best.value { next } else { best };
     let mut best = STARTS.into_iter().map(search).reduce(better);
     if best.is_none_or(|best| best.value > NOTHING_EXPLAINED) {
         // At an edge a density with parameters above 1 is 0 and has no gradient.

@@ -309,10 +309,7 @@ impl<'a> Lines<'a> {
     /// Amplitude of a line as it is played: 0 outside the band, where textures have no magnitude.
     fn played(&self, line: usize) -> f64 {
         let inside = self.band.low_hz..=self.band.high_hz;
-        match inside.contains(&self.frequency_hz[line]) {
-            true => self.amplitude[line],
-            false => 0.0,
-        }
+        if inside.contains(&self.frequency_hz[line]) { self.amplitude[line] } else { 0.0 }
     }
 
     /// Unit-level magnitude at `frequency_hz` as measured through the Hann window: A on a line, A/2

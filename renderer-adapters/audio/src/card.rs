@@ -42,21 +42,21 @@ impl Card {
         let missing = |what: &str| missing(side, name, what);
         let device = device.ok_or_else(|| missing("there is no card of this name"))?;
         let configs = configs(&device, side).map_err(|error| missing(&error.to_string()))?;
-        match configs.is_empty() {
-            true => Err(missing("it has no supported sample format")),
-            false => Ok(Self { name: name.to_owned(), device, side, configs }),
+        if configs.is_empty() {
+            Err(missing("it has no supported sample format"))
+        } else {
+            Ok(Self { name: name.to_owned(), device, side, configs })
         }
     }
 
     /// The card with the configurations of so many channels only.
     pub(crate) fn with_channels(mut self, channels: u16) -> Result<Self, DeviceError> {
         self.configs.retain(|config| config.channels() == channels);
-        match self.configs.is_empty() {
-            true => {
-                let what = format!("it does not take {channels} channels");
-                Err(missing(self.side, &self.name, &what))
-            }
-            false => Ok(self),
+        if self.configs.is_empty() {
+            let what = format!("it does not take {channels} channels");
+            Err(missing(self.side, &self.name, &what))
+        } else {
+            Ok(self)
         }
     }
 
@@ -184,11 +184,10 @@ fn missing(side: Side, name: &str, what: &str) -> DeviceError {
         Side::Output => ("output", "aplay"),
         Side::Input => ("input", "arecord"),
     };
-    let check = match cfg!(target_os = "linux") {
-        true => {
-            format!("`{list} -l` lists the cards; a machine without one, or a container, has none")
-        }
-        false => "see the sound settings of the system".to_owned(),
+    let check = if cfg!(target_os = "linux") {
+        format!("`{list} -l` lists the cards; a machine without one, or a container, has none")
+    } else {
+        "see the sound settings of the system".to_owned()
     };
     DeviceError::Missing(format!("no sound {side} `{name}`: {what}; {check}"))
 }

@@ -18,9 +18,10 @@ pub(crate) fn factors(list: &str) -> Result<Vec<f32>, DeviceError> {
     if factors.len() > MOST {
         return Err(refused(format!("it has {} channels, and {MOST} are the most", factors.len())));
     }
-    match factors.iter().all(|factor| *factor == 0.0) {
-        true => Err(refused("no channel plays the texture".to_owned())),
-        false => Ok(factors),
+    if factors.iter().all(|factor| *factor == 0.0) {
+        Err(refused("no channel plays the texture".to_owned()))
+    } else {
+        Ok(factors)
     }
 }
 

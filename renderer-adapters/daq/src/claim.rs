@@ -18,12 +18,13 @@ impl Claim {
     pub(crate) fn take(rig: &Rig) -> Result<Self, DeviceError> {
         let key = (rig.driver.clone(), rig.device.clone());
         let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
-        match claimed.insert(key.clone()) {
-            true => Ok(Self(key)),
-            false => Err(DeviceError::Busy(format!(
+        if claimed.insert(key.clone()) {
+            Ok(Self(key))
+        } else {
+            Err(DeviceError::Busy(format!(
                 "{} is open already; finish or drop that device first",
                 rig.device
-            ))),
+            )))
         }
     }
 }

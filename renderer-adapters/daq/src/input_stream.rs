@@ -62,16 +62,17 @@ impl InputStream {
     fn fail(&mut self, fault: &Fault) -> DeviceError {
         self.task = None;
         let Inputs { given, buffer_s, .. } = &self.inputs;
-        match fault.is_overrun() {
-            true => DeviceError::Overrun {
+        if fault.is_overrun() {
+            DeviceError::Overrun {
                 source_name: given.clone(),
                 frames: self.delivered,
                 advice: format!(
                     "NI-DAQmx {}: close other programs, lower `rate_hz`, or raise `buffer_s` (now {buffer_s} s)",
                     fault.code
                 ),
-            },
-            false => fault.failed(given),
+            }
+        } else {
+            fault.failed(given)
         }
     }
 }

@@ -61,13 +61,14 @@ impl Inputs {
         let card = self.channels[0].split('/').next().unwrap_or_default();
         let rates = driver.input_rates(card).map_err(|fault| fault.missing(&self.given))?;
         let (min_hz, max_hz) = (rates.0, rates.1 / self.channels.len() as f64);
-        match (min_hz..=max_hz).contains(&self.rate_hz) {
-            true => Ok(()),
-            false => Err(DeviceError::Rate {
+        if (min_hz..=max_hz).contains(&self.rate_hz) {
+            Ok(())
+        } else {
+            Err(DeviceError::Rate {
                 device: self.given.clone(),
                 rate_hz: self.rate_hz,
                 rates: format!("{min_hz} to {max_hz} Hz with {} channels", self.channels.len()),
-            }),
+            })
         }
     }
 }
@@ -98,11 +99,12 @@ fn expanded(text: &str) -> Result<Vec<String>, DeviceError> {
     let other = |(i, name): (usize, &String)| {
         card(name) != card(&channels[0]) || channels[..i].contains(name)
     };
-    match channels.iter().enumerate().any(|(i, name)| other((i, name)))
+    if channels.iter().enumerate().any(|(i, name)| other((i, name)))
         || channels.len() > MOST_CHANNELS
     {
-        true => Err(refuse(format!("`{text}` names inputs twice or of several cards"))),
-        false => Ok(channels),
+        Err(refuse(format!("`{text}` names inputs twice or of several cards")))
+    } else {
+        Ok(channels)
     }
 }
 

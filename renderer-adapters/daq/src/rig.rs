@@ -120,11 +120,10 @@ impl Rig {
 }
 
 fn not_there(device: &str, there: &[&str]) -> String {
-    match there.is_empty() {
-        true => {
-            format!("`{device}` is not connected: NI-DAQmx knows no card; see NI MAX or `nilsdev`")
-        }
-        false => format!("`{device}` is not connected; connected is {}", there.join(", ")),
+    if there.is_empty() {
+        format!("`{device}` is not connected: NI-DAQmx knows no card; see NI MAX or `nilsdev`")
+    } else {
+        format!("`{device}` is not connected; connected is {}", there.join(", "))
     }
 }
 

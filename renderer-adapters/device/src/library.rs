@@ -225,8 +225,9 @@ impl<T: Table> Library<T> {
 }
 
 fn check_marker<T: Table>(marker: u32) -> Result<(), AbiFault> {
-    match marker >> 8 == T::MARKER >> 8 {
-        true => Ok(()),
-        false => Err(AbiFault::Marker { marker, kind: T::KIND, major: (T::MARKER >> 8) & 0xff }),
+    if marker >> 8 == T::MARKER >> 8 {
+        Ok(())
+    } else {
+        Err(AbiFault::Marker { marker, kind: T::KIND, major: (T::MARKER >> 8) & 0xff })
     }
 }

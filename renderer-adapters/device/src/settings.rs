@@ -208,10 +208,7 @@ fn profile_settings(
     let found = descriptor.profiles.iter().find(|p| p.name == name);
     found.map(|p| p.settings.clone()).ok_or_else(|| {
         let names: Vec<&str> = descriptor.profiles.iter().map(|p| &p.name[..]).collect();
-        let there = match names.is_empty() {
-            true => "none".to_owned(),
-            false => names.join(", "),
-        };
+        let there = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
         error("profile", format!("there is no `{name}`; there is {there}"))
     })
 }

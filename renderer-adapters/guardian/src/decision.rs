@@ -307,10 +307,7 @@ impl Player {
         let State::Rescuing(rescue) = &self.state else {
             return vec![];
         };
-        let action = match rescue.has_said {
-            true => Action::SayZero,
-            false => Action::GiveZero,
-        };
+        let action = if rescue.has_said { Action::SayZero } else { Action::GiveZero };
         self.state = State::Closed;
         vec![action]
     }

@@ -141,10 +141,8 @@ impl Device for Paced {
 
     fn status(&self) -> Status {
         let state = self.shared.lock();
-        let on_the_way = match state.ended {
-            true => 0,
-            false => state.waiting.len() + self.block_frames + self.delayed,
-        };
+        let on_the_way =
+            if state.ended { 0 } else { state.waiting.len() + self.block_frames + self.delayed };
         Status {
             frames_written: self.written,
             frames_played: state.played,

@@ -19,11 +19,12 @@ impl Claim {
     pub(crate) fn take(library: &str, thing: &str) -> Result<Self, DeviceError> {
         let key = (library.to_owned(), thing.to_owned());
         let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
-        match claimed.insert(key.clone()) {
-            true => Ok(Self(key)),
-            false => Err(DeviceError::Busy(format!(
+        if claimed.insert(key.clone()) {
+            Ok(Self(key))
+        } else {
+            Err(DeviceError::Busy(format!(
                 "the {thing} is open already; finish or drop that device first"
-            ))),
+            )))
         }
     }
 }

@@ -91,26 +91,28 @@ impl Vibrator {
         let Limits { most_points, least_ms, most_ms, low_hz, high_hz } = self.limits;
         let is_sane =
             most_points >= LEAST_POINTS && least_ms <= most_ms && low_hz > 0.0 && low_hz <= high_hz;
-        match is_sane && high_hz.is_finite() {
-            true => Ok(self),
-            false => Err(DeviceError::Missing(format!(
+        if is_sane && high_hz.is_finite() {
+            Ok(self)
+        } else {
+            Err(DeviceError::Missing(format!(
                 "`{path}` states limits of a vibrator that make no sense: {:?}",
                 self.limits
-            ))),
+            )))
         }
     }
 
     /// Whether points of so many milliseconds are taken.
     pub(crate) fn takes(&self, block_ms: u32) -> Result<(), DeviceError> {
         let Limits { least_ms, most_ms, .. } = self.limits;
-        match (least_ms..=most_ms).contains(&block_ms) {
-            true => Ok(()),
-            false => Err(DeviceError::Setting {
+        if (least_ms..=most_ms).contains(&block_ms) {
+            Ok(())
+        } else {
+            Err(DeviceError::Setting {
                 name: "block_ms".to_owned(),
                 what: format!(
                     "the vibrator takes points of {least_ms} to {most_ms} ms, and {block_ms} ms is asked for"
                 ),
-            }),
+            })
         }
     }
 }
@@ -175,18 +177,13 @@ impl Motor for Envelopes {
             frequency_hz: self.frequency_hz as f32,
             duration_ms: self.block_ms,
         });
-        match self.waiting.len() == self.effect {
-            true => self.send(),
-            false => Ok(()),
-        }
+        if self.waiting.len() == self.effect { self.send() } else { Ok(()) }
     }
 
     fn end(&mut self) -> Result<(), String> {
         // The last effect that was handed over has the time of the blocks after it still to play.
-        let left = match self.started {
-            true => (self.effect - 1).saturating_sub(self.waiting.len()),
-            false => 0,
-        };
+        let left =
+            if self.started { (self.effect - 1).saturating_sub(self.waiting.len()) } else { 0 };
         sleep(Duration::from_millis(u64::from(self.block_ms) * left as u64));
         if !self.waiting.is_empty() {
             self.waiting.push(ControlPoint {

@@ -87,10 +87,7 @@ impl Motor for Samples {
             ));
         }
         self.waiting.extend_from_slice(block.samples);
-        match self.since.is_some() || self.waiting.len() >= self.first {
-            true => self.send(),
-            false => Ok(()),
-        }
+        if self.since.is_some() || self.waiting.len() >= self.first { self.send() } else { Ok(()) }
     }
 
     fn end(&mut self) -> Result<(), String> {

@@ -18,12 +18,13 @@ impl Claim {
     pub(crate) fn take(driver: &Driver, pad: &Pad) -> Result<Self, DeviceError> {
         let key = (driver.path.clone(), pad.instance);
         let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
-        match claimed.insert(key.clone()) {
-            true => Ok(Self(key)),
-            false => Err(DeviceError::Busy(format!(
+        if claimed.insert(key.clone()) {
+            Ok(Self(key))
+        } else {
+            Err(DeviceError::Busy(format!(
                 "{} is open already; finish or drop that device first",
                 pad.name
-            ))),
+            )))
         }
     }
 }

@@ -50,10 +50,7 @@ impl Driver {
         let found = all.find(|pad| name == FIRST || pad.name == name);
         found.cloned().ok_or_else(|| {
             let names: Vec<&str> = pads.iter().map(|pad| pad.name.as_str()).collect();
-            let there = match names.is_empty() {
-                true => "none is connected".to_owned(),
-                false => format!("there is {}", names.join(", ")),
-            };
+            let there = if names.is_empty() { "none is connected".to_owned() } else { format!("there is {}", names.join(", ")) };
             DeviceError::Missing(format!(
                 "no gamepad `{name}`: {there}. Connect one, which the system must let you read and write (on Linux /dev/input)"
             ))

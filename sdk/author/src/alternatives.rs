@@ -65,11 +65,12 @@ pub(crate) fn warning(
         better => format!("better on this recording: {}", better.join(", ")),
     };
     let model = choice.model.short_name();
-    Some(match nine_band_db > LIMIT_DB {
-        true => format!("the nine-band error of {model} is {nine_band_db:.1} dB (RMS); {advice}"),
-        false => format!(
+    Some(if nine_band_db > LIMIT_DB {
+        format!("the nine-band error of {model} is {nine_band_db:.1} dB (RMS); {advice}")
+    } else {
+        format!(
             "the nine-band error of {model} is {worst_db:.1} dB in the worst band and {nine_band_db:.1} dB RMS; {advice}"
-        ),
+        )
     })
 }
 

@@ -132,9 +132,10 @@ pub fn fit_asset_watched(
 
 /// What slid over the surface, as far as recordings tell: the simulator has a finger.
 fn contact(takes: &[Take]) -> Contact {
-    match takes.iter().all(|take| take.recording.simulated) {
-        true => Contact::Finger,
-        false => Contact::Unknown,
+    if takes.iter().all(|take| take.recording.simulated) {
+        Contact::Finger
+    } else {
+        Contact::Unknown
     }
 }
 
@@ -272,9 +273,10 @@ pub(crate) fn read_and_measure(
 ) -> Result<(Vec<f64>, Quality), AuthorError> {
     let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
     let by_samples = agreement(reference, &rendered).measures;
-    let read = match model.has_lines() {
-        true => rendered,
-        false => read_spectrum(model, parameters, level_rms, reference)?,
+    let read = if model.has_lines() {
+        rendered
+    } else {
+        read_spectrum(model, parameters, level_rms, reference)?
     };
     let of_both = Measure::of_both().filter(|m| m.row().stored);
     let quality = Quality {

@@ -120,10 +120,7 @@ fn level_exponents(levels: &[f64], axes: [Option<&[f64]>; 2]) -> [Option<[f64; 2
     let rest = y.iter().zip(&v).zip(&f);
     let squares: f64 = rest.map(|((y, v), f)| (y - b * v - c * f).powi(2)).sum();
     let least = (LEVEL_ERROR_DB * std::f64::consts::LN_10 / 20.0).powi(2);
-    let variance = match n > unknowns {
-        true => (squares / (n - unknowns)).max(least),
-        false => least,
-    };
+    let variance = if n > unknowns { (squares / (n - unknowns)).max(least) } else { least };
     let error = |inverse: f64| (variance * inverse).sqrt();
     [varies[0].then(|| [b, error(inverse[0])]), varies[1].then(|| [c, error(inverse[2])])]
 }
@@ -174,9 +171,10 @@ impl Curve {
             let middle = low + i as f64 / POINTS;
             let [from, to] = [middle - HALF_WIDTH, middle + HALF_WIDTH].map(libm::exp2);
             let near = grid.partition_point(|f| *f < from)..grid.partition_point(|f| *f < to);
-            let near = match near.is_empty() {
-                true => near.start.min(grid.len() - 1)..near.start.min(grid.len() - 1) + 1,
-                false => near,
+            let near = if near.is_empty() {
+                near.start.min(grid.len() - 1)..near.start.min(grid.len() - 1) + 1
+            } else {
+                near
             };
             let power: f64 = spectrum.magnitude[near.clone()].iter().map(|m| m * m).sum();
             libm::log(power / near.len() as f64)

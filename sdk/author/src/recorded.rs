@@ -75,13 +75,14 @@ impl RecordedLoop {
 fn frame_len(rate_hz: f64, band: Band) -> Result<usize, AuthorError> {
     let len = rate_hz / GRID_HZ;
     let is_whole = len % 2.0 == 0.0 && rate_hz <= MOST_RATE_HZ;
-    match is_whole && len > 2.0 * band.last_bin() as f64 {
-        true => Ok(len as usize),
-        false => Err(AuthorError::LoopRate {
+    if is_whole && len > 2.0 * band.last_bin() as f64 {
+        Ok(len as usize)
+    } else {
+        Err(AuthorError::LoopRate {
             rate_hz,
             least_hz: 2.0 * GRID_HZ * band.last_bin() as f64,
             most_hz: MOST_RATE_HZ,
-        }),
+        })
     }
 }
 

@@ -205,10 +205,8 @@ impl Designs {
             Shape::within(spectra, texture, moments, within_db)
         };
         let mut best: Option<(usize, Shape)> = None;
-        let lengths = match self.is_best {
-            true => self.length..self.length + 1,
-            false => self.length..self.lengths,
-        };
+        let lengths =
+            if self.is_best { self.length..self.length + 1 } else { self.length..self.lengths };
         for length in lengths {
             let least_db = best.as_ref().map_or(f64::INFINITY, |(_, shape)| shape.at_conditions_db);
             let Some(shape) = with(length, least_db)? else {
@@ -252,17 +250,14 @@ impl Designed {
         }
         let [slowest, fastest] = ratios(&moments);
         let interpolator = Interpolator::new(rate_hz, fastest * texture.band().high_hz)?;
-        let shape = match texture.model().is_sum_of_sines() {
-            true => {
-                let (tones, random) = tones::of_moments(&moments, texture.band())?;
-                let spectra = Spectra::Tones(tones, random);
-                Shape::within(spectra, texture, &moments, f64::INFINITY)?
-            }
-            false => {
-                let design = Design::new(interpolator.internal_hz, GRID_HZ * slowest);
-                let designer = designs.designer(design, texture);
-                Some(designs.shape(&designer, texture, &moments)?)
-            }
+        let shape = if texture.model().is_sum_of_sines() {
+            let (tones, random) = tones::of_moments(&moments, texture.band())?;
+            let spectra = Spectra::Tones(tones, random);
+            Shape::within(spectra, texture, &moments, f64::INFINITY)?
+        } else {
+            let design = Design::new(interpolator.internal_hz, GRID_HZ * slowest);
+            let designer = designs.designer(design, texture);
+            Some(designs.shape(&designer, texture, &moments)?)
         };
         // Nothing exceeds an infinite limit.
         let Some(shape) = shape else {
@@ -320,10 +315,8 @@ impl Designed {
             Encoded::Tones { count, .. } => (0, 0, *count),
         };
         let cannot_follow = law.frequency_speed != 0.0 && tones == 0;
-        let beyond_db = match cannot_follow {
-            true => Some(self.shape.beyond_db(texture, &grid)?),
-            false => None,
-        };
+        let beyond_db =
+            if cannot_follow { Some(self.shape.beyond_db(texture, &grid)?) } else { None };
         Ok(Baked {
             bytes,
             numbers,
@@ -357,9 +350,8 @@ impl Designed {
     ) -> Result<Stored, BakeError> {
         let exact_db = [self.shape.at_conditions_db, self.between_db()];
         // What is within a limit stays within it.
-        let limit = |limit_db: f64, exact_db: f64, left_out_db: f64| match exact_db <= limit_db {
-            true => limit_db,
-            false => exact_db + left_out_db,
+        let limit = |limit_db: f64, exact_db: f64, left_out_db: f64| {
+            if exact_db <= limit_db { limit_db } else { exact_db + left_out_db }
         };
         let limits = |left_out_db: f64| {
             [

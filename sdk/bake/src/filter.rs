@@ -66,9 +66,8 @@ impl Design {
             if error_db < best.0 {
                 best = (error_db, side.clone());
             }
-            let ratio = |(stated, read): (&f64, &f64)| match *stated > 0.0 {
-                true => (stated / read).clamp(0.5, 2.0),
-                false => 1.0,
+            let ratio = |(stated, read): (&f64, &f64)| {
+                if *stated > 0.0 { (stated / read).clamp(0.5, 2.0) } else { 1.0 }
             };
             let corrections: Vec<f64> = wanted.stated.iter().zip(&unit).map(ratio).collect();
             if corrections.iter().all(|c| (c - 1.0).abs() < SMALL) {

@@ -96,10 +96,7 @@ impl Grid {
             all = all.iter().map(|x| f64::from(*x as f32)).collect();
             all.sort_by(f64::total_cmp);
             all.dedup();
-            match all.len() <= MOST_ON_AXIS {
-                true => all,
-                false => own.to_vec(),
-            }
+            if all.len() <= MOST_ON_AXIS { all } else { own.to_vec() }
         };
         // A cell's centre is refined by its edges first.
         let on = |axis: &[f64], x: f64| axis.contains(&x);
@@ -153,9 +150,10 @@ fn axis(axis: &'static str, range: [f32; 2], values: Vec<f64>) -> Result<Vec<f64
     let in_range = rounded.iter().all(|x| (least..=largest).contains(x));
     rounded.sort_by(f64::total_cmp);
     rounded.dedup();
-    match in_range && (1..=MOST_ON_AXIS).contains(&rounded.len()) {
-        true => Ok(rounded),
-        false => Err(BakeError::Axis { axis, values, most: MOST_ON_AXIS, least, largest }),
+    if in_range && (1..=MOST_ON_AXIS).contains(&rounded.len()) {
+        Ok(rounded)
+    } else {
+        Err(BakeError::Axis { axis, values, most: MOST_ON_AXIS, least, largest })
     }
 }
 

@@ -174,8 +174,5 @@ fn identifier(stem: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let name: String = stem.chars().map(plain).collect();
     let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.contains('_');
-    match is_word {
-        true => name,
-        false => format!("texture_{name}"),
-    }
+    if is_word { name } else { format!("texture_{name}") }
 }

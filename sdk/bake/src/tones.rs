@@ -29,14 +29,12 @@ pub(crate) fn of_moments(
     let random = read.first().is_some_and(|(_, random)| *random);
     let all: Vec<Vec<Tone>> = read.into_iter().map(|(tones, _)| tones).collect();
     let count = all.first().map_or(0, Vec::len);
-    let all = match all.iter().all(|tones| tones.len() == count) {
-        true => all,
-        false => matched(&all),
-    };
+    let all = if all.iter().all(|tones| tones.len() == count) { all } else { matched(&all) };
     let count = all.first().map_or(0, Vec::len);
-    match count <= MOST_TONES {
-        true => Ok((all, random)),
-        false => Err(BakeError::Tones { count, most: MOST_TONES }),
+    if count <= MOST_TONES {
+        Ok((all, random))
+    } else {
+        Err(BakeError::Tones { count, most: MOST_TONES })
     }
 }
 
@@ -56,9 +54,8 @@ fn read(moment: &Moment, band: Band) -> Option<(Vec<Tone>, bool)> {
     let (&count, rest) = moment.parameters.split_first()?;
     let (frequencies, rest) = rest.split_at_checked(count as usize)?;
     let (amplitudes, rest) = rest.get(1..)?.split_at_checked(count as usize)?;
-    let tone = |(&hz, &amplitude): (&f64, &f64)| match band.contains(hz) {
-        true => (hz * moment.ratio, amplitude),
-        false => (hz * moment.ratio, 0.0),
+    let tone = |(&hz, &amplitude): (&f64, &f64)| {
+        if band.contains(hz) { (hz * moment.ratio, amplitude) } else { (hz * moment.ratio, 0.0) }
     };
     let tones = frequencies.iter().zip(amplitudes).map(tone).collect();
     Some((tones, rest.first().is_some_and(|random| *random >= 0.5)))

@@ -90,10 +90,7 @@ impl BuildOptions {
     }
 
     fn missing(&self) -> Missing {
-        match self.keep_going {
-            true => Missing::LeftOut,
-            false => Missing::Error,
-        }
+        if self.keep_going { Missing::LeftOut } else { Missing::Error }
     }
 
     #[must_use]

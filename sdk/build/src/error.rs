@@ -45,10 +45,7 @@ pub enum BuildError {
 impl BuildError {
     /// Refuses to remove textures; none is no error.
     pub(crate) fn refuse_removals(textures: Vec<String>) -> Result<(), Self> {
-        match textures.is_empty() {
-            true => Ok(()),
-            false => Err(Self::Removes { textures }),
-        }
+        if textures.is_empty() { Ok(()) } else { Err(Self::Removes { textures }) }
     }
 
     pub(crate) fn at(place: impl Display, problem: impl Display) -> Self {

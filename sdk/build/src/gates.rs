@@ -169,10 +169,11 @@ fn by_name(gate: &ModelGate) -> Vec<(Option<&str>, f64)> {
 }
 
 fn check_number(key: &str, most: f64) -> Result<(), String> {
-    match most >= 0.0 {
-        true => Ok(()),
-        false => Err(format!(
+    if most >= 0.0 {
+        Ok(())
+    } else {
+        Err(format!(
             "gates.{key} is {most}, which no texture meets; give a number of decibels from 0"
-        )),
+        ))
     }
 }

@@ -60,11 +60,12 @@ fn check(glob: &str) -> Result<(), String> {
         }
         most = open.max(most);
     }
-    match all > MOST_BRACES || most > MOST_NESTED {
-        true => Err(format!(
+    if all > MOST_BRACES || most > MOST_NESTED {
+        Err(format!(
             "a glob has {all} braces, {most} within each other, and the most are {MOST_BRACES} and {MOST_NESTED}; write several globs"
-        )),
-        false => Ok(()),
+        ))
+    } else {
+        Ok(())
     }
 }
 
@@ -81,9 +82,10 @@ fn path_of(text: &str) -> Range<usize> {
         return 0..text.len();
     };
     let start = text[host..].find('/').map_or(text.len(), |at| host + at);
-    let end = match text[..host].to_ascii_lowercase().starts_with("http") {
-        true => text[start..].find('?').map_or(text.len(), |at| start + at),
-        false => text.len(),
+    let end = if text[..host].to_ascii_lowercase().starts_with("http") {
+        text[start..].find('?').map_or(text.len(), |at| start + at)
+    } else {
+        text.len()
     };
     start..end
 }

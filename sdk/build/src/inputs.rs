@@ -118,16 +118,14 @@ fn globbed_elsewhere(
     elsewhere: &Elsewhere,
 ) -> Result<Vec<Input>, BuildError> {
     let (below, pattern) = globs::split(glob);
-    let below = match is_elsewhere(Path::new(glob)) {
-        true => PathBuf::from(below),
-        false => joined(folder, Path::new(below)),
+    let below = if is_elsewhere(Path::new(glob)) {
+        PathBuf::from(below)
+    } else {
+        joined(folder, Path::new(below))
     };
     if !globs::is_glob(glob) {
         let uri = joined(&below, Path::new(pattern));
-        let inside = match is_elsewhere(Path::new(glob)) {
-            true => pattern,
-            false => glob,
-        };
+        let inside = if is_elsewhere(Path::new(glob)) { pattern } else { glob };
         return Ok(vec![input_elsewhere(uri, Path::new(inside))]);
     }
     let listed = elsewhere.list(&Location::parse(below.as_ref())?, "**/*")?;
@@ -177,9 +175,10 @@ fn tabulated(
             let problem = format!("{shown}, line {line}: there is no file {}", file.display());
             return Err(BuildError::at(&place, problem));
         }
-        let mut input = match is_away {
-            true => input_elsewhere(file, Path::new(cell)),
-            false => input(file.strip_prefix(folder).unwrap_or(&file).to_owned()),
+        let mut input = if is_away {
+            input_elsewhere(file, Path::new(cell))
+        } else {
+            input(file.strip_prefix(folder).unwrap_or(&file).to_owned())
         };
         let cells = headers.iter().zip(&row);
         let own = cells.map(|(name, cell)| (name.to_owned(), cell.to_owned()));
@@ -249,8 +248,5 @@ pub(crate) fn slashed(path: &Path) -> String {
         _ => None,
     });
     let joined = parts.collect::<Vec<_>>().join("/");
-    match path.has_root() {
-        true => format!("/{joined}"),
-        false => joined,
-    }
+    if path.has_root() { format!("/{joined}") } else { joined }
 }

@@ -23,10 +23,7 @@ pub(crate) fn check_keys(text: &str, recipe: &Value) -> Result<(), BuildError> {
         let more = unknown.len() - named.len();
         sentences.push(format!("and {more} more keys that recipes do not have"));
     }
-    match sentences.is_empty() {
-        true => Ok(()),
-        false => Err(BuildError::Recipe(sentences.join("\n"))),
-    }
+    if sentences.is_empty() { Ok(()) } else { Err(BuildError::Recipe(sentences.join("\n"))) }
 }
 
 #[cfg(test)]

@@ -75,9 +75,6 @@ impl Reasons {
         let changed = parts.iter().zip(before);
         let changed = changed.filter(|((_, now), before)| now != *before);
         let names: Vec<&'static str> = changed.map(|((name, _), _)| *name).collect();
-        match names.is_empty() {
-            true => Why::Gone,
-            false => Why::Changed(names),
-        }
+        if names.is_empty() { Why::Gone } else { Why::Changed(names) }
     }
 }

@@ -49,10 +49,7 @@ pub(crate) fn keep(
     // SAFETY: the place is the caller's.
     let out = unsafe { place(out) }?;
     let asset = Asset::with_registry(data, models.registry);
-    let asset = match models.embedded {
-        true => asset.with_embedded(),
-        false => asset,
-    };
+    let asset = if models.embedded { asset.with_embedded() } else { asset };
     out.id = ASSETS.insert(asset)?;
     Ok(())
 }

@@ -31,13 +31,15 @@ pub struct htex_motion {
 impl From<htex_motion> for Motion {
     fn from(motion: htex_motion) -> Self {
         let speed_and_force = Self::new(motion.speed_mm_s, motion.force_n);
-        let on_path = match motion.position_mm.is_nan() {
-            true => speed_and_force,
-            false => speed_and_force.with_position_mm(motion.position_mm),
+        let on_path = if motion.position_mm.is_nan() {
+            speed_and_force
+        } else {
+            speed_and_force.with_position_mm(motion.position_mm)
         };
-        match motion.x_mm.is_nan() || motion.y_mm.is_nan() {
-            true => on_path,
-            false => on_path.with_place_mm(motion.x_mm, motion.y_mm),
+        if motion.x_mm.is_nan() || motion.y_mm.is_nan() {
+            on_path
+        } else {
+            on_path.with_place_mm(motion.x_mm, motion.y_mm)
         }
     }
 }

@@ -117,9 +117,10 @@ pub(crate) unsafe fn write_text(
     // SAFETY: as here.
     let out = unsafe { slice_mut(out.cast::<u8>(), capacity) }?;
     let Some(space) = out.len().checked_sub(1) else {
-        return match length.is_null() {
-            true => Err(Failure::argument("neither a buffer nor a place for the length is given")),
-            false => Ok(()),
+        return if length.is_null() {
+            Err(Failure::argument("neither a buffer nor a place for the length is given"))
+        } else {
+            Ok(())
         };
     };
     let len = text.floor_char_boundary(space);

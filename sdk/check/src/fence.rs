@@ -89,11 +89,10 @@ impl<T: Number> Fenced<T> {
     /// Fails if a call wrote to an array that it may only read.
     pub(crate) fn unchanged(&mut self, values: &[T], array: &str) -> Result<(), Finding> {
         let call = self.call;
-        match self.get() == values {
-            true => Ok(()),
-            false => {
-                Err(Finding::failed(format!("`{call}` wrote to `{array}`, which it may only read")))
-            }
+        if self.get() == values {
+            Ok(())
+        } else {
+            Err(Finding::failed(format!("`{call}` wrote to `{array}`, which it may only read")))
         }
     }
 }

@@ -103,9 +103,10 @@ impl PassedPower {
         let first_bin = edges[0].saturating_sub(below);
         let last_bin = (edges[1] + above).min(nyquist_bin);
         let heard = |bin: usize| {
-            let count = match edges.iter().any(|edge| edge.abs_diff(bin) <= EDGE_BINS) {
-                true => EDGE_POINTS,
-                false => 1,
+            let count = if edges.iter().any(|edge| edge.abs_diff(bin) <= EDGE_BINS) {
+                EDGE_POINTS
+            } else {
+                1
             };
             let parts = (0..count).map(move |i| (i as f64 + 0.5) / count as f64);
             let all = parts.map(move |part| (bin as f64 - 0.5 + part) * GRID_HZ);

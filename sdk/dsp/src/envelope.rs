@@ -217,10 +217,7 @@ impl Analyser {
         let sums = core::mem::take(&mut self.sums);
         if sums.windows > 0 {
             self.bands.iter_mut().for_each(|power| *power /= sums.windows as f64);
-            self.centroid_hz = match sums.power > 0.0 {
-                true => sums.moment / sums.power,
-                false => 0.0,
-            };
+            self.centroid_hz = if sums.power > 0.0 { sums.moment / sums.power } else { 0.0 };
         }
         for (to, power) in bands.iter_mut().zip(&self.bands) {
             *to = *power;

@@ -35,10 +35,7 @@ pub struct RealFft {
 impl RealFft {
     /// Transforms of `len` samples.
     pub fn new(len: usize) -> Self {
-        let (points, folds) = match len.is_multiple_of(2) {
-            true => (len / 2, len / 2),
-            false => (len, 0),
-        };
+        let (points, folds) = if len.is_multiple_of(2) { (len / 2, len / 2) } else { (len, 0) };
         Self {
             len,
             complex: ComplexFft::new(points),
@@ -77,10 +74,8 @@ impl RealFft {
         let len = self.len;
         let bin = |k: usize| bins.get(k).copied().unwrap_or_default();
         // Without the imaginary parts that a real signal's spectrum does not have.
-        let bin = |k: usize| match k == 0 || 2 * k == len {
-            true => Complex::new(bin(k).re, 0.0),
-            false => bin(k),
-        };
+        let bin =
+            |k: usize| if k == 0 || 2 * k == len { Complex::new(bin(k).re, 0.0) } else { bin(k) };
         if len.is_multiple_of(2) {
             let folded = self.fold.iter().enumerate().map(|(k, turn)| {
                 let (x, mirrored) = (bin(k), bin(len / 2 - k).conj());
@@ -94,10 +89,7 @@ impl RealFft {
                 pair.iter_mut().zip([z.re, z.im]).for_each(|(x, z)| *x = z);
             }
         } else {
-            let whole = (0..len).map(|k| match k <= len / 2 {
-                true => bin(k),
-                false => bin(len - k).conj(),
-            });
+            let whole = (0..len).map(|k| if k <= len / 2 { bin(k) } else { bin(len - k).conj() });
             self.points.fill(whole.map(|x| [x.re, x.im]));
             self.complex.inverse(&mut self.points);
             for (n, x) in samples.iter_mut().enumerate().take(len) {

@@ -62,9 +62,10 @@ fn angle_of_phase(reflection: &[f64], target: f64, from: f64) -> f64 {
             break;
         }
         let newton = at - (lag - target) / slope;
-        at = match step % 3 != 0 && newton > low && newton < high {
-            true => newton,
-            false => 0.5 * (low + high),
+        at = if step % 3 != 0 && newton > low && newton < high {
+            newton
+        } else {
+            0.5 * (low + high)
         };
     }
     at
@@ -176,10 +177,7 @@ impl<const N: usize> Halves<N> {
     /// Writes the coefficients of the half of their sum, times the fixed factors: `(1 + z⁻¹)` and
     /// `(1 - z⁻¹)`, or 1 and `(1 - z⁻²)`.
     fn write(&self, coefficients: &mut [f64]) {
-        let (back, added) = match coefficients.len().is_multiple_of(2) {
-            true => (1, 1.0),
-            false => (2, 0.0),
-        };
+        let (back, added) = if coefficients.len().is_multiple_of(2) { (1, 1.0) } else { (2, 0.0) };
         // Behind two zeros, and before others.
         let mut whole = [[[0.0; 2]; 2]; N];
         let whole = whole.as_flattened_mut();

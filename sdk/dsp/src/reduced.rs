@@ -31,9 +31,10 @@ impl Scale {
 
     /// Returns the place of a frequency in the range, 0 to 1; 0.5 in an empty range.
     pub fn place(&self, hz: f64) -> f64 {
-        match self.high_hz > self.low_hz {
-            true => unit((hz - self.low_hz) / (self.high_hz - self.low_hz)),
-            false => 0.5,
+        if self.high_hz > self.low_hz {
+            unit((hz - self.low_hz) / (self.high_hz - self.low_hz))
+        } else {
+            0.5
         }
     }
 }

@@ -102,9 +102,10 @@ impl Resampler {
         top_hz: f64,
         own_rate: bool,
     ) -> Result<Option<Work>, UnusableRates> {
-        let specs = match own_rate {
-            true => own_specs(from_hz, to_hz, top_hz)?,
-            false => specs(from_hz, to_hz, top_hz)?,
+        let specs = if own_rate {
+            own_specs(from_hz, to_hz, top_hz)?
+        } else {
+            specs(from_hz, to_hz, top_hz)?
         };
         let mut work = Work::default();
         for spec in &specs {
@@ -115,10 +116,7 @@ impl Resampler {
                 _ if spec.is_exact() => 1.0,
                 _ => 2.0,
             };
-            let part = match spec.is_whole() {
-                true => &mut work.whole,
-                false => &mut work.rational,
-            };
+            let part = if spec.is_whole() { &mut work.whole } else { &mut work.rational };
             part.samples += samples;
             part.macs += samples * rows * spec.taps() as f64;
         }

@@ -33,10 +33,7 @@ const RISE: f64 = 1.5;
 /// assert_eq!(detection_threshold_m(20.0), detection_threshold_m(40.0));
 /// ```
 pub fn detection_threshold_m(frequency_hz: f64) -> f64 {
-    let slope = match frequency_hz <= MOST_SENSITIVE_HZ {
-        true => FALL,
-        false => RISE,
-    };
+    let slope = if frequency_hz <= MOST_SENSITIVE_HZ { FALL } else { RISE };
     let ratio = frequency_hz.max(FLAT_HZ) / MOST_SENSITIVE_HZ;
     SMALLEST_THRESHOLD_M * libm::pow(ratio, slope)
 }

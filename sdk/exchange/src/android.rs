@@ -280,14 +280,16 @@ fn identifier(name: &str) -> String {
     let mut identifier = String::new();
     for word in words {
         let (first, rest) = word.split_at(1);
-        match identifier.is_empty() {
-            true => identifier.push_str(&first.to_ascii_lowercase()),
-            false => identifier.push_str(&first.to_ascii_uppercase()),
+        if identifier.is_empty() {
+            identifier.push_str(&first.to_ascii_lowercase())
+        } else {
+            identifier.push_str(&first.to_ascii_uppercase())
         }
         identifier.push_str(rest);
     }
-    match identifier.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        true => identifier,
-        false => format!("texture{identifier}"),
+    if identifier.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        identifier
+    } else {
+        format!("texture{identifier}")
     }
 }

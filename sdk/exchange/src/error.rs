@@ -13,10 +13,7 @@ pub struct Fault {
 }
 
 fn place_of(place: &str) -> String {
-    match place.is_empty() {
-        true => String::new(),
-        false => format!("{place}: "),
-    }
+    if place.is_empty() { String::new() } else { format!("{place}: ") }
 }
 
 /// Most characters of a place or a problem, which quote the file.
@@ -176,9 +173,10 @@ fn unused(
     takes: &[&'static str],
     named: &dyn Fn(&str) -> String,
 ) -> String {
-    let taken = match takes.is_empty() {
-        true => String::new(),
-        false => format!(" (it takes {})", list(takes.iter().map(|setting| named(setting)))),
+    let taken = if takes.is_empty() {
+        String::new()
+    } else {
+        format!(" (it takes {})", list(takes.iter().map(|setting| named(setting))))
     };
     let setting = named(setting);
     format!("{format}: its {way} takes no {setting}; leave it out{taken}")

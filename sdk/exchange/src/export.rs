@@ -269,10 +269,7 @@ fn of_signal(
 
 /// By how much a level, decibels, is below 0.
 fn below(db: f64) -> String {
-    match db.is_finite() {
-        true => format!("it is {:.1} dB", -db),
-        false => "all of it is".to_owned(),
-    }
+    if db.is_finite() { format!("it is {:.1} dB", -db) } else { "all of it is".to_owned() }
 }
 
 impl Export<'_> {
@@ -290,8 +287,9 @@ fn check(
     within: std::ops::RangeInclusive<f64>,
     range: &'static str,
 ) -> Result<(), ExchangeError> {
-    match within.contains(&value) {
-        true => Ok(()),
-        false => Err(ExchangeError::OutOfRange { name, value, range }),
+    if within.contains(&value) {
+        Ok(())
+    } else {
+        Err(ExchangeError::OutOfRange { name, value, range })
     }
 }

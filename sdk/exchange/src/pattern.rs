@@ -203,9 +203,10 @@ impl Pattern {
 
     /// The amplitude and frequency just before a time, or from it on, if it sounds there.
     fn side(&self, time_s: f64, before: bool) -> Option<(f64, f64)> {
-        let sounds = match before {
-            true => self.from_s < time_s && time_s <= self.to_s,
-            false => self.from_s <= time_s && time_s < self.to_s,
+        let sounds = if before {
+            self.from_s < time_s && time_s <= self.to_s
+        } else {
+            self.from_s <= time_s && time_s < self.to_s
         };
         let at = |curve: &[Point]| crate::curve::side(curve, time_s, before);
         let level = sounds.then(|| at(&self.level)).flatten()?;

@@ -98,9 +98,12 @@ impl Physical {
                 missing: missing.map(|(missing, _)| *missing).collect(),
             });
         };
-        let above = |name, value: f64, most: f64, range| match value > 0.0 && value <= most {
-            true => Ok(()),
-            false => Err(ExchangeError::OutOfRange { name, value, range }),
+        let above = |name, value: f64, most: f64, range| {
+            if value > 0.0 && value <= most {
+                Ok(())
+            } else {
+                Err(ExchangeError::OutOfRange { name, value, range })
+            }
         };
         let most_mm_s = Exploration::MOST_SPEED_MM_S;
         above("full_scale", full_scale, 1e6, "more than 0, at most 1e6")?;

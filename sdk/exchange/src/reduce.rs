@@ -98,9 +98,10 @@ struct Tone {
 /// The frequency nearest to the wanted one at which the actuator is strong enough.
 fn resonant(profile: &Profile, wanted_hz: f64, strength: f64) -> Tone {
     let resonance_hz = profile.resonance_hz.value;
-    let wanted_hz = match wanted_hz > 0.0 {
-        true => wanted_hz.clamp(profile.low_hz.value, profile.high_hz.value),
-        false => resonance_hz,
+    let wanted_hz = if wanted_hz > 0.0 {
+        wanted_hz.clamp(profile.low_hz.value, profile.high_hz.value)
+    } else {
+        resonance_hz
     };
     let steps = (0..=STEPS)
         .map(|step| wanted_hz * libm::pow(resonance_hz / wanted_hz, step as f64 / STEPS as f64));
@@ -198,9 +199,10 @@ fn groups(middles_hz: &[f64], profile: &Profile, count: usize) -> Vec<(f64, Vec<
     for (group, middles) in middles_hz.chunks(own).enumerate() {
         let logarithms: f64 = middles.iter().map(|hz| libm::log(*hz)).sum();
         let hertz = libm::exp(logarithms / middles.len() as f64);
-        let hertz = match profile.response(hertz) >= LEAST_RESPONSE {
-            true => hertz,
-            false => profile.resonance_hz.value,
+        let hertz = if profile.response(hertz) >= LEAST_RESPONSE {
+            hertz
+        } else {
+            profile.resonance_hz.value
         };
         let bands = group * own..group * own + middles.len();
         match groups.iter_mut().find(|(other, _)| *other == hertz) {

@@ -51,9 +51,10 @@ fn largest_error_db(models: &[Model], asset: &Asset) -> f64 {
         let found = asset.recorded_magnitude(MODEL, motion, &grid).unwrap();
         for (hz, found) in grid.iter().zip(found) {
             let expected = magnitude(model, *hz);
-            match model.variance > 0.0 {
-                true => worst = worst.max((20.0 * (found / expected).log10()).abs()),
-                false => assert_eq!(found, 0.0, "{hz} Hz at {motion:?}"),
+            if model.variance > 0.0 {
+                worst = worst.max((20.0 * (found / expected).log10()).abs())
+            } else {
+                assert_eq!(found, 0.0, "{hz} Hz at {motion:?}")
             }
         }
     }

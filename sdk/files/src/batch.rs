@@ -65,10 +65,7 @@ impl Batch {
                 written.inspect_err(|_| self.forget_last())?;
             }
         }
-        match self.written.len() < GROUP {
-            true => Ok(()),
-            false => self.keep(),
-        }
+        if self.written.len() < GROUP { Ok(()) } else { self.keep() }
     }
 
     /// Puts the files in their places, and flushes that to disk.

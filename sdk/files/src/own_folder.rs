@@ -339,12 +339,11 @@ fn check_folder(path: &Path) -> io::Result<()> {
     if is.is_dir() {
         return Ok(());
     }
-    Err(match is.is_symlink() {
-        true => link(path),
-        false => {
-            let words = format!("{} is in the place of a folder; remove it", path.display());
-            io::Error::new(ErrorKind::NotADirectory, words)
-        }
+    Err(if is.is_symlink() {
+        link(path)
+    } else {
+        let words = format!("{} is in the place of a folder; remove it", path.display());
+        io::Error::new(ErrorKind::NotADirectory, words)
     })
 }
 
@@ -418,9 +417,10 @@ mod tests {
         for by_batch in [false, true] {
             own.remove(file)?;
             symlink(&victim, inside.path().join(file))?;
-            match by_batch {
-                true => own.write_with(&mut batch, file, b"y")?,
-                false => own.replace(file, |made| made.write_all(b"y"))?,
+            if by_batch {
+                own.write_with(&mut batch, file, b"y")?
+            } else {
+                own.replace(file, |made| made.write_all(b"y"))?
             }
             std::mem::take(&mut batch).finish()?;
             assert_eq!(own.read(file, 1)?, b"y");

@@ -55,10 +55,7 @@ pub fn read_regular(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
     }
     let mut bytes = Vec::new();
     file.take(most_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
-    match bytes.len() as u64 > most_bytes {
-        true => Err(too_long()),
-        false => Ok(bytes),
-    }
+    if bytes.len() as u64 > most_bytes { Err(too_long()) } else { Ok(bytes) }
 }
 
 /// Reads a regular file of UTF-8 text, as [`read_regular`] does.
@@ -74,9 +71,10 @@ fn check_regular(is: &Metadata) -> io::Result<()> {
     if is.is_file() {
         return Ok(());
     }
-    let words = match is.is_dir() {
-        true => "it is a folder; name a file",
-        false => "it is a pipe or a device; only regular files are read here",
+    let words = if is.is_dir() {
+        "it is a folder; name a file"
+    } else {
+        "it is a pipe or a device; only regular files are read here"
     };
     Err(io::Error::new(io::ErrorKind::InvalidInput, words))
 }

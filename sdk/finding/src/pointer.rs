@@ -32,8 +32,9 @@ impl Place<'_> {
 
 /// Escapes a key for a JSON pointer (RFC 6901, section 3).
 pub fn escape(key: &str) -> Cow<'_, str> {
-    match key.contains(['~', '/']) {
-        true => key.replace('~', "~0").replace('/', "~1").into(),
-        false => key.into(),
+    if key.contains(['~', '/']) {
+        key.replace('~', "~0").replace('/', "~1").into()
+    } else {
+        key.into()
     }
 }

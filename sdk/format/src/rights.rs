@@ -129,10 +129,7 @@ impl Rights {
         for (id, text) in author.into_iter().chain(license) {
             list.extend(chunk(id, &[text.as_bytes(), &[0]].concat()));
         }
-        match self.is_empty() {
-            true => Vec::new(),
-            false => chunk(b"LIST", &list),
-        }
+        if self.is_empty() { Vec::new() } else { chunk(b"LIST", &list) }
     }
 
     /// Adds the chunk to the end of a WAV file; the samples stay as they are. A file that would

@@ -143,10 +143,7 @@ fn a_value_in_its_range_is_stored_in_it() {
     for (store, stored_as) in stores {
         for (min, max) in [(-0.1, 0.2), (0.1, 0.7), (0.012, 1.2), (-0.3, -0.1)] {
             let list = matches!(store, Store::Packed { .. });
-            let kind = match list {
-                true => Kind::List { max_len: 9 },
-                false => Kind::Scalar,
-            };
+            let kind = if list { Kind::List { max_len: 9 } } else { Kind::Scalar };
             let mut model = model();
             let field = &mut model.fields[0];
             (field.kind, field.min, field.max, field.store) = (kind, min, max, store);

@@ -49,10 +49,7 @@ impl LoadedModel {
                 let before = |hz: f64| f64::from(u8::from(hz <= half_hz));
                 let before = self.read(parameters, band, &grid, &before, half_hz)?;
                 let whole_hz = BELOW_OWN_RATE * own.rate_hz();
-                let passed = |hz: f64| match hz > whole_hz {
-                    true => own.amplitude(hz).abs(),
-                    false => 1.0,
-                };
+                let passed = |hz: f64| if hz > whole_hz { own.amplitude(hz).abs() } else { 1.0 };
                 let read = self.read(parameters, band, &grid, &passed, half_hz)?;
                 (read, level_rms(&before))
             }
@@ -102,14 +99,12 @@ impl LoadedModel {
             .collect();
         let places: Vec<f64> =
             grid.iter().flat_map(|hz| lobe.iter().map(move |(d, _)| hz + d * GRID_HZ)).collect();
-        let source_hz = |hz: &f64| match *hz > half_hz {
-            true => 2.0 * half_hz - hz,
-            false => *hz,
-        };
+        let source_hz = |hz: &f64| if *hz > half_hz { 2.0 * half_hz - hz } else { *hz };
         let dense: Vec<f64> = places.iter().map(|hz| played_at(band, source_hz(hz))).collect();
-        let mut density = match self.descriptor().keeps_level {
-            true => sharpened(&self.magnitude(parameters, band, grid)?, band, &dense),
-            false => self.magnitude(parameters, band, &dense)?,
+        let mut density = if self.descriptor().keeps_level {
+            sharpened(&self.magnitude(parameters, band, grid)?, band, &dense)
+        } else {
+            self.magnitude(parameters, band, &dense)?
         };
         let all = density.iter_mut().zip(&places);
         all.for_each(|(m, hz)| *m *= amplitude(*hz));
@@ -126,10 +121,7 @@ impl LoadedModel {
 /// edge for half a bin.
 fn played_at(band: Band, hz: f64) -> f64 {
     let edge_hz = hz.clamp(band.low_hz, band.high_hz);
-    match (hz - edge_hz).abs() <= BESIDE_EDGE_BINS * GRID_HZ {
-        true => edge_hz,
-        false => hz.max(0.0),
-    }
+    if (hz - edge_hz).abs() <= BESIDE_EDGE_BINS * GRID_HZ { edge_hz } else { hz.max(0.0) }
 }
 
 /// Returns the density of a sharpened magnitude, given on the band's grid, at frequencies in hertz:

@@ -85,9 +85,12 @@ fn by_precedence(all: &mut [Candidate]) {
     };
     let places: Vec<_> = all.iter().map(|one| first_place(one.major())).collect();
     let mut keyed: Vec<_> = places.into_iter().zip(all.iter().cloned()).collect();
-    keyed.sort_by_cached_key(|(place, one)| match one.rank.is_chosen() {
-        true => (one.rank, None, Reverse(None), one.rank),
-        false => (Rank::Folder, *place, Reverse(one.version()), one.rank),
+    keyed.sort_by_cached_key(|(place, one)| {
+        if one.rank.is_chosen() {
+            (one.rank, None, Reverse(None), one.rank)
+        } else {
+            (Rank::Folder, *place, Reverse(one.version()), one.rank)
+        }
     });
     for (sorted, (_, one)) in all.iter_mut().zip(keyed) {
         *sorted = one;
@@ -282,10 +285,7 @@ impl Registry {
         same.push(new.clone());
         by_precedence(&mut same);
         let first = same.remove(0);
-        let shadowed = match first.model.is_same(&new.model) {
-            true => &old.model,
-            false => &new.model,
-        };
+        let shadowed = if first.model.is_same(&new.model) { &old.model } else { &new.model };
         self.note_shadow(&first.model, shadowed);
         self.shadowed = [others, same].concat();
         self.insert(self.place_of(first.rank), first);

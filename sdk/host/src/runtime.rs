@@ -163,9 +163,10 @@ impl Shared {
 
     fn fit(&self, call: &RawFit<'_>) -> Result<Fit, Error> {
         let (speed_mm_s, force_n) = call.condition.numbers();
-        let condition = match self.model.follows_motion() {
-            true => FitCondition::from_numbers(speed_mm_s, force_n)?,
-            false => FitCondition::default(),
+        let condition = if self.model.follows_motion() {
+            FitCondition::from_numbers(speed_mm_s, force_n)?
+        } else {
+            FitCondition::default()
         };
         let input = FitInput {
             band: band(call.band.edges())?,

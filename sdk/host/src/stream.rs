@@ -37,9 +37,10 @@ impl<S> Stream<S> {
         top_hz: f64,
         own_rate: bool,
     ) -> Result<Self, HostError> {
-        let resampler = match own_rate {
-            true => Resampler::of_own_rate(source_rate_hz, rate_hz, top_hz)?,
-            false => Resampler::new(source_rate_hz, rate_hz, top_hz)?,
+        let resampler = if own_rate {
+            Resampler::of_own_rate(source_rate_hz, rate_hz, top_hz)?
+        } else {
+            Resampler::new(source_rate_hz, rate_hz, top_hz)?
         };
         Ok(Self { resampler, source, source_rate_hz })
     }

@@ -47,9 +47,10 @@ fn a_take_in_which_the_finger_is_lifted_is_set_aside() {
     let whole = take(0.4, 10.0);
     let lifted = whole.iter().enumerate().map(|(at, row)| {
         let cells: Vec<&str> = row.split(',').collect();
-        match at < (3.2 * RATE_HZ) as usize {
-            true => row.clone(),
-            false => format!("0,0,0,{},{}", cells[3], cells[4]),
+        if at < (3.2 * RATE_HZ) as usize {
+            row.clone()
+        } else {
+            format!("0,0,0,{},{}", cells[3], cells[4])
         }
     });
     let source = source(folder.path(), &[lifted.collect(), whole.clone()].concat());

@@ -77,10 +77,7 @@ proptest! {
         prop_assert!(whole.frames() + 2_000 + 600 >= 7_000, "{}", whole.frames());
         let at = (cut * (bytes.len() - 1) as f64) as usize;
         let mut damaged = bytes.clone();
-        match is_cut {
-            true => damaged.truncate(at),
-            false => damaged[at] ^= 0x40,
-        }
+        if is_cut { damaged.truncate(at) } else { damaged[at] ^= 0x40 }
         fs::write(&path, &damaged).unwrap();
         let header_end = bytes.iter().position(|b| *b == b'\n').unwrap();
         let read = match read_part(&path) {

@@ -84,14 +84,15 @@ impl Rig for TestRig {
             off_target,
             compared,
         };
-        let felt = match self.fates.is_empty() {
-            true => None,
-            false => match self.fates.remove(0) {
+        let felt = if self.fates.is_empty() {
+            None
+        } else {
+            match self.fates.remove(0) {
                 Fate::RunsDry => return Err(Failing::Dry),
                 Fate::OffTarget => Some(felt(vec![REASON.to_owned()], true)),
                 Fate::OnTarget => Some(felt(Vec::new(), true)),
                 Fate::NotMeasured => Some(felt(Vec::new(), false)),
-            },
+            }
         };
         let (drive_v, output) = levels(stimulus);
         Ok(Played { drive_v, output, reference_rms: 0.1, felt })
@@ -141,15 +142,15 @@ impl Asker for Willing {
                 Some(Key::Digit(4))
             }
             // Felt at -12 dB, and 4 dB weaker as the real one.
-            View::Matching { rising: true, gain_db, .. } => {
-                Some(Key::Gain(match *gain_db < -12.0 {
-                    true => GainKey::MuchStronger,
-                    false => GainKey::Accept,
-                }))
-            }
-            View::Matching { gain_db, .. } => Some(Key::Gain(match *gain_db > -16.0 {
-                true => GainKey::MuchWeaker,
-                false => GainKey::Accept,
+            View::Matching { rising: true, gain_db, .. } => Some(Key::Gain(if *gain_db < -12.0 {
+                GainKey::MuchStronger
+            } else {
+                GainKey::Accept
+            })),
+            View::Matching { gain_db, .. } => Some(Key::Gain(if *gain_db > -16.0 {
+                GainKey::MuchWeaker
+            } else {
+                GainKey::Accept
             })),
             View::Playing { .. } if std::mem::take(&mut self.leaves) => Some(Key::Quit),
             _ => None,

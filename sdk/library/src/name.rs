@@ -71,10 +71,7 @@ pub fn check_name(name: &str) -> Result<(), InvalidName> {
     name.split('/').try_for_each(check_part)?;
     let mut folders = name.split('/').rev().skip(1);
     let has_ending = |folder: &str| folder.to_ascii_lowercase().ends_with(ENDING);
-    match folders.any(has_ending) {
-        true => Err(InvalidName::Folder),
-        false => Ok(()),
-    }
+    if folders.any(has_ending) { Err(InvalidName::Folder) } else { Ok(()) }
 }
 
 /// Returns what names of one file have in common on systems that ignore case or compare names after

@@ -84,9 +84,10 @@ pub fn check_fit_input(input: &FitInput<'_>, descriptor: &dyn Fields) -> Result<
 /// When a parameter is out of range, or the level is not a number.
 pub fn check_fit(fit: &Fit, descriptor: &dyn Fields) -> Result<(), Error> {
     Values::read(descriptor, &fit.parameters)?;
-    match fit.level_rms.is_finite() && fit.level_rms >= 0.0 {
-        true => Ok(()),
-        false => Err(Error::cannot_fit("the fitted level is not a number")),
+    if fit.level_rms.is_finite() && fit.level_rms >= 0.0 {
+        Ok(())
+    } else {
+        Err(Error::cannot_fit("the fitted level is not a number"))
     }
 }
 

@@ -184,9 +184,10 @@ impl Asset {
     /// Refuses rates at which the texture's frequencies do not exist.
     fn check_rate(&self, rate_hz: f64) -> Result<(), Error> {
         let least_hz = 2.0 * self.band().high_hz;
-        match (least_hz..=MOST_RATE_HZ).contains(&rate_hz) {
-            true => Ok(()),
-            false => Err(Error::Rate { rate_hz, least_hz }),
+        if (least_hz..=MOST_RATE_HZ).contains(&rate_hz) {
+            Ok(())
+        } else {
+            Err(Error::Rate { rate_hz, least_hz })
         }
     }
 
@@ -201,9 +202,10 @@ impl Asset {
         let follows = streamed && self.model(r)?.follows_motion();
         let slides = crate::exploration::slides(motion.speed_mm_s, motion.force_n);
         let scales = options.effects.frequency_scaling && slides && !follows;
-        Ok(match scales && motion.is_plausible() {
-            true => self.motions_of(r)?.scaling(motion, options.ceiling).frequency,
-            false => 1.0,
+        Ok(if scales && motion.is_plausible() {
+            self.motions_of(r)?.scaling(motion, options.ceiling).frequency
+        } else {
+            1.0
         })
     }
 
@@ -426,9 +428,10 @@ impl Asset {
             return Ok(model.clone());
         }
         let stored = &self.data.manifest.representations[representation];
-        let model = match self.may_run_embedded(&stored.model) {
-            true => model_of(&self.registry_with(&stored.model)?, stored)?.clone(),
-            false => self.installed(stored)?,
+        let model = if self.may_run_embedded(&stored.model) {
+            model_of(&self.registry_with(&stored.model)?, stored)?.clone()
+        } else {
+            self.installed(stored)?
         };
         Ok(kept.get_or_init(|| model).clone())
     }

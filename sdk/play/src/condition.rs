@@ -20,13 +20,12 @@ use crate::exploration::slides;
 pub fn default_condition(representation: &Representation, conditions: &[Condition]) -> usize {
     let at = &representation.at;
     let sounds = |i: &usize| !is_silent(&at[*i], conditions);
-    let stronger = |best: usize, i: usize| match at[i].level_rms > at[best].level_rms {
-        true => i,
-        false => best,
-    };
-    match at.is_empty() || sounds(&0) {
-        true => 0,
-        false => (1..at.len()).filter(sounds).reduce(stronger).unwrap_or(0),
+    let stronger =
+        |best: usize, i: usize| if at[i].level_rms > at[best].level_rms { i } else { best };
+    if at.is_empty() || sounds(&0) {
+        0
+    } else {
+        (1..at.len()).filter(sounds).reduce(stronger).unwrap_or(0)
     }
 }
 

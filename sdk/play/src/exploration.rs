@@ -109,10 +109,7 @@ impl Recorded {
             };
             (low, high) = (low.min(x), high.max(x));
         }
-        match high > 0.0 {
-            true => Self::Between { low, high },
-            false => Self::Unknown,
-        }
+        if high > 0.0 { Self::Between { low, high } } else { Self::Unknown }
     }
 
     /// Returns whether all recorded values are the same within [`htex_format::SAME_CONDITION`].
@@ -128,10 +125,7 @@ impl Recorded {
     /// Returns the ratio of a speed or force to the nearest recorded one; 1 if it is unknown, or
     /// the nearest is 0.
     fn ratio(&self, asked: f64, nearest: f64) -> f64 {
-        match self.is_known() && nearest > 0.0 {
-            true => asked / nearest,
-            false => 1.0,
-        }
+        if self.is_known() && nearest > 0.0 { asked / nearest } else { 1.0 }
     }
 }
 
@@ -297,10 +291,7 @@ impl Coverage {
             }
             (true, _) => 0.0,
         };
-        let force = match self.scales_level {
-            true => 0.0,
-            false => self.force.excess(1.0),
-        };
+        let force = if self.scales_level { 0.0 } else { self.force.excess(1.0) };
         let excess = speed.max(force);
         // Smaller values are rounding errors.
         if excess > 1e-9 { excess } else { 0.0 }

@@ -40,9 +40,10 @@ impl Output {
     pub(crate) fn set_gain(&mut self, gain: f64, rests: bool) -> Result<(), Error> {
         let gain = checked(gain)?;
         self.target = gain;
-        match rests {
-            true => self.gain.restart(gain),
-            false => self.gain.set(gain),
+        if rests {
+            self.gain.restart(gain)
+        } else {
+            self.gain.set(gain)
         }
         Ok(())
     }

@@ -17,9 +17,6 @@ pub(crate) fn scaled_magnitude(
 ) -> Result<Vec<f64>, Error> {
     let recorded_hz: Vec<f64> = frequency_hz.iter().map(|f| f / ratio).collect();
     let shape = model.magnitude(parameters, band, &recorded_hz)?;
-    let spread = match model.has_lines() {
-        true => 1.0,
-        false => ratio.sqrt(),
-    };
+    let spread = if model.has_lines() { 1.0 } else { ratio.sqrt() };
     Ok(shape.iter().map(|m| m * level_rms / spread).collect())
 }

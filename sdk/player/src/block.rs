@@ -267,10 +267,7 @@ impl<'a> Block<'a> {
             && self.levels.iter().all(|level| levels.contains(&level))
             && self.are_sound(self.numbers)
             && end.is_some_and(|zeros| zeros.iter().all(|zero| *zero == 0));
-        match sound {
-            true => Ok(self),
-            false => Err(OpenError::Values),
-        }
+        if sound { Ok(self) } else { Err(OpenError::Values) }
     }
 
     /// Returns whether the numbers of the kind are in range. Frequencies are at most half the
@@ -411,27 +408,23 @@ impl<'a> Block<'a> {
         for (condition, weight) in weights.iter() {
             level += weight * self.levels.at(condition);
         }
-        let factors = match motion == nearest {
-            true => Factors::NONE,
-            false => self.law.factors(motion, nearest),
-        };
+        let factors =
+            if motion == nearest { Factors::NONE } else { self.law.factors(motion, nearest) };
         Target { weights, level: self.scaled(level, factors.level), frequency: factors.frequency }
     }
 
     /// Returns a level times a factor. It is not raised above the ceiling.
     fn scaled(&self, level: f32, factor: f32) -> f32 {
         let scaled = level * factor;
-        match scaled > level && scaled > self.ceiling {
-            true => level.max(self.ceiling),
-            false => scaled,
-        }
+        if scaled > level && scaled > self.ceiling { level.max(self.ceiling) } else { scaled }
     }
 
     /// Returns a factor of frequencies that raises none above the highest that is permitted.
     pub(crate) fn limited(&self, factor: f32, highest: f32) -> f32 {
-        match factor > 1.0 && highest * factor > self.highest {
-            true => (self.highest / highest).max(1.0),
-            false => factor,
+        if factor > 1.0 && highest * factor > self.highest {
+            (self.highest / highest).max(1.0)
+        } else {
+            factor
         }
     }
 }

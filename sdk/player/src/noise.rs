@@ -87,9 +87,10 @@ impl Noise {
         }
         let side = (sums[0] + sums[1]) + (sums[2] + sums[3]);
         let energy = centre * centre + 2.0 * side;
-        let (level, gain) = match energy > LEAST_ENERGY {
-            true => (target.level, target.level / libm::sqrtf(energy)),
-            false => (0.0, 0.0),
+        let (level, gain) = if energy > LEAST_ENERGY {
+            (target.level, target.level / libm::sqrtf(energy))
+        } else {
+            (0.0, 0.0)
         };
         let part = 1.0 / samples.max(1) as f32;
         self.centre_step = (centre * gain - self.centre) * part;

@@ -109,9 +109,10 @@ impl<'a> Player<'a> {
             return true;
         }
         self.memory.is_held = false;
-        match speed < MIN_SLIDING_MM_S || force_n <= 0.0 {
-            true => self.fade(),
-            false => self.follow((speed, force_n)),
+        if speed < MIN_SLIDING_MM_S || force_n <= 0.0 {
+            self.fade()
+        } else {
+            self.follow((speed, force_n))
         }
         true
     }
@@ -157,10 +158,7 @@ impl<'a> Player<'a> {
 
     /// Returns the length of a glide that starts, samples at the internal rate.
     fn start_glide(&mut self, is_silent: bool) -> u32 {
-        let samples = match self.memory.is_started {
-            true => self.block.glide(),
-            false => 0,
-        };
+        let samples = if self.memory.is_started { self.block.glide() } else { 0 };
         (self.memory.gliding, self.memory.is_silent) = (samples, is_silent);
         samples
     }
@@ -174,10 +172,7 @@ impl<'a> Player<'a> {
     /// 32767, and larger samples are limited. If `full_scale` is not above zero the integers are
     /// zero.
     pub fn render_i16(&mut self, out: &mut [i16], full_scale: f32) {
-        let gain = match full_scale > 0.0 {
-            true => 32_767.0 / full_scale,
-            false => 0.0,
-        };
+        let gain = if full_scale > 0.0 { 32_767.0 / full_scale } else { 0.0 };
         for x in out {
             let scaled = self.tick() * gain;
             // Conversions to integers truncate and saturate.
@@ -197,10 +192,7 @@ impl<'a> Player<'a> {
             let input = self.next();
             self.memory.upsampler.push(input, row.len());
         }
-        self.memory.phase = match phase + 1 < self.block.up() {
-            true => phase + 1,
-            false => 0,
-        };
+        self.memory.phase = if phase + 1 < self.block.up() { phase + 1 } else { 0 };
         self.memory.upsampler.at(row)
     }
 

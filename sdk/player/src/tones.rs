@@ -72,9 +72,10 @@ impl Tones {
                 (tone.frequency, tone.amplitude) = (0.0, 0.0);
             }
         }
-        let (level, gain) = match power > LEAST_POWER {
-            true => (target.level, target.level / libm::sqrtf(power)),
-            false => (0.0, 0.0),
+        let (level, gain) = if power > LEAST_POWER {
+            (target.level, target.level / libm::sqrtf(power))
+        } else {
+            (0.0, 0.0)
         };
         let factor = block.limited(target.frequency, highest);
         for tone in self.sounding() {

@@ -199,8 +199,9 @@ fn check(frequency_hz: &[f64], band: Band, reference: &[f64], magnitude: &[f64])
         return Err(option("frequencies must be finite, above 0 and ascending"));
     }
     let is_magnitude = |m: &f64| (0.0..=1e12).contains(m);
-    match reference.iter().chain(magnitude).all(is_magnitude) {
-        true => Ok(()),
-        false => Err(option("magnitudes must be 0 to 1e12; one is not, or is not a number")),
+    if reference.iter().chain(magnitude).all(is_magnitude) {
+        Ok(())
+    } else {
+        Err(option("magnitudes must be 0 to 1e12; one is not, or is not a number"))
     }
 }

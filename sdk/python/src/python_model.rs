@@ -91,9 +91,10 @@ fn array<'py>(py: Python<'py>, numbers: &[f64]) -> Bound<'py, PyArray1<f64>> {
 /// Returns the numbers of an array or a sequence, of which there must be `wanted`.
 fn numbers(value: &Bound<'_, PyAny>, wanted: usize) -> PyResult<Vec<f64>> {
     let numbers: Vec<f64> = value.extract()?;
-    match numbers.len() == wanted {
-        true => Ok(numbers),
-        false => Err(option(format!("{} numbers for {wanted} frequencies", numbers.len()))),
+    if numbers.len() == wanted {
+        Ok(numbers)
+    } else {
+        Err(option(format!("{} numbers for {wanted} frequencies", numbers.len())))
     }
 }
 
@@ -160,10 +161,7 @@ impl RuntimeModel for PythonModel {
     }
 
     fn voice_rate_hz(&self, _: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        match self.plays {
-            true => wanted_hz,
-            false => economical_rate_hz(wanted_hz, band),
-        }
+        if self.plays { wanted_hz } else { economical_rate_hz(wanted_hz, band) }
     }
 
     fn voice(

@@ -59,10 +59,8 @@ impl Source {
         if let Ok(path) = source.extract::<PathBuf>() {
             return Ok(Self::File(path));
         }
-        let read = match source.hasattr("read")? {
-            true => source.call_method0("read")?,
-            false => source.clone(),
-        };
+        let read =
+            if source.hasattr("read")? { source.call_method0("read")? } else { source.clone() };
         // `bytes` takes objects with a buffer; a number or a text would be something else.
         let is_buffer =
             read.cast::<PyBytes>().is_ok() || is_named(&read, &["bytearray", "memoryview"])?;
@@ -151,9 +149,10 @@ impl<'py> FromPyObject<'_, 'py> for At {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let (speed_mm_s, force_n) = match value.hasattr("speed_mm_s")? {
-            true => (value.getattr("speed_mm_s")?.extract()?, value.getattr("force_n")?.extract()?),
-            false => value.extract()?,
+        let (speed_mm_s, force_n) = if value.hasattr("speed_mm_s")? {
+            (value.getattr("speed_mm_s")?.extract()?, value.getattr("force_n")?.extract()?)
+        } else {
+            value.extract()?
         };
         Ok(Self { speed_mm_s, force_n })
     }
@@ -418,8 +417,9 @@ fn write(path: &Path, bytes: &[u8]) -> PyResult<()> {
 
 /// Refuses rates that the command refuses.
 fn check_rate(rate_hz: f64) -> PyResult<()> {
-    match (100.0..=1e6).contains(&rate_hz) {
-        true => Ok(()),
-        false => Err(option(format!("rate_hz is {rate_hz}; 100 to 1,000,000 Hz are allowed"))),
+    if (100.0..=1e6).contains(&rate_hz) {
+        Ok(())
+    } else {
+        Err(option(format!("rate_hz is {rate_hz}; 100 to 1,000,000 Hz are allowed")))
     }
 }

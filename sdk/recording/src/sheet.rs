@@ -158,9 +158,10 @@ pub(crate) fn even_numbers(sheet: &mut dyn Sheet, wanted: &[usize]) -> Result<Nu
     }
     for (column, values) in wanted.iter().zip(&numbers.columns) {
         if let Some(row) = values.iter().position(|value| !value.is_finite()) {
-            let problem = match values[row].is_nan() {
-                true => "it is not a number, or empty".to_owned(),
-                false => format!("{} is not finite", values[row]),
+            let problem = if values[row].is_nan() {
+                "it is not a number, or empty".to_owned()
+            } else {
+                format!("{} is not finite", values[row])
             };
             return Err(cell(sheet.place(row), &columns.name(*column), problem));
         }

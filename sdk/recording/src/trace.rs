@@ -195,9 +195,10 @@ fn find(
 }
 
 fn missing(columns: &Columns, role: Role) -> ReadProblem {
-    let problem = match columns.are_named {
-        false => "there is no header row; write t_s,x_mm,y_mm,force_n".to_owned(),
-        true => format!("there is no column for {role}; a trace's header is t_s,x_mm,y_mm,force_n"),
+    let problem = if columns.are_named {
+        format!("there is no column for {role}; a trace's header is t_s,x_mm,y_mm,force_n")
+    } else {
+        "there is no header row; write t_s,x_mm,y_mm,force_n".to_owned()
     };
     columns.refuse(problem)
 }

@@ -330,10 +330,7 @@ fn open_asset(
     let opened = data
         .map_err(htex_play::Error::from)
         .map(|data| Asset::with_registry(data, around.models.clone()))
-        .map(|asset| match around.embedded {
-            true => asset.with_embedded(),
-            false => asset,
-        });
+        .map(|asset| if around.embedded { asset.with_embedded() } else { asset });
     opened.map_err(|error| match &error {
         htex_play::Error::Read(htex_format::ReadError::Io { error, .. }) if is_missing(error) => {
             (rule::ASSET_MISSING, missing(asset))

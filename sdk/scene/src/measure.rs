@@ -150,10 +150,7 @@ fn conversion(rates_hz: [[f64; 3]; 2]) -> Result<FilterCost, UnusableRates> {
             Some(mut resampler) => least(|block| resampler.process(block, &mut source)),
             None => source_ns,
         };
-        let part = match work.whole.samples > 0.0 {
-            true => work.whole,
-            false => work.rational,
-        };
+        let part = if work.whole.samples > 0.0 { work.whole } else { work.rational };
         Ok((part, ns - source_ns))
     };
     let [short, long] = rates_hz.map(one);

@@ -76,10 +76,7 @@ impl Readings {
             return finger;
         }
         self.held += blocks;
-        let known = match self.held <= self.most {
-            true => self.last,
-            false => Finger::AWAY,
-        };
+        let known = if self.held <= self.most { self.last } else { Finger::AWAY };
         let is_placed = |at: &[f64; 2]| at.iter().all(|x| x.is_finite());
         Finger { at_mm: finger.at_mm.filter(is_placed).or(self.last.at_mm), ..known }
     }

@@ -164,13 +164,14 @@ fn check_drive(required: &Requirements, loudest_rms: f64) -> Result<(), SceneErr
     }
     // For normally distributed noise, both tails.
     let percent = 100.0 * libm::erfc(HEADROOM / over / std::f64::consts::SQRT_2);
-    match percent > MOST_CLAMPED_PERCENT {
-        false => Ok(()),
-        true => Err(SceneError::Clamped {
+    if percent > MOST_CLAMPED_PERCENT {
+        Err(SceneError::Clamped {
             above_db: 20.0 * libm::log10(over),
             percent,
             most_percent: MOST_CLAMPED_PERCENT,
-        }),
+        })
+    } else {
+        Ok(())
     }
 }
 
@@ -217,10 +218,7 @@ fn notes(required: &Requirements, constant: bool, loudest_rms: f64) -> Vec<Strin
         Quantity::Sound => notes.push(format!(
             "a preview by ear: the level is {} dB relative to full scale, independent of the texture's level{}",
             required.level_dbfs,
-            match required.pitch == 1.0 {
-                true => String::new(),
-                false => format!(", and frequencies are multiplied by {}", required.pitch),
-            }
+            if required.pitch == 1.0 { String::new() } else { format!(", and frequencies are multiplied by {}", required.pitch) }
         )),
         _ => {}
     }
@@ -455,9 +453,10 @@ impl<'a> Draft<'a> {
 }
 
 fn always(played: &PlayedSurface) -> String {
-    match played.share < 1.0 {
-        true => format!("touched {:.0} % of the time", 100.0 * played.share),
-        false => "the texture itself".to_owned(),
+    if played.share < 1.0 {
+        format!("touched {:.0} % of the time", 100.0 * played.share)
+    } else {
+        "the texture itself".to_owned()
     }
 }
 

@@ -165,10 +165,8 @@ impl PlayedSurface {
             self.fixed_ratio *= self.frequency.only();
             return;
         }
-        let fastest = match self.frequency.high.is_finite() {
-            true => self.frequency.high,
-            false => LIVE_RATIO,
-        };
+        let fastest =
+            if self.frequency.high.is_finite() { self.frequency.high } else { LIVE_RATIO };
         self.oversampling = fastest.ceil().max(1.0);
         self.top_hz *= fastest.max(1.0);
     }
@@ -190,10 +188,7 @@ impl PlayedSurface {
             self.gain *= self.fixed_gain;
             return 1.0;
         }
-        match self.level.high.is_finite() {
-            true => self.level.high,
-            false => LIVE_GAIN,
-        }
+        if self.level.high.is_finite() { self.level.high } else { LIVE_GAIN }
     }
 
     /// Ratio of the RMS after the compensation to that before it.

@@ -149,11 +149,10 @@ impl Renderer {
         }
         let place = finger.at_mm.unwrap_or_default();
         let finite = finger.speed_mm_s.is_finite() && place.iter().all(|x| x.is_finite());
-        match finite && finger.force_n.is_finite() && finger.force_n >= 0.0 {
-            true => Ok(()),
-            false => {
-                Err(SceneError::Motion { speed_mm_s: finger.speed_mm_s, force_n: finger.force_n })
-            }
+        if finite && finger.force_n.is_finite() && finger.force_n >= 0.0 {
+            Ok(())
+        } else {
+            Err(SceneError::Motion { speed_mm_s: finger.speed_mm_s, force_n: finger.force_n })
         }
     }
 

@@ -176,10 +176,7 @@ impl Requirements {
         // A constant motion needs one step.
         let still = course.is_constant() && surfaces.len() == 1 && surfaces[0].region.is_none();
         let frames = self.frames.unwrap_or(1);
-        let controls = match still {
-            true => 1,
-            false => frames.div_ceil(self.control as u64).max(1),
-        };
+        let controls = if still { 1 } else { frames.div_ceil(self.control as u64).max(1) };
         let stride = controls.div_ceil(MOST_LOOKS);
         let looks = controls.div_ceil(stride);
         let mut readings = Readings::new(self.control_s());

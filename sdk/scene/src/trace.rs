@@ -110,9 +110,10 @@ impl Trace {
             return self.resting(if above == 0 { 0 } else { last });
         }
         let (low, high) = (above - 1, above.min(last));
-        let weight = match low == high {
-            true => 0.0,
-            false => (t_s - self.t_s[low]) / (self.t_s[high] - self.t_s[low]),
+        let weight = if low == high {
+            0.0
+        } else {
+            (t_s - self.t_s[low]) / (self.t_s[high] - self.t_s[low])
         };
         let between = |a: f64, b: f64| a + weight * (b - a);
         let of = |values: &[f64]| between(values[low], values[high]);
@@ -166,10 +167,7 @@ mod tests {
     fn trace(rate_hz: f64, seconds: f64, step_mm: f64, x_mm: impl Fn(f64) -> f64) -> Trace {
         let rows = (rate_hz * seconds) as usize + 1;
         let t_s: Vec<f64> = (0..rows).map(|i| 3.0 + i as f64 / rate_hz).collect();
-        let round = |x: f64| match step_mm > 0.0 {
-            true => (x / step_mm).round() * step_mm,
-            false => x,
-        };
+        let round = |x: f64| if step_mm > 0.0 { (x / step_mm).round() * step_mm } else { x };
         Trace::new(TraceColumns {
             x_mm: t_s.iter().map(|t| round(x_mm(t - 3.0))).collect(),
             y_mm: vec![1.0; rows],

@@ -115,9 +115,12 @@ impl Case {
     fn trace(&self) -> htex_scene::Trace {
         let reach = self.speed_mm_s / (std::f64::consts::TAU * self.turns_hz);
         let x = |t: f64| reach * (std::f64::consts::TAU * self.turns_hz * t).sin();
-        let force = |t: f64| match self.lifts && (0.1..0.15).contains(&t) {
-            true => 0.0,
-            false => self.force_n * (1.0 + 0.3 * (20.0 * t).sin()),
+        let force = |t: f64| {
+            if self.lifts && (0.1..0.15).contains(&t) {
+                0.0
+            } else {
+                self.force_n * (1.0 + 0.3 * (20.0 * t).sin())
+            }
         };
         trace(SECONDS, x, force)
     }

@@ -114,10 +114,7 @@ fn plays_as_in_a_scene(model: &str) {
 /// A stroke of increasing speed and force that stops at its end.
 fn stroke(block: usize, blocks: usize) -> (f64, f64) {
     let part = block as f64 / blocks as f64;
-    match part < 0.9 {
-        true => (40.0 + 160.0 * part, 0.2 + 0.6 * part),
-        false => (0.0, 0.4),
-    }
+    if part < 0.9 { (40.0 + 160.0 * part, 0.2 + 0.6 * part) } else { (0.0, 0.4) }
 }
 
 #[test]

@@ -43,10 +43,7 @@ pub fn check_keys<T: JsonSchema>(document: &Value) -> Result<(), String> {
     let schema = crate::crossing::<T>("", "");
     let unknown = unknown_keys(&schema, document);
     let sentences: Vec<String> = unknown.iter().map(ToString::to_string).collect();
-    match sentences.is_empty() {
-        true => Ok(()),
-        false => Err(sentences.join("\n")),
-    }
+    if sentences.is_empty() { Ok(()) } else { Err(sentences.join("\n")) }
 }
 
 /// Returns the keys of a document that its schema refuses (`additionalProperties: false`). Of

@@ -107,11 +107,12 @@ impl<C: Curve> Voice for ShapedVoice<C> {
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         let Self { curve, noise } = self;
         curve.set(parameters)?;
-        match noise.retune_with(|hz, magnitude| curve.fill(hz, magnitude)) {
-            true => Ok(()),
-            false => Err(Error::parameters(
+        if noise.retune_with(|hz, magnitude| curve.fill(hz, magnitude)) {
+            Ok(())
+        } else {
+            Err(Error::parameters(
                 "these parameters describe no spectrum: nothing in the band, or nothing finite",
-            )),
+            ))
         }
     }
 }

@@ -64,10 +64,7 @@ impl Material {
         match self {
             Self::Piece(relief, path) => {
                 *path += distance;
-                let along_mm = match as_it_lies {
-                    true => finger.along_mm,
-                    false => to_and_fro(*path),
-                };
+                let along_mm = if as_it_lies { finger.along_mm } else { to_and_fro(*path) };
                 [ACROSS.1, 0.0].map(|ahead| relief.at(along_mm + ahead, finger.across_mm))
             }
             Self::Endless(tracks) => {

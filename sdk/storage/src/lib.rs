@@ -273,9 +273,10 @@ impl Storage {
     }
 
     fn writable(&self, location: &Location, uri: &location::Uri) -> Result<Store, StorageError> {
-        match uri.scheme.is_read_only() {
-            true => Err(StorageProblem::ReadOnly.at(location)),
-            false => self.store(location, uri),
+        if uri.scheme.is_read_only() {
+            Err(StorageProblem::ReadOnly.at(location))
+        } else {
+            self.store(location, uri)
         }
     }
 

@@ -61,8 +61,9 @@ pub(crate) fn opened(path: &Path) -> Result<File, StorageError> {
 }
 
 fn check(path: &Path, bytes: u64, most_bytes: u64) -> Result<(), StorageError> {
-    match bytes <= most_bytes {
-        true => Ok(()),
-        false => Err(StorageProblem::TooLarge { most_bytes }.at(path.display())),
+    if bytes <= most_bytes {
+        Ok(())
+    } else {
+        Err(StorageProblem::TooLarge { most_bytes }.at(path.display()))
     }
 }

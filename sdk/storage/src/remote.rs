@@ -160,9 +160,10 @@ impl Remote {
                 read
             }
         };
-        match found.len() as u64 == wanted {
-            true => Ok(found),
-            false => Err(StorageProblem::Changed.at(&self.location)),
+        if found.len() as u64 == wanted {
+            Ok(found)
+        } else {
+            Err(StorageProblem::Changed.at(&self.location))
         }
     }
 

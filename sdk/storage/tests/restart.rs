@@ -20,9 +20,12 @@ const BUSY: Duration = Duration::from_secs(5);
 fn transfers_outlast_a_restart() {
     let begun = Instant::now();
     let server = Server::start_after(REFUSED);
-    server.fail(move |_, _| match begun.elapsed() < REFUSED + BUSY {
-        true => Fault::Status(503, "ServiceUnavailable"),
-        false => Fault::None,
+    server.fail(move |_, _| {
+        if begun.elapsed() < REFUSED + BUSY {
+            Fault::Status(503, "ServiceUnavailable")
+        } else {
+            Fault::None
+        }
     });
     let (small, large) = (bytes(100_000), bytes(20 << 20));
     server.put("surfaces/cloth.csv", &small);

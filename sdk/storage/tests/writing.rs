@@ -51,9 +51,10 @@ fn a_large_file_is_one_of_parts() {
     // The second part fails once.
     let failed = std::sync::atomic::AtomicBool::new(false);
     server.fail(move |_, request| {
-        match is_part(request, 2) && !failed.swap(true, std::sync::atomic::Ordering::Relaxed) {
-            true => Fault::CutRequest(1_000_000),
-            false => Fault::None,
+        if is_part(request, 2) && !failed.swap(true, std::sync::atomic::Ordering::Relaxed) {
+            Fault::CutRequest(1_000_000)
+        } else {
+            Fault::None
         }
     });
     storage(&server).write_file(&at(URI), &file).unwrap();
@@ -73,17 +74,18 @@ fn a_write_that_fails_leaves_nothing() {
         ("failing", &small, |_| Fault::Status(500, "InternalError")),
         ("cut", &small, |_| Fault::CutRequest(300_000)),
         ("no beginning", &large, |_| Fault::Status(503, "SlowDown")),
-        ("part 2 failing", &large, |r| match is_part(r, 2) {
-            true => Fault::Status(500, "InternalError"),
-            false => Fault::None,
+        ("part 2 failing", &large, |r| {
+            if is_part(r, 2) { Fault::Status(500, "InternalError") } else { Fault::None }
         }),
-        ("part 3 cut", &large, |r| match is_part(r, 3) {
-            true => Fault::CutRequest(100_000),
-            false => Fault::None,
+        ("part 3 cut", &large, |r| {
+            if is_part(r, 3) { Fault::CutRequest(100_000) } else { Fault::None }
         }),
-        ("no end", &large, |r| match r.method == "POST" && r.path.contains("uploadId") {
-            true => Fault::Status(500, "InternalError"),
-            false => Fault::None,
+        ("no end", &large, |r| {
+            if r.method == "POST" && r.path.contains("uploadId") {
+                Fault::Status(500, "InternalError")
+            } else {
+                Fault::None
+            }
         }),
     ];
     for old in [None, Some(b"the old file")] {
@@ -110,9 +112,8 @@ fn a_write_that_takes_too_long_leaves_nothing() {
     let mut settings = settings();
     settings.total = Duration::from_secs(3);
     let storage = Storage::new(settings, server.variables().into_iter().collect());
-    server.fail(|_, request| match is_part(request, 2) {
-        true => Fault::Delay(Duration::from_secs(600)),
-        false => Fault::None,
+    server.fail(|_, request| {
+        if is_part(request, 2) { Fault::Delay(Duration::from_secs(600)) } else { Fault::None }
     });
     assert!(said(storage.write_file(&at(URI), &file)).contains("not done within 3 s"));
     assert!(server.files().is_empty(), "{:?}", server.files());

@@ -114,12 +114,13 @@ impl Journal {
     /// The folder of the file, which must be there, and the file's name in it.
     fn place(&self) -> io::Result<(OwnFolder, PathBuf)> {
         let (own, name) = OwnFolder::of_file(&self.path)?;
-        match own.path().is_dir() {
-            true => Ok((own, name)),
-            false => Err(io::Error::new(
+        if own.path().is_dir() {
+            Ok((own, name))
+        } else {
+            Err(io::Error::new(
                 io::ErrorKind::NotFound,
                 "its folder does not exist; create it first",
-            )),
+            ))
         }
     }
 

@@ -27,15 +27,12 @@ pub(crate) fn of_range(option: &FitOption) -> Vec<String> {
     let (min, max) = (option.min, option.max);
     let value = |step: i32| {
         let part = f64::from(step) / f64::from(STEPS);
-        let value = match min > 0.0 {
-            true => min * libm::pow(max / min, part),
-            false => min + part * (max - min),
-        };
-        match option.integer {
-            true => value.round().to_string(),
-            false => {
-                format!("{value:.3e}").parse::<f64>().unwrap_or(value).clamp(min, max).to_string()
-            }
+        let value =
+            if min > 0.0 { min * libm::pow(max / min, part) } else { min + part * (max - min) };
+        if option.integer {
+            value.round().to_string()
+        } else {
+            format!("{value:.3e}").parse::<f64>().unwrap_or(value).clamp(min, max).to_string()
         }
     };
     let mut values: Vec<String> = (0..=STEPS).map(value).collect();

@@ -83,9 +83,10 @@ pub fn json(document: &[u8], each: &mut dyn FnMut(&[u8])) {
         let marked = marked(&sound, pointer, MARK);
         let (was, key) = (sound.pointer(pointer), pointer.rsplit('/').next());
         let was = was.expect("it was walked").to_string();
-        let twice = match parent(&sound, pointer).is_some_and(Value::is_object) {
-            true => format!("{was},\"{}\":{was}", key.unwrap_or_default()),
-            false => format!("{was},{was}"),
+        let twice = if parent(&sound, pointer).is_some_and(Value::is_object) {
+            format!("{was},\"{}\":{was}", key.unwrap_or_default())
+        } else {
+            format!("{was},{was}")
         };
         for edge in NUMBERS.iter().chain(WORDS).chain([&&*long, &&*twice]) {
             each(marked.replace(MARK, edge).as_bytes());

@@ -452,18 +452,20 @@ fn samples() -> Vec<Seed> {
             channels,
             sample_rate: 200,
             bits_per_sample: bits,
-            sample_format: match float {
-                true => hound::SampleFormat::Float,
-                false => hound::SampleFormat::Int,
+            sample_format: if float {
+                hound::SampleFormat::Float
+            } else {
+                hound::SampleFormat::Int
             },
         };
         let mut bytes = Cursor::new(Vec::new());
         let mut writer = hound::WavWriter::new(&mut bytes, spec).expect("a WAV");
         for i in 0..50 * u32::from(channels) {
             let full = 2f64.powi(i32::from(bits) - 1);
-            match float {
-                true => writer.write_sample(wave(i) as f32),
-                false => writer.write_sample((wave(i) * full) as i32),
+            if float {
+                writer.write_sample(wave(i) as f32)
+            } else {
+                writer.write_sample((wave(i) * full) as i32)
             }
             .expect("memory takes all");
         }

@@ -56,9 +56,10 @@ impl Body for Faulty {
     ) -> Poll<Option<Result<Frame<Bytes>, Self::Error>>> {
         if self.rest == 0 {
             // Never woken: the connection stays open until the client ends it.
-            return match self.is_stalled {
-                true => Poll::Pending,
-                false => Poll::Ready(Some(Err(Cut.into()))),
+            return if self.is_stalled {
+                Poll::Pending
+            } else {
+                Poll::Ready(Some(Err(Cut.into())))
             };
         }
         let frame = ready!(Pin::new(&mut self.body).poll_frame(context));

@@ -133,13 +133,12 @@ impl Server {
         let address = listener.local_addr().unwrap();
         let accepting = Arc::clone(&shared);
         runtime.spawn(async move {
-            let listener = match time.is_zero() {
-                true => listener,
-                false => {
-                    drop(listener);
-                    tokio::time::sleep(time).await;
-                    TcpListener::bind(address).await.unwrap()
-                }
+            let listener = if time.is_zero() {
+                listener
+            } else {
+                drop(listener);
+                tokio::time::sleep(time).await;
+                TcpListener::bind(address).await.unwrap()
             };
             accept(listener, accepting).await;
         });
@@ -180,13 +179,12 @@ impl Server {
         let mut open = vec![self.folder.path().to_owned()];
         while let Some(folder) = open.pop() {
             for entry in std::fs::read_dir(folder).unwrap().map(Result::unwrap) {
-                match entry.file_type().unwrap().is_dir() {
-                    true => open.push(entry.path()),
-                    false => {
-                        let path = entry.path();
-                        let name = path.strip_prefix(self.folder.path()).unwrap();
-                        found.insert(name.to_str().unwrap().to_owned());
-                    }
+                if entry.file_type().unwrap().is_dir() {
+                    open.push(entry.path())
+                } else {
+                    let path = entry.path();
+                    let name = path.strip_prefix(self.folder.path()).unwrap();
+                    found.insert(name.to_str().unwrap().to_owned());
                 }
             }
         }
@@ -324,10 +322,8 @@ impl Shared {
     async fn store(&self, request: Request<Incoming>) -> Result<Response<AnyBody>, Cut> {
         let path = request.uri().path().to_owned();
         let is_signed = request.headers().contains_key("authorization");
-        let service = match path.starts_with("/web/") && !is_signed {
-            true => &self.open,
-            false => &self.signed,
-        };
+        let service =
+            if path.starts_with("/web/") && !is_signed { &self.open } else { &self.signed };
         let response = Service::call(service, request).await.map_err(|_| Cut)?;
         let status = response.status().as_u16();
         self.answered.lock().unwrap().push((path, status));

@@ -45,10 +45,7 @@ pub fn dist(options: &Dist) -> Result<()> {
         let to = prefix.join("include").join(header);
         copy(&source.join("include").join(header), &to)?;
     }
-    let of_unity = match options.whole {
-        true => lib.join("whole"),
-        false => lib.clone(),
-    };
+    let of_unity = if options.whole { lib.join("whole") } else { lib.clone() };
     let unity = prefix.join("share/htex/unity");
     unity::package(&[(build.platform(), of_unity)], &unity)?;
     copy_folder(&source.join("fmod"), &prefix.join("share/htex/fmod"))?;

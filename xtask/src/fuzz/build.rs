@@ -18,9 +18,10 @@ const COVERAGE: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-l
 /// Builds the programs of targets; returns their folder.
 pub(super) fn build(options: &Options, targets: &[String]) -> Result<PathBuf> {
     let host = host()?;
-    let (flags, place) = match options.address {
-        true => (format!("{COVERAGE} -Zsanitizer=address"), "address"),
-        false => (COVERAGE.to_owned(), "none"),
+    let (flags, place) = if options.address {
+        (format!("{COVERAGE} -Zsanitizer=address"), "address")
+    } else {
+        (COVERAGE.to_owned(), "none")
     };
     let place = target_folder().join(place);
     let mut cargo = cargo(options.address);
@@ -32,14 +33,11 @@ pub(super) fn build(options: &Options, targets: &[String]) -> Result<PathBuf> {
         .arg(&place)
         .env("RUSTFLAGS", flags)
         .current_dir(folder());
-    run(&mut cargo).context(match options.address {
-        true => {
-            "the targets cannot be built with the address sanitizer; it needs a nightly toolchain: \
+    run(&mut cargo).context(if options.address {
+        "the targets cannot be built with the address sanitizer; it needs a nightly toolchain: \
              `rustup toolchain install nightly --profile minimal`, or leave --address out"
-        }
-        false => {
-            "the targets cannot be built; libFuzzer needs a C++ compiler (`apt-get install g++`)"
-        }
+    } else {
+        "the targets cannot be built; libFuzzer needs a C++ compiler (`apt-get install g++`)"
     })?;
     Ok(place.join(host).join("release"))
 }

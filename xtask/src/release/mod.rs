@@ -96,17 +96,16 @@ pub fn release(release: &Release) -> Result<()> {
         kept.display()
     );
     let is_compiled = release.npm || !release.platforms.is_empty();
-    let notices = match is_compiled && !release.is_trial {
-        true => Some(parts::notices(&release.platforms)?),
-        false => None,
+    let notices = if is_compiled && !release.is_trial {
+        Some(parts::notices(&release.platforms)?)
+    } else {
+        None
     };
     let notices = notices.as_deref();
     for platform in &release.platforms {
         eprintln!("release: {}", platform.name);
-        let build = match release.is_trial {
-            true => Build::here()?,
-            false => Build::release(*platform, &commit),
-        };
+        let build =
+            if release.is_trial { Build::here()? } else { Build::release(*platform, &commit) };
         let folder = tree::lay_out(&build, &version, notices)?;
         packages::archive(&build, &folder, &out, &commit)?;
         if platform.has_wheel() {

@@ -48,10 +48,7 @@ pub(super) fn archive(build: &Build, folder: &Path, out: &Path, commit: &Commit)
     }
     // One thread: the bytes of several depend on how many there are. A trial, which nobody
     // downloads, is written in a sixth of the time.
-    let compressor = match build.is_release() {
-        true => "xz -9 -T1",
-        false => "xz -1 -T1",
-    };
+    let compressor = if build.is_release() { "xz -9 -T1" } else { "xz -1 -T1" };
     tar(folder, &out.join(format!("{name}.tar.xz")), compressor, commit)
 }
 

@@ -102,10 +102,8 @@ fn plugins(build: &Build, folder: &Path) -> Result<()> {
 fn help(platform: &Platform, folder: &Path) -> Result<()> {
     let own = folder.join("bin").join(executable(platform.system));
     let htex = |words: &[&str]| {
-        let mut command = match Platform::here()? == *platform {
-            true => Command::new(&own),
-            false => Command::new(cargo()),
-        };
+        let mut command =
+            if Platform::here()? == *platform { Command::new(&own) } else { Command::new(cargo()) };
         if Platform::here()? != *platform {
             command.args(["run", "--quiet", "--locked", "--profile", "quick"]);
             command.args(["--package", "htex-cli", "--"]);

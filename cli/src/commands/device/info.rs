@@ -69,10 +69,7 @@ fn can_text(can: &Capabilities) -> String {
         None => none.to_owned(),
     };
     let quantity = serde_json::to_value(can.quantity).unwrap_or_default();
-    let clock = match can.paced {
-        true => "a clock takes the samples",
-        false => "as fast as samples are made",
-    };
+    let clock = if can.paced { "a clock takes the samples" } else { "as fast as samples are made" };
     format!(
         "  quantity: {}, {unit}\n  rates: {}; best {} Hz\n  limit: {}\n  step: {}\n  carrier: {}\n  \
          pace: {clock}\n  block: {} frames\n",

@@ -97,11 +97,12 @@ impl Unpack {
 
 /// Refuses a name that is the same file as one before on some system, so that neither is lost.
 fn check_alike(names: &mut Names, name: &str) -> Result<(), Failure> {
-    match names.insert(name) {
-        true => Ok(()),
-        false => Err(Failure::Other(format!(
+    if names.insert(name) {
+        Ok(())
+    } else {
+        Err(Failure::Other(format!(
             "{}: some systems take its file for the file of another texture of this library; unpack one of them by its name, or rename it",
             shown(Path::new(name))
-        ))),
+        )))
     }
 }

@@ -55,9 +55,10 @@ pub(crate) struct CheckOne {
 /// A time of at most a week.
 fn fuzz_time(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text.parse().map_err(|_| "seconds are a number")?;
-    match (0.0..=604_800.0).contains(&seconds) {
-        true => Ok(Duration::from_secs_f64(seconds)),
-        false => Err("0 to 604800 seconds".to_owned()),
+    if (0.0..=604_800.0).contains(&seconds) {
+        Ok(Duration::from_secs_f64(seconds))
+    } else {
+        Err("0 to 604800 seconds".to_owned())
     }
 }
 

@@ -99,10 +99,7 @@ impl Guide {
             Self::Screen(screen) => screen.show(moment),
             Self::Page(page) => page.show(moment),
         }
-        match self.is_left() {
-            true => Next::Stop,
-            false => Next::Go,
-        }
+        if self.is_left() { Next::Stop } else { Next::Go }
     }
 
     fn is_left(&self) -> bool {

@@ -101,10 +101,7 @@ fn asked(required: Required) -> String {
     let share = (on_target > 0.0).then(|| format!("on target {:.0} % or more", 100.0 * on_target));
     let sweeps = (sweeps > 0).then(|| format!("complete sweeps {sweeps} or more"));
     let all: Vec<String> = share.into_iter().chain(sweeps).collect();
-    match all.is_empty() {
-        true => String::new(),
-        false => format!("; it needs: {}", all.join(", ")),
-    }
+    if all.is_empty() { String::new() } else { format!("; it needs: {}", all.join(", ")) }
 }
 
 /// Two lines: the seconds left, the target as a square on its way and the finger as one in the

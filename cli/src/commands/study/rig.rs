@@ -259,10 +259,7 @@ impl StudyRig<'_> {
             felt: None,
         };
         if let Some(felt) = felt {
-            match left {
-                true => felt.abort(),
-                false => played.felt = felt.finish(stimulus, &played)?,
-            }
+            if left { felt.abort() } else { played.felt = felt.finish(stimulus, &played)? }
         }
         Ok(played)
     }

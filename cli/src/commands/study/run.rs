@@ -97,11 +97,10 @@ impl Run {
         let loader = self.with.loader()?;
         check_files(study, &self.study, &loader.around(), &device, &mut findings);
         findings.retain(|finding| finding.severity == Severity::Error);
-        match findings.is_empty() {
-            true => Ok(()),
-            false => {
-                Err(Failure::Findings { cannot: CANNOT_RUN, file: shown(&self.study), findings })
-            }
+        if findings.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::Findings { cannot: CANNOT_RUN, file: shown(&self.study), findings })
         }
     }
 
@@ -135,10 +134,8 @@ impl Run {
         };
         rig.felt = self.felt.open(study, &self.output, participant, self.fast)?;
         let device = rig.device_used()?;
-        let mut clock: Box<dyn Clock> = match self.fast {
-            true => Box::new(FastClock::default()),
-            false => Box::new(WallClock::new()),
-        };
+        let mut clock: Box<dyn Clock> =
+            if self.fast { Box::new(FastClock::default()) } else { Box::new(WallClock::new()) };
         let header = Header::new(study, &self.study, own, device, tool())?
             .with_begun(clock.date())
             .with_source(rig.felt.as_ref().and_then(Felt::used))

@@ -143,9 +143,10 @@ fn text(view: &View, is_line: bool) -> String {
             if is_line { ", and Enter" } else { "" }
         ),
         View::Matching { texture, rising: true, .. } => {
-            let keys = match is_line {
-                true => "+ or ++ stronger, - or -- weaker, Enter alone: you feel it",
-                false => "+ or Page Up stronger, - or Page Down weaker, Enter: you feel it",
+            let keys = if is_line {
+                "+ or ++ stronger, - or -- weaker, Enter alone: you feel it"
+            } else {
+                "+ or Page Up stronger, - or Page Down weaker, Enter: you feel it"
             };
             format!(
                 "{texture}: make it stronger until you feel it as strongly as the real one, or more strongly: {keys}"

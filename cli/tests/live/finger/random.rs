@@ -80,12 +80,13 @@ fn device(dice: &mut Dice) -> Value {
 }
 
 fn motion(dice: &mut Dice) -> Value {
-    match dice.once_in(4) {
-        true => json!({ "trace": "hand.csv" }),
-        false => json!({ "constant": {
+    if dice.once_in(4) {
+        json!({ "trace": "hand.csv" })
+    } else {
+        json!({ "constant": {
             "speed_mm_s": dice.one(&[0.0, 5.0, 80.0, 80.0, 300.0, 999.0, 10_000.0]),
             "force_n": dice.one(&[0.0, 0.4, 0.4, 3.0, 19.0, 1_000.0]),
-        } }),
+        } })
     }
 }
 
@@ -133,9 +134,10 @@ struct Worst {
 
 impl Worst {
     fn take(&mut self, card_v: &[f64], rate_hz: f64, what: &Value) {
-        match card_v.iter().any(|v| *v != 0.0) {
-            true => self.played += 1,
-            false => self.refused += 1,
+        if card_v.iter().any(|v| *v != 0.0) {
+            self.played += 1
+        } else {
+            self.refused += 1
         }
         assert!(card_v.last().is_none_or(|v| *v == 0.0), "not at zero: {what}");
         let Volts { dc_v, peak_v } = volts(card_v, rate_hz);
@@ -226,10 +228,7 @@ fn studied(dice: &mut Dice, worst: &mut Worst) {
 /// Direct voltage, largest voltage and time to zero of what any scene or study does on the rig.
 #[test]
 fn no_scene_and_no_study_harms_a_finger() {
-    let count = match xtask::prove::whole() {
-        true => WHOLE,
-        false => SAMPLE,
-    };
+    let count = if xtask::prove::whole() { WHOLE } else { SAMPLE };
     let mut worst = Worst::default();
     for seed in 0..count {
         let mut dice = Dice(seed);

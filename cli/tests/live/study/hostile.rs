@@ -260,10 +260,7 @@ fn goes_on(kind: usize, stream: &mut TcpStream, sent: &mut usize) -> bool {
 /// No answer is lost, each press has its reply in time, and the output is at zero in the end.
 #[test]
 fn hostile_programs_delay_nobody() {
-    let count = match xtask::prove::whole() {
-        true => WHOLE,
-        false => SAMPLE,
-    };
+    let count = if xtask::prove::whole() { WHOLE } else { SAMPLE };
     let constant = "{ constant = { speed_mm_s = 80, force_n = 0.4 } }";
     let mut session = Session::start(0.2, constant, &[]);
     let crowd = Crowd::start(session.tab("a").host, count);
@@ -411,9 +408,10 @@ fn escape_and_the_button_stop_a_trial() {
         browser.press(&tab, " ", 0);
         browser.shows(&tab, "Feel it");
         browser.shows(&tab, "Stop (Esc)");
-        match by_key {
-            true => browser.press(&tab, "Escape", 0),
-            false => browser.click(&tab, "#stop"),
+        if by_key {
+            browser.press(&tab, "Escape", 0)
+        } else {
+            browser.click(&tab, "#stop")
         }
         session.ends();
         browser.shows(&tab, "The session was stopped");

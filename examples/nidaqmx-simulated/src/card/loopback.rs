@@ -59,10 +59,7 @@ impl Loopback {
     pub fn frames(&mut self, rate_hz: f64, from_signal: bool) -> Option<u64> {
         let heard = self.hear(from_signal);
         said(&self.file, heard);
-        let frames = match self.rate_hz > 0.0 {
-            true => (self.volts.len() as f64 * rate_hz / self.rate_hz) as u64,
-            false => 0,
-        };
+        let frames = if self.rate_hz > 0.0 { (self.volts.len() as f64 * rate_hz / self.rate_hz) as u64 } else { 0 };
         (!self.has_ended).then_some(frames)
     }
 
@@ -95,10 +92,7 @@ impl Loopback {
             self.has_ended |= has_begun;
             return;
         }
-        let from = match has_begun || !from_signal {
-            true => Some(0),
-            false => volts.iter().position(|v| *v != 0.0),
-        };
+        let from = if has_begun || !from_signal { Some(0) } else { volts.iter().position(|v| *v != 0.0) };
         if let Some(from) = from.filter(|_| !self.has_ended) {
             self.rate_hz = rate_hz;
             self.volts.extend(&volts[from..]);

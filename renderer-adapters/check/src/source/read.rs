@@ -66,9 +66,10 @@ pub(crate) fn timeouts(case: &Case) -> Found {
         latest = latest.max(since.elapsed().saturating_sub(timeout));
     }
     let late_s = latest.as_secs_f64();
-    let finding = match latest <= LATE {
-        true => Finding::passed("reads return in time"),
-        false => Finding::failed(format!("a read returns {late_s:.1} s after its timeout")),
+    let finding = if latest <= LATE {
+        Finding::passed("reads return in time")
+    } else {
+        Finding::failed(format!("a read returns {late_s:.1} s after its timeout"))
     };
     Ok(finding.with("late_s", late_s))
 }

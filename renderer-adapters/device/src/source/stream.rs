@@ -26,9 +26,10 @@ impl SourceDescriptor {
     pub fn check(&self) -> Result<(), DescriptorError> {
         self.descriptor.check()?;
         let mut settings = self.descriptor.settings.iter();
-        match settings.any(|setting| setting.name == self.target) {
-            true => Ok(()),
-            false => Err(DescriptorError::Target { target: self.target.clone() }),
+        if settings.any(|setting| setting.name == self.target) {
+            Ok(())
+        } else {
+            Err(DescriptorError::Target { target: self.target.clone() })
         }
     }
 }

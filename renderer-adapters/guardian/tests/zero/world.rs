@@ -233,9 +233,10 @@ impl World {
             Output::Standing => (self.stood + 1).min(LONG),
             _ => 0,
         };
-        self.stood_before_player = match self.runs() && self.stood > 0 {
-            true => (self.stood_before_player + 1).min(LONG),
-            false => 0,
+        self.stood_before_player = if self.runs() && self.stood > 0 {
+            (self.stood_before_player + 1).min(LONG)
+        } else {
+            0
         };
         if self.runs() && self.player.why().is_some() {
             self.known_for = Some(self.known_for.map_or(0, |steps| (steps + 1).min(LONG)));
@@ -534,10 +535,7 @@ impl World {
         }
         match self.app {
             App::Playing => {
-                let request = match self.ends {
-                    true => Request::Finish,
-                    false => Request::Write,
-                };
+                let request = if self.ends { Request::Finish } else { Request::Write };
                 if self.ends {
                     self.app = App::Finishing;
                 }

@@ -174,10 +174,7 @@ fn distinct(all: impl Iterator<Item = Condition>) -> Result<Vec<Condition>, ByHa
             distinct.push(condition);
         }
     }
-    match distinct.is_empty() {
-        true => Err(ByHandError::Empty),
-        false => Ok(distinct),
-    }
+    if distinct.is_empty() { Err(ByHandError::Empty) } else { Ok(distinct) }
 }
 
 fn representation(

@@ -34,15 +34,14 @@ pub(crate) fn differing(levels: &[f64]) -> Vec<Findings> {
         let ratio = level / usual;
         if usual > 0.0 && !(1.0 / DIFFERS..=DIFFERS).contains(&ratio) {
             let count = levels.len();
-            let message = match ratio > 0.0 {
-                true => format!(
+            let message = if ratio > 0.0 {
+                format!(
                     "its level is {:.1} dB {} the median of the {count} recordings of this condition",
                     20.0 * libm::log10(ratio).abs(),
                     if ratio > 1.0 { "above" } else { "below" }
-                ),
-                false => {
-                    format!("it is silent, and the {count} recordings of this condition are not")
-                }
+                )
+            } else {
+                format!("it is silent, and the {count} recordings of this condition are not")
             };
             findings.add(
                 RECORDING_LEVELS_DIFFER,

@@ -117,10 +117,7 @@ fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
         found.clear();
     }
     let many = many(values, block, SPIKE * floor);
-    match many.len() > found.len() {
-        true => many,
-        false => found.into_iter().map(|(at, _)| at).collect(),
-    }
+    if many.len() > found.len() { many } else { found.into_iter().map(|(at, _)| at).collect() }
 }
 
 /// Returns the samples that are outliers by themselves, if there are too many of them.

@@ -78,10 +78,7 @@ impl<'a> Search<'a> {
         let compared = self.all_held(&cells)?;
         let one_condition_rms_db = self.one_condition_db(&compared)?;
         let is_chosen = grid.speed_mm_s.is_none() && compared.iter().any(|held| !held.is_empty());
-        let ratios = match is_chosen {
-            true => &SPEED_RATIOS[..],
-            false => &[COMPARED_RATIO],
-        };
+        let ratios = if is_chosen { &SPEED_RATIOS[..] } else { &[COMPARED_RATIO] };
         let mut best: Option<(Gathered, f64)> = None;
         for ratio in ratios {
             let lines = Lines::choose(grid, &self.motions, *ratio)?;

@@ -33,10 +33,7 @@ pub(super) fn chunks(file: &[u8]) -> Result<Chunks<'_>, Fault> {
         let place = format!("byte {}", HEADER_BYTES + 4);
         return Err(Fault::new(place, "the first chunk is not JSON"));
     }
-    let next = match json.end < file.len() {
-        true => Some(Chunk::at(file, json.end)?),
-        false => None,
-    };
+    let next = if json.end < file.len() { Some(Chunk::at(file, json.end)?) } else { None };
     Ok(Chunks { json: json.bytes, binary: next.filter(|c| c.kind == BINARY).map(|c| c.bytes) })
 }
 

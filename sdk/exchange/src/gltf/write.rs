@@ -63,9 +63,10 @@ pub(crate) fn written(job: &AssetJob<'_>) -> Result<Vec<u8>, ExchangeError> {
         return Err(job.cannot(too_long(file.len())));
     }
     let again = read(&file).map_err(|fault| job.cannot(fault.to_string()))?;
-    match again.bytes == *asset && again.material == texture {
-        true => Ok(file),
-        false => Err(job.cannot("what was written is read as another asset".to_owned())),
+    if again.bytes == *asset && again.material == texture {
+        Ok(file)
+    } else {
+        Err(job.cannot("what was written is read as another asset".to_owned()))
     }
 }
 

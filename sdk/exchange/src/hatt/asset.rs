@@ -87,10 +87,7 @@ fn manifest(
     };
     let numbers = serde_json::to_value(Hatt::of(texture));
     let numbers = numbers.map_err(|error| Fault::of_file(error.to_string()))?;
-    let name = match texture.material.is_empty() {
-        true => imported.name,
-        false => &texture.material,
-    };
+    let name = if texture.material.is_empty() { imported.name } else { &texture.material };
     Ok(Manifest {
         htex: VERSION.to_owned(),
         name: name.to_owned(),
@@ -151,10 +148,7 @@ fn level_rms(node: &Node, stored: &[f64], rate_hz: f64, band: Band) -> Result<f6
     let curve = |hz: f64| ar_magnitude(&a, hz, rate_hz) / ar_magnitude(&b, hz, rate_hz);
     let gain = (4.0 * 1.5 * GRID_HZ / rate_hz).sqrt();
     let level_rms = node.deviation() * gain * curve_level_rms(band, curve);
-    match level_rms.is_finite() {
-        true => Ok(level_rms),
-        false => Err(of(node, "its level is not finite")),
-    }
+    if level_rms.is_finite() { Ok(level_rms) } else { Err(of(node, "its level is not finite")) }
 }
 
 /// A fault of a node.

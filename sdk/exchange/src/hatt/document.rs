@@ -158,23 +158,22 @@ impl<'a> Builder<'a> {
         let filled = words.trim_end().len();
         let is_blank = filled == 0;
         let Some(open) = self.open.last_mut() else {
-            return match is_blank {
-                true => Ok(()),
-                false => Err(self.fault("a text outside of all elements")),
+            return if is_blank {
+                Ok(())
+            } else {
+                Err(self.fault("a text outside of all elements"))
             };
         };
         // The space between elements is no text.
-        let skipped = match open.text.is_empty() {
-            true => words.len() - words.trim_start().len(),
-            false => 0,
-        };
+        let skipped = if open.text.is_empty() { words.len() - words.trim_start().len() } else { 0 };
         if !is_blank {
             self.filled = open.text.len() + filled - skipped;
         }
         open.text.push_str(words.get(skipped..).unwrap_or_default());
-        match self.filled > MOST_TEXT {
-            true => Err(open.fault(format!("a text of more than {MOST_TEXT} bytes"))),
-            false => Ok(()),
+        if self.filled > MOST_TEXT {
+            Err(open.fault(format!("a text of more than {MOST_TEXT} bytes")))
+        } else {
+            Ok(())
         }
     }
 

@@ -57,9 +57,10 @@ impl Element {
     /// As [`Self::number`], within a range.
     pub(super) fn number_in(&self, low: f64, high: f64) -> Result<f64, Fault> {
         let number = self.number()?;
-        match (low..=high).contains(&number) {
-            true => Ok(number),
-            false => Err(self.fault(format!("{number} is none from {low} to {high}"))),
+        if (low..=high).contains(&number) {
+            Ok(number)
+        } else {
+            Err(self.fault(format!("{number} is none from {low} to {high}")))
         }
     }
 

@@ -86,10 +86,7 @@ impl Node {
 
 /// The coefficients of a polynomial behind the first, which is 1.
 fn coefficients(node: &Element, name: &str, is_required: bool) -> Result<Vec<f64>, Fault> {
-    let list = match is_required {
-        true => Some(node.required(name)?),
-        false => node.one(name)?,
-    };
+    let list = if is_required { Some(node.required(name)?) } else { node.one(name)? };
     let Some(list) = list else {
         return Ok(Vec::new());
     };

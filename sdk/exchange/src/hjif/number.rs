@@ -6,9 +6,10 @@ use serde::Serializer;
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 pub(super) fn whole<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    match *number == libm::trunc(*number) && number.abs() <= EXACT {
-        true => serializer.serialize_i64(*number as i64),
-        false => serializer.serialize_f64(*number),
+    if *number == libm::trunc(*number) && number.abs() <= EXACT {
+        serializer.serialize_i64(*number as i64)
+    } else {
+        serializer.serialize_f64(*number)
     }
 }
 

@@ -122,9 +122,8 @@ pub fn waveform(samples: &[f64], profile: &Profile, space: Space, description: &
 /// Coefficients in parts of the largest, which is the last keyframe.
 fn coefficients(all: &[f64]) -> Vec<Keyframe> {
     let largest = all.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let part = |x: &f64| match largest > 0.0 {
-        true => libm::round(x / largest / RESOLUTION) * RESOLUTION,
-        false => 0.0,
+    let part = |x: &f64| {
+        if largest > 0.0 { libm::round(x / largest / RESOLUTION) * RESOLUTION } else { 0.0 }
     };
     // Rounded to the digits that it has.
     let digits = |x: f64| libm::round(x * 1e6) / 1e6;

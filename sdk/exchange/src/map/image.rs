@@ -131,9 +131,10 @@ fn pitch_mm(stated: PixelDimensions) -> Result<Option<f64>, Fault> {
         return Err(Fault::new("pHYs", "its pixels are no squares; scale the image"));
     }
     let pitch_mm = 1e3 / f64::from(stated.xppu);
-    match PITCH_MM.contains(&pitch_mm) {
-        true => Ok(Some(pitch_mm)),
-        false => Err(Fault::new(
+    if PITCH_MM.contains(&pitch_mm) {
+        Ok(Some(pitch_mm))
+    } else {
+        Err(Fault::new(
             "pHYs",
             format!(
                 "{} pixels in a metre are out of the range of a map: {} to {} mm for a pixel",
@@ -141,7 +142,7 @@ fn pitch_mm(stated: PixelDimensions) -> Result<Option<f64>, Fault> {
                 PITCH_MM.start(),
                 PITCH_MM.end()
             ),
-        )),
+        ))
     }
 }
 

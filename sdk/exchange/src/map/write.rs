@@ -145,9 +145,10 @@ fn image(
     };
     let own = |fault: Fault| cannot(&fault.to_string());
     let bytes = to_bytes(&image, rights).map_err(own)?;
-    match read(&bytes).map_err(own)?.grey == image.grey {
-        true => Ok((bytes, level_rms * f64::from(u8::MAX) / at(RMS))),
-        false => Err(cannot("what was written is read as another image")),
+    if read(&bytes).map_err(own)?.grey == image.grey {
+        Ok((bytes, level_rms * f64::from(u8::MAX) / at(RMS)))
+    } else {
+        Err(cannot("what was written is read as another image"))
     }
 }
 

@@ -44,10 +44,7 @@ pub(super) fn check_nesting(text: &str) -> Result<(), TomlError> {
     source.lex().try_for_each(|token| {
         let refused = |message| TomlError::at(text, token.span().start(), message);
         nesting.take(&token, text).map_err(refused)?;
-        match nesting.levels() > MOST_LEVELS {
-            true => Err(refused(nesting.too_deep(text))),
-            false => Ok(()),
-        }
+        if nesting.levels() > MOST_LEVELS { Err(refused(nesting.too_deep(text))) } else { Ok(()) }
     })
 }
 

@@ -115,10 +115,7 @@ impl Instance {
     /// Returns the address of a buffer of at least `bytes`, a multiple of 8, in the module's
     /// memory. The buffer is reallocated only for more bytes.
     pub(super) fn buffer(&mut self, bytes: usize) -> Result<Usize, Fault> {
-        let bytes = match self.module.limits.guards {
-            true => bytes + GUARD.len(),
-            false => bytes,
-        };
+        let bytes = if self.module.limits.guards { bytes + GUARD.len() } else { bytes };
         if bytes <= self.buffer.1 as usize {
             return Ok(self.buffer.0);
         }
@@ -152,10 +149,7 @@ impl Instance {
 
     /// Writes guard bytes behind an array, if the limits want them.
     pub(super) fn guard(&mut self, behind: Usize) -> Result<(), Fault> {
-        match self.module.limits.guards {
-            true => self.guest.write(behind, &GUARD),
-            false => Ok(()),
-        }
+        if self.module.limits.guards { self.guest.write(behind, &GUARD) } else { Ok(()) }
     }
 
     /// Fails if a call wrote to the guard bytes behind an array of `len` values, which is the
@@ -171,10 +165,7 @@ impl Instance {
         }
         let mut found = [0; GUARD.len()];
         self.guest.read(behind, &mut found)?;
-        match found == GUARD {
-            true => Ok(()),
-            false => Err(Fault::Beyond { bound, len }),
-        }
+        if found == GUARD { Ok(()) } else { Err(Fault::Beyond { bound, len }) }
     }
 
     /// Reads numbers, samples or bytes at an address.

@@ -146,10 +146,7 @@ impl Request {
         let limits = WasmLimits {
             stack_bytes: self.stack_bytes,
             fuel: self.fuel.then_some(1),
-            engine: match self.signals {
-                true => WasmEngine::Signals,
-                false => WasmEngine::Checked,
-            },
+            engine: if self.signals { WasmEngine::Signals } else { WasmEngine::Checked },
             ..WasmLimits::default()
         };
         let effort = if self.quick { Effort::Quick } else { Effort::Optimised };

@@ -57,10 +57,8 @@ impl Calibration {
 
     fn of(path: &Path, text: &str) -> Result<Self, Problem> {
         let is_toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
-        let matrix = match is_toml {
-            true => htex_files::toml::from_str::<File>(text)?.matrix,
-            false => lines(text)?,
-        };
+        let matrix =
+            if is_toml { htex_files::toml::from_str::<File>(text)?.matrix } else { lines(text)? };
         let width = matrix.iter().position(|row| row.len() != AXES);
         if let (true, Some(row)) = (matrix.len() == AXES, width) {
             let (number, len) = (row + 1, matrix[row].len());

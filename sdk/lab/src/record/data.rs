@@ -233,10 +233,7 @@ impl TakeHeader {
 pub(crate) fn texture_axes(signals: &[(String, String)]) -> Vec<usize> {
     let position = |role: &&str| signals.iter().position(|(own, _)| own == role);
     let axes: Vec<usize> = AXES.iter().filter_map(position).collect();
-    match axes.is_empty() {
-        true => position(&"normal").into_iter().collect(),
-        false => axes,
-    }
+    if axes.is_empty() { position(&"normal").into_iter().collect() } else { axes }
 }
 
 fn spread(columns: &mut [Vec<f64>], rows: &[f64]) {

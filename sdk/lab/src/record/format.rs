@@ -51,13 +51,14 @@ impl Format {
     /// [`RecordError::Setup`].
     pub(crate) fn check(self, rate_hz: f64) -> Result<(), RecordError> {
         let is_whole = rate_hz.fract() == 0.0 && rate_hz <= f64::from(u32::MAX);
-        match self == Self::Wav && !is_whole {
-            true => Err(RecordError::Setup {
+        if self == Self::Wav && !is_whole {
+            Err(RecordError::Setup {
                 what: "the sample rate",
                 value: rate_hz.to_string(),
                 allowed: "a WAV has a whole number of hertz; record CSV or NPY",
-            }),
-            false => Ok(()),
+            })
+        } else {
+            Ok(())
         }
     }
 

@@ -28,13 +28,14 @@ pub(crate) fn part(folder: &Path, name: &str, number: u32) -> PathBuf {
 pub(crate) fn check(name: &str) -> Result<(), RecordError> {
     let allowed = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-' | b'.');
     let is_sound = name.bytes().all(allowed) && !name.starts_with(['.', '-']);
-    match is_sound && (1..=100).contains(&name.len()) {
-        true => Ok(()),
-        false => Err(RecordError::Setup {
+    if is_sound && (1..=100).contains(&name.len()) {
+        Ok(())
+    } else {
+        Err(RecordError::Setup {
             what: "the name of the takes",
             value: format!("{name:?}"),
             allowed: "it has 1 to 100 of the characters a-z, A-Z, 0-9, `_`, `-` and `.`, and begins with a letter, digit or `_`",
-        }),
+        })
     }
 }
 

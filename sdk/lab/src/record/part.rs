@@ -73,10 +73,7 @@ impl PartFile {
     pub fn push(&mut self, frames: &[f64]) -> Result<(), RecordError> {
         self.frames.extend_from_slice(frames);
         self.waiting += frames.len();
-        match self.waiting >= self.second {
-            true => self.flush(),
-            false => Ok(()),
-        }
+        if self.waiting >= self.second { self.flush() } else { Ok(()) }
     }
 
     /// Takes interleaved rows of the tracker, which are written with the frames.

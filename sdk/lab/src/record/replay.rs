@@ -133,12 +133,11 @@ impl Source for Player {
     }
 
     fn start(&mut self) -> Result<(), DeviceError> {
-        match self.is_stopped {
-            true => Err(DeviceError::Closed(self.name.clone())),
-            false => {
-                self.begun.get_or_insert_with(Instant::now);
-                Ok(())
-            }
+        if self.is_stopped {
+            Err(DeviceError::Closed(self.name.clone()))
+        } else {
+            self.begun.get_or_insert_with(Instant::now);
+            Ok(())
         }
     }
 

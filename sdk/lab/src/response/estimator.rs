@@ -57,10 +57,7 @@ impl Bin {
             Estimator::H2 => self.gyy / cross,
             Estimator::Hv => self.total_least_squares(cross),
         };
-        match magnitude.is_finite() {
-            true => magnitude,
-            false => 0.0,
-        }
+        if magnitude.is_finite() { magnitude } else { 0.0 }
     }
 
     /// The slope of the principal axis of the scaled spectral matrix:
@@ -71,10 +68,7 @@ impl Bin {
         let (a, b, c) = (self.gxx / x, self.gyy / y, cross / (x * y).sqrt());
         let root = libm::hypot(b - a, 2.0 * c);
         // Of two equal forms, the one that adds.
-        let slope = match b >= a {
-            true => (b - a + root) / (2.0 * c),
-            false => 2.0 * c / (a - b + root),
-        };
+        let slope = if b >= a { (b - a + root) / (2.0 * c) } else { 2.0 * c / (a - b + root) };
         slope * unit
     }
 
@@ -87,10 +81,7 @@ impl Bin {
     /// input explains; 0 without power.
     pub(crate) fn coherence(&self) -> f64 {
         let power = self.gxx * self.gyy;
-        match power > 0.0 {
-            true => (self.gxy.norm_sqr() / power).clamp(0.0, 1.0),
-            false => 0.0,
-        }
+        if power > 0.0 { (self.gxy.norm_sqr() / power).clamp(0.0, 1.0) } else { 0.0 }
     }
 }
 

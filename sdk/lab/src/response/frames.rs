@@ -52,9 +52,8 @@ fn mean(values: &[f64]) -> f64 {
 /// The distance from the mean that is largest, with its sign.
 pub(crate) fn farthest(values: &[f64]) -> f64 {
     let mean = mean(values);
-    let farther = |most: f64, value: &f64| match (value - mean).abs() > most.abs() {
-        true => value - mean,
-        false => most,
+    let farther = |most: f64, value: &f64| {
+        if (value - mean).abs() > most.abs() { value - mean } else { most }
     };
     values.iter().fold(0.0, farther)
 }

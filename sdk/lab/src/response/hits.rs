@@ -64,9 +64,8 @@ fn trigger(input: &[f64], rest: f64, level: f64) -> Option<usize> {
 
 /// The value farthest from rest, from there.
 fn peak(input: &[f64], rest: f64) -> f64 {
-    let farther = |peak: f64, value: &f64| match (value - rest).abs() > peak.abs() {
-        true => value - rest,
-        false => peak,
+    let farther = |peak: f64, value: &f64| {
+        if (value - rest).abs() > peak.abs() { value - rest } else { peak }
     };
     input.iter().fold(0.0, farther)
 }

@@ -72,8 +72,9 @@ fn incoherent(measured: &MeasuredResponse) -> Option<String> {
 }
 
 fn words((low_hz, high_hz): (f64, f64)) -> String {
-    match low_hz == high_hz {
-        true => format!("at {low_hz:.1} Hz"),
-        false => format!("between {low_hz:.1} and {high_hz:.1} Hz"),
+    if low_hz == high_hz {
+        format!("at {low_hz:.1} Hz")
+    } else {
+        format!("between {low_hz:.1} and {high_hz:.1} Hz")
     }
 }

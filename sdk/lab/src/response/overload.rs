@@ -61,9 +61,8 @@ fn repeated(values: &[f64]) -> Vec<Range<usize>> {
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let is_away = |value: f64| (value - baseline.level).abs() >= AWAY * baseline.largest;
-    let of = |extreme: f64| match is_away(extreme) {
-        true => runs(values, IN_A_ROW, |value| value == extreme),
-        false => Vec::new(),
+    let of = |extreme: f64| {
+        if is_away(extreme) { runs(values, IN_A_ROW, |value| value == extreme) } else { Vec::new() }
     };
     let mut stretches = of(high);
     stretches.extend(of(low));

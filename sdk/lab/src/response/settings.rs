@@ -105,9 +105,10 @@ impl From<&ResponseSettings> for ResponseOptions {
             exponential_s: settings.exponential_s,
         };
         Self {
-            excitation: match settings.continuous {
-                true => Excitation::Continuous,
-                false => Excitation::Hits(hits),
+            excitation: if settings.continuous {
+                Excitation::Continuous
+            } else {
+                Excitation::Hits(hits)
             },
             estimator: settings.estimator,
             window_s: settings.window_s,

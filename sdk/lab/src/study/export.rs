@@ -100,9 +100,10 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
         }
     }
     files.sort();
-    match files.is_empty() {
-        true => Err(StudyError::NoAnswers { folder: folder.to_owned() }),
-        false => Ok(files),
+    if files.is_empty() {
+        Err(StudyError::NoAnswers { folder: folder.to_owned() })
+    } else {
+        Ok(files)
     }
 }
 

@@ -92,12 +92,13 @@ impl Reference {
     }
 
     fn whole(band: Band, quantity: Quantity, magnitude: Vec<f64>) -> Result<Self, String> {
-        match band == Band::TACTILE {
-            true => Ok(Self { quantity, magnitude }),
-            false => Err(format!(
+        if band == Band::TACTILE {
+            Ok(Self { quantity, magnitude })
+        } else {
+            Err(format!(
                 "its spectrum is one of {} to {} Hz, and the table has 20 to 1000 Hz; record at 2000 Hz or more",
                 band.low_hz, band.high_hz
-            )),
+            ))
         }
     }
 }

@@ -109,9 +109,10 @@ impl Match {
             return false;
         }
         if key == GainKey::Accept {
-            self.stage = match self.is_rising() && !self.ends_when_felt {
-                true => Stage::Matching,
-                false => Stage::Found,
+            self.stage = if self.is_rising() && !self.ends_when_felt {
+                Stage::Matching
+            } else {
+                Stage::Found
             };
             return true;
         }
@@ -139,9 +140,10 @@ impl Match {
             self.stage = Stage::Found;
             return;
         }
-        let step_db = match self.reversals.is_empty() {
-            true => self.settings.large_step_db,
-            false => self.settings.step_db,
+        let step_db = if self.reversals.is_empty() {
+            self.settings.large_step_db
+        } else {
+            self.settings.step_db
         };
         self.change(if rise { step_db } else { -step_db });
     }
@@ -176,9 +178,10 @@ mod tests {
                 let settings = Matching { method, ..Matching::default() };
                 let mut matching = Match::new(&settings, -20.0);
                 while matching.is_rising() {
-                    let key = match matching.gain_db() < 0.0 {
-                        true => GainKey::MuchStronger,
-                        false => GainKey::Accept,
+                    let key = if matching.gain_db() < 0.0 {
+                        GainKey::MuchStronger
+                    } else {
+                        GainKey::Accept
                     };
                     assert!(matching.press(key));
                 }

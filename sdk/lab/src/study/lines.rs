@@ -200,10 +200,7 @@ pub struct FeltFile {
 impl FeltFile {
     /// Whether the motion was off the study's target; `None` where nothing was measured to tell it.
     pub(crate) fn is_off_target(&self) -> Option<bool> {
-        match self.off_target.is_empty() {
-            false => Some(true),
-            true => self.compared.then_some(false),
-        }
+        if self.off_target.is_empty() { self.compared.then_some(false) } else { Some(true) }
     }
 }
 

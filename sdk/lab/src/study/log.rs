@@ -172,11 +172,12 @@ fn other_source(begun: Option<&SourceUsed>, now: Option<&SourceUsed>) -> String 
         None => "not recorded".to_owned(),
     };
     let (was, is) = (name(begun), name(now));
-    match was == is {
-        true => format!(
+    if was == is {
+        format!(
             "a setting of the felt force's source ({was}) has changed since: the settings, map, calibration, quantity, tracker or format"
-        ),
-        false => format!("the felt force was {was}, and is {is}"),
+        )
+    } else {
+        format!("the felt force was {was}, and is {is}")
     }
 }
 

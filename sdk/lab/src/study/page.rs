@@ -108,10 +108,7 @@ impl Asker for Page {
 
     fn key(&mut self) -> Option<Key> {
         let mut state = self.asked.lock();
-        match state.is_stopped {
-            true => Some(Key::Quit),
-            false => state.keys.pop_front(),
-        }
+        if state.is_stopped { Some(Key::Quit) } else { state.keys.pop_front() }
     }
 }
 

@@ -69,10 +69,7 @@ impl ParticipantPlan {
         Self {
             participant: name.to_owned(),
             training: training(study, name),
-            gain: match study.has(Phase::Gain) {
-                true => gain_order(study, name),
-                false => Vec::new(),
-            },
+            gain: if study.has(Phase::Gain) { gain_order(study, name) } else { Vec::new() },
             trials: trials(study, &order(study, index, name)),
         }
     }

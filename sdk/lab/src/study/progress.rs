@@ -266,10 +266,7 @@ fn stops(step: &Step, line: &Stopped) -> Result<(), String> {
         Step::Rest { .. } | Step::Done => false,
     };
     let (texture, model) = (&line.texture, &line.model);
-    match is_this {
-        true => Ok(()),
-        false => Err(format!("{texture} with {model} does not play here")),
-    }
+    if is_this { Ok(()) } else { Err(format!("{texture} with {model} does not play here")) }
 }
 
 /// The rating after so many ratings of a phase; `None` at its end.
@@ -293,8 +290,9 @@ fn belongs(trial: &Trial, attribute: &str, answer: &Answer, study: &Study) -> Re
         ));
     }
     let range = study.scale.min..=study.scale.max;
-    match range.contains(&answer.rating) {
-        true => Ok(()),
-        false => Err(format!("the rating {} is not on the scale", answer.rating)),
+    if range.contains(&answer.rating) {
+        Ok(())
+    } else {
+        Err(format!("the rating {} is not on the scale", answer.rating))
     }
 }

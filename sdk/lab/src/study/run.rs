@@ -177,10 +177,7 @@ impl<R: Rig> Run<'_, '_, R> {
 
     /// Records that what played was left; false: the session ends.
     fn stopped(&mut self, left: bool, played: Played) -> Result<bool, R::Error> {
-        let reason = match left {
-            true => StopReason::Left,
-            false => StopReason::Interrupted,
-        };
+        let reason = if left { StopReason::Left } else { StopReason::Interrupted };
         let at_ms = self.clock.now_ms();
         let Played { drive_v, output, .. } = played;
         self.session.stopped(reason, drive_v, Some(output), at_ms)?;
@@ -189,10 +186,7 @@ impl<R: Rig> Run<'_, '_, R> {
 
     /// Records that what played ended with an error.
     fn failed(&mut self, error: &R::Error) -> Result<(), R::Error> {
-        let reason = match R::ran_dry(error) {
-            true => StopReason::RanDry,
-            false => StopReason::Failed,
-        };
+        let reason = if R::ran_dry(error) { StopReason::RanDry } else { StopReason::Failed };
         // What was never given to a device is no stop.
         if let Some((drive_v, output)) = self.rig.output_before_error() {
             let at_ms = self.clock.now_ms();

@@ -233,8 +233,8 @@ impl<'a> Session<'a> {
         let (drive_v, output) = (played.drive_v, played.output.clone());
         let (stops, simulated) = (self.stops(), self.is_simulated);
         let reference_rms = played.reference_rms;
-        self.record(match was_rising {
-            true => Line::Rise(Rise {
+        self.record(if was_rising {
+            Line::Rise(Rise {
                 phase,
                 texture,
                 model,
@@ -247,8 +247,9 @@ impl<'a> Session<'a> {
                 reference_rms,
                 at_ms,
                 simulated,
-            }),
-            false => Line::Gain(Matched {
+            })
+        } else {
+            Line::Gain(Matched {
                 texture,
                 key,
                 gain_db,
@@ -259,7 +260,7 @@ impl<'a> Session<'a> {
                 reference_rms,
                 at_ms,
                 simulated,
-            }),
+            })
         })
     }
 
@@ -325,9 +326,6 @@ impl<'a> Session<'a> {
 /// file system takes.
 fn felt_name(phase: &str, trial: &Trial) -> String {
     let name = format!("{phase}-{:04}-{}-{}", trial.number, trial.texture, trial.model);
-    let plain = |c: char| match c.is_ascii_alphanumeric() || "-_.".contains(c) {
-        true => c,
-        false => '_',
-    };
+    let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
     name.chars().map(plain).take(120).collect()
 }

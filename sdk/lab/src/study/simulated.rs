@@ -69,9 +69,10 @@ impl SimulatedParticipant {
         let off_db = matching.gain_db() - wanted_db;
         if matching.is_rising() {
             // It stops where the texture is at least as strong as it wants it.
-            return match off_db < 0.0 && matching.gain_db() < 0.0 {
-                true => GainKey::MuchStronger,
-                false => GainKey::Accept,
+            return if off_db < 0.0 && matching.gain_db() < 0.0 {
+                GainKey::MuchStronger
+            } else {
+                GainKey::Accept
             };
         }
         let key = match off_db {

@@ -118,10 +118,7 @@ pub fn record_with(
     let mut moments = 0;
     let mut watch = |_: &Moment<'_>| {
         moments += 1;
-        match moments > settings.stop_after {
-            true => Next::Stop,
-            false => Next::Go,
-        }
+        if moments > settings.stop_after { Next::Stop } else { Next::Go }
     };
     session.record(&mut watch, &mut |_| ())
 }

@@ -38,10 +38,7 @@ pub(super) fn mesh(conditions: &[[f64; 2]], triangles: &[Triangle]) -> Mesh {
 
 /// Returns the corners counterclockwise, from the lowest.
 fn upright([a, b, c]: [usize; 3], places: &[[f64; 2]]) -> [usize; 3] {
-    let [a, b, c] = match area(places[a], places[b], places[c]) < 0.0 {
-        true => [a, c, b],
-        false => [a, b, c],
-    };
+    let [a, b, c] = if area(places[a], places[b], places[c]) < 0.0 { [a, c, b] } else { [a, b, c] };
     let first = a.min(b).min(c);
     if first == a {
         [a, b, c]

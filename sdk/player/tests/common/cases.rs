@@ -159,10 +159,7 @@ fn described(step: &Step) -> Value {
 
 /// A number, or the name of what is none.
 fn readable(x: f32) -> Value {
-    match x.is_finite() {
-        true => json!(x),
-        false => json!(x.to_string()),
-    }
+    if x.is_finite() { json!(x) } else { json!(x.to_string()) }
 }
 
 fn bits(x: f32) -> String {

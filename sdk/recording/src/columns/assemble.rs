@@ -152,10 +152,7 @@ fn values(
         Values::Column(column) => {
             let is_needed = later.iter().any(|other| other.columns().contains(column));
             let own = &mut columns[place(*column)];
-            let mut values = match is_needed {
-                true => own.clone(),
-                false => std::mem::take(own),
-            };
+            let mut values = if is_needed { own.clone() } else { std::mem::take(own) };
             if chosen.scale != 1.0 {
                 values.iter_mut().for_each(|value| *value *= chosen.scale);
             }

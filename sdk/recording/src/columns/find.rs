@@ -35,10 +35,8 @@ pub(crate) fn find(columns: &Columns, column: &ColumnRef) -> Result<usize, ReadP
         [] => Err(columns.refuse(format!("the map's column {column} does not exist"))),
         [one, other, ..] => {
             let (one, other) = (columns.name(*one), columns.name(*other));
-            let advice = match one == other {
-                true => "give the number, as in #2",
-                false => "give the whole name",
-            };
+            let advice =
+                if one == other { "give the number, as in #2" } else { "give the whole name" };
             Err(columns.refuse(format!(
                 "several columns have the name {column}, such as {one} and {other}; {advice}"
             )))

@@ -176,9 +176,10 @@ impl Arrow {
             self.add_batch(Message { metadata: at, metadata_bytes: size + 8, body, body_bytes })?;
         }
         let left = self.source.length().saturating_sub(body);
-        match body_bytes <= left {
-            true => Ok(Some(body + body_bytes)),
-            false => Err(ArrowError::Layout("the stream ends inside this message; copy it again")),
+        if body_bytes <= left {
+            Ok(Some(body + body_bytes))
+        } else {
+            Err(ArrowError::Layout("the stream ends inside this message; copy it again"))
         }
     }
 
@@ -246,10 +247,7 @@ impl Arrow {
             bits.is_none_or(|bits| bits >> (row % 8) & 1 == 1)
         };
         values.extend(numbers.chunks_exact(kind.size()).enumerate().map(|(row, bytes)| {
-            match is_there(row) {
-                true => kind.value(bytes, self.schema.endian),
-                false => f64::NAN,
-            }
+            if is_there(row) { kind.value(bytes, self.schema.endian) } else { f64::NAN }
         }));
         Ok(())
     }
@@ -293,10 +291,7 @@ impl Arrow {
             -1 => compressed.take(wanted).read_to_end(&mut decompressed)?,
             _ => FrameDecoder::new(compressed).take(wanted).read_to_end(&mut decompressed)?,
         };
-        match decompressed.len() as u64 == wanted {
-            true => Ok(decompressed),
-            false => Err(outside()),
-        }
+        if decompressed.len() as u64 == wanted { Ok(decompressed) } else { Err(outside()) }
     }
 }
 
@@ -324,11 +319,12 @@ impl Sheet for Arrow {
 
 /// Reads metadata up to their largest size.
 fn metadata(source: &Shared, at: u64, bytes: u64) -> Result<Vec<u8>, ArrowError> {
-    match bytes <= MOST_METADATA {
-        true => Ok(source.read(at, bytes)?),
-        false => Err(ArrowError::Layout(
+    if bytes <= MOST_METADATA {
+        Ok(source.read(at, bytes)?)
+    } else {
+        Err(ArrowError::Layout(
             "the metadata are longer than any that are read; copy the file again",
-        )),
+        ))
     }
 }
 

@@ -104,20 +104,14 @@ impl<R: Read> ByteReader<R> {
         let mut bytes = Vec::new();
         let read = self.source.by_ref().take(length).read_to_end(&mut bytes)?;
         self.at += read as u64;
-        match read as u64 == length {
-            true => Ok(bytes),
-            false => Err(ErrorKind::UnexpectedEof.into()),
-        }
+        if read as u64 == length { Ok(bytes) } else { Err(ErrorKind::UnexpectedEof.into()) }
     }
 
     /// Reads past bytes.
     pub(crate) fn skip(&mut self, length: u64) -> io::Result<()> {
         let skipped = io::copy(&mut self.source.by_ref().take(length), &mut io::sink())?;
         self.at += skipped;
-        match skipped == length {
-            true => Ok(()),
-            false => Err(ErrorKind::UnexpectedEof.into()),
-        }
+        if skipped == length { Ok(()) } else { Err(ErrorKind::UnexpectedEof.into()) }
     }
 
     /// Reads `count` values, and passes each with its index.

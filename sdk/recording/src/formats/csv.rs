@@ -54,9 +54,10 @@ fn layout(head: &str) -> Result<(Table, Start), Fault> {
     split(first, delimiter, &mut cells);
     let width = cells.len();
     let is_name = |cell: &&str| parse_number(cell).is_none() && !cell.is_empty();
-    let (header, start) = match cells.iter().any(is_name) {
-        true => (Some(cells), after),
-        false => (commented_header(comment, delimiter, width), before),
+    let (header, start) = if cells.iter().any(is_name) {
+        (Some(cells), after)
+    } else {
+        (commented_header(comment, delimiter, width), before)
     };
     let columns = match header {
         Some(names) => Columns::new(names.into_iter().map(str::to_owned), None),

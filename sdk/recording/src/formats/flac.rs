@@ -108,9 +108,10 @@ impl<R: Read> Iterator for Decoded<R> {
         }
         let (sample, channel) = self.next;
         let value = self.block.sample(channel, sample);
-        self.next = match channel + 1 == self.block.channels() {
-            true => (sample + 1, 0),
-            false => (sample, channel + 1),
+        self.next = if channel + 1 == self.block.channels() {
+            (sample + 1, 0)
+        } else {
+            (sample, channel + 1)
         };
         Some(Ok(f64::from(value) / self.full_scale))
     }

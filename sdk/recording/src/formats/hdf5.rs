@@ -206,9 +206,10 @@ fn read(
         let here = to - from;
         slab(dataset, &SliceInfo { selections }, &mut |index, value| {
             // From the index in the slab to that in the data set.
-            let index = match shape.is_planar {
-                true => index / here * shape.samples + from + index % here,
-                false => from * shape.channels + index,
+            let index = if shape.is_planar {
+                index / here * shape.samples + from + index % here
+            } else {
+                from * shape.channels + index
             };
             keep(index, value);
         })?;

@@ -112,9 +112,10 @@ impl Mat {
     fn inside(&mut self, element: Element) -> io::Result<Box<dyn Read + '_>> {
         self.input.seek(SeekFrom::Start(element.at))?;
         let bytes = BufReader::new((&mut self.input).take(element.bytes));
-        Ok(match element.is_compressed {
-            true => Box::new(BufReader::new(ZlibDecoder::new(bytes))),
-            false => Box::new(bytes),
+        Ok(if element.is_compressed {
+            Box::new(BufReader::new(ZlibDecoder::new(bytes)))
+        } else {
+            Box::new(bytes)
         })
     }
 }

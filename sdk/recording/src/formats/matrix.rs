@@ -47,9 +47,10 @@ impl Shape {
 
     /// Returns channel and sample of a value, by its index in the file.
     pub(crate) fn place(self, index: u64) -> (u64, u64) {
-        match self.is_planar {
-            true => (index / self.samples, index % self.samples),
-            false => (index % self.channels, index / self.channels),
+        if self.is_planar {
+            (index / self.samples, index % self.samples)
+        } else {
+            (index % self.channels, index / self.channels)
         }
     }
 }

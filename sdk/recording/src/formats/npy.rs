@@ -24,10 +24,7 @@ pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>,
         are_integers: full_scale(header.kind).is_some(),
         frames: Some(rows),
         limit,
-        order: match header.is_planar {
-            true => Order::Planar(rows),
-            false => Order::Interleaved,
-        },
+        order: if header.is_planar { Order::Planar(rows) } else { Order::Interleaved },
         samples: Box::new(
             values(bytes, header, rows * width as u64).map(|value| value.map_err(broken)),
         ),

@@ -33,9 +33,6 @@ impl Shared {
         input.seek(SeekFrom::Start(at))?;
         let mut bytes = Vec::new();
         let read = (&mut *input).take(length).read_to_end(&mut bytes)?;
-        match read as u64 == length {
-            true => Ok(bytes),
-            false => Err(ErrorKind::UnexpectedEof.into()),
-        }
+        if read as u64 == length { Ok(bytes) } else { Err(ErrorKind::UnexpectedEof.into()) }
     }
 }

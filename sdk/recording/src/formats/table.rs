@@ -103,9 +103,10 @@ impl Table {
 
     fn wrong_width(&self, got: usize, mut lines: Lines<'_>) -> Fault {
         let (line, expected) = (lines.number, self.columns.width());
-        let problem = match got < expected && matches!(lines.next_row(), Ok(None)) {
-            true => ReadProblem::CutOff { expected, got },
-            false => ReadProblem::Ragged { expected, got },
+        let problem = if got < expected && matches!(lines.next_row(), Ok(None)) {
+            ReadProblem::CutOff { expected, got }
+        } else {
+            ReadProblem::Ragged { expected, got }
         };
         problem.at(Place::Line(line))
     }

@@ -46,9 +46,10 @@ fn build(_: &Requirements, played: &PlayedSurface, neutral: bool) -> Box<dyn Sta
     let scales = played.motions.explored().moves_frequencies() && !neutral;
     Box::new(FrequencyScaling {
         motions: Arc::clone(&played.motions),
-        warp: match scales {
-            true => Warp::new(played.voice_top_hz / played.rate_hz),
-            false => Warp::through(),
+        warp: if scales {
+            Warp::new(played.voice_top_hz / played.rate_hz)
+        } else {
+            Warp::through()
         },
         scales,
         ratio: 1.0,

@@ -36,10 +36,7 @@ impl Drive {
 
 /// Gain that maps the scene's reference level to `level`; 0 if there is no reference level.
 fn brings_level_to(level: f64, required: &Requirements) -> f64 {
-    match required.level_rms > LEAST_RMS {
-        true => level / required.level_rms,
-        false => 0.0,
-    }
+    if required.level_rms > LEAST_RMS { level / required.level_rms } else { 0.0 }
 }
 
 fn need(required: &Requirements) -> Need {

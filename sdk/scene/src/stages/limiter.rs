@@ -57,10 +57,7 @@ impl Stage for Limiter {
         let (limit, mut held) = (self.limit, 0);
         for sample in out {
             held += u64::from(sample.is_nan() || sample.abs() > limit);
-            *sample = match sample.is_nan() {
-                true => 0.0,
-                false => sample.clamp(-limit, limit),
-            };
+            *sample = if sample.is_nan() { 0.0 } else { sample.clamp(-limit, limit) };
         }
         self.held += held;
     }

@@ -29,9 +29,10 @@ fn need(required: &Requirements) -> Need {
 }
 
 fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
-    match neutral {
-        true => Box::new(Unchanged),
-        false => Box::new(SquareRoot { shift: Drive::of(required).shift as f32, held: 0 }),
+    if neutral {
+        Box::new(Unchanged)
+    } else {
+        Box::new(SquareRoot { shift: Drive::of(required).shift as f32, held: 0 })
     }
 }
 

@@ -82,9 +82,10 @@ fn cause(error: &HttpError) -> Last {
         return Last::NotFollowed(reason);
     }
     let text = cause.to_string();
-    Last::Cut(match text.is_empty() || text.contains("://") {
-        true => "the connection failed".to_owned(),
-        false => text,
+    Last::Cut(if text.is_empty() || text.contains("://") {
+        "the connection failed".to_owned()
+    } else {
+        text
     })
 }
 
@@ -166,10 +167,7 @@ impl HttpService for Logged {
         if parts.status.is_success() {
             self.log.ended(Last::Status { status, code: None });
             let log = Arc::clone(&self.log);
-            let body = match is_list {
-                true => bounded(body),
-                false => body,
-            };
+            let body = if is_list { bounded(body) } else { body };
             let body = HttpResponseBody::new(Counted { body, log });
             return Ok(HttpResponse::from_parts(parts, body));
         }

@@ -53,14 +53,12 @@ impl Store {
     ) -> Result<Self, StorageError> {
         let problem = |problem| StorageProblem::Settings { problem }.at(location);
         let of = |by| clients.of(by, settings).map_err(problem);
-        let by = match is_of_person {
-            true => NamedBy::Person,
-            false => NamedBy::Other,
-        };
+        let by = if is_of_person { NamedBy::Person } else { NamedBy::Other };
         // The server of a store is named in the environment.
-        let client = match uri.scheme.is_read_only() {
-            true => Client::Web(Following { first: of(by)?, world: of(NamedBy::Other)?, by }),
-            false => Client::Store(of(NamedBy::Person)?),
+        let client = if uri.scheme.is_read_only() {
+            Client::Web(Following { first: of(by)?, world: of(NamedBy::Other)?, by })
+        } else {
+            Client::Store(of(NamedBy::Person)?)
         };
         let log = Arc::new(Log::default());
         let connector = Connector { client, log: Arc::clone(&log) };

@@ -153,9 +153,10 @@ impl Store {
     }
 
     fn check_size(&self, bytes: u64, most_bytes: u64) -> Result<(), Fail> {
-        match bytes <= most_bytes {
-            true => Ok(()),
-            false => Err(Fail::Own(StorageProblem::TooLarge { most_bytes }.at(&self.location))),
+        if bytes <= most_bytes {
+            Ok(())
+        } else {
+            Err(Fail::Own(StorageProblem::TooLarge { most_bytes }.at(&self.location)))
         }
     }
 }

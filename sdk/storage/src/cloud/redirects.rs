@@ -105,10 +105,7 @@ fn is_kept(name: &header::HeaderName) -> bool {
 }
 
 fn check_number(url: &Url) -> Result<(), HttpError> {
-    match url.host_str().is_none_or(is_inner_number) {
-        true => Err(refused(INNER)),
-        false => Ok(()),
-    }
+    if url.host_str().is_none_or(is_inner_number) { Err(refused(INNER)) } else { Ok(()) }
 }
 
 fn url(text: &str) -> Result<Url, HttpError> {

@@ -121,10 +121,7 @@ pub(crate) fn open(mut call: Document, files: Files<'_>) -> Result<Answer, Refus
 
 /// The built-in models; those that textures bring along run if that is allowed.
 fn models(embedded: bool) -> Result<Registry, Refusal> {
-    let engine = match embedded {
-        true => WasmEngine::Checked,
-        false => WasmEngine::Off,
-    };
+    let engine = if embedded { WasmEngine::Checked } else { WasmEngine::Off };
     let limits = WasmLimits::default().with_engine(engine);
     Ok(Registry::search(&Search::builtin().with_limits(limits))?)
 }
@@ -252,9 +249,10 @@ fn id(call: &mut Document) -> Result<u64, Refusal> {
 fn count(call: &mut Document, name: &'static str) -> Result<usize, Refusal> {
     let number = call.number(name)?.unwrap_or(-1.0);
     let is_whole = number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number);
-    match is_whole {
-        true => Ok(number as usize),
-        false => Err(Refusal::argument(format!("{name} is a whole number"))),
+    if is_whole {
+        Ok(number as usize)
+    } else {
+        Err(Refusal::argument(format!("{name} is a whole number")))
     }
 }
 

@@ -121,9 +121,10 @@ fn shape(set: &[f64]) -> String {
     }
     let power: f64 = out.iter().map(|&x| f64::from(x).powi(2)).sum();
     let rms = (power / out.len() as f64).sqrt();
-    match (level_rms(&magnitude) - 1.0).abs() < 1e-9 && (0.5..2.0).contains(&rms) {
-        true => "unit RMS".to_owned(),
-        false => format!("RMS {rms}"),
+    if (level_rms(&magnitude) - 1.0).abs() < 1e-9 && (0.5..2.0).contains(&rms) {
+        "unit RMS".to_owned()
+    } else {
+        format!("RMS {rms}")
     }
 }
 

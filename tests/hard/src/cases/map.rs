@@ -80,10 +80,7 @@ fn is_bounded(parameters: &[f64]) -> bool {
 fn said_of(parameters: &[f64]) -> String {
     let magnitude = told(model("map").magnitude(parameters, BAND, &[100.0]));
     let voice = told(model("map").voice(parameters, BAND, RATE_HZ, 1));
-    match magnitude == voice {
-        true => voice,
-        false => format!("by magnitude {magnitude}; by voice {voice}"),
-    }
+    if magnitude == voice { voice } else { format!("by magnitude {magnitude}; by voice {voice}") }
 }
 
 const CASES: &[Case] = &[

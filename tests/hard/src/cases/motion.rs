@@ -138,10 +138,7 @@ fn felt(device: &Capabilities, motions: &[(f64, f64)]) -> f64 {
         peak = sizes.fold(peak, worse);
     }
     let held_numbers = renderer.limited_samples() == at_limit;
-    match held_numbers && block.iter().any(|x| *x != 0.0) {
-        true => peak,
-        false => f64::NAN,
-    }
+    if held_numbers && block.iter().any(|x| *x != 0.0) { peak } else { f64::NAN }
 }
 
 /// The largest sample of a scene that never changes, of a finger that all but lifts off.

@@ -53,11 +53,10 @@ pub(super) fn check(
 }
 
 fn check_reference(effect: &Effect, known: &BTreeSet<i64>, at: &str) -> Result<(), Fault> {
-    match effect.id.is_some_and(|id| known.contains(&id)) {
-        true => Ok(()),
-        false => {
-            Err(Fault::new(format!("{at}/id"), "the effect library has no basis effect of this id"))
-        }
+    if effect.id.is_some_and(|id| known.contains(&id)) {
+        Ok(())
+    } else {
+        Err(Fault::new(format!("{at}/id"), "the effect library has no basis effect of this id"))
     }
 }
 

@@ -33,9 +33,10 @@ struct Kind {
 
 pub(super) fn check(hjif: &Hjif) -> Result<(), Fault> {
     let kind = Kind::of(hjif)?;
-    let timescales = match kind.is_parametric {
-        true => PARAMETRIC_TIMESCALE..=PARAMETRIC_TIMESCALE,
-        false => 1.0..=MOST_TIMESCALE,
+    let timescales = if kind.is_parametric {
+        PARAMETRIC_TIMESCALE..=PARAMETRIC_TIMESCALE
+    } else {
+        1.0..=MOST_TIMESCALE
     };
     let timescale = f64::from(hjif.timescale);
     within(|| "/timescale".to_owned(), "the timescale", timescale, timescales)?;

@@ -59,9 +59,10 @@ pub(crate) fn quantity(name: Option<String>) -> Result<Quantity, Refusal> {
 
 fn band(edges: &[Value]) -> Result<Band, Refusal> {
     let [low, high] = edges else {
-        return match edges.is_empty() {
-            true => Ok(Band::TACTILE),
-            false => Err(Refusal::argument("a band has two edges, Hz")),
+        return if edges.is_empty() {
+            Ok(Band::TACTILE)
+        } else {
+            Err(Refusal::argument("a band has two edges, Hz"))
         };
     };
     match (number(low), number(high)) {

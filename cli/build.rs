@@ -15,8 +15,9 @@ fn main() {
         println!("cargo:rustc-env=HTEX_SDK={sources}/../sdk");
     }
     let is_optimised = std::env::var("PROFILE").is_ok_and(|profile| profile == "release");
-    let commit = given.or_else(|| is_optimised.then(of_clone).flatten());
-    let commit = commit.unwrap_or_else(|| "unknown".to_owned());
+    let commit = given
+        .or_else(|| is_optimised.then(of_clone).flatten())
+        .unwrap_or_else(|| "unknown".to_owned());
     println!("cargo:rustc-env=HTEX_COMMIT={commit}");
     let target = std::env::var("TARGET").unwrap_or_default();
     println!("cargo:rustc-env=HTEX_TARGET={target}");

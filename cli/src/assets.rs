@@ -235,8 +235,7 @@ impl AssetSummary {
 impl AssetSummary {
     /// How many triangles each representation stores, of those that store them.
     fn triangles_text(&self) -> String {
-        let stored = self.representations.iter();
-        let stored = stored.filter(|r| !r.triangles.is_empty());
+        let stored = self.representations.iter().filter(|r| !r.triangles.is_empty());
         let line = |r: &RepresentationSummary| {
             let count = r.triangles.len();
             format!("  {}: interpolated in {count} stored triangles\n", short_name(&r.model))

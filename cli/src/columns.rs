@@ -20,8 +20,7 @@ pub(crate) fn columns(measures: impl IntoIterator<Item = Measure>) -> Vec<Column
     let (stored, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|m| m.row().stored);
     let played = stored.iter().map(|m| Column::new(*m, By::Samples));
     let own = |m: &Measure| Column::new(*m, By::Magnitude);
-    let columns = stored.iter().map(own).chain(played);
-    let columns = columns.chain(others.iter().map(own));
+    let columns = stored.iter().map(own).chain(played).chain(others.iter().map(own));
     columns.filter(|column| !column.heading().is_empty()).collect()
 }
 

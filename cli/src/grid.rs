@@ -82,8 +82,10 @@ pub(crate) fn grid_plot(name: &str, grid: &GridReport) -> Plot {
     );
     (plot.width, plot.height) = (860.0, 560.0);
     let windows = grid.motions.iter().map(|[speed, force]| (*speed, *force));
-    let windows = Series::scatter(&format!("{} steady windows", grid.steady), windows.collect());
-    let mut windows = windows.colored(WINDOWS).behind();
+    let mut windows =
+        Series::scatter(&format!("{} steady windows", grid.steady), windows.collect())
+            .colored(WINDOWS)
+            .behind();
     windows.marker_radius_px = Some(1.6);
     plot.series.push(windows);
     plot.series.push(Series::line("mesh", mesh(grid)).colored(MESH).behind());

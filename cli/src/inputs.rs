@@ -85,8 +85,11 @@ impl InputArgs {
 
     pub(crate) fn signals(&self, name: &str, source: &dyn Source) -> Result<Signals, Failure> {
         let map = parsed(self.map.as_deref())?;
-        let calibrations = self.calibration.iter().map(|path| Calibration::read(path));
-        let calibrations = calibrations.collect::<Result<_, _>>()?;
+        let calibrations = self
+            .calibration
+            .iter()
+            .map(|path| Calibration::read(path))
+            .collect::<Result<_, _>>()?;
         let signals =
             Signals::new(name, source.channels(), calibrations, map.as_ref(), self.quantity())?;
         Ok(signals)
@@ -108,8 +111,7 @@ impl InputArgs {
                 Box::new(LineTracker::new("standard input", input))
             }
             Some(("lines", path)) => {
-                let file = std::fs::File::open(path);
-                let file = file.reading(path)?;
+                let file = std::fs::File::open(path).reading(path)?;
                 Box::new(LineTracker::new(path, BufReader::new(file)))
             }
             _ => {

@@ -95,8 +95,10 @@ const FORMATS: [&str; 27] = [
 /// leaves the choice to the extension, and to the command.
 fn check_format(location: &Location, argument: Option<&clap::Arg>) -> Result<(), String> {
     let names = argument.and_then(clap::Arg::get_value_names);
-    let written = names.and_then(<[_]>::first).map(|name| name.as_str());
-    let written = written.map(|name| name.rsplit('.').next().unwrap_or(name).to_ascii_lowercase());
+    let written = names
+        .and_then(<[_]>::first)
+        .map(|name| name.as_str())
+        .map(|name| name.rsplit('.').next().unwrap_or(name).to_ascii_lowercase());
     let name = location.file_name().unwrap_or_default();
     let given = name.rsplit_once('.').map(|(_, end)| end.to_ascii_lowercase());
     let (Some(written), Some(given)) = (written, given) else {

@@ -78,8 +78,10 @@ impl Reported<'_> {
         };
         let (id, quality) = (Some(&representation.model[..]), at.quality.as_ref());
         let known = &self.asset.manifest().conditions[condition];
-        let motion = known.speed_mm_s.zip(known.force_n);
-        let motion = motion.map(|(speed, force)| htex::Motion::new(speed, force));
+        let motion = known
+            .speed_mm_s
+            .zip(known.force_n)
+            .map(|(speed, force)| htex::Motion::new(speed, force));
         let grid = &self.fitted.spectra[condition].frequency_hz;
         let loaded = self.asset.loaded_model(id)?;
         let name = short_name(&representation.model);

@@ -52,8 +52,8 @@ impl Named {
     }
 
     fn new(file: &str, schema: &Value) -> Result<Self, Failure> {
-        let schema = Schema::new(schema);
-        let schema = schema.map_err(|error| Failure::Other(format!("{file}: {error}")))?;
+        let schema =
+            Schema::new(schema).map_err(|error| Failure::Other(format!("{file}: {error}")))?;
         let file = file.to_owned();
         Ok(Self { file, schema })
     }

@@ -34,8 +34,7 @@ pub(crate) fn fetch() -> Result<(), Failure> {
         };
         let mut options = File::options();
         htex_files::private::only_user(&mut options);
-        let file = options.write(true).create_new(true).open(&local);
-        let file = file.writing(&local)?;
+        let file = options.write(true).create_new(true).open(&local).writing(&local)?;
         storage.download(&location, file, most_bytes)?;
     }
     Ok(())

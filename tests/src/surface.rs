@@ -141,14 +141,12 @@ impl Surface {
     pub fn rust_prototypes(&self) -> Prototypes {
         let code = rust_code(self.code);
         let mark = format!("pub struct {} {{", self.table);
-        let table = code.split_once(&mark).unwrap().1;
-        let table = table.split_once('}').unwrap().0;
+        let table = code.split_once(&mark).unwrap().1.split_once('}').unwrap().0;
         let fields = table.split(',').filter_map(|field| {
             let (name, kind) = field.trim().strip_prefix("pub ")?.split_once(": ")?;
             Some((name.to_owned(), kind.to_owned()))
         });
-        let more = self.more.iter();
-        let more = more.map(|(name, kind)| (name.to_string(), kind.to_string()));
+        let more = self.more.iter().map(|(name, kind)| (name.to_string(), kind.to_string()));
         let shared = self.shared.map(rust_code).unwrap_or_default();
         let types = code.clone() + &shared;
         let prototype = |(name, kind): (String, String)| {
@@ -161,8 +159,7 @@ impl Surface {
 
     /// Names of the constants that the Rust side states, as C has them.
     pub fn rust_constant_names(&self) -> Vec<String> {
-        let constants = rust_code(self.code);
-        let constants = constants.lines().filter_map(|line| {
+        let constants = rust_code(self.code).lines().filter_map(|line| {
             let (name, _) = line.strip_prefix("pub const ")?.split_once(':')?;
             Some(format!("{}{name}", self.constant))
         });
@@ -188,8 +185,7 @@ impl Surface {
     /// The surface by these constants: a line for each constant and function, in order of name.
     pub fn listing(&self, constants: &Constants) -> String {
         let constants = constants.iter().map(|(name, value)| format!("{name} {value}\n"));
-        let functions = self.rust_prototypes();
-        let functions = functions.values().map(|text| format!("{text};\n"));
+        let functions = self.rust_prototypes().values().map(|text| format!("{text};\n"));
         constants.chain(functions).collect()
     }
 

@@ -157,8 +157,10 @@ fn bands_of_whole_and_narrow_spectra() {
         let grid = band.grid_hz();
         let magnitude =
             if case.has_input("mag") { case.input("mag") } else { smooth_spectrum(&grid) };
-        let options = ["bands", "step_db", "layout"].map(|key| (key, case.input_text(key)));
-        let options = options.each_ref().map(|(key, value)| (*key, &value[..]));
+        let options = ["bands", "step_db", "layout"]
+            .map(|key| (key, case.input_text(key)))
+            .each_ref()
+            .map(|(key, value)| (*key, &value[..]));
         let request = FitRequest {
             band,
             frequency_hz: &grid,
@@ -222,8 +224,11 @@ fn arma_of_the_spectrum_of_a_known_filter_is_near_it() {
         let fit = arma.fit(&request).unwrap();
         let magnitude = arma.magnitude(&fit.parameters, band, &grid).unwrap();
         // The last bins are next to a zero at the Nyquist frequency.
-        let errors = magnitude.iter().zip(&expected).take(93);
-        let errors = errors.map(|(m, e)| 20.0 * (m * fit.level_rms / e).log10());
+        let errors = magnitude
+            .iter()
+            .zip(&expected)
+            .take(93)
+            .map(|(m, e)| 20.0 * (m * fit.level_rms / e).log10());
         let rms = (errors.map(|db| db * db).sum::<f64>() / 93.0).sqrt();
         println!("{}: {rms:.3} dB", case.name());
         assert!(rms < 1.0, "{}: {rms} dB", case.name());

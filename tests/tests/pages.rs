@@ -195,8 +195,9 @@ fn the_map_is_short_and_what_it_names_is_there() {
         let test = code(row.split(" | ").nth(1).unwrap()).next().unwrap();
         assert!(known.contains(test), "there is no test {test}");
     }
-    let decisions = std::fs::read_dir(root.join("docs/decisions")).unwrap();
-    let decisions = decisions.map(|entry| std::fs::read_to_string(entry.unwrap().path()).unwrap());
+    let decisions = std::fs::read_dir(root.join("docs/decisions"))
+        .unwrap()
+        .map(|entry| std::fs::read_to_string(entry.unwrap().path()).unwrap());
     for text in decisions.chain([text]) {
         for path in paths(&text) {
             assert!(root.join(path).exists(), "there is no {path}");

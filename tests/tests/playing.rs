@@ -68,8 +68,11 @@ fn the_text_has_every_field_and_its_range() {
             let range = format!("| {} | {low} | {high} |", field.unit);
             let name = format!("`{}`", field.name);
             let told = |row: &&&str| row.contains(&name) && row.contains(&range);
-            let row = rows.iter().find(told).copied();
-            let row = row.unwrap_or_else(|| panic!("{} {name} {range}", model.id()));
+            let row = rows
+                .iter()
+                .find(told)
+                .copied()
+                .unwrap_or_else(|| panic!("{} {name} {range}", model.id()));
             if let htex_host::Kind::List { max_len } = field.kind {
                 assert!(row.contains(&format!(" to {max_len} of them")) || row.contains("as many"));
             }

@@ -37,8 +37,11 @@ impl Commit {
 
 /// What git prints, without the last line's end.
 fn git(words: &[&str]) -> Result<String> {
-    let output = Command::new("git").args(words).current_dir(workspace()).output();
-    let output = output.context("git, which says what commit is released")?;
+    let output = Command::new("git")
+        .args(words)
+        .current_dir(workspace())
+        .output()
+        .context("git, which says what commit is released")?;
     ensure!(output.status.success(), "git {}: {}", words.join(" "), output.status);
     Ok(String::from_utf8(output.stdout)?.trim_end().to_owned())
 }

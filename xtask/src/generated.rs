@@ -93,8 +93,9 @@ pub fn section(path: &str, name: &str, text: &str) {
 pub fn section_with(path: &str, name: &str, text: &str, is_fresh: impl FnOnce(&str) -> bool) {
     let document = fs::read_to_string(crate::places::workspace().join(path)).unwrap_or_default();
     let begin = format!("<!-- {name}, generated -->\n");
-    let parts = document.split_once(&begin);
-    let parts = parts.and_then(|(before, rest)| Some((before, rest.split_once("<!-- end -->")?)));
+    let parts = document
+        .split_once(&begin)
+        .and_then(|(before, rest)| Some((before, rest.split_once("<!-- end -->")?)));
     let Some((before, (kept, after))) = parts else {
         panic!("{path}: there is no part {begin}");
     };

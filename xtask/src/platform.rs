@@ -220,8 +220,9 @@ impl Build {
     }
 
     fn profile_name(&self) -> String {
-        let named = std::env::var("HTEX_PROFILE").ok();
-        let named = named.filter(|name| !name.is_empty() && !self.is_release());
+        let named = std::env::var("HTEX_PROFILE")
+            .ok()
+            .filter(|name| !name.is_empty() && !self.is_release());
         named.unwrap_or_else(|| "release".to_owned())
     }
 
@@ -261,8 +262,9 @@ impl Build {
 
 /// Flags of the compiler by which no path of this machine is in what it writes.
 pub(crate) fn without_places() -> String {
-    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
-    let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
+    let home = std::env::var_os("CARGO_HOME")
+        .map(PathBuf::from)
+        .or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
     let sources = std::fs::canonicalize(workspace()).unwrap_or_else(|_| workspace());
     let places = home.into_iter().map(|home| (home, "/cargo"));
     let all = places.chain(std::iter::once((sources, "/htex")));

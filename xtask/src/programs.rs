@@ -29,8 +29,7 @@ pub fn run(command: &mut Command) -> Result<()> {
 /// As [`run`].
 pub(crate) fn output(command: &mut Command) -> Result<Vec<u8>> {
     forget_package(command);
-    let output = command.stderr(Stdio::inherit()).output();
-    let output = output.with_context(|| name(command))?;
+    let output = command.stderr(Stdio::inherit()).output().with_context(|| name(command))?;
     check(command, output.status).map(|()| output.stdout)
 }
 

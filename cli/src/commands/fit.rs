@@ -79,8 +79,7 @@ impl Fit {
     pub(crate) fn run(mut self) -> Result<Exit, Failure> {
         let files = self.recordings.iter().chain(&self.embed_plugin).chain(&self.sign_with);
         let files = files.chain(self.plugins.files()).map(PathBuf::as_path);
-        let outputs = [&self.output].into_iter().chain(&self.report);
-        let outputs = outputs.chain(&self.grid_svg);
+        let outputs = [&self.output].into_iter().chain(&self.report).chain(&self.grid_svg);
         check_outputs(outputs.map(PathBuf::as_path), files.chain(self.reading.inputs()))?;
         let registry = self.plugins.registry_with(&self.embed_plugin)?;
         let metadata = std::mem::take(&mut self.metadata);

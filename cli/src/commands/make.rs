@@ -67,9 +67,12 @@ impl Make {
         checked(&metadata)?;
         let registry = self.plugins.registry()?;
         let model = registry.find(&self.model)?;
-        let at = self.at.as_deref();
-        let at = at.map(|text| parse_condition(text, Exploration::default()));
-        let at = at.transpose()?.unwrap_or_default();
+        let at = self
+            .at
+            .as_deref()
+            .map(|text| parse_condition(text, Exploration::default()))
+            .transpose()?
+            .unwrap_or_default();
         let stem = self.output.file_stem().unwrap_or_default();
         let mut texture = ByHand::new(stem.to_string_lossy(), self.level, tool())
             .at(Condition {
@@ -117,8 +120,9 @@ fn parameter(text: &str) -> Result<(String, Vec<f64>), Failure> {
     let (name, numbers) = text.split_once('=').ok_or_else(|| wrong("there is no `=`"))?;
     let numbers = numbers.split(',').map(|number| number.trim().parse().ok());
     let numbers: Option<Vec<f64>> = numbers.collect();
-    let numbers = numbers.filter(|all| all.iter().all(|x| x.is_finite()));
-    let numbers = numbers.ok_or_else(|| wrong("what follows is not a number"))?;
+    let numbers = numbers
+        .filter(|all| all.iter().all(|x| x.is_finite()))
+        .ok_or_else(|| wrong("what follows is not a number"))?;
     Ok((name.trim().to_owned(), numbers))
 }
 

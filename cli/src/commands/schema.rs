@@ -65,8 +65,7 @@ impl Schema {
                 serde_json::to_value(all)
             }
         };
-        let text = value.and_then(|value| serde_json::to_string_pretty(&value));
-        let text = text?;
+        let text = value.and_then(|value| serde_json::to_string_pretty(&value))?;
         print(&(text + "\n"))?;
         Ok(Exit::SUCCESS)
     }

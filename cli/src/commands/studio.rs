@@ -59,8 +59,7 @@ impl Studio {
 
     /// The folder that has the page.
     fn page(&self) -> Result<PathBuf, Failure> {
-        let given = self.folder.clone();
-        let given = given.or_else(|| std::env::var_os(VARIABLE).map(PathBuf::from));
+        let given = self.folder.clone().or_else(|| std::env::var_os(VARIABLE).map(PathBuf::from));
         let looked = match given {
             Some(folder) => vec![folder],
             None => shared().into_iter().collect(),

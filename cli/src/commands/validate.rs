@@ -61,8 +61,11 @@ pub(crate) struct Validate {
 
 impl Validate {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let schemas = self.extension_schema.iter().map(|a| ExtensionSchema::read(a));
-        let schemas = schemas.collect::<Result<Vec<_>, _>>()?;
+        let schemas = self
+            .extension_schema
+            .iter()
+            .map(|a| ExtensionSchema::read(a))
+            .collect::<Result<Vec<_>, _>>()?;
         let kinds: Vec<Kind> = self.files.iter().map(|path| kind(path)).collect();
         if self.reading.is_given() && !kinds.contains(&Kind::Recording) {
             let sentence =

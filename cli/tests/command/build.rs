@@ -273,8 +273,7 @@ fn globs_find_what_they_say_wherever_it_is() {
     }
     symlink("..", place.path("recipes/loop")).unwrap();
     fs::copy(place.path("rec/vinyl_1.csv"), place.path("recipes/rec/vinyl_1.csv")).unwrap();
-    let absolute = place.path("rec").canonicalize().unwrap();
-    let absolute = absolute.display();
+    let absolute = place.path("rec").canonicalize().unwrap().display();
     for (glob, textures) in [
         ("../rec/*.csv".to_owned(), 6),
         ("../rec/vinyl_{1,2}.csv".to_owned(), 2),
@@ -329,8 +328,11 @@ fn the_bytes_do_not_depend_on_jobs_folder_or_order() {
     build(&place, "three", &["--jobs", "3"]);
     let expected = results(&place.path("one"));
     assert_same(&results(&place.path("three")), &expected);
-    let kept = fs::read_dir(place.path("one/.htex-build/made")).unwrap();
-    let kept = kept.map(|entry| entry.unwrap().path()).next().unwrap();
+    let kept = fs::read_dir(place.path("one/.htex-build/made"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .next()
+        .unwrap();
     let mut bytes = fs::read(&kept).unwrap();
     *bytes.last_mut().unwrap() ^= 1;
     fs::write(&kept, bytes).unwrap();

@@ -33,8 +33,8 @@ fn every_subcommand_has_a_manual_page_and_is_completed() {
     let scripts = ["bash", "zsh", "fish", "powershell"]
         .map(|shell| (shell, text(&place, &["completions", shell])));
     for name in names {
-        let page = fs::read_to_string(place.path(&format!("pages/htex-{name}.1")));
-        let page = page.unwrap_or_else(|error| panic!("htex-{name}.1: {error}"));
+        let page = fs::read_to_string(place.path(&format!("pages/htex-{name}.1")))
+            .unwrap_or_else(|error| panic!("htex-{name}.1: {error}"));
         assert!(page.contains(".SH SYNOPSIS"), "{page}");
         for (shell, script) in &scripts {
             assert!(script.contains(name), "{shell} does not complete {name}");

@@ -54,8 +54,7 @@ fn a_page_leads_nowhere_else_and_leaves_no_service_worker() {
     let mut line = String::new();
     let mut said = BufReader::new(child.stdout.take().unwrap());
     said.read_line(&mut line).unwrap();
-    let url = line.split([' ', ';']).find(|word| word.starts_with("http"));
-    let url = url.unwrap().to_owned();
+    let url = line.split([' ', ';']).find(|word| word.starts_with("http")).unwrap().to_owned();
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     listener.set_nonblocking(true).unwrap();
     let elsewhere = format!("http://127.0.0.1:{}/", listener.local_addr().unwrap().port());

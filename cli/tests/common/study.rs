@@ -33,8 +33,11 @@ pub fn on_card(place: &Place, folder: &str, more: &[&str]) -> Command {
 
 /// The answers of a folder by file name.
 pub fn answers(folder: &Path) -> BTreeMap<String, String> {
-    let files = fs::read_dir(folder).into_iter().flatten().map(Result::unwrap);
-    let files = files.filter(|file| file.file_name().to_string_lossy().ends_with(".jsonl"));
+    let files = fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .map(Result::unwrap)
+        .filter(|file| file.file_name().to_string_lossy().ends_with(".jsonl"));
     let read = |file: fs::DirEntry| {
         let name = file.file_name().to_string_lossy().into_owned();
         (name, fs::read_to_string(file.path()).unwrap())
@@ -46,8 +49,7 @@ pub fn answers(folder: &Path) -> BTreeMap<String, String> {
 /// their number in other lines.
 pub fn unstopped(folder: &Path) -> BTreeMap<String, String> {
     let unstopped = |text: String| {
-        let lines = text.lines();
-        let lines = lines.filter(|line| !line.starts_with("{\"kind\":\"stopped\""));
+        let lines = text.lines().filter(|line| !line.starts_with("{\"kind\":\"stopped\""));
         let number = |line: &str| {
             (1..9).fold(line.to_owned(), |line, stops| {
                 line.replace(&format!("\"stops\":{stops}"), "\"stops\":0")

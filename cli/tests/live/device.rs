@@ -101,8 +101,9 @@ fn sound_devices_pass() {
     let file = checked(&place, &["file", "--set", "encoding=i16"]);
     assert_eq!(complaints(&file), []);
     assert_eq!(count(&file, "passed"), CHECKS.len() - 7, "{file:#}");
-    let drive = ["quantity=display_voltage", "limit_v=100", "carrier_hz=10000"];
-    let drive = drive.map(|pair| ["--set", pair]).concat();
+    let drive = ["quantity=display_voltage", "limit_v=100", "carrier_hz=10000"]
+        .map(|pair| ["--set", pair])
+        .concat();
     let drive = checked(&place, &[&["org.htex.file"], &drive[..]].concat());
     assert_eq!(complaints(&drive), []);
 }
@@ -141,8 +142,9 @@ fn the_strip_chart_draws() {
     let place = Place::new();
     let adapter = NativeAdapter::load(&strip(&place)).unwrap();
     let chart = place.path("hour.svg");
-    let given = [("path", chart.to_str().unwrap()), ("full_scale_n", "2")];
-    let given = given.map(|(k, v)| (k.to_owned(), v.to_owned())).into();
+    let given = [("path", chart.to_str().unwrap()), ("full_scale_n", "2")]
+        .map(|(k, v)| (k.to_owned(), v.to_owned()))
+        .into();
     let settings = Settings::resolve(adapter.descriptor(), Some("day"), &given).unwrap();
     assert_eq!(adapter.capabilities(&settings).unwrap().limit, Some(2.0));
     let format = StreamFormat { rate_hz: 1_000.0, block_frames: 1_000 };

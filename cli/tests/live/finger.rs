@@ -132,8 +132,7 @@ fn the_generic_profile_states_its_direct_voltage() {
     let bench = Bench::new(json!({ "device": { "adapter": "daq" }, "duration_s": 1 }));
     let driver = format!("driver={}", crate::simulated::built().display());
     let play = ["play", SCENE, "--profile", "generic", "--set", &driver];
-    let done = recorded(&mut bench.0.command(&play), &bench.0).output();
-    let done = done.unwrap();
+    let done = recorded(&mut bench.0.command(&play), &bench.0).output().unwrap();
     assert!(done.status.success(), "{}", text(&done));
     let info = bench.0.run(&["device", "info", "daq"]);
     assert!(info.text().contains("direct voltage"), "{}", info.text());

@@ -16,8 +16,9 @@ const BLOCK_MS: f64 = 5.0;
 
 /// Starts playback in real time; the motion follows.
 fn begin(bench: &Bench, more: &[&str]) -> Child {
-    let mut command = bench.command(&[&["play", "--motion", "-"], more].concat());
-    let command = command.env("NIDAQMX_SIM_CLOCK", "wall");
+    let command = bench
+        .command(&[&["play", "--motion", "-"], more].concat())
+        .env("NIDAQMX_SIM_CLOCK", "wall");
     command.stdin(Stdio::piped()).spawn().unwrap()
 }
 

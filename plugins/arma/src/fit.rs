@@ -82,12 +82,14 @@ struct Spectrum {
 impl Spectrum {
     fn new(input: &FitInput<'_>, largest: f64, rate_hz: f64) -> Self {
         let first = input.frequency_hz.first().copied().unwrap_or(0.0);
-        let below = (0..).map(|bin| f64::from(bin) * GRID_HZ);
-        let below = below.take_while(|hz| *hz < first - 0.5 * GRID_HZ);
-        let below = below.map(|hz| (hz, input.magnitude.first().copied().unwrap_or(0.0)));
+        let below = (0..)
+            .map(|bin| f64::from(bin) * GRID_HZ)
+            .take_while(|hz| *hz < first - 0.5 * GRID_HZ)
+            .map(|hz| (hz, input.magnitude.first().copied().unwrap_or(0.0)));
         let own = input.frequency_hz.iter().copied();
-        let all = below.chain(own.zip(input.magnitude.iter().copied()));
-        let all = all.filter(|(hz, _)| *hz <= 0.5 * rate_hz);
+        let all = below
+            .chain(own.zip(input.magnitude.iter().copied()))
+            .filter(|(hz, _)| *hz <= 0.5 * rate_hz);
         let power = |m: f64| ((m / largest) * (m / largest)).max(FLOOR);
         let (frequency_hz, power): (Vec<f64>, _) = all.map(|(hz, m)| (hz, power(m))).unzip();
         let is_mirrored = |hz: &f64| *hz > 0.0 && *hz < 0.5 * rate_hz;

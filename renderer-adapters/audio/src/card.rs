@@ -127,12 +127,12 @@ impl Card {
             let format = FORMATS.iter().position(|f| *f == c.sample_format());
             (format, c.channels().abs_diff(channels))
         };
-        let best = self.configs.iter().filter(fits).min_by_key(rank);
-        let best = best.ok_or_else(|| DeviceError::Rate {
-            device: self.name.clone(),
-            rate_hz,
-            rates: self.rates().to_string(),
-        })?;
+        let best =
+            self.configs.iter().filter(fits).min_by_key(rank).ok_or_else(|| DeviceError::Rate {
+                device: self.name.clone(),
+                rate_hz,
+                rates: self.rates().to_string(),
+            })?;
         let config = best.with_sample_rate(rate_hz as u32);
         Ok((config.config(), config.sample_format()))
     }
@@ -165,8 +165,9 @@ fn cards(side: Side) -> Result<Vec<cpal::Device>, DeviceError> {
 pub(crate) fn endpoints(side: Side) -> Result<Vec<Endpoint>, DeviceError> {
     let endpoint =
         |name: String, summary: String| Endpoint { name, setting: "device".to_owned(), summary };
-    let default = Card::find(DEFAULT, side).ok();
-    let default = default.map(|_| endpoint(DEFAULT.to_owned(), "what the system prefers".into()));
+    let default = Card::find(DEFAULT, side)
+        .ok()
+        .map(|_| endpoint(DEFAULT.to_owned(), "what the system prefers".into()));
     let named = cards(side)?.into_iter().map(|device| {
         let description = device.description().map(|d| d.to_string());
         endpoint(id(&device), description.unwrap_or_default().replace('\n', ", "))

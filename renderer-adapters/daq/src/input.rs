@@ -101,8 +101,7 @@ impl SourceAdapter for DaqInput {
 
     /// The analog inputs of all cards that the installed driver knows.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
-        let inputs = Driver::load("")?.inputs();
-        let inputs = inputs.map_err(|fault| fault.failed("NI-DAQmx"))?;
+        let inputs = Driver::load("")?.inputs().map_err(|fault| fault.failed("NI-DAQmx"))?;
         let endpoint = |(name, product)| Endpoint {
             name,
             setting: "channels".to_owned(),

@@ -127,8 +127,12 @@ impl Session {
     /// reports space in its buffer as soon as samples have moved to the card's own memory, which
     /// may hold a second of them.
     fn space(&mut self) -> Result<usize, DeviceError> {
-        let generated = self.task.as_ref().map(Task::generated).transpose();
-        let generated = generated.map_err(|fault| self.fail(&fault))?;
+        let generated = self
+            .task
+            .as_ref()
+            .map(Task::generated)
+            .transpose()
+            .map_err(|fault| self.fail(&fault))?;
         self.came_out(generated.unwrap_or(self.generated));
         let waiting = self.given.saturating_sub(self.generated);
         Ok(self.ahead.saturating_sub(waiting as usize))
@@ -149,14 +153,15 @@ impl Session {
     pub(crate) fn give(&mut self, volts: &[f64]) -> Result<usize, DeviceError> {
         self.usable()?;
         let task = self.task.as_ref();
-        let given = task.map_or(Ok(0), |task| {
-            let space = task.space()?;
-            match space.min(volts.len()) {
-                0 => Ok(0),
-                fitting => task.write(&volts[..fitting], false),
-            }
-        });
-        let given = given.map_err(|fault| self.fail(&fault))?;
+        let given = task
+            .map_or(Ok(0), |task| {
+                let space = task.space()?;
+                match space.min(volts.len()) {
+                    0 => Ok(0),
+                    fitting => task.write(&volts[..fitting], false),
+                }
+            })
+            .map_err(|fault| self.fail(&fault))?;
         self.still_holds()?;
         self.given += given as u64;
         self.direct.take(&volts[..given]);

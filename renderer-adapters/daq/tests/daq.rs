@@ -255,8 +255,7 @@ fn a_card_pulled_out_is_an_error_that_says_so() {
     let card = Card::new();
     card.set("unplug_after", "4000");
     let mut device = card.open(&[]).unwrap();
-    let error = (0..100).find_map(|_| device.write(&[100.0; 500], LONG).err());
-    let error = error.unwrap().to_string();
+    let error = (0..100).find_map(|_| device.write(&[100.0; 500], LONG).err()).unwrap().to_string();
     assert!(error.contains("-88705") && error.contains("could not be set to zero"), "{error}");
     is_closed(&mut *device);
     assert_eq!(card.recorded().len(), 4_000);

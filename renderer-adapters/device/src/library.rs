@@ -112,10 +112,11 @@ impl<T: Table> Library<T> {
     pub(crate) fn about(&self) -> Result<T::About, DeviceError> {
         let wrong = |what: String| self.error(AbiFault::Descriptor(what));
         // SAFETY: the buffer is live and of this length, by `Self::text`.
-        let json = self.text(|out, len| unsafe { (self.table.common().descriptor)(out, len) });
-        let json = json.map_err(|trouble| match trouble {
-            Trouble::Told(_, text) | Trouble::Broken(text) => wrong(text),
-        })?;
+        let json = self
+            .text(|out, len| unsafe { (self.table.common().descriptor)(out, len) })
+            .map_err(|trouble| match trouble {
+                Trouble::Told(_, text) | Trouble::Broken(text) => wrong(text),
+            })?;
         let about = serde_json::from_str(&json).map_err(|e| wrong(e.to_string()))?;
         T::check(&about).map_err(|error| wrong(error.to_string()))?;
         Ok(about)
@@ -146,8 +147,7 @@ impl<T: Table> Library<T> {
         name: &str,
         call: impl FnMut(*mut u8, usize) -> i64,
     ) -> Result<V, DeviceError> {
-        let json = self.text(call);
-        let json = json.map_err(|trouble| self.trouble(adapter, name, trouble))?;
+        let json = self.text(call).map_err(|trouble| self.trouble(adapter, name, trouble))?;
         serde_json::from_str(&json).map_err(|e| self.broken(format!("{name}: {e}")))
     }
 

@@ -158,8 +158,8 @@ impl NativeDevice {
         let status = self.opened.table().status;
         // SAFETY: a live buffer of this length.
         let count = unsafe { status(handle, numbers.as_mut_ptr(), numbers.len()) };
-        let count = adapter.library.count(count);
-        let count = count.map_err(|trouble| adapter.error("status", trouble))?;
+        let count =
+            adapter.library.count(count).map_err(|trouble| adapter.error("status", trouble))?;
         let sane = |x: &f64| x.is_finite() && *x >= 0.0;
         if count < STATUS_NUMBERS || !numbers.iter().all(sane) {
             let what = format!("status: {count} numbers, {numbers:?}");

@@ -108,8 +108,8 @@ impl Plan {
 }
 
 fn form(format: &str, path: &Path) -> Result<Form, DeviceError> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
-    let extension = extension.to_ascii_lowercase();
+    let extension =
+        path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let wanted = if format == "auto" { &extension } else { format };
     match wanted {
         "wav" => Ok(Form::Wav),

@@ -114,8 +114,7 @@ fn a_drive_has_a_limit_and_a_carrier() {
         ("encoding", "i16"),
         ("full_scale", "200"),
     ];
-    let can = FileAdapter.capabilities(&settings(path, &drive).unwrap());
-    let can = can.unwrap();
+    let can = FileAdapter.capabilities(&settings(path, &drive).unwrap()).unwrap();
     assert_eq!(can.quantity, Quantity::DisplayVoltage);
     assert_eq!((can.limit, can.carrier_hz), (Some(100.0), Some(10_000.0)));
     assert_eq!((can.step, can.default_rate_hz), (Some(200.0 / 32_768.0), 1e5));

@@ -127,8 +127,10 @@ impl Guarded {
 
 /// Buffer and ramp of a display, if its settings state them.
 fn waits(settings: &Settings) -> Waits {
-    let stated = [BUFFER_SETTING, RAMP_SETTING].map(|name| settings.number(name));
-    let stated = stated.into_iter().filter(|ms| ms.is_finite());
+    let stated = [BUFFER_SETTING, RAMP_SETTING]
+        .map(|name| settings.number(name))
+        .into_iter()
+        .filter(|ms| ms.is_finite());
     let to_zero = stated.map(|ms| Duration::from_secs_f64(ms.clamp(0.0, MOST_MS) / 1e3));
     Waits { to_zero: to_zero.reduce(|a, b| a + b).unwrap_or(USUAL_TO_ZERO) }
 }
@@ -165,8 +167,7 @@ impl Drop for Guarded {
         }
         let (reply, replied) = channel();
         let patience = self.waits.answer().saturating_sub(begun.elapsed());
-        let worker = self.worker.get_mut();
-        let worker = worker.unwrap_or_else(PoisonError::into_inner);
+        let worker = self.worker.get_mut().unwrap_or_else(PoisonError::into_inner);
         if worker.send(Message::Close { patience, reply }).is_ok() {
             let _ = replied.recv();
         }

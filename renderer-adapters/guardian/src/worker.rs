@@ -230,8 +230,7 @@ impl Worker {
             ),
             _ => "the process that held the output has ended".to_owned(),
         };
-        let failure = self.failure.as_ref();
-        let failure = failure.filter(|_| !self.player.is_over());
+        let failure = self.failure.as_ref().filter(|_| !self.player.is_over());
         let failure = failure.map_or(String::new(), |failure| format!(" ({failure})"));
         let error = DeviceError::Told(format!("{why}{end}{failure}"));
         self.reply(Reply::Failed(error));

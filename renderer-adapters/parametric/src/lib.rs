@@ -123,8 +123,7 @@ impl Asked {
             let properties = session.properties(self.hand);
             return properties.map(|_| can).map_err(DeviceError::Missing);
         }
-        let rate_hz = session.pcm_rate_hz(self.hand);
-        let rate_hz = rate_hz.map_err(DeviceError::Missing)?;
+        let rate_hz = session.pcm_rate_hz(self.hand).map_err(DeviceError::Missing)?;
         Ok(Capabilities {
             rates: Rates::List(vec![rate_hz]),
             default_rate_hz: rate_hz,

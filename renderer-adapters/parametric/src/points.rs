@@ -44,8 +44,7 @@ impl Stream {
         range_hz: Option<(f64, f64)>,
         rate_hz: f64,
     ) -> Result<Self, DeviceError> {
-        let properties = element.session.properties(element.hand);
-        let properties = properties.map_err(DeviceError::Missing)?;
+        let properties = element.session.properties(element.hand).map_err(DeviceError::Missing)?;
         let (low_hz, high_hz) = range(range_hz, &properties);
         let block_s = plan.block_frames(rate_hz) as f64 / rate_hz;
         let frame_s = seconds(properties.ideal_frame).max(block_s);

@@ -17,16 +17,17 @@ const LONG: Duration = Duration::from_secs(5);
 /// The library with the gamepad; `None` without SDL.
 fn library() -> Option<&'static Path> {
     static BUILT: OnceLock<Option<PathBuf>> = OnceLock::new();
-    let built = BUILT.get_or_init(|| {
-        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pad.c");
-        let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("libpad.so");
-        let flags = ["-std=gnu11", "-O1", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC"];
-        let mut cc = Command::new("cc");
-        cc.args(flags).arg(source).arg("-o").arg(&out);
-        let built = cc.args(["-lSDL2", "-ldl"]).output();
-        built.is_ok_and(|run| run.status.success()).then_some(out)
-    });
-    let built = built.as_deref();
+    let built = BUILT
+        .get_or_init(|| {
+            let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pad.c");
+            let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("libpad.so");
+            let flags = ["-std=gnu11", "-O1", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC"];
+            let mut cc = Command::new("cc");
+            cc.args(flags).arg(source).arg("-o").arg(&out);
+            let built = cc.args(["-lSDL2", "-ldl"]).output();
+            built.is_ok_and(|run| run.status.success()).then_some(out)
+        })
+        .as_deref();
     xtask::needs::SDL.met(built.is_some()).then_some(built)?
 }
 
@@ -222,8 +223,8 @@ fn settings_that_name_nothing_are_refused() {
     let can = sdl.capabilities(&pad.settings(&[])).unwrap();
     can.check().unwrap();
     assert_eq!((can.quantity, can.limit, can.paced), (Quantity::Sound, Some(1.0), true));
-    let missing = sdl.capabilities(&pad.settings(&[("device", "Other pad")]));
-    let missing = missing.unwrap_err().to_string();
+    let missing =
+        sdl.capabilities(&pad.settings(&[("device", "Other pad")])).unwrap_err().to_string();
     assert!(missing.contains("there is Test pad"), "{missing}");
     for no_sdl in ["no-such-library.so", "libm.so.6"] {
         let given = [("driver".to_owned(), no_sdl.to_owned())].into();

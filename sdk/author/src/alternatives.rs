@@ -96,8 +96,8 @@ fn other_options(choice: &ModelRequest) -> Vec<(String, Vec<f64>)> {
                 continue;
             }
             options[i] = value;
-            let shown = option.choices.get(value as usize);
-            let shown = shown.cloned().unwrap_or_else(|| value.to_string());
+            let shown =
+                option.choices.get(value as usize).cloned().unwrap_or_else(|| value.to_string());
             others.push((format!("{}.{}={shown}", model.short_name(), option.name), options));
         }
     }

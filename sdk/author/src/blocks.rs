@@ -43,8 +43,8 @@ pub(crate) fn repeatability_rms_db(
     let grid = band.grid_hz();
     let bank = BandBank::new(BAND_COUNT, band, &grid);
     let energies = |parity: usize| {
-        let of_half = blocks.iter().zip(spectra);
-        let of_half = of_half.filter(|(block, _)| block.is_some_and(|b| b % 2 == parity));
+        let of_half =
+            blocks.iter().zip(spectra).filter(|(block, _)| block.is_some_and(|b| b % 2 == parity));
         let half: Vec<&[Complex<f64>]> = of_half.map(|(_, spectrum)| *spectrum).collect();
         bank.energies(&average(&half, grid.len(), averaging))
     };

@@ -111,8 +111,10 @@ pub fn compare(
     if held != recorded {
         return Err(CompareError::Quantities { held, recorded });
     }
-    let motion = found.speed_mm_s.zip(found.force_n);
-    let motion = motion.map(|(speed, force)| htex_play::Motion::new(speed, force));
+    let motion = found
+        .speed_mm_s
+        .zip(found.force_n)
+        .map(|(speed, force)| htex_play::Motion::new(speed, force));
     let compared = asset.manifest().representations.iter().map(|representation| {
         let id = Some(&representation.model[..]);
         let (parameters, level_rms) = asset.parameters(id, motion)?;

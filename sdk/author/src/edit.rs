@@ -37,8 +37,7 @@ pub fn edit(bytes: &[u8], metadata: &Metadata) -> Result<Asset, EditError> {
 fn lost(bytes: &[u8], asset: &Asset) -> Vec<String> {
     let limits = Limits::default();
     let report = htex_format::validate(bytes, &limits);
-    let unnamed = report.findings.iter();
-    let unnamed = unnamed.filter(|finding| finding.code == "ENTRY_UNREFERENCED");
+    let unnamed = report.findings.iter().filter(|finding| finding.code == "ENTRY_UNREFERENCED");
     let mut lost: Vec<String> = unnamed.map(|finding| finding.message.clone()).collect();
     // By way of the text, as the file has it.
     let written = serde_json::to_vec(&asset.manifest).unwrap_or_default();

@@ -124,8 +124,7 @@ pub fn fit_asset_watched(
         warnings: warnings.iter().map(Notice::to_string).collect(),
     };
     let fit_ms = fitted.iter().map(|f| f.fit_ms).collect();
-    let felt = fitted.iter_mut().map(|f| std::mem::take(&mut f.felt));
-    let felt = felt.collect();
+    let felt = fitted.iter_mut().map(|f| std::mem::take(&mut f.felt)).collect();
     let asset = assemble(request, provenance, (contact, law), grouped.conditions, &spectra, fitted);
     Ok(FittedAsset { asset, fit_ms, skipped, spectra, felt, warnings, notes, findings, grid })
 }

@@ -146,9 +146,10 @@ fn noise(seconds: f64, rise_db: f64) -> Take {
         0.1 * gain * (speed(t) / 100.0).powf(0.75) * normal(t).sqrt() * random.next_normal()
     };
     let lateral = times.iter().map(force).collect();
-    let recording = Recording::new("noise.csv", RATE_HZ, vec![lateral]).unwrap();
-    let recording = recording.with_speed(times.iter().map(speed).collect());
-    let recording = recording.unwrap();
+    let recording = Recording::new("noise.csv", RATE_HZ, vec![lateral])
+        .unwrap()
+        .with_speed(times.iter().map(speed).collect())
+        .unwrap();
     Take {
         recording: recording.with_normal(times.iter().map(normal).collect()).unwrap(),
         given: Exploration::default(),

@@ -64,8 +64,7 @@ fn with_a_target_a_segment_counts_within_ten_percent_and_without_one_always() {
         _ => 80.0,
     };
     let speed: Vec<f64> = (0..lateral.len()).map(speed).collect();
-    let recording = Recording::new("r", RATE_HZ, vec![lateral]).unwrap();
-    let recording = recording.with_speed(speed).unwrap();
+    let recording = Recording::new("r", RATE_HZ, vec![lateral]).unwrap().with_speed(speed).unwrap();
     let at = |speed_mm_s| Exploration { speed_mm_s, force_n: Some(0.4) };
     let near = read(&recording, at(Some(81.0))).unwrap();
     assert_eq!(near.part.spectra.len(), 4);
@@ -103,8 +102,8 @@ fn readings_that_no_finger_makes_do_not_move_the_condition() {
     let lateral = friction(3.0, &[(0.2, 1.2), (1.5, 2.5)]);
     let mut normal: Vec<f64> = (0..lateral.len()).map(|at| 1.0 + 0.02 * noise(at)).collect();
     normal[700] = 36_870.0;
-    let recording = Recording::new("r", RATE_HZ, vec![lateral]).unwrap();
-    let recording = recording.with_normal(normal).unwrap();
+    let recording =
+        Recording::new("r", RATE_HZ, vec![lateral]).unwrap().with_normal(normal).unwrap();
     let reading = read(&recording, Exploration::default()).unwrap();
     let force_n = reading.condition.force_n.unwrap();
     assert!((force_n - 1.0).abs() < 0.01, "{force_n}");

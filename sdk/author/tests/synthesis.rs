@@ -34,8 +34,8 @@ fn parameters(model: &LoadedModel, spectrum: &TextureSpectrum) -> Vec<f64> {
 fn played(model: &LoadedModel, spectrum: &TextureSpectrum, synthesis: &str) -> (f64, f64) {
     let parameters = parameters(model, spectrum);
     let synthesis: Synthesis = synthesis.parse().unwrap();
-    let still = StillSound::new(synthesis, model, &parameters, spectrum.band, RATE_HZ, 1);
-    let mut still = still.unwrap().unwrap();
+    let mut still =
+        StillSound::new(synthesis, model, &parameters, spectrum.band, RATE_HZ, 1).unwrap().unwrap();
     let mut samples = vec![0.0; 800_000];
     samples.chunks_mut(333).for_each(|block| still.render(block));
     let power: f64 = samples.iter().map(|&x| f64::from(x) * f64::from(x)).sum();

@@ -176,8 +176,7 @@ impl Build {
         if options.no_removals {
             BuildError::refuse_removals(plan.removed(&before))?;
         }
-        let pool = ThreadPoolBuilder::new().num_threads(options.jobs).build();
-        let pool = pool.at("jobs")?;
+        let pool = ThreadPoolBuilder::new().num_threads(options.jobs).build().at("jobs")?;
         let job =
             |texture: &PlannedTexture| match Job::new(texture, &named, &options.program, &hashes) {
                 Err(error) if options.keep_going && is_of_input(&error) => {
@@ -411,8 +410,7 @@ pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError
     // The build that follows says what is missing.
     let prepared = Prepared::new(recipe, output, &[], Missing::LeftOut)?;
     let textures = prepared.plan.textures.iter();
-    let files = textures.flat_map(PlannedTexture::files);
-    let files = files.chain(&prepared.named.of_recipe);
+    let files = textures.flat_map(PlannedTexture::files).chain(&prepared.named.of_recipe);
     let folder = &prepared.named.folder;
     let files: BTreeSet<PathBuf> = files.map(|file| joined(folder, file)).collect();
     let unknown = files

@@ -146,8 +146,8 @@ impl Elsewhere {
         if let Some(stamp) = self.listed().get(path) {
             return Ok(*stamp);
         }
-        let stat = self.storage()?.stat(location)?;
-        let stat = stat.ok_or_else(|| StorageProblem::Missing.at(location))?;
+        let stat =
+            self.storage()?.stat(location)?.ok_or_else(|| StorageProblem::Missing.at(location))?;
         let stamp = Stamp::elsewhere(stat.bytes, stat.etag.as_deref(), stat.modified);
         self.listed().insert(path.to_owned(), stamp);
         Ok(stamp)
@@ -201,8 +201,8 @@ impl Elsewhere {
     fn fetch(&self, location: &Location) -> Result<(String, PathBuf), BuildError> {
         let (copies, name) = (self.copies()?, named(location)?);
         let folder = copies.own.path().join(&copies.inside);
-        let part = tempfile::Builder::new().suffix(".part").tempfile_in(&folder);
-        let part = part.writing(&folder)?;
+        let part =
+            tempfile::Builder::new().suffix(".part").tempfile_in(&folder).writing(&folder)?;
         let file = part.reopen().writing(&folder)?;
         self.storage()?.download(location, file, MOST_BYTES)?;
         let mut hasher = blake3::Hasher::new();
@@ -230,15 +230,16 @@ impl Elsewhere {
         match &self.copies {
             Copies::Folder(own) => {
                 let copies = inside(COPIES);
-                let made = own.make_folder(&copies);
-                let made = made.writing(own.path().join(&copies))?;
+                let made = own.make_folder(&copies).writing(own.path().join(&copies))?;
                 htex_files::private::close(&made).writing(&made)?;
                 Ok(CopiesIn { own: own.clone(), inside: copies })
             }
             Copies::Temporary(held) => {
                 if held.get().is_none() {
-                    let folder = tempfile::Builder::new().prefix("htex-build-").tempdir();
-                    let folder = folder.writing(std::env::temp_dir())?;
+                    let folder = tempfile::Builder::new()
+                        .prefix("htex-build-")
+                        .tempdir()
+                        .writing(std::env::temp_dir())?;
                     held.get_or_init(|| folder);
                 }
                 let folder = held.get().map(TempDir::path).unwrap_or(Path::new(""));

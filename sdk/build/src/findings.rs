@@ -66,8 +66,7 @@ pub(crate) fn shares(textures: &[TextureReport]) -> BTreeMap<String, FindingShar
     for texture in textures {
         let assets = texture.asset.iter();
         for finding in assets.flat_map(|asset| &asset.findings) {
-            let share = shares.entry(finding.code.clone());
-            let share = share.or_insert_with(|| FindingShare {
+            let share = shares.entry(finding.code.clone()).or_insert_with(|| FindingShare {
                 severity: finding.severity,
                 textures: 0,
                 in_library: 0,

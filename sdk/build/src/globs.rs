@@ -94,8 +94,7 @@ fn path_of(text: &str) -> Range<usize> {
 /// folder, and a glob in it.
 pub(crate) fn split(text: &str) -> (&str, &str) {
     let path = path_of(text);
-    let first = text[path.clone()].find(GLOB);
-    let first = first.map_or(path.end, |at| path.start + at);
+    let first = text[path.clone()].find(GLOB).map_or(path.end, |at| path.start + at);
     match text[..first].rfind('/') {
         Some(0) => ("/", &text[1..]),
         Some(slash) => (&text[..slash], &text[slash + 1..]),
@@ -113,8 +112,7 @@ pub(crate) fn files(
 ) -> Result<Vec<PathBuf>, BuildError> {
     // `file://` is a path of this machine, too, and its escapes are resolved.
     let location = Location::parse(glob.as_ref())?;
-    let path = location.local().map(Path::to_string_lossy);
-    let path = path.unwrap_or(glob.into());
+    let path = location.local().map(Path::to_string_lossy).unwrap_or(glob.into());
     let (base, pattern) = split(&path);
     let base = normalised(Path::new(base));
     let walked = joined(folder, &base);

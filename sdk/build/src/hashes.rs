@@ -112,8 +112,8 @@ pub(crate) struct Hashes {
 impl Hashes {
     /// Reads the hashes that an earlier build kept; a file that is absent or damaged holds none.
     pub(crate) fn open(kept: &Kept, name: &str, elsewhere: Arc<Elsewhere>) -> Self {
-        let known = kept.get(name, MOST_BYTES);
-        let known = known.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+        let known =
+            kept.get(name, MOST_BYTES).and_then(|bytes| serde_json::from_slice(&bytes).ok());
         Self { known: known.unwrap_or_default(), elsewhere, used: Mutex::default() }
     }
 

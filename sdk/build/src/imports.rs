@@ -192,8 +192,9 @@ fn given(texture: &PlannedTexture, recording: &PlannedRecording) -> Vec<String> 
         ("at.force_n", recording.force_n.is_some()),
         ("tracker", recording.tracker.is_some()),
         ("embed_plugins", settings.embed_plugins.is_some()),
-    ];
-    let others = others.into_iter().filter(|(_, is_given)| *is_given);
+    ]
+    .into_iter()
+    .filter(|(_, is_given)| *is_given);
     given.extend(others.map(|(key, _)| key.to_owned()));
     given
 }

@@ -183,10 +183,8 @@ impl Job {
             })
         });
         let reading = texture.settings.reading(folder);
-        let embedded = texture.settings.embed_plugins.as_deref();
-        let embedded = embedded.unwrap_or_default();
-        let of_recipe = named.of_recipe.iter().chain(embedded);
-        let of_recipe = of_recipe.map(|path| joined(folder, path));
+        let embedded = texture.settings.embed_plugins.as_deref().unwrap_or_default();
+        let of_recipe = named.of_recipe.iter().chain(embedded).map(|path| joined(folder, path));
         let all = named.by_person.iter().cloned().chain(of_recipe);
         Ok(Self {
             program: program.to_owned(),
@@ -339,8 +337,8 @@ impl Job {
     }
 
     fn files(&self) -> impl Iterator<Item = &JobFile> {
-        let recordings = self.recordings.iter();
-        let recordings = recordings.flat_map(|r| std::iter::once(&r.file).chain(&r.tracker));
+        let recordings =
+            self.recordings.iter().flat_map(|r| std::iter::once(&r.file).chain(&r.tracker));
         recordings.chain(&self.response).chain(&self.plugins)
     }
 

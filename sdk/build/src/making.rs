@@ -150,8 +150,7 @@ impl Job {
     fn signal(&self, recording: &JobRecording) -> Result<Take, Box<dyn Error>> {
         let bytes = recording.bytes()?;
         let physical = self.physical(recording);
-        let profile = self.signal.profile.as_deref().map(Profile::find);
-        let profile = profile.transpose()?;
+        let profile = self.signal.profile.as_deref().map(Profile::find).transpose()?;
         let read = htex_exchange::recording_of(&recording.name, &bytes, &physical, profile)?;
         Ok(Take {
             recording: read,

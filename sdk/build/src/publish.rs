@@ -134,11 +134,14 @@ fn default_folder(location: &Location) -> Result<PathBuf, BuildError> {
         path.is_absolute().then_some(path)
     };
     let home = || variable("HOME").map(|home| home.join(".cache"));
-    let cache = variable("XDG_CACHE_HOME").or_else(|| variable("LOCALAPPDATA"));
-    let cache = cache.or_else(home).ok_or_else(|| {
-        let problem = "there is no folder for the work: HOME is not set; name one (`--work DIR`)";
-        BuildError::at(location, problem)
-    })?;
+    let cache = variable("XDG_CACHE_HOME")
+        .or_else(|| variable("LOCALAPPDATA"))
+        .or_else(home)
+        .ok_or_else(|| {
+            let problem =
+                "there is no folder for the work: HOME is not set; name one (`--work DIR`)";
+            BuildError::at(location, problem)
+        })?;
     let hash = blake3::hash(location.to_string().as_bytes()).to_hex();
     Ok(cache.join("htex").join("builds").join(&hash[..16]))
 }
@@ -155,8 +158,9 @@ struct Publishing<'a> {
 impl<'a> Publishing<'a> {
     fn new(folder: &'a Path, to: &'a Location) -> Result<Self, BuildError> {
         let kept = Kept::new(folder)?;
-        let before = kept.get(PUBLISHED, MOST_BYTES);
-        let before = before.and_then(|bytes| serde_json::from_slice::<Published>(&bytes).ok());
+        let before = kept
+            .get(PUBLISHED, MOST_BYTES)
+            .and_then(|bytes| serde_json::from_slice::<Published>(&bytes).ok());
         Ok(Self {
             folder,
             to,
@@ -182,8 +186,7 @@ impl<'a> Publishing<'a> {
             .collect();
         let (last, first): (Vec<_>, Vec<_>) =
             wanted.iter().copied().partition(|name| LAST.contains(&name.as_str()));
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(AT_ONCE).build();
-        let pool = pool.at("publish")?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(AT_ONCE).build().at("publish")?;
         pool.install(|| first.par_iter().try_for_each(|name| self.copy(name)))?;
         last.iter().try_for_each(|name| self.copy(name))?;
         let copied = wanted.len();

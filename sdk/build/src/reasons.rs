@@ -72,8 +72,7 @@ impl Reasons {
             return Why::New;
         };
         let parts = job.parts();
-        let changed = parts.iter().zip(before);
-        let changed = changed.filter(|((_, now), before)| now != *before);
+        let changed = parts.iter().zip(before).filter(|((_, now), before)| now != *before);
         let names: Vec<&'static str> = changed.map(|((name, _), _)| *name).collect();
         if names.is_empty() { Why::Gone } else { Why::Changed(names) }
     }

@@ -32,8 +32,7 @@ pub(crate) fn of_magnitudes(frequency_hz: &[f64], magnitude: &[f64]) -> Thumbnai
     let points = (0..POINTS).map(|_| {
         let (from, to) = (edge, edge * step);
         edge = to;
-        let within = frequency_hz.iter().zip(magnitude);
-        let within = within.filter(|(f, _)| (from..=to).contains(*f));
+        let within = frequency_hz.iter().zip(magnitude).filter(|(f, _)| (from..=to).contains(*f));
         let peak = within.map(|(_, m)| *m).fold(0.0, f64::max);
         // Below 50 Hz the grid of 5 Hz is coarser than the points.
         let peak = if peak > 0.0 { peak } else { nearest(frequency_hz, magnitude, from) };

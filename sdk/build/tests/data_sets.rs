@@ -158,8 +158,7 @@ fn accelerations_of_the_cluster_set() {
     assert_eq!((manifest.contact, manifest.quantity), (Contact::Finger, Quantity::Acceleration));
     assert_eq!(manifest.license.as_deref(), Some("CC-BY-4.0"));
     // 0.1 g of noise are about 1 m/s², of which the band has a part.
-    let level = manifest.representations[0].at.iter().map(|at| at.level_rms);
-    let level = level.fold(0.0, f64::max);
+    let level = manifest.representations[0].at.iter().map(|at| at.level_rms).fold(0.0, f64::max);
     assert!((0.05..1.0).contains(&level), "{level}");
 }
 

@@ -123,8 +123,8 @@ fn files_of_other_formats_become_textures() {
     let imported = htex_exchange::hatt::asset(
         &htex_exchange::hatt::read(hatt("Felt").as_bytes()).unwrap(),
         &htex_exchange::hatt::Imported::default(),
-    );
-    let imported = imported.unwrap();
+    )
+    .unwrap();
     assert_eq!(felt.parameters, imported.parameters);
     assert_eq!(felt.manifest.conditions, imported.manifest.conditions);
     let stated = texture(&report, "felt").asset.as_ref().unwrap();

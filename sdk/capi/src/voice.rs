@@ -274,8 +274,9 @@ pub unsafe extern "C" fn htex_voice_render_path(
 ) -> htex_status {
     guarded(|| {
         let mut voice = VOICES.exclusive(voice.id)?;
-        let len = motions_len.checked_mul(frames);
-        let len = len.ok_or(Failure::argument("motions_len * frames is too large"))?;
+        let len = motions_len
+            .checked_mul(frames)
+            .ok_or(Failure::argument("motions_len * frames is too large"))?;
         // SAFETY: the arrays are the caller's.
         let (motions, out) = unsafe { (Motions::of(motions, motions_len)?, slice_mut(out, len)?) };
         if frames == 0 {

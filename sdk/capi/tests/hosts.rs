@@ -245,8 +245,8 @@ fn toggles_of_a_source_leave_nothing() {
         "../../unity/Runtime/HtexSource.cs",
         "../../unity/Runtime/HtexTexture.cs",
         "unity/UnityEngine.cs",
-    ];
-    let files = files.map(|file| hosts(file).display().to_string());
+    ]
+    .map(|file| hosts(file).display().to_string());
     let [source_file, texture, engine] = &files;
     let more = ["-d:UNITY_5_3_OR_NEWER", source_file, texture, engine];
     let program = project.build_with(&source, &more);

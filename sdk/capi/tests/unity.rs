@@ -136,8 +136,8 @@ fn import_library(project: &Project) -> String {
     writer.add("floor/vinyl", &texture).unwrap();
     writer.finish().unwrap();
     let source = [hosts().join("unity/Libraries.cs")];
-    let references = ["UnityEngine", "UnityEditor", "Htex", "Htex.Editor"];
-    let references = references.map(|name| format!("-r:{name}.dll"));
+    let references =
+        ["UnityEngine", "UnityEditor", "Htex", "Htex.Editor"].map(|name| format!("-r:{name}.dll"));
     compile(project.folder(), "libraries.exe", &source, &references);
     run(project, "libraries.exe", &["Assets/floors.htexlib"])
 }
@@ -196,8 +196,8 @@ fn the_audio_thread_allocates_nothing_in_csharp() {
     let mut files = assemblies::sources(&package().join("Runtime"));
     let stubs = ["Allocations.cs", "NativeArray.cs", "unity/UnityEngine.cs"];
     files.extend(stubs.map(|file| hosts().join(file)));
-    let arguments = ["-unsafe", "-d:UNITY_5_3_OR_NEWER", "-d:UNITY_2021_2_OR_NEWER"];
-    let arguments = arguments.map(str::to_owned);
+    let arguments =
+        ["-unsafe", "-d:UNITY_5_3_OR_NEWER", "-d:UNITY_2021_2_OR_NEWER"].map(str::to_owned);
     compile(project.folder(), "allocations.exe", &files, &arguments);
     let asset = asset().display().to_string();
     let printed = run(&project, "allocations.exe", &[&asset]);

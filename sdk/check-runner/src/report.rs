@@ -56,8 +56,10 @@ impl<Subject: Display> Display for Report<Subject> {
             };
             writeln!(f, "  {word:9}  {check:15}  {}", finding.message)?;
         }
-        let counts = Outcome::ALL.map(|outcome| (self.count(outcome), outcome.word()));
-        let counts = counts.iter().filter(|(n, _)| *n > 0);
+        let counts = Outcome::ALL
+            .map(|outcome| (self.count(outcome), outcome.word()))
+            .iter()
+            .filter(|(n, _)| *n > 0);
         let counts: Vec<String> = counts.map(|(n, word)| format!("{n} {word}")).collect();
         writeln!(f, "{}", counts.join(", "))
     }

@@ -147,8 +147,10 @@ unsafe extern "C" fn visit(info: *mut dl_phdr_info, _: size_t, places: *mut c_vo
     // address of a number.
     let (info, places) = unsafe { (&*info, &mut *places.cast::<usize>()) };
     // SAFETY: a name is a string, or null.
-    let name = (!info.dlpi_name.is_null()).then(|| unsafe { CStr::from_ptr(info.dlpi_name) });
-    let name = name.map(CStr::to_bytes).unwrap_or_default();
+    let name = (!info.dlpi_name.is_null())
+        .then(|| unsafe { CStr::from_ptr(info.dlpi_name) })
+        .map(CStr::to_bytes)
+        .unwrap_or_default();
     // The program has no name; the kernel's own library cannot be written to and allocates nothing.
     if name.is_empty() || name.starts_with(b"linux-") {
         return 0;

@@ -78,8 +78,7 @@ impl NonNegative {
     pub fn new(bank: &TriangleBank) -> Self {
         let rows = bank.rows();
         let column = |c: usize| {
-            let first = (0..rows).find(|&row| bank.weight(row, c) > 0.0);
-            let first = first.unwrap_or(0);
+            let first = (0..rows).find(|&row| bank.weight(row, c) > 0.0).unwrap_or(0);
             let weight = [first, first + 1].map(|row| bank.weight(row, c));
             Column { first, weight }
         };

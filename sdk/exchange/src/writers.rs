@@ -290,8 +290,8 @@ pub(crate) fn wav(job: &Job<'_>) -> Result<Written, ExchangeError> {
     let heard = job.playing.heard(rate_hz, job.point_s(MANY))?;
     let (samples, limited) = drive(&heard, job.profile);
     let rights = job.playing.source.rights();
-    let bytes = crate::wav::to_bytes(&samples, rate_hz as u32, &rights);
-    let bytes = bytes.map_err(|fault| job.own(fault))?;
+    let bytes =
+        crate::wav::to_bytes(&samples, rate_hz as u32, &rights).map_err(|fault| job.own(fault))?;
     let drive = crate::wav::from_bytes(&bytes).map_err(|fault| job.own(fault))?;
     Ok(Written { bytes, heard, drive, limited, notes: Vec::new() })
 }

@@ -23,8 +23,7 @@ pub fn parse_json(bytes: &[u8]) -> Result<Value, JsonError> {
     let twice = RefCell::new(None);
     let mut json = serde_json::Deserializer::from_slice(bytes);
     let strict = Strict { place: &Place::Root, twice: &twice };
-    let parsed = strict.deserialize(&mut json);
-    let parsed = parsed.and_then(|value| json.end().map(|()| value));
+    let parsed = strict.deserialize(&mut json).and_then(|value| json.end().map(|()| value));
     parsed.map_err(|error| match twice.take() {
         Some(pointer) => JsonError::Twice(pointer),
         None => JsonError::Syntax(error),

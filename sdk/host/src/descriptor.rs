@@ -86,8 +86,8 @@ fn check_descriptor(descriptor: &Descriptor) -> Result<(), DescriptorError> {
         return Err(DescriptorError::Default { name });
     }
     let fields = descriptor.fields.iter().flat_map(|f| [&f.name, &f.unit]);
-    let options = descriptor.options.iter();
-    let options = options.flat_map(|o| o.choices.iter().chain([&o.name, &o.unit]));
+    let options =
+        descriptor.options.iter().flat_map(|o| o.choices.iter().chain([&o.name, &o.unit]));
     if let Some(text) = fields.chain(options).find(|w| w.contains(char::is_control)) {
         let text = plain(text);
         return Err(DescriptorError::ControlCharacters { text });

@@ -182,8 +182,8 @@ fn folders_of_the_environment() {
     if std::env::var_os(INSIDE).is_some() {
         let registry = Registry::search(
             &Search::default().with_limits(limits().with_cache(htex_host::WasmCache::User)),
-        );
-        let registry = registry.unwrap();
+        )
+        .unwrap();
         assert_eq!(version(&registry), "2.0.0", "HTEX_PLUGIN_PATH before the user's folder");
         let find = |wanted: &str| registry.find_version(ID, &VersionReq::parse(wanted).unwrap());
         assert!(find("^1").is_ok(), "the user's folder");

@@ -54,8 +54,8 @@ fn a_sensor_that_drifts_is_tared_before_each_take() {
     assert!((force.min - 0.4).abs() < 1e-9 && (force.max - 0.4).abs() < 1e-9, "{force:?}");
     let rejected = folder.path().join("rejected/take-001.json");
     let rejected: serde_json::Value = serde_json::from_slice(&fs::read(rejected).unwrap()).unwrap();
-    let offsets = [&rejected["take"]["tare"][1], &rejected["verdict"]["force_n"]["mean"]];
-    let offsets = offsets.map(|value| (value.as_f64().unwrap() * 1e9).round() / 1e9);
+    let offsets = [&rejected["take"]["tare"][1], &rejected["verdict"]["force_n"]["mean"]]
+        .map(|value| (value.as_f64().unwrap() * 1e9).round() / 1e9);
     assert_eq!(offsets, [0.25, 0.8]);
     let once = record(folder.path(), &source, &settings(Tare::Once));
     assert!(matches!(once, Err(RecordError::OffTarget { .. })), "{once:?}");

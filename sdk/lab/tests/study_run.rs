@@ -281,8 +281,7 @@ fn every_phase_starts_weak_and_says_what_the_device_was_given() {
     let plays: Vec<_> =
         lines.iter().filter(|line| line["kind"] != "header" && line["kind"] != "session").collect();
     assert_eq!(plays.len(), expected.len());
-    let stop = plays.iter().position(|line| line["kind"] == "stopped");
-    let stop = stop.unwrap();
+    let stop = plays.iter().position(|line| line["kind"] == "stopped").unwrap();
     assert_eq!((stop, &plays[stop]["reason"]), (3, &"left".into()));
     for (i, (line, (_, gain_db))) in plays.iter().zip(expected).enumerate() {
         let drive_v = 100.0 * 10f64.powf(gain_db / 20.0);

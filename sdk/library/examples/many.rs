@@ -27,8 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if arguments.first().is_some_and(|first| first == PACKS) {
         return measure(arguments[1].parse()?);
     }
-    let given = arguments.iter().map(|a| a.parse());
-    let given = given.collect::<Result<Vec<u64>, _>>()?;
+    let given = arguments.iter().map(|a| a.parse()).collect::<Result<Vec<u64>, _>>()?;
     println!(
         "textures   pack/s  peak/MiB  file/MB  index/MB  pages  reads  index bytes read  one texture/us  in an open library/us"
     );

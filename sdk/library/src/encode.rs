@@ -56,8 +56,11 @@ impl Pages {
         let words = entry.tags.iter().chain(&entry.models);
         let new = words.clone().filter(|word| !self.words.contains(*word));
         let words = new.map(|word| word.len() + 2).sum::<usize>() + 2 * words.count() + 2;
-        let cuts = entry.place.cuts.iter();
-        let cuts = cuts.map(|cut| varint_bytes(cut.object.end) * 2 + varint_bytes(cut.at));
+        let cuts = entry
+            .place
+            .cuts
+            .iter()
+            .map(|cut| varint_bytes(cut.object.end) * 2 + varint_bytes(cut.at));
         name + words
             + 33
             + varint_bytes(length(&entry.place.own))

@@ -205,8 +205,7 @@ fn conditions(cursor: &mut Cursor<'_>) -> Result<Conditions, Malformed> {
 fn law(cursor: &mut Cursor<'_>) -> Result<(Contact, IndexedLaw), Malformed> {
     let bits = usize::from(cursor.byte()?);
     let unknown = |cursor: &Cursor<'_>| cursor.malformed("a contact or a source does not exist");
-    let contact = CONTACTS.get(bits & 3).copied();
-    let contact = contact.ok_or_else(|| unknown(cursor))?;
+    let contact = CONTACTS.get(bits & 3).copied().ok_or_else(|| unknown(cursor))?;
     let mut exponents = [IndexedExponent { exponent: 0.0, source: ExponentSource::Assumed }; 3];
     let in_range = |x: f64| (-MOST_EXPONENT..=MOST_EXPONENT).contains(&x);
     for (i, one) in exponents.iter_mut().enumerate() {

@@ -124,8 +124,8 @@ impl<S: LibrarySource> Library<S> {
     /// [`LibraryError::Absent`] when there is no such texture; when bytes cannot be read or break a
     /// rule.
     pub fn get(&self, name: &str) -> Result<Vec<u8>, LibraryError> {
-        let entry = self.entry(name)?;
-        let entry = entry.ok_or_else(|| LibraryError::Absent { name: name.to_owned() })?;
+        let entry =
+            self.entry(name)?.ok_or_else(|| LibraryError::Absent { name: name.to_owned() })?;
         self.read(&entry)
     }
 
@@ -202,8 +202,8 @@ fn read_up_to(source: &impl LibrarySource, range: Range<u64>) -> Result<Vec<u8>,
         .map_err(|error| failed(&range, std::io::Error::other(error)))?;
     let mut bytes = vec![0; length];
     if length > 0 {
-        let count = source.read_at(range.start, &mut bytes);
-        let count = count.map_err(|error| failed(&range, error))?;
+        let count =
+            source.read_at(range.start, &mut bytes).map_err(|error| failed(&range, error))?;
         bytes.truncate(count);
     }
     Ok(bytes)

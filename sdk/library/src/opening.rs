@@ -99,8 +99,7 @@ impl Opening {
 
     fn read_root(&self, header: Header) -> Result<Index, Fault> {
         // The root was given up to its end, which is within the memory of this machine.
-        let packed = self.start.get(HEADER_BYTES..header.root.end as usize);
-        let packed = packed.unwrap_or_default();
+        let packed = self.start.get(HEADER_BYTES..header.root.end as usize).unwrap_or_default();
         let root = page::unpack(packed, self.limits.root_bytes, PLACE)?;
         let root = Root::read(&root, &header, self.limits.leaf_bytes)?;
         Ok(Index::new(header, root, self.limits))

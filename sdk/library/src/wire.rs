@@ -35,8 +35,9 @@ impl<'a> Cursor<'a> {
 
     pub(crate) fn take(&mut self, count: usize) -> Result<&'a [u8], Malformed> {
         let end = self.at.checked_add(count);
-        let taken = end.and_then(|end| self.bytes.get(self.at..end));
-        let taken = taken.ok_or(self.malformed("the page ends within a value"))?;
+        let taken = end
+            .and_then(|end| self.bytes.get(self.at..end))
+            .ok_or(self.malformed("the page ends within a value"))?;
         self.at += count;
         Ok(taken)
     }

@@ -176,8 +176,7 @@ impl Explored {
     /// Returns the factors of a motion whose nearest recorded one is `nearest`: speed, mm/s, and
     /// force, newtons.
     pub(crate) fn scaling(&self, motion: Motion, nearest: [f64; 2]) -> Scaling {
-        let speed = self.speed.ratio(motion.speed_mm_s, nearest[0]);
-        let speed = speed.clamp(MIN_RATIO, MAX_RATIO);
+        let speed = self.speed.ratio(motion.speed_mm_s, nearest[0]).clamp(MIN_RATIO, MAX_RATIO);
         let force = self.force.ratio(motion.force_n, nearest[1]);
         Scaling {
             frequency: self.law.frequency_factor(speed).clamp(MIN_RATIO, MAX_RATIO),

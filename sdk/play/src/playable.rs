@@ -32,9 +32,11 @@ pub fn model_of<'a>(
     let has_fields =
         |m: &&LoadedModel| match_fields(&representation.fields, m.descriptor()).is_ok();
     let is_new = |m: &&LoadedModel| !is_older(m, representation);
-    let first = all().filter(is_new).find(has_fields);
-    let first = first.or_else(|| all().find(has_fields));
-    let first = first.or_else(|| all().next());
+    let first = all()
+        .filter(is_new)
+        .find(has_fields)
+        .or_else(|| all().find(has_fields))
+        .or_else(|| all().next());
     first.ok_or_else(|| Error::ModelVersion {
         model: representation.model.clone(),
         asset: representation.model_version.clone(),

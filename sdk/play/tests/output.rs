@@ -34,8 +34,7 @@ fn played(
         if let Some((_, speed_mm_s)) = motions.next_if(|(at, _)| *at == from) {
             voice.set_motion(Motion::new(speed_mm_s, 0.4)).unwrap();
         }
-        let to = motions.peek().map_or(all.len(), |(at, _)| *at);
-        let to = to.min(from + length);
+        let to = motions.peek().map_or(all.len(), |(at, _)| *at).min(from + length);
         voice.render(&mut all[from..to]).unwrap();
         after(voice);
         from = to;

@@ -29,8 +29,12 @@ impl Upsampler {
 
     /// Returns the sample of a phase with these coefficients.
     pub(crate) fn at(&self, coefficients: Words<'_>) -> f32 {
-        let inputs = self.history.get(self.next..self.next + coefficients.len());
-        let inputs = inputs.unwrap_or(&[]).as_chunks::<4>().0;
+        let inputs = self
+            .history
+            .get(self.next..self.next + coefficients.len())
+            .unwrap_or(&[])
+            .as_chunks::<4>()
+            .0;
         let mut sums = [0.0f32; 4];
         for (c, x) in coefficients.fours().zip(inputs) {
             for i in 0..4 {

@@ -37,8 +37,9 @@ impl Build {
             .with_no_removals(no_removals);
         let to = Destination::parse(&output, work.as_deref()).map_err(raised)?;
         let options = options.with_published(to.remote());
-        let build = py.detach(|| htex_build::Build::open(&recipe, to.folder(), options));
-        let build = build.map_err(|error| failed(&to, error))?;
+        let build = py
+            .detach(|| htex_build::Build::open(&recipe, to.folder(), options))
+            .map_err(|error| failed(&to, error))?;
         Ok(Self(Mutex::new(Some(build)), to))
     }
 
@@ -84,11 +85,12 @@ impl Build {
     /// Writes the results and returns the report.
     fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let build = self.lock().take().ok_or_else(finished)?;
-        let built = py.detach(|| {
-            let built = build.finish()?;
-            self.1.publish().map(|_| built)
-        });
-        let built = built.map_err(|error| failed(&self.1, error))?;
+        let built = py
+            .detach(|| {
+                let built = build.finish()?;
+                self.1.publish().map(|_| built)
+            })
+            .map_err(|error| failed(&self.1, error))?;
         let report = serde_json::to_value(&built.report);
         from_json(py, &report.map_err(|error| option(error.to_string()))?)
     }
@@ -131,8 +133,7 @@ pub(crate) fn unhashed(
 /// Hashes a file of a recipe; returns the hash as JSON.
 #[pyfunction]
 pub(crate) fn hash_file(py: Python<'_>, recipe: PathBuf, file: PathBuf) -> PyResult<String> {
-    let hashed = py.detach(|| htex_build::hash_file(&recipe, &file));
-    let hashed = hashed.map_err(raised)?;
+    let hashed = py.detach(|| htex_build::hash_file(&recipe, &file)).map_err(raised)?;
     serde_json::to_string(&hashed).map_err(|error| option(error.to_string()))
 }
 
@@ -143,11 +144,13 @@ pub(crate) fn remember(
     output: PathBuf,
     hashed: Vec<(PathBuf, String)>,
 ) -> PyResult<()> {
-    let hashed = hashed.into_iter().map(|(file, text)| {
-        let hashed = serde_json::from_str(&text);
-        Ok((file, hashed.map_err(|error| option(error.to_string()))?))
-    });
-    let hashed = hashed.collect::<PyResult<Vec<_>>>()?;
+    let hashed = hashed
+        .into_iter()
+        .map(|(file, text)| {
+            let hashed = serde_json::from_str(&text);
+            Ok((file, hashed.map_err(|error| option(error.to_string()))?))
+        })
+        .collect::<PyResult<Vec<_>>>()?;
     py.detach(|| htex_build::remember(&output, hashed)).map_err(raised)
 }
 

@@ -123,8 +123,10 @@ impl Library {
 
     /// Returns the entry of a texture.
     fn entry<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let entry = py.detach(|| self.library.entry(name)).or_raise()?;
-        let entry = entry.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
+        let entry = py
+            .detach(|| self.library.entry(name))
+            .or_raise()?
+            .ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
         entry_data(py, &entry)
     }
 

@@ -48,8 +48,7 @@ pub(crate) fn register_model(
     let model = Arc::new(PythonModel { adapter, plays });
     let old = py.detach(|| {
         let mut all = registered();
-        let old = all.iter().position(|(other, _)| other.id == id);
-        let old = old.map(|i| all.remove(i));
+        let old = all.iter().position(|(other, _)| other.id == id).map(|i| all.remove(i));
         all.push((descriptor, model));
         old
     });

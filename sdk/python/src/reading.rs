@@ -65,8 +65,8 @@ impl Reading {
 
     /// Reads recordings. `conditions` has one entry for each of them, or one for all, or none.
     pub(crate) fn takes(&self, sources: &[Source], conditions: &[Pair]) -> PyResult<Vec<Take>> {
-        let options = self.settings().read_options(sources.len());
-        let options = options.map_err(|error| self.raised(error))?;
+        let options =
+            self.settings().read_options(sources.len()).map_err(|error| self.raised(error))?;
         if conditions.len() > 1 && conditions.len() != sources.len() {
             let (given, wanted) = (conditions.len(), sources.len());
             return Err(option(format!(
@@ -94,8 +94,7 @@ impl Reading {
         source: Source,
     ) -> PyResult<(Recording, ReadTake, TextureSpectrum)> {
         let options = self.spectrum_options()?;
-        let take = self.takes(&[source], &[])?.pop();
-        let take = take.ok_or_else(|| option("no recording"))?;
+        let take = self.takes(&[source], &[])?.pop().ok_or_else(|| option("no recording"))?;
         let read = read_take(&take, &options, self.strict()).or_raise()?;
         let part = std::slice::from_ref(&read.part);
         let spectrum = TextureSpectrum::average(part, options.averaging).or_raise()?;
@@ -117,8 +116,7 @@ impl Reading {
         };
         let file = known.recording.clone();
         let settings = known.with_given(self.settings());
-        let options = settings.read_options(1);
-        let options = options.map_err(|error| self.raised(error))?.pop();
+        let options = settings.read_options(1).map_err(|error| self.raised(error))?.pop();
         let read = read_recording(&file, &options.unwrap_or_default());
         read.map_err(|error| raised(&file, error))
     }

@@ -55,8 +55,8 @@ pub(crate) fn simulate<'py>(
         ("fz_n", simulation.fz_n),
         ("x_mm", simulation.x_mm),
         ("y_mm", simulation.y_mm),
-    ];
-    let columns = columns.map(|(name, values)| (name, values.into_pyarray(py)));
+    ]
+    .map(|(name, values)| (name, values.into_pyarray(py)));
     let response = [response.frequency_hz, response.magnitude, response.phase_rad];
     Ok((columns.into(), PyBytes::new(py, &csv), response))
 }

@@ -263,8 +263,8 @@ impl Texture {
         let known = self.asset.manifest().conditions.get(condition);
         let known =
             known.ok_or_else(|| option(format!("condition is {condition}; there is none")))?;
-        let motion = known.speed_mm_s.zip(known.force_n);
-        let motion = motion.map(|(speed, force)| Motion::new(speed, force));
+        let motion =
+            known.speed_mm_s.zip(known.force_n).map(|(speed, force)| Motion::new(speed, force));
         let (quantity, band) = (self.asset.quantity(), self.asset.band());
         let (parameters, _) = self.asset.parameters(model, motion).or_raise()?;
         let level = self.asset.level_rms(model, motion).or_raise()?;

@@ -49,8 +49,10 @@ fn measured(
     };
     let error = request.error.as_ref().map(error_named).transpose()?;
     let registry = registry(&request.plugins, request.installed)?;
-    let models = named_models(&registry, &request.models).or_raise()?.into_iter();
-    let models = models.map(|model| Model { ways: vec![(model.origin().to_string(), model)] });
+    let models = named_models(&registry, &request.models)
+        .or_raise()?
+        .into_iter()
+        .map(|model| Model { ways: vec![(model.origin().to_string(), model)] });
     let swept = Request { models: models.collect(), quick: request.quick, error, program };
     let options = reading.spectrum_options()?;
     let takes = reading.takes(sources, &[])?;

@@ -56,11 +56,12 @@ fn is_heavy(name: &str) -> bool {
 
 fn read_lab(name: &str, options: &ReadOptions) -> Result<Recording, String> {
     let split = |mut read: Recording| (mem::take(&mut read.file).blake3(), read);
-    let from_file = read_recording(&folder().join(name), options).map(split);
-    let from_file = from_file.map_err(|error| error.to_string());
+    let from_file =
+        read_recording(&folder().join(name), options).map(split).map_err(|error| error.to_string());
     let bytes = fs::read(folder().join(name)).unwrap();
-    let from_bytes = recording_from_bytes(Path::new(name), &bytes, options).map(split);
-    let from_bytes = from_bytes.map_err(|error| error.to_string());
+    let from_bytes = recording_from_bytes(Path::new(name), &bytes, options)
+        .map(split)
+        .map_err(|error| error.to_string());
     assert_eq!(from_file, from_bytes, "{name}");
     from_file.map(|(_, recording)| recording)
 }
@@ -194,8 +195,9 @@ fn damaged_files_are_refused_with_their_place() {
         ),
         ("a.wav", cut("extensible_float.wav", 1000), "the file ends or breaks at sample 73"),
     ] {
-        let error = recording_from_bytes(Path::new(name), &bytes, &ReadOptions::default());
-        let error = error.unwrap_err().to_string();
+        let error = recording_from_bytes(Path::new(name), &bytes, &ReadOptions::default())
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(words), "{name}: {error}");
     }
 }

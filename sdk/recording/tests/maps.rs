@@ -13,8 +13,8 @@ use proptest::prelude::*;
 const TABLE: &str = "a,b,Fx [m/s],a-b,5V\n1,2,4,8,16\n-3,5,7,11,13\n";
 
 fn lateral(expression: &str) -> Result<Vec<f64>, String> {
-    let map = format!("lateral={expression}").parse::<ColumnMap>();
-    let map = map.map_err(|error| error.to_string())?;
+    let map =
+        format!("lateral={expression}").parse::<ColumnMap>().map_err(|error| error.to_string())?;
     let options = ReadOptions::default().with_rate_hz(1000.0).with_map(map);
     let recording = read("t.csv", TABLE, &options)?;
     Ok(recording.axes.into_iter().next().unwrap())

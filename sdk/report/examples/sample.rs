@@ -14,8 +14,7 @@ const TEXTURES: [(&str, f64, f64, f64); 5] = [
 ];
 
 fn main() -> std::io::Result<()> {
-    let path = std::env::args().nth(1);
-    let path = path.unwrap_or_else(|| "report.html".to_owned());
+    let path = std::env::args().nth(1).unwrap_or_else(|| "report.html".to_owned());
     std::fs::write(path, texture_report(&report()))
 }
 

@@ -37,8 +37,10 @@ impl Drawing<'_> {
 
     fn lines(&self, series: &Series) -> Vec<Element> {
         let places: Vec<_> = series.points.iter().map(|p| self.place(*p)).collect();
-        let runs = places.split(Option::is_none).filter(|run| !run.is_empty());
-        let runs = runs.map(|run| run.iter().flatten().copied().collect::<Vec<_>>());
+        let runs = places
+            .split(Option::is_none)
+            .filter(|run| !run.is_empty())
+            .map(|run| run.iter().flatten().copied().collect::<Vec<_>>());
         runs.map(|run| svg::polyline(&run)).collect()
     }
 
@@ -73,8 +75,8 @@ impl Drawing<'_> {
                 continue;
             }
             last = x;
-            let text = series.notes.get(i).cloned();
-            let text = text.unwrap_or_else(|| self.describe(series, *point));
+            let text =
+                series.notes.get(i).cloned().unwrap_or_else(|| self.describe(series, *point));
             let title = Element::new("title").text(&text);
             dots = dots.child(&svg::circle(x, y, 4.0).child(&title));
         }

@@ -126,8 +126,8 @@ impl Candidates {
         if !options.is_empty() {
             return Ok(Self { options, ..*self });
         }
-        let measured = self.options.iter();
-        let measured = measured.filter_map(|p| Some((p.model.clone(), p.largest_error_db?)));
+        let measured =
+            self.options.iter().filter_map(|p| Some((p.model.clone(), p.largest_error_db?)));
         Err(SceneError::NotNearEnough {
             surface: self.surface,
             wanted_db,
@@ -148,8 +148,8 @@ fn nearest_within(
     bounds.sort_by(|a, b| by_error(*a, *b));
     // Below this bound, some surface has no representation.
     let unnamed = all.iter().filter(|c| !c.named);
-    let least = unnamed.map(|c| c.options[0].error_db);
-    let least = least.max_by(|a, b| by_error(*a, *b)).unwrap_or(Some(0.0));
+    let least =
+        unnamed.map(|c| c.options[0].error_db).max_by(|a, b| by_error(*a, *b)).unwrap_or(Some(0.0));
     let mut quickest_ns: Option<f64> = None;
     for bound in bounds.into_iter().filter(|bound| by_error(*bound, least).is_ge()) {
         let options = quickest(all, bound, cost)?;

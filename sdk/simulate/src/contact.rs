@@ -109,8 +109,8 @@ impl Contact {
         let friction = self.friction * (1.0 + STRIBECK.0 * libm::exp(-slowness * slowness));
         let distance = self.departures.pace_mm_s(speed) * self.step_s;
         let as_it_lies = self.departures.frequency_speed == 1.0;
-        let texture = self.material.read(finger, distance, as_it_lies);
-        let texture = texture.map(|x| finger.contact * level * x);
+        let texture =
+            self.material.read(finger, distance, as_it_lies).map(|x| finger.contact * level * x);
         let along = sliding * finger.normal_n * texture[1];
         let across = sliding * finger.normal_n * ACROSS.0 * texture[0];
         let steady = finger.normal_n * friction;

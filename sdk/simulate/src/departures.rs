@@ -90,14 +90,14 @@ impl Departures {
     }
 
     pub(super) fn check(&self) -> Result<(), SimulationError> {
-        let ranges = [
+        let mut ranges = [
             ("frequency_speed", self.frequency_speed, -0.5, 2.0),
             ("level_speed", self.level_speed, -2.0, 2.0),
             ("level_force", self.level_force, -1.0, 3.0),
             ("drift_db_per_min", self.drift_db_per_min, -60.0, 60.0),
             ("lifted", self.lifted, 0.0, 0.8),
-        ];
-        let mut ranges = ranges.into_iter();
+        ]
+        .into_iter();
         ranges.try_for_each(|(option, value, low, high)| check_range(option, value, low, high))
     }
 

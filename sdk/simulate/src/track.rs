@@ -71,8 +71,8 @@ impl Track {
 
     /// Passes the beginning, in which the filters still hold their zeros.
     fn settle(&mut self, parameters: &Parameters) {
-        let lowest = parameters.grains.iter().map(|grain| grain.from_per_mm);
-        let lowest = lowest.fold(f64::INFINITY, f64::min);
+        let lowest =
+            parameters.grains.iter().map(|grain| grain.from_per_mm).fold(f64::INFINITY, f64::min);
         let points = 5.0 * POINTS_PER_MM / (2.0 * PI * lowest);
         for _ in 0..(points as usize).min(100_000) + self.raw.len() {
             self.push();

@@ -232,8 +232,8 @@ fn relief_power(parameters: &Parameters, noise: &[f64], per_mm: f64, width: f64)
 fn reading(kernel: &[f64], per_mm: f64) -> f64 {
     let turn = 2.0 * PI * per_mm / POINTS_PER_MM;
     let middle = (kernel.len() / 2) as f64;
-    let smoothing = kernel.iter().enumerate();
-    let smoothing = smoothing.map(|(i, w)| w * libm::cos(turn * (i as f64 - middle)));
+    let smoothing =
+        kernel.iter().enumerate().map(|(i, w)| w * libm::cos(turn * (i as f64 - middle)));
     smoothing.sum::<f64>() * cubic_gain(turn)
 }
 
@@ -242,8 +242,10 @@ fn reading(kernel: &[f64], per_mm: f64) -> f64 {
 fn cubic_gain(turn: f64) -> f64 {
     const STEPS: usize = 16;
     let at = |t: f64| {
-        let terms = cubic_weights(t).into_iter().enumerate();
-        let terms = terms.map(|(i, w)| w * libm::cos(turn * (t + 1.0 - i as f64)));
+        let terms = cubic_weights(t)
+            .into_iter()
+            .enumerate()
+            .map(|(i, w)| w * libm::cos(turn * (t + 1.0 - i as f64)));
         terms.sum::<f64>()
     };
     let simpson = |i: usize| {

@@ -280,8 +280,7 @@ fn free_motion_fills_its_ranges_and_turns() {
     }
     // Every 0.1 s: near a turn the position is constant to its four decimals.
     let places: Vec<f64> = simulation.y_mm.iter().step_by(100).copied().collect();
-    let turns = places.windows(3);
-    let turns = turns.filter(|y| (y[1] - y[0]) * (y[2] - y[1]) < 0.0).count();
+    let turns = places.windows(3).filter(|y| (y[1] - y[0]) * (y[2] - y[1]) < 0.0).count();
     assert!(turns > 15, "{turns} turns");
 }
 

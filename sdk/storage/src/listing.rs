@@ -65,8 +65,11 @@ pub(crate) fn of_folder(folder: &Path, pattern: &Pattern) -> Result<Vec<Entry>, 
                 open.push((path, depth + 1));
                 continue;
             }
-            let relative = path.strip_prefix(folder).unwrap_or(&path);
-            let relative = relative.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/");
+            let relative = path
+                .strip_prefix(folder)
+                .unwrap_or(&path)
+                .to_string_lossy()
+                .replace(std::path::MAIN_SEPARATOR, "/");
             let Ok(is) = path.metadata() else { continue };
             if !is.is_file() || !matches(pattern, &relative) {
                 continue;

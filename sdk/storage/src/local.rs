@@ -10,16 +10,15 @@ use crate::{Stat, StorageError, StorageProblem};
 pub(crate) fn read(path: &Path, most_bytes: u64) -> Result<Vec<u8>, StorageError> {
     let mut bytes = Vec::new();
     let file = opened(path)?;
-    let taken = file.take(most_bytes.saturating_add(1)).read_to_end(&mut bytes);
-    let taken = taken.at(path.display())?;
+    let taken =
+        file.take(most_bytes.saturating_add(1)).read_to_end(&mut bytes).at(path.display())?;
     check(path, taken as u64, most_bytes)?;
     Ok(bytes)
 }
 
 pub(crate) fn copy(path: &Path, mut into: File, most_bytes: u64) -> Result<(), StorageError> {
     let mut from = opened(path)?.take(most_bytes.saturating_add(1));
-    let copied = io::copy(&mut from, &mut into);
-    let copied = copied.at(path.display())?;
+    let copied = io::copy(&mut from, &mut into).at(path.display())?;
     check(path, copied, most_bytes)
 }
 

@@ -42,8 +42,10 @@ fn a_list_is_by_name_and_by_pattern() {
     }
     let names = |pattern: &str| {
         let found = storage.list(&folder.path().to_owned().into(), pattern).unwrap();
-        let names = found.iter().map(|entry| entry.location.local().unwrap());
-        let names = names.map(|path| path.strip_prefix(folder.path()).unwrap().to_owned());
+        let names = found
+            .iter()
+            .map(|entry| entry.location.local().unwrap())
+            .map(|path| path.strip_prefix(folder.path()).unwrap().to_owned());
         names.map(|path| path.to_str().unwrap().to_owned()).collect::<Vec<_>>()
     };
     assert_eq!(names("*.csv"), ["a.csv", "b.csv"]);

@@ -77,8 +77,9 @@ fn floor(shown: &[&Point], against: Against) -> Option<Series> {
     let error = against.place(recording).1;
     let costs = || shown.iter().map(|p| against.place(p).0);
     let ends = [costs().fold(f64::INFINITY, f64::min), costs().fold(0.0, f64::max)];
-    let line = Series::line("floor: a second recording", ends.map(|x| (x, error)).to_vec());
-    let mut line = line.colored(RECORDING_COLOR).behind();
+    let mut line = Series::line("floor: a second recording", ends.map(|x| (x, error)).to_vec())
+        .colored(RECORDING_COLOR)
+        .behind();
     line.line = Line::Dashed;
     Some(line)
 }

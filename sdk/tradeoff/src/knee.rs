@@ -71,8 +71,7 @@ fn knee_of(recording: &str, of: &str, against: Against, points: &[&Point]) -> Op
     let at = knee(&places)?;
     let (cost, error) = places[at];
     let is_step = |i: &usize| error - places[*i].1 >= STEP;
-    let next = (at + 1..places.len()).find(is_step);
-    let next = next.map(|i| (&places[i], along[i]));
+    let next = (at + 1..places.len()).find(is_step).map(|i| (&places[i], along[i]));
     let here = format!(
         "{}, {} at {}",
         along[at].name(),

@@ -53,8 +53,10 @@ impl Contender {
             }));
         }
         let rendered = self.rendered(subject, &stored, quick)?;
-        let errors = rendered.spectra.iter();
-        let errors = errors.filter_map(|m| accuracy(reference, m).measures.get(Measure::NineBand));
+        let errors = rendered
+            .spectra
+            .iter()
+            .filter_map(|m| accuracy(reference, m).measures.get(Measure::NineBand));
         let ends = (f64::INFINITY, f64::NEG_INFINITY);
         let (low, high) = errors.fold(ends, |(low, high), x| (x.min(low), x.max(high)));
         Ok(Some(Measured {

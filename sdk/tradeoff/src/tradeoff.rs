@@ -39,8 +39,10 @@ impl Machine {
     /// Returns the current machine.
     pub fn here() -> Self {
         let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-        let name = info.lines().find_map(|line| line.strip_prefix("model name"));
-        let name = name.map(|rest| rest.trim_start_matches([' ', '\t', ':']).to_owned());
+        let name = info
+            .lines()
+            .find_map(|line| line.strip_prefix("model name"))
+            .map(|rest| rest.trim_start_matches([' ', '\t', ':']).to_owned());
         Self {
             processor: name.unwrap_or_else(|| "unknown".to_owned()),
             cores: std::thread::available_parallelism().map_or(1, usize::from),

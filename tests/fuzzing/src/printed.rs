@@ -71,8 +71,7 @@ fn of_manifest(json: &str) -> Vec<String> {
     for finding in &findings {
         is_tame(&finding.to_string(), usize::MAX / WIDEST);
     }
-    let refused = htex_format::Asset::from_bytes(&bytes).err();
-    let refused = refused.map(|error| error.to_string());
+    let refused = htex_format::Asset::from_bytes(&bytes).err().map(|error| error.to_string());
     findings.into_iter().map(|finding| finding.message).chain(refused).collect()
 }
 

@@ -101,8 +101,7 @@ const PIECES: [&str; 20] = [
 /// A text of the grammar, read as each kind of file on a small stack.
 pub fn toml_text(input: &[u8]) -> bool {
     let text = Grammar::new(input).text();
-    let reading = std::thread::Builder::new().stack_size(STACK);
-    let reading = reading.spawn(move || read(&text));
+    let reading = std::thread::Builder::new().stack_size(STACK).spawn(move || read(&text));
     reading.expect("a thread").join().expect("no panic")
 }
 

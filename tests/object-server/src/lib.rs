@@ -344,7 +344,6 @@ fn refusal(status: u16, code: &str, request: &Request<Incoming>) -> Response<Any
         "<?xml version=\"1.0\"?><Error><Code>{code}</Code><Message>by the test</Message>\
          <AWSAccessKeyId>{ACCESS_KEY}</AWSAccessKeyId><SignatureProvided>{signature}</SignatureProvided></Error>"
     );
-    let response = Response::builder().status(status);
-    let response = response.header("content-type", "application/xml");
+    let response = Response::builder().status(status).header("content-type", "application/xml");
     response.body(body::of(Full::new(Bytes::from(text)))).unwrap()
 }

@@ -85,8 +85,7 @@ fn written(
     let htex = |arguments: &[&str], out: Option<&str>| {
         let mut htex = program(&command[0], folder);
         htex.args(&command[1..]).args(arguments);
-        let file = out.map(|out| fs_err::File::create(folder.join(out)));
-        let file = file.transpose()?;
+        let file = out.map(|out| fs_err::File::create(folder.join(out))).transpose()?;
         run(htex.stdout(file.map_or_else(Stdio::null, |file| file.into_file().into())))
     };
     for surface in surfaces {

@@ -27,8 +27,7 @@ pub(super) struct Outcome {
 impl Outcome {
     /// Reads libFuzzer's log.
     pub(super) fn read(target: &str, log: &str, finding: Option<PathBuf>) -> Self {
-        let status = log.lines().rev().find(|line| line.contains(" cov: "));
-        let status = status.unwrap_or_default();
+        let status = log.lines().rev().find(|line| line.contains(" cov: ")).unwrap_or_default();
         let said = |line: &&str| line.contains("panicked at") || line.contains("ERROR:");
         let first = log.lines().position(|line| said(&line)).unwrap_or(0);
         let tail: Vec<&str> = log.lines().skip(first).take(TOLD).collect();
@@ -63,8 +62,7 @@ pub(super) fn end(outcomes: &[Outcome]) -> String {
     let mut text = format!("{executions} executions, {} findings\n", found.len());
     for outcome in found {
         let Outcome { target, tail, .. } = outcome;
-        let place = outcome.finding.clone().unwrap_or_default();
-        let place = place.display();
+        let place = outcome.finding.clone().unwrap_or_default().display();
         text += &format!(
             "\n{target}: {place}\n{tail}\n\
              When it is fixed, keep it as a regression: cp {place} tests/regressions/{target}/NAME,\n\

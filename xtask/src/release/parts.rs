@@ -58,8 +58,8 @@ pub(super) fn bills(platform: &Platform, version: &str, out: &Path, commit: &Com
         cyclonedx.args(["--override-filename", &name]).current_dir(&sources);
         run(commit.told_to(cyclonedx.env("PATH", tools_first())))?;
         let name = format!("{name}.json");
-        let text = fs::read_to_string(sources.join(package).join(&name))?;
-        let text = text.replace(&*sources.to_string_lossy(), "/htex");
+        let text = fs::read_to_string(sources.join(package).join(&name))?
+            .replace(&*sources.to_string_lossy(), "/htex");
         fs::write(out.join(&name), text)?;
     }
     Ok(())

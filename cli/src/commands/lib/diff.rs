@@ -64,8 +64,7 @@ impl<'a> Walk<'a> {
 
     /// Takes the next entry.
     fn step(&mut self) -> Result<Option<Entry>, Failure> {
-        let next = self.entries.next().transpose();
-        let next = next.of(&self.given.shown())?;
+        let next = self.entries.next().transpose().of(&self.given.shown())?;
         Ok(std::mem::replace(&mut self.next, next))
     }
 }

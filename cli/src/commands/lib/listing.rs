@@ -24,8 +24,7 @@ impl Listing {
 
     pub(super) fn add(&mut self, entry: &Entry) -> Result<(), Failure> {
         if self.is_json {
-            let json = serde_json::to_string(entry);
-            let json = json?;
+            let json = serde_json::to_string(entry)?;
             self.text += if self.count == 0 { "[" } else { ",\n " };
             self.text += &json;
         } else {

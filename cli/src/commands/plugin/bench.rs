@@ -101,8 +101,7 @@ fn add(
 }
 
 fn table(costs: &[Cost]) -> String {
-    let width = costs.iter().map(|c| c.model.len()).max().unwrap_or(0);
-    let width = width.max(5);
+    let width = costs.iter().map(|c| c.model.len()).max().unwrap_or(0).max(5);
     let mut text = format!("  {:width$}  {:13}", "model", "way");
     for block in BLOCKS {
         text += &format!("  {:>22}", format!("blocks of {block}"));

@@ -57,8 +57,7 @@ fn option(option: &FitOption) -> String {
         let range = range(option.min, option.max, &option.unit);
         format!("{range} [{default}]")
     } else {
-        let first = option.choices.get(*default as usize);
-        let first = first.map(String::as_str).unwrap_or_default();
+        let first = option.choices.get(*default as usize).map(String::as_str).unwrap_or_default();
         format!("{} [{first}]", option.choices.join(" or "))
     };
     format!("  {name}: {values}\n      {}\n", option.description)

@@ -85,8 +85,7 @@ impl StudyRig<'_> {
         // can be made longer in a session.
         let is_live = matches!(self.study.motion, Motion::Live);
         let is_unfelt = |name: &str| is_file(name) || (name == BUFFER && !is_live);
-        let settings = ready.settings().iter();
-        let settings = settings.filter(|(name, _)| !is_unfelt(name));
+        let settings = ready.settings().iter().filter(|(name, _)| !is_unfelt(name));
         Ok(DeviceUsed {
             adapter: descriptor.id.clone(),
             profile: self.device.profile.clone().unwrap_or_default(),

@@ -157,8 +157,8 @@ impl Run {
         let mut device = self.choice.to_override(None, false)?;
         device.live = study.motion == Motion::Live;
         let asked = study.device.settings.get("format").and_then(Value::as_str);
-        let format = device.settings.get("format").map(String::as_str).or(asked);
-        let format = format.unwrap_or("wav").to_owned();
+        let format =
+            device.settings.get("format").map(String::as_str).or(asked).unwrap_or("wav").to_owned();
         let folder = self.output.join(participant);
         let mut rig = StudyRig {
             study,

@@ -118,8 +118,7 @@ pub(super) fn taken(own: &Task, other: &Task) -> bool {
 fn expanded(names: &str) -> Answer<Vec<usize>> {
     let mut inputs = Vec::new();
     for name in names.split(',').map(str::trim) {
-        let range = name.strip_prefix("Dev1/").ok_or(codes::NO_SUCH_DEVICE)?;
-        let range = range.strip_prefix("ai").ok_or(codes::NO_SUCH_CHANNEL)?;
+        let range = name.strip_prefix("Dev1/").ok_or(codes::NO_SUCH_DEVICE)?.strip_prefix("ai").ok_or(codes::NO_SUCH_CHANNEL)?;
         let (first, last) = range.split_once(':').unwrap_or((range, range));
         let number = |text: &str| {
             text.trim_start_matches("ai").parse::<usize>().ok().filter(|n| *n < INPUTS)

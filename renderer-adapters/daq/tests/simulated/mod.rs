@@ -103,8 +103,11 @@ impl Card {
 
     pub fn open_input(&self, given: &[(&str, &str)]) -> Result<Box<dyn Source>, DeviceError> {
         let driver = ("driver", self.library.to_str().unwrap());
-        let given = [&[driver], given].concat();
-        let given = given.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+        let given = [&[driver], given]
+            .concat()
+            .iter()
+            .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
+            .collect();
         let adapter = DaqInput::new();
         adapter.open(&Settings::resolve(adapter.descriptor(), None, &given)?)
     }

@@ -332,8 +332,10 @@ impl World {
 
     fn main_step(&mut self) {
         if self.main == Thread::Idle {
-            let next = self.to_guardian.pop_front();
-            let next = next.or_else(|| (!self.pipe_is_open).then_some(Request::End));
+            let next = self
+                .to_guardian
+                .pop_front()
+                .or_else(|| (!self.pipe_is_open).then_some(Request::End));
             if let Some(request) = next {
                 let takes = match request {
                     Request::Write => 1,

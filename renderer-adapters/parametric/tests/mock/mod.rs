@@ -26,8 +26,7 @@ fn built(source: &str) -> Option<PathBuf> {
             return None;
         }
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(source);
-        let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
-        let folder = folder.keep();
+        let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap().keep();
         std::fs::write(folder.join("pwle.h"), declared()).unwrap();
         let out = folder.join("libmock.so");
         let flags = ["-std=gnu11", "-O1", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC"];

@@ -57,11 +57,14 @@ pub fn mix(
         all.iter().map(|r| r.model.clone()).collect()
     };
     let theirs = ids(b);
-    let mixed = ids(a).into_iter().filter(|id| theirs.contains(id)).map(|id| {
-        let model = a.asset.loaded_model(Some(&id))?;
-        mixed(&model, (a, b), weight, &conditions)
-    });
-    let mut mixed = mixed.collect::<Result<Vec<_>, ByHandError>>()?;
+    let mut mixed = ids(a)
+        .into_iter()
+        .filter(|id| theirs.contains(id))
+        .map(|id| {
+            let model = a.asset.loaded_model(Some(&id))?;
+            mixed(&model, (a, b), weight, &conditions)
+        })
+        .collect::<Result<Vec<_>, ByHandError>>()?;
     if mixed.is_empty() {
         let problem = format!(
             "no model describes both ({} and {}); fit them with the same model",

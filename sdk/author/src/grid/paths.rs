@@ -60,8 +60,8 @@ impl<'a> Paths<'a> {
         let samples = self.samples(window, log_speed);
         let (start, len) = (samples.start, samples.len());
         let band = self.band;
-        let reader = self.readers.entry(len);
-        let reader = reader.or_insert_with(|| SegmentReader::new(len, band, Trend::Linear));
+        let reader =
+            self.readers.entry(len).or_insert_with(|| SegmentReader::new(len, band, Trend::Linear));
         let mut bins = reader.read(&recording.axes, start)?;
         if let Some(response) = &self.options.response {
             let faster = window.len as f64 / len as f64;
@@ -80,8 +80,7 @@ impl<'a> Paths<'a> {
         let len = self.length(window, log_speed);
         let middle = window.start + window.len / 2;
         let samples = self.takes[window.take].recording.samples();
-        let start = middle.saturating_sub(len / 2);
-        let start = start.min(samples.saturating_sub(len));
+        let start = middle.saturating_sub(len / 2).min(samples.saturating_sub(len));
         start..start + len
     }
 

@@ -87,8 +87,7 @@ impl<'a> Search<'a> {
                 break;
             }
             let gathered = self.gathered(lines, cells)?;
-            let error_db = self.error_db(&gathered, &compared);
-            let error_db = error_db.unwrap_or(f64::INFINITY);
+            let error_db = self.error_db(&gathered, &compared).unwrap_or(f64::INFINITY);
             let least = best.as_ref().map(|(_, least)| least - WORTH_DB);
             if least.is_none_or(|least| error_db < least) {
                 best = Some((gathered, error_db));

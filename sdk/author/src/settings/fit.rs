@@ -208,8 +208,7 @@ impl FitSettings {
         let lines = self.grid.as_deref().unwrap_or_default();
         let grid = (!lines.is_empty()).then(|| Grid::parse(lines.iter().map(String::as_str)));
         // The models that come with this program: a plugin runs only where it is asked for.
-        let builtin = registry.by_default();
-        let builtin = builtin.filter(|model| *model.origin() == Origin::Builtin);
+        let builtin = registry.by_default().filter(|model| *model.origin() == Origin::Builtin);
         Ok(AssetRequest::new(name)
             .with_models(self.models(registry)?)
             .with_spectrum(reading.spectrum_options()?)

@@ -144,8 +144,7 @@ macro_rules! settings {
                 #[allow(unused_imports)]
                 use crate::settings::setting::Setting;
                 let entries: &[(&str, Option<String>)] = &[$($(($flag, self.$field.recorded()),)?)*];
-                let said = entries.iter();
-                let said = said.filter_map(|(flag, text)| Some(((*flag).to_owned(), text.clone()?)));
+                let said = entries.iter().filter_map(|(flag, text)| Some(((*flag).to_owned(), text.clone()?)));
                 // Inserted one by one: to collect them would sort them, by a sort of their own.
                 let mut recorded = std::collections::BTreeMap::new();
                 recorded.extend(said);

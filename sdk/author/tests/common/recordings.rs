@@ -177,8 +177,7 @@ pub fn cases() -> Vec<Case> {
 fn clock_gap() -> String {
     let text = Columns::new(3.0).lateral();
     let lost = sample(1.0)..sample(1.3);
-    let kept = text.lines().enumerate();
-    let kept = kept.filter(|(at, _)| !lost.contains(at));
+    let kept = text.lines().enumerate().filter(|(at, _)| !lost.contains(at));
     kept.map(|(_, line)| format!("{line}\n")).collect()
 }
 

@@ -99,8 +99,7 @@ pub unsafe extern "C" fn htex_index_give(
         let State::Opening(opening) = &mut *state else {
             return Err(Failure::argument("the library is open already"));
         };
-        let opening = opening.take();
-        let opening = opening.ok_or(Failure::argument("the library could not be opened"))?;
+        let opening = opening.take().ok_or(Failure::argument("the library could not be opened"))?;
         *state = match opening.give(bytes, file_bytes as u64)? {
             Progress::More(opening) => State::Opening(Some(opening)),
             Progress::Open(index) => State::Open(Box::new(index), Vec::new()),
@@ -156,8 +155,10 @@ pub unsafe extern "C" fn htex_index_page_range(
 ) -> htex_status {
     guarded(|| {
         let state = INDEXES.shared(index)?;
-        let range = state.index()?.leaf_range(page as usize);
-        let range = range.ok_or(Failure::argument("no page of this index"))?;
+        let range = state
+            .index()?
+            .leaf_range(page as usize)
+            .ok_or(Failure::argument("no page of this index"))?;
         // SAFETY: the place is the caller's.
         unsafe { write_range(&range, out) }
     })

@@ -81,8 +81,7 @@ pub unsafe extern "C" fn htex_asset_parameters_json(
         let asset = ASSETS.shared(asset.id)?;
         // SAFETY: the pointers are the caller's.
         let (model, at) = unsafe { (text(model)?, motion(at)?) };
-        let parameters = asset.named_parameters(model, at)?;
-        let parameters = parameters.into_iter().map(|(name, parameter)| {
+        let parameters = asset.named_parameters(model, at)?.into_iter().map(|(name, parameter)| {
             let value = match parameter {
                 Parameter::Number(number) => json!(number),
                 Parameter::List(list) => json!(list),
@@ -126,8 +125,8 @@ fn read_magnitude(
     let condition = asset.manifest().conditions.get(condition);
     let condition =
         condition.ok_or(Failure::argument("the texture has no condition of this number"))?;
-    let motion = condition.speed_mm_s.zip(condition.force_n);
-    let motion = motion.map(|(speed, force)| Motion::new(speed, force));
+    let motion =
+        condition.speed_mm_s.zip(condition.force_n).map(|(speed, force)| Motion::new(speed, force));
     let loaded = asset.loaded_model(model)?;
     if loaded.has_lines() {
         return Err(Failure::plain(

@@ -54,8 +54,8 @@ pub(crate) fn retune(case: &Case) -> Found {
 /// Checks that after a retune the sound has the spectrum of the new parameters.
 pub(crate) fn follows(case: &Case) -> Found {
     let sets = case.fitted()?;
-    let magnitudes = sets.iter().map(|set| case.magnitude(&set.parameters));
-    let magnitudes = magnitudes.collect::<Result<Vec<_>, _>>()?;
+    let magnitudes =
+        sets.iter().map(|set| case.magnitude(&set.parameters)).collect::<Result<Vec<_>, _>>()?;
     let mut stream = case.stream(&sets[0].parameters, case.seed)?;
     let (mut worst, mut judged) = (0.0f64, 0.0);
     let mut settling = vec![0.0; RATE_HZ as usize];
@@ -106,8 +106,10 @@ pub(crate) fn interpolate(case: &Case) -> Found {
             let say = |what: String| {
                 Finding::failed(format!("{between}, {weight} of the second: {what}"))
             };
-            let mix = case.model.interpolate(&[a, b], &[1.0 - weight, weight]);
-            let mix = mix.map_err(|error| say(error.to_string()))?;
+            let mix = case
+                .model
+                .interpolate(&[a, b], &[1.0 - weight, weight])
+                .map_err(|error| say(error.to_string()))?;
             playable(case, &mix).map_err(|finding| say(finding.message))?;
             let end = match step {
                 0 => a,

@@ -29,16 +29,20 @@ pub(crate) fn sane(case: &Case) -> Found {
         let mut largest: f64 = 0.0;
         for grid in [band.grid_hz(), fine_grid()] {
             // The host refuses magnitudes that are not finite or negative.
-            let magnitude = case.model.magnitude(&parameters, band, &grid);
-            let magnitude = magnitude.map_err(|error| say(error.to_string()))?;
+            let magnitude = case
+                .model
+                .magnitude(&parameters, band, &grid)
+                .map_err(|error| say(error.to_string()))?;
             largest = magnitude.iter().copied().fold(largest, f64::max);
             asked += grid.len();
         }
         if largest == 0.0 {
             return Err(say("the magnitude is 0 everywhere".to_owned()));
         }
-        let beyond = case.model.magnitude(&parameters, band, &outside);
-        let beyond = beyond.map_err(|error| say(error.to_string()))?;
+        let beyond = case
+            .model
+            .magnitude(&parameters, band, &outside)
+            .map_err(|error| say(error.to_string()))?;
         if let Some(i) = beyond.iter().position(|&m| m != 0.0) {
             let (m, f) = (beyond[i], outside[i]);
             return Err(say(format!("{m} at {f} Hz, outside the band; it must be 0")));

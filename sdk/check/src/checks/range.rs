@@ -119,8 +119,8 @@ fn plays(case: &Case, set: &Set) -> Result<(), Finding> {
 fn render(case: &Case, set: &Set, band: Band, out: &mut [f32]) -> Result<(), Finding> {
     let (low, high) = band.edges();
     let wrong = |what: String| about(set, &format!("in the band {low} to {high} Hz: {what}"));
-    let stream = Stream::new(&case.model, &set.parameters, band, RATE_HZ, case.seed);
-    let mut stream = stream.map_err(|e| wrong(format!("it has a magnitude and no voice: {e}")))?;
+    let mut stream = Stream::new(&case.model, &set.parameters, band, RATE_HZ, case.seed)
+        .map_err(|e| wrong(format!("it has a magnitude and no voice: {e}")))?;
     let rendered = stream.render(out);
     rendered.map_err(|error| wrong(error.to_string()))?;
     match out.iter().position(|x| x.abs() > LOUDEST) {

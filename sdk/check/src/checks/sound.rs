@@ -39,8 +39,9 @@ pub(crate) fn renders(case: &Case) -> Found {
     let mut voices = 0.0;
     for fitted in case.fitted()? {
         let mut out = vec![0.0; RATE_HZ as usize];
-        let rendered = case.stream(&fitted.parameters, case.seed);
-        let rendered = rendered.and_then(|mut stream| stream.render(&mut out));
+        let rendered = case
+            .stream(&fitted.parameters, case.seed)
+            .and_then(|mut stream| stream.render(&mut out));
         rendered.map_err(|error| about(&fitted, &error.to_string()))?;
         if out.iter().all(|&x| x == 0.0) {
             return Err(about(&fitted, "all samples of a second are zero"));

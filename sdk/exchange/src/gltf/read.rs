@@ -185,8 +185,7 @@ impl Document {
         })?;
         let bytes = buffer.bytes(view.buffer, chunks)?;
         let end = view.byte_offset.checked_add(view.byte_length);
-        let taken = end.and_then(|end| bytes.get(view.byte_offset..end));
-        let taken = taken.ok_or_else(|| {
+        let taken = end.and_then(|end| bytes.get(view.byte_offset..end)).ok_or_else(|| {
             let problem = format!(
                 "{} bytes from {} on reach over the end of buffer {}, which has {}",
                 view.byte_length,

@@ -85,8 +85,8 @@ fn manifest(
         force_n: Some(node.force_n),
         ..Condition::default()
     };
-    let numbers = serde_json::to_value(Hatt::of(texture));
-    let numbers = numbers.map_err(|error| Fault::of_file(error.to_string()))?;
+    let numbers = serde_json::to_value(Hatt::of(texture))
+        .map_err(|error| Fault::of_file(error.to_string()))?;
     let name = if texture.material.is_empty() { imported.name } else { &texture.material };
     Ok(Manifest {
         htex: VERSION.to_owned(),

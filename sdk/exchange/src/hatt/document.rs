@@ -68,8 +68,7 @@ impl<'a> Builder<'a> {
 
     fn build(mut self) -> Result<Element, Fault> {
         loop {
-            let event = self.reader.read_event();
-            let event = event.map_err(|error| {
+            let event = self.reader.read_event().map_err(|error| {
                 let at = self.reader.error_position();
                 self.here(at, format!("this is no XML: {}", short(&error.to_string())))
             })?;
@@ -202,8 +201,7 @@ impl<'a> Builder<'a> {
     }
 
     fn line_at(&mut self, position: u64) -> usize {
-        let at = usize::try_from(position).unwrap_or(usize::MAX);
-        let at = at.min(self.text.len());
+        let at = usize::try_from(position).unwrap_or(usize::MAX).min(self.text.len());
         let (from, line) = self.known;
         let passed = self.text.as_bytes().get(from..at).unwrap_or_default();
         self.known = (from.max(at), line + passed.iter().filter(|byte| **byte == b'\n').count());
@@ -216,8 +214,7 @@ impl<'a> Builder<'a> {
 
     fn here(&mut self, position: u64, problem: impl Into<String>) -> Fault {
         let line = self.line_at(position);
-        let element = self.open.last().map(|open| open.name.clone());
-        let element = element.unwrap_or_default();
+        let element = self.open.last().map(|open| open.name.clone()).unwrap_or_default();
         Fault::at(Place { line, element }, problem)
     }
 }

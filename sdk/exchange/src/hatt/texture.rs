@@ -80,8 +80,10 @@ fn nodes(root: &Element, notes: &mut Vec<String>) -> Result<Vec<Node>, Fault> {
         return Err(root.fault("it has no element model"));
     }
     let mut work = Work::default();
-    let nodes = models.iter().map(|model| Node::read(model, notes, &mut work));
-    let nodes = nodes.collect::<Result<Vec<Node>, Fault>>()?;
+    let nodes = models
+        .iter()
+        .map(|model| Node::read(model, notes, &mut work))
+        .collect::<Result<Vec<Node>, Fault>>()?;
     for (name, order) in [
         ("numARCoeff", nodes.first().map_or(0, |node| node.ar.len())),
         ("numMACoeff", nodes.first().map_or(0, |node| node.ma.len())),
@@ -173,8 +175,10 @@ fn triangles(
 ) -> Result<Vec<Triangle>, Fault> {
     let elements: Vec<&Element> = root.all("tri").collect();
     check_count(root, "numTri", "tri", elements.len())?;
-    let triangles = elements.iter().map(|element| triangle(element, nodes.len()));
-    let triangles = triangles.collect::<Result<Vec<Triangle>, Fault>>()?;
+    let triangles = elements
+        .iter()
+        .map(|element| triangle(element, nodes.len()))
+        .collect::<Result<Vec<Triangle>, Fault>>()?;
     let places: Vec<[f64; 2]> = nodes.iter().map(|node| [node.speed_mm_s, node.force_n]).collect();
     match check_triangles(&places, &triangles) {
         Ok(()) => Ok(triangles),

@@ -34,8 +34,7 @@ pub(super) fn inside(coefficients: &[f64], work: &mut Work) -> Result<(Vec<f64>,
         return Ok((coefficients.to_vec(), 1.0));
     }
     let order = coefficients.iter().rposition(|b| *b != 0.0);
-    let used = order.and_then(|last| coefficients.get(..=last));
-    let used = used.ok_or(NotFound::Here)?;
+    let used = order.and_then(|last| coefficients.get(..=last)).ok_or(NotFound::Here)?;
     let (mut gain, mut zeros) = (1.0, roots(used, work)?);
     for zero in &mut zeros {
         let radius = zero.norm_sqr().sqrt();

@@ -85,8 +85,7 @@ pub(crate) fn rights(bytes: &[u8]) -> Rights {
         return Rights::default();
     };
     let info = info.info();
-    let plain = info.uncompressed_latin1_text.iter();
-    let plain = plain.map(|chunk| Rights::from_text(&chunk.text));
+    let plain = info.uncompressed_latin1_text.iter().map(|chunk| Rights::from_text(&chunk.text));
     let wide = info.utf8_text.iter().filter_map(|chunk| {
         let mut chunk = chunk.clone();
         // `get_text` alone would unpack a megabyte to a gigabyte.

@@ -145,8 +145,8 @@ fn check_channel(channel: &Value, perception: &Value) {
     let bands = list(channel, "/bands");
     assert!(!bands.is_empty() && bands.len() <= 7, "{}", bands.len());
     for band in bands {
-        let limits = ["lower_frequency_limit", "upper_frequency_limit"];
-        let limits = limits.map(|key| band[key].as_i64().unwrap_or_else(|| panic!("{key}")));
+        let limits = ["lower_frequency_limit", "upper_frequency_limit"]
+            .map(|key| band[key].as_i64().unwrap_or_else(|| panic!("{key}")));
         assert!(limits[0] <= limits[1]);
         assert!(band.get("curve_type").is_none());
         let is_wavelet = band["band_type"] == "WaveletWave";

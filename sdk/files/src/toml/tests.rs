@@ -10,8 +10,7 @@ const STACK: usize = 256 << 10;
 /// Reads a text with a small stack, as a table of any values.
 fn read(text: &str) -> Result<Value, TomlError> {
     let text = text.to_owned();
-    let thread = std::thread::Builder::new().stack_size(STACK);
-    let thread = thread.spawn(move || {
+    let thread = std::thread::Builder::new().stack_size(STACK).spawn(move || {
         lines_of_keys(&text, [&["a".to_owned()][..]]);
         from_str::<Value>(&text)
     });

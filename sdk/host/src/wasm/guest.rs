@@ -66,16 +66,15 @@ impl Guest {
 
     pub(super) fn read<T: Number>(&self, at: Usize, out: &mut [T]) -> Result<(), Fault> {
         let data = self.memory.data(&self.store);
-        let bytes = data.get(at as usize..);
-        let bytes = bytes.and_then(|rest| rest.get(..size_of_val(out)));
+        let bytes = data.get(at as usize..).and_then(|rest| rest.get(..size_of_val(out)));
         T::read(bytes.ok_or(Fault::Outside)?, out);
         Ok(())
     }
 
     pub(super) fn write<T: Number>(&mut self, at: Usize, numbers: &[T]) -> Result<(), Fault> {
         let data = self.memory.data_mut(&mut self.store);
-        let bytes = data.get_mut(at as usize..);
-        let bytes = bytes.and_then(|rest| rest.get_mut(..size_of_val(numbers)));
+        let bytes =
+            data.get_mut(at as usize..).and_then(|rest| rest.get_mut(..size_of_val(numbers)));
         T::write(numbers, bytes.ok_or(Fault::Outside)?);
         Ok(())
     }
@@ -101,8 +100,10 @@ impl Find for Exports<'_> {
         &mut self,
         name: &'static str,
     ) -> Result<TypedFunc<P, R>, Fault> {
-        let function = self.raw.get_func(&mut *self.store, name);
-        let function = function.ok_or_else(|| Fault::NoFunction { name: name.to_owned() })?;
+        let function = self
+            .raw
+            .get_func(&mut *self.store, name)
+            .ok_or_else(|| Fault::NoFunction { name: name.to_owned() })?;
         function
             .typed(&*self.store)
             .map_err(|error| Fault::Signature { name: name.to_owned(), what: format!("{error:#}") })

@@ -122,8 +122,7 @@ impl Instance {
         let too_much = || Fault::TooManyBytes { bytes, most: self.module.limits.memory_bytes };
         let bytes = bytes.next_power_of_two();
         let fits = bytes <= self.module.limits.memory_bytes;
-        let len = Usize::try_from(bytes).ok().filter(|_| fits);
-        let len = len.ok_or_else(too_much)?;
+        let len = Usize::try_from(bytes).ok().filter(|_| fits).ok_or_else(too_much)?;
         let old = std::mem::take(&mut self.buffer);
         if old.1 > 0 {
             self.call(Deadline::Call, |f| &f.free, old)?;

@@ -35,8 +35,7 @@ impl WasmVoice {
     ) -> Result<Self, (i64, String)> {
         let fault = |fault: Fault| (Fault::STATUS, fault.to_string());
         let mut instance = Instance::new(module).map_err(fault)?;
-        let handle = instance.voice_new(parameters, band, rate_hz, seed);
-        let handle = handle.map_err(fault)?;
+        let handle = instance.voice_new(parameters, band, rate_hz, seed).map_err(fault)?;
         if handle < 0 {
             return Err((handle, instance.last_error().map_err(fault)?));
         }

@@ -73,8 +73,11 @@ pub fn text(version: &str, changed: &[(&str, &str)], fields: &str) -> String {
 pub fn with_descriptor(json: &str, changed: &[(&str, &str)], fields: &str) -> String {
     let mut functions = String::new();
     for (name, signature, body) in FUNCTIONS {
-        let body = changed.iter().find(|(n, _)| n == name).map_or(*body, |(_, b)| b);
-        let body = body.replace("$LEN", &json.len().to_string());
+        let body = changed
+            .iter()
+            .find(|(n, _)| n == name)
+            .map_or(*body, |(_, b)| b)
+            .replace("$LEN", &json.len().to_string());
         functions += &format!("(func (export \"htex_model_{name}\") {signature} {body})\n");
     }
     let data = json.replace('"', "\\\"");

@@ -141,8 +141,7 @@ fn read(
     depth: usize,
     files: &mut BTreeMap<String, Bytes>,
 ) -> Result<(), FolderError> {
-    let folder = own.at(below.as_ref());
-    let folder = folder.map_err(|error| wrong(own.path(), error))?;
+    let folder = own.at(below.as_ref()).map_err(|error| wrong(own.path(), error))?;
     let failed = |error: std::io::Error| wrong(&folder, error);
     for entry in std::fs::read_dir(&folder).map_err(failed)? {
         let entry = entry.map_err(failed)?;
@@ -160,8 +159,7 @@ fn read(
                 format!("there are more than {MOST_FILES} files; give the folder of a page");
             return Err(wrong(&folder, problem));
         }
-        let bytes = own.read(name.as_ref(), MOST_BYTES);
-        let bytes = bytes.map_err(|error| wrong(&path, error))?;
+        let bytes = own.read(name.as_ref(), MOST_BYTES).map_err(|error| wrong(&path, error))?;
         files.insert(name, bytes.into());
     }
     Ok(())
@@ -191,8 +189,7 @@ impl Answers for Files {
         }
         let path = head.uri.path().trim_start_matches('/');
         let name = if path.is_empty() { INDEX } else { path };
-        let bytes = self.files.get(name);
-        let bytes = bytes.ok_or((StatusCode::NOT_FOUND, "there is no such file"))?;
+        let bytes = self.files.get(name).ok_or((StatusCode::NOT_FOUND, "there is no such file"))?;
         let body = match head.method {
             Method::HEAD => Bytes::new(),
             _ => bytes.clone(),
@@ -318,8 +315,8 @@ mod tests {
                 _ => outer.path().join("id_rsa"),
             };
             std::os::unix::fs::symlink(target, folder.join(link)).unwrap();
-            let error = ServedFolder::open(&folder, 0, &Key::passing().unwrap());
-            let error = error.err().unwrap().to_string();
+            let error =
+                ServedFolder::open(&folder, 0, &Key::passing().unwrap()).err().unwrap().to_string();
             assert!(error.contains(link) && error.contains("is a symbolic link"), "{error}");
         }
     }

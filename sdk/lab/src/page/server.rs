@@ -166,8 +166,8 @@ impl Server {
         listener: TcpListener,
         answers: Arc<A>,
     ) -> std::io::Result<Self> {
-        let mut runtime = tokio::runtime::Builder::new_current_thread();
-        let runtime = runtime.enable_io().enable_time().build()?;
+        let runtime =
+            tokio::runtime::Builder::new_current_thread().enable_io().enable_time().build()?;
         let (end, ended) = oneshot::channel();
         let serving = move || {
             runtime.block_on(async {

@@ -107,8 +107,8 @@ fn reading(data: &TakeData) -> Result<(Reading, Recording), Box<dyn Error>> {
 /// The take as a recording, with the speed of the tracker if there is one.
 fn recording(data: &TakeData) -> Result<Recording, RecordingError> {
     let of = |role: &str| data.header.signal(role).map(|at| data.signals[at].clone());
-    let axes = texture_axes(&data.header.signals);
-    let axes = axes.iter().map(|at| data.signals[*at].clone()).collect();
+    let axes =
+        texture_axes(&data.header.signals).iter().map(|at| data.signals[*at].clone()).collect();
     let (name, rate_hz) = (data.header.name.as_str(), data.header.rate_hz);
     let mut recording = Recording::of(data.header.quantity, name, rate_hz, axes)?;
     if let Some(normal) = of("normal") {

@@ -129,14 +129,16 @@ pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
     let Some(end) = bytes.iter().take(MOST_HEADER).position(|b| *b == b'\n') else {
         return Ok(None);
     };
-    let header = serde_json::from_slice(&bytes[..end]).map_err(|error| error.to_string());
-    let header = header.and_then(TakeHeader::of_json).map_err(|error| {
-        format!(
-            "it is not the part of a take that this htex records ({}); move it elsewhere",
-            htex_finding::plain(&error)
-        )
-    });
-    let header = header.in_file(path)?;
+    let header = serde_json::from_slice(&bytes[..end])
+        .map_err(|error| error.to_string())
+        .and_then(TakeHeader::of_json)
+        .map_err(|error| {
+            format!(
+                "it is not the part of a take that this htex records ({}); move it elsewhere",
+                htex_finding::plain(&error)
+            )
+        })
+        .in_file(path)?;
     let own = names::stem(&header.name, header.number);
     if path.file_stem().is_none_or(|stem| stem != &own[..]) {
         let problem = format!(

@@ -104,8 +104,12 @@ impl Phases {
     /// The finger's place by the tracker, else by the source.
     fn position(&mut self, block: &Block) -> Option<f64> {
         for (axis, role) in [Role::X, Role::Y].into_iter().enumerate() {
-            let own = self.reader.inputs.signals.position(role);
-            let own = own.and_then(|at| block.values[at].last().copied());
+            let own = self
+                .reader
+                .inputs
+                .signals
+                .position(role)
+                .and_then(|at| block.values[at].last().copied());
             let at_mm = self.tracked(role, &block.rows).or(own);
             if let Some(at_mm) = at_mm {
                 self.path.see(axis, at_mm);

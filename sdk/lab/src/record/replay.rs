@@ -68,8 +68,8 @@ impl SourceAdapter for Replay {
         let path = settings.text("path");
         let rate_hz = Some(settings.number("rate_hz")).filter(|rate_hz| *rate_hz > 0.0);
         let options = ReadOptions::default().with_rate_hz(rate_hz);
-        let table = read_channels(Path::new(path), &options);
-        let table = table.map_err(|error| DeviceError::Missing(error.to_string()))?;
+        let table = read_channels(Path::new(path), &options)
+            .map_err(|error| DeviceError::Missing(error.to_string()))?;
         let channels = table.names.iter().map(|name| Channel::new(name, ""));
         Ok(Box::new(Player {
             name: path.to_owned(),
@@ -91,8 +91,8 @@ impl Replay {
     /// As [`SourceAdapter::open`].
     pub fn file(path: &str, fast: bool) -> Result<Box<dyn Source>, DeviceError> {
         let pace = if fast { "fast" } else { "real" };
-        let given = [("path", path), ("pace", pace)];
-        let given = given.map(|(name, value)| (name.to_owned(), value.to_owned()));
+        let given = [("path", path), ("pace", pace)]
+            .map(|(name, value)| (name.to_owned(), value.to_owned()));
         Self.open(&Settings::resolve(&DESCRIPTOR, None, &BTreeMap::from(given))?)
     }
 }

@@ -125,8 +125,7 @@ impl Session {
         watch: &mut dyn FnMut(&Moment<'_>) -> Next,
     ) -> Result<Recorded, RecordError> {
         let folder = self.setup.folder.clone();
-        let number = names::next_number(&folder, &self.setup.name);
-        let number = number.writing(&folder)?;
+        let number = names::next_number(&folder, &self.setup.name).writing(&folder)?;
         let countdown = Span::new(Phase::Countdown, number, self.setup.countdown_s);
         self.phases.run(countdown, watch, &mut |_| Ok(()))?;
         let header = self.header(number);

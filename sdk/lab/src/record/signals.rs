@@ -128,7 +128,9 @@ impl Signals {
 fn named(channels: &[Channel], sensors: usize) -> Vec<(String, String)> {
     let number = |sensor: usize| (sensors > 1).then_some(sensor + 1);
     let calibrated = (0..sensors).flat_map(|sensor| Calibration::names(number(sensor)));
-    let plain = channels.iter().skip(AXES * sensors);
-    let plain = plain.map(|channel| (channel.name.clone(), channel.unit.clone()));
+    let plain = channels
+        .iter()
+        .skip(AXES * sensors)
+        .map(|channel| (channel.name.clone(), channel.unit.clone()));
     calibrated.chain(plain).collect()
 }

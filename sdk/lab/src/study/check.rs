@@ -78,10 +78,9 @@ fn check_models(study: &Study, findings: &mut Findings) {
     let fits = (1..=64).contains(&count);
     findings.require(fits, rule, "/models", || format!("there are {count} models; write 1 to 64"));
     check_names("models", study.models.iter().cloned(), findings);
-    let named = study.models.iter().enumerate();
-    let named = named.map(|(i, model)| (format!("/models/{i}"), model));
-    let reference = study.hidden_reference.iter();
-    let reference = reference.map(|model| ("/hidden_reference".to_owned(), model));
+    let named = study.models.iter().enumerate().map(|(i, model)| (format!("/models/{i}"), model));
+    let reference =
+        study.hidden_reference.iter().map(|model| ("/hidden_reference".to_owned(), model));
     let gain = [("/gain/model".to_owned(), &study.gain.model)];
     for (pointer, model) in named.chain(reference).chain(gain) {
         findings.require(model != "auto", rule, pointer, || {

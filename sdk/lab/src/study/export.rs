@@ -80,11 +80,13 @@ pub(crate) fn sessions_of(folder: &Path) -> Result<Vec<Answers>, StudyError> {
     let mut sessions = Vec::new();
     for file in files(folder)? {
         let (header, lines) = log::read(&file)?;
-        let answers = lines.into_iter().filter_map(|line| match line {
-            Line::Answer(answer) => Some(answer),
-            _ => None,
-        });
-        let answers = answers.collect();
+        let answers = lines
+            .into_iter()
+            .filter_map(|line| match line {
+                Line::Answer(answer) => Some(answer),
+                _ => None,
+            })
+            .collect();
         sessions.push(Answers { file, header, answers });
     }
     same_study(&sessions)?;

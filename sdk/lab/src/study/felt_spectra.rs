@@ -76,8 +76,7 @@ impl Reference {
         let nearest = conditions.min_by(|(_, a), (_, b)| off(a).total_cmp(&off(b)));
         let spectra = asset.reference.as_ref();
         let spectrum = nearest.and_then(|(at, _)| spectra?.get(at));
-        let spectrum = spectrum.ok_or("the asset has no recorded spectrum; make it with `htex fit --keep-reference`, or name the recording of the texture (--recorded TEXTURE=FILE)");
-        let spectrum = spectrum.in_file(file)?;
+        let spectrum = spectrum.ok_or("the asset has no recorded spectrum; make it with `htex fit --keep-reference`, or name the recording of the texture (--recorded TEXTURE=FILE)").in_file(file)?;
         let magnitude = spectrum.iter().map(|m| f64::from(*m)).collect();
         let whole = Self::whole(asset.manifest.band, asset.manifest.quantity, magnitude);
         Ok(whole.in_file(file)?)
@@ -206,16 +205,16 @@ fn part(
         return Err(other("its hash is another one"));
     }
     let beside = file.with_extension("json");
-    let header = header_beside(&beside).reading(&beside)?;
-    let header = header.ok_or("it does not describe a recording");
-    let header = header.in_file(&beside)?;
+    let header = header_beside(&beside)
+        .reading(&beside)?
+        .ok_or("it does not describe a recording")
+        .in_file(&beside)?;
     let take = take(&file, &header).in_file(&file)?;
     Ok(read_take(&take, options, false).in_file(&file)?.part)
 }
 
 fn take(file: &Path, header: &TakeHeader) -> Result<Take, Box<dyn Error>> {
-    let options = settings_of(file, header).read_options(1)?;
-    let options = options.into_iter().next().unwrap_or_default();
+    let options = settings_of(file, header).read_options(1)?.into_iter().next().unwrap_or_default();
     // Of a participant's motion all is read: the tolerance of 10 % is the rule for recordings of
     // textures.
     Ok(Take { recording: read_recording(file, &options)?, given: Exploration::default() })

@@ -126,10 +126,10 @@ impl DeviceUsed {
                 ("profile", of.profile.clone()),
                 ("limit", number(of.limit)),
                 ("quantity gain", number(of.quantity_gain)),
-            ];
-            let own = own.map(|(name, value)| (name.to_owned(), value));
-            let settings = of.settings.iter();
-            let settings = settings.map(|(name, value)| (format!("setting {name}"), value.clone()));
+            ]
+            .map(|(name, value)| (name.to_owned(), value));
+            let settings =
+                of.settings.iter().map(|(name, value)| (format!("setting {name}"), value.clone()));
             own.into_iter().chain(settings).collect()
         };
         let (was, is) = (values(self), values(now));

@@ -183,8 +183,9 @@ impl Progress {
             Phase::Gain | Phase::Testing => &mut self.gains,
         };
         let mut open = levels.iter_mut().filter(|one| !one.matching.is_found());
-        let level = open.find(|one| one.texture == line.texture && one.model == line.model);
-        let level = level.filter(|_| phase == line.phase);
+        let level = open
+            .find(|one| one.texture == line.texture && one.model == line.model)
+            .filter(|_| phase == line.phase);
         let wrong = || format!("this key for {} does not come next", line.texture);
         level.ok_or_else(wrong)?.press(line.key, line.gain_db, line.reference_rms)
     }

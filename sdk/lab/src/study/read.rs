@@ -123,10 +123,10 @@ pub fn check_files(
 
 /// All models of a study with their pointers, that of the gain matching among them.
 fn models(study: &Study) -> Vec<(String, &str)> {
-    let listed = study.models.iter().enumerate();
-    let listed = listed.map(|(i, model)| (format!("/models/{i}"), &model[..]));
-    let reference = study.hidden_reference.iter();
-    let reference = reference.map(|model| ("/hidden_reference".to_owned(), &model[..]));
+    let listed =
+        study.models.iter().enumerate().map(|(i, model)| (format!("/models/{i}"), &model[..]));
+    let reference =
+        study.hidden_reference.iter().map(|model| ("/hidden_reference".to_owned(), &model[..]));
     let gain = study.has(Phase::Gain);
     let gain = gain.then(|| ("/gain/model".to_owned(), &study.gain.model[..]));
     listed.chain(reference).chain(gain).collect()

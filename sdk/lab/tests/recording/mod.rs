@@ -126,8 +126,8 @@ pub fn record_with(
 /// A CSV without times has the rate of the tests.
 fn open(path: &Path) -> Box<dyn htex_device::Source> {
     use htex_device::{Settings, SourceAdapter};
-    let given = [("path", path.to_str().unwrap()), ("pace", "fast"), ("rate_hz", "2000")];
-    let given = given.map(|(name, value)| (name.to_owned(), value.to_owned()));
+    let given = [("path", path.to_str().unwrap()), ("pace", "fast"), ("rate_hz", "2000")]
+        .map(|(name, value)| (name.to_owned(), value.to_owned()));
     let settings = Settings::resolve(Replay.descriptor(), None, &given.into()).unwrap();
     Replay.open(&settings).unwrap()
 }

@@ -43,8 +43,7 @@ pub fn files() -> Vec<(String, Vec<u8>)> {
 
 /// The blocks, those that are refused too, and what is done with each.
 pub fn blocks_and_steps() -> Vec<(Vec<u8>, Vec<Step>)> {
-    let played = sound().into_iter();
-    let played = played.map(|(_, plan)| (plan.bytes(), steps(plan.rate_hz)));
+    let played = sound().into_iter().map(|(_, plan)| (plan.bytes(), steps(plan.rate_hz)));
     let refused = hostile().into_iter().map(|(_, bytes)| (bytes, Vec::new()));
     played.chain(refused).collect()
 }

@@ -25,8 +25,7 @@ pub(crate) fn by_order(
         return Err(sheet.columns().refuse(problem).into());
     }
     let all: Vec<usize> = (0..width).collect();
-    let rate_hz = sheet.rate_hz(&all)?.or(options.rate_hz);
-    let rate_hz = rate_hz.ok_or(ReadProblem::NoRate)?;
+    let rate_hz = sheet.rate_hz(&all)?.or(options.rate_hz).ok_or(ReadProblem::NoRate)?;
     let mut channels = sheet.numbers(&all)?.columns;
     let scale = options.scale.unwrap_or(1.0);
     if scale != 1.0 {

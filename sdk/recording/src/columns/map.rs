@@ -201,8 +201,9 @@ impl FromStr for ColumnMap {
         check_length(text)?;
         let refuse = |problem: Problem| map_error(problem.in_text(text));
         let tokens = tokens(text).map_err(refuse)?;
-        let entries = tokens.split(|token| token.kind == TokenKind::Comma);
-        let entries = entries.map(|tokens| parse_entry(text, tokens).map_err(refuse));
+        let entries = tokens
+            .split(|token| token.kind == TokenKind::Comma)
+            .map(|tokens| parse_entry(text, tokens).map_err(refuse));
         Self::new(entries.collect::<Result<Vec<_>, _>>()?)
     }
 }

@@ -201,8 +201,8 @@ impl Arrow {
         let bytes = metadata(&self.source, message.metadata, message.metadata_bytes)?;
         // Files before version 0.15 have no marker before the length.
         let start = if bytes.starts_with(&MESSAGE) { 8 } else { 4 };
-        let root = root_as_message(bytes.get(start..).unwrap_or_default());
-        let root = root.map_err(|error| ArrowError::Metadata(error.to_string()))?;
+        let root = root_as_message(bytes.get(start..).unwrap_or_default())
+            .map_err(|error| ArrowError::Metadata(error.to_string()))?;
         match root.header_as_record_batch() {
             Some(batch) => read(&batch),
             None => Err(ArrowError::Layout("a block is not a batch of rows; write the file again")),

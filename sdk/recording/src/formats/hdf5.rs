@@ -64,8 +64,7 @@ impl Hdf5 {
             .with_max_object_header_bytes(MOST_HEADER);
         let mut scan = Scan { arrays: Arrays::new('/'), seen: HashSet::new(), objects: 0 };
         let hdf5 = Hdf5File::from_storage_with_options(Arc::new(SharedFile(shared)), options);
-        let root = hdf5.and_then(|hdf5| hdf5.root_group());
-        let root = root.map_err(|error| damaged("/", &error))?;
+        let root = hdf5.and_then(|hdf5| hdf5.root_group()).map_err(|error| damaged("/", &error))?;
         scan.group(&root, "", 0)?;
         Ok(Self { columns: scan.arrays.columns(), arrays: scan.arrays, limit, bytes })
     }

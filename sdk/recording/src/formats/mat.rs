@@ -252,8 +252,9 @@ impl Scan {
         }
         let fields: Vec<String> = names.chunks(width.max(1)).map(up_to_nul).collect();
         let count = sizes.iter().try_fold(1_u64, |n, size| n.checked_mul((*size).into()));
-        let count = count.filter(|count| fields.is_empty() || *count <= MOST_COLUMNS as u64);
-        let count = count.ok_or(MatError::TooMany)?;
+        let count = count
+            .filter(|count| fields.is_empty() || *count <= MOST_COLUMNS as u64)
+            .ok_or(MatError::TooMany)?;
         if fields.is_empty() {
             return Ok(());
         }

@@ -76,8 +76,7 @@ fn text(front: &[u8]) -> Result<(usize, &str), NpyError> {
     if length > MAX_HEADER {
         return Err(NpyError::LongHeader(length));
     }
-    let header = front.get(start..start + length);
-    let header = header.ok_or(NpyError::EndInHeader(front.len()))?;
+    let header = front.get(start..start + length).ok_or(NpyError::EndInHeader(front.len()))?;
     let text = std::str::from_utf8(header).map_err(|_| NpyError::Header("text"))?;
     Ok((start, text))
 }
@@ -115,13 +114,13 @@ fn kind(descr: &str) -> Result<(NumberType, Endian), NpyError> {
 
 /// Parses `(1000, 3)`, of at most two sizes whose product cannot overflow.
 fn shape(text: &str) -> Result<Vec<u64>, NpyError> {
-    let inside = text.strip_prefix(['(', '[']);
-    let inside = inside.and_then(|text| Some(text.split_once([')', ']'])?.0));
-    let inside = inside.ok_or(NpyError::NotPlain)?;
+    let inside = text
+        .strip_prefix(['(', '['])
+        .and_then(|text| Some(text.split_once([')', ']'])?.0))
+        .ok_or(NpyError::NotPlain)?;
     if inside.bytes().filter(u8::is_ascii_digit).count() > 18 {
         return Err(NpyError::NotPlain);
     }
-    let sizes = inside.split(',').map(str::trim);
-    let sizes = sizes.filter(|size| !size.is_empty()).map(str::parse);
+    let sizes = inside.split(',').map(str::trim).filter(|size| !size.is_empty()).map(str::parse);
     sizes.collect::<Result<_, _>>().map_err(|_| NpyError::NotPlain)
 }

@@ -86,8 +86,8 @@ impl Parquet {
     pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> std::result::Result<Self, Fault> {
         let shared = Shared::new(opened.random()?)?;
         check_footer(&shared).map_err(|error| damaged("footer", &error))?;
-        let reader = SerializedFileReader::new(SharedFile(shared));
-        let reader = reader.map_err(|error| damaged("footer", &error))?;
+        let reader = SerializedFileReader::new(SharedFile(shared))
+            .map_err(|error| damaged("footer", &error))?;
         let schema = reader.metadata().file_metadata().schema_descr();
         let leaves = schema.columns().iter().enumerate();
         let (names, leaves) = leaves

@@ -75,8 +75,7 @@ pub(crate) fn layout(reader: &mut ByteReader<impl Read>) -> Result<Layout, TdmsE
             ));
         }
     };
-    let bytes = values.checked_mul(size);
-    let bytes = bytes.ok_or(TdmsError::Layout(
+    let bytes = values.checked_mul(size).ok_or(TdmsError::Layout(
         "a channel has too many values; the file is damaged, copy it again",
     ))?;
     Ok(Layout { kind: number, values, bytes })

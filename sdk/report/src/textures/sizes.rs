@@ -28,8 +28,10 @@ fn row(texture: &Texture, models: &[&ModelResult]) -> Row {
     let asset = size(texture, texture.asset_bytes);
     let payload =
         |short_name: &str| texture.model(short_name).map(|model| model.payload_bytes as u64);
-    let sizes = models.iter().map(|model| payload(&model.short_name));
-    let sizes = sizes.map(|found| found.map_or(Cell::Missing, |count| size(texture, count)));
+    let sizes = models
+        .iter()
+        .map(|model| payload(&model.short_name))
+        .map(|found| found.map_or(Cell::Missing, |count| size(texture, count)));
     Row { header: texture.header(), cells: [recording, asset].into_iter().chain(sizes).collect() }
 }
 

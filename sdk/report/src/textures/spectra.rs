@@ -27,8 +27,7 @@ pub(super) fn section(report: &TextureReport) -> String {
 }
 
 fn key(report: &TextureReport) -> Element {
-    let models = report.models().into_iter();
-    let models = models.map(|model| key_entry(&model.color, &model.model));
+    let models = report.models().into_iter().map(|model| key_entry(&model.color, &model.model));
     let recording = key_entry(RECORDING_COLOR, "recording");
     let behind = key_entry(BACKDROP, "recording, behind a model");
     let list = Element::new("ul").set("class", "key");
@@ -53,8 +52,9 @@ fn row(texture: &Texture) -> Element {
     let half = if all > 4 { all.div_ceil(2) } else { all };
     let panels = Element::new("div")
         .set("class", "panels")
-        .set("style", &format!("--all: {all}; --half: {half}"));
-    let panels = panels.child(&recording_panel(texture, top)).children(models);
+        .set("style", &format!("--all: {all}; --half: {half}"))
+        .child(&recording_panel(texture, top))
+        .children(models);
     Element::new("section")
         .set("class", "row")
         .child(&row_heading(texture))
@@ -137,8 +137,8 @@ fn curve(texture: &Texture, magnitude: &[f64]) -> Vec<(f64, f64)> {
 pub(super) fn top<'a>(texture: &Texture, models: impl IntoIterator<Item = &'a ModelResult>) -> f64 {
     let (scale, _) = texture.plotted();
     let recorded = highest(texture.recorded.iter().copied(), scale);
-    let models = models.into_iter().filter_map(|model| highest(drawn(model), scale));
-    let models = models.fold(0.0, f64::max);
+    let models =
+        models.into_iter().filter_map(|model| highest(drawn(model), scale)).fold(0.0, f64::max);
     let highest = recorded.map_or(models, |r| models.min(OVERSHOOT * r).max(r));
     if highest > 0.0 { 1.05 * highest } else { 1.0 }
 }

@@ -160,8 +160,8 @@ impl HttpService for Logged {
     async fn call(&self, request: HttpRequest) -> Result<HttpResponse, HttpError> {
         self.log.requests.fetch_add(1, Ordering::Relaxed);
         let is_list = self.is_list(&request);
-        let response = self.client.call(request).await;
-        let response = response.inspect_err(|error| self.log.failed(error))?;
+        let response =
+            self.client.call(request).await.inspect_err(|error| self.log.failed(error))?;
         let (parts, body) = response.into_parts();
         let status = parts.status.as_u16();
         if parts.status.is_success() {
@@ -174,8 +174,10 @@ impl HttpService for Logged {
         // A refusal without its end is one without a code.
         let text = Limited::new(body, MOST_REFUSAL_BYTES).collect().await;
         let text = text.map(|text| text.to_bytes()).unwrap_or_default();
-        let named = parts.headers.get("x-ms-error-code");
-        let named = named.and_then(|code| Some(code.to_str().ok()?.to_owned()));
+        let named = parts
+            .headers
+            .get("x-ms-error-code")
+            .and_then(|code| Some(code.to_str().ok()?.to_owned()));
         let code = named.or_else(|| code_in(&text)).filter(|code| is_code(code));
         self.log.ended(Last::Status { status, code });
         Ok(HttpResponse::from_parts(parts, text.into()))

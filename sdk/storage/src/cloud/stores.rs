@@ -76,8 +76,9 @@ impl Parts<'_> {
         if has(&S3Key::AccessKeyId) != has(&S3Key::SecretAccessKey) {
             return Err("AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY belong together, and one is missing; set both".to_owned());
         }
-        let endpoint = builder.get_config_value(&S3Key::S3Endpoint);
-        let endpoint = endpoint.or_else(|| builder.get_config_value(&S3Key::Endpoint));
+        let endpoint = builder
+            .get_config_value(&S3Key::S3Endpoint)
+            .or_else(|| builder.get_config_value(&S3Key::Endpoint));
         let allow = builder.get_config_value(&S3Key::Client(ClientConfigKey::AllowHttp));
         if endpoint.is_some_and(|e| !e.starts_with("https://")) && allow.as_deref() != Some("true")
         {
@@ -101,8 +102,9 @@ impl Parts<'_> {
         if !is_signed {
             builder = builder.with_skip_signature(true);
         }
-        let store = builder.build();
-        let store = store.map_err(|_| "a variable of AWS_* is not valid; correct it".to_owned())?;
+        let store = builder
+            .build()
+            .map_err(|_| "a variable of AWS_* is not valid; correct it".to_owned())?;
         Ok(Opened { store: Arc::new(store), key, is_signed })
     }
 
@@ -134,8 +136,7 @@ impl Parts<'_> {
                 .with_credentials(Arc::new(StaticCredentialProvider::new(none)))
                 .with_skip_signature(true);
         }
-        let store = builder.build();
-        let store = store.map_err(|_| {
+        let store = builder.build().map_err(|_| {
             "a variable of GOOGLE_* is not valid, or the file that it names; correct it".to_owned()
         })?;
         Ok(Opened { store: Arc::new(store), key, is_signed })

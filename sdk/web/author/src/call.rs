@@ -56,8 +56,10 @@ pub unsafe extern "C" fn htex_author_call(
             (needed_text(name)?, slice(json, json_len)?, slice(files, files_len)?, place(out)?)
         };
         // SAFETY: as above.
-        let files = files.iter().map(|file| unsafe { slice(file.data, file.len) });
-        let files = files.collect::<Result<Vec<_>, Failure>>()?;
+        let files = files
+            .iter()
+            .map(|file| unsafe { slice(file.data, file.len) })
+            .collect::<Result<Vec<_>, Failure>>()?;
         let answer = called(name, json, &files);
         let (json, bytes) = match &answer {
             Ok(answer) => (answer.json.as_slice(), answer.bytes.as_slice()),

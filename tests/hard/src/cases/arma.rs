@@ -52,8 +52,7 @@ fn pair(radius: f64, hz: f64) -> Vec<f64> {
 fn notch_db(hz: f64) -> f64 {
     let line = 2.0 * PI * hz / 2_000.0;
     let parameters = set(&[], &[line, line]);
-    let magnitude = model("arma").magnitude(&parameters, BAND, &[hz, hz + 50.0]);
-    let magnitude = magnitude.unwrap();
+    let magnitude = model("arma").magnitude(&parameters, BAND, &[hz, hz + 50.0]).unwrap();
     20.0 * (magnitude[0] / magnitude[1]).max(1e-9).log10()
 }
 

@@ -280,8 +280,9 @@ const CASES: &[Case] = &[
         Bound(1.0, "octave", "the tone"),
         || {
             of_tones(|hz, fit| {
-                let shape = model("sbeta").magnitude(&fit.parameters, BAND, &BAND.grid_hz());
-                let shape = shape.unwrap_or_default();
+                let shape = model("sbeta")
+                    .magnitude(&fit.parameters, BAND, &BAND.grid_hz())
+                    .unwrap_or_default();
                 let highest = (0..shape.len()).max_by(|&a, &b| shape[a].total_cmp(&shape[b]));
                 highest.map_or(f64::NAN, |bin| (BAND.grid_hz()[bin] / hz).log2().abs())
             })

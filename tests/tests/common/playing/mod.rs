@@ -263,9 +263,12 @@ fn numbers(plan: &Plan, asset: &Asset) -> String {
     let mut cases = Vec::new();
     for representation in &asset.manifest().representations {
         let model = Some(&representation.model[..]);
-        let given = plan.conditions.iter().chain(plan.motions);
-        let given = given.filter(|motion| htex::exploration::slides(motion[0], motion[1]));
-        let given = given.map(|motion| Some(htex::Motion::new(motion[0], motion[1])));
+        let given = plan
+            .conditions
+            .iter()
+            .chain(plan.motions)
+            .filter(|motion| htex::exploration::slides(motion[0], motion[1]))
+            .map(|motion| Some(htex::Motion::new(motion[0], motion[1])));
         for motion in given.chain(plan.levels.map(|_| None)) {
             let (parameters, _) = asset.parameters(model, motion).unwrap();
             let follows = asset.loaded_model(model).unwrap().follows_motion();

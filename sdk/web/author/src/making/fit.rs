@@ -18,8 +18,8 @@ use crate::refusal::Refusal;
 /// Fits models to recordings; the bytes are the asset.
 pub(crate) fn fit(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let names = call.object("files")?;
-    let conditions = call.list("conditions")?.into_iter().map(given);
-    let conditions = conditions.collect::<Result<Vec<Given>, _>>()?;
+    let conditions =
+        call.list("conditions")?.into_iter().map(given).collect::<Result<Vec<Given>, _>>()?;
     let mut settings = call.object("settings")?;
     call.finish()?;
     let reading = Reading::new(names, &mut settings, files)?;
@@ -44,8 +44,8 @@ fn request(
     metadata: &Metadata,
     registry: &Registry,
 ) -> Result<AssetRequest, Refusal> {
-    let name = metadata.name.clone().or_else(|| reading.stem());
-    let name = name.unwrap_or_else(|| "texture".to_owned());
+    let name =
+        metadata.name.clone().or_else(|| reading.stem()).unwrap_or_else(|| "texture".to_owned());
     let mut request = fitting.request(registry, &reading.settings, &name, TOOL)?;
     request.spectrum = reading.spectrum.clone();
     if let Some(response) = &reading.response {

@@ -132,8 +132,7 @@ pub(crate) fn import(mut call: Document, files: Files<'_>) -> Result<Answer, Ref
     call.finish()?;
     let bytes = only(&file, files)?;
     let format = Format::of_file(&file)?;
-    let stem = Path::new(&file).file_stem().unwrap_or_default();
-    let stem = stem.to_string_lossy();
+    let stem = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy();
     let how = how(&stem, &mut settings)?;
     settings.finish()?;
     let registry = Registry::builtin();

@@ -28,8 +28,11 @@ fn answer(asset: &Asset) -> Result<Answer, Refusal> {
 /// Makes a texture of parameters; the bytes are the asset.
 pub(crate) fn make(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let registry = Registry::builtin();
-    let models = call.list("representations")?.into_iter();
-    let models = models.map(|value| model(value, &registry)).collect::<Result<_, _>>()?;
+    let models = call
+        .list("representations")?
+        .into_iter()
+        .map(|value| model(value, &registry))
+        .collect::<Result<_, _>>()?;
     let quantity = quantity(call.text("quantity")?)?;
     let band = band(&call.list("band")?)?;
     let metadata = metadata(call.object("metadata")?)?;
@@ -75,8 +78,7 @@ fn band(edges: &[Value]) -> Result<Band, Refusal> {
 fn model(value: Value, registry: &Registry) -> Result<ByHandModel, Refusal> {
     let mut given = Document::of(value)?;
     let name = given.text("model")?.unwrap_or_default();
-    let at = given.list("conditions")?.into_iter().map(at);
-    let at = at.collect::<Result<_, _>>()?;
+    let at = given.list("conditions")?.into_iter().map(at).collect::<Result<_, _>>()?;
     given.finish()?;
     Ok(ByHandModel { model: registry.find(&name)?.clone(), at })
 }

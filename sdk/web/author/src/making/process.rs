@@ -70,8 +70,7 @@ pub(crate) fn process(call: Document, files: Files<'_>) -> Result<Answer, Refusa
     let reading = reading(call, files)?;
     let (name, bytes, options) = reading.only()?;
     let preview = preview(name, bytes, options)?;
-    let take = reading.takes(&[])?.pop();
-    let take = take.ok_or_else(|| Refusal::argument("give one recording"))?;
+    let take = reading.takes(&[])?.pop().ok_or_else(|| Refusal::argument("give one recording"))?;
     let read = read_take(&take, &reading.spectrum, reading.strict)?;
     let parts = std::slice::from_ref(&read.part);
     let spectrum = TextureSpectrum::average(parts, reading.spectrum.averaging)?;

@@ -32,20 +32,23 @@ struct Condition {
 /// the other.
 pub(crate) fn recorded(mut call: Document, files: Files<'_>) -> Result<Answer, Refusal> {
     let names = call.object("files")?;
-    let conditions = call.list("conditions")?.into_iter().map(given);
-    let conditions = conditions.collect::<Result<Vec<Given>, _>>()?;
-    let rate_hz = call.number("rate")?;
-    let rate_hz = rate_hz.ok_or_else(|| Refusal::argument("give the rate of the samples, Hz"))?;
+    let conditions =
+        call.list("conditions")?.into_iter().map(given).collect::<Result<Vec<Given>, _>>()?;
+    let rate_hz = call
+        .number("rate")?
+        .ok_or_else(|| Refusal::argument("give the rate of the samples, Hz"))?;
     let mut settings = call.object("settings")?;
     call.finish()?;
     let reading = Reading::new(names, &mut settings, files)?;
     settings.finish()?;
     let takes = reading.takes(&conditions)?;
-    let loops = takes.iter().map(|take| {
-        RecordedLoop::of(take, &reading.spectrum, reading.strict, rate_hz)
-            .map(|made| (take.recording.source.as_str(), made))
-    });
-    let loops = loops.collect::<Result<Vec<_>, _>>()?;
+    let loops = takes
+        .iter()
+        .map(|take| {
+            RecordedLoop::of(take, &reading.spectrum, reading.strict, rate_hz)
+                .map(|made| (take.recording.source.as_str(), made))
+        })
+        .collect::<Result<Vec<_>, _>>()?;
     let told: Vec<Loop<'_>> = loops.iter().map(|(name, made)| told(name, made)).collect();
     let samples = loops.iter().flat_map(|(_, made)| &made.samples);
     let bytes = samples.flat_map(|sample| (*sample as f32).to_le_bytes());

@@ -61,8 +61,10 @@ impl<'a> Reading<'a> {
         names.finish()?;
         let mut files = files.iter().copied();
         let mut next = || files.next().ok_or_else(|| Refusal::argument("a file is missing"));
-        let recordings = recordings.into_iter().map(|name| Ok((name, next()?)));
-        let recordings = recordings.collect::<Result<Vec<_>, Refusal>>()?;
+        let recordings = recordings
+            .into_iter()
+            .map(|name| Ok((name, next()?)))
+            .collect::<Result<Vec<_>, Refusal>>()?;
         let mut spectrum = settings.spectrum_options()?;
         if let Some(name) = &response {
             spectrum.response = Some(response_from_bytes(name, next()?)?);
@@ -71,8 +73,7 @@ impl<'a> Reading<'a> {
         let settings =
             ReadingSettings { tracker: (!trackers.is_empty()).then_some(named), ..settings };
         let mut options = settings.read_options(recordings.len())?;
-        let tracked = trackers.iter().map(|_| next());
-        let tracked = tracked.collect::<Result<Vec<_>, _>>()?;
+        let tracked = trackers.iter().map(|_| next()).collect::<Result<Vec<_>, _>>()?;
         for (i, own) in options.iter_mut().enumerate() {
             // One for each recording, or one for all.
             let bytes = tracked.get(i).or(tracked.first());

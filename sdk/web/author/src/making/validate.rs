@@ -74,10 +74,11 @@ struct Explained {
 pub(crate) fn explain(mut call: Document, _: Files<'_>) -> Result<Answer, Refusal> {
     let code = call.text("code")?.unwrap_or_default();
     call.finish()?;
-    let all = [htex_format::RULES, htex_library::RULES, rules::RULES];
-    let mut all = all.into_iter().flatten().chain([FINDINGS_TRUNCATED]);
-    let explained = all.find(|rule| rule.code == code);
-    let explained = explained.map(|rule: &Rule| Explained {
+    let mut all = [htex_format::RULES, htex_library::RULES, rules::RULES]
+        .into_iter()
+        .flatten()
+        .chain([FINDINGS_TRUNCATED]);
+    let explained = all.find(|rule| rule.code == code).map(|rule: &Rule| Explained {
         code: rule.code,
         severity: rule.severity,
         summary: rule.summary,

@@ -59,8 +59,6 @@ fn begins(quoted: &str, option: &str) -> bool {
 mod tests {
     use std::collections::BTreeSet;
 
-    use clap::CommandFactory;
-
     use super::*;
     use crate::rules::rules;
 
@@ -90,7 +88,7 @@ mod tests {
     #[test]
     fn hints_of_rules_are_flags_of_the_command() {
         let mut known = BTreeSet::new();
-        for command in crate::Cli::command().get_subcommands() {
+        for command in crate::command().get_subcommands() {
             known
                 .extend(command.get_arguments().filter_map(clap::Arg::get_long).map(str::to_owned));
         }

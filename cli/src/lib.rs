@@ -17,6 +17,7 @@ mod folders;
 mod gains;
 mod given;
 mod grid;
+mod groups;
 mod hints;
 #[cfg(feature = "lab")]
 mod inputs;
@@ -58,9 +59,9 @@ use exit::Exit;
 use failure::Failure;
 use htex_device_builtin::SOUND;
 
-/// Texture assets for touch: fit, inspect, measure and play them.
+/// Fit, inspect, measure and play texture assets for touch.
 ///
-/// Turns a recording of a finger sliding over a surface into a `.htex` file of a few hundred bytes,
+/// A recording of a finger sliding over a surface becomes a `.htex` file of a few hundred bytes
 /// with models of its spectrum and the measured error of each.
 #[derive(Parser)]
 #[command(name = "htex", version, long_version = version::LONG, max_term_width = 100, after_help = first_steps())]
@@ -69,18 +70,23 @@ struct Cli {
     command: Command,
 }
 
+/// The command's arguments, with its subcommands in groups.
+fn command() -> clap::Command {
+    groups::with_groups(Cli::command())
+}
+
 fn first_steps() -> String {
     let play = if SOUND.is_built {
-        "play it by ear, or on a device"
+        "play it as sound"
     } else {
-        "play it on a device (--device); by ear only in a build with `--features audio`"
+        "play it (as sound only with `--features audio`)"
     };
     format!(
         "\
 First steps:
-  htex demo out                       simulate five surfaces, fit all models, write out/report.html
-  htex fit rec.csv -o cloth.htex      fit all models to a recording of yours
-  htex info cloth.htex                what the file holds, and how good it is
+  htex demo out                       everything, on simulated surfaces
+  htex fit rec.csv -o cloth.htex      fit models to your recording
+  htex info cloth.htex                show the error of each model
   htex synth cloth.htex -o cloth.wav  play it to a file
   htex play cloth.htex                {play}
 
@@ -129,7 +135,7 @@ pub fn check_usage(arguments: impl IntoIterator<Item = OsString>) -> Result<(), 
 }
 
 fn parsed(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
-    let mut command = Cli::command();
+    let mut command = command();
     let matches = command.try_get_matches_from_mut(arguments)?;
     located::check_paths(&command, &matches)?;
     Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))

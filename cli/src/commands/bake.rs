@@ -18,8 +18,9 @@ use htex_files::AtFile;
 const FEWEST: i64 = BakeLimits::FEWEST as i64;
 const MOST: i64 = BakeLimits::MOST as i64;
 
-/// Write a texture as a block of bytes for the player on microcontrollers
-/// (docs/microcontroller.md).
+/// Write a texture for microcontrollers
+///
+/// Writes a block of bytes for the player on microcontrollers (docs/microcontroller.md).
 ///
 /// The block has a filter or sinusoids for each condition of a grid of speeds and forces; the
 /// player interpolates between them. The command prints the block's size and its error in nine

@@ -24,7 +24,7 @@ use crate::output::{print, print_json};
 use crate::progress;
 use crate::wasm_limits::WasmLimit;
 
-/// Build a library of textures from a recipe.
+/// Build a library of textures from a recipe
 ///
 /// Fits the recordings that the recipe names, imports the files that `htex import` takes, and
 /// writes DIR/NAME.htexlib, DIR/textures, DIR/build-report.json and the catalogue DIR/index.html. A

@@ -21,7 +21,9 @@ use crate::plugins::PlayerArgs;
 use crate::recordings::RecordingArgs;
 use crate::shown::shown;
 
-/// Measure each representation of an asset, or another recording, against a recording.
+/// Compare an asset with a recording
+///
+/// Measures each representation of the asset, or another recording, against a recording.
 ///
 /// The asset plays at the recording's speed and force where both are known, else at its first
 /// condition. `felt` is the part of the difference that is above the detection threshold of a

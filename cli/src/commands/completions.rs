@@ -1,12 +1,11 @@
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::Shell;
 
-use crate::Cli;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::write_bytes;
 
-/// Print what a shell completes the command's words by.
+/// Print a shell completion script
 ///
 /// bash: source it, or keep it as htex in ~/.local/share/bash-completion/completions. zsh: as _htex
 /// in a folder of fpath. fish: as htex.fish in ~/.config/fish/completions. PowerShell: at the end
@@ -21,7 +20,7 @@ pub(crate) struct Completions {
 impl Completions {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let mut script = Vec::new();
-        clap_complete::generate(self.shell, &mut Cli::command(), "htex", &mut script);
+        clap_complete::generate(self.shell, &mut crate::command(), "htex", &mut script);
         write_bytes(&script)?;
         Ok(Exit::SUCCESS)
     }

@@ -37,7 +37,9 @@ const REPORT: &str = "report.html";
 /// The condition the surfaces are explored at (paper, Texture recording).
 const CONDITION: Exploration = Exploration { speed_mm_s: Some(80.0), force_n: Some(0.4) };
 
-/// Run the whole way on five simulated surfaces: recordings, assets, sounds and a report.
+/// Try everything on five simulated surfaces
+///
+/// Simulates recordings, fits all models, plays the assets and writes a report.
 ///
 /// Needs nothing but this program. Writes NAME.csv (the simulated recording), NAME.htex,
 /// NAME-MODEL.wav, rig.csv (the simulated rig's response, by which recordings are divided),

@@ -19,7 +19,7 @@ use crate::output::{print, print_json, write_file};
 use crate::outputs::check_outputs;
 use crate::shown::shown;
 
-/// Change an asset's metadata without a new fit.
+/// Change an asset's metadata
 ///
 /// Metadata that is not given is kept; an empty text (--author "") removes the entry, and --tag
 /// replaces all tags. Parameters, recorded spectra and embedded models, with their signatures, are

@@ -6,7 +6,9 @@ use crate::hints::with_hint;
 use crate::output::print;
 use crate::rules::rules;
 
-/// Explain a finding's code: what it means and what to do.
+/// Explain the code of a finding
+///
+/// Prints what it means and what to do.
 #[derive(Args)]
 pub(crate) struct Explain {
     /// The code, as `htex validate` prints it; without one, all codes are listed

@@ -21,7 +21,9 @@ use crate::plugins::PlayerArgs;
 use crate::scene_sound::{Scene, is_scene};
 use crate::shown::shown;
 
-/// Write a texture at a condition or along a stroke, or what a scene plays, as a file that phones,
+/// Write a texture in another haptic format
+///
+/// Writes a texture at a condition or along a stroke, or what a scene plays, as a file that phones,
 /// controllers and engines play.
 ///
 /// The profile of an actuator decides what of the spectrum it can do. The file is read again,

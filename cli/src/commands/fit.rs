@@ -23,7 +23,9 @@ use crate::plugins::PluginArgs;
 use crate::recordings::RecordingArgs;
 use crate::report::{Reported, measures, shares};
 
-/// Fit models to recordings of one texture and write the asset.
+/// Fit models to recordings of one texture
+///
+/// Writes an asset (.htex) with the models and the measured error of each.
 ///
 /// Recordings whose speed and force differ by less than 5 % are averaged as one exploration
 /// condition; others become further conditions of the same texture.

@@ -6,8 +6,9 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 
-/// List the formats that are imported and exported, what each keeps and loses, and the profiles of
-/// actuators.
+/// List the formats to import and export
+///
+/// Prints what each format keeps and loses, and the profiles of actuators.
 #[derive(Args)]
 pub(crate) struct Formats {
     /// Print JSON instead of lists

@@ -21,8 +21,9 @@ use crate::signals::{self, interrupted};
 const STEP_DB: f64 = 1.0;
 const LARGE_STEP_DB: f64 = 4.0;
 
-/// Find the gain at which a person wants to feel a surface on a display, by adjustment, and keep
-/// it.
+/// Find a participant's preferred gain
+///
+/// The participant adjusts the gain of a surface on a display; the result is kept.
 ///
 /// The surface plays without end; `+` and `-`, each with Enter, make it 1 dB stronger and weaker,
 /// `++` and `--` 4 dB, and Enter alone accepts it. It starts weak, 20 dB below the device's limit,

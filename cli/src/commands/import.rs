@@ -20,7 +20,7 @@ use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
 use crate::shown::shown;
 
-/// Read a file of another haptic format as a texture.
+/// Read another haptic format as a texture
 ///
 /// A model file of the Penn Haptic Texture Toolkit states units, speeds and forces, and becomes a
 /// texture as it is; a glTF file gives out the texture that its material carries, bit for bit. The

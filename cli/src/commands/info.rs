@@ -11,7 +11,7 @@ use crate::located;
 use crate::of_file::ResultOfFile;
 use crate::output::{print, print_json};
 
-/// Show an asset's contents and each model's distance from the recording.
+/// Show what an asset holds, and its errors
 ///
 /// Columns: level (RMS, in the asset's unit); Pearson correlation with the recorded spectrum; RMS
 /// over nine critical bands of the energy difference, from the model's magnitudes and from samples

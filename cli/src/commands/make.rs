@@ -18,7 +18,7 @@ use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
 use crate::recordings::parse_condition;
 
-/// Make a texture of parameters, without a recording.
+/// Make a texture from parameters
 ///
 /// The asset states that it was made by hand. `htex plugin info MODEL` lists a model's parameters
 /// with their units and ranges.

@@ -1,15 +1,16 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use clap::{Args, Command, CommandFactory};
+use clap::{Args, Command};
 use clap_mangen::Man;
 use htex_files::{AtFile, OwnFolder};
 
-use crate::Cli;
 use crate::exit::Exit;
 use crate::failure::Failure;
 
-/// Write the manual pages, one for each subcommand.
+/// Write the manual pages
+///
+/// Writes one page for each subcommand.
 ///
 /// `man -l DIR/htex-fit.1` shows one; in a man1 folder of MANPATH, `man htex-fit` finds it.
 #[derive(Args)]
@@ -21,7 +22,7 @@ pub(crate) struct Manual {
 
 impl Manual {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let mut command = Cli::command().disable_help_subcommand(true);
+        let mut command = crate::command().disable_help_subcommand(true);
         command.build();
         write_pages(&command, &OwnFolder::new(&self.folder))?;
         Ok(Exit::SUCCESS)

@@ -15,7 +15,7 @@ use crate::of_file::OrFail;
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 
-/// Make a texture between two others.
+/// Make a texture between two others
 ///
 /// Each model that describes both interpolates between their parameters, as between the conditions
 /// of one texture. The asset states what it was mixed of.

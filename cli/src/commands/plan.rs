@@ -12,7 +12,7 @@ use crate::located;
 use crate::output::{print, print_json, warn, write_file};
 use crate::scenes::{ChoiceArgs, SceneArgs, costs, costs_file};
 
-/// Show which stages a scene needs and which not, with reasons and costs.
+/// Show which stages a scene needs, and why
 ///
 /// Nothing is played. Costs are nanoseconds for a sample of the device.
 #[derive(Args)]

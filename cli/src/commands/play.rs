@@ -19,7 +19,9 @@ use crate::playing::Output;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs, default_motion, is_asset};
 use crate::signals::{self, interrupted};
 
-/// Play a scene or an asset on a device, until its end or Ctrl-C.
+/// Play a scene or an asset on a device
+///
+/// Plays until its end or Ctrl-C.
 ///
 /// An asset is played at the speed and force of its first condition (of the strongest, if the first
 /// is silent), as sound when no device is named.

@@ -13,7 +13,7 @@ use crate::outputs::check_outputs;
 use crate::recording_plot::recording_plot;
 use crate::recordings::RecordingArgs;
 
-/// Show the texture spectrum of a recording.
+/// Show the texture spectrum of a recording
 ///
 /// Segments of 0.2 s, Hann-windowed, two axes folded into one (DFT321), divided by the setup's
 /// response if there is one, averaged, 20 to 1000 Hz in steps of 5 Hz. A sinusoid of amplitude A on

@@ -25,8 +25,10 @@ use crate::wav::silence;
 /// Frames in a block.
 const BLOCK: usize = 4096;
 
-/// Render a scene to a file: exactly the samples that its device would get, faster than real time
-/// where possible.
+/// Render a scene to a file
+///
+/// Writes exactly the samples that the scene's device would get, faster than real time where
+/// possible.
 ///
 /// WAV, CSV, NPY or raw samples, by the file's extension, in the unit of the scene's device:
 /// newtons, the volts a display is driven with, or sound.

@@ -19,7 +19,9 @@ use crate::located;
 use crate::output::{Written, note, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 
-/// Measure the frequency response of a recording rig or a finger display.
+/// Measure the response of a rig or display
+///
+/// Measures the frequency response of a recording rig or a finger display.
 ///
 /// From recordings of its input and output: hits of an impact hammer (each is one average; double
 /// hits, overloads and hits that are cut off are thrown out and listed), or with --continuous a

@@ -5,7 +5,9 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::print;
 
-/// Print a JSON Schema of the manifest, of scenes or of reports, or the descriptors of the models.
+/// Print JSON Schemas and model descriptors
+///
+/// Prints a JSON Schema of the manifest, of scenes or of reports, or the descriptors of the models.
 #[derive(Args)]
 pub(crate) struct Schema {
     /// What to print

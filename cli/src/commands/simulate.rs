@@ -14,7 +14,7 @@ use crate::of_file::OrFail;
 use crate::output::Written;
 use crate::outputs::check_outputs;
 
-/// Write a simulated recording of a finger sliding over a surface.
+/// Simulate a recording of a surface
 ///
 /// A physically motivated signal for experiments: to-and-fro sweeps, friction, a texture read at
 /// the finger's position, setup resonance, sensor noise. It is not a measurement, and is labelled

@@ -10,7 +10,9 @@ use crate::of_file::ResultOfFile;
 use crate::output::{print, print_json, warn};
 use crate::plugins::PlayerArgs;
 
-/// Show the spectrum of one representation of an asset, 20 to 1000 Hz in steps of 5 Hz.
+/// Show the spectrum that an asset plays
+///
+/// Prints one representation, 20 to 1000 Hz in steps of 5 Hz.
 ///
 /// Magnitudes are in the measure of `htex process`: what a long recording of the voice reads when
 /// segments are averaged by power. Outside the recorded speeds and forces they follow the law of

@@ -24,7 +24,7 @@ const STATIC: &str = "static";
 /// The file of the key, in the user's folder of settings.
 const KEY: &str = "studio.key";
 
-/// Touch, shape, compare and give away textures in the browser.
+/// Touch and shape textures in the browser
 ///
 /// Serves the studio on this machine alone, until Ctrl-C, at an address that only you know:
 /// `http://NAME.localhost:8420/`, where NAME belongs to you and to the folder. Chromium, Edge and

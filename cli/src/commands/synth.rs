@@ -15,7 +15,9 @@ use crate::plugins::PlayerArgs;
 use crate::wav::write_wav;
 use htex_format::Rights;
 
-/// Play an asset to a WAV file: 32-bit float samples in the asset's unit, such as newtons.
+/// Play an asset to a WAV file
+///
+/// Samples are 32-bit floats in the asset's unit, such as newtons.
 #[derive(Args)]
 pub(crate) struct Synth {
     /// The asset

@@ -26,7 +26,9 @@ use crate::progress::bar;
 use crate::recordings::RecordingArgs;
 use crate::shown::shown;
 
-/// Measure accuracy against bytes and time on your recordings, over models and knobs.
+/// Measure accuracy against bytes and time
+///
+/// Sweeps models and their options over your recordings.
 ///
 /// Measures each recording and the medians of all. Writes a page with pictures,
 /// and beside it the same points as CSV and JSON. An interrupted sweep continues

@@ -22,9 +22,10 @@ use crate::schemas::{ABSENT, ExtensionSchema, Named};
 use crate::validation::report;
 use crate::wasm_limits::WasmLimit;
 
-/// Check assets, libraries, scenes (*.json), descriptors of models and devices (*.json), recipes
-/// (*.toml) and recordings against their formats and JSON Schemas; exit status 1 if one is not
-/// valid.
+/// Check files against their formats
+///
+/// Checks assets, libraries, scenes (*.json), descriptors of models and devices (*.json), recipes
+/// (*.toml) and recordings against their formats and JSON Schemas. Exit status 1 if one is invalid.
 ///
 /// Each finding has a stable code (`htex explain CODE`), a severity, a JSON pointer into the
 /// document or the recording and, where a JSON Schema says the same, the rule of the schema. Fields

@@ -14,10 +14,10 @@ fn text(place: &Place, arguments: &[&str]) -> String {
 
 /// The subcommands that `htex --help` lists.
 fn subcommands(help: &str) -> Vec<&str> {
-    let lines = help.lines().skip_while(|line| *line != "Commands:").skip(1);
-    let names = lines.take_while(|line| !line.is_empty());
-    names
-        .filter(|line| !line.starts_with("    "))
+    let lines = help.lines().skip_while(|line| !line.starts_with("Usage:")).skip(1);
+    let lists = lines.take_while(|line| *line != "Options:");
+    lists
+        .filter(|line| line.starts_with("  "))
         .filter_map(|line| line.split_whitespace().next())
         .filter(|name| *name != "help")
         .collect()

@@ -9,7 +9,7 @@ use clap::{Args, Subcommand};
 use crate::exit::Exit;
 use crate::failure::Failure;
 
-/// List, inspect and check devices; `htex source` inspects and checks sources.
+/// List, inspect and check devices
 #[derive(Args)]
 pub(crate) struct Device {
     #[command(subcommand)]

@@ -18,7 +18,9 @@ pub(super) use verify::check;
 use crate::exit::Exit;
 use crate::failure::Failure;
 
-/// Pack textures into a library, one .htexlib file, and look into libraries.
+/// Pack, list, verify and unpack libraries
+///
+/// A library is one file (.htexlib) with any number of textures.
 ///
 /// A library is opened one texture at a time, also over a network (https://, s3://, gs://, az://),
 /// where only the needed parts of the file are read; what textures embed in common is in it once.

@@ -12,7 +12,7 @@ use clap::{Args, Subcommand};
 use crate::exit::Exit;
 use crate::failure::Failure;
 
-/// Inspect, check and time texture models.
+/// Inspect, check and time texture models
 #[derive(Args)]
 pub(crate) struct Plugin {
     #[command(subcommand)]

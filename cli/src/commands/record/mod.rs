@@ -24,8 +24,10 @@ use crate::signals;
 
 use guide::{Guide, GuideArgs};
 
-/// Record a finger on a surface under guidance: takes that leave their target, or in which too
-/// little slides, are set aside and repeated.
+/// Record a finger on a surface, with guidance
+///
+/// Takes that leave the target speed or force, or in which the finger slides too little, are set
+/// aside and repeated.
 ///
 /// Takes are DIR/NAME-001.csv and so on, with all settings in JSON beside them and the tracker's
 /// rows in DIR/tracker; takes that left their target are in DIR/rejected, those that were cut short

@@ -8,7 +8,9 @@ use clap::{Args, Subcommand};
 use crate::exit::Exit;
 use crate::failure::Failure;
 
-/// Inspect and check sources, which `htex record` records from; `htex device list` lists them.
+/// Inspect and check recording sources
+///
+/// `htex record` records from a source; `htex device list` lists them.
 #[derive(Args)]
 pub(crate) struct Source {
     #[command(subcommand)]

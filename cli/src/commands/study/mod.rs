@@ -25,7 +25,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::shown::shown;
 
-/// Rating studies: plan them, run them, and get their results.
+/// Plan, run and analyse rating studies
 ///
 /// A study is described by study.toml (its JSON Schema: `htex schema study`); its defaults are
 /// those of the paper's study.

@@ -1,8 +1,6 @@
 //! The subcommands, one file each: arguments and execution.
 
 mod bake;
-#[cfg(feature = "build")]
-mod build;
 mod compare;
 #[cfg(feature = "wasm")]
 mod compile_module;
@@ -19,6 +17,8 @@ mod guard;
 mod import;
 mod info;
 mod lib;
+#[cfg(feature = "build")]
+mod library_build;
 mod make;
 mod manual;
 mod mix;
@@ -65,7 +65,7 @@ pub(crate) enum Command {
     Synth(synth::Synth),
     Bake(bake::Bake),
     #[cfg(feature = "build")]
-    Build(build::Build),
+    Build(library_build::Build),
     Make(make::Make),
     Mix(mix::Mix),
     Import(Box<import::Import>),

@@ -10,7 +10,6 @@ mod common;
 mod model;
 
 mod bake;
-mod build;
 #[cfg(all(feature = "build", feature = "cloud"))]
 mod build_elsewhere;
 mod by_hand;
@@ -27,6 +26,7 @@ mod gain;
 mod grid;
 mod lab;
 mod library;
+mod library_builds;
 #[cfg(target_os = "linux")]
 mod memory;
 mod metadata;

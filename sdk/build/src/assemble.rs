@@ -13,7 +13,6 @@ use serde::{Deserialize, Serialize};
 use walkdir::WalkDir;
 
 use crate::BuildError;
-use crate::build::BuildOptions;
 use crate::catalogue::catalogue;
 use crate::dist::Dist;
 use crate::error::AtPlace;
@@ -22,6 +21,7 @@ use crate::gates::missed;
 use crate::hashes::Stamp;
 use crate::job::Job;
 use crate::kept::Kept;
+use crate::library_build::BuildOptions;
 use crate::made::Made;
 use crate::plan::{Plan, PlannedTexture};
 use crate::removed::built;

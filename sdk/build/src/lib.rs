@@ -33,7 +33,6 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod assemble;
-mod build;
 mod cache;
 mod catalogue;
 mod dist;
@@ -49,6 +48,7 @@ mod inputs;
 mod job;
 mod kept;
 mod keys;
+mod library_build;
 mod made;
 mod making;
 mod plan;
@@ -63,13 +63,13 @@ mod template;
 mod thumbnail;
 
 pub use assemble::Built;
-pub use build::{Build, BuildOptions, check, hash_file, remember, unhashed};
 pub use error::BuildError;
 pub use failed::report_failure;
 pub use findings::{FindingReport, FindingShare};
 pub use hashes::{Hashed, Stamp};
 pub use imports::FileKind;
 pub use job::{Job, JobFile, JobRecording, Workbench};
+pub use library_build::{Build, BuildOptions, check, hash_file, remember, unhashed};
 pub use made::{Made, Outcome, Record};
 pub use plan::{Plan, PlannedRecording, PlannedTexture};
 pub use publish::Destination;

@@ -19,11 +19,11 @@
 //! applies.
 
 mod axis;
-mod build;
 mod cells;
 mod stored;
 #[cfg(test)]
 mod tests;
+mod triangulation;
 
 use axis::Axis;
 use htex_format::{Triangle, TrianglesError};
@@ -128,7 +128,7 @@ impl Mesh {
     /// Makes a mesh of one or more points: speed, mm/s, and force, newtons, finite and not
     /// negative.
     pub fn new(conditions: &[[f64; 2]]) -> Self {
-        build::mesh(conditions)
+        triangulation::mesh(conditions)
     }
 
     /// Makes a mesh of points and the triangles between them, as an asset stores them; of no

@@ -5,7 +5,6 @@
 #![forbid(unsafe_code)]
 
 mod author;
-mod build;
 mod by_hand;
 mod causes;
 mod command;
@@ -14,6 +13,7 @@ mod device;
 mod errors;
 mod exchange;
 mod library;
+mod library_build;
 mod models;
 mod path;
 mod python;
@@ -37,8 +37,6 @@ mod _htex {
     #[pymodule_export]
     use crate::author::{agreement, fit, process};
     #[pymodule_export]
-    use crate::build::{Build, hash_file, remember, run_job, unhashed, work_folder};
-    #[pymodule_export]
     use crate::by_hand::{edit, make, mix};
     #[pymodule_export]
     use crate::command::run;
@@ -50,6 +48,8 @@ mod _htex {
     use crate::exchange::{export, formats, import_file};
     #[pymodule_export]
     use crate::library::{Library, pack};
+    #[pymodule_export]
+    use crate::library_build::{Build, hash_file, remember, run_job, unhashed, work_folder};
     #[pymodule_export]
     use crate::models::models;
     #[pymodule_export]

@@ -7,7 +7,7 @@
 //! It is an option: unsafe code is in the shims of the ABIs alone. Coverage counters are a pass of
 //! the stable compiler.
 
-mod build;
+mod compilation;
 mod options;
 mod report;
 mod run;
@@ -26,7 +26,7 @@ use report::Outcome;
 /// When the programs cannot be built or run, or something was found.
 pub fn fuzz(options: &Options) -> Result<()> {
     let targets = chosen(&options.targets)?;
-    let programs = build::build(options, &targets)?;
+    let programs = compilation::build(options, &targets)?;
     println!("{}", report::HEAD);
     let outcomes = at_a_time(options.jobs, targets, |target| {
         let outcome = run::run(&programs, &target, options)?;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use htex_format::Triangle;
 
-use super::build::{placed, sorted};
+use super::triangulation::{placed, sorted};
 use super::{Face, Mesh, Side, area};
 
 /// Makes a mesh of valid triangles.

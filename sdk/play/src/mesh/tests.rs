@@ -117,7 +117,8 @@ fn many_conditions_are_each_met_and_none_costs_as_much_as_all() {
 #[test]
 fn of_many_places_three_that_span_a_triangle_go_first() {
     for (what, places) in many(2_000) {
-        let order = build::line(&places).and_then(|line| build::order(&places, &line));
+        let order =
+            triangulation::line(&places).and_then(|line| triangulation::order(&places, &line));
         let Some(order) = order else {
             assert!(what.starts_with("one line"), "{what}");
             continue;
@@ -303,8 +304,8 @@ proptest! {
     /// same weights; at each condition only its own is not zero, and nothing jumps.
     #[test]
     fn found_triangles_can_be_stored((points, order) in in_two_orders(), places in motions(), turn in any::<bool>()) {
-        let (axes, coordinates) = build::placed(&points, false);
-        let unmerged = build::meshed(&points, axes, &coordinates);
+        let (axes, coordinates) = triangulation::placed(&points, false);
+        let unmerged = triangulation::meshed(&points, axes, &coordinates);
         let found: Vec<[usize; 3]> = unmerged.triangles().collect();
         let Ok(stored) = Mesh::with_triangles(&points, &found) else {
             // Conditions on one line, some of them beside it by rounding, have no triangles to

@@ -1,6 +1,6 @@
 //! The benchmark beside plain loops in C and Python libraries.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::Result;
@@ -12,12 +12,14 @@ use crate::programs::run;
 ///
 /// # Errors
 /// When one of the programs cannot be built or fails.
-pub fn bench(options: &[&str]) -> Result<()> {
+pub fn bench(json: Option<&Path>) -> Result<()> {
     let mut build = Command::new(cargo());
     run(build.args(["build", "--release", "-p", "htex-bench", "-p", "htex-cli"]))?;
     let built = target().join("release");
     let mut bench = Command::new(built.join("htex-bench"));
-    bench.args(options);
+    if let Some(json) = json {
+        bench.arg("--json").arg(json);
+    }
     bench.env("HTEX_BENCH_COMMAND", built.join("htex"));
     match python() {
         Some(python) => {

@@ -70,12 +70,13 @@ const PROOFS: [Binding; 2] = [
 ///
 /// # Errors
 /// A message with what is missing, or with the test that failed; its own output has been printed.
-pub fn test(names: &[&str]) -> Result<()> {
+pub fn test(names: &[String]) -> Result<()> {
     let known = BINDINGS.map(|binding| binding.name);
-    if let Some(name) = names.iter().find(|name| !known.contains(name)) {
+    if let Some(name) = names.iter().find(|name| !known.contains(&&name[..])) {
         bail!("no binding `{name}`; there are {}", known.join(", "));
     }
-    let named = |binding: &&Binding| names.is_empty() || names.contains(&binding.name);
+    let named =
+        |binding: &&Binding| names.is_empty() || names.iter().any(|name| name == binding.name);
     // Most of them wait for browsers and emulated processors, and each for its turn to compile.
     let tested = at_a_time(2, BINDINGS.iter().filter(named).collect(), Binding::test);
     all_of(tested)

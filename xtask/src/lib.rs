@@ -4,6 +4,7 @@ pub mod bench;
 pub mod bindings;
 pub mod book;
 pub mod c_module;
+pub mod census;
 mod commit;
 pub mod dist;
 pub mod firmware;

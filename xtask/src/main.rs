@@ -1,101 +1,127 @@
-//! Tasks of developers: `cargo xtask`.
+//! Developer tasks: `cargo xtask`.
 
-use std::process::{Command, ExitCode};
+use std::path::PathBuf;
+use std::process::Command;
 
 use anyhow::Result;
+use clap::{Args, Parser};
 use xtask::dist::{Dist, dist};
+use xtask::fuzz;
 use xtask::platform::Build;
+use xtask::plugins::{self, Way};
 use xtask::programs::run;
-use xtask::{fuzz, plugins};
+use xtask::prove::Proof;
+use xtask::release::Release;
 
-const TASKS: &str = "\
-cargo xtask ci        runs all steps of continuous integration
-cargo xtask plugins   builds the models as plugins into target/htex-plugins, native and WASM;
-                      --native-only or --wasm-only builds the one kind; --wasm-toolchain WAY (or
-                      HTEX_WASM_TOOLCHAIN) builds modules with the toolchain that is installed, with debian's own
-                      compiler, or auto: the first that is there
-cargo xtask bench     measures htex beside plain loops in C and NumPy, SciPy, librosa, in one run;
-                      --json FILE writes the numbers too
-cargo xtask fuzz      fuzzes the TARGETS named, or all of fuzz/fuzz_targets, each for --seconds N (60)
-                      or --executions N, --jobs N (2) at a time; with --address under the address
-                      sanitizer, which needs a nightly toolchain; see fuzz/README.md
-cargo xtask dist --prefix DIR [--whole]  builds and installs libhtex for C, C++ and C#: the small library and, with --whole, in
-                      lib/whole the one with scenes, libraries and the engine of WASM modules
-cargo xtask release --out DIR [--only NAME,…] [--trial]  builds archives, wheels and the npm package, of all platforms or those named:
-                      linux-x86_64, linux-aarch64, windows-x86_64, macos, npm, sdist; --trial: by this machine's tools, for this
-                      machine, without lists of licences and parts
-cargo xtask book --out DIR  makes a book of HTML of the pages of docs and spec, by mdBook, and follows its links
-cargo xtask firmware --out DIR  lays out the player in C for Arduino, ESP-IDF and Zephyr
-cargo xtask bindings  tests the bindings to other languages and on other processors, all or those named: c, web, studio,
-                      python, processors; says what is missing
-cargo xtask web --out DIR  builds the npm package `htex` for browsers and Node.js
-cargo xtask studio --out DIR  builds the studio: DIR/studio.html, one file, and DIR/static, for a web server
-cargo xtask studio-shelf  makes the textures that come with the studio anew, sdk/studio/shelf/shelf.htexlib
-cargo xtask prove [NAME]  runs a proof that takes long; lists them without a name
-cargo xtask generate  writes the generated files of spec/: schemas, pages, conformance files; and
-                      the seeds of the fuzz targets";
+/// Developer tasks
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", disable_help_subcommand = true)]
+enum Task {
+    /// Run all steps of continuous integration
+    Ci,
+    Plugins(Plugins),
+    /// Measure htex against plain loops in C and against NumPy, SciPy and librosa, in one run
+    Bench {
+        /// Write the numbers to a file
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
+    /// Fuzz targets of fuzz/fuzz_targets; see fuzz/README.md
+    Fuzz(fuzz::Options),
+    /// Build and install libhtex for C, C++ and C#
+    Dist {
+        #[arg(long, value_name = "DIR")]
+        prefix: PathBuf,
+        /// Also install, in lib/whole, libhtex with scenes, libraries and the engine of WASM modules
+        #[arg(long)]
+        whole: bool,
+    },
+    /// Build archives, wheels and the npm package
+    Release(Release),
+    /// Make a book in HTML of the pages of docs and spec, by mdBook, and check its links
+    Book(Out),
+    /// Lay out the player in C for Arduino, ESP-IDF and Zephyr
+    Firmware(Out),
+    /// Test the bindings to other languages and on other processors; says what is missing
+    Bindings {
+        /// c, web, studio, python or processors [default: all]
+        names: Vec<String>,
+    },
+    /// Build the npm package `htex` for browsers and Node.js
+    Web(Out),
+    /// Build the studio: DIR/studio.html, one file, and DIR/static, for a web server
+    Studio(Out),
+    /// Make the textures that come with the studio anew: sdk/studio/shelf/shelf.htexlib
+    StudioShelf,
+    /// Run a proof that takes too long for continuous integration, which runs a sample of it
+    #[command(subcommand, arg_required_else_help = true)]
+    Prove(Proof),
+    /// Write the generated files of spec (schemas, pages, conformance files) and the fuzz seeds
+    Generate,
+    /// Measure the size of the sources
+    Census {
+        /// Print the names behind the numbers
+        #[arg(long)]
+        list: bool,
+    },
+}
 
-fn main() -> Result<ExitCode> {
-    let tasks: Vec<String> = std::env::args().skip(1).collect();
-    match tasks.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["plugins", ref options @ ..] => return build_plugins(options),
-        ["bench", ref options @ ..] => xtask::bench::bench(options)?,
-        ["fuzz", ref options @ ..] => match fuzz::Options::parse(options) {
-            Ok(options) => fuzz::fuzz(&options)?,
-            Err(error) => return Ok(usage(&format!("{error}\n"))),
-        },
-        ["dist", "--prefix", prefix] => install(prefix, false)?,
-        ["dist", "--prefix", prefix, "--whole"] | ["dist", "--whole", "--prefix", prefix] => {
-            install(prefix, true)?;
-        }
-        ["release", ref words @ ..] => {
-            xtask::release::release(&xtask::release::Release::parse(words)?)?
-        }
-        ["book", "--out", out] => xtask::book::book(out.as_ref())?,
-        ["firmware", "--out", out] => xtask::firmware::firmware(out.as_ref())?,
-        ["bindings", ref names @ ..] => xtask::bindings::test(names)?,
-        ["prove", ref arguments @ ..] => xtask::prove::prove(arguments)?,
-        ["web", "--out", out] => xtask::web::web(out.as_ref())?,
-        ["studio", "--out", out] => xtask::studio::studio(out.as_ref())?,
-        ["studio-shelf"] => xtask::shelf::shelf()?,
-        ["ci"] => {
+/// Build the models as plugins into target/htex-plugins, native and WASM
+#[derive(Args)]
+struct Plugins {
+    /// Build only native libraries
+    #[arg(long, conflicts_with_all = ["wasm_only", "wasm_toolchain"])]
+    native_only: bool,
+    /// Build only WASM modules
+    #[arg(long)]
+    wasm_only: bool,
+    /// Build modules with the installed toolchain, with Debian's compiler, or with the first found
+    /// [default: HTEX_WASM_TOOLCHAIN, or auto]
+    #[arg(long, value_name = "WAY", verbatim_doc_comment)]
+    wasm_toolchain: Option<Way>,
+}
+
+#[derive(Args)]
+struct Out {
+    /// The folder to write to
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+fn main() -> Result<()> {
+    match Task::parse() {
+        Task::Ci => {
             let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-            run(Command::new("bash").arg(".ci/run").current_dir(workspace))?;
+            run(Command::new("bash").arg(".ci/run").current_dir(workspace))
         }
-        ["generate"] => xtask::generated::generate()?,
-        _ => return Ok(usage("")),
+        Task::Plugins(plugins) => plugins.build(),
+        Task::Bench { json } => xtask::bench::bench(json.as_deref()),
+        Task::Fuzz(options) => fuzz::fuzz(&options),
+        Task::Dist { prefix, whole } => dist(&Dist { prefix, whole, build: Build::here()? }),
+        Task::Release(release) => xtask::release::release(&release),
+        Task::Book(to) => xtask::book::book(&to.out),
+        Task::Firmware(to) => xtask::firmware::firmware(&to.out),
+        Task::Bindings { names } => xtask::bindings::test(&names),
+        Task::Web(to) => xtask::web::web(&to.out),
+        Task::Studio(to) => xtask::studio::studio(&to.out),
+        Task::StudioShelf => xtask::shelf::shelf(),
+        Task::Prove(proof) => proof.run(),
+        Task::Generate => xtask::generated::generate(),
+        Task::Census { list } => xtask::census::census(list),
     }
-    Ok(ExitCode::SUCCESS)
 }
 
-/// Prints what is wrong and the tasks.
-fn usage(problem: &str) -> ExitCode {
-    eprintln!("{problem}{TASKS}");
-    ExitCode::from(2)
-}
-
-/// Builds the models as the options say, and prints their folder.
-fn build_plugins(options: &[&str]) -> Result<ExitCode> {
-    let (options, way) = match options {
-        [rest @ .., "--wasm-toolchain", way] => (rest, Some(*way)),
-        ["--wasm-toolchain", way, rest @ ..] => (rest, Some(*way)),
-        all => (all, None),
-    };
-    if let Some(Err(error)) = way.map(plugins::check_way) {
-        return Ok(usage(&format!("{error}\n")));
+impl Plugins {
+    /// Builds the models, and prints their folder.
+    fn build(&self) -> Result<()> {
+        let mut folder = PathBuf::new();
+        if !self.wasm_only {
+            folder = plugins::native()?;
+        }
+        if !self.native_only {
+            folder = self.wasm_toolchain.map_or_else(plugins::wasm, plugins::wasm_by)?;
+        }
+        println!("{}", folder.display());
+        Ok(())
     }
-    let wasm = || way.map_or_else(plugins::wasm, plugins::wasm_by);
-    let folder = match options {
-        [] => plugins::native().and_then(|_| wasm())?,
-        ["--native-only"] if way.is_none() => plugins::native()?,
-        ["--wasm-only"] => wasm()?,
-        _ => return Ok(usage("")),
-    };
-    println!("{}", folder.display());
-    Ok(ExitCode::SUCCESS)
-}
-
-/// Installs libhtex.
-fn install(prefix: &str, whole: bool) -> Result<()> {
-    dist(&Dist { prefix: prefix.into(), whole, build: Build::here()? })
 }

@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::Result;
+use anyhow::{Result, anyhow};
+use clap::ValueEnum;
 
 use crate::needs;
 use crate::places::{cargo, target, workspace};
 use crate::programs::run;
+pub use crate::wasm::Way;
 use crate::wasm::{PROFILE, TARGET, Toolchain};
 
 /// The models' short names, which are those of the folders of `plugins`, in the order of the
@@ -45,20 +47,22 @@ pub fn native() -> Result<PathBuf> {
 /// # Errors
 /// When no toolchain is found, with instructions; or the model that could not be built.
 pub fn wasm() -> Result<PathBuf> {
-    wasm_by(&way())
+    wasm_by(way()?)
 }
 
 /// The toolchain that `HTEX_WASM_TOOLCHAIN` names.
-fn way() -> String {
-    let way = std::env::var("HTEX_WASM_TOOLCHAIN").unwrap_or_default();
-    if way.is_empty() { "auto".to_owned() } else { way }
+fn way() -> Result<Way> {
+    const NAME: &str = "HTEX_WASM_TOOLCHAIN";
+    let way = std::env::var(NAME).ok().filter(|way| !way.is_empty());
+    let way = way.map(|way| Way::from_str(&way, false).map_err(|error| anyhow!("{NAME}: {error}")));
+    way.unwrap_or(Ok(Way::Auto))
 }
 
-/// As [`wasm`], with the toolchain of the name: `installed`, `debian`, or `auto`.
+/// As [`wasm`], with a toolchain that is chosen in this way.
 ///
 /// # Errors
-/// As [`wasm`], and when the name is unknown.
-pub fn wasm_by(way: &str) -> Result<PathBuf> {
+/// As [`wasm`].
+pub fn wasm_by(way: Way) -> Result<PathBuf> {
     let toolchain = Toolchain::find(way)?;
     for model in &models()? {
         let (cargo, target) = toolchain.cargo(&target());
@@ -70,17 +74,9 @@ pub fn wasm_by(way: &str) -> Result<PathBuf> {
     Ok(folder())
 }
 
-/// Whether there is a toolchain of this name.
-///
-/// # Errors
-/// The known names, when the name is unknown.
-pub fn check_way(way: &str) -> Result<()> {
-    Toolchain::check_way(way)
-}
-
 /// Whether the current toolchain builds WASM modules.
 pub fn wasm_is_installed() -> bool {
-    Toolchain::find("installed").is_ok()
+    Toolchain::find(Way::Installed).is_ok()
 }
 
 /// The folder of the models as WASM modules, for a test; `None`, and listed at the end, where no
@@ -91,7 +87,7 @@ pub fn wasm_is_installed() -> bool {
 #[must_use]
 #[allow(clippy::panic)] // It fails a test.
 pub fn wasm_if_there() -> Option<PathBuf> {
-    if !needs::WASM_TARGET.met(Toolchain::find(&way()).is_ok()) {
+    if !needs::WASM_TARGET.met(way().and_then(Toolchain::find).is_ok()) {
         return None;
     }
     Some(wasm().unwrap_or_else(|error| panic!("{error:#}")))

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
+use clap::ValueEnum;
 
 /// The target of modules.
 pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
@@ -23,6 +24,17 @@ const FLAGS: (&str, &str) = (
 const NO_TOOLCHAIN: &str = "no toolchain for WASM modules was found: `rustup target add \
     wasm32-unknown-unknown`, or on Debian `apt-get install rustc-web cargo-web rust-web-src`";
 
+/// How a toolchain for WASM modules is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Way {
+    /// The first that is there.
+    Auto,
+    /// The toolchain in use.
+    Installed,
+    /// Debian's own compiler.
+    Debian,
+}
+
 /// A toolchain for WASM modules.
 pub(crate) enum Toolchain {
     /// The toolchain in use has the target's standard library.
@@ -32,25 +44,14 @@ pub(crate) enum Toolchain {
 }
 
 impl Toolchain {
-    /// The toolchain of this name, or the first that is installed. Nothing is installed.
-    pub(crate) fn find(way: &str) -> Result<Self> {
-        Self::check_way(way)?;
+    /// Finds a toolchain. Nothing is installed.
+    pub(crate) fn find(way: Way) -> Result<Self> {
         let found = match way {
-            "installed" => installed(),
-            "debian" => debian(),
-            _ => installed().or_else(debian),
+            Way::Installed => installed(),
+            Way::Debian => debian(),
+            Way::Auto => installed().or_else(debian),
         };
         found.context(NO_TOOLCHAIN)
-    }
-
-    /// Whether the name of a toolchain is known.
-    pub(crate) fn check_way(way: &str) -> Result<()> {
-        match way {
-            "auto" | "installed" | "debian" => Ok(()),
-            other => {
-                bail!("unknown WASM toolchain `{other}`; known are auto, installed and debian")
-            }
-        }
     }
 
     /// The command to which `rustc --profile …` can be added, and the folder to build in.

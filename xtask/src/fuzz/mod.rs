@@ -25,10 +25,11 @@ use report::Outcome;
 /// # Errors
 /// When the programs cannot be built or run, or something was found.
 pub fn fuzz(options: &Options) -> Result<()> {
+    let options = &options.bounded();
     let targets = chosen(&options.targets)?;
     let programs = compilation::build(options, &targets)?;
     println!("{}", report::HEAD);
-    let outcomes = at_a_time(options.jobs, targets, |target| {
+    let outcomes = at_a_time(options.jobs as usize, targets, |target| {
         let outcome = run::run(&programs, &target, options)?;
         println!("{}", outcome.line());
         Ok(outcome)

@@ -1,57 +1,47 @@
 //! Options of `cargo xtask fuzz`.
 
-use anyhow::{Context, Result, bail};
+use clap::Args;
+use clap::builder::RangedU64ValueParser;
+
+/// Targets and time.
+#[derive(Debug, Clone, PartialEq, Eq, Args)]
+pub struct Options {
+    /// Targets of fuzz/fuzz_targets [default: all]
+    pub targets: Vec<String>,
+    /// Longest time for a target, seconds [default: 60 without --executions]
+    #[arg(long, value_name = "N", value_parser = positive())]
+    pub seconds: Option<u64>,
+    /// Most executions of a target
+    #[arg(long, value_name = "N", value_parser = positive())]
+    pub executions: Option<u64>,
+    /// Targets that run at the same time
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=64))]
+    pub jobs: u8,
+    /// Run under the address sanitizer, which needs a nightly toolchain; see fuzz/README.md
+    #[arg(long)]
+    pub address: bool,
+}
 
 /// Default time of a target, seconds.
 const SECONDS: u64 = 60;
 
-/// Targets and time.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Options {
-    /// Targets; all when empty.
-    pub targets: Vec<String>,
-    /// Longest time of a target, seconds.
-    pub seconds: Option<u64>,
-    /// Most executions of a target.
-    pub executions: Option<u64>,
-    /// Targets that run at the same time.
-    pub jobs: usize,
-    /// With the address sanitizer.
-    pub address: bool,
-}
-
 impl Options {
-    /// Reads arguments.
-    ///
-    /// # Errors
-    /// The invalid argument.
-    pub fn parse(arguments: &[&str]) -> Result<Self> {
-        let mut options =
-            Self { targets: Vec::new(), seconds: None, executions: None, jobs: 2, address: false };
-        let mut arguments = arguments.iter();
-        while let Some(&argument) = arguments.next() {
-            let mut number = || number(argument, arguments.next());
-            match argument {
-                "--seconds" => options.seconds = Some(number()?),
-                "--executions" => options.executions = Some(number()?),
-                "--jobs" => options.jobs = number()?.min(64) as usize,
-                "--address" => options.address = true,
-                _ if argument.starts_with('-') => bail!("{argument} is unknown"),
-                _ => options.targets.push(argument.to_owned()),
-            }
-        }
-        if options.seconds.is_none() && options.executions.is_none() {
-            options.seconds = Some(SECONDS);
-        }
-        Ok(options)
+    /// The same options with the time of a proof, ten minutes, where no bound is given.
+    pub(crate) fn of_a_proof(&self) -> Self {
+        let is_bounded = self.seconds.is_some() || self.executions.is_some();
+        Self { seconds: self.seconds.or((!is_bounded).then_some(600)), ..self.clone() }
+    }
+
+    /// The same options with the default time, where no bound is given.
+    pub(super) fn bounded(&self) -> Self {
+        let is_bounded = self.seconds.is_some() || self.executions.is_some();
+        let seconds = self.seconds.or((!is_bounded).then_some(SECONDS));
+        Self { seconds, ..self.clone() }
     }
 }
 
-fn number(name: &str, value: Option<&&str>) -> Result<u64> {
-    let number = value.and_then(|text| text.parse().ok());
-    number
-        .filter(|number| *number > 0)
-        .with_context(|| format!("{name} takes a whole number from 1"))
+fn positive() -> RangedU64ValueParser {
+    RangedU64ValueParser::new().range(1..)
 }
 
 #[cfg(test)]
@@ -59,22 +49,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn arguments_are_told_apart() {
-        let all = ["csv", "--seconds", "5", "wav", "--executions", "9", "--jobs", "1", "--address"];
-        let options = Options::parse(&all);
-        let expected = Options {
-            targets: vec!["csv".to_owned(), "wav".to_owned()],
-            seconds: Some(5),
-            executions: Some(9),
-            jobs: 1,
-            address: true,
+    fn a_target_has_a_bound() {
+        let bounds = |seconds, executions| {
+            let options =
+                Options { targets: Vec::new(), seconds, executions, jobs: 2, address: false };
+            let options = options.bounded();
+            (options.seconds, options.executions)
         };
-        assert_eq!(options.ok(), Some(expected));
-        let seconds = |options: &[&str]| Options::parse(options).ok().map(|o| o.seconds);
-        assert_eq!(seconds(&[]), Some(Some(SECONDS)));
-        assert_eq!(seconds(&["--executions", "9"]), Some(None));
-        for wrong in [&["--seconds"][..], &["--seconds", "0"], &["--jobs", "x"], &["--fast"]] {
-            assert!(Options::parse(wrong).is_err(), "{wrong:?}");
-        }
+        assert_eq!(bounds(None, None), (Some(SECONDS), None));
+        assert_eq!(bounds(None, Some(9)), (None, Some(9)));
+        assert_eq!(bounds(Some(5), Some(9)), (Some(5), Some(9)));
     }
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use anyhow::{Context, Result, bail};
+use clap::Args;
 use fs_err as fs;
 
 use crate::places::{cargo, target, workspace};
@@ -28,11 +29,17 @@ const INPUTS: [&str; 8] = [
 const TIMED: [&str; 6] =
     ["_ms\":", "_us\":", "ns_per_sample\":", "seconds\":", "spread\":", "on_time_front\":"];
 
-pub(super) fn prove(options: &[&str]) -> Result<()> {
-    let htex = match *options {
-        ["--htex", path] => std::path::absolute(path).context(path.to_owned())?,
-        [] => built()?,
-        _ => bail!("prove outputs [--htex PATH]"),
+#[derive(Debug, Args)]
+pub struct Options {
+    /// The command [default: this workspace's, which is built]
+    #[arg(long, value_name = "PATH")]
+    htex: Option<PathBuf>,
+}
+
+pub(super) fn prove(options: &Options) -> Result<()> {
+    let htex = match &options.htex {
+        Some(path) => std::path::absolute(path)?,
+        None => built()?,
     };
     let folder = target().join("outputs");
     prepare(&folder)?;

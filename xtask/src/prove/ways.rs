@@ -12,6 +12,7 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
 use fs_err as fs;
 
 use crate::markdown::{Block, blocks, links};
@@ -30,34 +31,22 @@ const OTHERS: [&str; 4] = ["aarch64", "arm64", "win", "macos"];
 const WAYS: [(&str, bool); 4] =
     [("recordings", false), ("models", true), ("apps", false), ("lab", false)];
 
-struct Options {
+#[derive(Debug, Args)]
+pub struct Options {
+    /// The folder to which `cargo xtask release --out DIR` wrote
+    #[arg(long, value_name = "DIR")]
     release: PathBuf,
+    /// One page: recordings, models, apps or lab [default: all]
+    #[arg(long, value_name = "NAME")]
     only: Option<String>,
-    /// Write what is printed into the pages.
+    /// Write what is printed into the pages
+    #[arg(long)]
     write: bool,
 }
 
-impl Options {
-    fn parse(words: &[&str]) -> Result<Self> {
-        let (mut release, mut only, mut write) = (None, None, false);
-        let mut words = words.iter();
-        while let Some(word) = words.next() {
-            match *word {
-                "--release" => release = words.next().map(fs::canonicalize).transpose()?,
-                "--only" => only = words.next().map(|name| (*name).to_owned()),
-                "--write" => write = true,
-                _ => bail!("{word} is unknown: --release DIR [--only NAME] [--write]"),
-            }
-        }
-        let release =
-            release.context("--release DIR, to which `cargo xtask release --out DIR` wrote")?;
-        Ok(Self { release, only, write })
-    }
-}
-
 /// Runs the pages, or the one of `--only`.
-pub(super) fn prove(words: &[&str]) -> Result<()> {
-    let options = Options::parse(words)?;
+pub(super) fn prove(options: &Options) -> Result<()> {
+    let release = fs::canonicalize(&options.release)?;
     let chosen = |name: &str| options.only.as_deref().is_none_or(|only| only == name);
     let ways: Vec<_> = WAYS.iter().filter(|(name, _)| chosen(name)).collect();
     ensure!(
@@ -67,7 +56,7 @@ pub(super) fn prove(words: &[&str]) -> Result<()> {
     );
     for (name, with_sources) in ways {
         let begin = Instant::now();
-        let folder = prepare(name, &options.release, *with_sources)?;
+        let folder = prepare(name, &release, *with_sources)?;
         follow(name, &folder, options.write)?;
         pictures(name, &folder, options.write)?;
         let seconds = begin.elapsed().as_secs_f64();

@@ -14,6 +14,7 @@ mod unity;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail, ensure};
+use clap::Args;
 use fs_err as fs;
 
 use crate::commit::Commit;
@@ -22,57 +23,31 @@ use crate::platform::{Build, PLATFORMS, Platform};
 use crate::programs::{output, program, run};
 
 /// What is written, and where.
+#[derive(Debug, Args)]
 pub struct Release {
+    /// The folder to write to
+    #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    platforms: Vec<Platform>,
-    npm: bool,
-    sdist: bool,
-    /// By this machine's tools, for this machine, and without the lists of what it is made of.
-    is_trial: bool,
+    /// linux-x86_64, linux-aarch64, windows-x86_64, macos, npm or sdist [default: all]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    only: Vec<String>,
+    /// Build for this machine, by its own tools, without the lists of licences and parts
+    #[arg(long)]
+    trial: bool,
 }
 
 impl Release {
-    /// Reads the words after `cargo xtask release`.
-    ///
-    /// # Errors
-    /// A message with the words that are known.
-    pub fn parse(words: &[&str]) -> Result<Self> {
-        let (words, is_trial) = match words {
-            [words @ .., "--trial"] => (words, true),
-            words => (words, false),
-        };
-        let (out, only) = match *words {
-            ["--out", out] => (out, None),
-            ["--out", out, "--only", only] | ["--only", only, "--out", out] => (out, Some(only)),
-            _ => bail!(
-                "cargo xtask release --out DIR [--only NAME,…] [--trial], of {}, npm, sdist",
-                PLATFORMS.map(|one| one.name).join(", ")
-            ),
-        };
-        let mut release = Self {
-            out: out.into(),
-            platforms: Vec::new(),
-            npm: only.is_none(),
-            sdist: only.is_none(),
-            is_trial,
-        };
-        match only {
-            None => release.platforms = PLATFORMS.to_vec(),
-            Some(only) => only.split(',').try_for_each(|name| release.add(name))?,
+    /// The platforms that are built for.
+    fn platforms(&self) -> Result<Vec<Platform>> {
+        if self.only.is_empty() {
+            return Ok(PLATFORMS.to_vec());
         }
-        let here = Platform::here()?;
-        let is_here = release.platforms.iter().all(|one| *one == here);
-        ensure!(is_here || !is_trial, "--trial: only {}", here.name);
-        Ok(release)
+        let names = self.only.iter().filter(|name| !["npm", "sdist"].contains(&&name[..]));
+        names.map(|name| Platform::named(name)).collect()
     }
 
-    fn add(&mut self, name: &str) -> Result<()> {
-        match name {
-            "npm" => self.npm = true,
-            "sdist" => self.sdist = true,
-            _ => self.platforms.push(Platform::named(name)?),
-        }
-        Ok(())
+    fn has(&self, name: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|one| one == name)
     }
 }
 
@@ -81,45 +56,45 @@ impl Release {
 /// # Errors
 /// A message with the file or the program, and what is missing with how to install it.
 pub fn release(release: &Release) -> Result<()> {
-    packages::check_tools(release.is_trial)?;
+    let platforms = release.platforms()?;
+    let here = Platform::here()?;
+    let is_here = platforms.iter().all(|one| *one == here);
+    ensure!(is_here || !release.trial, "--trial: only {}", here.name);
+    packages::check_tools(release.trial)?;
     fs::create_dir_all(&release.out)?;
     let out = fs::canonicalize(&release.out)?;
     let commit = match Commit::of_clone() {
-        Err(_) if release.is_trial => Commit::unknown(),
+        Err(_) if release.trial => Commit::unknown(),
         commit => commit?,
     };
     let version = crate::places::version()?;
     let kept = workspace().join("tests/compat").join(&version);
     ensure!(
-        release.is_trial || kept.exists(),
+        release.trial || kept.exists(),
         "{} is missing: its README says how the files of a version are kept",
         kept.display()
     );
-    let is_compiled = release.npm || !release.platforms.is_empty();
-    let notices = if is_compiled && !release.is_trial {
-        Some(parts::notices(&release.platforms)?)
-    } else {
-        None
-    };
+    let is_compiled = release.has("npm") || !platforms.is_empty();
+    let notices =
+        if is_compiled && !release.trial { Some(parts::notices(&platforms)?) } else { None };
     let notices = notices.as_deref();
-    for platform in &release.platforms {
+    for platform in &platforms {
         eprintln!("release: {}", platform.name);
-        let build =
-            if release.is_trial { Build::here()? } else { Build::release(*platform, &commit) };
+        let build = if release.trial { Build::here()? } else { Build::release(*platform, &commit) };
         let folder = tree::lay_out(&build, &version, notices)?;
         packages::archive(&build, &folder, &out, &commit)?;
         if platform.has_wheel() {
             packages::wheel(&build, &out, notices)?;
         }
-        if !release.is_trial {
+        if !release.trial {
             parts::bills(platform, &version, &out, &commit)?;
         }
     }
-    unity::package(&release.platforms, &version, &out, &commit, notices)?;
-    if release.npm {
+    unity::package(&platforms, &version, &out, &commit, notices)?;
+    if release.has("npm") {
         packages::npm(&out, notices)?;
     }
-    if release.sdist {
+    if release.has("sdist") {
         packages::sdist(&version, &out, &commit)?;
     }
     checksums(&out)

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
+use clap::Args;
 use fs_err as fs;
 
-use super::{Compiler, archive};
+use super::{Compiler, Folder, archive};
 use crate::places::{emptied, target};
 use crate::programs::{program, run};
 
@@ -97,17 +98,19 @@ assert samples.std() > 0
 /// Versions of the C library that wheels for another processor may name.
 const MANYLINUX: [&str; 4] = ["2_31", "2_28", "2_27", "2_17"];
 
+#[derive(Debug, Args)]
+pub struct Bare {
+    #[command(flatten)]
+    folder: Folder,
+    /// x86_64 or aarch64, which is emulated
+    #[arg(long, value_name = "NAME", default_value = "x86_64")]
+    processor: String,
+}
+
 /// Uses what is released on an empty root of Debian.
-pub(in crate::prove) fn bare(options: &[&str]) -> Result<()> {
-    let (released, processor) = match *options {
-        ["--release", folder] => (folder, "x86_64"),
-        ["--release", folder, "--processor", processor] => (folder, processor),
-        _ => bail!(
-            "--release DIR, to which `cargo xtask release --out DIR` wrote [--processor aarch64]"
-        ),
-    };
-    let released = fs::canonicalize(released)?;
-    let processor = PROCESSORS.iter().find(|one| one.name == processor);
+pub(in crate::prove) fn bare(options: &Bare) -> Result<()> {
+    let released = options.folder.released()?;
+    let processor = PROCESSORS.iter().find(|one| one.name == options.processor);
     let processor = processor.context("--processor: x86_64 or aarch64")?;
     let name = processor.name;
     let ending = format!("-{name}-linux.tar.xz");
@@ -146,8 +149,7 @@ fn wheels(released: &Path, processor: &Processor, work: &Path) -> Result<()> {
 }
 
 /// Makes the root.
-pub(in crate::prove) fn bare_root(options: &[&str]) -> Result<()> {
-    crate::prove::none(options)?;
+pub(in crate::prove) fn bare_root() -> Result<()> {
     root(&PROCESSORS[0]).map(drop)
 }
 

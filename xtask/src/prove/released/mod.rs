@@ -6,13 +6,28 @@ mod wine;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use clap::Args;
 use fs_err as fs;
 
 use crate::places::workspace;
 use crate::programs::{program, run};
 
+pub use bare::Bare;
 pub(super) use bare::{bare, bare_root};
 pub(super) use wine::wine;
+
+#[derive(Debug, Args)]
+pub struct Folder {
+    /// The folder to which `cargo xtask release --out DIR` wrote
+    #[arg(long, value_name = "DIR")]
+    release: PathBuf,
+}
+
+impl Folder {
+    fn released(&self) -> Result<PathBuf> {
+        Ok(fs::canonicalize(&self.release)?)
+    }
+}
 
 /// The file of a folder with an ending, and its name without that.
 fn archive(folder: &Path, ending: &str) -> Result<(PathBuf, String)> {

@@ -6,7 +6,7 @@ use std::process::Command;
 use anyhow::{Context, Result, bail, ensure};
 use fs_err as fs;
 
-use super::{Compiler, archive};
+use super::{Compiler, Folder, archive};
 use crate::places::{cargo, emptied, target, workspace};
 use crate::programs::{program, run};
 
@@ -40,11 +40,8 @@ const PLAYERS: [(&str, &str); 3] =
     [("play_pkg_config", "lib"), ("play_htex", "lib"), ("play_whole", "lib/whole")];
 
 /// Uses what is released for Windows under Wine.
-pub(in crate::prove) fn wine(options: &[&str]) -> Result<()> {
-    let released = match *options {
-        ["--release", folder] => fs::canonicalize(folder)?,
-        _ => bail!("--release DIR, to which `cargo xtask release --out DIR` wrote"),
-    };
+pub(in crate::prove) fn wine(options: &Folder) -> Result<()> {
+    let released = options.released()?;
     let (archive, stem) = archive(&released, "-x86_64-windows.zip")?;
     let work = std::path::absolute(target().join("wine"))?;
     emptied(&work)?;

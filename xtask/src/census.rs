@@ -1,0 +1,395 @@
+//! Measures the size of the sources: `cargo xtask census`.
+//!
+//! Counts by what the compiler's parser reads, so that layout and comments change no number but their own. A file is a test if it
+//! lies in a folder `tests`, `benches` or `fuzz`, or is named `tests.rs`; the rest of a file after `#[cfg(test)] mod` is one, too.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+use proc_macro2::{TokenStream, TokenTree};
+use quote::ToTokens;
+use syn::visit::{self, Visit};
+use syn::visit_mut::{self, VisitMut};
+
+use crate::places::workspace;
+
+/// One measure of the sources.
+struct Row {
+    what: &'static str,
+    number: String,
+}
+
+/// Prints the census.
+pub fn census(list: bool) -> Result<()> {
+    let sources = sources()?;
+    let packages = Packages::read()?;
+    for Row { what, number } in rows(&sources, &packages, list)? {
+        println!("{number:>10}  {what}");
+    }
+    Ok(())
+}
+
+fn rows(sources: &[Source], packages: &Packages, list: bool) -> Result<Vec<Row>> {
+    let code = || sources.iter().filter(|source| !source.is_test);
+    let lines: usize = sources.iter().map(|source| source.code_lines).sum();
+    let tests: usize = sources.iter().map(|source| source.test_lines).sum();
+    let whys: usize = code().map(|source| source.why_lines).sum();
+    let errors: BTreeSet<&str> = code().flat_map(|source| names(&source.errors)).collect();
+    let contexts: BTreeSet<&str> = code().flat_map(|source| names(&source.contexts)).collect();
+    let unused = unused(sources, packages);
+    let row = |what, number: usize| Row { what, number: number.to_string() };
+    let mut rows = vec![
+        row(
+            "tokens of Rust outside comments, attributes and tests",
+            code().map(|s| s.tokens).sum(),
+        ),
+        row("lines of Rust outside tests", lines),
+        row("lines of Rust in tests", tests),
+        row("packages", packages.ours.len()),
+        row("crates that htex-cli needs to be published", packages.needed("htex-cli").len()),
+        row("error types", errors.len()),
+        row("traits for Result, which attach context", contexts.len()),
+        row("`pub` items of internal crates that no other crate names", unused.len()),
+        row("names at the root of htex", root_names(packages)?),
+    ];
+    let share = 100.0 * whys as f64 / lines.max(1) as f64;
+    rows.push(Row {
+        what: "% of lines outside tests: comments in the code (`//`)",
+        number: format!("{share:.2}"),
+    });
+    if list {
+        println!("{errors:#?}\n{contexts:#?}\n{unused:#?}");
+    }
+    Ok(rows)
+}
+
+fn names(all: &[String]) -> impl Iterator<Item = &str> {
+    all.iter().map(String::as_str)
+}
+
+/// What one file has.
+struct Source {
+    path: PathBuf,
+    is_test: bool,
+    tokens: usize,
+    code_lines: usize,
+    test_lines: usize,
+    why_lines: usize,
+    errors: Vec<String>,
+    contexts: Vec<String>,
+    public: Vec<String>,
+    /// Every identifier of the file.
+    words: BTreeSet<String>,
+}
+
+/// The Rust sources of this repository.
+fn sources() -> Result<Vec<Source>> {
+    let listed =
+        Command::new("git").current_dir(workspace()).args(["ls-files", "*.rs"]).output()?;
+    ensure!(listed.status.success(), "git ls-files failed");
+    let names = String::from_utf8(listed.stdout)?;
+    names.lines().map(|name| source(Path::new(name))).collect()
+}
+
+fn source(path: &Path) -> Result<Source> {
+    let text = fs_err::read_to_string(workspace().join(path))?;
+    let mut file = syn::parse_file(&text).with_context(|| path.display().to_string())?;
+    let is_test_part =
+        |part: &std::ffi::OsStr| ["tests", "benches", "fuzz"].iter().any(|name| part == *name);
+    let is_test = path.iter().any(is_test_part) || path.ends_with("tests.rs");
+    let words = words(file.to_token_stream());
+    let mut found = Found::default();
+    found.visit_file(&file);
+    let test_lines = if is_test { text.lines().count() } else { found.test_lines };
+    WithoutTests.visit_file_mut(&mut file);
+    let mut kept = Found::default();
+    kept.visit_file(&file);
+    Ok(Source {
+        path: path.to_owned(),
+        is_test,
+        tokens: count(file.to_token_stream()),
+        code_lines: text.lines().count() - test_lines,
+        test_lines,
+        why_lines: text.lines().filter(|line| is_why(line)).count(),
+        errors: kept.errors,
+        contexts: kept.contexts,
+        public: kept.public,
+        words,
+    })
+}
+
+fn is_why(line: &str) -> bool {
+    let line = line.trim_start();
+    line.starts_with("// ") && !line.starts_with("// SAFETY")
+}
+
+/// Tokens, of which a pair of brackets is two.
+fn count(tokens: TokenStream) -> usize {
+    let size = |token| match token {
+        TokenTree::Group(group) => 2 + count(group.stream()),
+        _ => 1,
+    };
+    tokens.into_iter().map(size).sum()
+}
+
+fn words(tokens: TokenStream) -> BTreeSet<String> {
+    let mut all = BTreeSet::new();
+    collect(tokens, &mut all);
+    all
+}
+
+fn collect(tokens: TokenStream, all: &mut BTreeSet<String>) {
+    for token in tokens {
+        match token {
+            TokenTree::Group(group) => collect(group.stream(), all),
+            TokenTree::Ident(ident) => drop(all.insert(ident.to_string())),
+            // Examples of the documentation are code, too.
+            TokenTree::Literal(literal) => {
+                let text = literal.to_string();
+                let parts = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+                all.extend(parts.filter(|part| !part.is_empty()).map(str::to_owned));
+            }
+            TokenTree::Punct(_) => {}
+        }
+    }
+}
+
+fn is_test_item(attributes: &[syn::Attribute]) -> bool {
+    attributes.iter().any(|attribute| {
+        let text = attribute.meta.to_token_stream().to_string();
+        text == "test" || text.replace(' ', "").starts_with("cfg(test")
+    })
+}
+
+/// Removes tests and attributes.
+struct WithoutTests;
+
+impl VisitMut for WithoutTests {
+    fn visit_file_mut(&mut self, file: &mut syn::File) {
+        file.items.retain(|item| !is_test_item(attributes(item)));
+        visit_mut::visit_file_mut(self, file);
+    }
+
+    fn visit_item_mod_mut(&mut self, module: &mut syn::ItemMod) {
+        if let Some((_, items)) = &mut module.content {
+            items.retain(|item| !is_test_item(attributes(item)));
+        }
+        visit_mut::visit_item_mod_mut(self, module);
+    }
+
+    fn visit_attributes_mut(&mut self, attributes: &mut Vec<syn::Attribute>) {
+        // What a type derives is needed to find the errors.
+        attributes.retain(|attribute| attribute.path().is_ident("derive"));
+    }
+}
+
+fn attributes(item: &syn::Item) -> &[syn::Attribute] {
+    match item {
+        syn::Item::Const(item) => &item.attrs,
+        syn::Item::Enum(item) => &item.attrs,
+        syn::Item::Fn(item) => &item.attrs,
+        syn::Item::Impl(item) => &item.attrs,
+        syn::Item::Mod(item) => &item.attrs,
+        syn::Item::Static(item) => &item.attrs,
+        syn::Item::Struct(item) => &item.attrs,
+        syn::Item::Use(item) => &item.attrs,
+        _ => &[],
+    }
+}
+
+/// What is counted in a file.
+#[derive(Default)]
+struct Found {
+    test_lines: usize,
+    errors: Vec<String>,
+    contexts: Vec<String>,
+    public: Vec<String>,
+}
+
+impl Found {
+    fn add(&mut self, visibility: &syn::Visibility, name: &syn::Ident) {
+        if matches!(visibility, syn::Visibility::Public(_)) {
+            self.public.push(name.to_string());
+        }
+    }
+}
+
+impl<'a> Visit<'a> for Found {
+    fn visit_item(&mut self, item: &'a syn::Item) {
+        if is_test_item(attributes(item)) {
+            use syn::spanned::Spanned;
+            let span = item.span();
+            self.test_lines += span.end().line + 1 - span.start().line;
+            return;
+        }
+        match item {
+            syn::Item::Const(item) => self.add(&item.vis, &item.ident),
+            syn::Item::Enum(item) => self.add(&item.vis, &item.ident),
+            syn::Item::Fn(item) => self.add(&item.vis, &item.sig.ident),
+            syn::Item::Struct(item) => self.add(&item.vis, &item.ident),
+            syn::Item::Trait(item) => self.add(&item.vis, &item.ident),
+            syn::Item::Type(item) => self.add(&item.vis, &item.ident),
+            _ => {}
+        }
+        let derives = attributes(item).iter().any(|attribute| {
+            attribute.path().is_ident("derive")
+                && attribute.meta.to_token_stream().to_string().contains("Error")
+        });
+        let (syn::Item::Enum(syn::ItemEnum { ident, .. })
+        | syn::Item::Struct(syn::ItemStruct { ident, .. })) = item
+        else {
+            return visit::visit_item(self, item);
+        };
+        if derives {
+            self.errors.push(ident.to_string());
+        }
+        visit::visit_item(self, item);
+    }
+
+    fn visit_impl_item_fn(&mut self, function: &'a syn::ImplItemFn) {
+        self.add(&function.vis, &function.sig.ident);
+        visit::visit_impl_item_fn(self, function);
+    }
+
+    fn visit_item_impl(&mut self, item: &'a syn::ItemImpl) {
+        let last = |path: &syn::Path| path.segments.last().map(|segment| segment.ident.to_string());
+        if let (Some((_, of, _)), syn::Type::Path(ours)) = (&item.trait_, &*item.self_ty) {
+            match (last(of).as_deref(), last(&ours.path)) {
+                (Some("Error"), Some(name)) => self.errors.push(name),
+                (Some(of), Some(name)) if name == "Result" => self.contexts.push(of.to_owned()),
+                _ => {}
+            }
+        }
+        visit::visit_item_impl(self, item);
+    }
+}
+
+/// The packages of this workspace.
+struct Packages {
+    ours: BTreeMap<String, Package>,
+}
+
+struct Package {
+    folder: PathBuf,
+    /// Packages of this workspace that it needs outside of tests.
+    needs: Vec<String>,
+}
+
+/// Crates whose `pub` items are for users.
+const FOR_USERS: [&str; 7] = [
+    "htex",
+    "htex-model",
+    "htex-device",
+    "htex-player",
+    "htex-capi",
+    "htex-shaped",
+    "htex-device-guardian",
+];
+
+impl Packages {
+    fn read() -> Result<Self> {
+        let arguments = ["metadata", "--no-deps", "--locked", "--format-version", "1"];
+        let listed = Command::new("cargo").current_dir(workspace()).args(arguments).output()?;
+        ensure!(listed.status.success(), "cargo metadata failed");
+        let all: serde_json::Value = serde_json::from_slice(&listed.stdout)?;
+        let text = |value: &serde_json::Value| value.as_str().unwrap_or_default().to_owned();
+        let list = |value: &serde_json::Value| value.as_array().cloned().unwrap_or_default();
+        let package = |package: &serde_json::Value| {
+            let needs = list(&package["dependencies"]);
+            let ours =
+                needs.iter().filter(|need| need["path"].is_string() && need["kind"] != "dev");
+            let manifest = PathBuf::from(text(&package["manifest_path"]));
+            let folder = manifest.parent().map_or_else(PathBuf::new, Path::to_owned);
+            let needs = ours.map(|need| text(&need["name"])).collect();
+            (text(&package["name"]), Package { folder, needs })
+        };
+        Ok(Self { ours: list(&all["packages"]).iter().map(package).collect() })
+    }
+
+    /// The packages of this workspace that a package needs, and it.
+    fn needed(&self, name: &str) -> BTreeSet<String> {
+        let mut all = BTreeSet::new();
+        let mut left = vec![name.to_owned()];
+        while let Some(name) = left.pop() {
+            let needs = self.ours.get(&name).map_or(&[][..], |package| &package.needs);
+            if all.insert(name) {
+                left.extend(needs.iter().cloned());
+            }
+        }
+        all
+    }
+
+    /// The package in whose folder a file lies.
+    fn of(&self, path: &Path) -> Option<&str> {
+        let path = workspace().join(path);
+        let holds = |(_, package): &(&String, &Package)| path.starts_with(&package.folder);
+        let depth = |(_, package): &(&String, &Package)| package.folder.iter().count();
+        self.ours.iter().filter(holds).max_by_key(depth).map(|(name, _)| name.as_str())
+    }
+}
+
+/// The `pub` items of internal crates whose name stands in no other crate, as `crate::item`.
+fn unused(sources: &[Source], packages: &Packages) -> Vec<String> {
+    let mut words: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for source in sources {
+        let package = packages.of(&source.path).unwrap_or_default();
+        for word in &source.words {
+            words.entry(word).or_default().insert(package);
+        }
+    }
+    let mut unused = Vec::new();
+    for source in sources.iter().filter(|source| !source.is_test) {
+        let package = packages.of(&source.path).unwrap_or_default();
+        let is_internal = !FOR_USERS.contains(&package) && !package.is_empty();
+        let is_unused =
+            |name: &&String| words.get(name.as_str()).is_none_or(|packages| packages.len() < 2);
+        if is_internal {
+            unused.extend(
+                source.public.iter().filter(is_unused).map(|name| format!("{package}::{name}")),
+            );
+        }
+    }
+    unused
+}
+
+/// The names that `use htex::*` brings: of items and of what is used again, a wildcard as the names of the crate behind it.
+fn root_names(packages: &Packages) -> Result<usize> {
+    let mut names = BTreeSet::new();
+    root_names_of("htex", packages, &mut names)?;
+    Ok(names.len())
+}
+
+fn root_names_of(package: &str, packages: &Packages, names: &mut BTreeSet<String>) -> Result<()> {
+    let folder = &packages.ours.get(package).with_context(|| package.to_owned())?.folder;
+    let file = syn::parse_file(&fs_err::read_to_string(folder.join("src/lib.rs"))?)?;
+    for item in &file.items {
+        match item {
+            syn::Item::Use(item) if matches!(item.vis, syn::Visibility::Public(_)) => {
+                let mut found = (Vec::new(), Vec::new());
+                used(&item.tree, "", &mut found);
+                names.extend(found.0);
+                for wildcard in found.1 {
+                    root_names_of(&wildcard.replace('_', "-"), packages, names)?;
+                }
+            }
+            syn::Item::Mod(item) if matches!(item.vis, syn::Visibility::Public(_)) => {
+                names.insert(item.ident.to_string());
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Adds the names that a tree of `use` brings, and the crates of its wildcards.
+fn used(tree: &syn::UseTree, before: &str, found: &mut (Vec<String>, Vec<String>)) {
+    match tree {
+        syn::UseTree::Path(path) => used(&path.tree, &path.ident.to_string(), found),
+        syn::UseTree::Name(name) => found.0.push(name.ident.to_string()),
+        syn::UseTree::Rename(rename) => found.0.push(rename.rename.to_string()),
+        syn::UseTree::Glob(_) => found.1.push(before.to_owned()),
+        syn::UseTree::Group(group) => group.items.iter().for_each(|tree| used(tree, before, found)),
+    }
+}

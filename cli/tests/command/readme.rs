@@ -1,5 +1,5 @@
-//! The README is true: its table and picture are the demonstration's, and its test command is the
-//! one that continuous integration runs.
+//! The pages are true: the table and the picture in `docs/demonstration.md` are what `htex demo`
+//! prints and draws, and the README's test command is the one that continuous integration runs.
 
 use std::path::{Path, PathBuf};
 
@@ -25,11 +25,13 @@ fn the_table_and_the_picture_are_the_demonstrations() {
     let place = Place::new();
     let run = place.run(&["demo", "out"]);
     assert_eq!(run.code(), 0, "{}", run.error());
-    let readme = text("README.md");
-    let [table] = blocks(&readme, "text")[..] else { unreachable!("the README has one table") };
+    let page = text("docs/demonstration.md");
+    let [table] = blocks(&page, "text")[..] else {
+        unreachable!("docs/demonstration.md has one printed table")
+    };
     let printed = run.text();
     for line in table.lines() {
-        assert!(printed.lines().any(|p| p == line), "README.md: {line}\n{printed}");
+        assert!(printed.lines().any(|p| p == line), "docs/demonstration.md: {line}\n{printed}");
     }
     // The header, and two models of five surfaces.
     assert_eq!(table.lines().count(), 11);

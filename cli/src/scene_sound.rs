@@ -78,14 +78,8 @@ impl Scene {
 
     /// Calls a function with what it plays.
     pub(crate) fn with<T>(&self, call: impl FnOnce(&SceneSound<'_>) -> T) -> T {
-        let name = self
-            .file
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .split('.')
-            .next()
-            .unwrap_or_default();
+        let name = self.file.file_name().unwrap_or_default().to_string_lossy();
+        let name = name.split('.').next().unwrap_or_default();
         call(&SceneSound {
             name,
             rights: &self.rights,

@@ -159,7 +159,8 @@ impl Surface {
 
     /// Names of the constants that the Rust side states, as C has them.
     pub fn rust_constant_names(&self) -> Vec<String> {
-        let constants = rust_code(self.code).lines().filter_map(|line| {
+        let code = rust_code(self.code);
+        let constants = code.lines().filter_map(|line| {
             let (name, _) = line.strip_prefix("pub const ")?.split_once(':')?;
             Some(format!("{}{name}", self.constant))
         });
@@ -185,7 +186,8 @@ impl Surface {
     /// The surface by these constants: a line for each constant and function, in order of name.
     pub fn listing(&self, constants: &Constants) -> String {
         let constants = constants.iter().map(|(name, value)| format!("{name} {value}\n"));
-        let functions = self.rust_prototypes().values().map(|text| format!("{text};\n"));
+        let prototypes = self.rust_prototypes();
+        let functions = prototypes.values().map(|text| format!("{text};\n"));
         constants.chain(functions).collect()
     }
 

@@ -157,10 +157,8 @@ fn bands_of_whole_and_narrow_spectra() {
         let grid = band.grid_hz();
         let magnitude =
             if case.has_input("mag") { case.input("mag") } else { smooth_spectrum(&grid) };
-        let options = ["bands", "step_db", "layout"]
-            .map(|key| (key, case.input_text(key)))
-            .each_ref()
-            .map(|(key, value)| (*key, &value[..]));
+        let options = ["bands", "step_db", "layout"].map(|key| (key, case.input_text(key)));
+        let options = options.each_ref().map(|(key, value)| (*key, &value[..]));
         let request = FitRequest {
             band,
             frequency_hz: &grid,

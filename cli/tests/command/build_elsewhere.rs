@@ -213,8 +213,8 @@ fn a_bucket_is_tried_before_anything_is_fitted() {
     assert_eq!(refused.status.code(), Some(1));
     let words = "s3://shop/vinyls/.htex-build-tries: the server refuses access";
     assert!(said(&refused).contains(words), "{}", said(&refused));
-    let writes = bench.server.requests().iter().filter(|seen| seen.method == "PUT");
-    assert_eq!(writes.count(), 1);
+    let requests = bench.server.requests();
+    assert_eq!(requests.iter().filter(|seen| seen.method == "PUT").count(), 1);
     let made = crate::common::entries(&bench.place.path("w/.htex-build/made"));
     assert!(made.is_empty(), "{made:?}");
     let report = fs::read(bench.place.path("w/build-report.json")).unwrap();

@@ -101,7 +101,8 @@ fn a_file_of_another_format_is_validated_and_processed() {
         ("segments.tdms", "lateral=Run 1/fx_n,normal=Run 1/fz:1"),
         ("pcm16.flac", "lateral=ch1:1,normal=ch3:1"),
     ] {
-        let path = lab.join(file).to_str().unwrap();
+        let path = lab.join(file);
+        let path = path.to_str().unwrap();
         // 96 rows are too short for a segment: the file is read, and the recording is what is
         // refused.
         let run = place.run(&["process", path, "--map", map, "--rate", "2000"]);

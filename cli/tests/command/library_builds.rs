@@ -273,7 +273,8 @@ fn globs_find_what_they_say_wherever_it_is() {
     }
     symlink("..", place.path("recipes/loop")).unwrap();
     fs::copy(place.path("rec/vinyl_1.csv"), place.path("recipes/rec/vinyl_1.csv")).unwrap();
-    let absolute = place.path("rec").canonicalize().unwrap().display();
+    let absolute = place.path("rec").canonicalize().unwrap();
+    let absolute = absolute.display();
     for (glob, textures) in [
         ("../rec/*.csv".to_owned(), 6),
         ("../rec/vinyl_{1,2}.csv".to_owned(), 2),

@@ -15,7 +15,8 @@ fn text(output: &Output) -> String {
 
 /// A new model in C, built.
 fn resonance(folder: &Path) -> String {
-    let dir = folder.join("resonance").to_str().unwrap();
+    let dir = folder.join("resonance");
+    let dir = dir.to_str().unwrap();
     text(&htex(&["plugin", "new", "resonance", "--lang", "c", "--dir", dir]));
     let built = Command::new("sh").arg(format!("{dir}/build.sh")).status();
     assert!(built.unwrap().success());
@@ -63,10 +64,8 @@ fn a_plugin_is_found_by_its_bare_name() {
     let file = Path::new(&plugin);
     let name = file.file_name().unwrap().to_str().unwrap();
     let here = |arguments: &[&str]| {
-        let command = Command::new(env!("CARGO_BIN_EXE_htex"))
-            .args(arguments)
-            .current_dir(file.parent().unwrap());
-        command.output().unwrap()
+        let mut command = Command::new(env!("CARGO_BIN_EXE_htex"));
+        command.args(arguments).current_dir(file.parent().unwrap()).output().unwrap()
     };
     assert!(text(&here(&["plugin", "check", name])).contains("passed"));
     assert!(text(&here(&["plugin", "info", name])).contains("bandwidth_hz"));

@@ -16,10 +16,8 @@ const BLOCK_MS: f64 = 5.0;
 
 /// Starts playback in real time; the motion follows.
 fn begin(bench: &Bench, more: &[&str]) -> Child {
-    let command = bench
-        .command(&[&["play", "--motion", "-"], more].concat())
-        .env("NIDAQMX_SIM_CLOCK", "wall");
-    command.stdin(Stdio::piped()).spawn().unwrap()
+    let mut command = bench.command(&[&["play", "--motion", "-"], more].concat());
+    command.env("NIDAQMX_SIM_CLOCK", "wall").stdin(Stdio::piped()).spawn().unwrap()
 }
 
 /// False when playback has ended.

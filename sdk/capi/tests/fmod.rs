@@ -57,10 +57,9 @@ impl Built {
 
     fn of(project: Project, flags: &[&str]) -> Self {
         let build = |source: &str, more: &[&str]| {
-            let includes = ["tests/fmod", "tests/hosts"]
-                .map(|folder| format!("-I{}", capi(folder).display()))
-                .each_ref()
-                .map(String::as_str);
+            let includes =
+                ["tests/fmod", "tests/hosts"].map(|folder| format!("-I{}", capi(folder).display()));
+            let includes = includes.each_ref().map(String::as_str);
             let text = fs::read_to_string(capi(source)).unwrap();
             let program = project.build_with(&text, &[&includes, flags, more].concat());
             let named = project.folder().join(Path::new(source).file_stem().unwrap());

@@ -58,7 +58,7 @@ impl<Subject: Display> Display for Report<Subject> {
         }
         let counts = Outcome::ALL
             .map(|outcome| (self.count(outcome), outcome.word()))
-            .iter()
+            .into_iter()
             .filter(|(n, _)| *n > 0);
         let counts: Vec<String> = counts.map(|(n, word)| format!("{n} {word}")).collect();
         writeln!(f, "{}", counts.join(", "))

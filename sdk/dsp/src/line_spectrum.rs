@@ -179,7 +179,8 @@ impl<const N: usize> Halves<N> {
     fn write(&self, coefficients: &mut [f64]) {
         let (back, added) = if coefficients.len().is_multiple_of(2) { (1, 1.0) } else { (2, 0.0) };
         // Behind two zeros, and before others.
-        let whole = [[[0.0; 2]; 2]; N].as_flattened_mut();
+        let mut whole = [[[0.0; 2]; 2]; N];
+        let whole = whole.as_flattened_mut();
         for (which, k) in self.factors.into_iter().enumerate() {
             for (i, c) in self.coefficients[..=k].iter().enumerate() {
                 whole[2 + i][which] = c[which];

@@ -185,8 +185,7 @@ measures! {
         judged: Judged::Difference,
         stored: false,
     }
-    /// RMS over third-octave bands of the difference of what is above a fingertip's detection
-    /// threshold, decibels.
+    #[doc = " RMS over third-octave bands of the difference of what is above a fingertip's detection threshold, decibels."]
     Felt {
         key: "felt_error_rms_db",
         of_samples: Some("Felt difference of rendered samples, decibels."),

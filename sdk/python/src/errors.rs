@@ -49,7 +49,8 @@ impl<T, E: IntoPyErr> OrRaise<T> for Result<T, E> {
 pub(crate) fn of_file(path: &Path, error: &io::Error) -> PyErr {
     match error.raw_os_error() {
         Some(number) => {
-            let text = error.to_string().split(" (os error").next().unwrap_or_default();
+            let text = error.to_string();
+            let text = text.split(" (os error").next().unwrap_or_default();
             let file = path.as_os_str().to_owned();
             PyOSError::new_err((number, text.to_owned(), file))
         }

@@ -26,11 +26,9 @@ impl RuntimeVoice for PlayedVoice {
         Python::attach(|py| {
             let mut called = || {
                 let rendered = adapter.bind(py).call_method1("render", (out.len(),))?;
-                let samples = rendered
-                    .cast::<PyArray1<f32>>()?
-                    .try_readonly()
-                    .map_err(|error| option(error.to_string()))?
-                    .as_slice()?;
+                let samples = rendered.cast::<PyArray1<f32>>()?.try_readonly();
+                let samples = samples.map_err(|error| option(error.to_string()))?;
+                let samples = samples.as_slice()?;
                 if samples.len() != out.len() {
                     let (got, wanted) = (samples.len(), out.len());
                     return Err(option(format!("render returned {got} samples of {wanted}")));

@@ -62,7 +62,8 @@ pub(super) fn end(outcomes: &[Outcome]) -> String {
     let mut text = format!("{executions} executions, {} findings\n", found.len());
     for outcome in found {
         let Outcome { target, tail, .. } = outcome;
-        let place = outcome.finding.clone().unwrap_or_default().display();
+        let place = outcome.finding.clone().unwrap_or_default();
+        let place = place.display();
         text += &format!(
             "\n{target}: {place}\n{tail}\n\
              When it is fixed, keep it as a regression: cp {place} tests/regressions/{target}/NAME,\n\

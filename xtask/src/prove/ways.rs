@@ -183,7 +183,8 @@ fn saved_as(block: &Block) -> Option<&str> {
 /// Runs the commands of a block in a shell, which ends at the first that fails, and returns what
 /// they print.
 fn run(block: &Block, folder: &Path) -> Result<String> {
-    let exported = folder.with_file_name("exported").display();
+    let exported = folder.with_file_name("exported");
+    let exported = exported.display();
     let script = format!("set -eu\n. '{exported}'\n{}\nexport -p >'{exported}'\n", block.text);
     let printed = folder.with_file_name("printed");
     let out = fs::File::create(&printed)?.into_parts().0;

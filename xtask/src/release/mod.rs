@@ -13,7 +13,7 @@ mod unity;
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, ensure};
 use clap::Args;
 use fs_err as fs;
 

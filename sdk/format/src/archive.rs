@@ -1,8 +1,8 @@
-//! Strict reader of the ZIP archive: checks all records first, then unpacks every entry.
+//! Strict ZIP reader: checks all records first, then unpacks every entry.
 //!
-//! The ZIP format allows files in which two programs see different archives. An asset's archive is
-//! unambiguous: entries without gaps from byte 0, then the directory in the same order, then the
-//! end record; directory and local headers state the same names and sizes.
+//! The ZIP format allows files in which two programs see different archives. To rule that out, an
+//! asset's archive has its entries without gaps from byte 0, then the directory in the same order,
+//! then the end record, and the local headers state the same names and sizes as the directory.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -26,7 +26,7 @@ pub(crate) struct Entry<'a> {
     pub bytes: Cow<'a, [u8]>,
 }
 
-/// An entry whose records are valid, still packed.
+/// An entry whose records were checked and whose data is still packed.
 struct Packed<'a> {
     name: String,
     common: Common,
@@ -39,7 +39,7 @@ pub(crate) struct Archive<'a> {
 }
 
 impl<'a> Archive<'a> {
-    /// Checks the records and unpacks all entries. Returns `None` when a finding is an error.
+    /// Checks the records and unpacks all entries. Returns `None` if a finding is an error.
     pub(crate) fn open(bytes: &'a [u8], limits: &Limits, findings: &mut Findings) -> Option<Self> {
         if bytes.len() as u64 > limits.file_bytes {
             findings.add(rule::FILE_TOO_LARGE, "", too_large(bytes.len() as u64, limits));
@@ -80,7 +80,7 @@ pub(crate) fn too_large(bytes: u64, limits: &Limits) -> String {
     format!("the file has {bytes} bytes and the limit is {limit}; raise it if you trust the file")
 }
 
-/// Returns the end record when the file holds exactly one archive and nothing else.
+/// Returns the end record if the file holds exactly one archive and nothing else.
 fn end_record(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<End> {
     let Some(end) = zip_records::find_end(bytes) else {
         let message = "there is no end record: this is not a ZIP archive, or the file is truncated";
@@ -227,7 +227,7 @@ fn check_sizes(central: &Central<'_>, name: &str, limits: &Limits, findings: &mu
 }
 
 /// Compares the local header with the directory. Returns the range of the entry's data, or `None`
-/// when it cannot be found.
+/// if the data cannot be found.
 fn check_local(
     bytes: &[u8],
     central: &Central<'_>,

@@ -40,13 +40,14 @@ pub struct Asset {
     /// The contents of `manifest.json`.
     pub manifest: Manifest,
     /// Parameters by representation and then by condition, in the order of
-    /// [`crate::Representation::at`]: flat arrays in field order, a list preceded by its length.
+    /// [`crate::Representation::at`]. Each is a flat array in field order; a list is preceded by
+    /// its length.
     pub parameters: Vec<Vec<Vec<f64>>>,
     /// Recorded spectra by condition: magnitudes on the band's 5 Hz grid, in the
     /// asset's unit.
     pub reference: Option<Vec<Vec<f32>>>,
     /// WASM modules, in the order of [`crate::Manifest::plugins`].
     pub plugins: Vec<Vec<u8>>,
-    /// Findings of reading that are not errors, such as a newer minor version.
+    /// Findings from reading that are not errors, such as a newer minor version.
     pub notes: Vec<Finding>,
 }

@@ -1,8 +1,8 @@
 //! Encoder and decoder of parameter blocks.
 //!
-//! A block holds, for each condition and each field, the stored values: fixed width, little endian;
-//! a list is preceded by its length as bincode's variable-length integer. The layout is given by
-//! the manifest's fields alone. This is the only module that uses bincode.
+//! For each condition, a block holds the stored values of each field in fixed width, little endian.
+//! A list is preceded by its length as bincode's variable-length integer. The manifest's fields
+//! alone determine the layout. This is the only module that uses bincode.
 
 use bincode::config::{Configuration, standard};
 use bincode::{Decode, Encode};
@@ -14,7 +14,7 @@ use crate::{Steps, StoredAs, StoredField, WriteError};
 
 const CONFIGURATION: Configuration = standard();
 
-/// Errors of decoding a parameter block.
+/// Why a parameter block cannot be decoded.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum BlockError {
     #[error("the block ends inside field {field} of condition {condition}")]
@@ -33,7 +33,7 @@ pub(crate) enum BlockError {
     TooMany(usize),
 }
 
-/// Encodes the block of a representation from one flat array per condition.
+/// Encodes a representation's parameter block from one flat array per condition.
 pub(crate) fn encode(
     fields: &[StoredField],
     conditions: &[Vec<f64>],
@@ -56,8 +56,8 @@ pub(crate) fn encode(
     Ok(out)
 }
 
-/// Decodes a block into flat arrays. `values` is the number of values that may still be read; it is
-/// decremented.
+/// Decodes a block into flat arrays. `values` is the budget of values that may still be read; each
+/// value read is subtracted from it.
 pub(crate) fn decode(
     fields: &[StoredField],
     conditions: usize,
@@ -75,10 +75,10 @@ pub(crate) fn decode(
     Ok(flats)
 }
 
-/// Returns the bytes that one flat array takes in a parameter block.
+/// Returns how many bytes a flat array takes in a parameter block.
 ///
 /// # Errors
-/// As [`round_parameters`].
+/// The errors of [`round_parameters`].
 pub fn stored_bytes(fields: &[StoredField], flat: &[f64]) -> Result<usize, WriteError> {
     let mut bytes = 0;
     for (field, values) in split(fields, flat)? {
@@ -103,13 +103,13 @@ fn steps_of(field: &StoredField, values: &[f64]) -> Result<Vec<u8>, WriteError> 
     values.iter().enumerate().map(step).collect()
 }
 
-/// Returns the values of a flat array as they are read back from an asset.
+/// Rounds a flat array to the values that an asset stores, i.e. those a reader gets back.
 ///
 /// `flat` holds the fields in order: a scalar's value, or a list's length and then its values.
 ///
 /// # Errors
-/// [`WriteError::OutOfRange`] for a value its field's store cannot hold or that is not finite,
-/// [`WriteError::Layout`] when `flat` does not follow `fields`.
+/// [`WriteError::OutOfRange`] if a value is not finite or its field's store cannot hold it,
+/// [`WriteError::Layout`] if `flat` does not follow `fields`.
 ///
 /// ```
 /// use htex_format::{StoredField, Steps, StoredAs, round_parameters};
@@ -134,14 +134,16 @@ pub fn round_parameters(fields: &[StoredField], flat: &[f64]) -> Result<Vec<f64>
     Ok(rounded)
 }
 
-/// As [`round_parameters`], of parameters for a model: a value in its field's range stays in it.
-/// Where the nearest stored value is outside, the next one inside is taken: 0.2, a field's maximum,
-/// is 0.200000003 in 32 bits, which the model refuses, and becomes 0.199999988. Every writer of a
-/// model's parameters rounds here.
+/// Rounds a model's parameters like [`round_parameters`], and keeps a value that is in its field's
+/// range inside that range.
+///
+/// If the nearest stored value is outside the range, the next one inside is used. For example, a
+/// field's maximum of 0.2 is 0.200000003 in 32 bits, which the model refuses; it is stored as
+/// 0.199999988. Every writer of a model's parameters rounds with this function.
 ///
 /// # Errors
-/// As [`round_parameters`], and [`WriteError::OutOfRange`] where the store has no value in the
-/// field's range.
+/// The errors of [`round_parameters`], and [`WriteError::OutOfRange`] if the store has no value in
+/// the field's range.
 pub fn round_within(
     fields: &[StoredField],
     model: &Descriptor,
@@ -174,8 +176,8 @@ pub fn round_within(
     Ok(rounded)
 }
 
-/// Returns the value of a number or of the next one in the direction of a range; `None` if both are
-/// outside.
+/// Returns the number's value if it is in the range, else the value of the next number towards the
+/// range; `None` if both are outside.
 fn inside(nearest: Number, store: StoredAs, min: f64, max: f64) -> Option<f64> {
     let value = value_of(nearest, store);
     let next = match value {
@@ -187,7 +189,7 @@ fn inside(nearest: Number, store: StoredAs, min: f64, max: f64) -> Option<f64> {
     (min <= next && next <= max).then_some(next)
 }
 
-/// Splits a flat array into the values of each field, without the lengths of lists.
+/// Splits a flat array into one slice per field, without the list lengths.
 pub(crate) fn split<'a>(
     fields: &'a [StoredField],
     flat: &'a [f64],
@@ -265,7 +267,7 @@ fn quantise(field: &StoredField, index: usize, value: f64) -> Result<Number, Wri
     }
 }
 
-/// Returns the nearest step, halves rounded away from zero; `None` when it is below 0 or above
+/// Returns the nearest step, with halves rounded away from zero; `None` if it is below 0 or above
 /// `last`.
 fn step(steps: Steps, value: f64, last: f64) -> Option<f64> {
     let x = if steps.log { libm::log(value) } else { value };
@@ -292,7 +294,8 @@ fn value_of(number: Number, store: StoredAs) -> f64 {
     }
 }
 
-/// Writes a number. Integers are written as bytes: bincode takes three for a `u16` above 250.
+/// Writes a number. Integers are written as raw bytes, because bincode takes three for a `u16`
+/// above 250.
 fn put_number(out: &mut Vec<u8>, number: Number) -> Result<(), WriteError> {
     match number {
         Number::F64(x) => put(out, x),
@@ -348,8 +351,8 @@ impl Reader<'_> {
         Ok(flat)
     }
 
-    /// Reads the steps of a packed list. The manifest check has made sure that every step's value
-    /// is finite.
+    /// Reads the steps of a packed list. Their values are finite, because the manifest check has
+    /// tested the value of every step.
     fn steps(
         &mut self,
         field: &StoredField,
@@ -362,7 +365,7 @@ impl Reader<'_> {
         Ok(steps)
     }
 
-    /// Reads a list's length, at most what the remaining bytes can hold.
+    /// Reads a list's length, which is limited to what the remaining bytes can hold.
     fn length(&mut self, field: &StoredField, condition: usize) -> Result<usize, BlockError> {
         let before = self.bytes.len();
         let length = self.take::<u64>().ok_or_else(|| truncated(field, condition))?;
@@ -397,7 +400,8 @@ impl Reader<'_> {
 }
 
 impl StoredAs {
-    /// Returns the bytes of a stored number. A packed number has no fixed size.
+    /// Returns the size of a stored number in bytes. For a packed list this is the size of an
+    /// unpacked step, because a packed number has no fixed size.
     fn bytes(self) -> usize {
         match self {
             Self::F64 => 8,

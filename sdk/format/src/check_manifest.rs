@@ -14,18 +14,19 @@ use crate::rules as rule;
 use htex_finding::Findings;
 use htex_finding::escape;
 
-/// Highest upper edge of a band, hertz.
+/// Highest allowed upper edge of a band, hertz.
 const HIGHEST_HZ: f64 = 20_000.0;
 
 /// Counts the multiples of 5 Hz in the band, edges included: 197 for 20 to 1000 Hz. Returns `None`
 /// for an invalid band.
 pub(crate) fn grid_points(band: Band) -> Option<usize> {
-    // Only valid bands are counted: one up to 1e300 Hz has more points than `usize` holds.
+    // Only valid bands are counted, because a band up to 1e300 Hz has more points than `usize`
+    // holds.
     let valid = 0.0 < band.low_hz && band.low_hz < band.high_hz && band.high_hz <= HIGHEST_HZ;
     valid.then(|| band.bins()).filter(|points| *points > 0)
 }
 
-/// Adds a finding for each rule that the manifest breaks by itself.
+/// Adds a finding for each rule that the manifest breaks, without looking at other entries.
 pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
     check_words(manifest, findings);
     let band = manifest.band;
@@ -102,7 +103,7 @@ fn check_made(manifest: &Manifest, findings: &mut Findings) {
     }
 }
 
-/// Whether a text is a hash of a file.
+/// Returns whether a text is the hash of a file: 64 hexadecimal digits.
 fn is_hash(text: &str) -> bool {
     text.len() == 64 && text.bytes().all(|b| b.is_ascii_hexdigit())
 }
@@ -130,8 +131,8 @@ fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
                 findings.add(rule::CONDITION_INVALID, format!("{at}/{key}"), message);
             }
         }
-        // An absent value counts as 0 where motions are compared. Adding zero makes -0 the same as
-        // 0.
+        // An absent value is compared as 0. Adding zero turns -0 into 0, so that both have the same
+        // bits.
         let bits = |number: Option<f64>| (number.unwrap_or(0.0) + 0.0).to_bits();
         let new = seen.insert((bits(condition.speed_mm_s), bits(condition.force_n)));
         findings.require(new, rule::CONDITION_DUPLICATE, at, || {
@@ -166,7 +167,7 @@ fn check_extensions(manifest: &Manifest, findings: &mut Findings) {
     }
 }
 
-/// Whether a name is of the form `com.vendor.NAME/REVISION`.
+/// Returns whether a name has the form `com.vendor.NAME/REVISION`.
 ///
 /// ```
 /// assert!(htex_format::is_extension_name("com.example.LOOK/1"));

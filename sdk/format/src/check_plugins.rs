@@ -9,7 +9,7 @@ use crate::rules as rule;
 use crate::{Manifest, Plugin};
 use htex_finding::Findings;
 
-/// Adds a finding for each rule that the manifest's plugins break by themselves.
+/// Adds a finding for each rule that the manifest's plugins break, without looking at the modules.
 pub(crate) fn check_plugins(manifest: &Manifest, findings: &mut Findings) {
     let mut seen = BTreeSet::new();
     for (i, plugin) in manifest.plugins.iter().enumerate() {

@@ -13,8 +13,8 @@ use crate::rules as rule;
 use crate::triangles::{TrianglesError, check_corners, check_triangles};
 use htex_finding::Findings;
 
-/// Smallest ratio of a step to the largest magnitude it is added to; below it, rounding can change
-/// the step.
+/// Smallest allowed ratio of a step to the largest magnitude it is added to. Below it, rounding can
+/// change the step.
 const FINEST: f64 = 4.0 * f64::EPSILON;
 
 pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings) {
@@ -43,7 +43,8 @@ pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings
     }
 }
 
-/// Checks the triangles of a representation; of conditions that break a rule, only the corners.
+/// Checks the triangles of a representation. If its conditions break a rule, only the corners are
+/// checked.
 fn check_triangles_of(
     representation: &Representation,
     conditions: &[Condition],
@@ -116,7 +117,7 @@ fn check_fields(representation: &Representation, at: Arguments<'_>, findings: &m
 }
 
 impl Steps {
-    /// Whether the value of every step is quantised back to that step.
+    /// Returns whether the value of every step is quantised back to that same step.
     pub(crate) fn are_valid(&self, last: u16) -> bool {
         let positive = self.scale > 0.0 && self.scale.is_finite() && self.offset.is_finite();
         let far_end = self.offset + self.scale * f64::from(last);
@@ -179,7 +180,7 @@ fn check_fit(fitted: &AtCondition, quantity: Quantity, at: Arguments<'_>, findin
     }
 }
 
-/// Adds a finding for each number that its measure cannot have.
+/// Adds a finding for each number that is out of its measure's range.
 fn check_entries(
     object: &impl Entries,
     what_to_do: &str,
@@ -207,7 +208,7 @@ fn are_bands(errors: &[f64]) -> bool {
     errors.len() == BAND_COUNT && errors.iter().all(|error| error.is_finite())
 }
 
-/// Whether a number is finite and not negative.
+/// Returns whether a number is finite and not negative.
 pub(crate) fn is_size(number: f64) -> bool {
     number.is_finite() && number >= 0.0
 }

@@ -15,7 +15,7 @@ impl Asset {
     /// Reads an asset from bytes, within the default [`Limits`].
     ///
     /// # Errors
-    /// [`ReadError::Invalid`] with every finding when one of them is an error.
+    /// [`ReadError::Invalid`] if a finding is an error; it holds all findings.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadError> {
         Self::from_bytes_with(bytes, &Limits::default())
     }
@@ -23,7 +23,7 @@ impl Asset {
     /// Reads an asset from bytes, within the given limits.
     ///
     /// # Errors
-    /// As [`Self::from_bytes`].
+    /// The errors of [`Self::from_bytes`].
     pub fn from_bytes_with(bytes: &[u8], limits: &Limits) -> Result<Self, ReadError> {
         let (asset, findings) = inspect(bytes, limits, &|_| None);
         asset.ok_or(ReadError::Invalid { findings })
@@ -32,13 +32,13 @@ impl Asset {
     /// Reads an asset from a file, within the default [`Limits`].
     ///
     /// # Errors
-    /// [`ReadError::Io`] when the file cannot be read, else as [`Self::from_bytes`].
+    /// [`ReadError::Io`] if the file cannot be read, and the errors of [`Self::from_bytes`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let limits = Limits::default();
         Self::from_bytes_with(&read_capped(path, &limits)?, &limits)
     }
 
-    /// Returns the bytes of a representation's stored parameter block, 0 when there is none.
+    /// Returns the size in bytes of a representation's stored parameter block; 0 if there is none.
     pub fn payload_bytes(&self, representation: usize) -> usize {
         let stored = self.manifest.representations.get(representation);
         let block = stored.zip(self.parameters.get(representation));
@@ -47,14 +47,14 @@ impl Asset {
     }
 }
 
-/// Reads a file, and no more of it than the limit.
+/// Reads a file, but at most one byte more than the limit.
 fn read_capped(path: &Path, limits: &Limits) -> Result<Vec<u8>, ReadError> {
     let failed = |error| ReadError::Io { path: path.to_owned(), error };
     let file = File::open(path).map_err(failed)?;
     let stated = file.metadata().map_err(failed)?.len();
     let mut bytes = Vec::new();
     if stated <= limits.file_bytes {
-        // A file may grow while it is read, and a pipe states no length.
+        // A file may grow while it is read, and a pipe does not state its length.
         let most = limits.file_bytes.saturating_add(1);
         file.take(most).read_to_end(&mut bytes).map_err(failed)?;
     }

@@ -1,4 +1,4 @@
-//! Versioned JSON documents, parsed so that every problem has a JSON pointer.
+//! Versioned JSON documents, parsed so that every problem is reported with a JSON pointer.
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -8,14 +8,14 @@ use crate::typed::typed;
 use htex_finding::Findings;
 use htex_finding::Rule;
 
-/// A kind of document: its names in messages, its version and the rules it must follow.
+/// A kind of document: what messages call it, its version and the rules it must follow.
 #[derive(Debug, Clone, Copy)]
 pub struct Document {
-    /// Name of the text in messages, such as `manifest`.
+    /// What messages call the text, such as `manifest`.
     pub text: &'static str,
-    /// Name of the file in messages, such as `manifest.json`.
+    /// What messages call the file, such as `manifest.json`.
     pub file: &'static str,
-    /// Name in messages of the thing that has a version, such as `asset`.
+    /// What messages call the thing that has the version, such as `asset`.
     pub thing: &'static str,
     /// The key that holds the version.
     pub version_key: &'static str,
@@ -27,7 +27,7 @@ pub struct Document {
     pub rules: DocumentRules,
 }
 
-/// The rules that apply to every document, with the codes of its kind.
+/// The rules that apply to every document, with the codes that one kind of document uses for them.
 #[derive(Debug, Clone, Copy)]
 pub struct DocumentRules {
     /// The nesting exceeds the limit.
@@ -56,8 +56,8 @@ pub struct Opened {
 }
 
 impl Document {
-    /// Parses a text that nests at most `max_depth` deep. Returns `None` after adding a finding
-    /// that says why.
+    /// Parses a text that nests at most `max_depth` deep. If that fails, adds a finding that says
+    /// why and returns `None`.
     pub fn open(&self, bytes: &[u8], max_depth: usize, findings: &mut Findings) -> Option<Opened> {
         let (rules, text) = (&self.rules, self.text);
         let depth = depth(bytes);
@@ -88,7 +88,7 @@ impl Document {
         }
     }
 
-    /// Returns the minor version; `None` when the document cannot be read.
+    /// Returns the minor version; `None` if the document cannot be read.
     fn check_version(&self, value: &Value, findings: &mut Findings) -> Option<u64> {
         let (rules, key, thing) = (&self.rules, self.version_key, self.thing);
         let (known_major, known_minor) = (self.major, self.minor);
@@ -122,8 +122,8 @@ impl Document {
         Some(minor)
     }
 
-    /// Converts the document to a `T` and returns it with pointers to the keys that no type knows.
-    /// Returns `None` after adding a finding that says why.
+    /// Converts the document to a `T` and returns it with the pointers to all unknown keys. If that
+    /// fails, adds a finding that says why and returns `None`.
     pub fn typed<T: DeserializeOwned>(
         &self,
         opened: &Opened,
@@ -140,7 +140,7 @@ impl Document {
     }
 }
 
-/// Returns the greatest number of arrays and objects open at once.
+/// Returns the nesting depth: the greatest number of arrays and objects open at once.
 fn depth(mut bytes: &[u8]) -> usize {
     let (mut open, mut deepest) = (0usize, 0);
     while let Some((&byte, rest)) = bytes.split_first() {

@@ -1,6 +1,6 @@
 //! Syntax of digital object identifiers (ISO 26324): `10.`, the registrant, a slash, a name.
 
-/// Error: a text is not a DOI.
+/// The error for a text that is not a DOI.
 #[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{doi:?} is not a DOI; write one like 10.5281/zenodo.1234567, without https://doi.org/")]
@@ -8,7 +8,7 @@ pub struct InvalidDoi {
     pub doi: String,
 }
 
-/// Checks the syntax of a DOI, not whether it is registered.
+/// Checks the syntax of a DOI. It does not look up whether the DOI is registered.
 ///
 /// # Errors
 /// [`InvalidDoi`], which says what to write.

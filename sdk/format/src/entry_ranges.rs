@@ -1,11 +1,11 @@
-//! Where the entries of an archive are, for programs that store equal entries of several assets
+//! Byte ranges of an archive's entries, for programs that store equal entries of several assets
 //! once.
 
 use std::ops::Range;
 
 use crate::zip_records;
 
-/// An entry of an archive: its name, and the bytes of its data in the file, packed as they are.
+/// An archive entry: its name and the range of its data in the file, as stored (compressed or not).
 ///
 /// ```no_run
 /// let bytes = std::fs::read("sandpaper.htex")?;
@@ -22,8 +22,8 @@ pub struct EntryRange {
     pub data: Range<usize>,
 }
 
-/// Returns the entries of a valid asset in the order of the file; of other bytes, those that can be
-/// found.
+/// Returns the entries of a valid asset in file order. For other bytes, returns the entries that
+/// can be found.
 pub fn entry_ranges(bytes: &[u8]) -> Vec<EntryRange> {
     let Some(end) = zip_records::find_end(bytes) else {
         return Vec::new();

@@ -26,7 +26,7 @@ pub enum ReadError {
     /// The file is not a valid asset.
     #[error("not a valid asset: {}", summary(.findings))]
     Invalid {
-        /// All findings, errors and others.
+        /// All findings, including those that are not errors.
         findings: Vec<Finding>,
     },
 }
@@ -46,10 +46,10 @@ pub enum WriteError {
     /// The asset breaks a rule of the format.
     #[error("the asset breaks the format's rules: {}", summary(.findings))]
     Invalid {
-        /// All findings, errors and others.
+        /// All findings, including those that are not errors.
         findings: Vec<Finding>,
     },
-    /// A parameter does not fit its field's store.
+    /// A parameter is out of the range that its field's store can hold.
     #[error(
         "parameter {field}[{index}] is {value} and its store holds {low} to {high}; \
          bring the value into that range or choose another store"
@@ -59,9 +59,9 @@ pub enum WriteError {
         /// Index in the field; 0 for a scalar.
         index: usize,
         value: f64,
-        /// Least value the store holds.
+        /// Smallest value that the store holds.
         low: f64,
-        /// Greatest value the store holds.
+        /// Largest value that the store holds.
         high: f64,
     },
     /// A flat array does not match its fields.
@@ -70,14 +70,14 @@ pub enum WriteError {
          and each list its length and then its values"
     )]
     Layout {
-        /// The field, and what is wrong with it.
+        /// The field and what is wrong with it.
         problem: String,
     },
-    /// An array beside the manifest has the wrong length.
+    /// An array has another length than the manifest states.
     #[error("{what}: {got} given and the manifest has {expected}; make them agree")]
     Count {
         what: String,
-        /// Entries that the manifest asks for.
+        /// Number of elements that the manifest states.
         expected: usize,
         got: usize,
     },

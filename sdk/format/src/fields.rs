@@ -1,7 +1,7 @@
-//! Matching of stored fields to a model's fields, by name.
+//! Matches an asset's stored fields to a model's fields, by name.
 //!
-//! Playing, scenes, `info` and `validate` match fields here. An asset may store fields in any
-//! order; the model gets them in its own.
+//! Playing, scenes, `info` and `validate` all match fields here. An asset may store fields in any
+//! order; the model gets them in its own order.
 
 use htex_model::{Descriptor, Kind};
 use semver::Version;
@@ -24,7 +24,7 @@ pub enum FieldMismatch {
         name: String,
         there: String,
     },
-    /// A list is stored where the model has a scalar, or the reverse.
+    /// A list is stored where the model has a scalar, or a scalar where it has a list.
     #[error("{name:?} is stored as {stored} and the model expects {wanted}")]
     Kind {
         /// Index among the stored fields.
@@ -35,7 +35,7 @@ pub enum FieldMismatch {
         /// What the model expects.
         wanted: &'static str,
     },
-    /// The stored unit is not the model's.
+    /// The stored unit differs from the model's unit.
     #[error("{name:?} is stored {} and the model expects it {}", words(.stored), words(.wanted))]
     Unit {
         /// Index among the stored fields.
@@ -74,7 +74,7 @@ impl FieldMismatch {
         }
     }
 
-    /// JSON pointer inside the representation.
+    /// Returns the JSON pointer to the mismatch, inside the representation.
     fn pointer(&self) -> String {
         match self {
             Self::Unknown { index, .. } => format!("/fields/{index}/name"),
@@ -84,8 +84,8 @@ impl FieldMismatch {
     }
 }
 
-/// The order in which a model's fields are taken from the parameters of an asset; [`match_fields`]
-/// returns it.
+/// The order in which a model takes its fields from an asset's parameters. [`match_fields`] returns
+/// it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldOrder<'a> {
     stored: &'a [StoredField],
@@ -96,14 +96,14 @@ pub struct FieldOrder<'a> {
 enum Part {
     /// Index among the stored fields.
     Stored(usize),
-    /// The model's default, for an asset older than the field.
+    /// The model's default, for an asset that is older than the field.
     Default(f64),
 }
 
-/// Matches stored fields to a model's by name, in any order.
+/// Matches stored fields to a model's fields by name, in any order.
 ///
 /// # Errors
-/// Every mismatch: those of stored fields first, in their order.
+/// Every mismatch. The mismatches of stored fields come first, in their order.
 pub fn match_fields<'a>(
     stored: &'a [StoredField],
     model: &Descriptor,
@@ -158,16 +158,16 @@ fn kind(list: bool) -> &'static str {
     if list { "a list" } else { "one number" }
 }
 
-/// Converts a descriptor's unit to an asset's: empty for a pure number.
+/// Converts a descriptor's unit to an asset's unit, which is empty for a pure number.
 pub fn stored_unit(unit: &str) -> &str {
     if unit == "1" { "" } else { unit }
 }
 
 impl FieldOrder<'_> {
-    /// Rearranges a flat array of the stored fields into the model's order.
+    /// Rearranges a flat array from the order of the stored fields to the model's order.
     ///
     /// # Errors
-    /// [`WriteError::Layout`] when the array does not follow the stored fields.
+    /// [`WriteError::Layout`] if the array does not follow the stored fields.
     pub fn arrange(&self, flat: &[f64]) -> Result<Vec<f64>, WriteError> {
         let stored = split(self.stored, flat)?;
         let mut arranged = Vec::with_capacity(flat.len());
@@ -187,10 +187,12 @@ impl FieldOrder<'_> {
     }
 }
 
-/// Returns the descriptor of the model that plays a representation, if the reader has it.
+/// Looks up the descriptor of the model that plays a representation; `None` if the reader does not
+/// have that model.
 pub type KnownModel<'a> = &'a dyn Fn(&Representation) -> Option<&'a Descriptor>;
 
-/// Adds a finding for each field that does not match its model's, for the models that are known.
+/// Adds a finding for each stored field that does not match its model's field. Representations of
+/// unknown models are skipped.
 pub(crate) fn check_fields(manifest: &Manifest, known: KnownModel<'_>, findings: &mut Findings) {
     for (i, representation) in manifest.representations.iter().enumerate() {
         let Some(model) = known(representation) else {
@@ -207,8 +209,8 @@ pub(crate) fn check_fields(manifest: &Manifest, known: KnownModel<'_>, findings:
     }
 }
 
-/// Whether an asset was fitted by a newer version of a model than the known one, which may have
-/// more fields.
+/// Returns whether an asset was fitted by a newer version of a model than the known version. A
+/// newer version may have more fields.
 fn is_newer(fitted: &str, known: &str) -> bool {
     let [fitted, known] = [fitted, known].map(|version| Version::parse(version).ok());
     fitted > known

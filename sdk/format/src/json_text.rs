@@ -1,4 +1,4 @@
-//! JSON texts without duplicate keys.
+//! Parses JSON texts and refuses duplicate keys.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -9,11 +9,11 @@ use serde_json::{Map, Number, Value};
 
 use htex_finding::Place;
 
-/// Parses a JSON text that nests at most 128 deep, the parser's own limit. Programs differ in which
-/// of two equal keys they use, so duplicates are refused.
+/// Parses a JSON text that nests at most 128 deep, the parser's own limit. It refuses duplicate
+/// keys, because programs differ in which of the two they use.
 ///
 /// # Errors
-/// When the text is not JSON or a key appears twice in an object.
+/// If the text is not JSON, or a key appears twice in an object.
 ///
 /// ```
 /// assert!(htex_format::parse_json(br#"{ "a": 1, "b": 1 }"#).is_ok());
@@ -30,7 +30,7 @@ pub fn parse_json(bytes: &[u8]) -> Result<Value, JsonError> {
     })
 }
 
-/// Error of parsing a JSON text.
+/// Why a JSON text was refused.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum JsonError {
@@ -42,7 +42,7 @@ pub enum JsonError {
     Twice(String),
 }
 
-/// A value at a place. A duplicate key is recorded before the parser stops.
+/// Deserializes the value at a place. A duplicate key is recorded before the parser stops.
 #[derive(Clone, Copy)]
 struct Strict<'p> {
     place: &'p Place<'p>,

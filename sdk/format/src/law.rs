@@ -1,8 +1,9 @@
-//! The law of a texture: how its frequencies and its level follow a motion that was not recorded.
+//! The motion law of a texture: how its frequencies and level change at a speed or force that was
+//! not recorded.
 //!
-//! From the nearest recorded motion (v0, F0) to a motion (v, F), frequencies are multiplied by
-//! `(v / v0)^a` and the level by `(v / v0)^b (F / F0)^c`. Exponents that are neither measured nor
-//! given are assumed for what slid over the surface and the quantity of the samples
+//! From the nearest recorded motion (v0, F0) to a motion (v, F), frequencies are multiplied by `(v
+//! / v0)^a` and the level by `(v / v0)^b (F / F0)^c`. An exponent that is neither measured nor
+//! given is assumed from what slid over the surface and from the quantity of the samples
 //! ([`Law::assumed`]).
 
 use std::fmt;
@@ -31,7 +32,7 @@ impl Contact {
     /// All kinds of contact.
     pub const ALL: &[Self] = &[Self::Finger, Self::Tool, Self::Unknown];
 
-    /// Returns the name in a manifest.
+    /// Returns the name used in a manifest.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Finger => "finger",
@@ -40,7 +41,7 @@ impl Contact {
         }
     }
 
-    /// Returns the contact of a name in a manifest.
+    /// Returns the contact that has this name in a manifest.
     ///
     /// ```
     /// assert_eq!(htex_format::Contact::from_name("tool"), Some(htex_format::Contact::Tool));
@@ -49,7 +50,7 @@ impl Contact {
         Self::ALL.iter().copied().find(|contact| contact.name() == name)
     }
 
-    /// Returns whether it is not known.
+    /// Returns whether the contact is not known.
     pub fn is_unknown(&self) -> bool {
         *self == Self::Unknown
     }
@@ -66,7 +67,7 @@ impl clap::ValueEnum for Contact {
     }
 }
 
-/// How frequencies and level follow a motion outside the recorded ones.
+/// How frequencies and level change at a motion outside the recorded ones.
 ///
 /// ```
 /// use htex_format::{Contact, Law, Quantity};
@@ -75,11 +76,11 @@ impl clap::ValueEnum for Contact {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Law {
-    /// Exponent a of frequencies over the speed.
+    /// Exponent a: how frequencies change with the speed.
     pub frequency_speed: Exponent,
-    /// Exponent b of the level over the speed.
+    /// Exponent b: how the level changes with the speed.
     pub level_speed: Exponent,
-    /// Exponent c of the level over the normal force.
+    /// Exponent c: how the level changes with the normal force.
     pub level_force: Exponent,
 }
 
@@ -91,7 +92,8 @@ pub struct Exponent {
     pub exponent: f64,
     /// Where it comes from.
     pub source: ExponentSource,
-    /// The measurement before it was drawn to the assumed exponent by its error.
+    /// The measured value, before it was pulled towards the assumed exponent according to its
+    /// error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimate: Option<f64>,
     /// Standard error of the measurement, not negative.
@@ -104,16 +106,16 @@ pub struct Exponent {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ExponentSource {
-    /// Recordings at several speeds or forces.
+    /// Measured from recordings at several speeds or forces.
     Measured,
-    /// A person.
+    /// Entered by the user.
     Given,
-    /// What is usual for the quantity and the contact.
+    /// The usual value for the quantity and the contact.
     Assumed,
 }
 
 impl ExponentSource {
-    /// Returns the name in a manifest.
+    /// Returns the name used in a manifest.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Measured => "measured",
@@ -123,24 +125,26 @@ impl ExponentSource {
     }
 }
 
-/// Least weight of a measured exponent beside the assumed one.
+/// Smallest weight that a measured exponent may have relative to the assumed one.
 const LEAST_WEIGHT: f64 = 0.1;
-/// How much the exponents of surfaces differ, as standard deviations: frequency over speed, level
-/// over speed, level over force.
+/// How much the exponents differ between surfaces, as standard deviations: frequency over speed,
+/// level over speed, level over force.
 const SPREAD: [f64; 3] = [0.5, 0.15, 0.3];
-/// Largest magnitude of an exponent.
+/// Largest allowed magnitude of an exponent.
 pub const MOST_EXPONENT: f64 = 4.0;
 
 impl Exponent {
-    /// Makes an exponent that is assumed.
+    /// Creates an exponent that is assumed.
     pub const fn assumed(exponent: f64) -> Self {
         Self::new(exponent, ExponentSource::Assumed)
     }
 
-    /// Makes an exponent of a measurement with its standard error, drawn to the assumed one: the
-    /// mean of both, weighted by the inverse squares of the error and of `spread`, by which
-    /// surfaces differ, within `bounds`. A measurement that would have less than a tenth of the
-    /// weight is not used.
+    /// Creates an exponent from a measurement and its standard error, pulled towards the assumed
+    /// exponent.
+    ///
+    /// The result is the weighted mean of both, limited to `bounds`. The weights are the inverse
+    /// squares of the standard error and of `spread`, the standard deviation between surfaces. A
+    /// measurement that would get less than a tenth of the weight is not used.
     ///
     /// ```
     /// use htex_format::{Exponent, ExponentSource};
@@ -158,7 +162,7 @@ impl Exponent {
     ) -> Self {
         let (own, others) = (spread * spread, error * error);
         let weight = own / (own + others);
-        // An error that is not a number gives such a weight.
+        // If the standard error is NaN, so is the weight, and the comparison is false.
         let usable = weight >= LEAST_WEIGHT && estimate.is_finite();
         if !usable {
             return Self::assumed(assumed);
@@ -172,7 +176,7 @@ impl Exponent {
         }
     }
 
-    /// Makes an exponent that a person gives.
+    /// Creates an exponent that the user enters.
     pub const fn given(exponent: f64) -> Self {
         Self::new(exponent, ExponentSource::Given)
     }
@@ -181,7 +185,7 @@ impl Exponent {
         Self { exponent, source, estimate: None, standard_error: None }
     }
 
-    /// Returns whether its numbers are in range.
+    /// Returns whether all its numbers are in range.
     pub(crate) fn is_valid(&self) -> bool {
         let finite = self.estimate.is_none_or(f64::is_finite);
         let error = self.standard_error.is_none_or(|e| e.is_finite() && e >= 0.0);
@@ -190,17 +194,20 @@ impl Exponent {
 }
 
 impl Law {
-    /// The law that is usual for a quantity and a contact.
+    /// Returns the usual law for a quantity and a contact.
     ///
-    /// A tool: frequencies stay, as of 81 materials of the Penn Haptic Texture Toolkit (H.
-    /// Culbertson, J. J. Lopez Delgado, K. J. Kuchenbecker 2014), whose levels rise with
-    /// `v^0.43 F^0.07` (medians). A bare finger: vibrations scale in time with the speed (C. M.
-    /// Greenspon, K. R. McLellan, J. D. Lieber, S. J. Bensmaia 2020; B. Delhaye, V. Hayward, P.
-    /// Lefèvre, J.-L. Thonnard 2012), so that velocity and acceleration rise with it and its
-    /// square, and the friction force with the normal force. Unknown: medians of recorded strokes
-    /// of two materials, `v^0.75`, and half a power of the force. With another exponent of
-    /// frequencies, measured or given, the levels lie between those of a relief and of what keeps
-    /// its frequencies.
+    /// - Tool: frequencies do not change with the speed, as in 81 materials of the Penn Haptic
+    ///   Texture Toolkit (H. Culbertson, J. J. Lopez Delgado, K. J. Kuchenbecker 2014). Their
+    ///   levels rise with `v^0.43 F^0.07` (medians).
+    /// - Bare finger: vibrations scale in time with the speed (C. M. Greenspon, K. R. McLellan, J.
+    ///   D. Lieber, S. J. Bensmaia 2020; B. Delhaye, V. Hayward, P. Lefèvre, J.-L. Thonnard 2012).
+    ///   So velocity rises with the speed, acceleration with its square, and the friction force
+    ///   with the normal force.
+    /// - Unknown: medians of recorded strokes of two materials, `v^0.75`, and half a power of the
+    ///   force.
+    ///
+    /// If the exponent of frequencies is measured or given and differs from these, the levels lie
+    /// between the levels of a relief and the levels of a surface whose frequencies stay.
     pub const fn assumed(quantity: Quantity, contact: Contact) -> Self {
         let a = match contact {
             Contact::Finger => 1.0,
@@ -214,12 +221,12 @@ impl Law {
         }
     }
 
-    /// Returns this law for another quantity or contact: what is assumed is assumed anew, what is
-    /// measured is drawn to it, and what is given stays.
+    /// Returns this law for another quantity or contact. Assumed exponents are assumed anew,
+    /// measured ones are pulled towards the new assumption, and given ones stay.
     ///
-    /// The levels that are assumed are those of the frequencies that the law has: a surface that is
-    /// measured to be read as a relief has the level of one, whatever slid over it, and one whose
-    /// frequencies stay does not.
+    /// The assumed levels follow the frequency exponent that the law has. A surface whose measured
+    /// frequencies scale like those of a relief gets a relief's levels, whatever slid over it. A
+    /// surface whose frequencies stay does not.
     #[must_use]
     pub fn reassumed(&self, quantity: Quantity, contact: Contact) -> Self {
         let mut assumed = Self::assumed(quantity, contact);
@@ -245,7 +252,7 @@ impl Law {
         }
     }
 
-    /// Returns the exponents with their keys, in the order of the specification.
+    /// Returns the exponents with their keys, in the specification's order.
     pub const fn exponents(&self) -> [(&'static str, Exponent); 3] {
         [
             ("frequency_speed", self.frequency_speed),
@@ -254,20 +261,20 @@ impl Law {
         ]
     }
 
-    /// Returns the factor of all frequencies at a speed relative to the recorded one.
+    /// Returns the factor for all frequencies at a speed relative to the recorded speed.
     pub fn frequency_factor(&self, speed_ratio: f64) -> f64 {
         power(speed_ratio, self.frequency_speed.exponent)
     }
 
-    /// Returns the factor of the level at a speed and a force relative to the recorded ones.
+    /// Returns the factor for the level at a speed and a force relative to the recorded ones.
     pub fn level_factor(&self, speed_ratio: f64, force_ratio: f64) -> f64 {
         power(speed_ratio, self.level_speed.exponent)
             * power(force_ratio, self.level_force.exponent)
     }
 }
 
-/// As people read it:
-/// `frequency over speed ^1.00 (assumed), level over speed ^0.43 (measured, 0.40 ± 0.10), ...`.
+/// Writes the law as readable text: `frequency over speed ^1.00 (assumed), level over speed ^0.43
+/// (measured, 0.40 ± 0.10), ...`.
 impl fmt::Display for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, (key, exponent)) in self.exponents().into_iter().enumerate() {
@@ -283,8 +290,8 @@ impl fmt::Display for Law {
     }
 }
 
-/// The exponents of the level that are assumed, over speed and force: those of surfaces whose
-/// frequencies stay, and those of a relief, mixed by the exponent of frequencies, 0 to 1.
+/// Returns the assumed exponents of the level over speed and over force. They are mixed between a
+/// surface whose frequencies stay (frequency exponent 0) and a relief (1).
 const fn assumed_levels(frequency_speed: f64, quantity: Quantity, contact: Contact) -> [f64; 2] {
     let stays = match contact {
         Contact::Tool => [0.43, 0.07],
@@ -299,7 +306,7 @@ const fn assumed_levels(frequency_speed: f64, quantity: Quantity, contact: Conta
     [stays[0] + part * (relief[0] - stays[0]), stays[1] + part * (relief[1] - stays[1])]
 }
 
-/// `x^exponent`, exactly x for an exponent of 1, and 1 for one of 0.
+/// Returns `x^exponent`: exactly x for an exponent of 1, and exactly 1 for an exponent of 0.
 fn power(x: f64, exponent: f64) -> f64 {
     if exponent == 0.0 || x == 1.0 {
         1.0

@@ -1,7 +1,7 @@
-//! The `.htex` container: types, reader, writer, validator.
+//! Reads, writes and validates `.htex` files (tactile texture assets).
 //!
-//! `spec/htex-1.md` is the normative text. This crate does no signal processing and loads no model:
-//! of a model it uses only the descriptor.
+//! `spec/htex-1.md` is the normative text. This crate does no signal processing and never loads a
+//! model. It only uses a model's descriptor, to compare the fields.
 //!
 //! ```
 //! use htex_format::{Limits, validate};

@@ -1,16 +1,16 @@
-//! SPDX licence expressions.
+//! Checks SPDX licence expressions.
 
 mod expression;
 
 use crate::rules as rule;
 use htex_finding::Rule;
 
-/// Error: a text is not an SPDX expression of listed licences.
+/// The error for a text that is not an SPDX expression of listed licences.
 #[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LicenseError {
-    /// An id is not in the list (which grows).
+    /// The id of a licence is not in the list, which grows over time.
     #[error(
         "{id:?} is not in the SPDX list; correct it, or write LicenseRef-NAME for a licence of your own"
     )]
@@ -34,7 +34,7 @@ impl LicenseError {
 /// Checks a text against the grammar of SPDX licence expressions and the list of licences.
 ///
 /// # Errors
-/// Wrong grammar, or an id that is not in the list.
+/// The grammar is wrong, or an id is not in the list.
 ///
 /// ```
 /// use htex_format::check_license;

@@ -1,6 +1,6 @@
-//! Limits on files that are not trusted.
+//! Limits for reading untrusted files.
 
-/// Limits of reading, each checked before the bytes it bounds are read or unpacked.
+/// Limits for reading. Each is checked before the bytes that it limits are read or unpacked.
 ///
 /// ```
 /// let limits = htex_format::Limits { file_bytes: 1 << 20, ..Default::default() };
@@ -8,15 +8,15 @@
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
-    /// Bytes of the file: 16 MiB.
+    /// Size of the file, bytes: 16 MiB.
     pub file_bytes: u64,
-    /// Entries of the archive: 256.
+    /// Number of entries in the archive: 256.
     pub entries: usize,
-    /// Bytes of an entry when unpacked: 4 MiB.
+    /// Size of an entry when unpacked, bytes: 4 MiB.
     pub entry_bytes: u64,
-    /// Bytes of all entries together when unpacked: 16 MiB.
+    /// Size of all entries together when unpacked, bytes: 16 MiB.
     pub total_bytes: u64,
-    /// Ratio of unpacked to packed bytes of an entry: 200.
+    /// Ratio of an entry's unpacked size to its packed size: 200.
     pub ratio: u64,
     /// Nesting depth of the manifest's arrays and objects: 32. The JSON parser itself refuses
     /// more than 100.

@@ -1,7 +1,7 @@
 //! `manifest.json`: the metadata of an asset.
 //!
 //! Absent and empty keys are left out when the manifest is written. Keys that this version does not
-//! know are kept and written back ([`Manifest::other`]).
+//! know are preserved and written back ([`Manifest::other`]).
 
 use std::collections::BTreeMap;
 
@@ -65,7 +65,7 @@ pub struct Manifest {
     /// What slid over the surface: a bare finger, an artificial fingertip, a tool.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finger: Option<String>,
-    /// What slid over the surface, as far as it decides the law that is assumed.
+    /// Kind of contact between what slid and the surface. It decides which motion law is assumed.
     #[serde(default, skip_serializing_if = "Contact::is_unknown")]
     pub contact: Contact,
     /// Physical quantity of the samples.
@@ -82,8 +82,8 @@ pub struct Manifest {
     /// The conditions (speed and force) at which the texture was recorded.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub conditions: Vec<Condition>,
-    /// How frequencies and level follow a motion outside the conditions; else what is usual for
-    /// `contact` and `quantity`.
+    /// How frequencies and level change at a motion outside the conditions. Without it, the usual
+    /// law for `contact` and `quantity` applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub law: Option<Law>,
     /// The texture's spectrum, once per model.
@@ -109,8 +109,7 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// Returns the law that is stated, else the one that is assumed for the quantity and the
-    /// contact.
+    /// Returns the stated law, or else the assumed law for the quantity and the contact.
     pub fn law(&self) -> Law {
         let assumed = || Law::assumed(self.quantity, self.contact);
         self.law.unwrap_or_else(assumed)
@@ -142,13 +141,13 @@ pub struct Provenance {
     /// The recordings that the asset was fitted to.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<Source>,
-    /// How it was made, if not by a fit to recordings.
+    /// How the asset was made if it was not fitted to recordings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub made: Option<Made>,
     /// Options that differ from their defaults.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub options: BTreeMap<String, String>,
-    /// Warnings that the author was given.
+    /// Warnings that were shown to the author.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
 }
@@ -159,10 +158,10 @@ impl Provenance {
     }
 }
 
-/// How an asset was made that was not fitted to recordings.
+/// How an asset without recordings was made.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Made {
-    /// The way.
+    /// The method.
     pub how: How,
     /// The assets that were mixed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -173,9 +172,9 @@ pub struct Made {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum How {
-    /// Its parameters were written by hand.
+    /// The parameters were written by hand.
     Parameters,
-    /// Its parameters are between those of other assets.
+    /// The parameters were interpolated between other assets.
     Mixed,
 }
 
@@ -184,7 +183,7 @@ pub enum How {
 pub struct Ingredient {
     /// Name of the asset's texture.
     pub name: String,
-    /// Its part of the mixture, from 0 to 1.
+    /// Its share of the mixture, from 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub weight: f64,
     /// BLAKE3 of the asset's file, 64 hexadecimal digits.
@@ -197,19 +196,19 @@ pub struct Ingredient {
 pub struct Source {
     /// File name without its folder.
     pub file: String,
-    /// Sampling rate, hertz.
+    /// Sample rate, hertz.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub rate_hz: f64,
     /// Number of segments that were averaged.
     pub segments: u64,
-    /// BLAKE3 of the recording's file, 64 hexadecimal digits, by which recordings of one name are
-    /// told apart.
+    /// BLAKE3 of the recording's file, 64 hexadecimal digits. It tells apart recordings of the same
+    /// name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "^[0-9A-Fa-f]{64}$"))]
     pub blake3: Option<String>,
 }
 
-/// An exploration condition; an absent value is unknown.
+/// A recorded motion (speed and force); an absent value is unknown.
 ///
 /// ```
 /// let condition = htex_format::Condition { speed_mm_s: Some(80.0), ..Default::default() };
@@ -225,24 +224,24 @@ pub struct Condition {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub force_n: Option<f64>,
-    /// RMS over nine bands of the difference between odd and even blocks of time, over √2,
-    /// decibels: by how much two recordings like this one differ.
+    /// Repeatability, decibels: by how much two recordings like this one differ. It is the RMS over
+    /// nine bands of the difference between odd and even blocks of time, over √2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub repeatability_rms_db: Option<f64>,
-    /// Number of segments that were averaged at this condition; 0 for one that was computed between
-    /// recorded ones.
+    /// Number of segments that were averaged at this condition; 0 if the condition was computed
+    /// between recorded ones.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segments: Option<u64>,
 }
 
-/// Largest relative difference of two speeds, or two forces, that count as the same: a hand asked
-/// to keep a speed or a force is no more accurate.
+/// Largest relative difference at which two speeds, or two forces, count as the same. A person who
+/// is asked to hold a speed or a force is no more accurate than this.
 pub const SAME_CONDITION: f64 = 0.05;
 
 impl Condition {
-    /// Whether two speeds, or two forces, are the same within [`SAME_CONDITION`]. Both must not be
-    /// negative.
+    /// Returns whether two speeds, or two forces, are the same within [`SAME_CONDITION`]. Neither
+    /// may be negative.
     pub fn is_same(a: f64, b: f64) -> bool {
         (a - b).abs() <= SAME_CONDITION * a.max(b)
     }
@@ -271,8 +270,9 @@ pub struct Representation {
     /// The conditions at which the model is fitted, in the order of the parameter block.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub at: Vec<AtCondition>,
-    /// The triangles between conditions that a player interpolates in, by indices into `at`; none
-    /// for those of the specification's rules. [`crate::check_triangles`] says which are valid.
+    /// The triangles between conditions in which a player interpolates, as indices into `at`.
+    /// Without any, the specification's rules determine the triangles. [`crate::check_triangles`]
+    /// says which are valid.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub triangles: Vec<Triangle>,
     /// Archive entry that holds the parameter block.
@@ -290,7 +290,7 @@ pub struct StoredField {
     /// Unit symbol; a pure number has none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
-    /// Whether the field is a list of numbers instead of one.
+    /// Whether the field is a list of numbers instead of a single number.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub list: bool,
     /// Storage of each number.
@@ -298,8 +298,8 @@ pub struct StoredField {
     pub store: StoredAs,
 }
 
-/// Storage of a number. The integer kinds hold `q` for the value `offset + scale·q`, or with `log`
-/// `exp(offset + scale·q)`.
+/// Storage of a number. The integer kinds store `q`, which stands for the value `offset + scale·q`,
+/// or with `log` for `exp(offset + scale·q)`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "Store")]
 #[serde(rename_all = "lowercase")]
@@ -327,7 +327,7 @@ pub struct Steps {
     /// Value at `q = 0`.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub offset: f64,
-    /// Whether the steps are in the natural logarithm.
+    /// Whether the steps are taken in the natural logarithm of the value.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub log: bool,
 }
@@ -343,10 +343,11 @@ fn is_zero(x: &f64) -> bool {
 }
 
 impl Representation {
-    /// Returns the error by a measure, decibels, by which a program chooses among the
-    /// representations of an asset: the error at the first condition, with which a voice starts.
-    /// Where that one was not measured, for example since it was computed between recorded ones, it
-    /// is [`Self::largest_error_db`]. `None` if no condition was measured.
+    /// Returns the error, decibels, that a program uses to choose among an asset's representations.
+    ///
+    /// It is the error at the first condition, where a voice starts. If that condition was not
+    /// measured, for example because it was computed between recorded ones, it is
+    /// [`Self::largest_error_db`]. `None` if no condition was measured.
     ///
     /// ```no_run
     /// # use htex_format::ErrorMeasure;
@@ -361,8 +362,8 @@ impl Representation {
         first.or_else(|| self.largest_error_db(measure))
     }
 
-    /// Returns the largest error by a measure over the conditions that were measured, decibels;
-    /// `None` if no condition was.
+    /// Returns the largest error of all measured conditions by a measure, decibels; `None` if no
+    /// condition was measured.
     pub fn largest_error_db(&self, measure: ErrorMeasure) -> Option<f64> {
         let measured = self.at.iter().filter_map(|at| at.error_db(measure));
         measured.max_by(f64::total_cmp)
@@ -389,19 +390,19 @@ impl AtCondition {
 pub struct AtCondition {
     /// Index into the asset's conditions.
     pub condition: usize,
-    /// RMS of the fitted spectrum in the band, in the asset's unit; the parameters describe a shape
-    /// of unit RMS.
+    /// RMS of the fitted spectrum in the band, in the asset's unit. The parameters describe a shape
+    /// with an RMS of 1.
     #[schemars(range(min = 0))]
     pub level_rms: f64,
     /// Agreement with the recording.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quality: Option<Quality>,
-    /// Error at blocks of time near this condition, of a fit without them.
+    /// Left-out error: how far blocks of time near this condition are from a fit without them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_out: Option<LeftOut>,
 }
 
-/// The entry of the recorded spectra.
+/// The archive entry with the recorded spectra.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reference {
     /// Archive entry: one array of 32-bit floats per condition, on the band's 5 Hz grid, in

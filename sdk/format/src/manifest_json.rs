@@ -27,7 +27,7 @@ const DOCUMENT: Document = Document {
     },
 };
 
-/// Parses a manifest. Returns `None` after adding a finding that says why.
+/// Parses a manifest. If that fails, adds a finding that says why and returns `None`.
 pub(crate) fn parse(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Manifest> {
     let opened = DOCUMENT.open(bytes, limits.json_depth, findings)?;
     check_quantity(&opened.value, findings)?;
@@ -45,7 +45,7 @@ pub(crate) fn parse(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> O
     Some(manifest)
 }
 
-/// Returns `None` when this version does not know the quantity.
+/// Checks the quantity. Returns `None` if this version does not know it.
 fn check_quantity(manifest: &Value, findings: &mut Findings) -> Option<()> {
     let Some(Value::String(name)) = manifest.get("quantity") else {
         return Some(());

@@ -1,6 +1,8 @@
-//! The measures of the agreement of a spectrum with a recorded one, a row each. The keys of
-//! `quality` with their checks, schema and rounding, the columns of tables and reports, and the
-//! documents come from these rows; `htex-author` has the function of each.
+//! Measures of how well a spectrum agrees with a recorded one, one row for each measure.
+//!
+//! These rows generate the keys of `quality` with their checks, schema and rounding, the columns of
+//! tables and reports, and the tables in the documents. `htex-author` has the function that
+//! computes each measure.
 
 use std::fmt;
 
@@ -12,16 +14,16 @@ use crate::Quality;
 /// What the values of a measure mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Judged {
-    /// From -1 to 1; 1 is the best.
+    /// From -1 to 1, where 1 is best.
     Correlation,
-    /// Not negative; 0 is the best.
+    /// Not negative, where 0 is best.
     Error,
-    /// With a sign; 0 is the best.
+    /// Positive or negative, where 0 is best.
     Difference,
 }
 
 impl Judged {
-    /// Whether a measure can have this value.
+    /// Returns whether a measure can have this value.
     pub fn accepts(self, value: f64) -> bool {
         match self {
             Self::Correlation => (-1.0..=1.0).contains(&value),
@@ -31,31 +33,32 @@ impl Judged {
     }
 }
 
-/// What a measure is taken of.
+/// What a measure is computed from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
-    /// The model's magnitudes, as a recording of its voice reads them.
+    /// The model's magnitudes, as they would be measured in a recording of its voice.
     Magnitude,
     /// The spectrum of rendered samples.
     Samples,
 }
 
-/// A row of the table.
+/// A row of the table of measures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasureRow {
     /// Key in JSON.
     pub key: &'static str,
-    /// Key in JSON if it is measured from rendered samples: `samples_` and the key.
+    /// Key in JSON if the measure is computed from rendered samples: `samples_` and the key.
     pub samples_key: &'static str,
-    /// Definition, a sentence.
+    /// Definition, in one sentence.
     pub meaning: &'static str,
-    /// The same for rendered samples; `None` if they are not measured.
+    /// Definition for rendered samples; `None` if the measure is not computed from them.
     pub of_samples: Option<&'static str>,
-    /// When a comparison does not have it, after "`None` "; `None` if every comparison has.
+    /// When a comparison does not have this measure, as words that follow "`None` ". `None` if
+    /// every comparison has it.
     pub lacking: Option<&'static str>,
     /// Name in running text.
     pub name: &'static str,
-    /// Name where there is little space.
+    /// Short name for narrow columns.
     pub short: &'static str,
     /// Unit; empty for a pure number.
     pub unit: &'static str,
@@ -65,19 +68,19 @@ pub struct MeasureRow {
     pub judged: Judged,
     /// Whether assets store it in `quality`.
     pub stored: bool,
-    /// Whether each `quality` and `left_out` that may have it must have it.
+    /// Whether it is required in every `quality` and `left_out` that may have it.
     pub required: bool,
-    /// Whether assets store it in `left_out`, too.
+    /// Whether assets also store it in `left_out`.
     pub left_out: bool,
-    /// Heading of its column in text.
+    /// Heading of its column in printed tables.
     pub column: Option<&'static str>,
-    /// Heading of its column in text, of rendered samples.
+    /// Heading of its column in printed tables, for rendered samples.
     pub played: Option<&'static str>,
-    /// Caption of its table in reports, with `{}` for what is measured.
+    /// Caption of its table in reports, with `{}` where the measured thing is named.
     pub caption: Option<&'static str>,
 }
 
-/// What most rows have.
+/// The values that most rows share.
 const STORED_ERROR: MeasureRow = MeasureRow {
     key: "",
     samples_key: "",
@@ -106,7 +109,7 @@ macro_rules! measures {
         }
 
         impl Measure {
-            /// All measures, in the order of JSON.
+            /// All measures, in their order in JSON.
             pub const ALL: [Self; [$(Self::$name),*].len()] = [$(Self::$name),*];
         }
 
@@ -208,7 +211,7 @@ impl Measure {
         Self::ALL.into_iter().filter(|m| m.row().stored)
     }
 
-    /// Returns the measures that are taken of magnitudes and of rendered samples.
+    /// Returns the measures that are computed both from magnitudes and from rendered samples.
     pub fn of_both() -> impl Iterator<Item = Self> + Clone {
         Self::ALL.into_iter().filter(|m| m.row().of_samples.is_some())
     }
@@ -221,7 +224,7 @@ impl Measure {
         }
     }
 
-    /// Returns the heading of a column with a unit, `third octaves / dB`.
+    /// Returns a column heading with its unit, such as `third octaves / dB`.
     pub fn heading(self) -> String {
         match self.row() {
             MeasureRow { short, unit: "", .. } => (*short).to_owned(),
@@ -230,7 +233,7 @@ impl Measure {
     }
 }
 
-/// A measure of the error of a representation, decibels.
+/// A measure for the error of a representation, decibels.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize, JsonSchema,
 )]
@@ -246,10 +249,10 @@ pub enum ErrorMeasure {
 }
 
 impl ErrorMeasure {
-    /// All of them.
+    /// All error measures.
     pub const ALL: [Self; 3] = [Self::NineBand, Self::ThirdOctave, Self::LogSpectral];
 
-    /// Returns the measure.
+    /// Returns this error measure as a [`Measure`].
     pub const fn measure(self) -> Measure {
         match self {
             Self::NineBand => Measure::NineBand,
@@ -258,13 +261,13 @@ impl ErrorMeasure {
         }
     }
 
-    /// Returns the error by this measure, from the model's magnitudes; `None` if it was not
-    /// measured.
+    /// Returns the error by this measure, computed from the model's magnitudes; `None` if it was
+    /// not measured.
     pub fn of(self, quality: &Quality) -> Option<f64> {
         quality.get(self.measure())
     }
 
-    /// Returns the name in scenes and in JSON: `nine_band`.
+    /// Returns the name used in scenes and in JSON, such as `nine_band`.
     pub const fn id(self) -> &'static str {
         match self {
             Self::NineBand => "nine_band",
@@ -273,12 +276,12 @@ impl ErrorMeasure {
         }
     }
 
-    /// Returns the measure with a name in scenes.
+    /// Returns the measure that has this name in scenes.
     pub fn find(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|measure| measure.id() == id)
     }
 
-    /// Returns the name in running text: `nine-band error`.
+    /// Returns the name used in running text, such as `nine-band error`.
     pub fn name(self) -> &'static str {
         self.measure().row().name
     }

@@ -1,9 +1,8 @@
 //! Packed lists of steps: the first step, then the differences in a Rice code.
 //!
-//! Steps with small differences take two to five bits each. Each list has exactly one code, so a
-//! block that is read and written again has the same bytes.
-//!
-//! Its parameter is the one with the fewest bits, and a reader refuses the others.
+//! Steps with small differences take two to five bits each. Each list has exactly one valid code,
+//! so that a block which is read and written again has the same bytes. To make the code unique, the
+//! Rice parameter is the one that takes the fewest bits, and a reader refuses any other.
 
 /// Bits of the Rice parameter `k`.
 const PARAMETER_BITS: u32 = 3;
@@ -12,12 +11,12 @@ const FIRST_BITS: u32 = 8;
 /// Largest folded difference between two steps.
 const MOST: u32 = 2 * u8::MAX as u32;
 
-/// Returns the most steps that fit into the given bytes: a difference takes at least one bit.
+/// Returns how many steps the given bytes can hold at most. A difference takes at least one bit.
 pub(crate) fn most_steps(bytes: usize) -> usize {
     bytes.saturating_mul(8)
 }
 
-/// Returns the bytes of the packed list.
+/// Returns the size of the packed list in bytes.
 pub(crate) fn packed_bytes(steps: &[u8]) -> usize {
     bits(steps, parameter(steps)).div_ceil(8)
 }
@@ -39,8 +38,8 @@ pub(crate) fn pack(steps: &[u8]) -> Vec<u8> {
     out.bytes
 }
 
-/// Unpacks `count` steps from the start of `bytes` and returns them with the bytes they take.
-/// Returns `None` when the bytes end too early or differ from what [`pack`] writes.
+/// Unpacks `count` steps from the start of `bytes` and returns them with the number of bytes read.
+/// Returns `None` if the bytes end too early or differ from what [`pack`] writes.
 pub(crate) fn unpack(bytes: &[u8], count: usize) -> Option<(Vec<u8>, usize)> {
     if count == 0 {
         return Some((Vec::new(), 0));
@@ -65,7 +64,7 @@ pub(crate) fn unpack(bytes: &[u8], count: usize) -> Option<(Vec<u8>, usize)> {
     (parameter(&steps) == k && reader.rest_is_zero()).then_some((steps, used))
 }
 
-/// Returns the Rice parameter with the fewest bits, the smallest of several.
+/// Returns the Rice parameter that takes the fewest bits; of several, the smallest.
 fn parameter(steps: &[u8]) -> u32 {
     let all = 0..1 << PARAMETER_BITS;
     all.min_by_key(|&k| bits(steps, k)).unwrap_or(0)
@@ -79,7 +78,8 @@ fn bits(steps: &[u8], k: u32) -> usize {
     }
 }
 
-/// Returns the differences between neighbours, folded to 0, 1, 2, 3, ... for 0, -1, 1, -2, ...
+/// Returns the differences between neighbours, folded so that 0, -1, 1, -2, ... become 0, 1, 2, 3,
+/// ...
 fn differences(steps: &[u8]) -> impl Iterator<Item = u32> {
     steps.windows(2).map(|pair| {
         let difference = i32::from(pair[1]) - i32::from(pair[0]);
@@ -91,7 +91,7 @@ fn unfold(z: u32) -> i32 {
     (z >> 1) as i32 ^ -((z & 1) as i32)
 }
 
-/// Writer of bits, the most significant first.
+/// Writes bits, the most significant bit of each byte first.
 #[derive(Default)]
 struct Writer {
     bytes: Vec<u8>,
@@ -131,7 +131,7 @@ impl Reader<'_> {
         Some(value)
     }
 
-    /// Whether the remaining bits of the last byte are zero.
+    /// Returns whether the remaining bits of the last byte are zero.
     fn rest_is_zero(&mut self) -> bool {
         let left = self.at.next_multiple_of(8) - self.at;
         self.take(left as u32) == Some(0)

@@ -1,16 +1,16 @@
-//! Embedded models: hash and signature.
+//! Hash and signature of embedded models.
 
 use ed25519_dalek::{Signature as Ed25519, Signer, SigningKey, VerifyingKey};
 
 use crate::{Plugin, Signature};
 
-/// Prefix of every signed text, so that a signature is valid for plugins only.
+/// Prefix of every signed text. It makes a signature invalid for anything but a plugin.
 const DOMAIN: &[u8] = b"htex plugin 1\0";
 /// First bytes of every WASM module.
 pub(crate) const WASM_MAGIC: &[u8] = b"\0asm";
 
 impl Plugin {
-    /// Creates the unsigned entry of a model's module. `version` is the model's.
+    /// Creates the unsigned entry of a model's module. `version` is the model's version.
     pub fn new(model: &str, version: &str, module: &[u8]) -> Self {
         Self {
             model: model.to_owned(),
@@ -21,7 +21,7 @@ impl Plugin {
         }
     }
 
-    /// Returns the name of the archive entry of a model's module.
+    /// Returns the name of the archive entry that holds a model's module.
     pub(crate) fn file_of(model: &str) -> String {
         format!("plugins/{model}.wasm")
     }
@@ -37,7 +37,8 @@ impl Plugin {
         self
     }
 
-    /// Whether the signature is valid for its public key and this plugin; true without a signature.
+    /// Returns whether the signature is valid for its public key and this plugin. True if there is
+    /// no signature.
     pub fn is_signature_valid(&self) -> bool {
         let Some(signature) = &self.signature else {
             return true;
@@ -48,8 +49,8 @@ impl Plugin {
             .is_some_and(|(key, made)| key.verify_strict(&self.signed_text(), &made).is_ok())
     }
 
-    /// Returns the signed text: `htex plugin 1`, the model, the version and the hash, each followed
-    /// by a zero byte.
+    /// Returns the text that is signed: `htex plugin 1`, the model, the version and the hash, each
+    /// followed by a zero byte.
     fn signed_text(&self) -> Vec<u8> {
         let mut text = DOMAIN.to_vec();
         for part in [&self.model, &self.version, &self.blake3] {
@@ -66,7 +67,7 @@ fn to_hex(bytes: &[u8]) -> String {
 
 fn from_hex<const N: usize>(text: &str) -> Option<[u8; N]> {
     let mut bytes = [0; N];
-    // `from_str_radix` accepts a sign, which is not a hexadecimal digit.
+    // `from_str_radix` also accepts a sign, which is not a hexadecimal digit.
     if text.len() != 2 * N || !text.bytes().all(|b| b.is_ascii_hexdigit()) {
         return None;
     }

@@ -1,5 +1,5 @@
-//! Agreement of a representation with the recorded spectrum: `quality` and `left_out`. Their JSON
-//! is in [`crate::quality_json`].
+//! How well a representation agrees with the recorded spectrum: `quality` and `left_out`. Their
+//! JSON is in [`crate::quality_json`].
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::measure::{By, Measure};
 
-/// The value of each measure, where it is known.
+/// The value of each measure that is known.
 ///
 /// ```
 /// use htex_format::{Measure, Measures};
@@ -19,22 +19,22 @@ use crate::measure::{By, Measure};
 pub struct Measures([Option<f64>; Measure::ALL.len()]);
 
 impl Measures {
-    /// Measures all.
+    /// Computes the value of every measure.
     pub fn new(value: impl FnMut(Measure) -> Option<f64>) -> Self {
         Self(Measure::ALL.map(value))
     }
 
-    /// Returns a measure's value.
+    /// Returns a measure's value; `None` if it is not known.
     pub fn get(&self, measure: Measure) -> Option<f64> {
         self.0[measure as usize]
     }
 
-    /// Returns a measure's value to change it.
+    /// Returns a mutable reference to a measure's value.
     pub fn get_mut(&mut self, measure: Measure) -> &mut Option<f64> {
         &mut self.0[measure as usize]
     }
 
-    /// Returns only these measures.
+    /// Returns a copy with only the given measures.
     pub fn only(&self, measures: impl IntoIterator<Item = Measure>) -> Self {
         let mut only = Self::default();
         for measure in measures {
@@ -43,7 +43,7 @@ impl Measures {
         only
     }
 
-    /// Returns the values of these measures by key; one that is not known is `null` in JSON.
+    /// Returns the values of the given measures by key. An unknown value is `null` in JSON.
     pub fn keyed(&self, by: By, measures: impl IntoIterator<Item = Measure>) -> Keyed {
         let entry = |measure: Measure| (measure.key(by), self.get(measure));
         Keyed(measures.into_iter().map(entry).collect())
@@ -64,12 +64,12 @@ impl<const N: usize> From<[(Measure, f64); N]> for Measures {
     }
 }
 
-/// Values by key, an object in JSON.
+/// Values by key, in order; an object in JSON.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Keyed(pub Vec<(&'static str, Option<f64>)>);
 
 impl Serialize for Measures {
-    /// Writes those that are known.
+    /// Writes only the values that are known.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let known = Measure::ALL.into_iter().filter(|m| self.get(*m).is_some());
         self.keyed(By::Magnitude, known).serialize(serializer)
@@ -89,7 +89,8 @@ impl Serialize for Keyed {
     }
 }
 
-/// Agreement with the recorded spectrum, of the model's magnitudes unless stated otherwise.
+/// How well a model agrees with the recorded spectrum. All numbers refer to the model's magnitudes
+/// unless stated otherwise.
 ///
 /// ```no_run
 /// use htex_format::{Asset, Measure};
@@ -101,36 +102,36 @@ impl Serialize for Keyed {
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Quality {
-    /// Of the model's magnitudes.
+    /// Measured from the model's magnitudes.
     pub by_magnitude: Measures,
-    /// Of rendered samples.
+    /// Measured from rendered samples.
     pub by_samples: Measures,
     /// Energy relative to the recording's in nine bands, decibels.
     pub band_error_db: Vec<f64>,
-    /// Nine-band RMS difference between the spectra of the fitted and of the stored parameters,
-    /// decibels.
+    /// Error from storing the parameters, decibels: the nine-band RMS difference between the
+    /// spectra of the fitted and the stored parameters.
     pub rounding_error_db: Option<f64>,
 }
 
 impl Quality {
-    /// Returns a measure of the model's magnitudes; `None` if it is not stored.
+    /// Returns a measure computed from the model's magnitudes; `None` if it is not stored.
     pub fn get(&self, measure: Measure) -> Option<f64> {
         self.by_magnitude.get(measure)
     }
 
-    /// Returns a measure of rendered samples; `None` if it is not stored.
+    /// Returns a measure computed from rendered samples; `None` if it is not stored.
     pub fn samples(&self, measure: Measure) -> Option<f64> {
         self.by_samples.get(measure)
     }
 }
 
-/// Left-out error: agreement of blocks of time, near a condition, with what a player plays of a fit
-/// without them, by the measures whose row has `left_out`.
+/// Left-out error near a condition, by the measures whose row has `left_out`. It compares blocks of
+/// time with what a player plays from a fit without these blocks.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeftOut(pub Measures);
 
 impl LeftOut {
-    /// Returns the measures that it has.
+    /// Returns the measures that a left-out error has.
     pub fn measures() -> impl Iterator<Item = Measure> + Clone {
         Measure::ALL.into_iter().filter(|m| m.row().left_out)
     }

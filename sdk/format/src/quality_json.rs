@@ -1,5 +1,5 @@
-//! `quality` and `left_out` in JSON: their keys, from the table of measures, with which they are
-//! read, written, checked and described.
+//! JSON of `quality` and `left_out`. The table of measures gives the keys, which are used to read,
+//! write, check and describe both objects.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -14,12 +14,12 @@ use serde_json::{Map, Value, json};
 use crate::measure::{By, Judged, Measure};
 use crate::quality::{LeftOut, Quality};
 
-/// Key of the nine errors, before that of their RMS.
+/// Key of the nine band errors. It comes before the key of their RMS.
 const BANDS: &str = "band_error_db";
 /// Number of bands of `band_error_db`.
 pub(crate) const BAND_COUNT: usize = 9;
 const ROUNDING: &str = "rounding_error_db";
-/// Most keys of an object.
+/// Largest number of keys in an object.
 const KEYS: usize = 2 * Measure::ALL.len() + 2;
 
 /// A key with its value.
@@ -35,7 +35,7 @@ pub(crate) enum Content<'a> {
     Bands(&'a [f64]),
 }
 
-/// Which value of [`Quality`] a key has.
+/// Which value of [`Quality`] a key stands for.
 #[derive(Clone, Copy)]
 pub(crate) enum Place {
     Measured(By, Measure),
@@ -43,7 +43,7 @@ pub(crate) enum Place {
     Rounding,
 }
 
-/// Where the value of a key is read to.
+/// Where a key's value is stored when it is read.
 pub(crate) enum Slot<'a> {
     Number(&'a mut Option<f64>),
     Bands(&'a mut Vec<f64>),
@@ -53,16 +53,16 @@ pub(crate) enum Slot<'a> {
 pub(crate) trait Entries: Default {
     const NAME: &'static str;
     const DESCRIPTION: &'static str;
-    /// Which value a key has.
+    /// Which value a key stands for.
     type Place;
 
-    /// Returns all keys in the order of the file, also those without a value.
+    /// Returns all keys in file order, including those without a value.
     fn entries(&self) -> impl Iterator<Item = Entry<'_>>;
 
-    /// Finds a key of a text, which is not copied; `None` if it is not known.
+    /// Looks up a key without copying it; `None` if it is not known.
     fn known(key: &str) -> Option<(&'static str, Self::Place)>;
 
-    /// Returns where a value is read to.
+    /// Returns where the value of a key is stored when it is read.
     fn slot(&mut self, place: Self::Place) -> Slot<'_>;
 }
 
@@ -197,7 +197,7 @@ impl<'de, T: Entries> Visitor<'de> for Reader<T> {
     }
 }
 
-/// A key of a text.
+/// Deserializes a key without copying it.
 struct Key<T>(PhantomData<T>);
 
 impl<'de, T: Entries> DeserializeSeed<'de> for Key<T> {

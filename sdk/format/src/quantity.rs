@@ -40,7 +40,7 @@ impl Quantity {
         Self::Displacement,
     ];
 
-    /// Returns the name in a manifest.
+    /// Returns the name used in a manifest.
     pub const fn name(self) -> &'static str {
         match self {
             Self::LateralForce => "lateral_force",
@@ -56,7 +56,7 @@ impl Quantity {
         Self::ALL.iter().copied().find(|q| q.name() == name)
     }
 
-    /// Returns the symbol of the unit, as in a manifest.
+    /// Returns the unit's symbol, as in a manifest.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::LateralForce | Self::NormalForce => "N",
@@ -76,7 +76,7 @@ impl Quantity {
         }
     }
 
-    /// Returns the name in running text.
+    /// Returns the name used in running text.
     pub const fn words(self) -> &'static str {
         match self {
             Self::LateralForce => "lateral force",
@@ -87,8 +87,8 @@ impl Quantity {
         }
     }
 
-    /// Formats a value with its unit and an SI prefix that leaves one to three digits before the
-    /// point.
+    /// Formats a value with its unit, and with an SI prefix that leaves one to three digits before
+    /// the decimal point.
     ///
     /// ```
     /// use htex_format::Quantity;
@@ -109,9 +109,10 @@ impl Quantity {
         format!("{number:.digits$} {prefix}{}", self.unit())
     }
 
-    /// Returns the largest level (RMS) of an asset, in the unit: a limit that keeps samples within
-    /// 32-bit floats in any scene. The limits of velocity and displacement are those of a vibration
-    /// of the largest acceleration at 20 Hz (8.0e3 m/s and 63 m), rounded up to powers of ten.
+    /// Returns the largest allowed level (RMS) of an asset, in the quantity's unit. The limit keeps
+    /// samples within 32-bit floats in any scene. For velocity and displacement it is the level of
+    /// a vibration with the largest acceleration at 20 Hz (8.0e3 m/s and 63 m), rounded up to a
+    /// power of ten.
     pub const fn largest_level(self) -> f64 {
         match self {
             Self::LateralForce | Self::NormalForce | Self::Acceleration => 1e6,
@@ -127,7 +128,7 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// On the command line words have hyphens between them; the names in manifests are known, too.
+/// On the command line, words are joined by hyphens. The names used in manifests are also accepted.
 #[cfg(feature = "clap")]
 impl clap::ValueEnum for Quantity {
     fn value_variants<'a>() -> &'a [Self] {

@@ -1,7 +1,8 @@
-//! The licence and the author of a texture as text, for files that are made of it: two lines of
-//! REUSE (<https://reuse.software>), which are read out of any comment or description.
+//! Licence and author of a texture as text, for files that are made from the texture.
 //!
-//! Every way out of an asset takes its text from here, so that all carry the same words.
+//! The text has two lines in the form of REUSE (<https://reuse.software>), which can be read out of
+//! any comment or description. Every export of an asset takes its text from here, so that all files
+//! carry the same words.
 
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -11,15 +12,15 @@ use htex_files::{OwnFolder, read_regular};
 
 use crate::{Manifest, replace_file};
 
-/// What precedes the licence.
+/// The tag before the licence.
 const LICENSE: &str = "SPDX-License-Identifier: ";
-/// What precedes the author.
+/// The tag before the author.
 const AUTHOR: &str = "SPDX-FileCopyrightText: ";
-/// What ends a comment or a string in which the text may stand.
+/// What ends a comment or a string that may contain the text.
 const ENDS: [&str; 3] = ["*/", "-->", "\""];
-/// Most bytes of a file of rights that is read.
+/// Largest size of a `.license` file that is read, bytes.
 const MOST_FILE_BYTES: u64 = 1 << 16;
-/// Most bytes of a licence or an author that are written or read.
+/// Largest length of a licence or an author that is written or read, bytes.
 const MOST_BYTES: usize = 1000;
 
 /// The licence and the author of a texture.
@@ -35,25 +36,25 @@ const MOST_BYTES: usize = 1000;
 pub struct Rights {
     /// SPDX licence expression.
     pub license: Option<String>,
-    /// Who made it.
+    /// Who made the texture.
     pub author: Option<String>,
 }
 
 impl Rights {
-    /// Rights of these words; an empty word counts as missing.
+    /// Creates rights from a licence and an author. An empty text counts as missing.
     #[must_use]
     pub fn new(license: Option<&str>, author: Option<&str>) -> Self {
         Self { license: license.and_then(line), author: author.and_then(line) }
     }
 
-    /// The rights that an asset states.
+    /// Returns the rights that an asset states.
     #[must_use]
     pub fn of(manifest: &Manifest) -> Self {
         Self::new(manifest.license.as_deref(), manifest.author.as_deref())
     }
 
-    /// The rights of what several assets are played in: all licences apply, and all authors are
-    /// named.
+    /// Combines the rights of several assets that are played together: all licences apply, and all
+    /// authors are named.
     ///
     /// ```
     /// use htex_format::Rights;
@@ -75,13 +76,14 @@ impl Rights {
         Self::new(Some(&licenses.join(" AND ")), Some(&authors.join(", ")))
     }
 
-    /// Whether nothing is stated.
+    /// Returns whether neither a licence nor an author is stated.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.license.is_none() && self.author.is_none()
     }
 
-    /// Its lines: the author's, then the licence's, each with its end; empty if nothing is stated.
+    /// Returns the lines for the author and then the licence, each with a line end. Empty if
+    /// nothing is stated.
     #[must_use]
     pub fn to_text(&self) -> String {
         let author = self.author.iter().map(|own| format!("{AUTHOR}{own}\n"));
@@ -89,7 +91,7 @@ impl Rights {
         author.chain(license).collect()
     }
 
-    /// A description, followed by the lines.
+    /// Returns a description, followed by the lines.
     #[must_use]
     pub fn described(&self, description: &str) -> String {
         let text = self.to_text();
@@ -100,7 +102,7 @@ impl Rights {
         }
     }
 
-    /// The lines as comments of a language, each after `before`.
+    /// Returns the lines as comments of a programming language, each after `before`.
     #[must_use]
     pub fn commented(&self, before: &str) -> String {
         let text = self.to_text();
@@ -113,14 +115,14 @@ impl Rights {
         Self::new(after(LICENSE, text), after(AUTHOR, text))
     }
 
-    /// The words of this, completed by the words of another.
+    /// Returns these rights, with missing parts taken from `other`.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self { license: self.license.or(other.license), author: self.author.or(other.author) }
     }
 
-    /// Its chunk of a WAV file: `LIST` of `INFO`, with the licence as copyright (`ICOP`) and the
-    /// author as artist (`IART`); empty if nothing is stated.
+    /// Returns the rights as a chunk of a WAV file: `LIST` of `INFO`, with the licence as copyright
+    /// (`ICOP`) and the author as artist (`IART`). Empty if nothing is stated.
     #[must_use]
     pub fn riff(&self) -> Vec<u8> {
         let mut list = b"INFO".to_vec();
@@ -132,10 +134,11 @@ impl Rights {
         if self.is_empty() { Vec::new() } else { chunk(b"LIST", &list) }
     }
 
-    /// Adds the chunk to the end of a WAV file; the samples stay as they are. A file that would
-    /// have more than 4 GiB stays as it is.
+    /// Adds the chunk to the end of a WAV file. The samples do not change. A file that would grow
+    /// beyond 4 GiB is left as it is.
     ///
     /// # Errors
+    /// If the file cannot be written.
     /// When the file cannot be written.
     pub fn add_to_wav(&self, wav: &mut (impl Write + Seek)) -> io::Result<()> {
         let chunk = self.riff();
@@ -154,17 +157,18 @@ impl Rights {
         wav.seek(SeekFrom::End(0)).map(drop)
     }
 
-    /// Adds the rights to a file that is written: the chunk to a WAV, else [`license_file`] beside
-    /// it. The file is replaced when it is complete. A device or a pipe has none.
+    /// Adds the rights to a file that was written. A WAV file gets the chunk; for any other file,
+    /// [`license_file`] is written next to it. Either file is replaced only once it is complete.
+    /// Nothing is added for a device or a pipe.
     ///
     /// # Errors
-    /// When a file cannot be read or written.
+    /// If a file cannot be read or written.
     pub fn add_to_file(&self, path: &Path) -> io::Result<()> {
         if self.is_empty() || !std::fs::metadata(path)?.is_file() {
             return Ok(());
         }
         if !is_wav(path) {
-            // The name is ours: no link in the folder is followed.
+            // The program chose this name, so no link of that name in the folder is followed.
             let (folder, name) = OwnFolder::of_file(&license_file(path))?;
             let text = self.to_text();
             return folder.replace(&name, |file| file.write_all(text.as_bytes()));
@@ -176,14 +180,15 @@ impl Rights {
         })
     }
 
-    /// The file that [`Self::add_to_file`] writes beside `path`, if it does.
+    /// Returns the file that [`Self::add_to_file`] writes next to `path`; `None` if it writes none.
     #[must_use]
     pub fn beside(&self, path: &Path) -> Option<PathBuf> {
         (!self.is_empty() && !is_wav(path)).then(|| license_file(path))
     }
 }
 
-/// The file of the rights of a file that has no place for them: its name with `.license` behind it.
+/// Returns the path of the licence file for a file that cannot hold its rights: its name followed
+/// by `.license`.
 #[must_use]
 pub fn license_file(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
@@ -191,10 +196,10 @@ pub fn license_file(path: &Path) -> PathBuf {
     name.into()
 }
 
-/// Reads `FILE.license`, the rights beside a file; `None` if it is missing.
+/// Reads `FILE.license`, the rights next to a file; `None` if it is missing.
 ///
 /// # Errors
-/// When it cannot be read, is no regular file or too long.
+/// If it cannot be read, is not a regular file or is too long.
 pub fn read_license_file(path: &Path) -> io::Result<Option<String>> {
     match read_regular(&license_file(path), MOST_FILE_BYTES) {
         Ok(bytes) => Ok(Some(String::from_utf8_lossy(&bytes).into_owned())),
@@ -208,7 +213,7 @@ fn is_wav(path: &Path) -> bool {
     extension.is_some_and(|extension| extension.eq_ignore_ascii_case("wav"))
 }
 
-/// The words after a tag, up to the end of the line or of what it stands in.
+/// Returns the text after a tag, up to the end of the line or of the comment that contains it.
 fn after<'a>(tag: &str, text: &'a str) -> Option<&'a str> {
     let rest = &text[text.find(tag)? + tag.len()..];
     let rest = rest.lines().next()?;
@@ -216,8 +221,8 @@ fn after<'a>(tag: &str, text: &'a str) -> Option<&'a str> {
     rest.get(..end.unwrap_or(rest.len()))
 }
 
-/// One line without control characters and without what would end a comment; `None` if nothing is
-/// left.
+/// Turns words into a single line without control characters and without anything that would end a
+/// comment; `None` if nothing is left.
 fn line(words: &str) -> Option<String> {
     let mut plain: String = words.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     for end in ENDS {

@@ -4,8 +4,9 @@ use crate::manifest::AtCondition;
 use crate::{Manifest, Quality};
 
 impl Manifest {
-    /// Returns the manifest as it is read back: agreement and repeatability to four decimals,
-    /// levels to nine significant digits. Rounding again changes nothing.
+    /// Returns the manifest with rounded numbers, as a reader gets it back: agreement and
+    /// repeatability to four decimals, levels to nine significant digits. Rounding twice changes
+    /// nothing.
     pub fn rounded(&self) -> Self {
         let mut rounded = self.clone();
         for condition in &mut rounded.conditions {
@@ -41,7 +42,8 @@ fn four_decimals<'a>(numbers: impl Iterator<Item = &'a mut f64>) {
     }
 }
 
-/// Parses a number and removes a negative zero; returns `otherwise` when it is not finite.
+/// Parses a number and turns a negative zero into zero. Returns `otherwise` if the number is not
+/// finite.
 fn reread(text: &str, otherwise: f64) -> f64 {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => number + 0.0,

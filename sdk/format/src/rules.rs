@@ -1,4 +1,4 @@
-//! The rules of validation of assets, in one table.
+//! The validation rules for assets, in one table.
 
 use crate::stages::*;
 

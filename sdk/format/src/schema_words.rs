@@ -1,5 +1,5 @@
-//! Parts of the manifest's JSON Schema beyond types: patterns, and values that depend on each
-//! other.
+//! Parts of the manifest's JSON Schema that types cannot express: patterns, and values that depend
+//! on each other.
 
 use schemars::Schema;
 use serde_json::{Value, json};
@@ -20,8 +20,8 @@ pub(crate) const SEMANTIC_VERSION: &str = concat!(
 /// Pattern of a DOI, as [`crate::check_doi`] checks it.
 pub(crate) const DOI: &str = r"^10\.[0-9]{4,9}(\.[0-9]+)*/[!-~]+$";
 
-/// Pattern of an entry's name: parts of ASCII characters from space to `~`, without `\\`, `:` and
-/// `/`, that are not `.` or `..`.
+/// Pattern of an entry's name. Its parts consist of ASCII characters from space to `~` without
+/// `\\`, `:` and `/`, and no part is `.` or `..`.
 pub(crate) const ENTRY_NAME: &str = concat!(
     r"^(\.?[ -\-0-9;-\[\]-~][ -.0-9;-\[\]-~]*|\.\.[ -.0-9;-\[\]-~]+)",
     r"(/(\.?[ -\-0-9;-\[\]-~][ -.0-9;-\[\]-~]*|\.\.[ -.0-9;-\[\]-~]+))*$"
@@ -32,7 +32,7 @@ pub(crate) fn own_entries() -> Value {
     json!({ "enum": [MIMETYPE, MANIFEST] })
 }
 
-/// Allows further keys beside a variant's key: a later minor version may have more.
+/// Allows more keys next to a variant's key, because a later minor version may add some.
 pub(crate) fn open_variants(schema: &mut Schema) {
     let variants = schema.get_mut("oneOf").and_then(Value::as_array_mut);
     for variant in variants.into_iter().flatten().filter_map(Value::as_object_mut) {

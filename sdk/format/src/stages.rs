@@ -1,4 +1,4 @@
-//! The stages of reading an asset: in which order findings are made, and where reading stops.
+//! The stages of reading an asset: the order in which findings are made, and where reading stops.
 
 pub(crate) use htex_finding::COUNT;
 use htex_finding::{Rule, Stage};
@@ -78,7 +78,7 @@ pub const STAGES: &[Stage] = &[
     COUNT,
 ];
 
-/// The rules of a stage; a few belong to several.
+/// Returns the rules of a stage. A few rules belong to several stages.
 pub fn rules_of(stage: Stage) -> impl Iterator<Item = &'static Rule> {
     RULES.iter().filter(move |rule| rule.stages.contains(&stage))
 }

@@ -1,32 +1,39 @@
-//! Triangles that a representation stores: which of them a player can interpolate in.
+//! Checks whether a player can interpolate in the triangles that a representation stores.
 //!
-//! A mix is continuous in the motion if the triangles cover the convex hull of the conditions once:
-//! then no motion has two mixes, and outside of them the nearest point is one point. Tests of all
-//! pairs of triangles would take time proportional to the square of their number. What is tested
-//! here takes little more time than to sort them: of triangles that all turn counterclockwise, each
-//! directed edge belongs to one; the edges without a neighbour are one outline; it turns left at
-//! each corner, once around. The triangles at a point are as many as the outline's turns around it,
-//! because the edges between two triangles cancel, so there is one at each point inside and none
-//! outside.
+//! A mix is continuous in the motion if the triangles cover the convex hull of the conditions
+//! exactly once. Then no motion has two mixes, and every motion outside has exactly one nearest
+//! point.
+//!
+//! Testing all pairs of triangles would take time proportional to the square of their number. The
+//! tests here take little more time than sorting the triangles. All triangles are turned
+//! counterclockwise, and then:
+//!
+//! - Each directed edge belongs to only one triangle.
+//! - The edges without a neighbour form one outline.
+//! - The outline turns left at each corner and goes around once.
+//!
+//! This suffices because the number of triangles at a point equals the outline's number of turns
+//! around it: the edges between two triangles cancel. So there is one triangle at each point inside
+//! and none outside.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
-/// Three conditions, by their indices in [`crate::Representation::at`].
+/// Three conditions, as indices into [`crate::Representation::at`].
 pub type Triangle = [usize; 3];
 
-/// Why stored triangles cannot be interpolated in.
+/// Why a player cannot interpolate in the stored triangles.
 #[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrianglesError {
-    /// A corner is no element of `at`.
+    /// A corner is not an element of `at`.
     #[error("corner {corner} does not exist; `at` has {conditions} elements, counted from 0")]
     Corner { triangle: usize, corner: usize, conditions: usize },
-    /// A triangle has a corner twice.
+    /// A triangle has the same corner twice.
     #[error("corner {corner} is there twice; a triangle has three different corners")]
     Twice { triangle: usize, corner: usize },
-    /// The speed or the force of a condition is not known.
+    /// The speed or the force of a condition is unknown.
     #[error(
         "element {condition} of `at` has no known speed or force; state both, or leave `triangles` out"
     )]
@@ -39,12 +46,12 @@ pub enum TrianglesError {
         "the triangle overlaps triangle {other}, on the same side of the edge from {from} to {to}; remove one of them"
     )]
     Edge { triangle: usize, other: usize, from: usize, to: usize },
-    /// A condition is a corner of no triangle.
+    /// A condition is not a corner of any triangle.
     #[error(
         "element {condition} of `at` is the corner of no triangle; add triangles to it, or remove it"
     )]
     Unreached { condition: usize },
-    /// The triangles have gaps, touch in a corner, overlap, or leave a part of the hull out.
+    /// The triangles have gaps, touch only in a corner, overlap, or do not cover the whole hull.
     #[error(
         "the triangles do not cover the hull of the conditions once (at element {condition} of `at`); close the gap there, or remove \
          what overlaps"
@@ -53,7 +60,8 @@ pub enum TrianglesError {
 }
 
 impl TrianglesError {
-    /// Returns the index of the triangle that breaks a rule; `None` if it is about all of them.
+    /// Returns the index of the triangle that breaks a rule; `None` if the rule is about all
+    /// triangles.
     pub fn triangle(&self) -> Option<usize> {
         match self {
             Self::Corner { triangle, .. }
@@ -65,12 +73,12 @@ impl TrianglesError {
     }
 }
 
-/// Largest ratio of twice a triangle's area to the square of its longest side at which its corners
-/// count as on a line.
+/// Flatness limit: the ratio of twice a triangle's area to the square of its longest side, up to
+/// which its corners count as being on a line.
 const FLAT: f64 = 1e-9;
 
-/// Checks triangles between conditions, each a speed, mm/s, and a force, newtons, finite and not
-/// negative. No triangles are valid: then none are stored.
+/// Checks triangles between conditions. Each condition is a speed, mm/s, and a force, newtons, both
+/// finite and not negative. An empty list of triangles is valid: it means that none are stored.
 ///
 /// ```
 /// use htex_format::check_triangles;
@@ -82,8 +90,7 @@ const FLAT: f64 = 1e-9;
 /// ```
 ///
 /// # Errors
-/// The first rule of section 2 of the specification that the triangles break, in the order of that
-/// text.
+/// The first broken rule of section 2 of the specification, in the order of that text.
 pub fn check_triangles(
     conditions: &[[f64; 2]],
     triangles: &[Triangle],
@@ -103,7 +110,7 @@ pub fn check_triangles(
     }
 }
 
-/// Checks that triangles have three different corners among as many conditions.
+/// Checks that each triangle has three different corners, all below the number of conditions.
 pub(crate) fn check_corners(
     conditions: usize,
     triangles: &[Triangle],
@@ -129,7 +136,7 @@ fn relative(conditions: &[[f64; 2]]) -> Vec<[f64; 2]> {
     conditions.iter().map(place).collect()
 }
 
-/// Returns the triangles with their corners counterclockwise.
+/// Returns the triangles with their corners in counterclockwise order.
 fn upright(places: &[[f64; 2]], triangles: &[Triangle]) -> Result<Vec<Triangle>, TrianglesError> {
     let turned = |(triangle, corners): (usize, &Triangle)| {
         let [a, b, c] = *corners;
@@ -155,8 +162,8 @@ impl Turn {
     fn of([a, b, c]: [[f64; 2]; 3]) -> Self {
         let longest2 = distance2(a, b).max(distance2(b, c)).max(distance2(c, a));
         let area = cross(between(a, b), between(a, c));
-        // Not flat only if the area is known to be larger: two equal points, or numbers too small
-        // to multiply, are.
+        // Written so that anything not known to be larger counts as flat: two equal points, or
+        // numbers too small to multiply.
         if area > FLAT * longest2 {
             Self::Left
         } else if -area > FLAT * longest2 {
@@ -180,7 +187,7 @@ fn distance2(a: [f64; 2], b: [f64; 2]) -> f64 {
     x * x + y * y
 }
 
-/// Returns the edges without a neighbour, by the corner that each begins at.
+/// Returns the edges that have no neighbour, by the corner at which each begins.
 fn outline(upright: &[Triangle]) -> Result<BTreeMap<usize, usize>, TrianglesError> {
     let mut owners = BTreeMap::new();
     for (triangle, [a, b, c]) in upright.iter().enumerate() {
@@ -201,7 +208,7 @@ fn outline(upright: &[Triangle]) -> Result<BTreeMap<usize, usize>, TrianglesErro
     Ok(outline)
 }
 
-/// Checks that the outline is one, and that of a convex polygon.
+/// Checks that the edges form a single outline, and that it is a convex polygon.
 fn check_outline(
     places: &[[f64; 2]],
     outline: &BTreeMap<usize, usize>,
@@ -221,7 +228,8 @@ fn check_outline(
         around += libm::atan2(cross(u, v), u[0] * v[0] + u[1] * v[1]);
         corner = next(corner);
     }
-    // A second outline, as of a gap or a separate part, or one that turns around twice.
+    // A corner that was not passed lies on a second outline (a gap or a separate part). An angle
+    // sum above one turn means that the outline goes around twice.
     let apart = outline.keys().copied().find(|other| !passed.contains(other));
     match apart.or_else(|| (around > 1.5 * TAU).then_some(first)) {
         Some(condition) => Err(TrianglesError::Outline { condition }),

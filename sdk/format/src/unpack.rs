@@ -1,7 +1,7 @@
-//! Unpacking of an entry, with checks of its checksum and the end of its stream.
+//! Unpacks an entry, and checks its checksum and the end of its stream.
 //!
-//! Every entry is unpacked and checked before the manifest is read, by the inflater itself: the
-//! crate `zip` does not report whether bytes follow the end of a stream.
+//! Every entry is unpacked and checked before the manifest is read. This module calls the inflater
+//! directly, because the crate `zip` does not report whether bytes follow the end of a stream.
 
 use std::borrow::Cow;
 
@@ -9,7 +9,7 @@ use flate2::{Crc, Decompress, FlushDecompress, Status};
 
 use crate::zip_records::Common;
 
-/// Damage of an entry's data.
+/// How an entry's data is damaged.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Damage {
     #[error("its checksum is {found:08x} instead of {stated:08x}")]
@@ -29,10 +29,10 @@ pub(crate) enum Damage {
 pub(crate) const STORED: u16 = 0;
 pub(crate) const DEFLATED: u16 = 8;
 
-/// Unpacks an entry's data, whose sizes are already checked against the limits.
+/// Unpacks an entry's data. The caller has already checked the sizes against the limits.
 ///
 /// # Errors
-/// The damage of the data.
+/// How the data is damaged.
 pub(crate) fn unpack<'a>(data: &'a [u8], common: &Common) -> Result<Cow<'a, [u8]>, Damage> {
     let bytes = match common.method {
         DEFLATED => Cow::Owned(inflate(data, common.size as usize)?),
@@ -45,7 +45,8 @@ pub(crate) fn unpack<'a>(data: &'a [u8], common: &Common) -> Result<Cow<'a, [u8]
     Err(Damage::Checksum { found: crc, stated: common.crc })
 }
 
-/// The checksum of ZIP, of the inflater: its tables are in every program that reads an asset.
+/// Computes the CRC-32 of ZIP with the inflater's implementation, whose tables are already in every
+/// program that reads an asset.
 pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = Crc::new();
     crc.update(bytes);
@@ -53,7 +54,7 @@ pub(crate) fn crc32(bytes: &[u8]) -> u32 {
 }
 
 fn inflate(data: &[u8], size: usize) -> Result<Vec<u8>, Damage> {
-    // One byte more than stated, to detect a longer stream.
+    // One byte more than stated, to detect a stream that is longer than stated.
     let mut bytes = vec![0; size + 1];
     let mut stream = Decompress::new(false);
     let status = stream

@@ -1,4 +1,4 @@
-//! Reading and validation of an asset: one path for both.
+//! Reads and validates an asset; both use the same code.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -20,20 +20,20 @@ use crate::unpack::STORED;
 use crate::{Asset, Manifest, Plugin, Representation};
 use htex_finding::{Finding, Findings, Report, Severity};
 
-/// Validates the bytes of a `.htex` file and reports every broken rule that can be detected
+/// Validates the bytes of a `.htex` file. Reports every broken rule that can be detected
 /// independently of earlier ones. Never panics, and reads no more than `limits` allow.
 pub fn validate(bytes: &[u8], limits: &Limits) -> Report {
     validate_with(bytes, limits, &|_| None)
 }
 
-/// Validates as [`validate`] does, and compares fields with those of the known models.
+/// Validates like [`validate`], and also compares the fields with the fields of the known models.
 pub fn validate_with(bytes: &[u8], limits: &Limits, known: KnownModel<'_>) -> Report {
     let (asset, findings) = inspect(bytes, limits, known);
     Report { valid: asset.is_some(), findings }
 }
 
-/// Returns the manifest of an asset as JSON, valid or not; `None` when it cannot be unpacked or is
-/// not JSON.
+/// Returns an asset's manifest as JSON, whether or not it is valid; `None` if it cannot be unpacked
+/// or is not JSON.
 pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
     let mut findings = Findings::default();
     let archive = Archive::open(bytes, limits, &mut findings)?;
@@ -41,7 +41,7 @@ pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
     parse_json(&entry.bytes).ok()
 }
 
-/// Reads an asset; `None` when a finding is an error.
+/// Reads an asset and returns it with all findings. The asset is `None` if a finding is an error.
 pub(crate) fn inspect(
     bytes: &[u8],
     limits: &Limits,
@@ -104,7 +104,7 @@ fn check_mimetype(archive: &Archive<'_>, findings: &mut Findings) {
     });
 }
 
-/// Reader of the entries that the manifest names.
+/// Reads the entries that the manifest names.
 struct Payload<'a, 'f> {
     archive: Archive<'a>,
     claimed: BTreeSet<String>,
@@ -144,7 +144,7 @@ impl<'a> Payload<'a, '_> {
         }
     }
 
-    /// Returns the bytes of an entry that no other key has named.
+    /// Returns the bytes of an entry. Adds a finding if another key has already named the entry.
     fn entry(&mut self, name: &str, pointer: Arguments<'_>) -> Option<Cow<'a, [u8]>> {
         let Some(index) = self.archive.index(name) else {
             let message =

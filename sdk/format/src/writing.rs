@@ -1,4 +1,4 @@
-//! Writing assets as `.htex` files.
+//! Writes assets as `.htex` files.
 
 use std::path::Path;
 
@@ -14,13 +14,13 @@ use htex_finding::Findings;
 impl Asset {
     /// Encodes the asset as a `.htex` file. Equal assets give equal bytes on every machine.
     ///
-    /// Levels keep nine significant digits, agreement four decimals
-    /// ([`crate::Manifest::rounded`]), and parameters what their store keeps
+    /// Levels are rounded to nine significant digits and agreement to four decimals
+    /// ([`crate::Manifest::rounded`]). Parameters are rounded to what their store can hold
     /// ([`crate::round_parameters`]).
     ///
     /// # Errors
-    /// When the asset breaks a rule of the format, exceeds the default [`Limits`], or has
-    /// parameters that its fields cannot hold.
+    /// If the asset breaks a rule of the format, exceeds the default [`Limits`], or has parameters
+    /// that its fields cannot hold.
     pub fn to_bytes(&self) -> Result<Vec<u8>, WriteError> {
         let manifest = self.manifest.rounded();
         let mut findings = Findings::default();
@@ -49,10 +49,10 @@ impl Asset {
         readable(archived().map_err(archive_error)?)
     }
 
-    /// Writes the asset to a file atomically: a reader sees the old file or the new one.
+    /// Writes the asset to a file atomically: a reader sees either the old file or the new one.
     ///
     /// # Errors
-    /// [`WriteError::Io`] when the file cannot be written, else as [`Self::to_bytes`].
+    /// [`WriteError::Io`] if the file cannot be written, and the errors of [`Self::to_bytes`].
     #[allow(clippy::disallowed_methods, reason = "the user named this file")]
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
         write_file(path, &self.to_bytes()?)
@@ -89,7 +89,7 @@ impl Asset {
     }
 }
 
-/// Returns the bytes if the reader accepts them: everything that is written is valid.
+/// Returns the bytes if the reader accepts them. This ensures that every written file is valid.
 fn readable(bytes: Vec<u8>) -> Result<Vec<u8>, WriteError> {
     match inspect(&bytes, &Limits::default(), &|_| None) {
         (Some(_), _) => Ok(bytes),

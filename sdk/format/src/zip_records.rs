@@ -1,4 +1,4 @@
-//! Parser of the records of a ZIP archive.
+//! Parses the records of a ZIP archive.
 
 use std::ops::Range;
 
@@ -22,7 +22,7 @@ pub(crate) struct End {
     pub directory_bytes: u32,
     pub directory_at: u32,
     pub comment_bytes: u16,
-    /// Whether a ZIP64 locator precedes it.
+    /// Whether a ZIP64 locator stands before it.
     pub zip64: bool,
 }
 
@@ -55,7 +55,7 @@ pub(crate) struct Local<'a> {
     pub data: Range<usize>,
 }
 
-/// Returns the last end record: in an asset, the file's last 22 bytes.
+/// Returns the last end record. In an asset, it is the last 22 bytes of the file.
 pub(crate) fn find_end(bytes: &[u8]) -> Option<End> {
     let last = bytes.len().checked_sub(END_BYTES)?;
     let first = last.saturating_sub(usize::from(u16::MAX));
@@ -95,7 +95,7 @@ pub(crate) fn central(bytes: &[u8], at: usize) -> Option<(Central<'_>, usize)> {
     Some((record, next))
 }
 
-/// Parses the local header at `at`, with data of `packed` bytes.
+/// Parses the local header at `at`. The entry's data have `packed` bytes.
 pub(crate) fn local(bytes: &[u8], at: usize, packed: u32) -> Option<Local<'_>> {
     if u32_at(bytes, at)? != LOCAL {
         return None;

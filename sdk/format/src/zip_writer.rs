@@ -1,4 +1,4 @@
-//! Writer of the archive: the one form of ZIP that `archive` accepts, with the same bytes on every
+//! Writes the archive in the only form of ZIP that `archive` accepts, with the same bytes on every
 //! machine.
 
 use std::io::{self, Write};
@@ -9,31 +9,31 @@ use flate2::write::DeflateEncoder;
 use crate::unpack::{DEFLATED, STORED, crc32};
 use crate::zip_records::{CENTRAL, Common, END, LOCAL};
 
-/// zlib-rs chooses the same matches on every processor, so the bytes are the same everywhere.
-/// Zopfli takes 100 ms for an asset and saves five bytes.
+/// Compression level. zlib-rs chooses the same matches on every processor, so the bytes are the
+/// same everywhere. Zopfli would take 100 ms per asset and save five bytes.
 const DEFLATE_LEVEL: u32 = 9;
 
-/// 1 January 1980, 0:00, the first time of the format.
+/// 1 January 1980, 0:00, the earliest time that ZIP can express.
 const NO_TIME: u32 = 33 << 16;
 
-/// Version of the format that unpacks a stored entry, and a deflated one: 1.0 and 2.0.
+/// ZIP version needed to unpack a stored entry and a deflated entry: 1.0 and 2.0.
 const VERSIONS: [u16; 2] = [10, 20];
-/// Unix as the system whose attributes are given.
+/// Says that the attributes are Unix attributes.
 const UNIX: u16 = 3 << 8;
-/// A regular file that all may read and its owner may write, as attributes of Unix.
+/// Unix attributes of a regular file that everyone may read and only its owner may write.
 const ATTRIBUTES: u32 = 0o100_644 << 16;
 
 /// An archive that is being written.
 #[derive(Default)]
 pub(crate) struct ZipWriter {
     bytes: Vec<u8>,
-    /// The records of the directory, and their number.
+    /// The records of the directory.
     directory: Vec<u8>,
     entries: usize,
 }
 
 impl ZipWriter {
-    /// Adds an entry as it is.
+    /// Adds an entry uncompressed.
     pub(crate) fn store(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
         self.add(name, bytes, STORED, bytes)
     }
@@ -72,18 +72,18 @@ impl ZipWriter {
     }
 }
 
-/// A size, which the format without ZIP64 holds below 4 GiB.
+/// Converts a size to 32 bits. Without ZIP64, sizes must be below 4 GiB.
 fn small(size: usize) -> io::Result<u32> {
     u32::try_from(size).map_err(|_| io::Error::other("the archive has 4 GiB or more"))
 }
 
-/// A length of a name, or a number of entries.
+/// Converts the length of a name, or the number of entries, to 16 bits.
 fn short(size: usize) -> io::Result<u16> {
     u16::try_from(size)
         .map_err(|_| io::Error::other("a name or the number of entries exceeds 65,535"))
 }
 
-/// Writes a local header; the entry's data follow it.
+/// Writes a local header. The entry's data follow it.
 fn put_local(out: &mut Vec<u8>, common: &Common, name_len: u16, name: &str) {
     put_u32(out, LOCAL);
     put_u16(out, [version(common)]);
@@ -92,12 +92,12 @@ fn put_local(out: &mut Vec<u8>, common: &Common, name_len: u16, name: &str) {
     out.extend_from_slice(name.as_bytes());
 }
 
-/// Writes a record of the directory.
+/// Writes a directory record.
 fn put_central(out: &mut Vec<u8>, common: &Common, name_len: u16, name: &str, local_at: u32) {
     put_u32(out, CENTRAL);
     put_u16(out, [UNIX | version(common), version(common)]);
     put_common(out, common);
-    // Without extra field and comment, on the first disk, without internal attributes.
+    // No extra field, no comment, first disk, no internal attributes.
     put_u16(out, [name_len, 0, 0, 0, 0]);
     put_u32(out, ATTRIBUTES);
     put_u32(out, local_at);

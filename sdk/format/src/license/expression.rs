@@ -1,16 +1,18 @@
-//! The grammar of SPDX expressions. The lists are those of the crate `spdx`, which also has the
-//! full names of all licences, four times as many bytes; a test compares both.
+//! The grammar of SPDX expressions.
+//!
+//! The lists of ids come from the crate `spdx`. The crate itself is not used because it also holds
+//! the full names of all licences, four times as many bytes. A test compares both.
 
 use core::cmp::Ordering;
 
-/// Ids of licences, one a line, in the standard's case.
+/// Licence ids, one per line, spelled as in the standard.
 const LICENSES: &str = include_str!("licenses.txt");
-/// Ids of exceptions.
+/// Ids of exceptions, one per line.
 const EXCEPTIONS: &str = include_str!("exceptions.txt");
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Token {
-    /// A listed licence, and whether it is one of GNU, whose ids say "or later" themselves.
+    /// A listed licence. `gnu` tells whether it is a GNU licence, whose id already says "or later".
     License {
         gnu: bool,
     },
@@ -26,7 +28,7 @@ enum Token {
     Or,
 }
 
-/// Whether a token ends a licence, with its exception if it has one.
+/// Returns whether a licence, with its exception if it has one, may end at this token.
 const fn ends_term(token: Option<Token>) -> bool {
     use Token::{AdditionRef, Close, Exception, License, LicenseRef, Plus, Unlisted};
     matches!(
@@ -35,12 +37,12 @@ const fn ends_term(token: Option<Token>) -> bool {
     )
 }
 
-/// Whether a licence or a parenthesis may follow.
+/// Returns whether a licence or an opening parenthesis may follow this token.
 const fn begins_term(token: Option<Token>) -> bool {
     matches!(token, None | Some(Token::And | Token::Or | Token::Open))
 }
 
-/// What may follow a token, for errors.
+/// Says what may follow a token, for error messages.
 const fn unexpected(last: Option<Token>) -> &'static str {
     use Token::{
         AdditionRef, And, Close, Exception, License, LicenseRef, Open, Or, Plus, Unlisted, With,
@@ -55,11 +57,10 @@ const fn unexpected(last: Option<Token>) -> &'static str {
     }
 }
 
-/// Checks an expression against the grammar; returns the first id that is not listed, if there is
-/// one.
+/// Checks an expression against the grammar. Returns the first unlisted id, if there is one.
 ///
 /// # Errors
-/// What is wrong.
+/// A text that says what is wrong.
 pub(super) fn check(expression: &str) -> Result<Option<&str>, &'static str> {
     let (mut rest, mut last, mut open, mut unlisted) = (expression, None, 0_usize, None);
     loop {
@@ -103,7 +104,7 @@ pub(super) fn check(expression: &str) -> Result<Option<&str>, &'static str> {
     }
 }
 
-/// The token that a text begins with, and its length.
+/// Returns the token at the start of a text, and its length.
 fn token(first: char, text: &str, follows_space: bool) -> Result<(Token, usize), &'static str> {
     match first {
         '+' if follows_space => return Err("`+` must not follow whitespace"),
@@ -128,7 +129,8 @@ fn token(first: char, text: &str, follows_space: bool) -> Result<(Token, usize),
     Ok((token, word.len()))
 }
 
-/// `LicenseRef-NAME` or `AdditionRef-NAME`, after `DocumentRef-NAME:` if it is of another document.
+/// Parses `LicenseRef-NAME` or `AdditionRef-NAME`, after `DocumentRef-NAME:` if it is in another
+/// document.
 fn reference(word: &str) -> Option<(Token, usize)> {
     let document =
         word.split_once(':').filter(|(document, _)| document.starts_with("DocumentRef-"));
@@ -148,8 +150,8 @@ fn is_of_id(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '-' || c == '.'
 }
 
-/// Whether a line of a list is this. The lists are in the order of their bytes, so that a half is
-/// left out at each step: every asset with a licence asks as it is opened.
+/// Returns whether an id is a line of a list. The lists are sorted by their bytes, so this is a
+/// binary search: every asset with a licence needs a look-up when it is opened.
 fn is_listed(mut list: &str, id: &str) -> bool {
     while !list.is_empty() {
         let (before, after) = list.split_at_checked(list.len() / 2).unwrap_or_default();
@@ -179,10 +181,10 @@ mod tests {
 
     use super::*;
 
-    /// The standard's grammar and list; deprecated ids are still licences.
+    /// The standard's grammar and list. Deprecated ids still count as licences.
     const LISTED: ParseMode = ParseMode { allow_deprecated: true, ..ParseMode::STRICT };
 
-    /// What the crate `spdx` says of an expression.
+    /// Returns what the crate `spdx` says about an expression.
     fn expected(license: &str) -> Result<Option<String>, String> {
         let Err(unlisted) = Expression::parse_mode(license, LISTED) else {
             return Ok(None);

@@ -1,9 +1,9 @@
-//! Packs many small textures and measures it: seconds, memory, and the reads and bytes for one
+//! Packs many small textures and measures seconds, memory, and the reads and bytes needed for one
 //! texture.
 //!
-//! `cargo run --release -p htex-library --example many` packs 1,000, 100,000 and 1,000,000 of them;
-//! other numbers may be given. Each number is packed in a process of its own, so that its peak of
-//! memory is its own.
+//! `cargo run --release -p htex-library --example many` packs 1,000, 100,000 and 1,000,000
+//! textures; other numbers may be given. Each number runs in its own process, so that its peak
+//! memory is measured separately.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::error::Error;
@@ -17,9 +17,10 @@ use htex_format::{Asset, Manifest};
 use htex_library::{Library, LibrarySource, LocalFile, Writer};
 
 const COUNTS: [u64; 3] = [1_000, 100_000, 1_000_000];
-/// Textures that are opened, spread over the library, each by a library that is opened anew.
+/// Number of textures that are opened, spread over the library. Each is opened from a freshly
+/// opened library.
 const OPENED: u64 = 200;
-/// Marks the process that packs.
+/// Argument that marks the process that packs.
 const PACKS: &str = "--packs";
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -41,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Packs `count` textures, opens some, and prints a line.
+/// Packs `count` textures, opens some of them, and prints a line.
 fn measure(count: u64) -> Result<(), Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("many.htexlib");
@@ -73,16 +74,16 @@ fn measure(count: u64) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What opening a texture takes.
+/// Cost of opening a texture.
 struct Opened {
     pages: usize,
-    /// The most reads for one texture.
+    /// Largest number of reads for one texture.
     reads: u64,
-    /// The most bytes besides the texture.
+    /// Largest number of bytes read besides the texture itself.
     index_bytes: u64,
     /// Median time to open the library and one texture.
     alone_us: f64,
-    /// Median time for a texture when the library is open.
+    /// Median time to open a texture when the library is already open.
     next_us: f64,
 }
 
@@ -119,7 +120,7 @@ fn median(mut numbers: Vec<f64>) -> f64 {
     numbers[numbers.len() / 2]
 }
 
-/// A file that counts what is read.
+/// A file that counts reads and bytes.
 struct Counted {
     file: LocalFile,
     reads: AtomicU64,
@@ -172,7 +173,7 @@ fn template() -> Result<Asset, Box<dyn Error>> {
     })
 }
 
-/// Makes texture `i`: its name, and the bytes of its file. Tags, conditions and parameters vary.
+/// Creates texture `i`: its name and the bytes of its file. Tags, conditions and parameters vary.
 fn make(texture: &mut Asset, i: u64) -> Result<(String, Vec<u8>), Box<dyn Error>> {
     const KINDS: [&str; 8] =
         ["wood", "felt", "cotton", "paper", "leather", "vinyl", "stone", "steel"];
@@ -189,7 +190,7 @@ fn make(texture: &mut Asset, i: u64) -> Result<(String, Vec<u8>), Box<dyn Error>
     Ok((format!("{kind}/{feel}/{mixed:011x}-{i}"), texture.to_bytes()?))
 }
 
-/// Peak memory (RSS) of this process, MiB; `None` where the system does not state it.
+/// Returns the peak memory (RSS) of this process, MiB; `None` if the system does not report it.
 fn peak_mib() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;

@@ -1,4 +1,4 @@
-//! Encoding of the index: sorted entries become leaf pages and a root page.
+//! Encodes the index: turns sorted entries into leaf pages and a root page.
 
 use std::collections::BTreeSet;
 
@@ -7,8 +7,9 @@ use crate::leaf::{CONTACTS, FORCE, ONE_FORCE, ONE_SPEED, SOURCES, SPEED, length}
 use crate::page;
 use crate::wire::{common_prefix, put_following, put_text, put_varint, varint_bytes};
 
-/// Bytes of an unpacked leaf at which the next one begins. Packed and with the first read, a leaf
-/// stays below 64 kB, and the root page of a million textures below the first read.
+/// Unpacked size of a leaf, bytes, at which the next leaf begins. With this size, the first read
+/// and a packed leaf together stay below 64 kB, and the root page of a million textures fits into
+/// the first read.
 const LEAF_BYTES: usize = 40 << 10;
 
 /// The pages of an index.
@@ -16,9 +17,9 @@ const LEAF_BYTES: usize = 40 << 10;
 pub(crate) struct Pages {
     leaves: Vec<u8>,
     lengths: Vec<u64>,
-    /// Separators of the leaves, as the root has them.
+    /// Separators between the leaves, as the root page stores them.
     separators: Vec<Vec<u8>>,
-    /// Entries of the leaf that is being filled, and their size.
+    /// Entries of the leaf that is being filled.
     entries: Vec<Entry>,
     words: BTreeSet<String>,
     size: usize,
@@ -26,7 +27,7 @@ pub(crate) struct Pages {
 }
 
 impl Pages {
-    /// Adds an entry, above all before it.
+    /// Adds an entry. Its name must sort after all names added before.
     pub(crate) fn add(&mut self, entry: Entry) {
         let size = self.size_of(&entry);
         if !self.entries.is_empty() && self.size + size > LEAF_BYTES {
@@ -34,10 +35,14 @@ impl Pages {
         }
         if self.entries.is_empty() {
             let shared = common_prefix(&self.last, entry.name.as_bytes());
+            // The shortest start of this name that sorts after the last name of the leaf before. It
+            // keeps the root page small.
             let is_first = self.separators.is_empty();
             let separator = if is_first { 0 } else { shared + 1 };
             self.separators.push(entry.name.as_bytes()[..separator].to_vec());
         }
+        // Computed again, because a new leaf cannot share words or the start of a name with an
+        // earlier one.
         self.size += self.size_of(&entry);
         let words = entry.tags.iter().chain(&entry.models);
         for word in words.filter(|word| !self.words.contains(*word)).cloned().collect::<Vec<_>>() {
@@ -47,8 +52,8 @@ impl Pages {
         self.entries.push(entry);
     }
 
-    /// An upper bound of the bytes that an entry adds to the leaf. Indices of words are below 2^14,
-    /// in two bytes.
+    /// Returns an upper bound of the bytes that an entry adds to the leaf. Indices of words are
+    /// below 2^14, so they take two bytes.
     fn size_of(&self, entry: &Entry) -> usize {
         let before: &[u8] = if self.entries.is_empty() { &[] } else { &self.last };
         let name = entry.name.as_bytes();
@@ -61,6 +66,8 @@ impl Pages {
             .cuts
             .iter()
             .map(|cut| varint_bytes(cut.object.end) * 2 + varint_bytes(cut.at));
+        // After the name and words: conditions (33), own length, number of cuts (2), cuts, hash
+        // (32), and contact and law (25).
         name + words
             + 33
             + varint_bytes(length(&entry.place.own))
@@ -70,7 +77,8 @@ impl Pages {
             + 25
     }
 
-    /// Ends the index. Returns the packed root page and leaf pages, and the number of leaves.
+    /// Finishes the index. Returns the packed root page, the packed leaf pages, and the number of
+    /// leaves.
     pub(crate) fn finish(mut self, name: &str) -> (Vec<u8>, Vec<u8>, u32) {
         if !self.entries.is_empty() {
             self.end_leaf();
@@ -99,7 +107,7 @@ impl Pages {
     }
 }
 
-/// Encodes the entries of a leaf, of which there is at least one.
+/// Encodes the entries of a leaf. There must be at least one.
 fn leaf(entries: &[Entry]) -> Vec<u8> {
     let words = entries.iter().flat_map(|e| e.tags.iter().chain(&e.models));
     let mut distinct = BTreeSet::new();
@@ -118,6 +126,8 @@ fn leaf(entries: &[Entry]) -> Vec<u8> {
     entries.iter().for_each(|e| put_words(&mut page, &words, &e.models));
     entries.iter().for_each(|e| put_conditions(&mut page, &e.conditions));
     entries.iter().for_each(|e| put_law(&mut page, e));
+    // Own bytes of the textures follow each other, so the start of the first and the lengths
+    // suffice.
     put_varint(&mut page, entries.first().map_or(0, |e| e.place.own.start));
     entries.iter().for_each(|e| put_varint(&mut page, length(&e.place.own)));
     entries.iter().for_each(|e| put_cuts(&mut page, e));

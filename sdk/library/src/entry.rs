@@ -1,11 +1,11 @@
-//! An entry of the index: what is known of a texture without opening it.
+//! An entry of the index: what the library knows about a texture without opening it.
 
 use std::ops::Range;
 
 use htex_format::{Contact, Exponent, ExponentSource, Law};
 use serde::{Serialize, Serializer};
 
-/// What the index states of a texture.
+/// What the index states about a texture.
 ///
 /// ```no_run
 /// let library = htex_library::Library::open("cloth.htexlib".as_ref())?;
@@ -19,17 +19,17 @@ use serde::{Serialize, Serializer};
 pub struct Entry {
     /// Name in the library, with `/` between its parts ([`crate::check_name`]).
     pub name: String,
-    /// Search terms of the texture, in its order.
+    /// Search terms, in the texture's own order.
     pub tags: Vec<String>,
     /// Range of the conditions at which the texture was recorded.
     pub conditions: Conditions,
     /// What slid over the surface.
     pub contact: Contact,
-    /// How frequencies and level follow a motion outside these conditions.
+    /// How frequencies and level change at a motion outside these conditions.
     pub law: IndexedLaw,
-    /// Ids of the models that describe the texture, in its order.
+    /// Ids of the models that describe the texture, in the texture's own order.
     pub models: Vec<String>,
-    /// Bytes of the texture's `.htex` file.
+    /// Size of the texture's `.htex` file, bytes.
     pub bytes: u64,
     /// BLAKE3 of the texture's `.htex` file; hexadecimal in JSON.
     #[serde(serialize_with = "hexadecimal")]
@@ -38,32 +38,32 @@ pub struct Entry {
     pub(crate) place: TexturePlace,
 }
 
-/// Range of recorded conditions: the least and the greatest known speed and force.
+/// Range of the recorded conditions: the smallest and the greatest known speed and force.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Conditions {
-    /// Scanning speeds, mm/s; `None` when no speed is known.
+    /// Scanning speeds, mm/s; `None` if no speed is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_mm_s: Option<Interval>,
-    /// Normal forces, newtons; `None` when no force is known.
+    /// Normal forces, newtons; `None` if no force is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_n: Option<Interval>,
 }
 
-/// A law of motion ([`htex_format::Law`]) without its measurements.
+/// A motion law ([`htex_format::Law`]) without its measurements.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct IndexedLaw {
-    /// Exponent of frequencies over the speed.
+    /// How frequencies change with the speed.
     pub frequency_speed: IndexedExponent,
-    /// Exponent of the level over the speed.
+    /// How the level changes with the speed.
     pub level_speed: IndexedExponent,
-    /// Exponent of the level over the normal force.
+    /// How the level changes with the normal force.
     pub level_force: IndexedExponent,
 }
 
 /// An exponent of a law and where it comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct IndexedExponent {
-    /// From -4 to 4.
+    /// The exponent, from -4 to 4.
     pub exponent: f64,
     pub source: ExponentSource,
 }
@@ -83,7 +83,7 @@ impl IndexedLaw {
 
 impl From<Law> for IndexedLaw {
     fn from(law: Law) -> Self {
-        // A sum with zero has no sign of zero.
+        // Adding zero turns -0 into 0.
         let indexed = |(_, Exponent { exponent, source, .. }): (_, Exponent)| IndexedExponent {
             exponent: exponent + 0.0,
             source,
@@ -92,7 +92,7 @@ impl From<Law> for IndexedLaw {
     }
 }
 
-/// A closed interval of numbers that are finite and not negative.
+/// A closed interval. Both ends are finite and not negative.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Interval {
     pub min: f64,
@@ -102,18 +102,18 @@ pub struct Interval {
 /// Where the bytes of a texture are.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct TexturePlace {
-    /// The texture's own bytes, from the start of the payload.
+    /// Range of the texture's own bytes, counted from the start of the payload.
     pub own: Range<u64>,
-    /// Shared objects among its own bytes, in order.
+    /// Shared objects to insert into its own bytes, in order.
     pub cuts: Vec<Cut>,
 }
 
-/// A shared object in a texture.
+/// A shared object inside a texture.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Cut {
-    /// Number of the texture's own bytes before it.
+    /// Number of the texture's own bytes before the object.
     pub at: u64,
-    /// The object, from the start of the shared part.
+    /// Range of the object, counted from the start of the shared part.
     pub object: Range<u64>,
 }
 
@@ -125,7 +125,7 @@ impl Entry {
 }
 
 impl Interval {
-    /// Returns the smallest interval that contains all numbers; `None` for no numbers.
+    /// Returns the smallest interval that contains all numbers; `None` if there are no numbers.
     pub(crate) fn of(numbers: impl IntoIterator<Item = f64>) -> Option<Self> {
         numbers.into_iter().fold(None, |interval, x| {
             let Self { min, max } = interval.unwrap_or(Self { min: x, max: x });

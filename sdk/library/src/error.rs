@@ -40,7 +40,7 @@ pub enum LibraryError {
         /// The broken rule, with its code.
         findings: Vec<Finding>,
     },
-    /// The library has no texture of this name.
+    /// The library has no texture with this name.
     #[error("there is no texture {} in the library; list its entries to see their names", plain(.name))]
     Absent { name: String },
     /// The library could not be written; an existing file is unchanged.
@@ -54,14 +54,14 @@ pub enum LibraryError {
     #[error("{:?} is not a name: {problem}", plain(.name))]
     Name {
         name: String,
-        /// The rule that it breaks.
+        /// The broken rule.
         #[source]
         problem: InvalidName,
     },
     /// Two textures have the same name.
     #[error("two textures have the name {}; rename one", plain(.name))]
     Duplicate { name: String },
-    /// Two names differ in case or normalisation only.
+    /// Two names differ only in case or normalisation.
     #[error("{} and {} differ only in case or in Unicode normalisation, and are one file on some systems; rename one", plain(.name), plain(.other))]
     Alike {
         name: String,
@@ -71,9 +71,9 @@ pub enum LibraryError {
     /// Textures state no licence, and packing them was not allowed.
     #[error("{}{} no licence, and a library is passed on; state it, or pack it as unlicensed", plain(.name), states(.others))]
     Unlicensed {
-        /// The first of them.
+        /// Name of the first of these textures.
         name: String,
-        /// How many others there are.
+        /// How many more textures state no licence.
         others: usize,
     },
     /// A texture to be added is not a valid asset.
@@ -83,21 +83,21 @@ pub enum LibraryError {
         #[source]
         error: Box<ReadError>,
     },
-    /// A file elsewhere could not be opened.
+    /// A remote file could not be opened.
     #[cfg(feature = "storage")]
     #[error(transparent)]
     Storage(#[from] htex_storage::StorageError),
-    /// The index has limits that a texture or the library exceeds.
+    /// A texture or the library exceeds a limit of the index.
     #[error("{}: {problem}", plain(.name))]
     Limit {
         /// Name of the texture, or of the library.
         name: String,
-        /// The limit, and what to do.
+        /// The limit and what to do.
         problem: String,
     },
 }
 
-/// Who states something besides a first texture, with the verb.
+/// Returns the words that continue the message: the other textures, with the matching verb.
 fn states(others: &usize) -> String {
     match others {
         0 => " states".to_owned(),

@@ -1,10 +1,10 @@
-//! What the index states of an asset, from its manifest.
+//! Facts about an asset that the index states, taken from its manifest.
 
 use htex_format::{Contact, Manifest};
 
 use crate::entry::{Conditions, IndexedLaw, Interval};
 
-/// Most tags, and most models, of a texture in the index.
+/// Largest number of tags, and of models, that a texture may have in the index.
 pub(crate) const MOST_WORDS: usize = 64;
 
 /// Tags, models, conditions and law of an asset.
@@ -21,7 +21,7 @@ impl Facts {
     pub(crate) fn of(manifest: &Manifest) -> Self {
         let representations = manifest.representations.iter();
         let known = manifest.conditions.iter();
-        // A sum with zero has no sign of zero, which the manifest may have.
+        // Adding zero turns -0, which a manifest may have, into 0.
         let speeds = known.clone().filter_map(|c| c.speed_mm_s).map(|x| x + 0.0);
         let forces = known.filter_map(|c| c.force_n).map(|x| x + 0.0);
         Self {

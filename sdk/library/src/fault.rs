@@ -1,4 +1,4 @@
-//! A broken rule of the format, on its way to an error or a finding.
+//! A broken rule of the format, before it becomes an error or a finding.
 
 use htex_finding::{Findings, Rule};
 
@@ -6,7 +6,7 @@ use crate::error::LibraryError;
 use crate::rules as rule;
 use crate::wire::Malformed;
 
-/// A broken rule: where, and what is wrong and what to do.
+/// A broken rule, with its place and a message that says what is wrong and what to do.
 #[derive(Debug, Clone)]
 pub(crate) struct Fault {
     pub rule: &'static Rule,
@@ -23,7 +23,7 @@ impl Fault {
         Self { rule, place: place.into(), message: message.into() }
     }
 
-    /// A page whose contents cannot be read.
+    /// Creates the fault for a page whose contents cannot be read.
     pub(crate) fn page(place: &str, malformed: Malformed) -> Self {
         let message = format!("{malformed}; pack the library again");
         Self::new(rule::LIBRARY_PAGE_INVALID, place, message)
@@ -43,12 +43,12 @@ impl From<Fault> for LibraryError {
     }
 }
 
-/// The place of a leaf page in findings.
+/// Returns the place of a leaf page, as written in findings.
 pub(crate) fn leaf_place(leaf: usize) -> String {
     format!("/leaves/{leaf}")
 }
 
-/// The place of an entry in findings.
+/// Returns the place of an entry, as written in findings.
 pub(crate) fn entry_place(leaf: usize, entry: usize) -> String {
     format!("/leaves/{leaf}/entries/{entry}")
 }

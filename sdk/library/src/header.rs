@@ -7,23 +7,23 @@ use crate::limits::Limits;
 use crate::page::crc32;
 use crate::rules as rule;
 
-/// First bytes of every library. As in PNG, one byte is no ASCII and line ends of both kinds
-/// follow, so that a transfer as text is detected.
+/// First bytes of every library. As in PNG, one byte is not ASCII and both kinds of line ends
+/// follow, so that a transfer in text mode is detected.
 pub const MAGIC: [u8; 8] = *b"\x89HTL\r\n\x1a\n";
-/// Extension of the files of libraries.
+/// File extension of libraries.
 pub const EXTENSION: &str = "htexlib";
 
 pub(crate) const HEADER_BYTES: usize = 128;
 pub(crate) const MAJOR: u16 = 1;
 pub(crate) const MINOR: u16 = 0;
 
-/// Place of the header in findings.
+/// Place of the header, as written in findings.
 const PLACE: &str = "/header";
-/// Names of the parts, in their order.
+/// Names of the parts, in file order.
 const PARTS: [&str; 4] = ["root", "leaves", "shared", "payload"];
 
-/// The header. The parts of a library follow each other without gaps: header, root, leaves, shared,
-/// payload.
+/// The header. The parts of a library follow each other without gaps in this order: header, root,
+/// leaves, shared, payload.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Header {
     pub minor: u16,
@@ -38,12 +38,12 @@ pub(crate) struct Header {
     pub entries: u64,
     /// Number of leaf pages.
     pub leaf_count: u32,
-    /// BLAKE3 of the root and the leaves, as stored.
+    /// BLAKE3 of the root and the leaves as stored in the file.
     pub index_blake3: [u8; 32],
 }
 
 impl Header {
-    /// Reads and checks the header at the start of `bytes`; the file has `file_bytes` bytes.
+    /// Reads and checks the header at the start of `bytes`. `file_bytes` is the size of the file.
     pub(crate) fn read(bytes: &[u8], file_bytes: u64, limits: &Limits) -> Result<Self, Fault> {
         let start = &bytes[..bytes.len().min(MAGIC.len())];
         if start.is_empty() || !MAGIC.starts_with(start) {

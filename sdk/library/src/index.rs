@@ -1,5 +1,5 @@
-//! The index of an open library, without input or output: says where pages and textures are, and
-//! reads their bytes.
+//! The index of an open library. It does no input or output: it says where pages and textures are,
+//! and decodes their bytes.
 
 use std::ops::Range;
 
@@ -16,12 +16,16 @@ use crate::ratio::Ratio;
 use crate::root::Root;
 use crate::rules as rule;
 
-/// The header and the root page of a library.
+/// The header and the root page of an open library.
 ///
-/// A texture is opened in three steps: [`Self::leaf_of`] its name and [`Self::leaf_range`] say
-/// which page of the index to read, [`Self::read_leaf`] finds its entry there, and
-/// [`Self::asset_ranges`] says which bytes [`Self::assemble`] makes the texture of.
-/// [`crate::Library`] does so from a [`crate::LibrarySource`].
+/// A texture is opened in three steps:
+///
+/// 1. [`Self::leaf_of`] its name and [`Self::leaf_range`] say which page of the index to read.
+/// 2. [`Self::read_leaf`] decodes that page, which contains the texture's entry.
+/// 3. [`Self::asset_ranges`] says which bytes to read, and [`Self::assemble`] makes the texture
+///    from them.
+///
+/// [`crate::Library`] does all this with a [`crate::LibrarySource`].
 #[derive(Debug, Clone)]
 pub struct Index {
     header: Header,
@@ -49,13 +53,13 @@ impl Index {
         self.header.entries
     }
 
-    /// Returns the BLAKE3 of the index, which names the library: equal hashes mean equal textures
-    /// under equal names.
+    /// Returns the BLAKE3 of the index, which identifies the library: equal hashes mean equal
+    /// textures with equal names.
     pub fn blake3(&self) -> [u8; 32] {
         self.header.index_blake3
     }
 
-    /// Returns findings that are not errors, such as a newer minor version.
+    /// Returns all findings that are not errors, such as a newer minor version.
     pub fn notes(&self) -> Vec<Finding> {
         let mut findings = Findings::default();
         if self.header.minor > MINOR {
@@ -77,20 +81,20 @@ impl Index {
         self.root.leaves()
     }
 
-    /// Returns the leaf page that has the entry of this name, if any has it.
+    /// Returns the leaf page that may contain the entry with this name; `None` if no page can.
     pub fn leaf_of(&self, name: &str) -> Option<usize> {
         self.root.leaf_of(name.as_bytes())
     }
 
-    /// Returns the bytes of a leaf page in the file; `None` when there is no such page.
+    /// Returns the byte range of a leaf page in the file; `None` if there is no such page.
     pub fn leaf_range(&self, leaf: usize) -> Option<Range<u64>> {
         self.root.leaf(leaf)
     }
 
-    /// Reads the entries of a leaf page from its bytes, sorted by name.
+    /// Decodes the entries of a leaf page from its bytes. They are sorted by name.
     ///
     /// # Errors
-    /// [`LibraryError::Invalid`] when the page breaks a rule.
+    /// [`LibraryError::Invalid`] if the page breaks a rule.
     pub fn read_leaf(&self, leaf: usize, bytes: &[u8]) -> Result<Vec<Entry>, LibraryError> {
         Ok(self.leaf(leaf, bytes)?)
     }
@@ -102,8 +106,8 @@ impl Index {
         reader.read(&page)
     }
 
-    /// Returns the bytes in the file of which a texture is made: its own, and each object that it
-    /// shares.
+    /// Returns the byte ranges of the file that make up a texture: first its own bytes, then each
+    /// object that it shares.
     pub fn asset_ranges(&self, entry: &Entry) -> Vec<Range<u64>> {
         let in_part = |part: &Range<u64>, range: &Range<u64>| {
             part.start.saturating_add(range.start)..part.start.saturating_add(range.end)
@@ -114,11 +118,11 @@ impl Index {
         std::iter::once(own).chain(shared).collect()
     }
 
-    /// Makes a texture of the bytes of its ranges, in the order of [`Self::asset_ranges`], and
-    /// compares them with its hash.
+    /// Assembles a texture from the bytes of its ranges, in the order of [`Self::asset_ranges`],
+    /// and compares the result with the texture's hash.
     ///
     /// # Errors
-    /// [`LibraryError::Invalid`] when the bytes are not those of the texture.
+    /// [`LibraryError::Invalid`] if the bytes do not have the texture's hash.
     pub fn assemble<B: AsRef<[u8]>>(
         &self,
         entry: &Entry,
@@ -132,8 +136,8 @@ impl Index {
     }
 }
 
-/// Puts shared objects among the texture's own bytes; `None` when a part is missing or has another
-/// length.
+/// Inserts the shared objects into the texture's own bytes; `None` if a part is missing or has the
+/// wrong length.
 pub(crate) fn assembled<B: AsRef<[u8]>>(entry: &Entry, parts: &[B]) -> Option<Vec<u8>> {
     let (own, objects) = parts.split_first()?;
     let (own, cuts) = (own.as_ref(), &entry.place.cuts);
@@ -153,7 +157,7 @@ pub(crate) fn assembled<B: AsRef<[u8]>>(entry: &Entry, parts: &[B]) -> Option<Ve
     is_complete.then_some(asset)
 }
 
-/// The texture's bytes are not those of its hash.
+/// Returns the fault for bytes that do not have the texture's hash.
 pub(crate) fn changed(entry: &Entry, place: &str) -> Fault {
     let message = format!(
         "the bytes of {} do not have its hash {}; get the file again",

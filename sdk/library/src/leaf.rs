@@ -1,7 +1,8 @@
-//! A leaf page: the entries of a run of names, column by column.
+//! A leaf page: the entries of a run of names, stored column by column.
 //!
-//! A page has columns: hashes take most of it and cannot be compressed, the rest can. Pages are cut
-//! before compression, so that their size is bounded without trying.
+//! Columns help compression: hashes take most of a page and cannot be compressed, while the other
+//! columns can. A page's entries are chosen before compression, so that its size is bounded without
+//! trial and error.
 
 use htex_format::{Contact, ExponentSource, MOST_EXPONENT};
 
@@ -15,18 +16,19 @@ use crate::root::Root;
 use crate::rules as rule;
 use crate::wire::{Cursor, Malformed};
 
-/// Least bytes of an entry: its hash, three exponents, and one byte in most columns.
+/// Smallest size of an entry, bytes: its hash, three exponents, and one byte in most columns.
 const LEAST_ENTRY_BYTES: usize = 32 + 3 * 8 + 2 + 6;
-/// Most shared objects of a texture: the entries of its archive.
+/// Largest number of shared objects in a texture: the largest number of entries in its archive.
 pub(crate) const MOST_CUTS: usize = 256;
 
-/// Bits of the column of conditions: speed and force are known, and are one number each.
+/// Bits in the column of conditions: whether speed and force are known, and whether each is a
+/// single number.
 pub(crate) const SPEED: u8 = 1;
 pub(crate) const FORCE: u8 = 2;
 pub(crate) const ONE_SPEED: u8 = 4;
 pub(crate) const ONE_FORCE: u8 = 8;
 
-/// Contacts and sources of exponents by their numbers in the column of laws.
+/// Contacts and sources of exponents, at the index that the column of laws uses for them.
 pub(crate) const CONTACTS: [Contact; 3] = [Contact::Finger, Contact::Tool, Contact::Unknown];
 pub(crate) const SOURCES: [ExponentSource; 3] =
     [ExponentSource::Measured, ExponentSource::Given, ExponentSource::Assumed];
@@ -38,7 +40,7 @@ pub(crate) struct LeafReader<'a> {
     pub limits: &'a Limits,
 }
 
-/// The columns of a leaf, before they are checked against the rest of the file.
+/// The columns of a leaf, not yet checked against the rest of the file.
 struct Columns {
     names: Vec<String>,
     tags: Vec<Vec<String>>,
@@ -50,7 +52,7 @@ struct Columns {
 }
 
 impl LeafReader<'_> {
-    /// Reads the unpacked page.
+    /// Decodes the unpacked page.
     pub(crate) fn read(&self, page: &[u8]) -> Result<Vec<Entry>, Fault> {
         let mut cursor = Cursor::new(page);
         let columns =
@@ -114,7 +116,7 @@ impl LeafReader<'_> {
         Ok(())
     }
 
-    /// Checks that the bytes of a texture are in the file. Returns their number.
+    /// Checks that a texture's bytes lie within the file. Returns the texture's size in bytes.
     fn check_place(&self, entry: usize, name: &str, place: &TexturePlace) -> Result<u64, Fault> {
         let (payload, shared) = (length(&self.header.payload), length(&self.header.shared));
         let own = length(&place.own);
@@ -157,7 +159,7 @@ fn column<'a, T>(
     (0..count).map(|_| read(cursor)).collect()
 }
 
-/// Reads the tags and models that the entries of the leaf use.
+/// Reads the tags and models that the leaf's entries use.
 fn words<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<&'a str>, Malformed> {
     let count = cursor.count(1)?;
     let words = column(cursor, count, Cursor::text)?;
@@ -176,7 +178,7 @@ fn names(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<String>, Malformed
     })
 }
 
-/// Reads a list of words.
+/// Reads a list of words, stored as indices into `words`.
 fn chosen(cursor: &mut Cursor<'_>, words: &[&str]) -> Result<Vec<String>, Malformed> {
     let count = cursor.count(1)?;
     if count > MOST_WORDS {
@@ -200,8 +202,8 @@ fn conditions(cursor: &mut Cursor<'_>) -> Result<Conditions, Malformed> {
     Ok(Conditions { speed_mm_s: interval(cursor, speed)?, force_n: interval(cursor, force)? })
 }
 
-/// Reads a contact and a law: a byte with two bits for the contact and for the source of each
-/// exponent, and the exponents.
+/// Reads a contact and a law. The first byte has two bits for the contact and two for the source of
+/// each exponent; the exponents follow.
 fn law(cursor: &mut Cursor<'_>) -> Result<(Contact, IndexedLaw), Malformed> {
     let bits = usize::from(cursor.byte()?);
     let unknown = |cursor: &Cursor<'_>| cursor.malformed("a contact or a source does not exist");
@@ -236,7 +238,8 @@ fn interval(
     Ok(Some(Interval { min, max }))
 }
 
-/// Reads where the textures are: own bytes follow each other, and shared objects are among them.
+/// Reads where the textures are. Their own bytes follow each other, and shared objects are inserted
+/// into them.
 fn places(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<TexturePlace>, Malformed> {
     let mut at = cursor.varint()?;
     let owns = column(cursor, count, |cursor| {
@@ -266,7 +269,7 @@ fn cuts(cursor: &mut Cursor<'_>) -> Result<Vec<Cut>, Malformed> {
     })
 }
 
-/// Reads a number and adds it.
+/// Reads a number and returns its sum with `to`.
 fn sum(cursor: &mut Cursor<'_>, to: u64, problem: &'static str) -> Result<u64, Malformed> {
     let more = cursor.varint()?;
     to.checked_add(more).ok_or(cursor.malformed(problem))

@@ -1,8 +1,9 @@
-//! The `.htexlib` file: thousands of textures in one file, opened one at a time.
+//! Reads, writes and validates `.htexlib` files: thousands of textures in one file, opened one at a
+//! time.
 //!
-//! `spec/htexlib-1.md` is the normative text. The index comes first, sorted by name and in
-//! compressed pages: one texture takes three reads whatever the size of the library, the start of
-//! the file, a page of the index and the texture.
+//! `spec/htexlib-1.md` is the normative text. The index comes first, in compressed pages sorted by
+//! name. So opening one texture takes three reads however large the library is: the start of the
+//! file, a page of the index, and the texture.
 //!
 //! ```
 //! use htex_library::{Library, Writer};
@@ -32,8 +33,8 @@
 //! ```
 //!
 //! With the feature `storage`, `Library::open_located` opens libraries by URI. [`Index`] and
-//! [`Opening`] do no input or output: they state which bytes of the file they need. [`Library`]
-//! reads them from a [`LibrarySource`]; a browser fetches them.
+//! [`Opening`] do no input or output and only say which bytes of the file they need. [`Library`]
+//! reads these bytes from a [`LibrarySource`]; a browser fetches them.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

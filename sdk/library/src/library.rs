@@ -1,4 +1,4 @@
-//! An open library.
+//! An open library, and how textures are read from it.
 
 use std::ops::Range;
 use std::path::Path;
@@ -14,10 +14,10 @@ use crate::opening::{Opening, Progress};
 use crate::ratio::Ratio;
 use crate::source::{LibrarySource, LocalFile};
 
-/// A library of textures, each of which is read when it is asked for.
+/// A library of textures. Each texture is read only on request.
 ///
-/// The page of the index that was used last is kept, so that neighbours by name take one read. One
-/// library may be used from several threads.
+/// The library caches the page of the index that was used last, so that a texture with a
+/// neighbouring name takes one read. A library can be shared between threads.
 ///
 /// ```no_run
 /// let library = htex_library::Library::open("cloth.htexlib".as_ref())?;
@@ -43,7 +43,7 @@ impl Library<LocalFile> {
     /// Opens a local file, within the default [`Limits`].
     ///
     /// # Errors
-    /// When the file cannot be read, or its header or root page breaks a rule.
+    /// If the file cannot be read, or its header or root page breaks a rule.
     pub fn open(path: &Path) -> Result<Self, LibraryError> {
         Self::open_source(LocalFile::open(path)?)
     }
@@ -53,7 +53,7 @@ impl<S: LibrarySource> Library<S> {
     /// Opens a library from any source, within the default [`Limits`].
     ///
     /// # Errors
-    /// As [`Library::open`].
+    /// The errors of [`Library::open`].
     pub fn open_source(source: S) -> Result<Self, LibraryError> {
         Self::open_source_with(source, Limits::default())
     }
@@ -61,7 +61,7 @@ impl<S: LibrarySource> Library<S> {
     /// Opens a library from any source, within the given limits.
     ///
     /// # Errors
-    /// As [`Library::open`].
+    /// The errors of [`Library::open`].
     pub fn open_source_with(source: S, limits: Limits) -> Result<Self, LibraryError> {
         let mut opening = Opening::new(limits);
         loop {
@@ -87,18 +87,18 @@ impl<S: LibrarySource> Library<S> {
         self.index.len()
     }
 
-    /// Whether there is no texture.
+    /// Returns whether the library has no textures.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Returns findings that are not errors, such as a newer minor version.
+    /// Returns all findings that are not errors, such as a newer minor version.
     pub fn notes(&self) -> Vec<Finding> {
         self.index.notes()
     }
 
-    /// Returns a count for reading many textures, by which a small file does not become a large
-    /// folder.
+    /// Returns a counter for reading many textures. It makes sure that a small file cannot unpack
+    /// to a huge folder.
     ///
     /// ```no_run
     /// let library = htex_library::Library::open("cloth.htexlib".as_ref())?;
@@ -118,21 +118,21 @@ impl<S: LibrarySource> Library<S> {
         &self.index
     }
 
-    /// Reads a texture: the bytes of its `.htex` file, which have the hash of its entry.
+    /// Reads a texture by name. Returns the bytes of its `.htex` file, whose hash has been checked.
     ///
     /// # Errors
-    /// [`LibraryError::Absent`] when there is no such texture; when bytes cannot be read or break a
-    /// rule.
+    /// [`LibraryError::Absent`] if there is no such texture, and errors for bytes that cannot be
+    /// read or break a rule.
     pub fn get(&self, name: &str) -> Result<Vec<u8>, LibraryError> {
         let entry =
             self.entry(name)?.ok_or_else(|| LibraryError::Absent { name: name.to_owned() })?;
         self.read(&entry)
     }
 
-    /// Reads the entry of a texture; `None` when there is no such texture.
+    /// Reads the entry of a texture; `None` if there is no such texture.
     ///
     /// # Errors
-    /// When the page cannot be read or breaks a rule.
+    /// If the page cannot be read or breaks a rule.
     pub fn entry(&self, name: &str) -> Result<Option<Entry>, LibraryError> {
         let Some(leaf) = self.index.leaf_of(name) else {
             return Ok(None);
@@ -142,11 +142,11 @@ impl<S: LibrarySource> Library<S> {
         Ok(found.ok().map(|i| entries[i].clone()))
     }
 
-    /// Reads the entries of a leaf page of the index, counted from 0, sorted by name; `None` when
-    /// there is no such page.
+    /// Reads the entries of a leaf page of the index, sorted by name. Pages are counted from 0;
+    /// `None` if there is no such page.
     ///
     /// # Errors
-    /// When the page cannot be read or breaks a rule.
+    /// If the page cannot be read or breaks a rule.
     pub fn leaf_entries(&self, leaf: usize) -> Result<Option<Arc<Vec<Entry>>>, LibraryError> {
         if leaf >= self.index.leaves() {
             return Ok(None);
@@ -154,10 +154,10 @@ impl<S: LibrarySource> Library<S> {
         self.leaf(leaf).map(Some)
     }
 
-    /// Reads the texture of an entry of this library.
+    /// Reads the texture of an entry, which must come from this library.
     ///
     /// # Errors
-    /// As [`Self::get`].
+    /// The errors of [`Self::get`].
     pub fn read(&self, entry: &Entry) -> Result<Vec<u8>, LibraryError> {
         let ranges = self.index.asset_ranges(entry).into_iter();
         let parts: Result<Vec<_>, _> = ranges.map(|range| self.read_range(range)).collect();
@@ -169,7 +169,7 @@ impl<S: LibrarySource> Library<S> {
         Entries { library: self, next_leaf: 0, entries: Arc::default(), next: 0 }
     }
 
-    /// Reads the entries of a leaf page, or takes them if they were read last.
+    /// Returns the entries of a leaf page. Reads the page unless it is the one that was read last.
     fn leaf(&self, number: usize) -> Result<Arc<Vec<Entry>>, LibraryError> {
         let recent = || self.recent.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(leaf) = recent().as_ref().filter(|leaf| leaf.number == number) {
@@ -195,8 +195,8 @@ impl<S: LibrarySource> Library<S> {
     }
 }
 
-/// Reads a range, or less at the end of the file. Ranges of an opened library are within its
-/// limits.
+/// Reads a range, or less at the end of the file. Once a library is open, its ranges have been
+/// checked against its limits.
 fn read_up_to(source: &impl LibrarySource, range: Range<u64>) -> Result<Vec<u8>, LibraryError> {
     let length = usize::try_from(range.end - range.start)
         .map_err(|error| failed(&range, std::io::Error::other(error)))?;
@@ -213,7 +213,7 @@ fn failed(range: &Range<u64>, error: std::io::Error) -> LibraryError {
     LibraryError::Read { at: range.start, length: range.end - range.start, error }
 }
 
-/// The entries of a library, sorted by name. After an error there are no more.
+/// The entries of a library, sorted by name. The iterator ends after an error.
 #[derive(Debug)]
 pub struct Entries<'a, S = LocalFile> {
     library: &'a Library<S>,

@@ -1,6 +1,6 @@
-//! Limits on libraries that are not trusted.
+//! Limits for reading untrusted libraries.
 
-/// Limits of reading, each checked before the bytes it bounds are read or unpacked.
+/// Limits for reading. Each is checked before the bytes that it limits are read or unpacked.
 ///
 /// ```
 /// use htex_library::{Limits, validate_source};
@@ -10,20 +10,20 @@
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
-    /// Textures of the library: 16,777,216.
+    /// Number of textures in the library: 16,777,216.
     pub entries: u64,
-    /// Leaf pages of the index: 65,536.
+    /// Number of leaf pages in the index: 65,536.
     pub leaves: u64,
-    /// Bytes of the root page when unpacked: 1 MiB.
+    /// Size of the root page when unpacked, bytes: 1 MiB.
     pub root_bytes: u64,
-    /// Bytes of a leaf page when unpacked: 64 KiB.
+    /// Size of a leaf page when unpacked, bytes: 64 KiB.
     pub leaf_bytes: u64,
-    /// Bytes of a texture: 16 MiB, as of a `.htex` file.
+    /// Size of a texture, bytes: 16 MiB, the limit of a `.htex` file.
     pub asset_bytes: u64,
-    /// Different shared objects: 1,048,576. Only validation counts them.
+    /// Number of different shared objects: 1,048,576. Only validation counts them.
     pub objects: u64,
-    /// Ratio of the bytes of all textures to the bytes of the file: 1,000. Whoever reads them all,
-    /// to validate or to unpack, sums them up ([`crate::Ratio`]).
+    /// Ratio of the size of all textures to the size of the file: 1,000. It applies when a program
+    /// reads all textures, to validate or to unpack them ([`crate::Ratio`]).
     pub ratio: u64,
 }
 

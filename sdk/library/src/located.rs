@@ -1,4 +1,4 @@
-//! Libraries by path or URI.
+//! Opens libraries by path or URI.
 
 use std::io;
 
@@ -9,22 +9,24 @@ use crate::library::Library;
 use crate::opening::FIRST_READ;
 use crate::source::{LibrarySource, LocalFile};
 
-/// A file of this machine, or one elsewhere, of which only the ranges are read that are asked for.
+/// A local or remote file, of which only the requested ranges are read.
 #[derive(Debug)]
 pub enum Located {
-    /// A file of this machine.
+    /// A local file.
     File(LocalFile),
-    /// A file of a web server or an object store.
+    /// A file on a web server or in an object store.
     Elsewhere(Box<Remote>),
 }
 
 impl Library<Located> {
-    /// Opens a library by path or URI, within the default [`Limits`](crate::Limits). Opening one
-    /// texture of a file elsewhere takes three requests: the start of the file, a page of the
-    /// index, the texture; a library whose index fits into the start takes two.
+    /// Opens a library by path or URI, within the default [`Limits`](crate::Limits).
+    ///
+    /// Opening one texture of a remote file takes three requests: the start of the file, a page of
+    /// the index, and the texture. If the whole index fits into the start of the file, it takes
+    /// two.
     ///
     /// # Errors
-    /// As [`Library::open`]; [`LibraryError::Storage`].
+    /// The errors of [`Library::open`], and [`LibraryError::Storage`].
     ///
     /// ```
     /// use htex_library::Library;
@@ -55,8 +57,8 @@ impl Located {
         Ok(Self::Elsewhere(Box::new(remote)))
     }
 
-    /// Returns the requests to a server so far, and the bytes that they brought; `None` of a file
-    /// of this machine.
+    /// Returns the number of requests to the server so far and the bytes received; `None` for a
+    /// local file.
     pub fn usage(&self) -> Option<htex_storage::Usage> {
         match self {
             Self::File(_) => None,

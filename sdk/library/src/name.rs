@@ -1,4 +1,4 @@
-//! Rules of the names of textures: each is also a relative path of a file, on every system.
+//! Rules for the names of textures. Each name is also a valid relative file path on every system.
 
 use std::collections::BTreeSet;
 
@@ -8,16 +8,18 @@ use icu_normalizer::DecomposingNormalizer;
 
 use crate::wire::TEXT_BYTES;
 
-/// Ending of a texture's file.
+/// File extension of a texture.
 const ENDING: &str = ".htex";
-/// Most bytes of a part: with [`ENDING`] the 255 that file systems allow in a file's name.
+/// Largest length of a part, bytes. With [`ENDING`] it is 255, the limit of file systems for a file
+/// name.
 const PART_BYTES: usize = 255 - ENDING.len();
-/// Names of devices of Windows, under which no file can be written.
+/// Device names of Windows. No file can have one of these names.
 const DEVICES: [&str; 6] = ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$"];
-/// The same, followed by a digit or a superscript 1, 2 or 3, which Windows takes for digits.
+/// Device names that are followed by a digit, or by a superscript 1, 2 or 3, which Windows treats
+/// as digits.
 const NUMBERED_DEVICES: [&str; 2] = ["COM", "LPT"];
 
-/// Error: a text is not a name of a texture.
+/// Why a text is not a valid name of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidName {
@@ -33,25 +35,25 @@ pub enum InvalidName {
     /// A part between slashes is empty, `.` or `..`.
     #[error("a part of it is empty, `.` or `..`; write the parts with one `/` between them")]
     Part,
-    /// A part is too long for the name of a file.
+    /// A part is too long for a file name.
     #[error("a part of it has {0} bytes and the most is 250; shorten it")]
     LongPart(usize),
-    /// A folder has the name of a texture's file.
+    /// A folder has a name that ends like a texture's file.
     #[error("a part of it before a `/` ends in .htex, as a texture's file; rename it")]
     Folder,
     /// A part ends in a space or a dot, which Windows removes.
     #[error("a part of it ends in a space or a dot; remove it")]
     End,
-    /// A part is a device of Windows.
+    /// A part is a device name of Windows.
     #[error("a part of it is a device of Windows, such as CON or COM1; rename it")]
     Device,
 }
 
-/// Checks a name: up to 255 bytes of UTF-8, parts separated by `/`, so that every name is a
-/// relative path of a file.
+/// Checks the name of a texture: up to 255 bytes of UTF-8 whose parts are separated by `/`, so that
+/// every name is a relative file path.
 ///
 /// # Errors
-/// The rule that it breaks.
+/// The rule that the name breaks.
 ///
 /// ```
 /// use htex_library::check_name;
@@ -74,16 +76,17 @@ pub fn check_name(name: &str) -> Result<(), InvalidName> {
     if folders.any(has_ending) { Err(InvalidName::Folder) } else { Ok(()) }
 }
 
-/// Returns what names of one file have in common on systems that ignore case or compare names after
-/// normalisation: two names are a canonical caseless match (The Unicode Standard, definition D145)
-/// if these are equal.
+/// Returns a form of the name that is equal for two names if some system treats them as the same
+/// file, because it ignores case or compares names after normalisation. It is equal exactly for a
+/// canonical caseless match (The Unicode Standard, definition D145).
 fn of_one_file(name: &str) -> String {
     let decomposed = DecomposingNormalizer::new_nfd();
     let folded = |text: &str| CaseMapper::new().fold_string(text).into_owned();
     decomposed.normalize(&folded(&decomposed.normalize(name))).into_owned()
 }
 
-/// The first 16 bytes of the hash of [`of_one_file`]: a library may have millions of names.
+/// Returns the first 16 bytes of the hash of [`of_one_file`]. The whole text is not kept because a
+/// library may have millions of names.
 pub(crate) fn file_key(name: &str) -> [u8; 16] {
     let mut start = [0; 16];
     let mut hasher = blake3::Hasher::new();
@@ -92,8 +95,8 @@ pub(crate) fn file_key(name: &str) -> [u8; 16] {
     start
 }
 
-/// Names of textures that are different files on every system. Packing, validating and unpacking
-/// compare names by it.
+/// A set of texture names that are different files on every system. Packing, validating and
+/// unpacking all compare names with it.
 ///
 /// ```
 /// let mut names = htex_library::Names::default();
@@ -106,15 +109,15 @@ pub struct Names {
 }
 
 impl Names {
-    /// Adds a name. Returns false if some system takes it and a name before for one file: they
-    /// differ in case or in Unicode's normalisation only.
+    /// Adds a name. Returns false if some system would treat it and an earlier name as the same
+    /// file, because they differ only in case or in Unicode normalisation.
     pub fn insert(&mut self, name: &str) -> bool {
         self.seen.insert(file_key(name))
     }
 }
 
-/// Checks the name of a library: up to 255 bytes of UTF-8 without characters that steer a terminal;
-/// it may be empty.
+/// Checks the name of a library: up to 255 bytes of UTF-8 without characters that control a
+/// terminal. It may be empty.
 pub(crate) fn check_library_name(name: &str) -> Result<(), InvalidName> {
     if name.len() > TEXT_BYTES {
         return Err(InvalidName::TooLong(name.len()));
@@ -143,8 +146,8 @@ fn check_part(part: &str) -> Result<(), InvalidName> {
     Ok(())
 }
 
-/// Whether a part is a device of Windows, with or without an extension. Windows ignores spaces
-/// before the extension.
+/// Returns whether a part is a device name of Windows, with or without an extension. Windows
+/// ignores spaces before the extension.
 fn is_device(part: &str) -> bool {
     let stem = part.split('.').next().unwrap_or(part).trim_end_matches(' ');
     let is = |stem: &str, names: &[&str]| names.iter().any(|name| stem.eq_ignore_ascii_case(name));
@@ -201,7 +204,7 @@ mod tests {
             ("K", "\u{212a}"),
             ("Å", "\u{212b}"),
             ("CAFÉ", "cafe\u{301}"),
-            // A fold whose decomposition is in another order.
+            // A folded character whose decomposition has another order.
             ("\u{1fb3}\u{301}", "\u{3b1}\u{301}\u{345}"),
         ] {
             let mut names = Names::default();

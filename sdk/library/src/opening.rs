@@ -1,4 +1,4 @@
-//! Opening of a library without input or output: says which bytes it needs next.
+//! Opens a library without doing input or output: it says which bytes it needs next.
 
 use std::ops::Range;
 
@@ -11,10 +11,11 @@ use crate::page;
 use crate::root::{PLACE, Root};
 use crate::rules as rule;
 
-/// Bytes of the first read: header and root page of all but huge libraries.
+/// Size of the first read, bytes. It contains the header and the root page of all but huge
+/// libraries.
 pub const FIRST_READ: u64 = 16 << 10;
 
-/// A library that is being opened: bytes are given to it until it is an [`Index`].
+/// A library that is being opened. The caller gives it bytes until it becomes an [`Index`].
 ///
 /// ```
 /// use htex_library::{Index, LibraryError, Limits, Opening, Progress};
@@ -36,12 +37,12 @@ pub const FIRST_READ: u64 = 16 << 10;
 #[derive(Debug)]
 pub struct Opening {
     limits: Limits,
-    /// The start of the file, as far as it was given.
+    /// The start of the file, as far as the caller has given it.
     start: Vec<u8>,
     header: Option<Header>,
 }
 
-/// What follows after bytes were given.
+/// The result of giving bytes.
 #[derive(Debug)]
 pub enum Progress {
     /// More bytes are needed: [`Opening::wanted`].
@@ -51,12 +52,13 @@ pub enum Progress {
 }
 
 impl Opening {
-    /// Starts to open a library.
+    /// Starts opening a library.
     pub fn new(limits: Limits) -> Self {
         Self { limits, start: Vec::new(), header: None }
     }
 
-    /// Returns the bytes of the file that are needed next. The file may end before them.
+    /// Returns which bytes of the file are needed next. The file may end before the end of this
+    /// range.
     pub fn wanted(&self) -> Range<u64> {
         let have = self.start.len() as u64;
         match &self.header {
@@ -65,11 +67,11 @@ impl Opening {
         }
     }
 
-    /// Takes the wanted bytes; fewer when the file ends before them. `file_bytes` is the length of
-    /// the whole file.
+    /// Takes the wanted bytes, or fewer if the file ends earlier. `file_bytes` is the length of the
+    /// whole file.
     ///
     /// # Errors
-    /// [`LibraryError::Invalid`] when the header or the root page breaks a rule.
+    /// [`LibraryError::Invalid`] if the header or the root page breaks a rule.
     pub fn give(mut self, bytes: &[u8], file_bytes: u64) -> Result<Progress, LibraryError> {
         let wanted = self.wanted();
         let most = usize::try_from(wanted.end - wanted.start).unwrap_or(usize::MAX);
@@ -98,7 +100,7 @@ impl Opening {
     }
 
     fn read_root(&self, header: Header) -> Result<Index, Fault> {
-        // The root was given up to its end, which is within the memory of this machine.
+        // The bytes up to the end of the root are in memory, so the end fits into `usize`.
         let packed = self.start.get(HEADER_BYTES..header.root.end as usize).unwrap_or_default();
         let root = page::unpack(packed, self.limits.root_bytes, PLACE)?;
         let root = Root::read(&root, &header, self.limits.leaf_bytes)?;

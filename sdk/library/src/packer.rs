@@ -1,4 +1,8 @@
-//! Textures that are gathered, and the library that they become.
+//! Packs textures into a library.
+//!
+//! Which modules are shared is only known after the last texture. So textures are spooled when they
+//! are added, and the library is written when it is finished. It is written in order of names and
+//! hashes, never in the order of adding, so that the same textures always give the same file.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
@@ -21,18 +25,19 @@ use crate::wire::TEXT_BYTES;
 
 /// The textures of a library that is being written.
 pub(crate) struct Packer<S> {
-    /// The file, for errors; empty for one in memory.
+    /// Path of the file, for error messages; empty for a library in memory.
     path: PathBuf,
     name: String,
     spool: Spool<S>,
-    /// The textures by name.
+    /// The textures by name. The map sorts them, as the index and the payload need them.
     added: BTreeMap<String, Added>,
-    /// Their names, by what names have in common where case does not count.
-    /// The name of each file, by [`file_key`].
+    /// The name of each texture by its [`file_key`], to find names that are the same file on some
+    /// systems.
     files: BTreeMap<[u8; 16], String>,
-    /// Different tags and models, which many textures have in common.
+    /// Distinct sets of tags and models. Many textures have the same set, so each is in memory only
+    /// once.
     words: BTreeSet<Arc<Words>>,
-    /// Textures without a licence are packed, too.
+    /// Whether textures without a licence may be packed.
     pub(crate) allows_unlicensed: bool,
 }
 
@@ -43,7 +48,7 @@ struct Words {
     models: Vec<String>,
 }
 
-/// A texture that was added.
+/// What is kept in memory for a texture that was added.
 struct Added {
     words: Arc<Words>,
     conditions: Conditions,
@@ -54,26 +59,27 @@ struct Added {
     spooled: Spooled,
 }
 
-/// What was written.
+/// Numbers about a library that was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Packed {
-    /// Textures of the library.
+    /// Number of textures.
     pub entries: u64,
-    /// Bytes of the file.
+    /// Size of the file, bytes.
     pub bytes: u64,
-    /// Bytes of the header and the index.
+    /// Size of the header and the index together, bytes.
     pub index_bytes: u64,
-    /// Objects that several textures share.
+    /// Number of objects that several textures share.
     pub shared_objects: u64,
-    /// Bytes that are not in the file because textures share them.
+    /// Bytes that the file does not need because textures share objects.
     pub saved_bytes: u64,
-    /// BLAKE3 of the index, which names the library.
+    /// BLAKE3 of the index, which identifies the library.
     pub blake3: [u8; 32],
 }
 
 impl<S: Store> Packer<S> {
-    /// Starts a library of this name, whose textures are kept in a store.
+    /// Starts a library with this name. Textures are spooled to `store` until the library is
+    /// written.
     pub(crate) fn new(path: &Path, name: &str, store: S) -> Result<Self, LibraryError> {
         check_library_name(name)
             .map_err(|problem| LibraryError::Name { name: name.to_owned(), problem })?;
@@ -121,7 +127,7 @@ impl<S: Store> Packer<S> {
         Ok(())
     }
 
-    /// Returns the tags and models, once for all textures with the same.
+    /// Returns these tags and models in one allocation that all textures with the same ones share.
     fn common_words(&mut self, tags: Vec<String>, models: Vec<String>) -> Arc<Words> {
         let words = Arc::new(Words { tags, models });
         if let Some(known) = self.words.get(&words) {
@@ -131,7 +137,7 @@ impl<S: Store> Packer<S> {
         words
     }
 
-    /// Refuses textures without a licence, which nobody but who made them may pass on.
+    /// Refuses textures without a licence. Only the people who made them may pass them on.
     fn check_licences(&self) -> Result<(), LibraryError> {
         let mut unlicensed = self.added.iter().filter(|(_, texture)| !texture.is_licensed);
         match unlicensed.next() {
@@ -142,7 +148,7 @@ impl<S: Store> Packer<S> {
         }
     }
 
-    /// Writes the library.
+    /// Writes the library to `target`.
     pub(crate) fn finish(self, target: &mut impl Write) -> Result<Packed, LibraryError> {
         self.check_licences()?;
         let Self { path, name, spool, added, .. } = self;
@@ -162,7 +168,7 @@ impl<S: Store> Packer<S> {
     }
 }
 
-/// Adds the file, which stays as it was, to an error of writing it.
+/// Turns an input or output error into one that names the file and says that it is unchanged.
 pub(crate) trait Unchanged<T> {
     fn unchanged(self, path: &Path) -> Result<T, LibraryError>;
 }
@@ -187,9 +193,11 @@ fn check_words(name: &str, what: &str, words: &[String]) -> Result<(), LibraryEr
     Err(LibraryError::Limit { name: name.to_owned(), problem })
 }
 
-/// Encodes the index. Returns the header, root and leaves, and the bytes of all textures.
+/// Encodes the index. Returns the header, the root and leaves, and the total size of all textures.
 fn index(name: &str, added: &BTreeMap<String, Added>, sharing: &Sharing) -> (Header, Vec<u8>, u64) {
     let (mut pages, mut payload, mut total) = (Pages::default(), 0, 0);
+    // Own bytes of the textures follow each other in the order of names. `write` copies them in the
+    // same order.
     for (name, texture) in added {
         let place = sharing.place(&texture.spooled, payload);
         payload = place.own.end;
@@ -209,6 +217,7 @@ fn index(name: &str, added: &BTreeMap<String, Added>, sharing: &Sharing) -> (Hea
         });
     }
     let (root, leaves, leaf_count) = pages.finish(name);
+    // The parts follow each other without gaps, so each begins where the one before ends.
     let mut end = HEADER_BYTES as u64;
     let mut part = |bytes: u64| {
         let start = end;
@@ -229,7 +238,8 @@ fn index(name: &str, added: &BTreeMap<String, Added>, sharing: &Sharing) -> (Hea
     (header, index, total)
 }
 
-/// Everything that is written can be read within the default limits.
+/// Checks the limits of readers, so that every library that is written can be read within the
+/// default limits.
 fn check_limits(name: &str, header: &Header, total: u64) -> Result<(), LibraryError> {
     let limits = Limits::default();
     let problem = if header.entries > limits.entries || u64::from(header.leaf_count) > limits.leaves
@@ -265,6 +275,8 @@ fn write(
 ) -> io::Result<()> {
     target.write_all(&header.to_bytes())?;
     target.write_all(index)?;
+    // In this order `sharing` assigned the places of the objects, and `index` those of the
+    // textures.
     for object in sharing.objects() {
         spool.copy(object, target)?;
     }

@@ -1,20 +1,20 @@
-//! The frame of a page: checksum, unpacked length, deflate stream.
+//! The frame around a page: checksum, unpacked length, deflate stream.
 
 use flate2::{Crc, Decompress, FlushDecompress, Status};
 
 use crate::fault::Fault;
 use crate::rules as rule;
 
-/// Bytes of the frame before the stream.
+/// Size of the frame before the stream, bytes.
 const FRAME_BYTES: usize = 8;
 
-/// Returns the most bytes that a page takes in the file: a deflate stream grows by a few bytes per
-/// block at worst.
+/// Returns the largest size that a page can have in the file. At worst, a deflate stream grows by a
+/// few bytes per block.
 fn most_packed(unpacked: u64) -> u64 {
     (unpacked + unpacked / 64 + 64).saturating_add(FRAME_BYTES as u64)
 }
 
-/// Unpacks a page, of at most `most` bytes.
+/// Unpacks a page of at most `most` unpacked bytes.
 pub(crate) fn unpack(page: &[u8], most: u64, place: &str) -> Result<Vec<u8>, Fault> {
     let corrupt = |problem: &str| {
         let message = format!("the page is damaged: {problem}; get the file again");
@@ -46,7 +46,8 @@ fn check_size(size: u64, most: u64, place: &str) -> Result<(), Fault> {
     Err(Fault::new(rule::LIBRARY_PAGE_TOO_LARGE, place, message))
 }
 
-/// Compares the size of a page in the file with the limit of its unpacked size, `most`.
+/// Compares the size of a page in the file with the size that follows from `most`, the limit of its
+/// unpacked size.
 pub(crate) fn check_packed_size(size: u64, most: u64, place: &str) -> Result<(), Fault> {
     if size <= most_packed(most) {
         return Ok(());
@@ -57,8 +58,8 @@ pub(crate) fn check_packed_size(size: u64, most: u64, place: &str) -> Result<(),
     Err(Fault::new(rule::LIBRARY_PAGE_TOO_LARGE, place, message))
 }
 
-/// The checksum of pages and of the header, of the inflater: its tables are in every program that
-/// reads a library.
+/// Computes the CRC-32 of pages and of the header with the inflater's implementation, whose tables
+/// are already in every program that reads a library.
 pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = Crc::new();
     crc.update(bytes);
@@ -66,7 +67,7 @@ pub(crate) fn crc32(bytes: &[u8]) -> u32 {
 }
 
 fn inflate(stream: &[u8], size: usize) -> Result<Vec<u8>, &'static str> {
-    // One byte more than stated, to detect a longer stream.
+    // One byte more than stated, to detect a stream that is longer than stated.
     let mut bytes = vec![0; size + 1];
     let mut inflater = Decompress::new(false);
     let status = inflater
@@ -97,7 +98,7 @@ pub(crate) fn pack(contents: &[u8]) -> Vec<u8> {
     page
 }
 
-/// zlib-rs chooses the same matches on every processor.
+/// Compresses with zlib-rs, which chooses the same matches on every processor.
 #[cfg(feature = "write")]
 fn deflate(contents: &[u8]) -> Vec<u8> {
     use flate2::{Compress, Compression, FlushCompress};
@@ -108,7 +109,7 @@ fn deflate(contents: &[u8]) -> Vec<u8> {
         let rest = contents.get(consumed..).unwrap_or_default();
         match deflater.compress_vec(rest, &mut stream, FlushCompress::Finish) {
             Ok(flate2::Status::StreamEnd) => return stream,
-            // The stream needs more memory than expected; no input is an error.
+            // The stream needs more memory than expected. No input can cause an error here.
             _ => stream.reserve(1024),
         }
     }

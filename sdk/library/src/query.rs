@@ -1,10 +1,11 @@
-//! Search among entries.
+//! Search for textures by their entries.
 
 use htex_format::Condition;
 
 use crate::entry::{Entry, Interval};
 
-/// What a texture must have to be found; what is `None` or empty is not asked for.
+/// A search query: what a texture must have to be found. Fields that are `None` or empty are not
+/// checked.
 ///
 /// ```no_run
 /// use htex_library::{Library, Query};
@@ -20,21 +21,21 @@ use crate::entry::{Entry, Interval};
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Query {
-    /// Words that are parts of the name or of a tag, without case; all of them must be found.
+    /// Words that must all occur in the name or in a tag, ignoring case.
     pub words: Vec<String>,
-    /// Tags that the texture has, without case.
+    /// Tags that the texture must have, ignoring case.
     pub tags: Vec<String>,
-    /// A speed among the recorded ones, mm/s; within 5 % of one of them where it is beyond
+    /// Speed, mm/s, that must lie in the recorded range, or outside it by at most 5 %
     /// ([`htex_format::SAME_CONDITION`]).
     pub speed_mm_s: Option<f64>,
-    /// A force among the recorded ones, newtons; as for the speed.
+    /// Force, newtons, with the same tolerance as the speed.
     pub force_n: Option<f64>,
-    /// Id of a model that describes the texture, or its last part.
+    /// Id of a model that describes the texture, or the last part of the id.
     pub model: Option<String>,
 }
 
 impl Query {
-    /// Whether the texture has all that is asked for.
+    /// Returns whether the texture has everything that the query asks for.
     pub fn matches(&self, entry: &Entry) -> bool {
         let (name, tags) = (caseless(&entry.name), entry.tags.iter().map(|tag| caseless(tag)));
         let tags: Vec<String> = tags.collect();
@@ -51,7 +52,7 @@ impl Query {
     }
 }
 
-/// A text without its case, for searches.
+/// Returns a text in a form that ignores case, for searches.
 fn caseless(text: &str) -> String {
     text.to_uppercase()
 }

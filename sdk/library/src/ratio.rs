@@ -1,12 +1,13 @@
-//! The limit of all textures together: a small file must not become a large folder.
+//! Limits the size of all textures together, so that a small file cannot unpack to a huge folder.
 
 use crate::entry::Entry;
 use crate::error::LibraryError;
 use crate::fault::Fault;
 use crate::rules as rule;
 
-/// Counts the bytes of textures that are read one after another, against [`crate::Limits::ratio`]
-/// times the bytes of the file. Whoever reads all of them, to check or to unpack, counts first.
+/// Adds up the bytes of textures that are read one after another, and compares them with
+/// [`crate::Limits::ratio`] times the bytes of the file. A program that reads all textures, to
+/// check or to unpack them, must count each one first.
 #[derive(Debug, Clone)]
 pub struct Ratio {
     file_bytes: u64,
@@ -19,10 +20,10 @@ impl Ratio {
         Self { file_bytes, most_ratio, total: 0 }
     }
 
-    /// Counts a texture that is about to be read.
+    /// Counts a texture before it is read.
     ///
     /// # Errors
-    /// [`LibraryError::Invalid`] when all so far are larger than the limit.
+    /// [`LibraryError::Invalid`] if all textures so far exceed the limit.
     pub fn add(&mut self, entry: &Entry) -> Result<(), LibraryError> {
         Ok(self.count(entry, "")?)
     }

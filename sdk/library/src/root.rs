@@ -1,7 +1,7 @@
 //! The root page: the library's name, and for every leaf page its first name and its length.
 //!
-//! The root page of a million textures is within the first 16 KiB of a file, so that the first read
-//! has it.
+//! The root page of a million textures fits into the first 16 KiB of the file, so that the first
+//! read contains it.
 
 use std::ops::Range;
 
@@ -12,21 +12,22 @@ use crate::page;
 use crate::rules as rule;
 use crate::wire::Cursor;
 
-/// Place of the root page in findings.
+/// Place of the root page, as written in findings.
 pub(crate) const PLACE: &str = "/root";
 
 #[derive(Debug, Clone)]
 pub(crate) struct Root {
     /// Name of the library.
     pub name: String,
-    /// A text for each leaf: not above its names, and above all names of the leaves before it.
+    /// A separator for each leaf. It does not sort after any name of the leaf, and sorts after all
+    /// names of the leaves before.
     separators: Texts,
-    /// Offsets of the leaves in the file; the last is the end.
+    /// Offsets of the leaves in the file, followed by the end of the last leaf.
     offsets: Vec<u64>,
 }
 
 impl Root {
-    /// Reads the unpacked page.
+    /// Decodes the unpacked page.
     pub(crate) fn read(page: &[u8], header: &Header, leaf_bytes: u64) -> Result<Self, Fault> {
         let mut cursor = Cursor::new(page);
         let malformed = |m| Fault::page(PLACE, m);
@@ -55,12 +56,12 @@ impl Root {
         self.separators.len()
     }
 
-    /// Returns the place of a leaf in the file.
+    /// Returns the byte range of a leaf in the file.
     pub(crate) fn leaf(&self, leaf: usize) -> Option<Range<u64>> {
         Some(*self.offsets.get(leaf)?..*self.offsets.get(leaf + 1)?)
     }
 
-    /// Returns the leaf that has the name, if any has it.
+    /// Returns the leaf that contains the name, if any leaf does.
     pub(crate) fn leaf_of(&self, name: &[u8]) -> Option<usize> {
         let count = self.leaves();
         let (mut low, mut high) = (0, count);
@@ -75,14 +76,15 @@ impl Root {
         low.checked_sub(1)
     }
 
-    /// Returns the least name that a leaf may have, and the least one that it must not have.
+    /// Returns the smallest name that a leaf may contain, and the smallest name that belongs to the
+    /// next leaf (`None` for the last leaf).
     pub(crate) fn bounds(&self, leaf: usize) -> (&[u8], Option<&[u8]>) {
         let low = self.separators.get(leaf).unwrap_or_default();
         (low, self.separators.get(leaf + 1))
     }
 }
 
-/// Reads the lengths of the leaves.
+/// Reads the lengths of the leaves and returns their offsets.
 fn offsets(
     cursor: &mut Cursor<'_>,
     count: usize,
@@ -107,7 +109,7 @@ fn offsets(
     Err(Fault::new(rule::LIBRARY_HEADER_INVALID, PLACE, message))
 }
 
-/// Sorted texts in one buffer.
+/// Sorted texts, all in one buffer.
 #[derive(Debug, Clone)]
 struct Texts {
     bytes: Vec<u8>,
@@ -115,7 +117,7 @@ struct Texts {
 }
 
 impl Texts {
-    /// Reads `count` texts, the first of them empty and each above the one before.
+    /// Reads `count` texts. The first must be empty, and each must sort after the one before.
     fn read(cursor: &mut Cursor<'_>, count: usize) -> Result<Self, Fault> {
         let (mut bytes, mut ends) = (Vec::new(), Vec::with_capacity(count));
         let mut text = Vec::new();

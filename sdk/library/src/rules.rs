@@ -1,4 +1,4 @@
-//! The rules of validation of libraries, in one table.
+//! The validation rules for libraries, in one table.
 
 use htex_finding::{rule_table, rules_page};
 

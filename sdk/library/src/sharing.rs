@@ -1,6 +1,8 @@
-//! Which embedded modules textures share, and where their bytes are then.
+//! Decides which embedded modules are shared between textures, and where their bytes go.
 //!
-//! What several textures embed is found by its hash while a library is written, and stored once.
+//! While a library is written, modules that several textures embed are found by their hash and
+//! stored only once. A module that only one texture embeds stays among that texture's own bytes,
+//! because sharing it would save nothing.
 
 use std::ops::Range;
 
@@ -8,20 +10,19 @@ use crate::entry::{Cut, TexturePlace};
 use crate::leaf::{MOST_CUTS, length};
 use crate::spool::{Module, Spooled};
 
-/// The modules of all textures, and which of them are shared objects: those that occur more than
-/// once.
+/// The modules of all textures. Those that occur more than once are the shared objects.
 pub(crate) struct Sharing {
     modules: Vec<Module>,
-    /// Place of each module in the shared part; `None` for one that only one texture has.
+    /// Place of each module in the shared part; `None` if only one texture has it.
     places: Vec<Option<Range<u64>>>,
-    /// Indices of the shared modules, in the order of the file.
+    /// Indices of the shared modules, in file order.
     shared: Vec<usize>,
     bytes: u64,
 }
 
 impl Sharing {
-    /// Decides which modules are shared. Their order is that of their hashes, whatever the order of
-    /// adding.
+    /// Decides which modules are shared. They are sorted by their hashes, so that the file does not
+    /// depend on the order in which textures were added.
     pub(crate) fn of(modules: Vec<Module>) -> Self {
         let mut shared: Vec<usize> = (0..modules.len()).filter(|i| modules[*i].uses > 1).collect();
         shared.sort_by_key(|i| modules[*i].blake3);
@@ -34,27 +35,30 @@ impl Sharing {
         Self { modules, places, shared, bytes }
     }
 
-    /// Returns the bytes of the shared part.
+    /// Returns the size of the shared part, bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// Returns the bytes that are not in the file because they are shared.
+    /// Returns how many bytes the file does not need because modules are shared.
     pub(crate) fn saved_bytes(&self) -> u64 {
         let modules = self.shared.iter().map(|i| &self.modules[*i]);
         modules.map(|m| length(&m.at) * (m.uses - 1)).sum()
     }
 
-    /// Returns where in the spool the shared objects are, in the order of the file.
+    /// Returns the ranges of the shared objects in the spool, in file order.
     pub(crate) fn objects(&self) -> impl ExactSizeIterator<Item = Range<u64>> + '_ {
         self.shared.iter().map(|i| self.modules[*i].at.clone())
     }
 
-    /// Returns where the bytes of a texture will be; its own begin at `start` of the payload.
+    /// Returns where the texture's bytes will be in the file. Its own bytes begin at `start` in the
+    /// payload.
     pub(crate) fn place(&self, spooled: &Spooled, start: u64) -> TexturePlace {
         let (mut inlined, mut cuts) = (0, Vec::new());
         for (at, module) in &spooled.modules {
             let module = *module as usize;
+            // In the spool, own bytes exclude all modules. In the file they include the modules
+            // that only this texture has, so a cut lies further on by the size of those before it.
             match &self.places[module] {
                 Some(object) => {
                     cuts.push(Cut { at: u64::from(*at) + inlined, object: object.clone() })
@@ -62,18 +66,20 @@ impl Sharing {
                 None => inlined += length(&self.modules[module].at),
             }
         }
-        // An archive has at most as many entries, of which modules are some.
+        // Modules are entries of the archive, whose number has the same limit.
         debug_assert!(cuts.len() <= MOST_CUTS);
         let own = length(&spooled.own) + inlined;
         TexturePlace { own: start..start + own, cuts }
     }
 
-    /// Returns where in the spool a texture's own bytes are: those around its modules, and the
-    /// modules that only it has.
+    /// Returns the ranges of a texture's own bytes in the spool: the bytes around its modules, and
+    /// the modules that only this texture has.
     pub(crate) fn own_pieces(&self, spooled: &Spooled) -> Vec<Range<u64>> {
         let (mut at, mut pieces) = (spooled.own.start, Vec::new());
         for (before, module) in &spooled.modules {
             let module = *module as usize;
+            // A shared module needs no split, because the own bytes before and after it are
+            // adjacent in the spool.
             if self.places[module].is_none() {
                 let next = spooled.own.start + u64::from(*before);
                 pieces.extend([at..next, self.modules[module].at.clone()]);

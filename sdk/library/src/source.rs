@@ -1,4 +1,4 @@
-//! Sources of a library's bytes.
+//! Sources from which a library reads its bytes.
 
 use std::fs::File;
 use std::io;
@@ -6,35 +6,35 @@ use std::path::Path;
 
 use crate::error::LibraryError;
 
-/// Bytes that a library is read from: a file, a buffer, ranges of a file on a server.
+/// A source of a library's bytes: a file, a buffer, or ranges of a file on a server.
 ///
-/// A library asks for few and large ranges, each once: 16 KiB when it is opened, a page of the
-/// index, the texture.
+/// A library reads a few large ranges, each of them once: 16 KiB when it is opened, a page of the
+/// index, and the texture.
 pub trait LibrarySource {
-    /// Returns the length of the file, bytes. It is asked for after the first read, so that a
-    /// network source knows it from its first response.
+    /// Returns the length of the file, bytes. The library calls it only after the first read, so
+    /// that a network source can take the length from its first response.
     ///
     /// # Errors
-    /// Those of the source.
+    /// The errors of the source.
     fn len(&self) -> io::Result<u64>;
 
-    /// Whether the file is empty.
+    /// Returns whether the file is empty.
     ///
     /// # Errors
-    /// Those of the source.
+    /// The errors of the source.
     fn is_empty(&self) -> io::Result<bool> {
         Ok(self.len()? == 0)
     }
 
-    /// Fills `buffer` from byte `offset` on. Returns the number of bytes, less than asked for only
-    /// at the end of the file.
+    /// Fills `buffer` with the bytes from `offset` on. Returns the number of bytes read, which may
+    /// be less than requested only at the end of the file.
     ///
     /// # Errors
-    /// Those of the source.
+    /// The errors of the source.
     fn read_at(&self, offset: u64, buffer: &mut [u8]) -> io::Result<usize>;
 }
 
-/// A file of this machine.
+/// A local file.
 #[derive(Debug)]
 pub struct LocalFile(File);
 

@@ -1,5 +1,5 @@
-//! The bytes of textures while a library is written, with every embedded module once: in a file
-//! beside it, or in memory.
+//! Stores textures temporarily while a library is written, with every embedded module only once.
+//! The spool is a file next to the library, or memory.
 
 use std::collections::HashMap;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
@@ -8,17 +8,18 @@ use std::ops::Range;
 use htex_files::Scratch;
 use htex_format::entry_ranges;
 
-/// Entries of archives that are shared: embedded models.
+/// Start of the names of archive entries that can be shared: embedded models.
 const MODULES: &str = "plugins/";
-/// Least bytes of a shared object: below, its place in the index takes a good part of them.
+/// Smallest size of a shared object, bytes. Below it, the object's place in the index would take up
+/// a good part of what sharing saves.
 const LEAST_SHARED: usize = 64;
 
-/// Where the bytes are kept meanwhile.
+/// Where the spooled bytes are stored.
 pub(crate) trait Store: Read + Write + Seek {}
 
 impl<T: Read + Write + Seek> Store for T {}
 
-/// A file that is removed when it is dropped.
+/// A temporary file that is removed when it is dropped.
 pub(crate) struct ScratchFile(pub(crate) Scratch);
 
 impl Read for ScratchFile {
@@ -43,7 +44,7 @@ impl Seek for ScratchFile {
     }
 }
 
-/// A writer of the bytes.
+/// Writes textures to the spool.
 pub(crate) struct Spool<S> {
     store: S,
     buffer: Vec<u8>,
@@ -55,22 +56,22 @@ pub(crate) struct Spool<S> {
 /// An embedded module.
 pub(crate) struct Module {
     pub blake3: [u8; 32],
-    /// Its bytes in the spool.
+    /// Range of its bytes in the spool.
     pub at: Range<u64>,
-    /// How often it occurs.
+    /// How many times it occurs.
     pub uses: u64,
 }
 
-/// The bytes of a texture in the spool.
+/// Where a texture's bytes are in the spool.
 #[derive(Debug, Clone)]
 pub(crate) struct Spooled {
-    /// All but the modules.
+    /// Range of all bytes except the modules.
     pub own: Range<u64>,
-    /// Modules: number of own bytes before each, and its index.
+    /// For each module, the number of own bytes before it and its index.
     pub modules: Box<[(u32, u32)]>,
 }
 
-/// Bytes that are gathered before they are written.
+/// Number of bytes collected in memory before they are written.
 const BUFFER_BYTES: usize = 1 << 20;
 
 impl<S: Store> Spool<S> {
@@ -78,12 +79,13 @@ impl<S: Store> Spool<S> {
         Self { store, buffer: Vec::new(), end: 0, modules: Vec::new(), by_hash: HashMap::new() }
     }
 
-    /// Adds a valid asset.
+    /// Adds a texture, which must be a valid asset.
     pub(crate) fn add(&mut self, asset: &[u8]) -> io::Result<Spooled> {
         let modules = entry_ranges(asset).into_iter();
         let modules =
             modules.filter(|e| e.name.starts_with(MODULES) && e.data.len() >= LEAST_SHARED);
         let ranges: Vec<Range<usize>> = modules.map(|entry| entry.data).collect();
+        // All modules are written first, so that the texture's own bytes are adjacent in the spool.
         let mut found = Vec::with_capacity(ranges.len());
         for range in &ranges {
             found.push(self.add_module(&asset[range.clone()])?);
@@ -99,7 +101,7 @@ impl<S: Store> Spool<S> {
         Ok(Spooled { own: start..self.end, modules: cuts.into() })
     }
 
-    /// Adds a module, or counts another use of one. Returns its index.
+    /// Adds a module, or counts one more use if it is already there. Returns its index.
     fn add_module(&mut self, bytes: &[u8]) -> io::Result<u32> {
         let blake3 = *blake3::hash(bytes).as_bytes();
         if let Some(index) = self.by_hash.get(&blake3) {
@@ -138,14 +140,14 @@ impl<S: Store> Spool<S> {
     }
 }
 
-/// A reader of the bytes.
+/// Reads ranges of the spool.
 pub(crate) struct SpoolReader<S> {
     store: BufReader<S>,
     at: u64,
 }
 
 impl<S: Store> SpoolReader<S> {
-    /// Copies a range.
+    /// Copies a range of the spool to `to`.
     pub(crate) fn copy(&mut self, range: Range<u64>, to: &mut impl Write) -> io::Result<()> {
         if range.start != self.at {
             self.seek(range.start)?;
@@ -161,7 +163,7 @@ impl<S: Store> SpoolReader<S> {
 
     fn seek(&mut self, to: u64) -> io::Result<()> {
         match i64::try_from(i128::from(to) - i128::from(self.at)) {
-            // Stays in the buffer where it can.
+            // A relative seek keeps the buffer if the target is inside it.
             Ok(offset) => self.store.seek_relative(offset),
             Err(_) => self.store.seek(SeekFrom::Start(to)).map(|_| ()),
         }

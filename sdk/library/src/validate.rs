@@ -1,4 +1,4 @@
-//! Validation of a whole library: the index, page by page, and every texture.
+//! Validates a whole library: the index page by page, and every texture.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,11 +19,11 @@ use crate::ratio::Ratio;
 use crate::rules as rule;
 use crate::source::{LibrarySource, LocalFile};
 
-/// Validates a library within the default limits: every page of the index, and every texture as
-/// [`htex_format::validate`] does.
+/// Validates a library file within the default limits: every page of the index, and every texture
+/// as [`htex_format::validate`] does.
 ///
 /// # Errors
-/// When the file cannot be read. Whatever it holds is a finding.
+/// If the file cannot be read. Anything wrong with its contents is a finding.
 pub fn validate(path: &Path) -> Result<Report, LibraryError> {
     validate_source(LocalFile::open(path)?, &Limits::default())
 }
@@ -31,7 +31,7 @@ pub fn validate(path: &Path) -> Result<Report, LibraryError> {
 /// Validates a library from any source, within the given limits.
 ///
 /// # Errors
-/// As [`validate`].
+/// The errors of [`validate`].
 pub fn validate_source(
     source: impl LibrarySource,
     limits: &Limits,
@@ -50,19 +50,19 @@ pub fn validate_source(
     Ok(Report::new(findings))
 }
 
-/// A validation that is running.
+/// State of a validation.
 struct Validation<'a, S> {
     library: &'a Library<S>,
     limits: &'a Limits,
     findings: Findings,
-    /// Where the next own bytes are expected; `None` after a leaf that could not be read.
+    /// Where the next texture's own bytes must start; `None` after a leaf that could not be read.
     next: Option<u64>,
-    /// Shared objects: start and end.
+    /// Shared objects seen so far: end by start.
     objects: BTreeMap<u64, u64>,
-    /// Hashes of the names so far, without their case: 128 bits each, however long a name is.
+    /// Names seen so far, as 128-bit hashes that ignore case, however long a name is.
     names: Names,
     entries: u64,
-    /// Bytes of all textures so far.
+    /// Counts the bytes of all textures so far.
     ratio: Ratio,
     /// Whether all leaves could be read.
     is_whole: bool,
@@ -112,7 +112,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         Ok(())
     }
 
-    /// Checks the entries of a leaf and their textures. False when no further texture is to be
+    /// Checks the entries of a leaf and their textures. Returns false if no further texture must be
     /// read.
     fn check_leaf(&mut self, leaf: usize, entries: &[Entry]) -> Result<bool, LibraryError> {
         for (i, entry) in entries.iter().enumerate() {
@@ -132,7 +132,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         Ok(true)
     }
 
-    /// Checks that no name before is the same file on some system.
+    /// Checks that no earlier name is the same file on some system.
     fn check_name(&mut self, entry: &Entry, place: &str) {
         let is_other = self.names.insert(&entry.name);
         self.findings
@@ -144,7 +144,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
             });
     }
 
-    /// Checks that own bytes follow those of the texture before.
+    /// Checks that the own bytes directly follow those of the texture before.
     fn check_gap(&mut self, entry: &Entry, place: &str) {
         let (expected, own) = (self.next, &entry.place.own);
         self.next = Some(own.end);
@@ -159,7 +159,8 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         }
     }
 
-    /// Checks that shared objects are equal or apart. False when there are too many.
+    /// Checks that shared objects are either equal or do not overlap. Returns false if there are
+    /// too many.
     fn check_objects(&mut self, entry: &Entry, place: &str) -> bool {
         for cut in &entry.place.cuts {
             let (start, end) = (cut.object.start, cut.object.end);
@@ -206,7 +207,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         Ok(())
     }
 
-    /// Compares what the index states with the texture.
+    /// Compares the texture with what the index states about it.
     fn check_facts(&mut self, entry: &Entry, facts: &Facts, place: &str) {
         for (what, is_same) in [
             ("tags", entry.tags == facts.tags),
@@ -224,7 +225,7 @@ impl<'a, S: LibrarySource> Validation<'a, S> {
         }
     }
 
-    /// Checks what is known after the last leaf.
+    /// Checks what can only be known after the last leaf.
     fn check_end(&mut self) {
         if !self.is_whole {
             return;

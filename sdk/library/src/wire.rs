@@ -1,12 +1,12 @@
-//! Numbers and texts of pages: little-endian numbers, LEB128 integers, and texts that share their
-//! start with the one before.
+//! Encoding of numbers and texts in pages: little-endian numbers, LEB128 integers, and texts that
+//! omit the start they share with the text before.
 
-/// Longest text of a page: a name, a tag, the id of a model, bytes.
+/// Longest text in a page, bytes: a name, a tag or the id of a model.
 pub(crate) const TEXT_BYTES: usize = 255;
-/// Most bytes of an integer of 64 bits, seven bits a byte.
+/// Largest size of a 64-bit integer in LEB128, bytes. Each byte holds seven bits.
 const VARINT_BYTES: usize = 10;
 
-/// A page whose contents cannot be read: the offset in the unpacked page, and what is wrong there.
+/// Why a page's contents cannot be read: the offset in the unpacked page, and what is wrong there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{problem} at byte {at} of the unpacked page")]
 pub(crate) struct Malformed {
@@ -14,7 +14,7 @@ pub(crate) struct Malformed {
     pub problem: &'static str,
 }
 
-/// A reader of an unpacked page.
+/// Reads values from an unpacked page.
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -52,7 +52,7 @@ impl<'a> Cursor<'a> {
         self.array().map(|[byte]| byte)
     }
 
-    /// Reads an integer in LEB128 without superfluous bytes.
+    /// Reads a LEB128 integer. Superfluous bytes are an error.
     pub(crate) fn varint(&mut self) -> Result<u64, Malformed> {
         let mut value = 0u64;
         for i in 0..VARINT_BYTES {
@@ -74,8 +74,8 @@ impl<'a> Cursor<'a> {
         Err(self.malformed("an integer exceeds 64 bits"))
     }
 
-    /// Reads a count of values that take at least `least` bytes each, so that it is bounded by the
-    /// page.
+    /// Reads the number of values that follow. Each takes at least `least` bytes, so the number is
+    /// limited by the rest of the page.
     pub(crate) fn count(&mut self, least: usize) -> Result<usize, Malformed> {
         let count = self.varint()?;
         let most = self.rest() / least.max(1);
@@ -99,7 +99,7 @@ impl<'a> Cursor<'a> {
         std::str::from_utf8(bytes).map_err(|_| self.malformed("a text is not UTF-8"))
     }
 
-    /// Replaces `text`, the text before, by the next one.
+    /// Replaces `text`, which holds the text before, by the next text.
     pub(crate) fn following(&mut self, text: &mut Vec<u8>) -> Result<(), Malformed> {
         let shared = self.length()?;
         if shared > text.len() {
@@ -132,7 +132,7 @@ pub(crate) fn put_text(page: &mut Vec<u8>, text: &str) {
     page.extend_from_slice(text.as_bytes());
 }
 
-/// Appends a text of at most 255 bytes after the text before it.
+/// Appends a text of at most 255 bytes, without the start that it shares with the text before.
 #[cfg(feature = "write")]
 pub(crate) fn put_following(page: &mut Vec<u8>, before: &[u8], text: &[u8]) {
     let shared = common_prefix(before, text);
@@ -141,13 +141,13 @@ pub(crate) fn put_following(page: &mut Vec<u8>, before: &[u8], text: &[u8]) {
     page.extend_from_slice(&text[shared..]);
 }
 
-/// Bytes that two texts have in common at their start.
+/// Returns how many bytes two texts share at their start.
 #[cfg(feature = "write")]
 pub(crate) fn common_prefix(a: &[u8], b: &[u8]) -> usize {
     a.iter().zip(b).take_while(|(a, b)| a == b).count()
 }
 
-/// Bytes of an integer in LEB128.
+/// Returns the size of an integer in LEB128, bytes.
 #[cfg(feature = "write")]
 pub(crate) fn varint_bytes(value: u64) -> usize {
     let bits = u64::BITS - (value | 1).leading_zeros();
@@ -178,7 +178,7 @@ mod tests {
         }
     }
 
-    /// Examples of LEB128 from DWARF 5, appendix C, and what is refused.
+    /// Examples of LEB128 from DWARF 5, appendix C, and encodings that must be refused.
     #[test]
     fn integers_have_one_form() {
         let read = |bytes: &[u8]| Cursor::new(bytes).varint().map_err(|m| m.problem);

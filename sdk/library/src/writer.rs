@@ -1,4 +1,4 @@
-//! Writing of libraries: to a file, or in memory.
+//! Writes libraries to a file or to memory.
 
 use std::io::{BufWriter, Cursor, Write};
 use std::path::Path;
@@ -9,14 +9,15 @@ use crate::error::LibraryError;
 use crate::packer::{Packed, Packer, Unchanged};
 use crate::spool::ScratchFile;
 
-/// Bytes that are gathered before they are written.
+/// Number of bytes collected in memory before they are written.
 const BUFFER_BYTES: usize = 1 << 20;
 
-/// Writes a library. Textures are added in any order; the same textures give the same bytes.
+/// Writes a library file. Textures may be added in any order; the same textures give the same
+/// bytes.
 ///
-/// What is added is kept in a file beside the target, so that only the index is in memory: about
-/// 500 bytes for each texture. The target is written by [`Self::finish`] and renamed into place; a
-/// writer that is dropped leaves nothing.
+/// Added textures are stored in a temporary file next to the target, so that only the index is in
+/// memory: about 500 bytes for each texture. [`Self::finish`] writes the target and renames it into
+/// place. A writer that is dropped before that leaves no file behind.
 ///
 /// ```no_run
 /// let mut writer = htex_library::Writer::create("cloth.htexlib".as_ref(), "Cloth")?;
@@ -32,11 +33,10 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Starts a library. `path` is the file, `name` the name that people see; it may be empty.
+    /// Starts a library. `path` is the file. `name` is shown to users and may be empty.
     ///
     /// # Errors
-    /// When the name has a control character or more than 255 bytes, or a file cannot be written
-    /// there.
+    /// If the name has a control character or more than 255 bytes, or no file can be written there.
     #[allow(clippy::disallowed_methods, reason = "the user named this file")]
     pub fn create(path: &Path, name: &str) -> Result<Self, LibraryError> {
         let target = Unfinished::create(path).unchanged(path)?;
@@ -44,18 +44,20 @@ impl Writer {
         Ok(Self { target, path: path.to_owned(), packer: Packer::new(path, name, scratch)? })
     }
 
-    /// Packs textures that state no licence, too, which [`Self::finish`] refuses else: nobody but
-    /// who made them may pass them on.
+    /// Allows textures that state no licence. Otherwise [`Self::finish`] refuses them, because only
+    /// the people who made them may pass them on.
     pub fn allow_unlicensed(&mut self) {
         self.packer.allows_unlicensed = true;
     }
 
-    /// Adds a texture: `asset` are the bytes of a `.htex` file, which is stored as it is.
+    /// Adds a texture. `asset` holds the bytes of a `.htex` file, which are stored unchanged.
     ///
     /// # Errors
-    /// When the name breaks a rule of [`check_name`](crate::check_name) or was added before, in the
-    /// same or another case, the asset is not valid or has more tags or longer ones than the index
-    /// holds (64 of 255 bytes), or the bytes cannot be written.
+    /// - The name breaks a rule of [`check_name`](crate::check_name), or was added before in the
+    ///   same or another case.
+    /// - The asset is not valid, or has more tags or longer tags than the index can hold (64 tags
+    ///   of 255 bytes).
+    /// - The bytes cannot be written.
     pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
         self.packer.add(name, asset)
     }
@@ -63,8 +65,8 @@ impl Writer {
     /// Writes the library and renames it into place.
     ///
     /// # Errors
-    /// When a texture states no licence, a file cannot be written, or the library exceeds the
-    /// default limits of readers.
+    /// If a texture states no licence, a file cannot be written, or the library exceeds the default
+    /// limits of readers.
     pub fn finish(self) -> Result<Packed, LibraryError> {
         let Self { mut target, path, packer } = self;
         let mut file = BufWriter::with_capacity(BUFFER_BYTES, target.file());
@@ -76,7 +78,7 @@ impl Writer {
     }
 }
 
-/// As [`Writer`], in memory: for programs without files.
+/// Writes a library in memory like [`Writer`], for programs without a file system.
 ///
 /// ```
 /// let writer = htex_library::MemoryWriter::new("Cloth")?;
@@ -87,31 +89,31 @@ impl Writer {
 pub struct MemoryWriter(Packer<Cursor<Vec<u8>>>);
 
 impl MemoryWriter {
-    /// Starts a library; `name` may be empty.
+    /// Starts a library. `name` may be empty.
     ///
     /// # Errors
-    /// As [`Writer::create`].
+    /// The errors of [`Writer::create`].
     pub fn new(name: &str) -> Result<Self, LibraryError> {
         Packer::new(Path::new(""), name, Cursor::default()).map(Self)
     }
 
-    /// As [`Writer::allow_unlicensed`].
+    /// Allows textures that state no licence, like [`Writer::allow_unlicensed`].
     pub fn allow_unlicensed(&mut self) {
         self.0.allows_unlicensed = true;
     }
 
-    /// Adds a texture.
+    /// Adds a texture, like [`Writer::add`].
     ///
     /// # Errors
-    /// As [`Writer::add`].
+    /// The errors of [`Writer::add`].
     pub fn add(&mut self, name: &str, asset: &[u8]) -> Result<(), LibraryError> {
         self.0.add(name, asset)
     }
 
-    /// Returns the library.
+    /// Returns the library's bytes.
     ///
     /// # Errors
-    /// When a texture states no licence, or the library exceeds the default limits of readers.
+    /// If a texture states no licence, or the library exceeds the default limits of readers.
     pub fn finish(self) -> Result<(Packed, Vec<u8>), LibraryError> {
         let mut bytes = Vec::new();
         let packed = self.0.finish(&mut bytes)?;

@@ -41,7 +41,7 @@ fn a_file_is_named_after_the_rule_it_breaks_and_every_rule_has_one() {
     assert_eq!(raised, rules);
 }
 
-/// A library that is not valid may still open: what is read of it is checked then.
+/// An invalid library may still open. The parts that are then read are checked.
 #[test]
 fn reading_refuses_what_validation_refuses_where_it_reads() {
     let only_validation = [

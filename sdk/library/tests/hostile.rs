@@ -1,6 +1,6 @@
 //! Reading returns a report for any bytes, in bounded memory.
 //!
-//! One test, so that the peak of the process is the test's.
+//! This file has only one test, so that the peak memory of the process belongs to that test.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -102,7 +102,7 @@ fn no_mutation_makes_reading_panic_hang_or_take_memory() {
     assert!(peak.is_none_or(|peak| peak < MOST_MIB), "{peak:?}");
 }
 
-/// Peak memory (RSS) of this process; `None` where the system does not state it.
+/// Returns the peak memory (RSS) of this process; `None` if the system does not report it.
 fn peak_mib() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;

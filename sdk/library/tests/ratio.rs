@@ -1,5 +1,5 @@
-//! A small file whose textures are large together: refused in the same way where it is checked and
-//! where it is unpacked.
+//! A small file whose textures are large together is refused in the same way by checking and by
+//! unpacking.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;

@@ -1,4 +1,4 @@
-//! What is packed is read again, byte for byte, and the same textures give the same file.
+//! Packed textures are read back byte for byte, and the same textures give the same file.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -12,7 +12,7 @@ use htex_library::{
 };
 use proptest::prelude::*;
 
-/// A source that notes what is read.
+/// A source that records what is read.
 struct Counted<S>(S, RefCell<Vec<u64>>);
 
 impl<S: LibrarySource> LibrarySource for Counted<S> {
@@ -52,7 +52,8 @@ fn textures_come_back_whole_and_in_order_of_their_names() {
     }
 }
 
-/// A module that two textures embed is in the file once, one that one texture has is part of it.
+/// A module that two textures embed is in the file only once. A module that one texture embeds
+/// stays part of that texture.
 #[test]
 fn shared_modules_are_stored_once() {
     let textures = sharing();
@@ -75,7 +76,7 @@ fn the_order_of_adding_does_not_change_the_file() {
     assert_eq!(pack("Any order", &textures), first);
 }
 
-/// Reads and bytes of one texture, the first of a library of several leaves.
+/// Counts the reads and bytes for one texture, the first of a library with several leaves.
 #[test]
 fn a_texture_takes_three_reads() {
     let folder = tempfile::tempdir().unwrap();

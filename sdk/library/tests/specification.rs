@@ -1,4 +1,4 @@
-//! The specification's example, limits and conformance files, held against encoders and a reader
+//! The specification's example, limits and conformance files, compared with encoders and a reader
 //! that share no code with the crate.
 #![allow(clippy::unwrap_used)]
 
@@ -11,11 +11,11 @@ use htex_library::{Library, Limits};
 use serde_json::{Value, json};
 
 const TEXT: &str = include_str!("../../../spec/htexlib-1.md");
-/// What `tests/peers/library.py`, a reader written from the specification alone, prints for the
-/// valid conformance files.
+/// What `tests/peers/library.py` prints for the valid conformance files. That reader was written
+/// only from the specification.
 const LISTED: &str = include_str!("../../../tests/golden/library.json");
 
-/// Lines of the code block of this name: bytes and comment.
+/// Lines of the code block with this name: bytes and comment.
 fn lines(name: &str) -> Vec<(Vec<u8>, &'static str)> {
     let (_, rest) = TEXT.split_once(&format!("```hex {name}\n")).unwrap();
     let (block, _) = rest.split_once("```").unwrap();
@@ -27,19 +27,19 @@ fn lines(name: &str) -> Vec<(Vec<u8>, &'static str)> {
     block.lines().map(line).collect()
 }
 
-/// Bytes of the code block of this name.
+/// Bytes of the code block with this name.
 fn example(name: &str) -> Vec<u8> {
     lines(name).into_iter().flat_map(|(bytes, _)| bytes).collect()
 }
 
-/// The number of bytes that a line's comment states, if it does.
+/// Returns the number of bytes that a line's comment states, if it states one.
 fn stated(comment: &str) -> Option<u64> {
     let words: Vec<&str> = comment.split_whitespace().filter(|w| *w != "own").collect();
     let bytes = words.iter().rposition(|word| word.starts_with("bytes"))?;
     words.get(bytes.checked_sub(1)?)?.parse().ok()
 }
 
-/// The unsigned integer in LEB128 that a line is, or the little-endian one of its last eight bytes.
+/// Reads a line as a LEB128 integer, or its last eight bytes as a little-endian integer.
 fn number(line: &[u8]) -> u64 {
     match line.last_chunk::<8>() {
         Some(last) => u64::from_le_bytes(*last),
@@ -61,7 +61,7 @@ fn the_example_states_its_numbers_of_bytes() {
     assert_eq!(checked, 5);
 }
 
-/// The contents of the page at a range of bytes, by the inflater that zlib has.
+/// Unpacks a page with `flate2`.
 fn unpacked(page: &[u8]) -> Vec<u8> {
     use std::io::Read;
     let mut contents = Vec::new();
@@ -83,7 +83,7 @@ fn the_example_is_what_the_writer_and_another_encoder_write() {
     assert_eq!(std::fs::read(kept).unwrap(), file);
 }
 
-/// Both encoders write the same pages of four textures, some of whose names begin alike.
+/// Both encoders write the same pages for four textures, some of whose names share their start.
 #[test]
 fn pages_of_several_entries_are_those_of_another_encoder() {
     let (_, file) = pack("Raw", &four());

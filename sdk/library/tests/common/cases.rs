@@ -313,7 +313,7 @@ fn overlapping() -> Vec<u8> {
         .bytes()
 }
 
-/// Valid files, with limits below what they take.
+/// Valid files, with limits too low for them.
 fn limited() -> Vec<Case> {
     let (four, shared) = (pack("Four", &four()).1, pack("Shared", &sharing()).1);
     let of = |name: &str, bytes: &[u8], change: fn(&mut Limits)| {
@@ -333,7 +333,7 @@ fn limited() -> Vec<Case> {
     ]
 }
 
-/// A root page that states more than the limit, without the bytes.
+/// A root page that states a size above the limit without having the bytes.
 fn big_root() -> Vec<u8> {
     let mut bytes = raw().bytes();
     let root = 128..u64::from_le_bytes(bytes[32..40].try_into().unwrap()) as usize;

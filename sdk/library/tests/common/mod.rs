@@ -33,7 +33,7 @@ pub fn texture(name: &str) -> Texture {
     }
 }
 
-/// Bytes that begin as a module and cannot be compressed.
+/// Bytes that start like a module and cannot be compressed.
 pub fn module(seed: u64, length: usize) -> Vec<u8> {
     let mut bytes = b"\0asm\x01\0\0\0".to_vec();
     let mut state = seed | 1;

@@ -1,12 +1,12 @@
-//! An encoder of libraries that shares no code with the crate's and writes whatever it is told,
-//! with valid checksums.
+//! An encoder of libraries that shares no code with the crate. It writes whatever it is given, with
+//! valid checksums.
 
 use super::Texture;
 
 /// A change of bytes.
 pub type Change = fn(&mut Vec<u8>);
 
-/// The parts of a library. What is `None` is computed.
+/// The parts of a library. Parts that are `None` are computed.
 #[derive(Clone, Default)]
 pub struct Raw {
     pub name: Vec<u8>,
@@ -17,13 +17,13 @@ pub struct Raw {
     pub payload: Vec<u8>,
     pub entries: Option<u64>,
     pub index_blake3: Option<[u8; 32]>,
-    /// Changes of unpacked pages: 0 is the root, 1 the first leaf.
+    /// Changes to unpacked pages: 0 is the root, 1 the first leaf.
     pub pages: Vec<(usize, Change)>,
-    /// Unpacked pages in place of others, by the same numbers.
+    /// Unpacked pages that replace others, with the same numbering.
     pub replaced: Vec<(usize, Vec<u8>)>,
-    /// Changes of deflate streams, by the same numbers.
+    /// Changes to deflate streams, with the same numbering.
     pub streams: Vec<(usize, Change)>,
-    /// A change of the header before its checksum.
+    /// A change to the header before its checksum is computed.
     pub header: Option<Change>,
 }
 
@@ -45,7 +45,7 @@ pub struct Row {
 }
 
 impl Raw {
-    /// A library of these textures with leaves of so many entries; nothing is shared.
+    /// Creates a library of these textures with `in_leaf` entries in each leaf. Nothing is shared.
     pub fn of(textures: &[Texture], in_leaf: usize) -> Self {
         let mut raw = Self { name: b"Raw".to_vec(), version: (1, 0), ..Self::default() };
         let mut rows: Vec<Row> = Vec::new();
@@ -58,7 +58,7 @@ impl Raw {
                 models: vec!["org.htex.sbeta".to_owned()],
                 speeds: Some((speeds.clone().fold(f64::MAX, f64::min), speeds.fold(0.0, f64::max))),
                 forces: Some((0.5, 0.5)),
-                // Nothing is stated: unknown, all assumed.
+                // Contact unknown, all exponents assumed.
                 law: (0b10_10_10_10, [0.0, 0.75, 0.5]),
                 at: raw.payload.len() as u64,
                 own: bytes.len() as u64,
@@ -243,7 +243,7 @@ pub fn stored(data: &[u8]) -> Vec<u8> {
     stream
 }
 
-/// CRC-32 as ZIP and PNG have it, bit by bit.
+/// CRC-32 as in ZIP and PNG, computed bit by bit.
 pub fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0u32, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 * (crc & 1)))

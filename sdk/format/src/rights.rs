@@ -139,7 +139,6 @@ impl Rights {
     ///
     /// # Errors
     /// If the file cannot be written.
-    /// When the file cannot be written.
     pub fn add_to_wav(&self, wav: &mut (impl Write + Seek)) -> io::Result<()> {
         let chunk = self.riff();
         let end = wav.seek(SeekFrom::End(0))?;

@@ -1,4 +1,5 @@
-//! Experiments with textures: guided recordings, responses of a setup, studies.
+//! Experiments with textures: guided recordings, measuring the frequency response of a setup, and
+//! rating studies.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

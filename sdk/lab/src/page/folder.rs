@@ -1,21 +1,21 @@
-//! A folder of files, served on this machine alone: the studio.
+//! Serves a folder of files to browsers on this machine only: the studio.
 //!
-//! All files are read at the start, so that no request names a file of the disk, and links are
-//! refused: the folder may come from somebody else, and its scripts would read what they lead to.
+//! All files are read at the start, so that no request can name a file on disk. Links are refused:
+//! the folder may come from somebody else, and its scripts would read what the links lead to.
 //!
-//! The address is `http://NAME.localhost:PORT/`. The name is a keyed hash of the folder, by a key
-//! that only this user can read. A browser keeps service workers and stored textures for each name.
-//! So no other program can leave a script at this address, a page of one folder cannot read what
-//! the page of another one stored, and the name of a folder stays the same from one time to the
-//! next. Requests by any other name, also by `127.0.0.1`, are refused.
+//! The address is `http://NAME.localhost:PORT/`. The name is a keyed hash of the folder, and only
+//! this user can read the key. A browser keeps service workers and stored data separately for each
+//! name. So no other program can leave a script at this address, and a page of one folder cannot
+//! read what a page of another folder stored. The name of a folder stays the same from one time to
+//! the next. Requests to any other name, including `127.0.0.1`, are refused.
 //!
-//! A page cannot lead its tab elsewhere, so that its scripts cannot carry away what a user drops on
-//! it. No header forbids that: browsers never had `navigate-to`, and a sandbox without
-//! `allow-top-navigation` binds only frames. So each page begins with `stay.js`, which cancels what
-//! leads to another origin, by the Navigation API. A browser without it (`'navigation' in window`
-//! is false) cannot be told. Service workers, which could answer with a page of their own, are
-//! refused. Not covered are names that a browser looks up ahead of time (`dns-prefetch`) and
-//! WebRTC.
+//! A page cannot navigate its tab elsewhere, so that its scripts cannot carry away what a user
+//! drops on it. No header forbids that: browsers never had `navigate-to`, and a sandbox without
+//! `allow-top-navigation` only binds frames. So each page begins with `stay.js`, which uses the
+//! Navigation API to cancel every navigation to another origin. This has no effect in a browser
+//! without that API (`'navigation' in window` is false). Service workers, which could answer with a
+//! page of their own, are refused. Two ways out are not covered: names that a browser looks up
+//! ahead of time (`dns-prefetch`), and WebRTC.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -32,15 +32,16 @@ use super::PageError;
 use super::gate::{Refusal, check_origin, host};
 use super::server::{Answers, Server, hexadecimal, listen};
 
-/// Most files of a folder, most bytes of one, and how deep folders lie.
+/// Limits of a folder: the number of files, the size of one file, and how deep folders may be
+/// nested.
 const MOST_FILES: usize = 1_000;
 const MOST_BYTES: u64 = 64 << 20;
 const MOST_DEPTH: usize = 4;
-/// The page that `/` is.
+/// The page served at `/`.
 const INDEX: &str = "index.html";
 
-/// The script that keeps a page at its address, and what each page begins with; a second doctype is
-/// ignored.
+/// The script that keeps a page at its address, and what is put at the start of each page. Browsers
+/// ignore the second doctype.
 const STAY: &str = include_str!("stay.js");
 const STAY_NAME: &str = "htex-stay.js";
 const BEGINNING: &str = "<!doctype html><script src=\"/htex-stay.js\"></script>";
@@ -48,11 +49,11 @@ const BEGINNING: &str = "<!doctype html><script src=\"/htex-stay.js\"></script>"
 const HTML: &str = "text/html; charset=utf-8";
 const SVG: &str = "image/svg+xml";
 
-/// What a picture may do that is opened as a page: nothing.
+/// What an image may do when it is opened as a page: nothing.
 const PICTURE_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; sandbox";
 const POLICY: &str = "Content-Security-Policy";
 
-/// What a page of the folder may do: nothing beyond the folder.
+/// What a page of the folder may do: nothing outside the folder.
 const HEADERS: [(&str, &str); 5] = [
     ("Cache-Control", "no-cache"),
     ("Referrer-Policy", "no-referrer"),
@@ -66,7 +67,7 @@ const HEADERS: [(&str, &str); 5] = [
     ),
 ];
 
-/// A folder cannot be served.
+/// Why a folder cannot be served.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FolderError {
@@ -76,15 +77,15 @@ pub enum FolderError {
     Folder { path: PathBuf, problem: String },
 }
 
-/// A folder that is served while this value lives.
+/// A folder that is served as long as this value lives.
 pub struct ServedFolder {
     url: String,
     _server: Server,
 }
 
 impl ServedFolder {
-    /// Serves a folder's files on this machine; port 0 is any that is free. `key` is the user's:
-    /// with the same one, the address of the folder is the same.
+    /// Serves a folder's files on this machine. Port 0 means any free port. `key` is the user's
+    /// key; with the same key, the folder always has the same address.
     ///
     /// # Errors
     /// If the folder has no `index.html`, a file is a link, cannot be read or is too large, or the
@@ -106,13 +107,13 @@ impl ServedFolder {
         Ok(Self { url, _server: server })
     }
 
-    /// The address of the folder's page.
+    /// Returns the address of the folder's page.
     pub fn url(&self) -> &str {
         &self.url
     }
 }
 
-/// A file as it is served: a page begins with the script that keeps it at its address.
+/// Returns a file as it is served. A page starts with the script that keeps it at its address.
 fn begun((name, bytes): (String, Bytes)) -> (String, Bytes) {
     if kind_of(&name) != HTML {
         return (name, bytes);
@@ -122,8 +123,8 @@ fn begun((name, bytes): (String, Bytes)) -> (String, Bytes) {
     (name, begun.into())
 }
 
-/// The name at which a folder is served: 32 hexadecimal digits, which only who has the key can
-/// know.
+/// Returns the name at which a folder is served: 32 hexadecimal digits that nobody without the key
+/// can know.
 fn name(folder: &Path, key: &Key) -> String {
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let tag = key.tag("page", folder.as_os_str().as_encoded_bytes());
@@ -134,7 +135,7 @@ fn wrong(path: &Path, problem: impl ToString) -> FolderError {
     FolderError::Folder { path: path.to_owned(), problem: problem.to_string() }
 }
 
-/// Reads the files of a folder and of its folders, by their paths in an address.
+/// Reads the files of a folder and its subfolders, by their paths in an address.
 fn read(
     own: &OwnFolder,
     below: &str,
@@ -165,7 +166,7 @@ fn read(
     Ok(())
 }
 
-/// The files, by their paths.
+/// The files by their paths.
 struct Files {
     host: String,
     files: BTreeMap<String, Bytes>,
@@ -208,7 +209,7 @@ impl Answers for Files {
     }
 }
 
-/// The type of a file, by its name.
+/// Returns the media type of a file by its name.
 fn kind_of(name: &str) -> &'static str {
     let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
     match extension {
@@ -230,12 +231,12 @@ mod tests {
 
     use super::*;
 
-    /// The host of a page.
+    /// Returns the host of a page.
     fn host_of(served: &ServedFolder) -> &str {
         served.url().trim_start_matches("http://").trim_end_matches('/')
     }
 
-    /// The reply to the head of a request.
+    /// Returns the reply to the head of a request.
     fn ask(served: &ServedFolder, request: &str, host: &str) -> String {
         let own = host_of(served);
         let port: u16 = own.split_once(':').unwrap().1.parse().unwrap();
@@ -282,8 +283,8 @@ mod tests {
         }
     }
 
-    /// A folder has the same name as long as the user has the same key; every other folder, and
-    /// every other user, has another one.
+    /// A folder keeps its name as long as the user has the same key. Every other folder and every
+    /// other user has another name.
     #[test]
     fn the_name_is_of_the_user_and_of_the_folder() {
         let outer = tempfile::tempdir().unwrap();
@@ -300,7 +301,7 @@ mod tests {
         assert_ne!(own, name(&one, &Key::passing().unwrap()));
     }
 
-    /// The scripts of a page that somebody else made would read what a link leads to.
+    /// A page made by somebody else could read what a link leads to.
     #[cfg(unix)]
     #[test]
     fn a_link_in_the_folder_is_refused() {

@@ -1,5 +1,4 @@
-//! What a request must have, and the tab that owns the page. Nothing of a request but its head is
-//! known here.
+//! Checks requests, and tracks which tab owns the page. Only the head of a request is known here.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -8,14 +7,14 @@ use hyper::header::{HOST, HeaderName, ORIGIN};
 use hyper::http::request::Parts;
 use hyper::{Method, StatusCode};
 
-/// A tab that has asked for nothing for this long is gone.
+/// A tab that has not sent a request for this long counts as gone.
 const SILENT: Duration = Duration::from_secs(8);
 
-/// The gate of a page.
+/// Decides which requests a page accepts.
 pub(super) struct Gate {
-    /// Path that every request begins with: `/token/`.
+    /// Start of the path of every request: `/token/`.
     root: String,
-    /// Host names of this server, the one that is printed first.
+    /// Host names of this server. The first one is printed first.
     hosts: Vec<String>,
 }
 
@@ -24,17 +23,17 @@ pub(super) struct Gate {
 pub(super) enum Asked {
     /// The page itself.
     Page,
-    /// A request by name.
+    /// A named request.
     Request(String),
 }
 
-/// Why a request is refused.
+/// Why a request is refused: status and text.
 pub(super) type Refusal = (StatusCode, &'static str);
 
 impl Gate {
-    /// The gate of a page whose path begins with a token, at a name that no page had before. At a
-    /// port that the system chose the number of this machine is also accepted, for browsers that do
-    /// not resolve the other one.
+    /// Creates the gate of a page whose path starts with a token. The host name has never been used
+    /// before. If the system chose the port, `127.0.0.1` is also accepted, for browsers that cannot
+    /// resolve the host name.
     pub(super) fn new(token: &str, name: &str, port: u16, is_chosen: bool) -> Self {
         let number = (!is_chosen).then(|| format!("127.0.0.1:{port}"));
         Self {
@@ -43,14 +42,14 @@ impl Gate {
         }
     }
 
-    /// The addresses of the page, of which the first one is safe from what other programs left in
-    /// the browser.
+    /// Returns the addresses of the page. Only the first one is safe from what other programs left
+    /// in the browser.
     pub(super) fn urls(&self) -> Vec<String> {
         let hosts = self.hosts.iter();
         hosts.map(|host| format!("http://{host}{}", self.root)).collect()
     }
 
-    /// Decides by the head of a request, whose body has not been read.
+    /// Decides by the head of a request, before its body is read.
     pub(super) fn admit(&self, head: &Parts, requests: &[&str]) -> Result<Asked, Refusal> {
         check_origin(head, &self.hosts)?;
         let Some(path) = head.uri.path().strip_prefix(&self.root) else {
@@ -67,14 +66,14 @@ impl Gate {
     }
 }
 
-/// The host of a server of this machine by a name that only its user knows. A browser keeps scripts
-/// (service workers) and data for each name: what another program left at `127.0.0.1` has no part
-/// in this one.
+/// Returns the host of a server on this machine, with a name that only its user knows. A browser
+/// keeps scripts (service workers) and data separately for each name, so what another program left
+/// at `127.0.0.1` cannot reach this host.
 pub(super) fn host(name: &str, port: u16) -> String {
     format!("{name}.localhost:{port}")
 }
 
-/// Refuses a request with another host name, or of another page.
+/// Refuses a request to another host name, or from another page.
 pub(super) fn check_origin(head: &Parts, hosts: &[String]) -> Result<(), Refusal> {
     let text = |name: HeaderName| head.headers.get(name).map(|value| value.to_str().ok());
     let is_host = |text: &str| hosts.iter().any(|host| host == text);
@@ -82,7 +81,7 @@ pub(super) fn check_origin(head: &Parts, hosts: &[String]) -> Result<(), Refusal
         let why = "this page is for this machine alone";
         return Err((StatusCode::FORBIDDEN, why));
     }
-    // Programs have no origin; the page's requests have one.
+    // Programs other than browsers send no origin; requests of the page send one.
     let is_own = |origin: Option<&str>| {
         let host = origin.and_then(|origin| origin.strip_prefix("http://"));
         host.is_some_and(is_host)
@@ -93,7 +92,7 @@ pub(super) fn check_origin(head: &Parts, hosts: &[String]) -> Result<(), Refusal
     Ok(())
 }
 
-/// The tab that owns the page, and its last request.
+/// The tab that owns the page, and the time of its last request.
 #[derive(Default)]
 pub(super) struct Owner(Mutex<Option<(String, Instant)>>);
 
@@ -102,7 +101,7 @@ impl Owner {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether a tab owns the page, or may own it from now on.
+    /// Returns whether the tab owns the page, or can take it over now. If so, records its request.
     pub(super) fn admits(&self, tab: &str) -> bool {
         let mut owner = self.lock();
         let now = Instant::now();

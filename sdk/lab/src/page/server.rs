@@ -1,11 +1,13 @@
-//! The server of a page, on 127.0.0.1 alone.
+//! The server of a page. It listens only on 127.0.0.1.
 //!
-//! Any program of this machine may connect, and nothing that it does delays the owner of the page:
-//! `hyper`, with a runtime of one thread of its own, hands a request over before its body comes.
-//! The gate decides by the head; a body of at most 4096 bytes is read after that; head and body
-//! have a second. Of 64 connections the oldest one that has not passed the gate makes room for the
-//! next. `hyper` is in the command for its stores; `tiny_http` reads a body before anyone can
-//! refuse it, has no deadlines, and takes a thread for each connection.
+//! Any program on this machine may connect, but it cannot delay the owner of the page. `hyper`,
+//! which has its own runtime with one thread, hands a request over before its body arrives. The
+//! gate decides by the head, and only then is a body of at most 4096 bytes read. Head and body each
+//! have a deadline of one second. At most 64 connections are open: a new one replaces the oldest
+//! one that has not passed the gate.
+//!
+//! `hyper` is already in the command because of its stores. `tiny_http` reads a body before anyone
+//! can refuse it, has no deadlines, and takes a thread for each connection.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -31,18 +33,20 @@ use tokio::time::{sleep, timeout};
 use super::gate::{Asked, Gate, Owner, Refusal};
 use crate::page::{Content, PageError};
 
-/// Most connections at a time.
+/// Largest number of open connections.
 const MOST_CONNECTIONS: usize = 64;
-/// Longest wait for the head of a request, also of the next one on a connection; and for its body.
+/// Longest wait for the head of a request, including the next one on the same connection, and for
+/// its body.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// Longest body of a request, bytes.
 const MOST_BYTES: usize = 4096;
-/// Most bytes of a head, the least that `hyper` takes, and most of its lines.
+/// Largest size of a head in bytes (the smallest limit that `hyper` accepts), and largest number of
+/// its lines.
 const MOST_HEAD_BYTES: usize = 8192;
 const MOST_HEADERS: usize = 64;
-/// Wait after an error of accepting, such as too many open files.
+/// Wait after a failure to accept a connection, such as too many open files.
 const PAUSE: Duration = Duration::from_millis(10);
-/// Longest wait, at the end, for the page to show that all is done.
+/// Longest wait at the end for the page to show that everything is done.
 const FAREWELL: Duration = Duration::from_secs(2);
 
 /// Requests that every page takes.
@@ -51,7 +55,7 @@ const LEAVE: &str = "leave";
 const STOP: &str = "stop";
 
 const TEXT: &str = "text/plain; charset=utf-8";
-/// Headers of each reply. With `same-origin`, requests of the page have its origin.
+/// Headers of each reply. Because of `same-origin`, requests of the page send its origin.
 const HEADERS: [(&str, &str); 4] = [
     ("Cache-Control", "no-store"),
     ("Referrer-Policy", "same-origin"),
@@ -62,24 +66,24 @@ const HEADERS: [(&str, &str); 4] = [
     ),
 ];
 
-/// A page that is served while this value lives.
+/// A page that is served as long as this value lives.
 pub(crate) struct LocalPage {
     owner: Arc<Owner>,
     urls: Vec<String>,
-    /// Ends when it is dropped.
+    /// Stops when it is dropped.
     _server: Server,
 }
 
-/// A server that runs while this value lives.
+/// A server that runs as long as this value lives.
 pub(super) struct Server {
-    /// Ends the server when it is dropped.
+    /// Stops the server when it is dropped.
     end: Option<oneshot::Sender<Infallible>>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// What answers requests.
+/// Answers requests.
 pub(super) trait Answers: Send + Sync + 'static {
-    /// The reply to a request. `is_known` is set when the request has passed the gate.
+    /// Returns the reply to a request. `is_known` must be set once the request has passed the gate.
     fn answer(
         &self,
         request: Request<Incoming>,
@@ -87,7 +91,7 @@ pub(super) trait Answers: Send + Sync + 'static {
     ) -> impl Future<Output = Result<Response<Full<Bytes>>, Refusal>> + Send;
 }
 
-/// What all connections share.
+/// State that all connections share.
 struct Desk<C> {
     gate: Gate,
     owner: Arc<Owner>,
@@ -98,12 +102,12 @@ struct Desk<C> {
 /// An open connection.
 struct Guest {
     task: AbortHandle,
-    /// Whether a request of it has passed the gate.
+    /// Whether one of its requests has passed the gate.
     is_known: Arc<AtomicBool>,
 }
 
 impl LocalPage {
-    /// Serves a page on this machine; port 0 is any that is free.
+    /// Serves a page on this machine. Port 0 means any free port.
     ///
     /// # Errors
     /// If the port is taken or there are no random numbers.
@@ -129,7 +133,7 @@ impl LocalPage {
         Ok(Self { owner, urls, _server: started.map_err(|error| failed(error.to_string()))? })
     }
 
-    /// What the user is asked to open.
+    /// Returns the text that tells the user which address to open.
     pub(crate) fn address(&self) -> String {
         match &self.urls[..] {
             [url, by_number] => format!(
@@ -139,7 +143,7 @@ impl LocalPage {
         }
     }
 
-    /// Waits until the page has what it shows at the end, if a tab has the page.
+    /// Waits until the page has received its final state, if a tab owns the page.
     pub(crate) fn wait_for_end(&self, is_shown: impl Fn() -> bool) {
         let start = Instant::now();
         while start.elapsed() < FAREWELL && self.owner.is_there() && !is_shown() {
@@ -152,7 +156,7 @@ pub(super) fn hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Listens on this machine alone; returns the port, too.
+/// Listens only on this machine. Also returns the port.
 pub(super) fn listen(port: u16) -> std::io::Result<(TcpListener, u16)> {
     let listener = TcpListener::bind(("127.0.0.1", port))?;
     listener.set_nonblocking(true)?;
@@ -161,7 +165,7 @@ pub(super) fn listen(port: u16) -> std::io::Result<(TcpListener, u16)> {
 }
 
 impl Server {
-    /// Answers connections in a thread.
+    /// Answers connections in its own thread.
     pub(super) fn start<A: Answers>(
         listener: TcpListener,
         answers: Arc<A>,
@@ -175,7 +179,7 @@ impl Server {
                 let _ = ended.await;
                 server.abort();
             });
-            // The runtime goes, and all connections with it, whatever they wait for.
+            // Dropping the runtime ends all connections, whatever they are waiting for.
         };
         let thread = std::thread::Builder::new().name("htex-page".to_owned()).spawn(serving)?;
         Ok(Self { end: Some(end), thread: Some(thread) })
@@ -191,7 +195,7 @@ impl Drop for Server {
     }
 }
 
-/// Takes connections, at most [`MOST_CONNECTIONS`] at a time.
+/// Accepts connections, at most [`MOST_CONNECTIONS`] at a time.
 async fn serve<A: Answers>(listener: TcpListener, desk: Arc<A>) {
     let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
         return;
@@ -214,7 +218,7 @@ async fn serve<A: Answers>(listener: TcpListener, desk: Arc<A>) {
         let attending = attend(socket, Arc::clone(&desk), Arc::clone(&is_known));
         let task = tokio::spawn(attending).abort_handle();
         guests.push_back(Guest { task, is_known });
-        // The one that came is looked at before the next one may take its place.
+        // Lets the new connection be looked at before the next one can take its place.
         tokio::task::yield_now().await;
     }
 }
@@ -227,7 +231,7 @@ async fn attend<A: Answers>(socket: TcpStream, desk: Arc<A>, is_known: Arc<Atomi
         let reply = desk.answer(request, &is_known).await;
         Ok::<_, Infallible>(reply.unwrap_or_else(refused))
     });
-    // A tab that is gone needs no reply.
+    // A tab that is gone needs no reply, so an error does not matter.
     let _ = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(PATIENCE)
@@ -251,7 +255,7 @@ impl<C: Content> Answers for Desk<C> {
             Asked::Request(name) => name,
         };
         let body = read(body).await?;
-        // Whoever has the address may stop, whichever tab owns the page.
+        // Anyone who has the address may stop the session, whichever tab owns the page.
         if name == STOP {
             self.content.take(STOP, &body);
         }
@@ -269,7 +273,7 @@ impl<C: Content> Answers for Desk<C> {
     }
 }
 
-/// Reads a body that is short and comes soon; what is no JSON is null.
+/// Reads a body that is short and arrives soon. A body that is not JSON counts as null.
 async fn read(body: Incoming) -> Result<Value, Refusal> {
     let too_long = (StatusCode::PAYLOAD_TOO_LARGE, "the request is too long");
     if body.size_hint().lower() > MOST_BYTES as u64 {
@@ -292,8 +296,8 @@ fn reply(code: StatusCode, kind: &'static str, body: impl Into<Bytes>) -> Respon
     response
 }
 
-/// The reply to a request that is refused, after which the connection is closed: its body was not
-/// read.
+/// Returns the reply to a refused request. The connection is closed after it, because the body was
+/// not read.
 fn refused((code, why): Refusal) -> Response<Full<Bytes>> {
     let mut response = reply(code, TEXT, why);
     let close = HeaderValue::from_static("close");

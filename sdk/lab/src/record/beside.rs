@@ -1,4 +1,4 @@
-//! How the recording of a take is read, from the JSON beside it.
+//! How to read a take's recording, from the JSON next to it.
 
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -11,10 +11,10 @@ use crate::record::data::TakeHeader;
 use crate::record::error::RecordError;
 use crate::record::write::reading;
 
-/// Longest JSON that is read, bytes; that of a take has a few thousand.
+/// Largest JSON file that is read, bytes. The JSON of a take has a few thousand.
 pub(crate) const MOST_BYTES: u64 = 1 << 20;
 
-/// A recording of `htex record` or of a study, with the settings that read it: columns, rate,
+/// A recording made by `htex record` or in a study, with the settings to read it: columns, rate,
 /// quantity and the tracker's file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KnownTake {
@@ -23,11 +23,12 @@ pub struct KnownTake {
 }
 
 impl KnownTake {
-    /// Finds a take by its recording, or by the JSON beside it. `None` if there is no such JSON, or
-    /// if it is of a recording in another format.
+    /// Finds a take by its recording, or by the JSON next to it. `None` if there is no such JSON,
+    /// or if it belongs to a recording in another format.
     ///
     /// # Errors
-    /// [`RecordError::Content`] if the JSON is of a take and has another version or unknown keys.
+    /// [`RecordError::Content`] if the JSON describes a take but has another version or unknown
+    /// keys.
     ///
     /// ```
     /// // Not a take: nothing is known but the file itself.
@@ -55,7 +56,8 @@ impl KnownTake {
         Ok(Some(Self { recording, settings }))
     }
 
-    /// Returns the take's settings, and of those that were given what is not about its columns.
+    /// Returns the take's settings, completed by those given settings that do not concern its
+    /// columns.
     #[must_use]
     pub fn with_given(self, given: &ReadingSettings) -> ReadingSettings {
         let given = given.clone();
@@ -71,8 +73,8 @@ impl KnownTake {
     }
 }
 
-/// The header of a take in the JSON beside its recording; `None` if the file is not of a take. What
-/// is not of this version is [`io::ErrorKind::InvalidData`].
+/// Reads the header of a take from the JSON next to its recording; `None` if the file does not
+/// describe a take. A header of another version is [`io::ErrorKind::InvalidData`].
 pub(crate) fn header(beside: &Path) -> io::Result<Option<TakeHeader>> {
     let mut bytes = Vec::new();
     open_regular(beside)?.take(MOST_BYTES).read_to_end(&mut bytes)?;
@@ -83,7 +85,7 @@ pub(crate) fn header(beside: &Path) -> io::Result<Option<TakeHeader>> {
     header.map_err(|problem| io::Error::new(io::ErrorKind::InvalidData, format!("take: {problem}")))
 }
 
-/// Settings that read the recording of a take.
+/// Returns the settings that read the recording of a take.
 pub(crate) fn settings(recording: &Path, header: &TakeHeader) -> ReadingSettings {
     let (map, rate_hz) = reading(header);
     ReadingSettings {
@@ -95,7 +97,7 @@ pub(crate) fn settings(recording: &Path, header: &TakeHeader) -> ReadingSettings
     }
 }
 
-/// The tracker's rows of a recording, if there are any.
+/// Returns the file with the tracker's rows of a recording, if there is one.
 fn tracker(recording: &Path) -> Option<PathBuf> {
     let name = Path::new(recording.file_name()?).with_extension("csv");
     let tracker = recording.parent()?.join("tracker").join(name);

@@ -15,8 +15,8 @@ const NAMES: [(&str, &str); AXES] =
 /// Longest file, bytes.
 const MOST_BYTES: u64 = 1 << 16;
 
-/// The matrix of a six-axis sensor: forces (N) and torques (N m) are the matrix times the volts of
-/// its six channels.
+/// The calibration matrix of a six-axis force sensor. Forces (N) and torques (N m) are the matrix
+/// times the voltages of the sensor's six channels.
 ///
 /// ```
 /// # use htex_lab::record::Calibration;
@@ -38,19 +38,19 @@ struct File {
 }
 
 impl Calibration {
-    /// Reads a file: CSV with six lines of six numbers (`#` begins a comment), or TOML with
-    /// `matrix = [[…], …]`.
+    /// Reads a calibration file: CSV with six lines of six numbers (`#` starts a comment), or TOML
+    /// with `matrix = [[…], …]`.
     ///
     /// # Errors
-    /// [`RecordError::Content`] if it cannot be read, or is not a matrix of full rank.
+    /// [`RecordError::Content`] if the file cannot be read, or does not hold a matrix of full rank.
     pub fn read(path: &Path) -> Result<Self, RecordError> {
         in_calibration(path, text_of(path).and_then(|text| Self::of(path, &text)))
     }
 
-    /// Reads a text; `path` tells TOML by its extension, and is the name in messages.
+    /// Parses a text. `path` gives the format by its extension, and the name used in messages.
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// The errors of [`Self::read`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, RecordError> {
         in_calibration(path, Self::of(path, text))
     }
@@ -81,20 +81,20 @@ impl Calibration {
         Ok(Self { rows })
     }
 
-    /// Returns forces and torques of the volts of the six channels.
+    /// Returns forces and torques from the voltages of the six channels.
     #[must_use]
     pub fn forces(&self, volts: [f64; AXES]) -> [f64; AXES] {
         self.rows.map(|row| row.iter().zip(volts).map(|(m, v)| m * v).sum())
     }
 
-    /// Names and units of the axes; with several sensors the names have the sensor's number, from
-    /// 1: `fx1`.
+    /// Returns the names and units of the axes. With several sensors, the names end with the
+    /// sensor's number, counted from 1: `fx1`.
     pub(crate) fn names(sensor: Option<usize>) -> [(String, String); AXES] {
         let number = sensor.map(|n| n.to_string()).unwrap_or_default();
         NAMES.map(|(name, unit)| (format!("{name}{number}"), unit.to_owned()))
     }
 
-    /// The numbers, row by row.
+    /// Returns all numbers of the matrix, row by row.
     pub(crate) fn numbers(&self) -> Vec<f64> {
         self.rows.iter().flatten().copied().collect()
     }
@@ -125,7 +125,8 @@ fn lines(text: &str) -> Result<Vec<Vec<f64>>, String> {
     Ok(rows)
 }
 
-/// Rank by elimination with pivots; a pivot below 1e-12 of the largest number is zero.
+/// Computes the rank by elimination with pivots. A pivot below 1e-12 of the largest number counts
+/// as zero.
 fn rank(mut rows: [[f64; AXES]; AXES]) -> usize {
     let largest = rows.iter().flatten().fold(0.0_f64, |a, v| a.max(v.abs()));
     for column in 0..AXES {
@@ -150,7 +151,7 @@ fn rank(mut rows: [[f64; AXES]; AXES]) -> usize {
 /// What is wrong with a calibration.
 type Problem = Box<dyn std::error::Error>;
 
-/// Adds the file, and what a calibration is.
+/// Adds the file and what a calibration looks like to an error.
 fn in_calibration<T>(path: &Path, result: Result<T, Problem>) -> Result<T, RecordError> {
     let advice = "a calibration is six rows of six numbers, N and N m for a volt of each channel";
     let result = result.map_err(|problem| format!("{problem}; {advice}"));

@@ -1,9 +1,9 @@
-//! How much of a take is of use: the share in which the finger slides on its target, and its
-//! sweeps.
+//! How much of a take is usable: the share in which the finger slides on its target, and the number
+//! of sweeps.
 //!
-//! The spectrum of a take is that of the middles of its sweeps, in which the finger may be on
-//! target although it was lifted for the rest. A finger that was lifted from 3.2 s of 10 s left
-//! three sweeps, whose middles kept to the target.
+//! A take's spectrum only uses the middles of its sweeps. There, the finger may be on target
+//! although it was lifted the rest of the time: a finger that was lifted from 3.2 s of 10 s left
+//! three sweeps whose middles kept to the target.
 
 use htex_author::recording::Sums;
 use htex_author::{Recording, Segments, sliding};
@@ -12,39 +12,40 @@ use serde::{Deserialize, Serialize};
 
 use crate::record::guide::Guidance;
 
-/// Half the length of the means by which a take is judged (50 ms in all), seconds.
+/// Half the length of the moving averages by which a take is judged (50 ms in all), seconds.
 const HALF_MEAN_S: f64 = 0.025;
-/// Lowest speed at which the finger moves on its target, as a part of it: it turns between sweeps,
-/// and in a stroke of minimum jerk (T. Flash, N. Hogan 1985, Journal of Neuroscience 5), as hands
-/// make them, the speed rises and falls all the time: at most 0.31 of the stroke are within 10 % of
-/// a target speed, and 0.57 above half of it.
+/// Lowest speed at which the finger counts as moving on its target, as a part of the target speed.
+/// The finger turns between sweeps, and in a stroke of minimum jerk (T. Flash, N. Hogan 1985,
+/// Journal of Neuroscience 5), as hands make them, the speed rises and falls all the time. At most
+/// 0.31 of such a stroke is within 10 % of a target speed, but 0.57 is above half of it.
 const LOWEST_SPEED: f64 = 0.5;
-/// Rounding that is no difference, relative.
+/// Relative difference that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// What a take must have to be kept, beside its target.
+/// What a take must have to be accepted, in addition to keeping to its target.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Required {
-    /// Least share of the take in which the finger slides on its target, 0 to 1
-    /// ([`Coverage::on_target`]); 0 asks for nothing.
+    /// Smallest share of the take in which the finger slides on its target, 0 to 1
+    /// ([`Coverage::on_target`]). 0 requires nothing.
     #[schemars(range(min = 0, max = 1))]
     pub on_target: f64,
-    /// Fewest complete sweeps; 0 asks for none.
+    /// Smallest number of complete sweeps. 0 requires none.
     pub sweeps: u32,
 }
 
 impl Required {
-    /// Nothing is asked for.
+    /// No requirements.
     pub const NOTHING: Self = Self { on_target: 0.0, sweeps: 0 };
-    /// The share that is asked for unless another one is given. Simulated takes of 10 s over 83 mm,
-    /// of five surfaces with four seeds each, had 0.65 (at 240 mm/s) to 0.95 (at 20 mm/s), and at
-    /// most 0.47 when the finger was lifted for the second half.
+    /// Required share unless another one is given. It separates simulated takes of 10 s over 83 mm,
+    /// of five surfaces with four seeds each: complete takes had 0.65 (at 240 mm/s) to 0.95 (at 20
+    /// mm/s), and takes with the finger lifted for the second half had at most 0.47.
     pub const USUAL_ON_TARGET: f64 = 0.5;
 
-    /// The sweeps that are asked for unless another number is given: half of the strokes that the
-    /// target makes in a take of this length (seconds), but for the first and the last one, which
-    /// its ends cut off; 0 without a target speed, where no strokes are shown.
+    /// Returns the number of sweeps that is required unless another one is given. It is half the
+    /// strokes that the target makes in a take of this length (seconds), not counting the first and
+    /// the last, which are cut off by the ends of the take. It is 0 without a target speed, because
+    /// then no strokes are shown.
     #[must_use]
     pub fn usual_sweeps(guidance: &Guidance, seconds: f64) -> u32 {
         let strokes = guidance.turns(seconds).unwrap_or(0);
@@ -52,7 +53,7 @@ impl Required {
     }
 }
 
-/// A target, and the tolerance around it.
+/// A target and its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Target {
     pub(crate) value: f64,
@@ -61,45 +62,47 @@ pub(crate) struct Target {
 }
 
 impl Target {
-    /// Lowest and highest value that is allowed.
+    /// Returns the lowest and the highest allowed value.
     pub(crate) fn range(self) -> [f64; 2] {
         let allowed = self.tolerance * self.value.abs();
         [self.value - allowed, self.value + allowed]
     }
 
-    /// The range of a speed at which the finger moves, not only in the middle of a sweep.
+    /// Returns the range of speeds at which the finger counts as moving, anywhere in a sweep.
     fn moving(self) -> [f64; 2] {
         let [_, high] = self.range();
         [LOWEST_SPEED * self.value.abs(), high]
     }
 
-    /// Whether a number is within the tolerance; one that is not a number is not.
+    /// Returns whether a number is within the tolerance. NaN is not.
     pub(crate) fn is_met(self, value: f64) -> bool {
         (value - self.value).abs() <= self.tolerance * self.value.abs() * (1.0 + ROUNDING)
     }
 }
 
-/// The use of a take. Shares are of its length, 0 to 1.
+/// How much of a take is usable. Shares are parts of its length, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
-    /// Share in which the finger slides on its target: with a friction of half the mean or more, at
-    /// half of the target speed or more and at most the tolerance above it, and with a force within
-    /// the tolerance; each as a mean over 50 ms, where there is a target.
+    /// Share in which the finger slides on its target. Every condition is tested with means over 50
+    /// ms, if there is a target: friction of at least half its mean, speed from half the target to
+    /// the tolerance above it, and force within the tolerance.
     pub on_target: f64,
     /// Share in which the finger slides.
     pub sliding: f64,
-    /// Share in which the speed is so; absent without a target or a speed.
+    /// Share in which the speed meets this condition. Absent without a target or a measured speed.
     pub speed: Option<f64>,
-    /// Share in which the normal force is so; absent without a target or a force.
+    /// Share in which the normal force meets this condition. Absent without a target or a measured
+    /// force.
     pub force: Option<f64>,
     /// Complete sweeps.
     pub sweeps: usize,
-    /// Begin and end of the longest time that is not on target, seconds; absent if all is.
+    /// Start and end of the longest time off target, seconds. Absent if the whole take is on
+    /// target.
     pub longest_off_s: Option<[f64; 2]>,
 }
 
 impl Coverage {
-    /// Measures a recording; the targets are those of speed (mm/s) and force (N).
+    /// Measures a recording. The targets are for speed (mm/s) and force (N).
     pub(crate) fn of(
         recording: &Recording,
         segments: &Segments,
@@ -123,7 +126,7 @@ impl Coverage {
         }
     }
 
-    /// What the take lacks, each a phrase.
+    /// Returns what the take lacks, as phrases.
     pub(crate) fn lacks(&self, required: Required) -> Vec<String> {
         let share = (self.on_target < required.on_target).then(|| self.share_lacking(required));
         let sweeps = (self.sweeps < required.sweeps as usize).then(|| {
@@ -151,8 +154,8 @@ impl Coverage {
     }
 }
 
-/// Whether the mean over 50 ms around each sample is within a range; `None` without a range or
-/// values.
+/// Returns for each sample whether the mean over 50 ms around it is within a range; `None` without
+/// a range or values.
 fn within(values: Option<&[f64]>, range: Option<[f64; 2]>, half: usize) -> Option<Vec<bool>> {
     let (values, [low, high]) = (values?, range?);
     let means = Sums::of(values.iter().copied());
@@ -164,7 +167,7 @@ fn share(on: &[bool]) -> f64 {
     on.iter().filter(|on| **on).count() as f64 / on.len().max(1) as f64
 }
 
-/// The first sample of the longest stretch that is off, and one past its last.
+/// Returns the start of the longest stretch that is off target, and the sample after its end.
 fn longest_off(on: &[bool]) -> Option<[usize; 2]> {
     let mut longest: Option<[usize; 2]> = None;
     let mut begin = 0;

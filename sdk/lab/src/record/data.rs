@@ -1,4 +1,4 @@
-//! What a take consists of, on disk and in memory.
+//! The data of a take, on disk and in memory.
 
 use htex_author::recording::MAX_RATE_HZ;
 use htex_author::recording::Role;
@@ -12,27 +12,27 @@ use crate::record::format::Format;
 use crate::record::names;
 use crate::record::setup::LONGEST_S;
 
-/// Roles of the axes of the texture's signal.
+/// Roles that are axes of the texture's signal.
 const AXES: [&str; 7] =
     ["lateral", "lateral_x", "lateral_y", "signal", "signal_x", "signal_y", "signal_z"];
 
-/// What a take was recorded with; the first line of a part file, and the object `take` of the JSON
-/// beside a recording.
+/// How a take was recorded: the first line of a part file, and the object `take` in the JSON next
+/// to a recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct TakeHeader {
     /// Version of this structure: 1.
     #[schemars(extend("const" = 1))]
     pub htex_take: u32,
-    /// Name of the takes.
+    /// Name that all takes of the session share.
     #[schemars(regex(pattern = names::PATTERN))]
     pub name: String,
     /// Number of the take, from 1.
     #[schemars(range(min = 1))]
     pub number: u32,
-    /// Program and version.
+    /// Program and version that recorded it.
     pub tool: String,
-    /// The source, as it was named.
+    /// The source, as the user named it.
     pub source: String,
     /// The map of channels, if one was given.
     pub map: Option<String>,
@@ -40,7 +40,7 @@ pub struct TakeHeader {
     pub calibrations: Vec<Vec<f64>>,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
-    /// Sample rate, hertz; of a WAV a whole number.
+    /// Sample rate, hertz; a whole number for a WAV file.
     #[schemars(range(max = MAX_RATE_HZ), extend("exclusiveMinimum" = 0))]
     pub rate_hz: f64,
     /// Length of a complete take, seconds.
@@ -49,9 +49,9 @@ pub struct TakeHeader {
     /// Recorded signals: role and unit, each role once.
     #[schemars(with = "Vec<SignalText>", length(min = 1))]
     pub signals: Vec<(String, String)>,
-    /// Means that were subtracted from the signals; empty without tare.
+    /// Means that were subtracted from the signals. Empty without tare.
     pub tare: Vec<f64>,
-    /// Signals of the tracker, without the time: role and unit, each role once; empty without a
+    /// Signals of the tracker, without the time: role and unit, each role once. Empty without a
     /// tracker.
     #[schemars(with = "Vec<SignalText>")]
     pub tracker: Vec<(String, String)>,
@@ -60,7 +60,7 @@ pub struct TakeHeader {
     pub target_force_n: Option<f64>,
     /// Allowed relative difference from the target.
     pub tolerance: f64,
-    /// What the take must have to be kept.
+    /// What the take must have to be accepted.
     pub required: Required,
     /// Format of the recording: see [`Format`].
     pub format: Format,
@@ -69,13 +69,13 @@ pub struct TakeHeader {
 /// Longest unit of a signal, bytes.
 const MOST_UNIT: usize = 16;
 
-/// Names of the roles that a signal of a take may have: all but the time.
+/// Returns the names of the roles that a take's signal may have: all except the time.
 fn roles() -> impl Iterator<Item = &'static str> {
     let names = Role::ALL.iter().map(|role| role.name());
     names.filter(|name| *name != "time")
 }
 
-/// The schema of a signal: its role, and its unit of printable ASCII without commas.
+/// Schema of a signal: its role, and its unit in printable ASCII without commas.
 struct SignalText;
 
 impl JsonSchema for SignalText {
@@ -98,23 +98,23 @@ impl JsonSchema for SignalText {
     }
 }
 
-/// The JSON Schema of a take's header, version 1: `spec/schemas/take-1.json`.
+/// Returns the JSON Schema of a take's header, version 1: `spec/schemas/take-1.json`.
 pub fn take_schema() -> Value {
     htex_schema::crossing::<TakeHeader>("take-1.json", "header of a take of htex 1")
 }
 
-/// A take: its header and its samples.
+/// A take in memory: its header and its samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TakeData {
     pub header: TakeHeader,
-    /// The samples of each signal, of equal lengths.
+    /// Samples of each signal, all of the same length.
     pub signals: Vec<Vec<f64>>,
-    /// Time since the beginning of the take (s), then the values of each signal of the tracker.
+    /// Time since the start of the take (s), then the values of each tracker signal.
     pub tracker: Vec<Vec<f64>>,
 }
 
 impl TakeData {
-    /// Makes a take without samples.
+    /// Creates a take without samples.
     #[must_use]
     pub fn empty(header: TakeHeader) -> Self {
         let signals = vec![Vec::new(); header.signals.len()];
@@ -135,7 +135,7 @@ impl TakeData {
         self.frames() as f64 / self.header.rate_hz
     }
 
-    /// Whether it has all frames of its length.
+    /// Returns whether the take has as many frames as its header demands.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.frames() >= self.header.frames()
@@ -146,8 +146,8 @@ impl TakeData {
         spread(&mut self.signals, frames);
     }
 
-    /// Appends interleaved rows of the tracker. Rows that are not finite, or not later than those
-    /// before, are left out: a position cannot be interpolated over them.
+    /// Appends interleaved rows of the tracker. Leaves out rows that are not finite or not later
+    /// than the row before, because a position cannot be interpolated across them.
     pub(crate) fn extend_tracker(&mut self, rows: &[f64]) {
         for row in rows.chunks_exact(self.tracker.len().max(1)) {
             let last_s = self.tracker.first().and_then(|time_s| time_s.last());
@@ -159,11 +159,11 @@ impl TakeData {
 }
 
 impl TakeHeader {
-    /// Reads a header of this version.
+    /// Reads a header from JSON.
     ///
     /// # Errors
-    /// What is wrong, if it has another version, other keys, or values that no session would have
-    /// written.
+    /// A text that says what is wrong: another version, other keys, or values that no session would
+    /// have written.
     pub fn of_json(json: Value) -> Result<Self, String> {
         let version = &json["htex_take"];
         if *version != 1 {
@@ -177,13 +177,14 @@ impl TakeHeader {
         }
     }
 
-    /// Frames of a complete take.
+    /// Returns the number of frames in a complete take.
     #[must_use]
     pub fn frames(&self) -> usize {
         (self.seconds * self.rate_hz).round() as usize
     }
 
-    /// What no session would have written, if anything: a part file may be damaged, or not be ours.
+    /// Returns what no session would have written, if there is anything. A part file may be
+    /// damaged, or may come from another program.
     fn problem(&self) -> Option<&'static str> {
         let has_known_roles = |signals: &[(String, String)]| {
             let mut names: Vec<&str> = signals.iter().map(|(role, _)| &role[..]).collect();
@@ -221,15 +222,15 @@ impl TakeHeader {
         failed.map(|(_, problem)| problem)
     }
 
-    /// Index of the signal of a role.
+    /// Returns the index of the signal with this role.
     #[must_use]
     pub fn signal(&self, role: &str) -> Option<usize> {
         self.signals.iter().position(|(own, _)| own == role)
     }
 }
 
-/// Indices of the signals that are the axes of the texture's signal, in the order of [`AXES`];
-/// without any, that of the normal force.
+/// Returns the indices of the signals that are axes of the texture's signal, in the order of
+/// [`AXES`]. Without any, returns the index of the normal force.
 pub(crate) fn texture_axes(signals: &[(String, String)]) -> Vec<usize> {
     let position = |role: &&str| signals.iter().position(|(own, _)| own == role);
     let axes: Vec<usize> = AXES.iter().filter_map(position).collect();

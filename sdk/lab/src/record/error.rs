@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// An error of recording. What was recorded before is kept on disk.
+/// Error of a recording. What was recorded before it stays on disk.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
@@ -12,11 +12,11 @@ pub enum RecordError {
     /// The channels do not fit the map, or a file cannot be read.
     #[error(transparent)]
     Read(#[from] htex_author::recording::ReadError),
-    /// The source has ended before the take was complete.
+    /// The source ended before the take was complete.
     #[error("the source ended {after_s:.3} s into a take of {seconds} s{}", with_place(.kept))]
     Ended {
         after_s: f64,
-        /// Seconds of the take.
+        /// Length of the take, seconds.
         seconds: f64,
         /// The file with what was recorded.
         kept: Option<PathBuf>,
@@ -31,17 +31,17 @@ pub enum RecordError {
     /// The source delivers nothing.
     #[error("the source has delivered nothing for {seconds} s; check its cable and its clock")]
     Silent { seconds: u64 },
-    /// The person has ended the session.
+    /// The user ended the session.
     #[error("the session was ended{}", with_place(.kept))]
     Left {
         /// The file with what was recorded.
         kept: Option<PathBuf>,
     },
-    /// No attempt kept to its target.
+    /// No attempt kept to the target.
     #[error("none of {attempts} takes kept to the target; the last: {reasons}. They are in {}", .folder.display())]
     OffTarget {
         attempts: u32,
-        /// What the last one did wrong.
+        /// What the last attempt did wrong.
         reasons: String,
         /// The folder of rejected takes.
         folder: PathBuf,
@@ -53,10 +53,10 @@ pub enum RecordError {
     NotFinite {
         role: String,
         value: f64,
-        /// Its time since the source was started, seconds.
+        /// Time since the source was started, seconds.
         at_s: f64,
     },
-    /// A target without the signal that shows it.
+    /// There is a target, but no signal that measures it.
     #[error("a target {what} is given, but the {what} is not measured; {advice}")]
     NotMeasured {
         /// `speed` or `force`.
@@ -66,7 +66,7 @@ pub enum RecordError {
     /// A value of the setup is out of range.
     #[error("{what} is {value}; {allowed}")]
     Setup { what: &'static str, value: String, allowed: &'static str },
-    /// A calibration matrix, a part file or the JSON beside a recording cannot be used.
+    /// A calibration matrix, a part file or the JSON next to a recording cannot be used.
     #[error(transparent)]
     Content(#[from] htex_files::ContentError),
     /// A line of a tracker is not two numbers.
@@ -77,7 +77,7 @@ pub enum RecordError {
         line: usize,
         text: String,
     },
-    /// Another program is recording a take.
+    /// Another program is recording this take.
     #[error("{}: another htex is recording into it; wait for it to end", .file.display())]
     Busy { file: PathBuf },
     /// The page cannot be served.

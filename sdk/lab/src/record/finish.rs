@@ -1,4 +1,4 @@
-//! From a part file to a recording: at the end of a take, and after a program was killed.
+//! Turns a part file into a recording, at the end of a take or after a program was killed.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use crate::record::names;
 use crate::record::part::read_part;
 use crate::record::write::write_take;
 
-/// A take that is complete, or that was recovered.
+/// A take that was completed or recovered.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Recorded {
     pub file: PathBuf,
@@ -21,11 +21,11 @@ pub struct Recorded {
     pub number: u32,
     pub recorded_s: f64,
     pub verdict: Verdict,
-    /// Arguments of `htex fit` that read it.
+    /// Arguments with which `htex fit` reads it.
     pub fit: Vec<String>,
 }
 
-/// The error of a take that was cut short, with the file that has its beginning.
+/// Creates the error for a take that was cut short, with the file that holds its beginning.
 pub(crate) fn with_kept(error: RecordError, kept: Option<Recorded>) -> RecordError {
     let after_s = kept.as_ref().map_or(0.0, |kept| kept.recorded_s);
     let kept = kept.map(|kept| kept.file);
@@ -36,7 +36,7 @@ pub(crate) fn with_kept(error: RecordError, kept: Option<Recorded>) -> RecordErr
     }
 }
 
-/// Writes the files of a part file and removes it; `None` if nothing was recorded.
+/// Writes the recording of a part file and removes the part file; `None` if nothing was recorded.
 pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, RecordError> {
     let data = read_part(path)?.filter(|data| data.frames() > 0);
     let recorded = match data {
@@ -64,12 +64,12 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, Rec
     Ok(recorded)
 }
 
-/// Makes recordings of the takes that a killed program left in a folder, and returns them. A take
-/// that lacked only its renaming is judged as it would have been. Takes that another program is
-/// recording are left alone.
+/// Turns the takes that a killed program left in a folder into recordings, and returns them. A take
+/// that was already complete is judged as usual. Takes that another program is recording are left
+/// alone.
 ///
 /// # Errors
-/// When a part file is damaged in its header, or a recording cannot be written.
+/// If the header of a part file is damaged, or a recording cannot be written.
 pub fn recover(folder: &Path) -> Result<Vec<Recorded>, RecordError> {
     let parts = names::parts(folder).in_file(folder)?;
     let mut recovered = Vec::new();

@@ -1,4 +1,4 @@
-//! The formats of recordings that are written, and what becomes of a take.
+//! Formats of recordings, and outcomes of takes.
 
 use std::path::Path;
 
@@ -8,16 +8,16 @@ use serde::{Deserialize, Serialize};
 use crate::record::error::RecordError;
 use crate::record::names;
 
-/// Format of a recording.
+/// File format of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
-    /// Text with names and units, of all digits; read without further settings.
+    /// Text with names, units and all digits. It can be read without further settings.
     #[default]
     Csv,
     /// A NumPy array (frames, signals) of f8.
     Npy,
-    /// 32-bit floats: a value of 1 is one newton, or the signal's unit.
+    /// 32-bit floats. The value 1 means one newton, or one unit of the signal.
     Wav,
 }
 
@@ -32,20 +32,20 @@ impl clap::ValueEnum for Format {
     }
 }
 
-/// What became of a take.
+/// Outcome of a take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
     /// It kept to its target.
     Kept,
-    /// It left its target; it is in the folder `rejected`.
+    /// It left its target; it was moved to the folder `rejected`.
     Rejected,
-    /// It was cut short; it is in the folder `incomplete`.
+    /// It was cut short; it was moved to the folder `incomplete`.
     Incomplete,
 }
 
 impl Format {
-    /// Refuses a rate that files of this format cannot have.
+    /// Refuses a sample rate that files of this format cannot have.
     ///
     /// # Errors
     /// [`RecordError::Setup`].
@@ -72,7 +72,7 @@ impl Format {
 }
 
 impl Outcome {
-    /// The subfolder of such takes; empty for the folder itself.
+    /// Returns the subfolder for takes with this outcome; empty for the folder itself.
     pub(crate) fn folder(self) -> &'static Path {
         Path::new(match self {
             Self::Kept => "",

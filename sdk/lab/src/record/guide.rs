@@ -1,13 +1,13 @@
-//! What the person who records is shown: the target's motion, a metronome, their own finger, and
+//! What the user sees while recording: the target's motion, a metronome, the own finger, and
 //! whether the force is right.
 
 use serde::Serialize;
 
-/// The target of a recording, for showing it.
+/// The target of a recording, as it is displayed.
 ///
-/// The target moves back and forth at its speed over a stroke, as a square on a screen; the
-/// metronome beats at each turn. It is in motion before the take begins, so that the finger can
-/// follow it by then.
+/// On the screen, the target is a square that moves back and forth over a stroke at the target
+/// speed. The metronome beats at each turn. The target already moves before the take begins, so
+/// that the finger can be following it by then.
 ///
 /// ```
 /// use htex_lab::record::{Force, Guidance};
@@ -32,34 +32,34 @@ pub struct Guidance {
     pub stroke_mm: f64,
 }
 
-/// The normal force compared with its target.
+/// How the normal force compares with its target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Force {
     /// There is no target, or the force is not measured.
     Unknown,
-    /// Below the target's range; the paper shows yellow.
+    /// Below the target's range (yellow in the paper).
     Below,
-    /// In the target's range; green.
+    /// In the target's range (green).
     Within,
-    /// Above the target's range; red.
+    /// Above the target's range (red).
     Above,
 }
 
-/// What a session does.
+/// What a session is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
-    /// The finger leaves the surface, for another tare.
+    /// The user lifts the finger for another tare.
     Lift,
-    /// The forces without a finger are measured.
+    /// The forces are measured without a finger.
     Tare,
-    /// A take will begin.
+    /// A take is about to begin.
     Countdown,
-    /// A take is recorded.
+    /// A take is being recorded.
     Take,
 }
 
-/// The state of a session, some 50 times a second.
+/// The state of a session, updated about 50 times a second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moment<'a> {
     pub phase: Phase,
@@ -69,17 +69,18 @@ pub struct Moment<'a> {
     pub elapsed_s: f64,
     /// Length of the phase, seconds.
     pub of_s: f64,
-    /// Normal force, newtons: the absolute mean of the last 50 ms, by whose means a take is judged.
+    /// Normal force, newtons: the absolute mean of the last 50 ms. A take is judged by the same
+    /// means.
     pub force_n: Option<f64>,
-    /// The finger's place on the axis along which it moves most, mm from its outermost place so
+    /// Position of the finger along the axis on which it moves most, mm from its lowest position so
     /// far.
     pub position_mm: Option<f64>,
-    /// The samples since the moment before, of each axis of the texture's signal, in its unit.
+    /// Samples since the moment before, for each axis of the texture's signal, in its unit.
     pub texture: &'a [&'a [f64]],
 }
 
 impl Phase {
-    /// Its name for a page.
+    /// Returns the name that the page uses.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Lift => "lift",
@@ -89,8 +90,8 @@ impl Phase {
         }
     }
 
-    /// The time of the target's motion: seconds since the take began, negative in its countdown;
-    /// `None` where there is no motion.
+    /// Returns the time on the target's clock: seconds since the take began, negative during its
+    /// countdown. `None` in phases without motion.
     #[must_use]
     pub fn motion_s(self, elapsed_s: f64, of_s: f64) -> Option<f64> {
         match self {
@@ -102,8 +103,9 @@ impl Phase {
 }
 
 impl Guidance {
-    /// The target's position at a time, mm; `None` without a target speed. The motion is at 0 mm at
-    /// 0 s and the same before and after it, so that a countdown leads into its take.
+    /// Returns the target's position at a time, mm; `None` without a target speed. The motion
+    /// starts from 0 mm at 0 s and is mirrored in time around it, so that a countdown leads
+    /// smoothly into its take.
     #[must_use]
     pub fn target_mm(&self, at_s: f64) -> Option<f64> {
         let way_mm = self.speed_mm_s? * at_s.abs();
@@ -111,14 +113,14 @@ impl Guidance {
         Some(into_mm.min(2.0 * self.stroke_mm - into_mm))
     }
 
-    /// Turns of the target until a time, at each of which the metronome beats; `None` without a
-    /// target speed.
+    /// Returns how many times the target has turned until a time; the metronome beats at each turn.
+    /// `None` without a target speed.
     #[must_use]
     pub fn turns(&self, at_s: f64) -> Option<i64> {
         Some((self.speed_mm_s? * at_s / self.stroke_mm).floor() as i64)
     }
 
-    /// The range of the force that is within the tolerance, newtons.
+    /// Returns the range of forces within the tolerance, newtons.
     #[must_use]
     pub fn force_range_n(&self) -> Option<[f64; 2]> {
         let target_n = self.force_n?;
@@ -126,7 +128,7 @@ impl Guidance {
         Some([target_n - range_n, target_n + range_n])
     }
 
-    /// A normal force compared with its target.
+    /// Compares a normal force with its target.
     #[must_use]
     pub fn force(&self, force_n: Option<f64>) -> Force {
         let (Some(force_n), Some([low_n, high_n])) = (force_n, self.force_range_n()) else {
@@ -140,7 +142,7 @@ impl Guidance {
     }
 }
 
-/// The way of a finger so far.
+/// The path of a finger so far.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FingerPath {
     /// Lowest, highest and newest position along each axis, mm.
@@ -148,13 +150,13 @@ pub(crate) struct FingerPath {
 }
 
 impl FingerPath {
-    /// Takes a position along an axis, mm.
+    /// Records a position along an axis, mm.
     pub(crate) fn see(&mut self, axis: usize, at_mm: f64) {
         let [low, high, _] = self.axes[axis].unwrap_or([at_mm; 3]);
         self.axes[axis] = Some([low.min(at_mm), high.max(at_mm), at_mm]);
     }
 
-    /// The newest place on the axis of the longer way, from its lowest position, mm.
+    /// Returns the newest position on the axis with the longer path, mm from its lowest position.
     pub(crate) fn place_mm(&self) -> Option<f64> {
         let way = |axis: &&[f64; 3]| axis[1] - axis[0];
         let seen = self.axes.iter().flatten();

@@ -1,4 +1,4 @@
-//! Whether a take kept to its target.
+//! Judges whether a take kept to its target.
 
 use std::error::Error;
 
@@ -9,46 +9,49 @@ use serde::{Deserialize, Serialize};
 use crate::record::coverage::{Coverage, Target};
 use crate::record::data::{TakeData, TakeHeader, texture_axes};
 
-/// Part of a take at its ends that a tracker may leave out, seconds.
+/// Time at each end of a take that a tracker may leave out, seconds.
 const UNTRACKED_S: f64 = 0.25;
-/// Longest time between two rows of a tracker, seconds, over which a position is interpolated.
+/// Longest time between two rows of a tracker, seconds, over which a position is still
+/// interpolated.
 const GAP_S: f64 = 0.2;
 
-/// A quantity over the sweeps of a take.
+/// A quantity measured over the sweeps of a take.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Mean over all segments.
     pub mean: f64,
-    /// Lowest mean of 50 ms.
+    /// Lowest mean over 50 ms.
     pub min: f64,
-    /// Highest mean of 50 ms.
+    /// Highest mean over 50 ms.
     pub max: f64,
 }
 
 /// The judgement of a take.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Verdict {
-    /// Whether it kept to its target and has what is required of it.
+    /// Whether it kept to its target and meets all requirements.
     pub kept: bool,
-    /// What it did wrong, each a phrase.
+    /// What it did wrong, as phrases.
     pub reasons: Vec<String>,
     /// Scanning speed, mm/s.
     pub speed_mm_s: Option<Measured>,
     /// Normal force, newtons.
     pub force_n: Option<Measured>,
-    /// How much of it is of use; absent if no texture can be read from it.
+    /// How much of it is usable. Absent if no texture can be read from it.
     pub coverage: Option<Coverage>,
-    /// Segments of 0.2 s that a texture would be read from.
+    /// Number of 0.2 s segments from which a texture would be read.
     pub segments: usize,
-    /// Problems of the signals, such as clipping, each a sentence with its code.
+    /// Problems of the signals, such as clipping. Each is a sentence with its code.
     pub findings: Vec<String>,
 }
 
-/// Judges a take: mean, minimum and maximum of speed and normal force over the middles of its
-/// sweeps (as `htex fit` chooses them) must be within the tolerance of their targets. Minimum and
-/// maximum are those of means of 50 ms, as in
-/// [`htex_author::Spread`]: faster changes are the texture's, and between sweeps the finger turns. The take must also have what its header
-/// requires ([`crate::record::Required`]).
+/// Judges a take. The mean, minimum and maximum of speed and normal force must be within the
+/// tolerance of their targets, measured over the middles of its sweeps (as `htex fit` chooses
+/// them).
+///
+/// Minimum and maximum are taken from means over 50 ms, as in [`htex_author::Spread`]: faster
+/// changes belong to the texture. Between sweeps the finger turns, so only the middles count. The
+/// take must also meet the requirements in its header ([`crate::record::Required`]).
 #[must_use]
 pub fn judge(data: &TakeData) -> Verdict {
     let header = &data.header;
@@ -90,7 +93,7 @@ pub fn judge(data: &TakeData) -> Verdict {
     verdict
 }
 
-/// The targets of speed (mm/s) and force (N).
+/// Returns the targets for speed (mm/s) and force (N).
 fn targets(header: &TakeHeader) -> [Option<Target>; 2] {
     let tolerance = header.tolerance;
     [header.target_speed_mm_s, header.target_force_n]
@@ -104,7 +107,7 @@ fn reading(data: &TakeData) -> Result<(Reading, Recording), Box<dyn Error>> {
     Ok((reading, take.recording))
 }
 
-/// The take as a recording, with the speed of the tracker if there is one.
+/// Converts the take to a recording. Uses the tracker's speed if there is a tracker.
 fn recording(data: &TakeData) -> Result<Recording, RecordingError> {
     let of = |role: &str| data.header.signal(role).map(|at| data.signals[at].clone());
     let axes =
@@ -120,7 +123,8 @@ fn recording(data: &TakeData) -> Result<Recording, RecordingError> {
     }
 }
 
-/// The finger's speed at each sample, mm/s: the tracker's, else the source's.
+/// Returns the finger's speed at each sample, mm/s, from the tracker if there is one, else from the
+/// source.
 fn speed(data: &TakeData) -> Option<Vec<f64>> {
     let at_s: Vec<f64> = (0..data.frames()).map(|i| i as f64 / data.header.rate_hz).collect();
     let tracked = |role: &str| {
@@ -148,8 +152,8 @@ fn speed(data: &TakeData) -> Option<Vec<f64>> {
     })
 }
 
-/// The value at a time between rows of ascending times, on a straight line; beyond them the first
-/// or the last.
+/// Interpolates linearly between rows of ascending times. Before the first and after the last row,
+/// returns their values.
 fn interpolated(time_s: &[f64], values: &[f64], at_s: f64) -> f64 {
     let after = time_s.partition_point(|t| *t <= at_s);
     match (after.checked_sub(1), after < values.len()) {
@@ -184,7 +188,7 @@ fn measure(verdict: &mut Verdict, reading: &Reading, recording: &Recording) {
     verdict.findings = findings.map(|f| format!("{}: {}", f.code, f.message)).collect();
 }
 
-/// What differs from a target by more than the tolerance, if anything does.
+/// Returns what differs from a target by more than the tolerance, if anything does.
 fn differs(what: &str, unit: &str, target: Target, measured: Measured) -> Option<String> {
     let Measured { mean, min, max } = measured;
     let values = [("mean", mean), ("minimum", min), ("maximum", max)];
@@ -196,7 +200,7 @@ fn differs(what: &str, unit: &str, target: Target, measured: Measured) -> Option
     })
 }
 
-/// A part of the take that the tracker does not cover.
+/// Says which part of the take the tracker does not cover, if there is one.
 fn untracked(data: &TakeData) -> Option<String> {
     let time_s = data.tracker.first()?;
     let end_s = data.recorded_s();

@@ -1,4 +1,4 @@
-//! The spectrum of a take that was kept, read from its files.
+//! Reads the spectrum of an accepted take from its files.
 
 use std::path::Path;
 
@@ -14,15 +14,16 @@ use crate::record::format::Outcome;
 use crate::record::live::LiveSpectrum;
 use crate::record::names;
 
-/// What is needed of the JSON beside a recording.
+/// The parts of the JSON next to a recording that are needed here.
 #[derive(Deserialize)]
 struct Beside {
     outcome: Outcome,
     take: TakeHeader,
 }
 
-/// Returns the texture spectrum of the newest take of a name that a folder keeps, as `htex fit`
-/// would read it; `None` without one of this quantity, and if its files cannot be read any more.
+/// Returns the texture spectrum of the newest accepted take with this name, as `htex fit` would
+/// read it. `None` if the folder has no such take of this quantity, or if its files can no longer
+/// be read.
 #[must_use]
 pub fn kept_spectrum(folder: &Path, name: &str, quantity: Quantity) -> Option<LiveSpectrum> {
     let number = names::kept_number(folder, name)?;

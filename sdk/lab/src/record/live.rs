@@ -1,4 +1,5 @@
-//! The spectrum of what the finger feels now, by the code that reads textures from recordings.
+//! Live spectrum of what the finger feels now, computed by the code that reads textures from
+//! recordings.
 
 use std::collections::VecDeque;
 
@@ -8,19 +9,20 @@ use htex_author::{
 use htex_dsp::bands::{BAND_COUNT, BandBank};
 use htex_format::Quantity;
 
-/// Length of the signal that the spectrum is of, seconds: three segments of 0.2 s, each overlapping
-/// the one before by half.
+/// Length of the signal behind the spectrum, seconds: three segments of 0.2 s, each overlapping the
+/// one before by half.
 const LIVE_S: f64 = 0.4;
-/// Decibels of a magnitude of zero.
+/// Level of a zero magnitude, decibels.
 const SILENCE_DB: f64 = -200.0;
-/// Part of a magnitude² sum that is the square of an RMS value: the Hann window spreads a sinusoid
-/// over 1.5 times its power.
+/// Part of a sum of squared magnitudes that is a squared RMS value. The Hann window spreads a
+/// sinusoid to 1.5 times its power.
 const SQUARED_RMS: f64 = 1.0 / 3.0;
 
-/// The newest samples of a texture's signal: 0.4 s.
+/// The newest 0.4 s of a texture's signal.
 ///
-/// Its spectrum has the numbers that `htex fit` would read from these samples as windows, without a
-/// setup's response: mean removed, Hann window, FFT, axes folded into one, root of the mean power.
+/// Its spectrum has the same numbers that `htex fit` would read from these samples, except that the
+/// setup's response is not applied: mean removed, Hann window, FFT, axes folded into one, root of
+/// the mean power.
 ///
 /// ```
 /// use htex_format::Quantity;
@@ -44,26 +46,26 @@ pub struct LiveSignal {
     axes: Vec<VecDeque<f64>>,
 }
 
-/// A spectrum for showing it.
+/// A spectrum for display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveSpectrum {
     /// Frequencies, hertz: multiples of 5 Hz from 20 to 1000 Hz, or to half the sample rate.
     pub frequency_hz: Vec<f64>,
-    /// Magnitude at each of them, decibels relative to one unit of the quantity; a sinusoid of
-    /// amplitude A on the grid has 20 log10 A, and -200 dB is the lowest value.
+    /// Magnitude at each frequency, decibels relative to one unit of the quantity. A sinusoid of
+    /// amplitude A on the grid has 20 log10 A. The lowest value is -200 dB.
     pub level_db: Vec<f64>,
     /// RMS in each of nine half-overlapping bands, decibels relative to one unit.
     pub band_db: Vec<f64>,
 }
 
 impl LiveSignal {
-    /// A signal without samples; the rate is in hertz.
+    /// Creates a signal without samples. The rate is in hertz.
     #[must_use]
     pub fn new(quantity: Quantity, rate_hz: f64) -> Self {
         Self { quantity, rate_hz, axes: Vec::new() }
     }
 
-    /// Takes the next samples of each axis.
+    /// Appends the next samples of each axis.
     pub fn push(&mut self, axes: &[&[f64]]) {
         let most = (LIVE_S * self.rate_hz).round() as usize;
         self.axes.resize_with(axes.len(), VecDeque::new);
@@ -73,13 +75,13 @@ impl LiveSignal {
         }
     }
 
-    /// Forgets all samples.
+    /// Removes all samples.
     pub fn clear(&mut self) {
         self.axes.clear();
     }
 
-    /// The spectrum; `None` until there are 0.2 s, and of samples that are no recording, such as
-    /// infinite ones.
+    /// Returns the spectrum. `None` before there are 0.2 s of samples, and for samples that are not
+    /// a valid recording, such as infinite ones.
     #[must_use]
     pub fn spectrum(&self) -> Option<LiveSpectrum> {
         let axes = self.axes.iter().map(|axis| axis.iter().copied().collect());
@@ -92,7 +94,7 @@ impl LiveSignal {
 }
 
 impl LiveSpectrum {
-    /// A texture's spectrum in decibels.
+    /// Converts a texture's spectrum to decibels.
     #[must_use]
     pub fn of(texture: &TextureSpectrum) -> Self {
         let bank = BandBank::new(BAND_COUNT, texture.band, &texture.frequency_hz);
@@ -105,7 +107,7 @@ impl LiveSpectrum {
         }
     }
 
-    /// Frequency (Hz) and level (dB) of the highest magnitude.
+    /// Returns the frequency (Hz) and level (dB) of the highest magnitude.
     #[must_use]
     pub fn peak(&self) -> (f64, f64) {
         let pairs = self.frequency_hz.iter().zip(&self.level_db);

@@ -1,28 +1,28 @@
-//! Recordings under guidance: a source is sampled, converted to newtons, kept on disk while it
-//! grows, and judged against its target.
+//! Guided recordings: reads a source, converts it to newtons, saves it to disk while it grows, and
+//! judges it against its target.
 //!
-//! A take is recorded into a part file, to which each second is appended and flushed to disk: a
-//! program that is killed loses the current second at most, and [`recover`] makes a recording of
-//! the rest. A complete take is judged ([`judge`]): if the mean, minimum or maximum of speed or
-//! force differs from its target by more than the tolerance (10 % in the paper, Supplementary,
-//! "Texture recording"), it is set aside and recorded again; so is one of which too little slides
-//! on target, or which has too few sweeps ([`Required`]). Results are files that `htex fit` reads,
-//! and JSON beside them.
+//! A take is recorded into a part file. Each second is appended and flushed to disk, so a program
+//! that is killed loses at most the current second, and [`recover`] turns the rest into a
+//! recording. A complete take is judged ([`judge`]). It is set aside and recorded again if the
+//! mean, minimum or maximum of speed or force differs from its target by more than the tolerance
+//! (10 % in the paper, Supplementary, "Texture recording"). The same happens if the finger slides
+//! on target for too short a time, or if there are too few sweeps ([`Required`]). The results are
+//! files that `htex fit` reads, with JSON next to them.
 //!
 //! From a finger to a recording:
 //!
 //! 1. A [`htex_device::Source`] delivers frames of its channels: a card, a sound card, a library,
 //!    or a file ([`Replay`]).
-//! 2. `signals`: six-axis calibration, the column map, tare; a tracker ([`TrackerRows`]) has a
-//!    clock of its own.
+//! 2. `signals` applies the six-axis calibration, the column map and the tare. A tracker
+//!    ([`TrackerRows`]) has its own clock.
 //! 3. [`PartFile`]: a take grows in a file of hashed chunks. The same function (`finish`) makes
-//!    recordings of takes that are complete, that ended in an error and that a killed program left.
-//! 4. [`judge`]: speed and force over the segments that a fit would read, against the target. JSON
-//!    beside a take says how it is read, to `htex compare`, `htex process` and the export of
-//!    studies.
-//! 5. `guide`: what guides the finger, for each block: phase, force, position, samples. `live` has
-//!    the newest 0.4 s. The terminal draws a moment; a page only stores it, and the thread of its
-//!    server computes the spectrum of a copy when the page asks.
+//!    recordings of takes that are complete, that ended in an error, or that a killed program left.
+//! 4. [`judge`] compares speed and force over the segments that a fit would read with the target.
+//!    The JSON next to a take tells `htex compare`, `htex process` and the export of studies how to
+//!    read it.
+//! 5. `guide` holds what guides the finger, for each block: phase, force, position, samples. `live`
+//!    holds the newest 0.4 s. The terminal draws each moment. A page only stores it, and the thread
+//!    of its server computes the spectrum from a copy when the page asks.
 
 mod beside;
 mod calibration;

@@ -4,27 +4,27 @@ use std::path::{Path, PathBuf};
 
 use crate::record::error::RecordError;
 
-/// Folder of takes that left their target.
+/// Folder for takes that left their target.
 pub(crate) const REJECTED: &str = "rejected";
-/// Folder of takes that were cut short.
+/// Folder for takes that were cut short.
 pub(crate) const INCOMPLETE: &str = "incomplete";
-/// Extension of a take that is being recorded.
+/// Extension of the file for a take that is being recorded.
 const PART: &str = "part";
 
-/// The names that [`check`] allows.
+/// Pattern of the names that [`check`] allows.
 pub(crate) const PATTERN: &str = "^[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}$";
 
-/// The name of a take's files without extension: `vinyl-007`.
+/// Returns the file name of a take without extension: `vinyl-007`.
 pub(crate) fn stem(name: &str, number: u32) -> String {
     format!("{name}-{number:03}")
 }
 
-/// The part file of a take.
+/// Returns the path of a take's part file.
 pub(crate) fn part(folder: &Path, name: &str, number: u32) -> PathBuf {
     folder.join(format!("{}.{PART}", stem(name, number)))
 }
 
-/// Refuses names that are no part of a file name on every system.
+/// Refuses names that cannot be part of a file name on every system.
 pub(crate) fn check(name: &str) -> Result<(), RecordError> {
     let allowed = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-' | b'.');
     let is_sound = name.bytes().all(allowed) && !name.starts_with(['.', '-']);
@@ -39,7 +39,7 @@ pub(crate) fn check(name: &str) -> Result<(), RecordError> {
     }
 }
 
-/// The number after the largest of the takes of this name, whatever became of them.
+/// Returns the next free take number for this name. It counts all takes, whatever their outcome.
 pub(crate) fn next_number(folder: &Path, name: &str) -> std::io::Result<u32> {
     let mut largest = 0;
     for folder in [folder.to_owned(), folder.join(REJECTED), folder.join(INCOMPLETE)] {
@@ -48,7 +48,7 @@ pub(crate) fn next_number(folder: &Path, name: &str) -> std::io::Result<u32> {
     Ok(largest.saturating_add(1))
 }
 
-/// The largest number of the takes of this name that were kept.
+/// Returns the largest number among the accepted takes with this name.
 pub(crate) fn kept_number(folder: &Path, name: &str) -> Option<u32> {
     largest_number(&files(folder).ok()?, name)
 }
@@ -62,7 +62,7 @@ fn number(stem: &str, name: &str) -> Option<u32> {
     stem.strip_prefix(name)?.strip_prefix('-')?.parse().ok()
 }
 
-/// Part files of a folder, in the order of their names.
+/// Returns the part files of a folder, sorted by name.
 pub(crate) fn parts(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     let is_part = |path: &PathBuf| {
         let is_hidden =
@@ -74,7 +74,7 @@ pub(crate) fn parts(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     Ok(parts)
 }
 
-/// Files of a folder; none if there is no such folder.
+/// Returns the files of a folder; an empty list if there is no such folder.
 fn files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     let entries = match std::fs::read_dir(folder) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),

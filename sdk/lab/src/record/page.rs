@@ -1,5 +1,5 @@
-//! The guidance on a page ([`crate::page`]): the newest state of a session, which the recording
-//! stores and the page asks for.
+//! Guidance on a web page ([`crate::page`]): the recording stores the newest state of a session,
+//! and the page asks for it.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -20,22 +20,22 @@ use crate::record::kept::kept_spectrum;
 use crate::record::live::{LiveSignal, LiveSpectrum};
 use crate::record::setup::{Setup, Tare};
 
-/// Longest time by which a moment is continued until the next one is there, seconds.
+/// Longest time for which a moment is extrapolated until the next one arrives, seconds.
 const CONTINUED_S: f64 = 0.1;
-/// Steps of the top of the spectrum's scale, decibels.
+/// Step of the upper end of the spectrum's scale, decibels.
 const SCALE_STEP_DB: f64 = 10.0;
-/// Lowest top of the scale, decibels: below it is what sensors do not measure.
+/// Lowest upper end of the scale, decibels. Sensors do not measure anything below it.
 const LOWEST_TOP_DB: f64 = -100.0;
-/// Speed at which the scale follows a spectrum that falls, dB/s.
+/// Rate at which the scale follows a falling spectrum, dB/s.
 const SCALE_FALL_DB_S: f64 = 5.0;
 
-/// The page of a session, served while this value lives.
+/// The page of a recording session, served as long as this value lives.
 pub struct GuidePage {
     shown: Arc<Shown>,
     served: LocalPage,
 }
 
-/// What the page shows, for the server's thread and for the one that records.
+/// What the page shows, shared by the server's thread and the recording thread.
 struct Shown {
     session: About,
     guidance: Guidance,
@@ -43,7 +43,7 @@ struct Shown {
     state: Mutex<State>,
 }
 
-/// What does not change.
+/// What does not change during a session.
 #[derive(Serialize)]
 struct About {
     title: String,
@@ -64,7 +64,7 @@ struct State {
     is_stopped: bool,
     now: Option<Now>,
     signal: LiveSignal,
-    /// Level of the last kept take, decibels.
+    /// Level of the last accepted take, decibels.
     kept_db: Option<Vec<f64>>,
     scale: Scale,
     takes: Vec<TakeLine>,
@@ -72,7 +72,7 @@ struct State {
     is_end_shown: bool,
 }
 
-/// A moment, and when it was.
+/// A moment and its time.
 #[derive(Clone, Copy)]
 struct Now {
     phase: Phase,
@@ -84,14 +84,14 @@ struct Now {
     at: Instant,
 }
 
-/// The top of the spectrum's scale.
+/// The upper end of the spectrum's scale.
 #[derive(Clone, Copy)]
 struct Scale {
     top_db: f64,
     at: Instant,
 }
 
-/// A take that is complete.
+/// A completed take.
 #[derive(Clone, Serialize)]
 struct TakeLine {
     number: u32,
@@ -110,7 +110,7 @@ struct End {
     text: String,
 }
 
-/// What changes, as the page gets it.
+/// What changes, in the form that the page receives.
 #[derive(Serialize)]
 struct Changing {
     /// `start`, a [`Phase`] or `end`.
@@ -118,7 +118,7 @@ struct Changing {
     number: u32,
     elapsed_s: f64,
     of_s: f64,
-    /// The time of the target's motion.
+    /// Time on the target's clock.
     motion_s: Option<f64>,
     position_mm: Option<f64>,
     force_n: Option<f64>,
@@ -128,8 +128,8 @@ struct Changing {
 }
 
 impl GuidePage {
-    /// Serves the page of a session on this machine; port 0 is any that is free. `rate_hz` is the
-    /// source's rate.
+    /// Serves the page of a session on this machine. Port 0 means any free port. `rate_hz` is the
+    /// source's sample rate.
     ///
     /// # Errors
     /// [`RecordError::Page`] if the port is taken or there are no random numbers.
@@ -177,13 +177,13 @@ impl GuidePage {
         self.served.address()
     }
 
-    /// Whether the person has started the session.
+    /// Returns whether the user has started the session.
     #[must_use]
     pub fn has_started(&self) -> bool {
         self.shown.lock().has_started
     }
 
-    /// Whether the person has ended the session.
+    /// Returns whether the user has ended the session.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.shown.lock().is_stopped
@@ -208,7 +208,7 @@ impl GuidePage {
         });
     }
 
-    /// Shows a take that is complete.
+    /// Shows a completed take.
     pub fn told(&self, take: &Recorded) {
         let about = &self.shown.session;
         let kept = match take.outcome {
@@ -229,7 +229,7 @@ impl GuidePage {
         });
     }
 
-    /// Shows the end of the session, and waits until the page has it, if it is open.
+    /// Shows the end of the session. If the page is open, waits until it has received the end.
     pub fn end(&self, recorded: &Result<Recorded, RecordError>) {
         self.shown.lock().end = Some(match recorded {
             Ok(take) => End { is_kept: true, text: take.file.display().to_string() },
@@ -270,7 +270,7 @@ impl Shown {
             motion_s,
             position_mm: now.and_then(|now| now.position_mm),
             force_n,
-            // Without a motion there is no finger.
+            // In a phase without motion there is no finger on the surface.
             force: self.guidance.force(force_n.filter(|_| motion_s.is_some())),
             frequency_hz,
             level_db: level_db.iter().copied().map(hundredths).collect(),
@@ -296,7 +296,7 @@ impl Content for Shown {
             state.is_end_shown = state.end.is_some();
             (state.now, state.signal.clone(), state.end.is_some())
         };
-        // The recording does not wait for this.
+        // Computed after the lock is released, so that the recording does not wait for it.
         let spectrum = signal.spectrum();
         let changing = self.changing(now, has_ended, spectrum);
         let mut state = self.lock();
@@ -317,8 +317,8 @@ impl Content for Shown {
 }
 
 impl Scale {
-    /// Rises with the spectrum at once and falls slowly; the top is a multiple of 10 dB, and `None`
-    /// before there is a spectrum.
+    /// Returns the upper end of the scale, a multiple of 10 dB. It rises with the spectrum at once
+    /// and falls slowly. `None` before there is a spectrum.
     fn follow(&mut self, highest_db: f64) -> Option<f64> {
         let fallen_db = self.top_db - SCALE_FALL_DB_S * self.at.elapsed().as_secs_f64();
         *self = Self { top_db: fallen_db.max(highest_db), at: Instant::now() };

@@ -1,8 +1,9 @@
-//! The part file of a take that is being recorded: append-only, and on disk every second.
+//! The part file of a take while it is recorded: append-only, and flushed to disk every second.
 //!
-//! The first line is the header as JSON. After it come chunks: a byte of their kind, the number of
-//! bytes (u32), that many bytes of f64, and the first eight bytes of the BLAKE3 hash of all these;
-//! all little-endian. A chunk that a crash left incomplete or damaged ends the file for a reader.
+//! The first line is the header as JSON. Chunks follow it. A chunk has a byte for its kind, the
+//! number of bytes (u32), that many bytes of f64 values, and the first eight bytes of the BLAKE3
+//! hash of all of these. Everything is little-endian. For a reader, the file ends at the first
+//! chunk that a crash left incomplete or damaged.
 
 use std::fs::{File, TryLockError};
 use std::io::{Read, Write};
@@ -14,16 +15,16 @@ use crate::record::data::{TakeData, TakeHeader};
 use crate::record::error::RecordError;
 use crate::record::names;
 
-/// Kind of a chunk of frames.
+/// Kind of a chunk that holds frames.
 const FRAMES: u8 = b'F';
-/// Kind of a chunk of the tracker's rows.
+/// Kind of a chunk that holds the tracker's rows. Length of a chunk's hash, bytes.
 const TRACKER: u8 = b'T';
 /// Bytes of the hash of a chunk.
 const HASH: usize = 8;
 /// Longest header, bytes.
 const MOST_HEADER: usize = 1 << 20;
 
-/// An open part file. It is locked until it is dropped.
+/// An open part file. It stays locked until it is dropped.
 #[derive(Debug)]
 pub struct PartFile {
     path: PathBuf,
@@ -31,12 +32,12 @@ pub struct PartFile {
     frames: Vec<f64>,
     rows: Vec<f64>,
     waiting: usize,
-    /// Samples of a second.
+    /// Number of samples in a second.
     second: usize,
 }
 
 impl PartFile {
-    /// Begins a part file, which must not exist.
+    /// Creates a part file, which must not exist yet.
     ///
     /// # Errors
     /// [`RecordError::File`].
@@ -65,8 +66,7 @@ impl PartFile {
         &self.path
     }
 
-    /// Takes interleaved frames; writes and flushes to disk each time that a second of them is
-    /// there.
+    /// Appends interleaved frames. Each full second is written and flushed to disk.
     ///
     /// # Errors
     /// [`RecordError::File`].
@@ -76,12 +76,12 @@ impl PartFile {
         if self.waiting >= self.second { self.flush() } else { Ok(()) }
     }
 
-    /// Takes interleaved rows of the tracker, which are written with the frames.
+    /// Appends interleaved rows of the tracker. They are written together with the frames.
     pub fn push_tracker(&mut self, rows: &[f64]) {
         self.rows.extend_from_slice(rows);
     }
 
-    /// Writes what is waiting and flushes it to disk.
+    /// Writes everything that is waiting and flushes it to disk.
     ///
     /// # Errors
     /// [`RecordError::File`].
@@ -111,12 +111,12 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
     bytes.extend(&hash.as_bytes()[..HASH]);
 }
 
-/// Reads a part file, not through a link: all whole chunks. `None` if its header is incomplete, so
-/// that nothing was recorded.
+/// Reads all whole chunks of a part file. Does not follow links. `None` if the header is
+/// incomplete, which means that nothing was recorded.
 ///
 /// # Errors
-/// [`RecordError::Content`] if it cannot be read or is no part file; [`RecordError::Busy`] while
-/// another program writes it.
+/// [`RecordError::Content`] if it cannot be read or is not a part file; [`RecordError::Busy`] while
+/// another program writes to it.
 pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
     let opened = OwnFolder::of_file(path).and_then(|(folder, name)| folder.open(&name));
     let mut file = opened.in_file(path)?;
@@ -149,7 +149,7 @@ pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
     Ok(Some(chunks(header, &bytes[end + 1..])))
 }
 
-/// The values of all whole chunks.
+/// Returns the values of all whole chunks.
 fn chunks(header: TakeHeader, mut bytes: &[u8]) -> TakeData {
     let mut data = TakeData::empty(header);
     while let Some((kind, values, rest)) = chunk(bytes) {
@@ -163,7 +163,7 @@ fn chunks(header: TakeHeader, mut bytes: &[u8]) -> TakeData {
     data
 }
 
-/// The kind and values of the first chunk, and what follows it.
+/// Returns the kind and the values of the first chunk, and the bytes after it.
 fn chunk(bytes: &[u8]) -> Option<(u8, Vec<f64>, &[u8])> {
     let length = bytes.get(1..5)?.try_into().ok().map(u32::from_le_bytes)? as usize;
     let end = length.checked_add(5)?;

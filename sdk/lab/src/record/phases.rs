@@ -1,4 +1,4 @@
-//! The phases of a session, block by block, with what a person who records is shown of them.
+//! Runs the phases of a session block by block, and computes what the user sees.
 
 use std::collections::VecDeque;
 
@@ -11,20 +11,20 @@ use crate::record::reader::{Block, Reader};
 
 pub(crate) type Take<'a> = dyn FnMut(&Block) -> Result<(), RecordError> + 'a;
 
-/// Time over which the force is shown as a mean, seconds: that of the means by which a take is
-/// judged.
+/// Length of the mean by which the force is shown, seconds. A take is judged by means of the same
+/// length.
 const FORCE_S: f64 = 0.05;
 
-/// Whether a session goes on.
+/// Whether a session continues.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Next {
-    /// It does.
+    /// The session continues.
     Go,
-    /// It ends; what was recorded is kept.
+    /// The session ends; what was recorded is kept.
     Stop,
 }
 
-/// A phase that is read.
+/// A phase to be read.
 pub(crate) struct Span {
     pub(crate) phase: Phase,
     /// Number of the take.
@@ -39,7 +39,7 @@ impl Span {
     }
 }
 
-/// Reads phases, and follows the finger.
+/// Reads phases and follows the finger.
 pub(crate) struct Phases {
     pub(crate) reader: Reader,
     path: FingerPath,
@@ -59,7 +59,7 @@ impl Phases {
         }
     }
 
-    /// Reads a phase; `take` gets each block.
+    /// Reads a phase and passes each block to `take`.
     pub(crate) fn run(
         &mut self,
         span: Span,
@@ -94,14 +94,15 @@ impl Phases {
         Ok(())
     }
 
-    /// The force of the last 50 ms. A sensor may count pressing as negative, as a recording may.
+    /// Returns the force of the last 50 ms. The sign is dropped, because a sensor or a recording
+    /// may count pressing as negative.
     fn force(&mut self, values: &[Vec<f64>]) -> Option<f64> {
         let normal = self.reader.inputs.signals.position(Role::Normal)?;
         self.force.take(&values[normal]);
         Some(self.force.mean().abs())
     }
 
-    /// The finger's place by the tracker, else by the source.
+    /// Returns the finger's position, from the tracker if there is one, else from the source.
     fn position(&mut self, block: &Block) -> Option<f64> {
         for (axis, role) in [Role::X, Role::Y].into_iter().enumerate() {
             let own = self
@@ -118,7 +119,7 @@ impl Phases {
         self.path.place_mm()
     }
 
-    /// The newest position by the tracker along the axis of a role.
+    /// Returns the tracker's newest position along the axis of a role.
     fn tracked(&self, role: Role, rows: &[f64]) -> Option<f64> {
         let signals = self.reader.inputs.tracked();
         let axis = signals.iter().position(|(own, _)| own == role.name())?;
@@ -127,7 +128,7 @@ impl Phases {
     }
 }
 
-/// The mean of the newest values.
+/// Mean of the newest values.
 struct RunningMean {
     newest: VecDeque<f64>,
     most: usize,

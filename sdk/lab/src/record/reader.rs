@@ -1,4 +1,4 @@
-//! Reading of a source in blocks: the values of its signals, and the tracker's rows until then.
+//! Reads a source in blocks: the values of its signals, and the tracker's rows up to the same time.
 
 use std::time::{Duration, Instant};
 
@@ -11,30 +11,30 @@ use crate::record::tracker::TrackerRows;
 
 /// Length of a block, seconds.
 const BLOCK_S: f64 = 0.02;
-/// Longest wait for samples at a time.
+/// Longest single wait for samples.
 const WAIT: Duration = Duration::from_millis(100);
-/// Longest time without samples.
+/// Longest total time without samples.
 const SILENT: Duration = Duration::from_secs(5);
 
-/// Signals of a source, and a tracker beside it.
+/// The signals of a source, with a tracker if there is one.
 pub(crate) struct Inputs {
     pub(crate) signals: Signals,
     pub(crate) tracker: Option<Box<dyn TrackerRows>>,
 }
 
-/// A source that is being read.
+/// Reads a source.
 pub(crate) struct Reader {
     pub(crate) source: Box<dyn Source>,
     pub(crate) inputs: Inputs,
-    /// Seconds of a take, for messages.
+    /// Length of a take in seconds, for messages.
     seconds: f64,
-    /// Frames that were read from the source.
+    /// Number of frames read from the source so far.
     read: u64,
     samples: Vec<f64>,
     since: Option<Instant>,
 }
 
-/// What was read.
+/// A block that was read.
 pub(crate) struct Block {
     /// Time of the first sample since the source was started, seconds.
     pub(crate) begin_s: f64,
@@ -45,7 +45,7 @@ pub(crate) struct Block {
 }
 
 impl Inputs {
-    /// Role and unit of each signal of the tracker, without the time.
+    /// Returns the role and unit of each tracker signal, without the time.
     pub(crate) fn tracked(&self) -> Vec<(String, String)> {
         let tracker = self.tracker.as_ref();
         tracker.map(|tracker| tracker.signals()).unwrap_or_default()
@@ -57,15 +57,16 @@ impl Reader {
         Self { source, inputs, seconds, read: 0, samples: Vec::new(), since: None }
     }
 
-    /// Time of the next sample since the source was started, seconds.
+    /// Returns the time of the next sample since the source was started, seconds.
     pub(crate) fn now_s(&self) -> f64 {
         self.read as f64 / self.source.rate_hz()
     }
 
-    /// Reads what comes next, at most `most` frames; `None` if nothing came for a short time.
+    /// Reads the next block of at most `most` frames; `None` if nothing arrived for a short time.
     ///
     /// # Errors
-    /// Of the source and of the tracker; [`RecordError::Silent`]; [`RecordError::Ended`].
+    /// The errors of the source and of the tracker, [`RecordError::Silent`], and
+    /// [`RecordError::Ended`].
     pub(crate) fn block(&mut self, most: u64) -> Result<Option<Block>, RecordError> {
         let (rate_hz, width) = (self.source.rate_hz(), self.source.channels().len());
         let block = ((BLOCK_S * rate_hz) as u64).clamp(1, most.max(1)) as usize;
@@ -98,13 +99,14 @@ impl Reader {
 }
 
 impl Block {
-    /// The values frame by frame.
+    /// Returns the values frame by frame.
     pub(crate) fn interleaved(&self) -> Vec<f64> {
         let rows = self.values.first().map_or(0, Vec::len);
         (0..rows).flat_map(|row| self.values.iter().map(move |values| values[row])).collect()
     }
 
-    /// Interleaved rows of the tracker with times since `begin_s`; those before are left out.
+    /// Returns the tracker's interleaved rows with times since `begin_s`. Earlier rows are left
+    /// out.
     pub(crate) fn rows_since(&self, header: &TakeHeader, begin_s: f64) -> Vec<f64> {
         let mut kept = Vec::new();
         let rows = self.rows.chunks_exact(header.tracker.len() + 1);

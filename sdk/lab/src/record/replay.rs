@@ -1,4 +1,4 @@
-//! A source that is a file: a recording, replayed.
+//! Replays a recording file as a source.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,8 +11,8 @@ use htex_device::{
     Settings, Source, SourceAdapter,
 };
 
-/// The adapter of files: any that [`read_channels`] reads. Its channels are the columns but the
-/// time.
+/// The source adapter for files: every file that [`read_channels`] reads. Its channels are all
+/// columns except the time.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Replay;
 
@@ -85,10 +85,10 @@ impl SourceAdapter for Replay {
 }
 
 impl Replay {
-    /// Opens a file, `fast` without waiting.
+    /// Opens a file. With `fast`, it is replayed without waiting.
     ///
     /// # Errors
-    /// As [`SourceAdapter::open`].
+    /// The errors of [`SourceAdapter::open`].
     pub fn file(path: &str, fast: bool) -> Result<Box<dyn Source>, DeviceError> {
         let pace = if fast { "fast" } else { "real" };
         let given = [("path", path), ("pace", pace)]
@@ -110,7 +110,7 @@ struct Player {
 }
 
 impl Player {
-    /// Frames that are there by now, but not more than `most`; waits for the first.
+    /// Returns how many frames are due by now, at most `most`. Waits for the first one.
     fn due(&self, begun: Instant, most: usize, timeout: Duration) -> usize {
         if !self.is_paced {
             return most;

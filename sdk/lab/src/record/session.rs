@@ -1,4 +1,4 @@
-//! A session: takes of one name, recorded until one keeps to its target.
+//! A recording session: records takes with one name until a take keeps to its target.
 
 use std::path::Path;
 
@@ -23,17 +23,17 @@ use crate::record::tracker::TrackerRows;
 /// Length of the tare, seconds.
 const TARE_S: f64 = 1.0;
 
-/// A session. The source runs from its first take until it is dropped.
+/// A recording session. The source runs from the first take until the session is dropped.
 pub struct Session {
     setup: Setup,
     phases: Phases,
 }
 
 impl Session {
-    /// Makes a session and creates its folder. The source does not run yet.
+    /// Creates a session and its folder. The source does not start yet.
     ///
     /// # Errors
-    /// When the setup is out of range, or a target is given for what is not measured.
+    /// If the setup is out of range, or a target is given for something that is not measured.
     pub fn new(
         setup: Setup,
         source: Box<dyn Source>,
@@ -64,12 +64,13 @@ impl Session {
         Ok(Self { setup, phases: Phases::new(reader) })
     }
 
-    /// Records takes until one keeps to its target, and returns that. `watch` is called for each
-    /// block of samples, `told` for each take that is complete.
+    /// Records takes until one keeps to its target, and returns that take. Calls `watch` for each
+    /// block of samples, and `told` for each completed take.
     ///
     /// # Errors
-    /// [`RecordError::OffTarget`] when no take did; errors of the source, after which what was
-    /// recorded is in the folder `incomplete`; [`RecordError::Left`] when `watch` ends the session.
+    /// [`RecordError::OffTarget`] if no take kept to its target; [`RecordError::Left`] if `watch`
+    /// ended the session; and errors of the source, after which the folder `incomplete` holds what
+    /// was recorded.
     pub fn record(
         &mut self,
         watch: &mut dyn FnMut(&Moment<'_>) -> Next,
@@ -103,7 +104,7 @@ impl Session {
         })
     }
 
-    /// Measures the forces without a finger.
+    /// Measures the forces without a finger on the surface.
     fn tare(&mut self, watch: &mut dyn FnMut(&Moment<'_>) -> Next) -> Result<(), RecordError> {
         self.phases.reader.inputs.signals.tare(&[]);
         let (mut sums, mut count) = (vec![0.0; self.phases.reader.inputs.signals.list().len()], 0);

@@ -1,4 +1,4 @@
-//! What a session records, and which values are allowed.
+//! Settings of a recording session, and their allowed values.
 
 use std::path::PathBuf;
 
@@ -13,10 +13,11 @@ use crate::record::names;
 /// Longest take, seconds.
 pub(crate) const LONGEST_S: f64 = 3600.0;
 
-/// What a session records.
+/// Settings of a recording session.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setup {
-    /// Folder of the takes; it is created.
+    /// Folder for the takes; it is created. Name of the takes, which becomes part of their file
+    /// names.
     pub folder: PathBuf,
     /// Name of the takes, a part of their files' names.
     pub name: String,
@@ -24,24 +25,25 @@ pub struct Setup {
     pub seconds: f64,
     /// Seconds before each take in which the finger can find its motion.
     pub countdown_s: f64,
-    /// When the means of the forces over a second without a finger are measured, to be subtracted.
+    /// When to measure the mean forces over a second without a finger, which are then subtracted.
     pub tare: Tare,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
-    /// Target of speed and normal force.
+    /// Target speed and normal force.
     pub target: Exploration,
-    /// Allowed relative difference of mean, minimum and maximum from the target; 0.1 in the paper.
+    /// Allowed relative difference of the mean, minimum and maximum from the target; 0.1 in the
+    /// paper.
     pub tolerance: f64,
-    /// What a take must have to be kept.
+    /// What a take must have to be accepted.
     pub required: Required,
-    /// Most takes that are tried.
+    /// Largest number of takes that are tried.
     pub attempts: u32,
     pub format: Format,
-    /// Program and version, for the JSON beside a recording.
+    /// Program and version, for the JSON next to a recording.
     pub tool: String,
-    /// The source as it was named, for the JSON.
+    /// The source as the user named it, for the JSON.
     pub source: String,
-    /// The map of channels as it was given, for the JSON.
+    /// The map of channels as the user gave it, for the JSON.
     pub map: Option<String>,
 }
 
@@ -52,8 +54,8 @@ pub enum Tare {
     Never,
     /// Before the first take.
     Once,
-    /// Before each take. Before the second one and those after it there is the time of a countdown
-    /// to lift the finger.
+    /// Before each take. From the second take on, the user has the length of a countdown to lift
+    /// the finger first.
     Each,
 }
 

@@ -1,4 +1,4 @@
-//! From the channels of a source to forces and positions.
+//! Converts the channels of a source to forces and positions.
 
 use htex_author::recording::{ColumnMap, Role, RowMap};
 use htex_device::Channel;
@@ -8,28 +8,28 @@ use htex_format::Quantity;
 use crate::record::calibration::{AXES, Calibration};
 use crate::record::error::RecordError;
 
-/// Conversion of a source's channels: calibration of six-axis sensors, then the map to roles, then
-/// tare.
+/// Converts a source's channels in three steps: calibration of six-axis sensors, mapping to roles,
+/// and tare.
 #[derive(Debug)]
 pub struct Signals {
     width: usize,
     calibrations: Vec<Calibration>,
     map: RowMap,
-    /// Indices of the recorded values among those of the map: a time of the source is not recorded.
+    /// Indices of the recorded values among the mapped values. A time delivered by the source is
+    /// not recorded.
     kept: Vec<usize>,
     roles: Vec<Role>,
     offsets: Vec<f64>,
 }
 
 impl Signals {
-    /// Makes the conversion. The n-th calibration is of the n-th six channels, which become
-    /// `fx, fy, fz, tx, ty, tz` (of several sensors `fx1`, `fx2` and so on); other channels keep
-    /// their names. The map, or the names, assign them to roles: two sensors are summed by
-    /// `lateral_x=fx1+fx2`.
+    /// Creates the conversion. The n-th calibration applies to the n-th group of six channels,
+    /// which become `fx, fy, fz, tx, ty, tz` (with several sensors `fx1`, `fx2` and so on). Other
+    /// channels keep their names. The map, or the names themselves, assign channels to roles. For
+    /// example, `lateral_x=fx1+fx2` sums two sensors.
     ///
     /// # Errors
-    /// When there are fewer channels than the calibrations need, or the channels do not fit the
-    /// map.
+    /// If there are fewer channels than the calibrations need, or the channels do not fit the map.
     pub fn new(
         source: &str,
         channels: &[Channel],
@@ -58,38 +58,38 @@ impl Signals {
         })
     }
 
-    /// Role and unit of each signal.
+    /// Returns the role and unit of each signal.
     #[must_use]
     pub fn list(&self) -> Vec<(String, String)> {
         let pair = |role: &Role| (role.name().to_owned(), self.map.unit(*role).to_owned());
         self.roles.iter().map(pair).collect()
     }
 
-    /// Index of the signal of a role.
+    /// Returns the index of the signal with this role.
     #[must_use]
     pub fn position(&self, role: Role) -> Option<usize> {
         self.roles.iter().position(|own| *own == role)
     }
 
-    /// Assumptions about units, each a full sentence.
+    /// Returns the assumptions about units, each as a full sentence.
     #[must_use]
     pub fn warnings(&self) -> &[Notice] {
         self.map.warnings()
     }
 
-    /// Calibration matrices, row by row.
+    /// Returns the calibration matrices, row by row.
     pub(crate) fn calibrations(&self) -> Vec<Vec<f64>> {
         self.calibrations.iter().map(Calibration::numbers).collect()
     }
 
-    /// The means that are subtracted; empty before [`Self::tare`].
+    /// Returns the means that are subtracted; empty before [`Self::tare`].
     #[must_use]
     pub fn offsets(&self) -> &[f64] {
         &self.offsets
     }
 
-    /// Subtracts these means from now on, instead of those before, and none if there are none;
-    /// positions and speeds are left as they are.
+    /// Subtracts these means from now on, instead of earlier ones. An empty list subtracts nothing.
+    /// Positions and speeds are not changed.
     pub fn tare(&mut self, means: &[f64]) {
         let moves = |role: &Role| matches!(role, Role::Speed | Role::X | Role::Y);
         let pairs = self.roles.iter().zip(means);
@@ -124,7 +124,8 @@ impl Signals {
     }
 }
 
-/// Names and units of the channels, those of calibrated sensors replaced by their axes.
+/// Returns the names and units of the channels. Channels of calibrated sensors are replaced by the
+/// sensor's axes.
 fn named(channels: &[Channel], sensors: usize) -> Vec<(String, String)> {
     let number = |sensor: usize| (sensors > 1).then_some(sensor + 1);
     let calibrated = (0..sensors).flat_map(|sensor| Calibration::names(number(sensor)));

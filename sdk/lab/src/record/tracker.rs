@@ -1,4 +1,4 @@
-//! The finger's position beside the forces, from a tracker at its own rate.
+//! Tracks the finger's position with a tracker that has its own sample rate.
 
 use std::io::BufRead;
 use std::path::Path;
@@ -13,36 +13,37 @@ use crate::record::error::RecordError;
 /// Shortest time between two rows, seconds.
 const SHORTEST_S: f64 = 1e-6;
 
+/// A tracker that delivers positions or speeds as rows with times.
 pub trait TrackerRows: Send {
     /// Role and unit of each signal, without the time.
     fn signals(&self) -> Vec<(String, String)>;
 
-    /// Appends the rows that have come: the time on the source's clock (s), which ascends, then
-    /// each signal. `now_s` is the time of the last sample of the source.
+    /// Appends the rows that have arrived: the time on the source's clock (s), which must ascend,
+    /// then each signal. `now_s` is the time of the source's last sample.
     ///
     /// # Errors
-    /// When the tracker delivers what is no position.
+    /// If the tracker delivers something that is not a position.
     fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), RecordError>;
 
-    /// The clock of the source begins at 0 s again: another source is read, or the same one anew.
-    /// Rows that have come are forgotten.
+    /// Called when the source's clock starts again at 0 s, because another source is read or the
+    /// same one was restarted. Rows that arrived earlier are dropped.
     fn restart(&mut self);
 }
 
-/// A tracker's file, replayed on the clock of the source, which begins at 0 s.
+/// Replays a tracker's file on the source's clock, which starts at 0 s.
 #[derive(Debug)]
 pub struct TableTracker {
     signals: Vec<(String, String)>,
-    /// Time, then the signals.
+    /// Columns: the time, then the signals.
     columns: Vec<Vec<f64>>,
     next: usize,
 }
 
 impl TableTracker {
-    /// Reads a file with positions or speeds. Its first row is at 0 s.
+    /// Reads a file with positions or speeds. Its first row is taken to be at 0 s.
     ///
     /// # Errors
-    /// When it cannot be read, or has neither.
+    /// If the file cannot be read, or has neither positions nor speeds.
     pub fn open(path: &Path, map: Option<&ColumnMap>) -> Result<Self, RecordError> {
         let table = read_channels(path, &ReadOptions::default())?;
         let names: Vec<(String, String)> =
@@ -82,13 +83,13 @@ impl TrackerRows for TableTracker {
     }
 }
 
-/// Most bytes of a line of a tracker: two numbers and what else it says.
+/// Longest line of a tracker, bytes: two numbers and anything else in the line.
 const MOST_LINE_BYTES: usize = 4096;
-/// Most lines that wait: a minute at 1 kHz.
+/// Largest number of waiting lines: a minute at 1 kHz.
 const MOST_LINES: usize = 60_000;
 
-/// A tracker that sends lines `x_mm y_mm`: a pipe, a serial port. Rows get the time of their
-/// arrival.
+/// A tracker that sends lines `x_mm y_mm`, for example through a pipe or a serial port. Each row
+/// gets the time of its arrival.
 #[derive(Debug)]
 pub struct LineTracker {
     name: String,
@@ -97,12 +98,13 @@ pub struct LineTracker {
 }
 
 impl LineTracker {
-    /// Reads lines in a thread of its own, which ends with the input.
+    /// Reads lines in its own thread, which ends with the input.
     pub fn new(name: &str, input: impl BufRead + Send + 'static) -> Self {
         let (sender, lines) = sync_channel(MOST_LINES);
         std::thread::spawn(move || {
             for (index, line) in bounded_lines(input, MOST_LINE_BYTES).enumerate() {
-                // What is no line is not a position either, and says so.
+                // A failed read is passed on as a line. It is not a position either, so it is
+                // reported as one.
                 let line = line.unwrap_or_else(|error| error.to_string());
                 if sender.send((Instant::now(), index + 1, line)).is_err() {
                     return;

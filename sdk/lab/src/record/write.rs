@@ -1,4 +1,4 @@
-//! The files of a take: the recording, the tracker's rows, and JSON beside them.
+//! Writes the files of a take: the recording, the tracker's rows, and the JSON next to them.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -14,7 +14,7 @@ use crate::record::format::{Format, Outcome};
 use crate::record::judge::Verdict;
 use crate::record::names;
 
-/// The files of a take that was written.
+/// The files that were written for a take. Arguments with which `htex fit` reads it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Written {
     pub(crate) recording: PathBuf,
@@ -22,7 +22,8 @@ pub(crate) struct Written {
     pub(crate) fit: Vec<String>,
 }
 
-/// Writes a take into a folder that the user named, each file beside its name and then renamed.
+/// Writes a take into a folder that the user named. Each file is written under a temporary name and
+/// then renamed.
 ///
 /// # Errors
 /// [`RecordError::File`].
@@ -46,9 +47,9 @@ pub(crate) fn write_take(
     })
 }
 
-/// Writes a recording, the tracker's rows, and JSON beside it into a folder `inside` the user's,
-/// each file beside its name and then renamed. `beside` gets the arguments of `htex fit` that read
-/// the recording.
+/// Writes a recording, the tracker's rows and the JSON into a folder `inside` the user's folder.
+/// Each file is written under a temporary name and then renamed. `beside` receives the arguments
+/// with which `htex fit` reads the recording.
 ///
 /// # Errors
 /// [`RecordError::File`].
@@ -83,7 +84,7 @@ pub(crate) fn write_signals(
     Ok(Written { recording, fit })
 }
 
-/// Flags that say what the format does not.
+/// Returns the flags for what the format itself does not state.
 fn flags(header: &TakeHeader) -> Vec<String> {
     let mut flags = Vec::new();
     let (map, rate_hz) = reading(header);
@@ -96,7 +97,7 @@ fn flags(header: &TakeHeader) -> Vec<String> {
     flags
 }
 
-/// The map and the rate that a reader of the recording needs because its format does not have them.
+/// Returns the map and the sample rate that a reader needs because the format does not state them.
 pub(crate) fn reading(header: &TakeHeader) -> (Option<String>, Option<f64>) {
     if header.format == Format::Csv {
         return (None, None);
@@ -105,14 +106,14 @@ pub(crate) fn reading(header: &TakeHeader) -> (Option<String>, Option<f64>) {
     (Some(column_map(header)), rate_hz)
 }
 
-/// The roles of the columns of a format without names.
+/// Returns the roles of the columns, for a format without column names.
 fn column_map(header: &TakeHeader) -> String {
     let signals = header.signals.iter().enumerate();
     let map: Vec<String> = signals.map(|(at, (role, _))| format!("{role}=#{}:1", at + 1)).collect();
     map.join(",")
 }
 
-/// The name of a column, which `htex fit` knows with its unit.
+/// Returns a column name from which `htex fit` recognises the role and the unit.
 fn column(role: &str, unit: &str, quantity: Quantity) -> String {
     let base = match quantity {
         Quantity::Acceleration => "accel",
@@ -154,7 +155,8 @@ fn tracker_csv(data: &TakeData, file: &mut File) -> io::Result<()> {
     out.flush()
 }
 
-/// Version 1.0 of the format: the length of the first 10 bytes and the header is a multiple of 64.
+/// Writes format version 1.0. The first 10 bytes and the header together must have a length that is
+/// a multiple of 64.
 fn npy(data: &TakeData, file: &mut File) -> io::Result<()> {
     let shape = (data.frames(), data.signals.len());
     let header = format!(

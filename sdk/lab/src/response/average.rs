@@ -1,4 +1,4 @@
-//! What is cut out of records, counted and averaged.
+//! Cuts records into hits or windows, counts the usable ones and averages them.
 
 use super::baseline::Baseline;
 use super::error::{Channel, RecordProblem, ResponseError};
@@ -9,14 +9,16 @@ use super::pieces::{Cut, Piece};
 use super::record::Record;
 use super::spectra::Spectra;
 
-/// The end of a window, as a part of it, that must be quiet.
+/// The final part of a window, relative to its length, that must be quiet.
 const END: f64 = 0.05;
-/// RMS of a quiet end relative to the largest output, and to the noise before the trigger.
+/// Limits for a quiet end (RMS): relative to the largest output, and relative to the noise before
+/// the trigger.
 const QUIET: f64 = 0.01;
 const OVER_NOISE: f64 = 3.0;
 
-/// Whether a hit's output, after its windows, still sounds at the end: more than 1 % of its largest
-/// value (RMS), and more than three times the noise of the `before` samples before the trigger.
+/// Returns whether a hit's windowed output has not died out at the end of its window. Its end must
+/// exceed both 1 % of its largest value and three times the noise of the `before` samples before
+/// the trigger (RMS).
 fn outlasts(output: &[f64], before: usize) -> bool {
     let end = ((END * output.len() as f64) as usize).max(1);
     let tail = spread(&output[output.len() - end.min(output.len())..]);
@@ -43,7 +45,7 @@ pub(crate) fn cut(
     })
 }
 
-/// Counts what can be used; refuses fewer than two.
+/// Counts the usable hits or windows. Refuses fewer than two.
 pub(crate) fn count_used(
     records: &[Record],
     cuts: &[Vec<Cut>],
@@ -67,7 +69,8 @@ pub(crate) fn count_used(
     }
 }
 
-/// Averages what is used; returns the number of hits whose response outlasts the window, too.
+/// Averages the usable hits or windows. Also returns how many hits have a response that outlasts
+/// the window.
 pub(crate) fn average(
     records: &[Record],
     cuts: &[Vec<Cut>],
@@ -93,8 +96,8 @@ pub(crate) fn average(
     (spectra, outlasting)
 }
 
-/// The largest distance from rest, by which a channel is divided so that no power over- or
-/// underflows.
+/// Returns the largest distance from rest. The channel is divided by it so that no power overflows
+/// or underflows.
 pub(crate) fn scale_of(records: &[Record], channel: Channel) -> f64 {
     let largest = records.iter().map(|record| Baseline::of(record.channel(channel)).largest);
     largest.fold(0.0, f64::max)

@@ -1,14 +1,14 @@
-//! The level of a signal at rest and its noise, from a recording with short hits.
+//! Finds a signal's level at rest and its noise, in a recording with short hits.
 
 /// Ratio of the standard deviation of normal noise to its median absolute deviation.
 const NORMAL: f64 = 1.482_602_218_505_602;
 
-/// The level of a signal at rest, and its noise.
+/// A signal's level at rest and its noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Baseline {
     /// The median.
     pub(crate) level: f64,
-    /// RMS of the noise, by the median absolute deviation, on which hits have no influence while
+    /// RMS of the noise, from the median absolute deviation. Hits do not influence it as long as
     /// they fill less than half of the recording.
     pub(crate) noise: f64,
     /// Largest distance from the level.
@@ -16,7 +16,7 @@ pub(crate) struct Baseline {
 }
 
 impl Baseline {
-    /// Finds the baseline of a signal with at least one sample; of none, zeros.
+    /// Finds the baseline of a signal. Without samples, all values are zero.
     pub(crate) fn of(values: &[f64]) -> Self {
         let level = median(values.to_vec());
         let deviations: Vec<f64> = values.iter().map(|value| (value - level).abs()).collect();

@@ -1,8 +1,8 @@
-//! Contacts of a hammer within one window.
+//! Finds repeated contacts of a hammer within one window.
 
-/// Returns the samples at which contacts begin: rises of at least `rise` from the lowest value
-/// since the last contact faded by as much, to at least `rise` above rest. `pulse` is from the
-/// level at rest, with the hit in the positive direction.
+/// Returns the samples at which contacts begin. A contact is a rise by at least `rise` above the
+/// lowest value since the last contact faded by as much, and to at least `rise` above rest. `pulse`
+/// is measured from the level at rest, with the hit in the positive direction.
 pub(crate) fn contacts(pulse: impl Iterator<Item = f64>, rise: f64) -> Vec<usize> {
     let mut found = Vec::new();
     let (mut lowest, mut highest, mut is_in_contact) = (0.0_f64, 0.0_f64, false);

@@ -12,7 +12,7 @@ use thiserror::Error;
 pub enum Channel {
     /// The force of the hammer, or the drive of the display.
     Input,
-    /// What the rig or the display makes of it.
+    /// The response of the rig or the display.
     Output,
 }
 
@@ -34,13 +34,13 @@ pub enum ResponseError {
         "the {channel}: {problem}; write COLUMN, COLUMN:SCALE or an expression, as in hammer_V:22.5"
     )]
     Column { channel: Channel, problem: String },
-    /// The columns of both channels cannot be read, or not together.
+    /// The columns of the channels cannot be read, or cannot be read together.
     #[error("input and output: {problem}")]
     Columns { problem: String },
     /// A recording cannot be used.
     #[error("{file}: {problem}")]
     Record { file: String, problem: RecordProblem },
-    /// There is no recording.
+    /// No recording was given.
     #[error("no recording is given; give at least one with input and output")]
     Nothing,
     /// Recordings have different sample rates.
@@ -69,7 +69,7 @@ pub enum ResponseError {
     #[error("{option} is {value}; {problem}")]
     Option {
         option: &'static str,
-        /// The setting that it is.
+        /// The setting behind the option.
         hint: Hint,
         value: f64,
         problem: String,
@@ -84,10 +84,10 @@ pub enum ResponseError {
         found: usize,
         /// Number that can be used.
         used: usize,
-        /// Those that were thrown out: place and reason.
+        /// The hits or windows that were thrown out, each with place and reason.
         reasons: Vec<String>,
     },
-    /// The response cannot be written as one that `htex` reads.
+    /// The response cannot be written in a form that `htex` reads.
     #[error(
         "the magnitude {magnitude} at {frequency_hz} Hz is beyond 1e-9 to 1e9, which responses are limited to; scale the input or the output to another unit"
     )]
@@ -102,7 +102,7 @@ pub enum ResponseError {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecordProblem {
-    /// It does not hold one signal for each channel.
+    /// It does not hold exactly one signal for each channel.
     #[error(
         "{signals} signals were read and 2 are needed; name one column as the input and one as the output"
     )]
@@ -138,7 +138,7 @@ pub enum RecordProblem {
         "the {channel} is {value} at every sample; check that this is its column and that the sensor was on"
     )]
     Constant { channel: Channel, value: f64 },
-    /// No hit stands out of the input.
+    /// No hit stands out from the input.
     #[error(
         "no hit found: the largest input is {largest:.4} and its noise {noise:.4} (RMS), and a hit must be 8 times above the noise; check that this is the hammer's column, or measure a continuous drive"
     )]
@@ -176,7 +176,7 @@ impl ResponseError {
     }
 }
 
-/// Most reasons in a message.
+/// Largest number of reasons in a message.
 const MOST_REASONS: usize = 10;
 
 fn thrown_out(reasons: &[String]) -> String {

@@ -1,28 +1,28 @@
 //! Estimators of a response from averaged spectra.
 //!
-//! Total least squares (`Hv`) depends on units, so each channel is divided by the root of its power
-//! in the band.
+//! Total least squares (`Hv`) depends on units, so each channel is first divided by the root of its
+//! power in the band.
 
 use std::fmt;
 
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
-/// An estimator of a frequency response from the auto spectra `Gxx` and `Gyy` and the cross
-/// spectrum `Gxy` of input and output. All three have the phase of `Gxy`, and
-/// `|H1| <= |Hv| <= |H2|`; without noise they are equal.
+/// An estimator of a frequency response. It uses the auto spectra `Gxx` and `Gyy` and the cross
+/// spectrum `Gxy` of input and output. All three estimators have the phase of `Gxy`, and `|H1| <=
+/// |Hv| <= |H2|`. Without noise they are equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Estimator {
-    /// `Gxy / Gxx`: unbiased by noise in the output, too low with noise in the input (Bendat &
-    /// Piersol, chapter 6).
+    /// `Gxy / Gxx`: noise in the output does not bias it, noise in the input makes it too low
+    /// (Bendat & Piersol, chapter 6).
     H1,
-    /// `Gyy / Gyx`: unbiased by noise in the input, too high with noise in the output.
+    /// `Gyy / Gyx`: noise in the input does not bias it, noise in the output makes it too high.
     H2,
-    /// Total least squares (Rocklin, Crowley and Vold, 1985): for noise in both channels. Each
-    /// channel is divided by the root of its power in the band first, so that the result does not
-    /// depend on units; it is unbiased if the white noise of both channels is equal relative to
+    /// Total least squares (Rocklin, Crowley and Vold, 1985), for noise in both channels. Each
+    /// channel is first divided by the root of its power in the band, so that the result does not
+    /// depend on units. It is unbiased if both channels have white noise that is equal relative to
     /// that power.
     Hv,
 }
@@ -48,8 +48,8 @@ pub(crate) struct Bin {
 }
 
 impl Bin {
-    /// Returns the magnitude of the response; 0 where the estimator is not defined, as without any
-    /// input.
+    /// Returns the magnitude of the response; 0 where the estimator is not defined, for example
+    /// without any input.
     pub(crate) fn magnitude(&self, estimator: Estimator) -> f64 {
         let cross = self.gxy.norm_sqr().sqrt();
         let magnitude = match estimator {
@@ -60,14 +60,14 @@ impl Bin {
         if magnitude.is_finite() { magnitude } else { 0.0 }
     }
 
-    /// The slope of the principal axis of the scaled spectral matrix:
-    /// `(b - a + sqrt((b - a)² + 4 c²)) / 2c`.
+    /// Returns the slope of the principal axis of the scaled spectral matrix: `(b - a + sqrt((b -
+    /// a)² + 4 c²)) / 2c`.
     fn total_least_squares(&self, cross: f64) -> f64 {
         let (x, y) = (self.input_power, self.output_power);
         let unit = (y / x).sqrt();
         let (a, b, c) = (self.gxx / x, self.gyy / y, cross / (x * y).sqrt());
         let root = libm::hypot(b - a, 2.0 * c);
-        // Of two equal forms, the one that adds.
+        // Both forms are equal. The one chosen adds instead of subtracting, which loses no digits.
         let slope = if b >= a { (b - a + root) / (2.0 * c) } else { 2.0 * c / (a - b + root) };
         slope * unit
     }
@@ -78,7 +78,7 @@ impl Bin {
     }
 
     /// Returns the coherence `|Gxy|² / (Gxx Gyy)`, 0 to 1: the part of the output's power that the
-    /// input explains; 0 without power.
+    /// input explains. It is 0 without power.
     pub(crate) fn coherence(&self) -> f64 {
         let power = self.gxx * self.gyy;
         if power > 0.0 { (self.gxy.norm_sqr() / power).clamp(0.0, 1.0) } else { 0.0 }
@@ -92,8 +92,8 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// H1 <= Hv <= H2 for every spectral matrix, whatever the units; and each is the gain
-        /// without noise.
+        /// H1 <= Hv <= H2 for every spectral matrix, whatever the units. Without noise, each one is
+        /// the gain.
         #[test]
         fn estimators_are_ordered(
             gxx in 1e-6..1e6_f64, gyy in 1e-6..1e6_f64, coherence in 0.01..1.0_f64, phase in -3.0..3.0_f64,

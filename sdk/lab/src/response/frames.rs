@@ -1,4 +1,4 @@
-//! Windowed samples of hits and of continuous drives.
+//! Windows for hits and for continuous drives.
 
 use std::f64::consts::PI;
 
@@ -8,14 +8,15 @@ use super::overload::Overloads;
 use super::pieces::{Cut, Piece, Reason};
 use super::record::Record;
 
-/// RMS of a window's drive, relative to the strongest, below which it is silent.
+/// Level of a window's drive (RMS), relative to the strongest window, below which it counts as
+/// silent.
 const SILENT: f64 = 0.1;
 
 /// Cuts a continuous drive into windows of `len` samples with half overlap.
 pub(crate) fn windows(record: &Record, len: usize, options: &ResponseOptions) -> Vec<Cut> {
     let input = record.channel(Channel::Input);
     let overloads = [
-        // A square drive repeats its extremes.
+        // A square drive repeats its extremes, so only a given limit counts for the input.
         Overloads::find_given(record, Channel::Input, options.input_limit),
         Overloads::find(record, Channel::Output, options.output_limit),
     ];
@@ -38,7 +39,7 @@ pub(crate) fn windows(record: &Record, len: usize, options: &ResponseOptions) ->
     starts().zip(rms).map(cut).collect()
 }
 
-/// Standard deviation.
+/// Returns the standard deviation.
 pub(crate) fn spread(values: &[f64]) -> f64 {
     let mean = mean(values);
     let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
@@ -49,7 +50,7 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// The distance from the mean that is largest, with its sign.
+/// Returns the largest deviation from the mean, with its sign.
 pub(crate) fn farthest(values: &[f64]) -> f64 {
     let mean = mean(values);
     let farther = |most: f64, value: &f64| {
@@ -58,22 +59,24 @@ pub(crate) fn farthest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, farther)
 }
 
-/// Weights of a window's samples for each channel.
+/// Weights for the samples of a window, for each channel.
 pub(crate) struct Weights {
     pub(crate) input: Vec<f64>,
     pub(crate) output: Vec<f64>,
-    /// Samples at the start whose mean is removed.
+    /// Number of samples at the start whose mean is removed.
     pub(crate) rest: usize,
 }
 
 impl Weights {
-    /// Of a continuous drive: a periodic Hann window; the whole window's mean is removed.
+    /// Weights for a continuous drive: a periodic Hann window. The mean of the whole window is
+    /// removed.
     pub(crate) fn hann(len: usize) -> Self {
         let hann = htex_dsp::window::hann_periodic(len);
         Self { input: hann.clone(), output: hann, rest: len }
     }
 
-    /// Of hits: force window and exponential window; the mean before the trigger is removed.
+    /// Weights for hits: a force window and an exponential window. The mean before the trigger is
+    /// removed.
     pub(crate) fn of_hits(len: usize, rate_hz: f64, hit: &HitOptions) -> Self {
         let before = (hit.pre_trigger_s * rate_hz).round() as usize;
         let after_s = |at: usize| at.saturating_sub(before) as f64 / rate_hz;
@@ -85,7 +88,7 @@ impl Weights {
         Self { input, output, rest: before }
     }
 
-    /// Returns the weighted samples of a window. `scale` divides them.
+    /// Returns the weighted samples of a window, divided by `scale`.
     pub(crate) fn apply(
         &self,
         record: &Record,
@@ -98,14 +101,14 @@ impl Weights {
             Channel::Input => &self.input,
             Channel::Output => &self.output,
         };
-        // Without samples before the trigger, the first one is at rest or nearly so.
+        // Without samples before the trigger, use the first sample, which is at rest or nearly so.
         let rest = mean(&values[..self.rest.clamp(1, values.len())]);
         let weighted = values.iter().zip(weights);
         weighted.map(|(value, weight)| weight * (value - rest) / scale).collect()
     }
 }
 
-/// 1 up to `end_s`, then half a cosine to 0 over a quarter of it.
+/// Returns 1 up to `end_s`, then half a cosine that falls to 0 over a quarter of that time.
 fn force(after_s: f64, end_s: f64) -> f64 {
     let faded = ((after_s - end_s) / (0.25 * end_s)).clamp(0.0, 1.0);
     0.5 + 0.5 * libm::cos(PI * faded)

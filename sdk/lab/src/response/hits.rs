@@ -1,4 +1,4 @@
-//! Hits of an impact hammer in the input of a record.
+//! Finds the hits of an impact hammer in the input of a record.
 
 use std::ops::Range;
 
@@ -10,15 +10,15 @@ use super::overload::Overloads;
 use super::pieces::{Cut, Piece, Reason};
 use super::record::Record;
 
-/// Least ratio of a hit's level, and of a second contact's, to the noise: normal noise at a
-/// gigahertz exceeds it less than once a day.
+/// Smallest ratio to the noise of a hit's level, and of a second contact's level. Normal noise at a
+/// sample rate of 1 GHz exceeds it less than once a day.
 pub(crate) const ABOVE_NOISE: f64 = 8.0;
 
-/// Finds the hits of a record, with windows of `len` samples; none where the largest input is
+/// Finds the hits of a record, with windows of `len` samples. Finds none if the largest input is
 /// within the noise.
 ///
-/// A hit begins where the input first reaches the trigger level, and the next one is searched
-/// behind its window.
+/// A hit begins where the input first reaches the trigger level. The search for the next hit
+/// continues after its window.
 pub(crate) fn hits(
     record: &Record,
     len: usize,
@@ -38,7 +38,8 @@ pub(crate) fn hits(
     let mut from = 0;
     while let Some(after) = trigger(&input[from..], rest.level, level) {
         let trigger = from + after;
-        // A hit at the very start has no part before its trigger, but a window like all others.
+        // A hit at the very start has nothing before its trigger, but its window has the usual
+        // length.
         let start = trigger.saturating_sub(before);
         let samples = start..start + len;
         let inside = start..samples.end.min(input.len());
@@ -57,12 +58,12 @@ pub(crate) fn hits(
     found
 }
 
-/// The first sample that is at least `level` from rest.
+/// Returns the first sample that is at least `level` away from rest.
 fn trigger(input: &[f64], rest: f64, level: f64) -> Option<usize> {
     input.iter().position(|value| (value - rest).abs() >= level && *value != rest)
 }
 
-/// The value farthest from rest, from there.
+/// Returns the largest deviation from rest, with its sign.
 fn peak(input: &[f64], rest: f64) -> f64 {
     let farther = |peak: f64, value: &f64| {
         if (value - rest).abs() > peak.abs() { value - rest } else { peak }
@@ -74,10 +75,10 @@ fn peak(input: &[f64], rest: f64) -> f64 {
 struct Window<'a> {
     record: &'a Record,
     trigger: usize,
-    /// Samples before the trigger that are wanted.
+    /// Number of samples wanted before the trigger.
     before: usize,
     samples: &'a Range<usize>,
-    /// The samples that the record holds.
+    /// The part of `samples` that the record holds.
     inside: &'a Range<usize>,
 }
 

@@ -1,4 +1,4 @@
-//! From records to a measured response.
+//! Measures a response from records.
 
 use htex_finding::Hint;
 
@@ -12,11 +12,13 @@ use super::pieces::Cut;
 use super::record::Record;
 use super::spectra::Spectra;
 
-/// Measures the response of a setup from records of its input and output.
+/// Measures the frequency response of a setup from records of its input and output.
 ///
 /// # Errors
-/// Options out of range; no records, or records of different rates; a record shorter than a window;
-/// no hits, or fewer than two that can be used; a magnitude that no response file may hold.
+/// - An option is out of range.
+/// - There are no records, they have different sample rates, or a record is shorter than a window.
+/// - There are no hits, or fewer than two usable ones.
+/// - A magnitude is out of the range that a response file may hold.
 pub fn measure(
     records: &[Record],
     options: &ResponseOptions,
@@ -66,13 +68,13 @@ fn common_rate(records: &[Record]) -> Result<f64, ResponseError> {
     }
 }
 
-/// The bins of the band.
+/// Returns the range of frequency bins in the band.
 fn band(
     options: &ResponseOptions,
     resolution_hz: f64,
     bins: usize,
 ) -> Result<std::ops::Range<usize>, ResponseError> {
-    // A bin at an edge of the band belongs to it, whatever the rounding of the quotient.
+    // A bin at an edge of the band belongs to it even if the quotient was rounded.
     let low = (options.low_hz / resolution_hz * (1.0 - 1e-12)).ceil() as usize;
     let high = (options.high_hz / resolution_hz * (1.0 + 1e-12)).floor() as usize;
     let range = low..high.saturating_add(1).min(bins);
@@ -103,7 +105,7 @@ fn in_band(spectra: &Spectra, bins: &std::ops::Range<usize>) -> Vec<Bin> {
     bins.clone().map(bin).collect()
 }
 
-/// Removes jumps of more than half a turn.
+/// Removes jumps of more than half a turn from phases.
 fn unwrapped(phases: impl Iterator<Item = f64>) -> Vec<f64> {
     let turn = 2.0 * std::f64::consts::PI;
     let mut previous = None;

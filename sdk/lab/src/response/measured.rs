@@ -9,7 +9,7 @@ use super::options::{Excitation, ResponseOptions};
 use super::peak::Peak;
 use super::pieces::Piece;
 
-/// Magnitudes that a response file may hold.
+/// Smallest and largest magnitude that a response file may hold.
 const SMALLEST: f64 = 1e-9;
 const LARGEST: f64 = 1e9;
 
@@ -22,33 +22,33 @@ pub struct MeasuredResponse {
     pub rate_hz: f64,
     /// Length of a window, seconds.
     pub window_s: f64,
-    /// Distance of the frequencies, hertz: the inverse of the window.
+    /// Distance between the frequencies, hertz: the inverse of the window's length.
     pub resolution_hz: f64,
     /// Number of hits or windows that were averaged.
     pub averages: usize,
-    /// Every hit or window, used or thrown out.
+    /// Every hit or window, whether it was used or thrown out.
     pub pieces: Vec<Piece>,
     /// Frequencies, hertz: multiples of the resolution.
     pub frequency_hz: Vec<f64>,
-    /// Magnitude, in the output's unit over the input's; 0 where there is no input.
+    /// Magnitude, output's unit per input's unit; 0 where there is no input.
     pub magnitude: Vec<f64>,
-    /// Phase of output against input, radians, unwrapped.
+    /// Phase of the output relative to the input, radians, unwrapped.
     pub phase_rad: Vec<f64>,
     /// Coherence, 0 to 1.
     pub coherence: Vec<f64>,
-    /// Standard deviation of the magnitude relative to it, at most 1:
-    /// `sqrt(1 - coherence) / sqrt(2 coherence averages)` (Bendat & Piersol, chapter 9). It counts
-    /// random errors alone.
+    /// Relative standard deviation of the magnitude, at most 1: `sqrt(1 - coherence) / sqrt(2
+    /// coherence averages)` (Bendat & Piersol, chapter 9). It only covers random errors.
     pub relative_error: Vec<f64>,
-    /// The largest magnitude; none if it is at an edge of the band.
+    /// The largest magnitude; `None` if it is at an edge of the band.
     pub peak: Option<Peak>,
-    /// What limits the result, each a full sentence.
+    /// What limits the result, as full sentences.
     pub warnings: Vec<String>,
 }
 
 impl MeasuredResponse {
-    /// Returns the response as recordings are divided by and scenes compensate it; its
-    /// [`write_csv`](SetupResponse::write_csv) writes the file that they read.
+    /// Converts the response to the form in which recordings are divided by it and scenes
+    /// compensate for it. Its [`write_csv`](SetupResponse::write_csv) writes the file that both
+    /// read.
     #[must_use]
     pub fn setup_response(&self) -> SetupResponse {
         SetupResponse {
@@ -58,7 +58,7 @@ impl MeasuredResponse {
         }
     }
 
-    /// Checks the magnitudes, and adds what follows from them.
+    /// Checks the magnitudes and adds what follows from them.
     pub(crate) fn finish(&mut self, options: &ResponseOptions) -> Result<(), ResponseError> {
         let is_valid =
             |magnitude: f64| magnitude == 0.0 || (SMALLEST..=LARGEST).contains(&magnitude);
@@ -75,8 +75,8 @@ impl MeasuredResponse {
     }
 }
 
-/// Number of independent averages: Hann windows with half overlap share a part of their power
-/// (Welch 1967).
+/// Returns the number of independent averages. Hann windows with half overlap share a part of their
+/// power (Welch 1967).
 fn independent(options: &ResponseOptions, used: usize) -> f64 {
     let used = used as f64;
     match options.excitation {

@@ -1,10 +1,10 @@
-//! The frequency response of a recording rig or a finger display, estimated from recordings of its
+//! Measures the frequency response of a recording rig or a finger display, from recordings of its
 //! input and output.
 //!
-//! The input is a hammer's force in separate hits, or a continuous drive of a display. Each hit, or
-//! each window of a continuous drive, is transformed; the averaged auto and cross spectra give the
-//! response ([`Estimator`]) and the coherence. Hits that would falsify the average are thrown out,
-//! each with its time and [`Reason`].
+//! The input is either a hammer's force in separate hits, or a continuous drive of a display. Each
+//! hit, or each window of a continuous drive, is transformed. The averaged auto and cross spectra
+//! give the response ([`Estimator`]) and the coherence. Hits that would distort the average are
+//! thrown out, each with its time and [`Reason`].
 //!
 //! Sources of the formulas:
 //! - J. S. Bendat, A. G. Piersol, *Random Data*, 4th ed., Wiley 2010: spectra of segments (section

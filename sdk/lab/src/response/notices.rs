@@ -1,4 +1,4 @@
-//! What limits a measured response, in sentences.
+//! Warnings about what limits a measured response, as sentences.
 
 use super::measured::MeasuredResponse;
 use super::options::{Excitation, ResponseOptions};
@@ -9,7 +9,8 @@ use super::record::Record;
 const FEW: usize = 5;
 /// Coherence below which the response is uncertain.
 const COHERENT: f64 = 0.9;
-/// Distance of stretches of low coherence, relative to their frequency, up to which they are one.
+/// Largest distance between two stretches of low coherence, relative to their frequency, at which
+/// they are reported as one.
 const NEAR: f64 = 0.1;
 
 /// Returns the warnings about a measured response. `outlasting` is the number of hits whose
@@ -49,15 +50,15 @@ pub(crate) fn notices(
     found
 }
 
-/// Returns a warning for each record that nothing was cut out of.
+/// Returns a warning for each record in which no hit or window was found.
 pub(crate) fn without_hits(records: &[Record], cuts: &[Vec<Cut>]) -> Vec<String> {
     let both = records.iter().zip(cuts);
     let empty = both.filter(|(_, cuts)| cuts.is_empty());
     empty.map(|(record, _)| format!("{}: no hit found.", record.file())).collect()
 }
 
-/// The stretches of low coherence. Those nearer to each other than a tenth of their frequency are
-/// one.
+/// Describes the stretches of low coherence. Stretches closer to each other than a tenth of their
+/// frequency are merged.
 fn incoherent(measured: &MeasuredResponse) -> Option<String> {
     let mut stretches: Vec<(f64, f64)> = Vec::new();
     let both = measured.frequency_hz.iter().zip(&measured.coherence);

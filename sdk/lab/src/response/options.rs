@@ -6,20 +6,22 @@ use serde::Serialize;
 use super::error::ResponseError;
 use super::estimator::Estimator;
 
-/// Fewest samples of a window.
+/// Smallest number of samples in a window.
 const FEWEST_SAMPLES: f64 = 16.0;
 
+/// Options of measuring a frequency response.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ResponseOptions {
     pub excitation: Excitation,
     pub estimator: Estimator,
-    /// Length of a window, seconds; the response is on a grid of the inverse, hertz. A multiple of
-    /// 0.2 s puts all multiples of 5 Hz, the grid of texture spectra, on it.
+    /// Length of a window, seconds. The frequency grid of the response is its inverse, hertz. With
+    /// a multiple of 0.2 s, the grid contains all multiples of 5 Hz, the grid of texture spectra.
     pub window_s: f64,
     /// Lowest frequency of the response, hertz.
     pub low_hz: f64,
-    /// Highest frequency of the response, hertz; half of the sample rate if that is lower.
+    /// Highest frequency of the response, hertz. If half the sample rate is lower, that is used
+    /// instead.
     pub high_hz: f64,
     /// Magnitude of the input at which its sensor or amplifier is overloaded.
     pub input_limit: Option<f64>,
@@ -34,8 +36,8 @@ pub struct ResponseOptions {
 pub enum Excitation {
     /// Separate hits of an impact hammer.
     Hits(HitOptions),
-    /// A drive without pause, such as noise or a sweep: windows with half overlap, each with its
-    /// mean removed and multiplied by a periodic Hann window.
+    /// A drive without pauses, such as noise or a sweep. It is cut into windows with half overlap.
+    /// Each has its mean removed and is multiplied by a periodic Hann window.
     Continuous,
 }
 
@@ -43,19 +45,21 @@ pub enum Excitation {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct HitOptions {
-    /// Part of the window before the trigger, seconds. The mean of both channels there is removed.
+    /// Part of the window before the trigger, seconds. The mean of each channel in that part is
+    /// removed.
     pub pre_trigger_s: f64,
-    /// Level that starts a hit, relative to the largest input of its recording. It is at least 8
-    /// times the noise.
+    /// Level at which a hit starts, relative to the largest input of its recording. The level used
+    /// is at least 8 times the noise.
     pub trigger: f64,
-    /// Size of a second contact in the window, relative to the hit, from which the hit is a double
-    /// one. It is at least 8 times the noise.
+    /// Size of a second contact in the window, relative to the hit, from which the hit counts as a
+    /// double hit. The size used is at least 8 times the noise.
     pub double: f64,
-    /// Force window: the input is kept until this time after the trigger, seconds, then fades to
-    /// zero over a quarter of it (half a cosine). It removes the noise of the input between hits.
+    /// Force window: the input is kept until this time after the trigger, seconds, and then fades
+    /// to zero over a quarter of that time (half a cosine). It removes the noise of the input
+    /// between hits.
     pub force_window_s: Option<f64>,
     /// Exponential window: both channels are multiplied by `exp(-t / this)` after the trigger,
-    /// seconds. Responses that outlast the window are forced to end, and their damping rises by its
+    /// seconds. It forces responses that outlast the window to end, and raises their damping by its
     /// inverse, in 1/s.
     pub exponential_s: Option<f64>,
 }
@@ -94,8 +98,8 @@ impl HitOptions {
         self
     }
 
-    /// Sets the levels of a hit (relative to the largest input) and of a second contact (relative
-    /// to the hit).
+    /// Sets the level of a hit (relative to the largest input) and of a second contact (relative to
+    /// the hit).
     #[must_use]
     pub fn with_levels(mut self, trigger: f64, double: f64) -> Self {
         (self.trigger, self.double) = (trigger, double);
@@ -156,8 +160,8 @@ impl ResponseOptions {
         self
     }
 
-    /// Returns the number of samples of a window; refuses options that no recording can be measured
-    /// with.
+    /// Returns the number of samples in a window. Refuses options with which no recording can be
+    /// measured.
     pub(crate) fn check(&self, rate_hz: f64) -> Result<usize, ResponseError> {
         let samples = (self.window_s * rate_hz).round();
         let enough = format!("a window needs {FEWEST_SAMPLES} samples or more, at {rate_hz} Hz");

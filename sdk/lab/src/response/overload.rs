@@ -1,4 +1,4 @@
-//! Samples at the limit of a sensor, amplifier or converter.
+//! Finds samples at the limit of a sensor, amplifier or converter.
 
 use std::ops::Range;
 
@@ -7,16 +7,17 @@ use super::error::Channel;
 use super::pieces::Reason;
 use super::record::Record;
 
-/// Equal samples in a row at a channel's highest or lowest value from which it counts as clipped.
-/// The top of a pulse repeats a converter's code two or three times.
+/// Number of equal samples in a row, at a channel's highest or lowest value, from which the channel
+/// counts as clipped. The top of a pulse may repeat a converter's code two or three times without
+/// clipping.
 const IN_A_ROW: usize = 4;
-/// Part of the largest excursion that a clipped value must reach: a signal at rest repeats its
-/// lowest value too.
+/// Part of the largest excursion that a clipped value must reach. Without this limit, a signal at
+/// rest would count as clipped, because it repeats its lowest value.
 const AWAY: f64 = 0.5;
-/// Part of a given limit from which a sample is at it.
+/// Part of a given limit from which a sample counts as being at the limit.
 const AT_LIMIT: f64 = 0.999;
 
-/// The stretches of a channel that are at its limit, in order.
+/// The stretches in which a channel is at its limit, in order.
 #[derive(Debug)]
 pub(crate) struct Overloads {
     channel: Channel,
@@ -24,8 +25,8 @@ pub(crate) struct Overloads {
 }
 
 impl Overloads {
-    /// Finds samples at or beyond a given limit, or else four or more equal ones in a row at the
-    /// highest or the lowest value.
+    /// Finds samples at or beyond a given limit. Without a limit, finds four or more equal samples
+    /// in a row at the highest or lowest value.
     pub(crate) fn find(record: &Record, channel: Channel, limit: Option<f64>) -> Self {
         let values = record.channel(channel);
         let stretches = match limit {
@@ -35,7 +36,7 @@ impl Overloads {
         Self { channel, stretches }
     }
 
-    /// Finds samples at or beyond a given limit only.
+    /// Finds only samples at or beyond a given limit.
     pub(crate) fn find_given(record: &Record, channel: Channel, limit: Option<f64>) -> Self {
         match limit {
             Some(_) => Self::find(record, channel, limit),
@@ -70,7 +71,7 @@ fn repeated(values: &[f64]) -> Vec<Range<usize>> {
     stretches
 }
 
-/// Stretches of at least `fewest` samples that are so.
+/// Returns the stretches of at least `fewest` samples for which `is_so` holds.
 fn runs(values: &[f64], fewest: usize, is_so: impl Fn(f64) -> bool) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = None;

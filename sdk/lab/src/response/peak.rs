@@ -1,26 +1,26 @@
-//! The largest magnitude, between the points of the grid.
+//! Finds the largest magnitude between the points of the frequency grid.
 //!
-//! It is found in 1/magnitude², which is a parabola for a resonance. The file holds the grid alone,
-//! since its readers interpolate.
+//! It is found in 1/magnitude², which is a parabola for a resonance. The response file only holds
+//! the grid, since its readers interpolate.
 
 use serde::Serialize;
 
 /// The largest magnitude of a response.
 ///
 /// It is interpolated by a parabola through `1 / magnitude²` at the largest point and its two
-/// neighbours, which is the form of a lightly damped resonance.
+/// neighbours. A lightly damped resonance has this shape.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Peak {
     pub frequency_hz: f64,
     /// Magnitude, output over input.
     pub magnitude: f64,
-    /// The same in decibels.
+    /// The magnitude in decibels.
     pub magnitude_db: f64,
 }
 
 impl Peak {
-    /// Finds the peak; none if the magnitude is largest at the first or last frequency, or zero
-    /// beside the largest.
+    /// Finds the peak. `None` if the magnitude is largest at the first or last frequency, or zero
+    /// next to the largest one.
     pub(crate) fn of(frequency_hz: &[f64], magnitude: &[f64]) -> Option<Self> {
         let larger = |best: usize, at: usize| {
             if magnitude[at] > magnitude[best] { at } else { best }

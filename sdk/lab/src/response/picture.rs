@@ -1,18 +1,18 @@
-//! A picture of a measured response: magnitude, phase and coherence over frequency.
+//! Draws a measured response: magnitude, phase and coherence over frequency.
 
 use htex_report::{Axis, Plot, Series, series_color, stacked};
 
 use super::measured::MeasuredResponse;
 
-/// Size of the magnitude's plot, and height of the other two, pixels.
+/// Size of the magnitude plot, and height of the other two plots, pixels.
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 280.0;
 const LOW_HEIGHT: f64 = 170.0;
 /// Colour of the standard deviation.
 const DEVIATION: &str = "#a0a0a0";
 
-/// Draws magnitude in decibels with its standard deviation, phase in degrees, and coherence, as one
-/// SVG.
+/// Draws one SVG with the magnitude in decibels and its standard deviation, the phase in degrees,
+/// and the coherence.
 #[must_use]
 pub fn response_picture(measured: &MeasuredResponse, title: &str) -> String {
     let plots = [magnitude(measured, title), phase(measured), coherence(measured)];
@@ -75,7 +75,8 @@ fn points(measured: &MeasuredResponse, values: impl Iterator<Item = f64>) -> Vec
     measured.frequency_hz.iter().copied().zip(values).collect()
 }
 
-/// Not finite, and thereby a gap, where there is no response.
+/// Returns decibels. Where there is no response the result is not finite, which leaves a gap in the
+/// plot.
 fn decibels(magnitude: f64) -> f64 {
     20.0 * libm::log10(magnitude)
 }

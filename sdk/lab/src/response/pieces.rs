@@ -1,7 +1,7 @@
-//! The parts of recordings that are averaged, or thrown out.
+//! The parts of recordings that are averaged or thrown out.
 //!
-//! A response is an average of pieces with a time and, where one is thrown out, a reason, so that a
-//! measurement can be judged without its samples.
+//! A response is an average of pieces. Each piece has a time and, if it is thrown out, a reason, so
+//! that a measurement can be judged without its samples.
 
 use std::fmt;
 use std::ops::Range;
@@ -10,20 +10,20 @@ use serde::Serialize;
 
 use super::error::Channel;
 
-/// A hit, or a window of a continuous drive: the part of a recording that one transform is taken
-/// of.
+/// A hit, or a window of a continuous drive: a part of a recording that is transformed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Piece {
     pub file: String,
     /// Time of the hit's trigger, or of the window's start, in the file, seconds.
     pub time_s: f64,
-    /// Largest input in the window, from its level at rest, in the input's unit, with its sign.
+    /// Largest input in the window, measured from its level at rest, in the input's unit, with its
+    /// sign.
     pub peak: f64,
-    /// Why it is thrown out; absent if it is used.
+    /// Why it was thrown out; `None` if it is used.
     pub thrown_out: Option<Reason>,
 }
 
-/// Why a hit or a window is thrown out.
+/// Why a hit or a window was thrown out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "reason")]
 #[non_exhaustive]
@@ -41,7 +41,7 @@ pub enum Reason {
         /// The value there, in the channel's unit.
         value: f64,
     },
-    /// The recording starts too late for the part before the trigger.
+    /// The recording has no samples for the part before the trigger.
     StartsLate,
     /// The recording ends before the window does.
     EndsEarly {
@@ -75,7 +75,7 @@ impl fmt::Display for Reason {
 }
 
 impl Piece {
-    /// Returns the place and the reason for which it was thrown out.
+    /// Returns the place and the reason if it was thrown out.
     pub(crate) fn place_and_reason(&self) -> Option<String> {
         let reason = self.thrown_out.as_ref()?;
         Some(format!("{} at {:.4} s, {reason}", self.file, self.time_s))
@@ -85,9 +85,9 @@ impl Piece {
 /// A piece with its samples.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Cut {
-    /// Samples of the window; beyond the recording if it is cut off.
+    /// Samples of the window. They extend beyond the recording if the window is cut off.
     pub(crate) samples: Range<usize>,
-    /// The trigger; the start of a window of a continuous drive.
+    /// Sample of the trigger, or the start of a window of a continuous drive.
     pub(crate) trigger: usize,
     pub(crate) piece: Piece,
 }

@@ -5,14 +5,15 @@ use htex_author::recording::{ColumnMap, MapEntry, ReadError, ReadProblem, Role};
 
 use super::error::{Channel, RecordProblem, ResponseError};
 
-/// Highest sample rate, hertz, and largest magnitude of a sample, as of recordings.
+/// Highest sample rate, hertz, and largest magnitude of a sample; the same limits as for
+/// recordings.
 const MOST_HZ: f64 = 1e9;
 const LARGEST: f64 = 1e12;
 
 /// Input and output of a setup, recorded together.
 ///
-/// Both channels have the same length, finite samples of at most 1e12, and are not constant. Their
-/// units are free: the response is in the output's unit over the input's.
+/// Both channels have the same length and finite samples of at most 1e12, and neither is constant.
+/// Any units are allowed; the response is in the output's unit per input's unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     file: String,
@@ -23,11 +24,11 @@ pub struct Record {
 }
 
 impl Record {
-    /// Creates a record of a file's channels, which start at 0 s.
+    /// Creates a record from the channels of a file. They start at 0 s.
     ///
     /// # Errors
-    /// A rate that is not above 0 and at most 1e9 Hz, channels of different lengths, samples that
-    /// are not finite or beyond 1e12, and a constant or empty channel.
+    /// The sample rate is not above 0 or is above 1e9 Hz, the channels have different lengths, a
+    /// sample is not finite or is beyond 1e12, or a channel is constant or empty.
     pub fn new(
         file: impl Into<String>,
         rate_hz: f64,
@@ -41,11 +42,11 @@ impl Record {
         }
     }
 
-    /// Creates a record of a recording that was read with [`column_map`]: its first axis is the
+    /// Creates a record from a recording that was read with [`column_map`]: its first axis is the
     /// input, its second the output.
     ///
     /// # Errors
-    /// As [`Self::new`]; and if the recording has not two axes.
+    /// The errors of [`Self::new`], and an error if the recording does not have two axes.
     pub fn from_recording(recording: Recording) -> Result<Self, ResponseError> {
         let start_s = recording.second(0);
         let signals = recording.axes.len();
@@ -116,9 +117,9 @@ fn check_channel(channel: Channel, values: &[f64]) -> Result<(), RecordProblem> 
     Ok(())
 }
 
-/// Returns the map by which a recording's input and output are read: `COLUMN`, `COLUMN:SCALE` or an
-/// expression each, and `others`, a map of further roles such as `time=stamp_ms:0.001`. Without a
-/// scale, values are as they are in the file.
+/// Returns the map with which a recording's input and output are read. `input` and `output` are
+/// `COLUMN`, `COLUMN:SCALE` or an expression. `others` maps further roles, for example
+/// `time=stamp_ms:0.001`. Without a scale, values are used as they are in the file.
 ///
 /// ```
 /// let map = htex_lab::response::column_map("hammer_V:22.5", "fx1+fx2", None)?;
@@ -127,7 +128,8 @@ fn check_channel(channel: Channel, values: &[f64]) -> Result<(), RecordProblem> 
 /// ```
 ///
 /// # Errors
-/// A text that is no column or expression, one column as both, or axes among the further roles.
+/// A text is not a column or expression, one column is given for both channels, or the further
+/// roles include an axis.
 pub fn column_map(
     input: &str,
     output: &str,
@@ -150,7 +152,7 @@ pub fn column_map(
     ColumnMap::new(entries).map_err(|error| ResponseError::Columns { problem: problem_of(error) })
 }
 
-/// A scale of 1 in place of none: a column's unit does not matter.
+/// Uses a scale of 1 if none is given, because the unit of a column does not matter here.
 fn entry(channel: Channel, role: Role, text: &str) -> Result<MapEntry, ResponseError> {
     let mut entry = MapEntry::parse(role, text)
         .map_err(|error| ResponseError::Column { channel, problem: problem_of(error) })?;
@@ -158,7 +160,7 @@ fn entry(channel: Channel, role: Role, text: &str) -> Result<MapEntry, ResponseE
     Ok(entry)
 }
 
-/// What is wrong with a map, without advice on maps.
+/// Returns what is wrong with a map, without advice about maps.
 fn problem_of(error: ReadError) -> String {
     match error.problem {
         ReadProblem::Map(problem) => problem,

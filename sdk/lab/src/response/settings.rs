@@ -1,10 +1,11 @@
-//! Settings of measuring a response by name: the command's flags and the Python package's keywords.
+//! Settings of measuring a response by name, for the command's flags and the Python package's
+//! keywords.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Estimator, Excitation, HitOptions, ResponseOptions};
 
-/// Settings of measuring a response; an absent one has its default.
+/// Settings of measuring a response. An absent setting has its default.
 ///
 /// ```
 /// use htex_lab::response::{ResponseOptions, ResponseSettings};
@@ -20,8 +21,8 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value = "h1"))]
     pub estimator: Estimator,
 
-    /// Length of the part of the recording that is transformed, s. The response is on a grid of its
-    /// inverse; multiples of 0.2 put the 5 Hz of texture spectra on it
+    /// Length of the part of the recording that is transformed, s. The frequency grid of the
+    /// response is its inverse; with multiples of 0.2, it contains the 5 Hz grid of texture spectra
     #[cfg_attr(feature = "clap", arg(long = "window", value_name = "S", default_value_t = 1.0))]
     pub window_s: f64,
 
@@ -29,12 +30,12 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long = "low", value_name = "HZ", default_value_t = 20.0))]
     pub low_hz: f64,
 
-    /// Highest frequency, Hz; half of the sampling rate if that is lower
+    /// Highest frequency, Hz; half of the sample rate if that is lower
     #[cfg_attr(feature = "clap", arg(long = "high", value_name = "HZ", default_value_t = 1000.0))]
     pub high_hz: f64,
 
     /// Magnitude of the input at which its sensor or amplifier is overloaded. Without it, four
-    /// equal samples in a row at the highest or lowest value are an overload
+    /// equal samples in a row at the highest or lowest value count as an overload
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub input_limit: Option<f64>,
 
@@ -42,20 +43,21 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE"))]
     pub output_limit: Option<f64>,
 
-    /// The input is a drive without pause (noise, a sweep): windows with half overlap and a Hann
-    /// window
+    /// The input is a drive without pauses (noise, a sweep): use windows with half overlap and a
+    /// Hann window
     #[cfg_attr(feature = "clap", arg(
         long,
         conflicts_with_all = ["pre_trigger_s", "trigger", "double", "force_window_s", "exponential_s"]
     ))]
     pub continuous: bool,
 
-    /// Hits: time before the trigger that is part of the window, s; the mean there is removed
-    /// [default: 0.02]
+    /// Hits: time before the trigger that belongs to the window, s; the mean of that part is
+    /// removed [default: 0.02]
     #[cfg_attr(feature = "clap", arg(long = "pre-trigger", value_name = "S"))]
     pub pre_trigger_s: Option<f64>,
 
-    /// Hits: level that starts one, relative to the largest input of the recording [default: 0.1]
+    /// Hits: level at which one starts, relative to the largest input of the recording [default:
+    /// 0.1]
     #[cfg_attr(feature = "clap", arg(long, value_name = "PART"))]
     pub trigger: Option<f64>,
 
@@ -63,12 +65,11 @@ pub struct ResponseSettings {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PART"))]
     pub double: Option<f64>,
 
-    /// Hits: time after the trigger at which the input is faded to zero, s; it removes noise
-    /// between hits
+    /// Hits: time after the trigger at which the input fades to zero, s; removes noise between hits
     #[cfg_attr(feature = "clap", arg(long = "force-window", value_name = "S"))]
     pub force_window_s: Option<f64>,
 
-    /// Hits: time constant of an exponential window on both channels, s; for responses that outlast
+    /// Hits: time constant of an exponential window on both channels, s, for responses that outlast
     /// the window. It raises their damping by its inverse
     #[cfg_attr(feature = "clap", arg(long = "exponential", value_name = "S"))]
     pub exponential_s: Option<f64>,

@@ -3,8 +3,8 @@
 use htex_dsp::fft::RealFft;
 use num_complex::Complex;
 
-/// Averaged auto and cross spectra of input and output, at each bin, without a common factor: only
-/// ratios are used (Bendat & Piersol, section 11.5).
+/// Averaged auto and cross spectra of input and output at each bin. A common factor is left out,
+/// because only ratios are used (Bendat & Piersol, section 11.5).
 #[derive(Debug)]
 pub(crate) struct Spectra {
     fft: RealFft,
@@ -13,12 +13,12 @@ pub(crate) struct Spectra {
     pub(crate) gxx: Vec<f64>,
     /// Auto spectrum of the output.
     pub(crate) gyy: Vec<f64>,
-    /// Cross spectrum: the mean of the input's conjugate times the output.
+    /// Cross spectrum: the mean of the conjugate of the input times the output.
     pub(crate) gxy: Vec<Complex<f64>>,
 }
 
 impl Spectra {
-    /// Empty sums of windows of `len` samples.
+    /// Creates empty sums for windows of `len` samples.
     pub(crate) fn new(len: usize) -> Self {
         let fft = RealFft::new(len);
         let bins = [fft.make_bins(), fft.make_bins()];

@@ -1,4 +1,4 @@
-//! What a session needs of its surroundings: the one who is asked, a clock, and what plays.
+//! What a session needs from outside: someone to ask, a clock, and a rig that plays.
 
 use std::time::Duration;
 
@@ -14,12 +14,12 @@ use crate::study::stimulus::Stimulus;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum View {
-    /// The next trial, or the matching of the next texture, begins with a key.
+    /// The next trial, or the matching of the next texture, begins when a key is pressed.
     Ready {
-        /// What begins.
+        /// The phase that begins.
         phase: Phase,
         texture: String,
-        /// What happened before, such as a trial that is repeated.
+        /// What happened before, for example that a trial is repeated.
         notice: Option<String>,
     },
     /// A trial plays.
@@ -27,37 +27,37 @@ pub enum View {
     Question {
         attribute: Attribute,
         scale: Scale,
-        /// What happened in the trial, such as a motion off its target.
+        /// What happened in the trial, for example that the motion left its target.
         notice: Option<String>,
     },
-    /// The texture plays, and its level rises until it is felt, or its gain is matched.
+    /// The texture plays. Either its level rises until it is felt, or its gain is matched.
     Matching {
         texture: String,
-        /// The method, which says which keys there are.
+        /// The method, which determines the available keys.
         method: GainMethod,
-        /// Whether the level still rises to where the texture is felt: all keys have a meaning
-        /// then.
+        /// Whether the level is still rising until the texture is felt. While it rises, all keys
+        /// have a meaning.
         rising: bool,
-        /// The present gain, decibels relative to the maximum.
+        /// The current gain, decibels relative to the maximum.
         gain_db: f64,
     },
     Rest {
-        /// Seconds until it may end.
+        /// Seconds until the rest may end.
         seconds: u64,
     },
     /// The session is over.
     Done,
 }
 
-/// A question or a matching takes no answer for this long: the second press of a key that answered
-/// the one before.
+/// Time during which a question or a matching accepts no answer. A press in that time is the second
+/// press of the key that answered the view before.
 const GUARD: Duration = Duration::from_millis(300);
-/// What begins a trial or ends a rest takes no key for this long: both begin by the same key, and a
-/// double press, of which the second one comes within 0.5 s, is to do one of them.
+/// Time during which the start of a trial or the end of a rest accepts no key. Both use the same
+/// key, and a double press, whose second press comes within 0.5 s, must only do one of them.
 const LONG_GUARD: Duration = Duration::from_millis(600);
 
 impl View {
-    /// Time after it is shown in which a press is no answer: it was meant for what was shown
+    /// Returns how long after it is shown a press does not count, because it was meant for the view
     /// before.
     pub fn guard(&self) -> Duration {
         match self {
@@ -75,34 +75,36 @@ pub enum Key {
     Gain(GainKey),
     /// The next thing may begin.
     Go,
-    /// The session ends here and goes on at another time.
+    /// The session ends here and continues another time.
     Quit,
 }
 
-/// The one who is asked. A key that a person presses within [`View::guard`] is none.
+/// The participant who is asked, or a stand-in. Keys that a person presses within [`View::guard`]
+/// must be ignored.
 pub trait Asker {
-    /// Shows what there is now. Keys that were pressed before are forgotten. `done` of `all` trials
-    /// are rated.
+    /// Shows a view. Keys that were pressed before are dropped. `done` of `all` trials have been
+    /// rated.
     fn show(&mut self, view: &View, done: usize, all: usize);
 
-    /// The next key since the last [`Self::show`], if there is one.
+    /// Returns the next key since the last [`Self::show`], if there is one.
     fn key(&mut self) -> Option<Key>;
 }
 
 pub trait Clock {
-    /// Milliseconds since 1970, or since the start of a simulated session.
+    /// Returns milliseconds since 1970, or since the start of a simulated session.
     fn now_ms(&self) -> u64;
 
-    /// Lets time pass; a simulated clock does not wait.
+    /// Waits for this time. A simulated clock only advances.
     fn pass(&mut self, time: Duration);
 
-    /// Something of this length was played, which a simulated clock has not noticed.
+    /// Reports that something of this length was played, so that a simulated clock can advance.
     fn played(&mut self, time: Duration);
 
-    /// Date and time in UTC, as [`crate::study::utc`] writes them; `None` of a simulated clock.
+    /// Returns date and time in UTC in the format of [`crate::study::utc`]; `None` for a simulated
+    /// clock.
     fn date(&self) -> Option<String>;
 
-    /// A simulated clock goes on at this time; others do not.
+    /// Makes a simulated clock continue from this time. Other clocks ignore it.
     fn go_on_at(&mut self, ms: u64);
 }
 
@@ -111,44 +113,44 @@ pub trait Clock {
 pub struct Played {
     /// Drive of a display, volts.
     pub drive_v: Option<f64>,
-    /// What the device was given.
+    /// Levels that the device was given.
     pub output: OutputLevels,
-    /// RMS that had this drive, in the assets' unit.
+    /// RMS that corresponds to this drive, in the assets' unit.
     pub reference_rms: f64,
-    /// The recording of what was felt, which is on disk.
+    /// The recording of what was felt, already on disk.
     pub felt: Option<FeltFile>,
 }
 
-/// What plays: a renderer and a device.
+/// Plays trials: a renderer and a device.
 pub trait Rig {
     type Error: From<StudyError> + std::fmt::Display;
 
-    /// Plays, and calls `ends` for each block; when that returns true, playing ends as soon as it
-    /// can.
+    /// Plays a stimulus. Calls `ends` for each block and stops as soon as possible once it returns
+    /// true.
     ///
     /// # Errors
-    /// Of the renderer and of the device.
+    /// The errors of the renderer and of the device.
     fn play(
         &mut self,
         stimulus: &Stimulus,
         ends: &mut dyn FnMut() -> bool,
     ) -> Result<Played, Self::Error>;
 
-    /// What the device was given in the last [`Self::play`] that ended with an error, and the drive
-    /// of a display, volts; `None` if the device was not opened.
+    /// Returns what the device was given in the last [`Self::play`] that ended with an error, and
+    /// the drive of a display in volts. `None` if the device was not opened.
     fn output_before_error(&mut self) -> Option<(Option<f64>, OutputLevels)>;
 
-    /// Whether an error of [`Self::play`] is that of a device that ran dry, so that playing again
-    /// may succeed.
+    /// Returns whether an error of [`Self::play`] means that the device ran dry, so that playing
+    /// again may succeed.
     fn ran_dry(error: &Self::Error) -> bool;
 
-    /// Tells the person who conducts the session what happened in a trial; the participant's view
-    /// has the same notice.
+    /// Tells the experimenter what happened in a trial. The participant's view shows the same
+    /// notice.
     fn tell(&self, notice: &str);
 
-    /// The nine-band error of a representation, decibels, if its asset says it.
+    /// Returns the nine-band error of a representation, decibels, if the asset states it.
     fn band_error_db(&self, texture: &str, model: &str) -> Option<f64>;
 
-    /// Whether the program was asked to end.
+    /// Returns whether the program was asked to end.
     fn is_interrupted(&self) -> bool;
 }

@@ -1,4 +1,4 @@
-//! Rules for the contents of a study without its files.
+//! Rules for the contents of a study, without looking at its files.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use htex_finding::{Findings, Rule};
 use crate::study::file::{Matching, Participants, Phase, Study};
 use crate::study::rules as rule;
 
-/// Most trials of one session, and of all.
+/// Largest number of trials in one session, and in the whole study.
 const MOST_TRIALS: usize = 100_000;
 const MOST_IN_ALL: usize = 1_000_000;
 const MOST_PARTICIPANTS: usize = 1000;
@@ -116,7 +116,7 @@ fn check_names(key: &str, names: impl Iterator<Item = String>, findings: &mut Fi
     }
 }
 
-/// A number, its pointer, and its range.
+/// Checks that a number is in a range. `pointer` names it in findings.
 fn require_in(value: f64, pointer: &str, from: f64, to: f64, findings: &mut Findings) {
     let rule: &Rule = rule::STUDY_NUMBER_INVALID;
     findings.require((from..=to).contains(&value), rule, pointer, || {

@@ -1,4 +1,4 @@
-//! Dates of answers: what a clock in milliseconds since 1970 says in UTC.
+//! Dates of answers: converts milliseconds since 1970 to UTC.
 
 /// Milliseconds of a day.
 const DAY_MS: u64 = 86_400_000;
@@ -7,7 +7,7 @@ const ERA_DAYS: u64 = 146_097;
 /// Days from 0000-03-01 to 1970-01-01.
 const TO_1970: u64 = 719_468;
 
-/// Returns date and time in UTC of milliseconds since 1970, to the second: `2026-11-25T10:25:25Z`
+/// Converts milliseconds since 1970 to date and time in UTC, to the second: `2026-11-25T10:25:25Z`
 /// (ISO 8601).
 ///
 /// ```
@@ -20,9 +20,9 @@ pub fn utc(ms: u64) -> String {
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
 }
 
-/// Year, month and day so many days after 1970-01-01, in the Gregorian calendar (Hinnant 2013,
-/// "chrono-compatible low-level date algorithms"): years begin in March, so that the leap day is
-/// the last one.
+/// Returns the year, month and day that lie `days` days after 1970-01-01 in the Gregorian calendar
+/// (Hinnant 2013, "chrono-compatible low-level date algorithms"). Years begin in March here, so
+/// that the leap day is the last day.
 fn date(days: u64) -> [u64; 3] {
     let days = days + TO_1970;
     let (era, day_of_era) = (days / ERA_DAYS, days % ERA_DAYS);

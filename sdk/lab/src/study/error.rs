@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::record::RecordError;
 
-/// An error of a study's answers. No answer that was recorded is lost by one.
+/// Error of running or reading a study. No recorded answer is lost because of one.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
@@ -14,13 +14,13 @@ pub enum StudyError {
     /// A file could not be read or written.
     #[error(transparent)]
     File(#[from] htex_files::FileError),
-    /// Another program records answers of the same participant.
+    /// Another program is recording answers of the same participant.
     #[error("{}: another htex is running this participant; wait for it to end", .file.display())]
     Busy {
         /// The file of answers.
         file: PathBuf,
     },
-    /// A line of a file of answers cannot be understood.
+    /// A line in a file of answers is invalid.
     #[error("{}, line {line}: {problem}; restore the file from a copy, or give another folder", .file.display())]
     Line {
         /// The file of answers.
@@ -29,7 +29,7 @@ pub enum StudyError {
         line: usize,
         problem: String,
     },
-    /// The file was begun under other conditions, and results of two versions must not be mixed.
+    /// The file was begun under other conditions. Results of two versions must not be mixed.
     #[error(
         "{}: the answers there were begun with another version: {changed}. Restore what was there (the earlier settings, in the case of a \
          device), or start anew in another folder (-o)",
@@ -54,7 +54,7 @@ pub enum StudyError {
          buffer (in another folder, -o, since settings are not mixed); the trial is repeated when the same command is run again"
     )]
     RanDry {
-        /// Attempts.
+        /// Number of attempts.
         times: u32,
         /// The last error.
         error: String,
@@ -77,7 +77,7 @@ pub enum StudyError {
     /// The page cannot be served.
     #[error(transparent)]
     Page(#[from] crate::page::PageError),
-    /// The attribute that was asked for is not in the answers.
+    /// The requested attribute is not in the answers.
     #[error("the answers have the attributes {known}; name one of them")]
     Attribute { known: String },
 }

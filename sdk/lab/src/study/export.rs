@@ -1,4 +1,4 @@
-//! Ratings as a table.
+//! Exports ratings as a table.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use crate::study::error::StudyError;
 use crate::study::lines::{Answer, FeltFile, Header, Line};
 use crate::study::log;
 
-/// Columns of the table; the first five are those that analyses read.
+/// Columns of the table. Analyses read the first five.
 const COLUMNS: [&str; 11] = [
     "participant",
     "texture",
@@ -28,21 +28,22 @@ const COLUMNS: [&str; 11] = [
 /// Ratings of all participants in a folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Export {
-    /// The table as CSV, participant by participant, each in the order of the trials.
+    /// The table as CSV: one participant after the other, each in the order of the trials.
     pub csv: String,
     pub participants: usize,
     pub ratings: usize,
-    /// Trials whose motion was off the study's target, as the column `off_target` says.
+    /// Number of trials whose motion left the study's target, as stated in the column `off_target`.
     pub off_target: usize,
-    /// What an analysis must know: sessions that are not complete, trials off their target, devices
+    /// What an analysis must consider: incomplete sessions, trials off their target, and devices
     /// with different settings.
     pub warnings: Vec<String>,
-    /// Participants whose sessions are not complete, each a sentence, which the warnings have, too.
+    /// Participants with incomplete sessions, each as a sentence. The warnings contain these
+    /// sentences.
     pub incomplete: Vec<String>,
 }
 
-/// What becomes of trials whose speed or force was off the study's target in the table of spectra.
-/// Their ratings are always exported.
+/// How the table of spectra treats trials whose speed or force left the study's target. Their
+/// ratings are always exported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum OffTarget {
@@ -53,13 +54,13 @@ pub enum OffTarget {
     LeaveOut,
 }
 
-/// Reads all answers in a folder. Training is left out. With several attributes, `attribute` names
-/// the one whose ratings are wanted.
+/// Reads all answers in a folder. Training is left out. With several attributes, `attribute`
+/// selects the one whose ratings are exported.
 ///
 /// # Errors
-/// [`StudyError::NoAnswers`] if the folder has none; [`StudyError::OtherVersion`] if they are of
-/// several versions of a study, or of simulated and of real participants;
-/// [`StudyError::Attribute`]; errors of reading.
+/// [`StudyError::NoAnswers`] if the folder has none; [`StudyError::OtherVersion`] if they belong to
+/// several versions of a study, or to both simulated and real participants;
+/// [`StudyError::Attribute`]; and errors of reading.
 pub fn export(folder: &Path, attribute: Option<&str>) -> Result<Export, StudyError> {
     let sessions = sessions_of(folder)?;
     let answers = sessions.iter().flat_map(|session| &session.answers);
@@ -75,7 +76,7 @@ pub(crate) struct Answers {
     pub(crate) answers: Vec<Answer>,
 }
 
-/// The answers of all participants in a folder, all of one version of a study.
+/// Reads the answers of all participants in a folder. All must belong to one version of a study.
 pub(crate) fn sessions_of(folder: &Path) -> Result<Vec<Answers>, StudyError> {
     let mut sessions = Vec::new();
     for file in files(folder)? {
@@ -188,7 +189,7 @@ fn table(sessions: &[Answers], attribute: &str, folder: &Path) -> Result<Export,
     })
 }
 
-/// Settings of the device in which participants differ from the first one.
+/// Returns the device settings in which participants differ from the first one.
 fn other_settings(sessions: &[Answers]) -> Vec<String> {
     let Some((first, rest)) = sessions.split_first() else {
         return Vec::new();
@@ -204,7 +205,8 @@ fn other_settings(sessions: &[Answers]) -> Vec<String> {
 }
 
 impl Answers {
-    /// Trials off their target, and trials whose motion was measured.
+    /// Returns the number of trials off their target, and the number of trials whose motion was
+    /// measured.
     fn off_target(&self) -> (usize, usize) {
         let recorded = self.answers.iter().filter_map(|answer| {
             let felt = answer.felt.as_ref()?;
@@ -228,7 +230,7 @@ fn row(header: &Header, answer: &Answer) -> [String; COLUMNS.len()] {
         answer.response_ms.to_string(),
         answer.gain_db.map_or(String::new(), |db| format!("{db}")),
         yes(answer.simulated || header.simulated.is_some()),
-        // Without a recording of speed or force it is not known.
+        // Without a recording of speed or force, it is not known whether the target was kept.
         (answer.felt.as_ref()).and_then(FeltFile::is_off_target).map_or(String::new(), yes),
     ]
 }

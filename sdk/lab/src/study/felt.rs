@@ -1,9 +1,10 @@
-//! Recording of what is felt while a trial plays: a source is read in a thread of its own.
+//! Records what is felt while a trial plays. The source is read in its own thread.
 //!
-//! The source is opened anew for each trial, so that a trial's recording does not depend on the
-//! ones before it.
+//! The source is opened anew for each trial, so that a trial's recording does not depend on earlier
+//! ones.
 //!
-//! A session that was killed has the same bytes as one that was not, if device and source have.
+//! A session that was killed and continued writes the same bytes as one that was not, provided that
+//! the device and the source deliver the same bytes.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -27,43 +28,45 @@ use crate::study::error::StudyError;
 use crate::study::lines::{FeltFile, SourceUsed};
 use crate::study::stimulus::Stimulus;
 
-/// Folder of the recordings of a participant.
+/// Folder for a participant's recordings.
 const FOLDER: &str = "felt";
-/// How far the motion may be from that of the study, for the judgement beside a recording.
+/// How far the motion may differ from the study's motion, relative. It is used to judge each
+/// recording.
 const TOLERANCE: f64 = 0.1;
 
 pub type OpenSource = Box<dyn Fn() -> Result<Box<dyn Source>, DeviceError>>;
 
-/// What is recorded, and where.
+/// What is recorded and where.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FeltSetup {
-    /// Folder of the answers.
+    /// Folder for the answers.
     pub folder: PathBuf,
     pub participant: String,
-    /// The source, as it was named.
+    /// The source, as the user named it.
     pub source: String,
-    /// Its settings, as they were given.
+    /// Its settings, as the user gave them.
     pub settings: BTreeMap<String, String>,
-    /// The map of channels, as it was given.
+    /// The map of channels, as the user gave it.
     pub map: Option<String>,
     /// Quantity of the texture's signal.
     pub quantity: Quantity,
-    /// Speed and normal force of the study's motion, where it has only one.
+    /// Speed and normal force of the study's motion, if it is a single motion.
     pub target: Exploration,
     pub format: Format,
-    /// Program and version.
+    /// Program and version that records.
     pub tool: String,
-    /// Whether a recording begins with the first sample of the source instead of the first that is
-    /// played: trials without waiting have no clock in common with the source.
+    /// Whether a recording begins with the source's first sample, and not with the first sample
+    /// that is played. Trials that are not played in real time have no clock in common with the
+    /// source.
     pub is_fast: bool,
 }
 
-/// Recorder of felt forces.
+/// Records felt forces.
 pub struct Felt {
     setup: FeltSetup,
     open: OpenSource,
     rate_hz: f64,
-    /// `None` while a thread has them.
+    /// `None` while a recording thread uses them.
     inputs: Option<Inputs>,
     running: Option<Running>,
 }
@@ -78,16 +81,18 @@ struct Running {
 struct Shared {
     stop: AtomicBool,
     failed: AtomicBool,
-    /// Seconds until the first sample that is played is at the display.
+    /// Seconds until the first played sample reaches the display.
     lead_s: OnceLock<f64>,
 }
 
 impl Felt {
-    /// Makes a recorder, and the folder of its recordings, in which nothing of a program that was
-    /// killed is left. `signals` are those of the source, whose rate is `rate_hz`.
+    /// Creates a recorder and the folder for its recordings, and removes unfinished files that a
+    /// killed program left there. `signals` are the signals of the source, and `rate_hz` is its
+    /// sample rate.
     ///
     /// # Errors
-    /// [`RecordError::File`], and [`RecordError::Setup`] if the format cannot have this rate.
+    /// [`RecordError::File`], and [`RecordError::Setup`] if the format cannot have this sample
+    /// rate.
     pub fn new(
         setup: FeltSetup,
         open: OpenSource,
@@ -103,7 +108,7 @@ impl Felt {
         Ok(Self { setup, open, rate_hz, inputs, running: None })
     }
 
-    /// The source, for the header of answers.
+    /// Describes the source, for the header of answers.
     pub fn used(&self) -> Option<SourceUsed> {
         let inputs = self.inputs.as_ref()?;
         let setup = &self.setup;
@@ -120,10 +125,10 @@ impl Felt {
         })
     }
 
-    /// Starts the source for a trial. What comes before [`Self::sounds`] is left out.
+    /// Starts the source for a trial. Everything before [`Self::sounds`] is left out.
     ///
     /// # Errors
-    /// When the source cannot be opened or started, or has another rate than before.
+    /// If the source cannot be opened or started, or has another sample rate than before.
     pub fn begin(&mut self, name: &str, seconds: f64) -> Result<(), RecordError> {
         self.abort();
         let mut source = (self.open)()?;
@@ -159,7 +164,7 @@ impl Felt {
     fn header(&self, name: &str, seconds: f64, inputs: &Inputs) -> TakeHeader {
         let setup = &self.setup;
         let signals = inputs.signals.list();
-        // A target of what is not measured cannot be judged.
+        // A target can only be judged if the quantity is measured.
         let is_motion = |(role, _): &(String, String)| ["x", "y", "speed"].contains(&&role[..]);
         let moves = signals.iter().chain(&inputs.tracked()).any(is_motion);
         let normal = inputs.signals.position(Role::Normal);
@@ -185,8 +190,8 @@ impl Felt {
         }
     }
 
-    /// The first sample that is played is at the display in so many seconds: the recording begins
-    /// there.
+    /// Says that the first played sample reaches the display in `lead_s` seconds. The recording
+    /// begins there.
     pub fn sounds(&self, lead_s: f64) {
         if let Some(running) = &self.running {
             // Only the first time counts.
@@ -194,23 +199,23 @@ impl Felt {
         }
     }
 
-    /// Whether a recording waits for [`Self::sounds`].
+    /// Returns whether a recording is waiting for [`Self::sounds`].
     pub fn waits(&self) -> bool {
         let running = self.running.as_ref();
         running.is_some_and(|running| running.shared.lead_s.get().is_none())
     }
 
-    /// Whether the recording has ended with an error, which [`Self::finish`] returns.
+    /// Returns whether the recording has ended with an error. [`Self::finish`] returns that error.
     pub fn has_failed(&self) -> bool {
         let running = self.running.as_ref();
         running.is_some_and(|running| running.shared.failed.load(Ordering::Acquire))
     }
 
-    /// Waits for the end of the recording, writes it and JSON beside it, and returns it when both
-    /// are on disk; `None` if nothing was recorded.
+    /// Waits for the end of the recording, writes it with its JSON, and returns it once both are on
+    /// disk. `None` if nothing was recorded.
     ///
     /// # Errors
-    /// Those of the source, and [`RecordError::File`].
+    /// The errors of the source, and [`RecordError::File`].
     pub fn finish(
         &mut self,
         stimulus: &Stimulus,
@@ -251,7 +256,7 @@ impl Felt {
         }))
     }
 
-    /// Ends a recording of which nothing is kept.
+    /// Ends a recording and discards it.
     pub fn abort(&mut self) {
         if let Some(running) = &self.running {
             running.shared.stop.store(true, Ordering::Release);
@@ -273,13 +278,13 @@ impl Drop for Felt {
     }
 }
 
-/// A path relative to the folder of answers; any other text unchanged.
+/// Returns a path relative to the folder of answers. Any other text stays unchanged.
 fn within(folder: &Path, text: &str) -> String {
     let inner = Path::new(text).strip_prefix(folder);
     inner.map_or_else(|_| text.to_owned(), |path| path.display().to_string())
 }
 
-/// The BLAKE3 hash of a recording, hexadecimal.
+/// Returns the BLAKE3 hash of a recording, hexadecimal.
 pub(crate) fn hash(file: &Path) -> Result<String, StudyError> {
     let bytes = std::fs::read(file).reading(file)?;
     Ok(blake3::hash(&bytes).to_hex().to_string())
@@ -298,12 +303,13 @@ fn read(
     (reader.inputs, result.map(|()| data))
 }
 
-/// Reads until the recording is complete, or is not wanted any more.
+/// Reads until the recording is complete or no longer wanted.
 fn take(reader: &mut Reader, data: &mut TakeData, shared: &Shared) -> Result<(), RecordError> {
     let frames = data.header.frames();
     let mut begin = None;
     while data.frames() < frames && !shared.stop.load(Ordering::Acquire) {
-        // Known before the block is read, which is then the first of the recording.
+        // The lead is looked up before the block is read, so that this block is the first of the
+        // recording.
         if let (None, Some(lead_s)) = (begin, shared.lead_s.get()) {
             begin = Some(reader.now_s() + lead_s);
         }
@@ -326,12 +332,12 @@ fn take(reader: &mut Reader, data: &mut TakeData, shared: &Shared) -> Result<(),
     Ok(())
 }
 
-/// Frames that come before the recording begins.
+/// Returns the number of frames before the recording begins.
 fn lead(reader: &Reader, begin_s: f64, data: &TakeData) -> usize {
     ((begin_s - reader.now_s()) * data.header.rate_hz).round().max(0.0) as usize
 }
 
-/// The error of a source that has ended, with what was recorded until then.
+/// Adds to the error of a source that ended how much was recorded until then.
 fn after(error: RecordError, data: &TakeData) -> RecordError {
     match error {
         RecordError::Ended { seconds, kept, .. } => {
@@ -341,13 +347,13 @@ fn after(error: RecordError, data: &TakeData) -> RecordError {
     }
 }
 
-/// Makes a folder, and removes files in it that a program that was killed had not finished.
+/// Creates a folder, and removes unfinished files in it that a killed program left.
 fn remove_unfinished(own: &OwnFolder, inside: &Path) -> std::io::Result<()> {
     own.make_folder(inside)?;
     let left = |name: &String| name.starts_with(".htex-") && name.ends_with(".part");
     for name in own.files(inside)?.into_iter().filter(left) {
         own.remove(&inside.join(name))?;
     }
-    // Removing the last file removes the folder.
+    // If the last file was removed, the folder was removed with it, so it is created again.
     own.make_folder(inside).map(drop)
 }

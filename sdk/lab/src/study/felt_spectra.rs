@@ -1,4 +1,4 @@
-//! Spectra of what was felt, as a table for [`crate::analyse`].
+//! Exports the spectra of what was felt as a table, for analyses.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
@@ -17,7 +17,7 @@ use crate::study::export::{OffTarget, sessions_of};
 use crate::study::felt::hash;
 use crate::study::lines::FeltFile;
 
-/// Participant and model of the lines of the real textures.
+/// Participant and model in the lines of the real textures.
 const RECORDED: &str = "recorded";
 
 /// The spectrum of a real texture.
@@ -28,26 +28,26 @@ pub struct Reference {
     pub magnitude: Vec<f64>,
 }
 
-/// A table of spectra.
+/// The table of spectra.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FeltSpectra {
-    /// The table as CSV: participant, texture, model, then a magnitude at 20, 25, …, 1000 Hz; at
-    /// its end a line for each real texture.
+    /// The table as CSV: participant, texture, model, then a magnitude at 20, 25, …, 1000 Hz. It
+    /// ends with a line for each real texture.
     pub csv: String,
-    /// Recordings that were read.
+    /// Number of recordings that were read.
     pub recordings: usize,
-    /// Recordings of trials whose motion was off the study's target; [`OffTarget`] says whether
-    /// they were read.
+    /// Number of recordings of trials whose motion left the study's target. [`OffTarget`] says
+    /// whether they were read.
     pub off_target: usize,
-    /// What an analysis must know, each a sentence.
+    /// What an analysis must consider, as sentences.
     pub warnings: Vec<String>,
 }
 
 impl Reference {
-    /// The spectrum of a recording; with `strict` no problem of its signals is accepted.
+    /// Reads the spectrum of a recording. With `strict`, any problem of its signals is an error.
     ///
     /// # Errors
-    /// [`StudyError::Content`] if they cannot be read as textures from 20 to 1000 Hz.
+    /// [`StudyError::Content`] if it cannot be read as a texture from 20 to 1000 Hz.
     pub fn of_recording(
         take: &Take,
         file: &Path,
@@ -58,11 +58,11 @@ impl Reference {
         Ok(Self::average(&[reading.part], options).in_file(file)?)
     }
 
-    /// The spectrum that was recorded for an asset, at its condition nearest to a motion, or at its
-    /// first one.
+    /// Returns the spectrum that was recorded for an asset, at the condition nearest to a motion,
+    /// or else at its first condition.
     ///
     /// # Errors
-    /// [`StudyError::Content`] if the asset cannot be read or does not have it.
+    /// [`StudyError::Content`] if the asset cannot be read or does not have the spectrum.
     pub fn of_asset(file: &Path, motion: Exploration) -> Result<Self, StudyError> {
         let asset = Asset::open(file).in_file(file)?;
         let conditions = asset.manifest.conditions.iter().enumerate();
@@ -102,15 +102,15 @@ impl Reference {
     }
 }
 
-/// The spectra of a folder of answers: for each participant, texture and model, the recordings of
-/// all its trials are read and averaged as `htex fit` reads recordings of one condition;
-/// `off_target` says what becomes of trials off the study's target. `recorded` has the real
-/// textures by name.
+/// Computes the spectra of a folder of answers. For each participant, texture and model, the
+/// recordings of all trials are read and averaged, as `htex fit` reads recordings of one condition.
+/// `off_target` says how to treat trials off the study's target. `recorded` holds the real textures
+/// by name.
 ///
 /// # Errors
-/// Those of [`crate::study::export()`]; [`StudyError::NotRecorded`]; [`StudyError::Content`] if a
-/// recording is not the one of its trial, or has no spectrum, or the spectrum of a real texture is
-/// missing.
+/// The errors of [`crate::study::export()`]; [`StudyError::NotRecorded`]; and
+/// [`StudyError::Content`] if a recording is not the one of its trial or has no spectrum, or if the
+/// spectrum of a real texture is missing.
 pub fn felt_spectra(
     folder: &Path,
     recorded: &BTreeMap<String, Reference>,
@@ -122,7 +122,7 @@ pub fn felt_spectra(
     let (mut recordings, mut off, mut warnings) = (0, 0, Vec::new());
     for session in sessions_of(folder)? {
         let participant = &session.header.participant;
-        // A trial with several questions has one recording, and the last answer names it.
+        // A trial with several questions has one recording, which its last answer names.
         let mut conditions: BTreeMap<(String, String), BTreeMap<u32, FeltFile>> = BTreeMap::new();
         for answer in session.answers {
             let Some(felt) = answer.felt else { continue };
@@ -185,7 +185,7 @@ pub fn felt_spectra(
     Ok(FeltSpectra { csv: table(folder, &rows)?, recordings, off_target: off, warnings })
 }
 
-/// The spectra of a recording, which must be the one of its trial.
+/// Reads a recording, which must be the one of its trial.
 fn part(
     folder: &Path,
     felt: &FeltFile,
@@ -215,7 +215,7 @@ fn part(
 
 fn take(file: &Path, header: &TakeHeader) -> Result<Take, Box<dyn Error>> {
     let options = settings_of(file, header).read_options(1)?.into_iter().next().unwrap_or_default();
-    // Of a participant's motion all is read: the tolerance of 10 % is the rule for recordings of
+    // All of a participant's motion is read. The tolerance of 10 % only applies to recordings of
     // textures.
     Ok(Take { recording: read_recording(file, &options)?, given: Exploration::default() })
 }

@@ -1,4 +1,5 @@
-//! The live spectrum: the height of tones and noise, against a transform that is written out here.
+//! Live spectrum: the height of tones and noise, compared with a transform that is written out
+//! here.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod recording;
@@ -13,7 +14,7 @@ use recording::{RATE_HZ, Settings, session, sweeps};
 
 fn live(rate_hz: f64, axes: &[&[f64]]) -> LiveSignal {
     let mut signal = LiveSignal::new(Quantity::LateralForce, rate_hz);
-    // In blocks of any length, as a source delivers them.
+    // In blocks of any length, as they come from a source.
     let length = axes[0].len();
     let mut at = 0;
     for block in [1, 37, 200, 40].into_iter().cycle() {
@@ -28,8 +29,8 @@ fn live(rate_hz: f64, axes: &[&[f64]]) -> LiveSignal {
     signal
 }
 
-/// Magnitude at a frequency (Hz) of the last 0.4 s: root of the mean power of three windows and the
-/// sum of the axes' powers.
+/// Returns the magnitude of the last 0.4 s at a frequency (Hz): the root of the mean power of three
+/// windows, summed over the axes.
 fn magnitude(rate_hz: f64, axes: &[Vec<f64>], hz: f64) -> f64 {
     let len = (0.2 * rate_hz).round() as usize;
     let mut power = 0.0;
@@ -53,8 +54,8 @@ fn magnitude(rate_hz: f64, axes: &[Vec<f64>], hz: f64) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// On the grid of 5 Hz a sinusoid has its amplitude within 0.01 dB; between two points of the
-    /// grid the highest is at most 1.43 dB lower, which is what a Hann window loses there.
+    /// On the 5 Hz grid, a sinusoid has its amplitude within 0.01 dB. Between two grid points, the
+    /// highest value is at most 1.43 dB lower, which is the loss of a Hann window there.
     #[test]
     fn a_sinusoid_has_its_height(
         bin in 6..199_u32,
@@ -73,9 +74,9 @@ proptest! {
         prop_assert!((at_hz - hz).abs() <= 2.51, "{hz} Hz is shown at {at_hz} Hz");
         let lowest = if between == 0.0 { -0.01 } else { -1.43 };
         prop_assert!((lowest..0.01).contains(&above_db), "{above_db} dB");
-        // The nine bands add to the square of its RMS value between the centres of the first (29.6
-        // Hz) and the last (676 Hz), where their weights add to one; the window spreads a sinusoid
-        // by 10 Hz.
+        // Between the centres of the first (29.6 Hz) and the last band (676 Hz), the weights of the
+        // nine bands add to one, so the bands add to the square of the RMS value. The margin to
+        // these centres allows for the window, which spreads a sinusoid by 10 Hz.
         if (40.0..640.0).contains(&hz) {
             let all: f64 = spectrum.band_db.iter().map(|db| 10_f64.powf(db / 10.0)).sum();
             let error_db = 10.0 * (all / (0.5 * amplitude * amplitude)).log10();

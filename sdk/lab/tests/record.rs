@@ -1,4 +1,5 @@
-//! Takes: what leaves its target is set aside, nothing is lost, and recordings read back.
+//! Takes: a take that leaves its target is set aside, nothing is lost, and recordings can be read
+//! again.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod recording;
@@ -39,8 +40,8 @@ fn a_take_that_leaves_its_target_is_set_aside_and_repeated() {
     assert_eq!((recording.samples(), recording.axes[0][0]), (8_000, first));
 }
 
-/// The finger is lifted from 3.2 s of 10 s and moves on in the air: its three sweeps are on target,
-/// and the take is refused.
+/// The finger is lifted from 3.2 s of 10 s and moves on in the air. The three sweeps before are on
+/// target, but the take is refused.
 #[test]
 fn a_take_in_which_the_finger_is_lifted_is_set_aside() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Part files: nothing is lost but the current second, whatever ends a take.
+//! Part files: only the current second can be lost, however a take ends.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod recording;
@@ -36,7 +36,7 @@ fn header(seconds: f64) -> TakeHeader {
     }
 }
 
-/// Frames of two signals that tell their place.
+/// Frames of two signals whose values give their position.
 fn frames(range: std::ops::Range<usize>) -> Vec<f64> {
     range.flat_map(|i| [i as f64, -(i as f64) / 3.0]).collect()
 }
@@ -61,8 +61,8 @@ fn part_file(folder: &Path, pieces: &[usize]) -> PathBuf {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// A file that ends at any byte, or is damaged at any, gives the frames before, and at most a
-    /// second is missing.
+    /// A file that ends at any byte, or is damaged at any byte, gives the frames before that. At
+    /// most a second is missing.
     #[test]
     fn a_part_file_cut_anywhere_gives_its_beginning(
         pieces in proptest::collection::vec(1_usize..600, 1..5),
@@ -72,7 +72,7 @@ proptest! {
         let folder = tempfile::tempdir().unwrap();
         let path = part_file(folder.path(), &pieces);
         let bytes = fs::read(&path).unwrap();
-        // What a kill loses is at most a second and the piece that completes it.
+        // A kill loses at most a second and the piece that completes it.
         let whole = read_part(&path).unwrap().unwrap();
         prop_assert!(whole.frames() + 2_000 + 600 >= 7_000, "{}", whole.frames());
         let at = (cut * (bytes.len() - 1) as f64) as usize;
@@ -82,7 +82,7 @@ proptest! {
         let header_end = bytes.iter().position(|b| *b == b'\n').unwrap();
         let read = match read_part(&path) {
             Ok(read) => read,
-            // A damaged header says so.
+            // A damaged header is reported.
             Err(error) => {
                 prop_assert!(!is_cut && at <= header_end, "{error}");
                 return Ok(());
@@ -99,7 +99,7 @@ proptest! {
         for (frame, expected) in all.chunks(2).take(data.frames()).enumerate() {
             prop_assert_eq!([data.signals[0][frame], data.signals[1][frame]], [expected[0], expected[1]]);
         }
-        // Chunks before the damage are all there: each is little more than a second, and a frame
+        // All chunks before the damage can be read. Each is little more than a second, and a frame
         // takes 40 bytes at most.
         let before = (at - header_end) / 40;
         prop_assert!(data.frames() + 2_000 + 600 >= before.min(whole.frames()), "{} of {before}", data.frames());
@@ -146,7 +146,7 @@ fn a_part_file_that_is_not_ours_is_refused_or_recovered_in_its_folder_alone() {
     let folder = outer.path().join("takes");
     fs::create_dir(&folder).unwrap();
     let path = part_file(&folder, &[100]);
-    // Rows and frames that are no numbers, after whole ones.
+    // Rows and frames that are not numbers, after whole ones.
     let whole = fs::read(&path).unwrap();
     let end = whole.iter().position(|b| *b == b'\n').unwrap();
     fs::remove_file(&path).unwrap();

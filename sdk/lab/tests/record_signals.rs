@@ -1,4 +1,4 @@
-//! From channels to what is recorded: calibration, map, tare, a tracker.
+//! From channels to recorded signals: calibration, map, tare, tracker.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod recording;
@@ -37,8 +37,8 @@ fn tare_subtracts_the_mean_of_the_first_second_from_forces_alone() {
 fn a_sensor_that_drifts_is_tared_before_each_take() {
     let folder = tempfile::tempdir().unwrap();
     let source = folder.path().join("source.csv");
-    // A second without a finger, a take that presses too much; after a drift both again, with the
-    // right force.
+    // A second without a finger, then a take that presses too hard. After a drift, both again with
+    // the right force.
     let parts = [(2_000, 0.25), (8_000, 0.25 + 0.8), (2_000, -0.5), (8_000, -0.5 + 0.4)];
     let lines: String = parts.map(|(rows, force_n)| format!("0,{force_n}\n").repeat(rows)).concat();
     fs::write(&source, format!("fx_n,fz_n\n{lines}")).unwrap();

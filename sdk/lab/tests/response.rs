@@ -1,5 +1,5 @@
-//! The response of simulated setups: a resonance through noise, hits that must not be used, and
-//! what cannot be measured.
+//! Responses of simulated setups: a resonance through noise, hits that must not be used, and what
+//! cannot be measured.
 #![allow(clippy::unwrap_used, clippy::disallowed_methods)] // A failed unwrap is a failed test.
 
 use std::f64::consts::PI;
@@ -13,7 +13,8 @@ use htex_lab::response::{
 
 const RATE_HZ: f64 = 10_000.0;
 
-/// A resonance, `ω² / (s² + 2 ζ ω s + ω²)`, by the bilinear transform with its frequency kept.
+/// A resonance, `ω² / (s² + 2 ζ ω s + ω²)`, discretised by the bilinear transform so that its
+/// frequency stays.
 struct Rig {
     tangent: f64,
     damping: f64,
@@ -25,7 +26,7 @@ impl Rig {
         Self { tangent, damping }
     }
 
-    /// Frequency and magnitude of the largest response.
+    /// Returns the frequency and the magnitude of the largest response.
     fn peak(&self) -> (f64, f64) {
         let z = self.damping;
         let warped = (self.tangent * (1.0 - 2.0 * z * z).sqrt()).atan();
@@ -46,7 +47,7 @@ impl Rig {
     }
 }
 
-/// Half sines of 1 ms: time in seconds and force.
+/// Returns half-sine pulses of 1 ms. Each hit has a time in seconds and a force.
 fn pulses(duration_s: f64, hits: &[(f64, f64)]) -> Vec<f64> {
     let mut input = vec![0.0; (duration_s * RATE_HZ) as usize];
     for (time_s, force) in hits {
@@ -58,7 +59,7 @@ fn pulses(duration_s: f64, hits: &[(f64, f64)]) -> Vec<f64> {
     input
 }
 
-/// Adds normal noise of this power relative to the signal's.
+/// Adds normal noise with this power relative to the signal's power.
 fn noisy(signal: &[f64], relative_db: f64, seed: u64) -> Vec<f64> {
     let power = signal.iter().map(|x| x * x).sum::<f64>() / signal.len() as f64;
     let rms = (power * 10_f64.powf(relative_db / 10.0)).sqrt();
@@ -70,7 +71,7 @@ fn hits(options: HitOptions) -> ResponseOptions {
     ResponseOptions::default().with_excitation(Excitation::Hits(options))
 }
 
-/// Ten hits of a rig, on both channels noise 30 dB below the signal.
+/// Records ten hits of a rig, with noise 30 dB below the signal on both channels.
 fn ten_hits(rig: &Rig, seed: u64) -> Record {
     let times: Vec<(f64, f64)> =
         (0..10).map(|i| (0.3 + 1.237 * f64::from(i), 12.0 + f64::from(i % 4))).collect();
@@ -80,8 +81,8 @@ fn ten_hits(rig: &Rig, seed: u64) -> Record {
     Record::new("hits.csv", RATE_HZ, input, noisy(&output, -30.0, seed + 1000)).unwrap()
 }
 
-/// Within 0.1 dB and 1 Hz for every estimator, on the grid and between its points, with separate
-/// hits and with windows on them.
+/// The resonance is found within 0.1 dB and 1 Hz by every estimator, on the grid and between its
+/// points, with separate hits and with hit windows.
 #[test]
 fn a_resonance_is_recovered_through_noise() {
     let (mut worst_db, mut worst_hz) = (0.0_f64, 0.0_f64);
@@ -113,7 +114,7 @@ fn without_noise_the_coherence_is_one_and_the_file_is_read_back() {
     let measured = measure(&[record], &ResponseOptions::default()).unwrap();
     assert!(measured.coherence.iter().all(|c| (c - 1.0).abs() < 1e-9));
     assert!(measured.relative_error.iter().all(|e| *e < 1e-4));
-    // A resonance turns by half a turn; the phase crosses -90 degrees at its frequency.
+    // The phase of a resonance turns by half a turn, and crosses -90 degrees at its frequency.
     let at_180 = measured.phase_rad[160];
     assert!((at_180 + PI / 2.0).abs() < 0.01, "{at_180}");
     let mut csv = Vec::new();
@@ -130,8 +131,8 @@ fn without_noise_the_coherence_is_one_and_the_file_is_read_back() {
 fn double_hits_and_overloads_are_thrown_out_with_their_time() {
     let rig = Rig::new(180.0, 0.02);
     let good = [(0.3, 10.0), (4.2, 9.0), (5.5, 11.0)];
-    // A bounce 25 ms after the second hit; the third hit beyond the range of the converter; the
-    // last one cut off.
+    // A bounce 25 ms after the second hit, a third hit beyond the range of the converter, and a
+    // last hit that is cut off.
     let all = [&good[..], &[(1.6, 10.0), (1.625, 2.0), (2.9, 30.0), (6.8, 10.0)]].concat();
     let input = pulses(7.5, &all);
     let output = noisy(&rig.filter(&input), -30.0, 7);
@@ -153,7 +154,7 @@ fn double_hits_and_overloads_are_thrown_out_with_their_time() {
     assert!(matches!(reasons[5].1, Some(Reason::EndsEarly { .. })));
     assert_eq!(measured.averages, 3);
 
-    // With a limit of the input, hits that reach it are thrown out as well.
+    // With a limit for the input, hits that reach it are also thrown out.
     let options = ResponseOptions::default().with_limits(10.5, None);
     let limited = measure(&[record], &options).unwrap();
     assert_eq!(limited.averages, 2);
@@ -161,9 +162,9 @@ fn double_hits_and_overloads_are_thrown_out_with_their_time() {
     assert!(matches!(reason, Some(Reason::Overload { .. })), "{reason:?}");
 }
 
-/// A drive of white noise through a gain of 3, with noise of a quarter of the signal's power: by
-/// the formulas H1 reads it by 1/1.25 with noise in the input, H2 by 1.25 with noise in the output,
-/// and Hv right with both.
+/// White noise drives a gain of 3, with added noise of a quarter of the signal's power. According
+/// to the formulas, H1 is too low by 1/1.25 with noise in the input, H2 is too high by 1.25 with
+/// noise in the output, and Hv is right with both.
 #[test]
 fn estimators_are_biased_as_their_theory_says() {
     let mut drive = GaussianNoise::new(5);
@@ -197,12 +198,12 @@ fn estimators_are_biased_as_their_theory_says() {
     }
 }
 
-/// Both channels are multiplied by the same exponential, which is the response with its damping
-/// raised by `1/τ`.
+/// Multiplying both channels by the same exponential gives the response with its damping raised by
+/// `1/τ`.
 #[test]
 fn an_exponential_window_raises_the_damping_by_its_inverse() {
     let rig = Rig::new(180.0, 0.002);
-    // A file for each hit, so that none sounds into the next.
+    // One file for each hit, so that no hit is still sounding when the next one comes.
     let record = |force: f64| {
         let input = pulses(1.5, &[(0.2, force)]);
         let output = rig.filter(&input);

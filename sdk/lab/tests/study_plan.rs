@@ -1,4 +1,4 @@
-//! Plans: their balance, and that they are the same everywhere.
+//! Plans are balanced, and the same on every machine.
 #![allow(clippy::unwrap_used, clippy::expect_used)] // A failed unwrap is a failed test.
 
 use std::collections::BTreeMap;
@@ -58,7 +58,7 @@ proptest! {
                 blocks.dedup();
                 prop_assert_eq!(blocks.len(), textures, "one block for each texture");
             }
-            // Blocks, and rows of squares, hold each condition once.
+            // Blocks, and rows of squares, contain each condition once.
             if [1, 3, 4].contains(&order) {
                 for block in participant.trials.chunks(textures * models) {
                     let first = block[0].repetition;
@@ -69,8 +69,8 @@ proptest! {
     }
 }
 
-/// Over as many rows as the square has, each condition is once at each place, and follows each
-/// other one once.
+/// Over as many rows as the square has, each condition occurs once at each place and follows every
+/// other condition once.
 #[test]
 fn participants_together_make_a_whole_square() {
     let mut study = of("williams_square", 2, 2, 1, 3);
@@ -90,7 +90,7 @@ fn participants_together_make_a_whole_square() {
     }
 }
 
-/// These hashes are of a plan made on x86-64 Linux; other machines have the same.
+/// These hashes come from a plan made on x86-64 Linux. Other machines must give the same.
 #[test]
 fn a_seed_has_the_same_plan_on_every_machine() {
     let golden = [

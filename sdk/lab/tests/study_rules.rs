@@ -1,4 +1,4 @@
-//! Every rule of studies has a study that breaks it.
+//! For every rule of studies, there is a study that breaks it.
 #![allow(clippy::unwrap_used, clippy::expect_used)] // A failed unwrap is a failed test.
 
 use std::collections::BTreeSet;
@@ -9,7 +9,7 @@ use htex_lab::study::{RULES, findings_page, read_study, study_schema};
 const STUDY: &str = "htex_study = '1.0'\nmotion = 'live'\ndevice = { adapter = 'file' }\n";
 const TEXTURE: &str = "[[textures]]\nasset = 'vinyl.htex'\n";
 
-/// What is put before the textures, in place of `STUDY` if it has a version, the code, and the
+/// The text before the textures (in place of `STUDY` if it has a version), the code, and the
 /// pointer.
 const CASES: &[(&str, &str, &str)] = &[
     ("a = [", "STUDY_SYNTAX", ""),

@@ -25,7 +25,7 @@ asset = 'cloth.htex'
 ";
 const REASON: &str = "speed: mean 95.0000 mm/s, allowed is 72.0000 to 88.0000 mm/s";
 
-/// What a trial is to come to, one after another; a trial without an entry is played.
+/// How trials end, one after another. A trial without an entry is played normally.
 #[derive(Clone, Copy)]
 enum Fate {
     RunsDry,
@@ -38,11 +38,11 @@ enum Fate {
 struct TestRig {
     fates: Vec<Fate>,
     told: RefCell<Vec<String>>,
-    /// The name and the gain of each thing that was played.
+    /// The name and the gain of everything that was played.
     played: Vec<(String, Option<f64>)>,
 }
 
-/// A display of at most 100 V, whose drive follows the gain.
+/// A display with at most 100 V, whose drive follows the gain.
 fn levels(stimulus: &Stimulus) -> (Option<f64>, OutputLevels) {
     let drive_v = 100.0 * 10f64.powf(stimulus.gain_db.unwrap_or(0.0) / 20.0);
     let output = OutputLevels {
@@ -119,7 +119,7 @@ impl Rig for TestRig {
     }
 }
 
-/// Begins each trial and rates it by 4; keeps the notices.
+/// A participant who begins each trial, rates it 4, and collects the notices.
 #[derive(Default)]
 struct Willing {
     key: Option<Key>,
@@ -141,7 +141,7 @@ impl Asker for Willing {
                 self.notices.extend(notice.clone());
                 Some(Key::Digit(4))
             }
-            // Felt at -12 dB, and 4 dB weaker as the real one.
+            // Felt at -12 dB, and 4 dB weaker feels like the real texture.
             View::Matching { rising: true, gain_db, .. } => Some(Key::Gain(if *gain_db < -12.0 {
                 GainKey::MuchStronger
             } else {
@@ -248,14 +248,14 @@ fn a_trial_in_which_the_device_runs_dry_is_repeated_three_times_at_most() {
     assert_eq!(lines[1]["date"], "2026-11-25T10:25:25Z");
     assert_eq!(lines[2]["reason"], "ran_dry");
     assert_eq!((&lines[4]["repeats"], &lines[4]["stops"]), (&2.into(), &2.into()));
-    // The same command goes on.
+    // Running the same command again continues the session.
     assert_eq!(place.run(&[OnTarget]).ended.unwrap(), Ended::Done);
     let lines = place.lines();
     assert_eq!((lines.len(), &lines[9]["stops"]), (10, &3.into()));
 }
 
-/// Training and gain matching start 20 dB below the maximum, nothing is played stronger than the
-/// participant asked for, and each line of each phase says what the device was given.
+/// Training and gain matching start 20 dB below the maximum. Nothing is played stronger than the
+/// participant asked for. Each line of each phase states what the device was given.
 #[test]
 fn every_phase_starts_weak_and_says_what_the_device_was_given() {
     let phases = "phases = ['training', 'gain', 'testing']\ntraining = { trials = 1 }";
@@ -317,7 +317,7 @@ fn a_trial_off_its_target_is_said_at_once_kept_and_marked() {
     assert_eq!(marks, ["off_target", "yes", "no"]);
     assert_eq!((table.ratings, table.off_target), (2, 1));
 
-    // Neither speed nor force was measured: the table does not say that the trial kept to the
+    // If neither speed nor force was measured, the table does not claim that the trial kept to the
     // target.
     let unknown = Place::new();
     unknown.run(&[Fate::NotMeasured, Fate::OnTarget]).ended.unwrap();

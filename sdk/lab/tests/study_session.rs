@@ -1,4 +1,4 @@
-//! Sessions: answers that are kept, files that are damaged, versions that are not mixed.
+//! Sessions: answers are preserved, damaged files are refused, and versions are not mixed.
 #![allow(clippy::unwrap_used, clippy::expect_used)] // A failed unwrap is a failed test.
 
 use std::fs;
@@ -102,7 +102,7 @@ fn act(session: &mut Session<'_>) -> bool {
     true
 }
 
-/// However a session is cut off, at every byte of its file, it goes on to the same file.
+/// A session that is cut off at any byte of its file continues to the same file.
 #[test]
 fn a_session_goes_on_from_every_byte() {
     let place = Place::new();
@@ -113,7 +113,7 @@ fn a_session_goes_on_from_every_byte() {
     let whole = fs::read(place.answers()).unwrap();
     let header = whole.iter().position(|b| *b == b'\n').unwrap() + 1;
     let lines = whole.iter().filter(|b| **b == b'\n').count();
-    // 2 training, 4 gain, each after 6 of a rise, 8 ratings, 1 rest.
+    // 2 training, 4 gain (each after 6 of a rise), 8 ratings, 1 rest.
     assert_eq!(lines, 1 + 6 + 2 + 6 + 4 + 8 + 1);
     for cut in (header..whole.len()).step_by(17).chain([header, whole.len() - 1]) {
         fs::write(place.answers(), &whole[..cut]).unwrap();
@@ -205,7 +205,8 @@ fn damaged_lines_are_named_and_kept() {
         "\"rating\":1,\"ratting\":2,",
         &["line 8", "unknown field `ratting`, expected one of", "`rating`"],
     );
-    // A level that the keys do not give: of other rules, and nobody knows what was felt.
+    // A level that the keys do not give was written under other rules, and nobody knows what was
+    // felt.
     damaged(
         "\"gain_db\":-16.0",
         "\"gain_db\":-1.0",
@@ -223,8 +224,8 @@ fn damaged_lines_are_named_and_kept() {
     refused(&place, &["line 1"]);
 }
 
-/// A file that is not of this session stays as it is, also its last line without an end, and a link
-/// to one is not followed.
+/// A file that does not belong to this session is not changed, not even its incomplete last line. A
+/// link to such a file is not followed.
 #[test]
 fn a_file_that_is_not_ours_is_not_changed() {
     let place = Place::new();
@@ -253,7 +254,7 @@ fn a_file_that_is_not_ours_is_not_changed() {
         refused(&place, &["P01.jsonl", "is a symbolic link"]);
         assert_eq!(fs::read_to_string(&target).unwrap_or_default(), text);
     }
-    // Of our own file only the first line that is written removes the incomplete one.
+    // In the session's own file, the incomplete line is removed only when a new line is written.
     fs::remove_file(place.answers()).unwrap();
     fs::write(place.answers(), &cut).unwrap();
     let mut session = place.open().unwrap();
@@ -278,7 +279,7 @@ fn ratings_are_exported_by_attribute() {
         act(&mut session);
     }
     drop(session);
-    // A line that is being written is left out.
+    // An incomplete line that is still being written is left out.
     let mut file = fs::OpenOptions::new().append(true).open(place.answers()).unwrap();
     file.write_all(b"{\"kind\":\"answ").unwrap();
     let error = rows(folder, None).unwrap_err().to_string();
@@ -294,8 +295,8 @@ fn ratings_are_exported_by_attribute() {
     assert!(rows(folder, None).unwrap_err().to_string().contains("P02.jsonl, line 1"));
 }
 
-/// What a spreadsheet would take for a formula, which may open an address or run a program, is text
-/// in the table.
+/// Text that a spreadsheet would treat as a formula, which may open an address or run a program,
+/// stays text in the table.
 #[test]
 fn cells_that_begin_like_formulas_are_text() {
     let place = Place::new();
@@ -314,7 +315,7 @@ fn cells_that_begin_like_formulas_are_text() {
         }
         fs::write(place.answers(), text).unwrap();
         let table = export(place.folder.path(), None).unwrap();
-        // Of both attributes, which have one name now.
+        // All ratings of both attributes, which now have the same name.
         assert_eq!(table.ratings, 6);
         let mut cells = csv::Reader::from_reader(table.csv.as_bytes());
         for row in cells.records() {
@@ -327,7 +328,7 @@ fn cells_that_begin_like_formulas_are_text() {
     }
 }
 
-/// JSON lines with another text at a key of answers.
+/// Returns JSON lines with another text at a key of the answers.
 fn renamed(lines: &str, key: &str, to: &str) -> String {
     let start = format!("\"{key}\":\"");
     let changed = lines.lines().map(|line| match line.split_once(&start) {

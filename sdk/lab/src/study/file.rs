@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// Version of the format that this crate reads.
 pub const VERSION: &str = "1.0";
 
-/// A study: who feels which textures in which order, and what they are asked.
+/// A study: who feels which textures in which order, and which questions they answer.
 ///
 /// ```
 /// use htex_finding::Findings;
@@ -37,25 +37,25 @@ pub struct Study {
     /// Name of the study.
     #[serde(default)]
     pub name: String,
-    /// Seed of the orders and of the samples that are played: the same seed gives the same study on
-    /// every machine.
+    /// Seed for the orders and for the samples that are played. The same seed gives the same study
+    /// on every machine.
     #[serde(default)]
     pub seed: u64,
-    /// The participants: a number, which stands for P01, P02, …, or names.
+    /// The participants: either their number, which stands for P01, P02, …, or their names.
     #[serde(default)]
     pub participants: Participants,
     /// The textures.
     #[schemars(length(min = 1, max = 256))]
     pub textures: Vec<Texture>,
-    /// Models that play each texture, by short name or id.
+    /// Models in which each texture is played, by short name or id.
     #[serde(default = "paper_models")]
     #[schemars(length(min = 1, max = 64), inner(regex(pattern = NAME), length(max = 100)))]
     pub models: Vec<String>,
-    /// A further model, the best there is (`bands`), which is played and rated like the others and
-    /// marked in the results: participants who rate it low are unreliable.
+    /// An additional model, the best available one (`bands`). It is played and rated like the
+    /// others, and marked in the results. Participants who rate it low are unreliable.
     #[serde(default)]
     pub hidden_reference: Option<String>,
-    /// Trials of each texture with each model.
+    /// Number of trials for each texture in each model.
     #[serde(default = "five")]
     #[schemars(range(min = 1, max = 1000))]
     pub repetitions: u32,
@@ -66,33 +66,33 @@ pub struct Study {
     /// Order of the trials.
     #[serde(default)]
     pub order: Order,
-    /// The phases that take place; their order is fixed.
+    /// The phases of a session. Their order is fixed.
     #[serde(default = "all_phases")]
     pub phases: Vec<Phase>,
     /// Level at which each texture starts in the training and in the gain matching, decibels
-    /// relative to the maximum. It rises from there until the participant feels the texture.
-    /// Nothing is played stronger before the participant asks for it.
+    /// relative to the maximum. From there it rises until the participant feels the texture.
+    /// Nothing is played at a higher level before the participant asks for it.
     #[serde(default = "start")]
     #[schemars(range(min = -120, max = 0))]
     pub start_db: f64,
-    /// The phase `training`.
+    /// Settings of the phase `training`.
     #[serde(default)]
     pub training: Training,
-    /// The phase `gain`.
+    /// Settings of the phase `gain`.
     #[serde(default)]
     pub gain: Matching,
-    /// The scale of all ratings.
+    /// The scale for all ratings.
     #[serde(default)]
     pub scale: Scale,
     /// What is rated after each trial, in this order.
     #[serde(default = "similarity")]
     #[schemars(length(min = 1, max = 32))]
     pub attributes: Vec<Attribute>,
-    /// Rests during the testing; none when absent.
+    /// Rests during the testing. Without it, there are none.
     #[serde(default)]
     pub rests: Option<Rests>,
-    /// White noise in headphones while a texture is felt, against its sound; none when absent. The
-    /// page plays it.
+    /// White noise in headphones that masks the sound of a texture while it is felt. The page plays
+    /// it. Without it, there is none.
     #[serde(default)]
     pub masking_noise: Option<MaskingNoise>,
     /// The motion of the finger, as in a scene: constant, a trace, or `live`.
@@ -101,13 +101,13 @@ pub struct Study {
     pub device: DeviceChoice,
 }
 
-/// Participants: a number, or names.
+/// The participants: their number or their names.
 #[derive(Debug, Clone, PartialEq, JsonSchema)]
 #[schemars(untagged)]
 pub enum Participants {
-    /// So many participants, named P01, P02, ….
+    /// The number of participants, who are named P01, P02, ….
     Count(#[schemars(range(min = 1, max = 1000))] u32),
-    /// Names of letters, digits, `-` and `_`.
+    /// Names that consist of letters, digits, `-` and `_`.
     Names(
         #[schemars(length(min = 1, max = 1000), inner(regex(pattern = "^[A-Za-z0-9_-]{1,64}$")))]
         Vec<String>,
@@ -130,19 +130,20 @@ pub struct Texture {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Order {
-    /// All trials shuffled.
+    /// All trials in random order.
     #[default]
     Random,
-    /// Each repetition is a block in which every texture with every model occurs once, shuffled.
+    /// Each repetition is a block. In it, every texture occurs once in every model, in random
+    /// order.
     BlockedByRepetition,
-    /// All trials of one texture follow each other; textures and the trials of each are shuffled.
-    /// The real texture is exchanged least often.
+    /// All trials of a texture follow each other. The textures and the trials of each are in random
+    /// order. The real texture has to be exchanged least often.
     BlockedByTexture,
-    /// Each repetition is a row of a Latin square: over as many rows as there are conditions, each
-    /// condition is once at each place.
+    /// Each repetition is a row of a Latin square. Over as many rows as there are conditions, each
+    /// condition occurs once at each place.
     LatinSquare,
     /// Each repetition is a row of a Williams square: a Latin square in which, over all rows, each
-    /// condition also follows each other one equally often (Williams 1949).
+    /// condition also follows every other one equally often (Williams 1949).
     WilliamsSquare,
 }
 
@@ -150,31 +151,31 @@ pub enum Order {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
-    /// Trials for practice, whose ratings are not results.
+    /// Practice trials, whose ratings are not results.
     Training,
-    /// Each texture is matched in strength to the real one.
+    /// The strength of each texture is matched to the real one.
     Gain,
-    /// The trials that are rated.
+    /// The rated trials.
     Testing,
 }
 
-/// The phase `training`.
+/// Settings of the phase `training`.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Training {
-    /// Trials, drawn from those of the testing.
+    /// Number of trials, drawn from the trials of the testing.
     #[serde(default = "five")]
     #[schemars(range(min = 1, max = 1000))]
     pub trials: u32,
 }
 
-/// The phase `gain`: each texture is matched in one model, and the gain is adopted for the others
-/// (paper, "Gain matching task").
+/// Settings of the phase `gain`: each texture is matched in one model, and the gain is used for the
+/// other models (paper, "Gain matching task").
 ///
 /// The paper starts at the maximum. Here the level first rises from `start_db` until the
-/// participant feels the texture, and the matching starts from the level found. A gain is in
-/// decibels relative to the maximum: `device.drive_v`, `gain_db` or `level_dbfs`, else a display's
-/// limit, 0 dB or -18 dBFS.
+/// participant feels the texture, and the matching starts from that level. A gain is in decibels
+/// relative to the maximum. The maximum is `device.drive_v`, `gain_db` or `level_dbfs`, or else a
+/// display's limit, 0 dB or -18 dBFS.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Matching {
@@ -184,11 +185,12 @@ pub struct Matching {
     /// How the gain is found.
     #[serde(default)]
     pub method: GainMethod,
-    /// Step of a key, decibels.
+    /// Level change by a normal key, decibels.
     #[serde(default = "one_db")]
     #[schemars(range(min = 0.01, max = 20))]
     pub step_db: f64,
-    /// Large step, decibels: of the large keys, and of a staircase before its first reversal.
+    /// Large level change, decibels. It is used by the large keys, and by a staircase before its
+    /// first reversal.
     #[serde(default = "four_db")]
     #[schemars(range(min = 0.01, max = 40))]
     pub large_step_db: f64,
@@ -196,28 +198,29 @@ pub struct Matching {
     #[serde(default = "lowest")]
     #[schemars(range(min = -120, max = -1))]
     pub lowest_db: f64,
-    /// Reversals after which a staircase ends; the gain is the mean of all but the first two.
+    /// Number of reversals after which a staircase ends. The gain is the mean of all except the
+    /// first two.
     #[serde(default = "six")]
     #[schemars(range(min = 3, max = 50))]
     pub reversals: u32,
 }
 
-/// Method of matching a gain. All of them start at the level at which the participant felt the
+/// Method of matching a gain. Each method starts at the level at which the participant felt the
 /// texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GainMethod {
-    /// Only down, until the texture is accepted.
+    /// Only downwards, until the participant accepts the texture.
     #[default]
     Descending,
-    /// Up and down, until the texture is accepted.
+    /// Up and down, until the participant accepts the texture.
     Adjustment,
-    /// The participant says whether the texture should be stronger or weaker; large steps until the
-    /// first reversal, then small ones (one up, one down).
+    /// The participant says whether the texture should be stronger or weaker. Steps are large until
+    /// the first reversal, then small (one up, one down).
     Staircase,
 }
 
-/// A scale of whole numbers.
+/// A rating scale of whole numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Scale {
@@ -244,14 +247,14 @@ const NAME: &str = concat!(
     r"\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f]*$"
 );
 
-/// What is rated.
+/// An attribute that is rated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Attribute {
     /// Name in the results.
     #[schemars(regex(pattern = NAME), length(max = 100))]
     pub name: String,
-    /// The question.
+    /// The question that the participant is asked.
     pub question: String,
 }
 
@@ -259,7 +262,7 @@ pub struct Attribute {
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Rests {
-    /// Trials between two rests.
+    /// Number of trials between two rests.
     #[schemars(range(min = 1, max = 100_000))]
     pub every: u32,
     /// Shortest rest, seconds.
@@ -268,7 +271,7 @@ pub struct Rests {
     pub seconds: f64,
 }
 
-/// White noise that masks the sound of a texture and of its display.
+/// White noise that masks the sound of a texture and its display.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct MaskingNoise {
@@ -277,7 +280,7 @@ pub struct MaskingNoise {
     pub level_dbfs: f64,
 }
 
-/// An untagged enum of serde's would lose the place of an error.
+/// Not derived, because an untagged enum of serde would lose the place of an error.
 impl<'de> Deserialize<'de> for Participants {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(CountOrNames)
@@ -294,7 +297,8 @@ impl<'de> Visitor<'de> for CountOrNames {
     }
 
     fn visit_u64<E: serde::de::Error>(self, count: u64) -> Result<Participants, E> {
-        // More than there may be stay more than there may be.
+        // A number that is too large for `u32` becomes the largest one, which is still more than
+        // allowed.
         Ok(Participants::Count(u32::try_from(count).unwrap_or(u32::MAX)))
     }
 
@@ -327,7 +331,7 @@ impl Participants {
 }
 
 impl Texture {
-    /// Name in the results.
+    /// Returns the name in the results.
     pub fn name(&self) -> String {
         let stem = || self.asset.file_stem().unwrap_or_default();
         let of_file = || stem().to_string_lossy().into_owned();
@@ -336,13 +340,13 @@ impl Texture {
 }
 
 impl Study {
-    /// All models, the hidden reference last.
+    /// Returns all models, with the hidden reference last.
     pub fn all_models(&self) -> Vec<&str> {
         let models = self.models.iter().chain(&self.hidden_reference);
         models.map(String::as_str).collect()
     }
 
-    /// Whether a phase takes place.
+    /// Returns whether a phase takes place.
     pub fn has(&self, phase: Phase) -> bool {
         self.phases.contains(&phase)
     }

@@ -1,29 +1,29 @@
-//! Matching of a gain: a state machine of key presses.
+//! Gain matching as a state machine that is driven by key presses.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::study::file::{GainMethod, Matching};
 
-/// A press of a key while a gain is matched.
+/// A key press while a gain is matched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GainKey {
-    /// Stronger by a step; in a staircase, it should be stronger.
+    /// Stronger by a step. In a staircase: it should be stronger.
     Stronger,
     /// Stronger by a large step.
     MuchStronger,
-    /// Weaker by a step; in a staircase, it should be weaker.
+    /// Weaker by a step. In a staircase: it should be weaker.
     Weaker,
     /// Weaker by a large step.
     MuchWeaker,
-    /// While the level rises: the participant feels the texture. In the matching: it matches.
+    /// While the level rises: the participant feels the texture. While it is matched: it matches.
     Accept,
 }
 
-/// The level of one texture: it rises from a weak start until the participant feels the texture,
-/// and is then matched to the real texture, starting from the level found. Levels are in decibels
-/// relative to the maximum.
+/// Finds the level of one texture. It rises from a weak start until the participant feels the
+/// texture, and is then matched to the real texture, starting from that level. Levels are in
+/// decibels relative to the maximum.
 ///
 /// ```
 /// use htex_lab::study::{GainKey, Match, Matching};
@@ -43,7 +43,8 @@ pub struct Match {
     settings: Matching,
     gain_db: f64,
     stage: Stage,
-    /// Whether the level that is felt is the result; it is not matched afterwards.
+    /// Whether the level at which the texture is felt is the result, without matching it
+    /// afterwards.
     ends_when_felt: bool,
     /// Gains at which a staircase turned.
     reversals: Vec<f64>,
@@ -51,7 +52,7 @@ pub struct Match {
     rose: Option<bool>,
 }
 
-/// How far a level is.
+/// Stage of finding a level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Rising,
@@ -60,7 +61,7 @@ enum Stage {
 }
 
 impl Match {
-    /// A rise from `start_db`, and then a matching.
+    /// Starts a rise from `start_db`, followed by a matching.
     pub fn new(settings: &Matching, start_db: f64) -> Self {
         Self {
             settings: settings.clone(),
@@ -72,23 +73,23 @@ impl Match {
         }
     }
 
-    /// A rise from `start_db` alone: its result is the level at which the texture is felt. The
-    /// steps come from `settings`.
+    /// Starts only a rise from `start_db`. Its result is the level at which the texture is felt.
+    /// The step sizes come from `settings`.
     pub fn rise(settings: &Matching, start_db: f64) -> Self {
         Self { ends_when_felt: true, ..Self::new(settings, start_db) }
     }
 
-    /// The present gain; the result once it is found.
+    /// Returns the current gain, which is the result once it is found.
     pub fn gain_db(&self) -> f64 {
         self.gain_db
     }
 
-    /// Whether the gain is found.
+    /// Returns whether the gain is found.
     pub fn is_found(&self) -> bool {
         self.stage == Stage::Found
     }
 
-    /// Whether the level still rises to where the texture is felt.
+    /// Returns whether the level is still rising until the texture is felt.
     pub fn is_rising(&self) -> bool {
         self.stage == Stage::Rising
     }
@@ -97,13 +98,14 @@ impl Match {
         self.settings.method
     }
 
-    /// Whether the key has a meaning now. While the level rises all have one: weaker is never
-    /// refused there.
+    /// Returns whether the key has a meaning now. While the level rises, all keys do: a request for
+    /// a weaker level is never refused.
     pub fn takes(&self, key: GainKey) -> bool {
         takes(self.settings.method, self.is_rising(), key)
     }
 
-    /// Takes a key; false, and nothing changes, if it has no meaning here or the gain is found.
+    /// Applies a key. Returns false and changes nothing if the key has no meaning now or the gain
+    /// is already found.
     pub fn press(&mut self, key: GainKey) -> bool {
         if self.is_found() || !self.takes(key) {
             return false;
@@ -134,7 +136,8 @@ impl Match {
         }
         self.rose = Some(rise);
         if self.reversals.len() >= self.settings.reversals as usize {
-            // The first two come from large steps and from the start.
+            // The first two reversals are left out, because they come from large steps and from the
+            // start.
             let counted = self.reversals.get(2..).unwrap_or_default();
             self.gain_db = counted.iter().sum::<f64>() / counted.len().max(1) as f64;
             self.stage = Stage::Found;
@@ -149,13 +152,13 @@ impl Match {
     }
 
     fn change(&mut self, by_db: f64) {
-        // A start below the lowest gain stays where it is until the participant raises it.
+        // If the start is below the lowest gain, it stays there until the participant raises it.
         let lowest = self.settings.lowest_db.min(self.gain_db);
         self.gain_db = (self.gain_db + by_db).clamp(lowest, 0.0);
     }
 }
 
-/// Whether a key has a meaning while the level rises, or in a method of matching.
+/// Returns whether a key has a meaning while the level rises, or in a method of matching.
 pub(crate) fn takes(method: GainMethod, is_rising: bool, key: GainKey) -> bool {
     match method {
         _ if is_rising => true,
@@ -169,7 +172,7 @@ pub(crate) fn takes(method: GainMethod, is_rising: bool, key: GainKey) -> bool {
 mod tests {
     use super::*;
 
-    /// A person who wants the texture at a gain is found within a step by every method.
+    /// Every method finds the gain that a person wants within one step.
     #[test]
     fn every_method_finds_the_gain_that_is_wanted() {
         use GainMethod::{Adjustment, Descending, Staircase};
@@ -205,8 +208,8 @@ mod tests {
         }
     }
 
-    /// No method plays more than its start before the participant asks for more, and a matching
-    /// starts where the texture was felt.
+    /// No method plays more than its start level before the participant asks for more, and a
+    /// matching starts at the level at which the texture was felt.
     #[test]
     fn every_method_starts_weak_and_goes_on_from_the_level_that_is_felt() {
         use GainMethod::{Adjustment, Descending, Staircase};

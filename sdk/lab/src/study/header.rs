@@ -1,4 +1,4 @@
-//! The header of a session: what its answers belong to.
+//! Creates the header of a session, which states what its answers belong to.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,8 +12,8 @@ use crate::study::plan::ParticipantPlan;
 use crate::study::read::files_of;
 
 impl Header {
-    /// The header of a participant's session; `path` is the study's file, whose contents and whose
-    /// files' contents are hashed.
+    /// Creates the header of a participant's session. `path` is the study's file. The contents of
+    /// this file and of all files that it names are hashed.
     ///
     /// # Errors
     /// [`StudyError::File`] if one of the files cannot be read.
@@ -44,21 +44,21 @@ impl Header {
         })
     }
 
-    /// The same with the date and time at which the file is begun.
+    /// Adds the date and time at which the file was begun.
     #[must_use]
     pub fn with_begun(mut self, date: Option<String>) -> Self {
         self.begun = date;
         self
     }
 
-    /// The same with a source of felt forces.
+    /// Adds a source of felt forces.
     #[must_use]
     pub fn with_source(mut self, source: Option<SourceUsed>) -> Self {
         self.source = source;
         self
     }
 
-    /// The same for a simulated participant.
+    /// Marks the participant as simulated.
     #[must_use]
     pub fn with_simulated(mut self, simulated: Option<Simulated>) -> Self {
         self.simulated = simulated;

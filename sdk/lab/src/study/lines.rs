@@ -1,4 +1,4 @@
-//! Lines of a file of answers: JSON Lines, one line an answer.
+//! Lines of a file of answers: JSON Lines, one line for each answer.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,20 +19,21 @@ pub(crate) const VERSION: &str = "1.0";
 pub enum Line {
     /// The first line.
     Header(Box<Header>),
-    /// A session begins; sessions with a simulated clock, which has no date, are not marked.
+    /// The start of a session. Sessions with a simulated clock, which has no date, are not recorded
+    /// here.
     Session(Began),
-    /// A key press while the level of a texture rises, before it is felt; in the training and in
-    /// the gain matching.
+    /// A key press while the level of a texture rises until it is felt, in the training and in the
+    /// gain matching.
     Rise(Rise),
     /// A rating in the training, which is not a result.
     Training(Answer),
-    /// A key press of the gain matching.
+    /// A key press in the gain matching.
     Gain(Matched),
-    /// Something that played ended before its time.
+    /// Something that played was stopped before its end.
     Stopped(Stopped),
-    /// A rest that is over.
+    /// A rest that has ended.
     Rest {
-        /// Trials before it.
+        /// Number of trials before it.
         after: u32,
         /// Time, milliseconds.
         at_ms: u64,
@@ -55,18 +56,18 @@ pub struct Header {
     /// BLAKE3 hashes, hexadecimal, of the study's file and of all files that it names.
     pub files: BTreeMap<String, String>,
     pub device: DeviceUsed,
-    /// Date and time in UTC at which the file was begun (`2026-11-25T10:25:25Z`); absent with a
+    /// Date and time in UTC at which the file was begun (`2026-11-25T10:25:25Z`). Absent with a
     /// simulated clock.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub begun: Option<String>,
-    /// Ratings of a complete session.
+    /// Number of ratings in a complete session.
     pub ratings: usize,
-    /// The source from which the felt force is recorded; absent if it is not.
+    /// The source from which the felt force is recorded. Absent if it is not recorded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<SourceUsed>,
     /// The program that began the file.
     pub tool: String,
-    /// The seed of a simulated participant; absent for people.
+    /// Seed and rule of a simulated participant. Absent for people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub simulated: Option<Simulated>,
 }
@@ -75,13 +76,13 @@ pub struct Header {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Simulated {
-    /// Seed of its ratings.
+    /// Seed for its ratings.
     pub seed: u64,
-    /// The rule of its ratings.
+    /// The rule by which it rates.
     pub rule: String,
 }
 
-/// The beginning of a session.
+/// The start of a session.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Began {
@@ -90,34 +91,35 @@ pub struct Began {
     /// Time, milliseconds, as in ratings.
     pub at_ms: u64,
     pub device: DeviceUsed,
-    /// The program.
+    /// Program and version.
     pub tool: String,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
 }
 
-/// The device of a session, as it was set.
+/// The device of a session and its settings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DeviceUsed {
     pub adapter: String,
-    /// Its profile; empty if there is none.
+    /// Its profile; empty without one.
     pub profile: String,
-    /// All its settings, such as the gain of an amplifier: given ones, those of the profile and
-    /// defaults. Left out are names of files that a trial is played to, and `buffer_ms` where the
-    /// motion is not live: then nobody feels how long samples wait.
+    /// All its settings, such as the gain of an amplifier, whether they were given, come from the
+    /// profile or are defaults. Two kinds are left out: names of files to which a trial is played,
+    /// and `buffer_ms` if the motion is not live, because then nobody feels how long samples wait.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
-    /// Largest magnitude that it takes, in its unit (of a display volts); absent without a limit.
+    /// Largest magnitude that it accepts, in its unit (volts for a display). Absent without a
+    /// limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<f64>,
-    /// Units of the device for one of the assets' quantity, where they differ.
+    /// Device units for one unit of the assets' quantity. Absent if they are the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quantity_gain: Option<f64>,
 }
 
 impl DeviceUsed {
-    /// What differs in another one, each a phrase; this one was before.
+    /// Returns how the device `now` differs from this earlier one, as phrases.
     pub(crate) fn differences(&self, now: &Self) -> Vec<String> {
         let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
         let values = |of: &Self| -> BTreeMap<String, String> {
@@ -151,13 +153,13 @@ impl DeviceUsed {
     }
 }
 
-/// The source of a session's felt forces, and how they are recorded.
+/// The source of a session's felt forces, and how it is recorded.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SourceUsed {
-    /// The source, as it was named: `daq:Dev1/ai0:5`.
+    /// The source, as the user named it: `daq:Dev1/ai0:5`.
     pub name: String,
-    /// Its settings, as they were given.
+    /// Its settings, as the user gave them.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, String>,
     /// The map of channels, if one was given.
@@ -182,23 +184,24 @@ pub struct SourceUsed {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FeltFile {
-    /// The recording in the folder of answers, with `/` between folders:
+    /// Path of the recording in the folder of answers, with `/` between folders:
     /// `P07/felt/trial-0017-vinyl-ar.npy`.
     pub file: String,
     /// BLAKE3 hash of the recording, hexadecimal.
     pub blake3: String,
-    /// How speed or force left the study's motion by more than 10 %, each a phrase; absent if they
-    /// did not, or have no target.
+    /// How speed or force left the study's motion by more than 10 %, as phrases. Absent if they did
+    /// not leave it or have no target.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub off_target: Vec<String>,
-    /// Whether speed or force was measured and compared with the study's motion; absent if neither
+    /// Whether speed or force was measured and compared with the study's motion. Absent if neither
     /// was.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub compared: bool,
 }
 
 impl FeltFile {
-    /// Whether the motion was off the study's target; `None` where nothing was measured to tell it.
+    /// Returns whether the motion left the study's target; `None` if nothing was measured that
+    /// could tell.
     pub(crate) fn is_off_target(&self) -> Option<bool> {
         if self.off_target.is_empty() { self.compared.then_some(false) } else { Some(true) }
     }
@@ -217,58 +220,61 @@ pub struct Answer {
     /// Whether the model is the hidden reference.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub hidden_reference: bool,
-    /// What was rated.
+    /// The attribute that was rated.
     pub attribute: String,
     pub rating: u8,
     /// Time from the question to the answer, milliseconds.
     pub response_ms: u64,
-    /// Time of the answer, milliseconds since 1970 in UTC; of a simulated clock since the start of
-    /// the session.
+    /// Time of the answer, milliseconds since 1970 in UTC, or since the start of the session with a
+    /// simulated clock.
     pub at_ms: u64,
-    /// Gain that it was played with, decibels relative to the maximum; absent without gain
+    /// Gain with which it was played, decibels relative to the maximum. Absent without gain
     /// matching.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_db: Option<f64>,
-    /// Drive of a display at which it was played, volts.
+    /// Drive of the display at which it was played, volts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_v: Option<f64>,
-    /// What the device was given; absent in files of an earlier htex.
+    /// Levels that the device was given. Absent in files of an earlier htex.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
-    /// How often it was stopped before its end, by anything, since the line before that is no stop.
+    /// How many times it was stopped before its end, for any reason, since the last line that is
+    /// not a stop.
     #[serde(default)]
     pub stops: u32,
-    /// How often the trial was begun before and not felt to its end, because the device ran dry.
+    /// How many times the trial was begun before but not felt to its end because the device ran
+    /// dry.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub repeats: u32,
-    /// The recording of what was felt; absent without a source.
+    /// The recording of what was felt. Absent without a source.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub felt: Option<FeltFile>,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
 }
 
-/// A key press of the gain matching.
+/// A key press in the gain matching.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Matched {
     pub texture: String,
     pub key: GainKey,
-    /// The gain after it, decibels relative to the maximum.
+    /// The gain after the key press, decibels relative to the maximum.
     pub gain_db: f64,
-    /// Whether this is the texture's gain from now on.
+    /// Whether this gain is used for the texture from now on.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub found: bool,
-    /// Drive of a display at which the texture was felt before the key, volts.
+    /// Drive of the display at which the texture was felt before the key press, volts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_v: Option<f64>,
-    /// What the device was given before the key; absent in files of an earlier htex.
+    /// Levels that the device was given before the key press. Absent in files of an earlier htex.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
-    /// How often it was stopped before the key, by anything but the keys of the line before.
+    /// How many times it was stopped before the key press, not counting the keys of the line
+    /// before.
     #[serde(default)]
     pub stops: u32,
-    /// RMS that had this drive, in the assets' unit.
+    /// RMS that corresponds to this drive, in the assets' unit.
     pub reference_rms: f64,
     /// Time, milliseconds, as in ratings.
     pub at_ms: u64,
@@ -286,20 +292,20 @@ pub struct Rise {
     /// The model in which it plays.
     pub model: String,
     pub key: GainKey,
-    /// The level after it, decibels relative to the maximum.
+    /// The level after the key press, decibels relative to the maximum.
     pub gain_db: f64,
     /// Whether the participant feels the texture at this level.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub found: bool,
-    /// Drive of a display before the key, volts.
+    /// Drive of the display before the key press, volts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_v: Option<f64>,
-    /// What the device was given before the key.
+    /// Levels that the device was given before the key press.
     pub output: OutputLevels,
-    /// How often it was stopped before the key, by anything but the key of the line before.
+    /// How many times it was stopped before the key press, not counting the key of the line before.
     #[serde(default)]
     pub stops: u32,
-    /// RMS that had this drive, in the assets' unit.
+    /// RMS that corresponds to this drive, in the assets' unit.
     pub reference_rms: f64,
     /// Time, milliseconds, as in ratings.
     pub at_ms: u64,
@@ -307,23 +313,24 @@ pub struct Rise {
     pub simulated: bool,
 }
 
-/// What a device was given while something played, as it was written to the device.
+/// Levels that were written to a device while something played.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputLevels {
-    /// Unit of the levels: `V` of a display.
+    /// Unit of the levels, such as `V` for a display.
     pub unit: String,
     /// Largest magnitude.
     pub peak: f64,
     /// Root of the mean square.
     pub rms: f64,
-    /// Direct component: the largest magnitude of the mean over any 100 ms; silence comes before.
+    /// Direct component: the largest magnitude of the mean over any 100 ms. Silence is assumed
+    /// before the start.
     pub direct: f64,
     /// Length, seconds.
     pub duration_s: f64,
 }
 
-/// Something that played ended before its time.
+/// Something that played was stopped before its end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stopped {
@@ -331,14 +338,14 @@ pub struct Stopped {
     pub texture: String,
     pub model: String,
     pub reason: StopReason,
-    /// Gain that it was played with, decibels relative to the maximum; absent without gain
+    /// Gain with which it was played, decibels relative to the maximum. Absent without gain
     /// matching.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_db: Option<f64>,
-    /// Drive of a display, volts.
+    /// Drive of the display, volts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_v: Option<f64>,
-    /// What the device was given; absent if it was not opened.
+    /// Levels that the device was given. Absent if the device was not opened.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputLevels>,
     /// Time, milliseconds, as in ratings.
@@ -347,11 +354,11 @@ pub struct Stopped {
     pub simulated: bool,
 }
 
-/// Why something ended before its time.
+/// Why something was stopped before its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StopReason {
-    /// The participant, or whoever conducts the session, left it.
+    /// The participant or the experimenter left it.
     Left,
     /// The program was asked to end, or the motion's input ended.
     Interrupted,
@@ -367,11 +374,11 @@ fn is_zero(count: &u32) -> bool {
 }
 
 impl Line {
-    /// Reads a line.
+    /// Parses a line.
     ///
     /// # Errors
-    /// What is wrong, if it is no line of an answer, has other keys or values, or is a header of
-    /// another version.
+    /// A text that says what is wrong: it is not a line of answers, has other keys or values, or is
+    /// a header of another version.
     pub fn parse(text: &[u8]) -> Result<Self, String> {
         let line: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
         match &line {
@@ -383,7 +390,7 @@ impl Line {
         }
     }
 
-    /// Time of the line, milliseconds; 0 for the header.
+    /// Returns the time of the line, milliseconds; 0 for the header.
     pub fn at_ms(&self) -> u64 {
         match self {
             Self::Header(_) => 0,
@@ -397,7 +404,7 @@ impl Line {
     }
 }
 
-/// The JSON Schema of a line of answers, version 1.0: `spec/schemas/answers-1.json`.
+/// Returns the JSON Schema of a line of answers, version 1.0: `spec/schemas/answers-1.json`.
 pub fn answers_schema() -> serde_json::Value {
     htex_schema::crossing::<Line>("answers-1.json", "line of a file of answers of htex 1")
 }

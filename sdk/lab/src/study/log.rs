@@ -1,4 +1,4 @@
-//! The file of one participant's answers: append-only, and on disk before the next trial.
+//! The file with one participant's answers: append-only, and on disk before the next trial.
 
 use std::fs::{File, TryLockError};
 use std::io::{self, ErrorKind, Read, Write};
@@ -9,30 +9,31 @@ use htex_files::{AtFile, FileError, OwnFolder};
 use crate::study::error::StudyError;
 use crate::study::lines::{Header, Line, SourceUsed};
 
-/// The path of a participant's answers in a folder: `P07.jsonl`.
+/// Returns the path of a participant's answers in a folder: `P07.jsonl`.
 pub fn participant_file(folder: &Path, participant: &str) -> PathBuf {
     folder.join(format!("{participant}.jsonl"))
 }
 
-/// An open file of answers. It is locked until it is dropped.
+/// An open file of answers. It stays locked until it is dropped.
 #[derive(Debug)]
 pub struct Log {
     path: PathBuf,
     file: File,
-    /// Bytes of the whole lines, if a crash left an incomplete one behind them.
+    /// Length of all whole lines, bytes, if a crash left an incomplete line after them.
     whole: Option<u64>,
 }
 
 impl Log {
-    /// Opens the answers of a session, or begins them, and returns them without the header. Opening
-    /// changes nothing of a file that is there: a last line that a crash left incomplete is removed
-    /// by the first [`Self::append`], when the header and all whole lines are known to be of this
-    /// session. A link is never followed.
+    /// Opens the answers of a session, or begins them, and returns them without the header.
+    ///
+    /// Opening does not change an existing file. If a crash left the last line incomplete, the
+    /// first [`Self::append`] removes it. By then, the header and all whole lines are known to
+    /// belong to this session. A link is never followed.
     ///
     /// # Errors
-    /// [`StudyError::OtherVersion`] if they were begun with another header; [`StudyError::Busy`]
-    /// while another program has them open; [`StudyError::Line`] if a line is damaged; errors of
-    /// the file system, also for a link or a pipe.
+    /// [`StudyError::OtherVersion`] if the answers were begun with another header;
+    /// [`StudyError::Busy`] while another program has them open; [`StudyError::Line`] if a line is
+    /// damaged; and errors of the file system, including for a link or a pipe.
     pub fn open(path: &Path, header: &Header) -> Result<(Self, Vec<Line>), StudyError> {
         let (folder, name) = place(path).reading(path)?;
         let mut file = match folder.open_to_append(&name) {
@@ -65,11 +66,11 @@ impl Log {
         Ok((log, lines))
     }
 
-    /// Appends a line, and returns when it is on disk.
+    /// Appends a line and returns once it is on disk.
     ///
     /// # Errors
-    /// [`StudyError::File`]; the line may then be incomplete, and is removed when the file is
-    /// opened again.
+    /// [`StudyError::File`]. The line may then be incomplete; it is removed when the file is opened
+    /// again.
     pub fn append(&mut self, line: &Line) -> Result<(), StudyError> {
         let text = text(line).writing(&self.path)?;
         let synced = self.whole_lines().and_then(|()| {
@@ -79,7 +80,7 @@ impl Log {
         Ok(synced.writing(&self.path)?)
     }
 
-    /// Removes the incomplete line behind the whole ones.
+    /// Removes the incomplete line after the whole lines.
     fn whole_lines(&mut self) -> io::Result<()> {
         if let Some(whole) = self.whole {
             self.file.set_len(whole)?;
@@ -94,8 +95,8 @@ impl Log {
     }
 }
 
-/// Reads a file of answers: its header and its lines. An incomplete last line, of a session that is
-/// running or was killed, is left out.
+/// Reads the header and the lines of a file of answers. Leaves out an incomplete last line, which a
+/// running or killed session may leave.
 pub(crate) fn read(path: &Path) -> Result<(Header, Vec<Line>), StudyError> {
     let bytes = std::fs::read(path).reading(path)?;
     let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
@@ -106,14 +107,14 @@ fn text(line: &Line) -> std::io::Result<String> {
     Ok(serde_json::to_string(line)? + "\n")
 }
 
-/// The folder of a file of answers, and the file's name in it.
+/// Returns the folder of a file of answers, and the file's name in that folder.
 fn place(path: &Path) -> io::Result<(OwnFolder, PathBuf)> {
     let (folder, name) = OwnFolder::of_file(path)?;
     Ok((OwnFolder::private(folder.path()), name))
 }
 
-/// Writes the header under a temporary name and renames it, so that no file is without. It is on
-/// disk then.
+/// Writes the header under a temporary name and then renames the file, so that no file is without a
+/// header. Returns once it is on disk.
 fn begin(path: &Path, header: &Header) -> Result<(), StudyError> {
     let begun = place(path).and_then(|(folder, name)| {
         let text = text(&Line::Header(Box::new(header.clone())))?;
@@ -129,7 +130,7 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), StudyError> {
         .split(|b| *b == b'\n')
         .enumerate()
         .map(|(i, line)| Line::parse(line).map_err(|error| damaged(i + 1, error)));
-    // After the last line end there is nothing.
+    // The part after the last line end is an incomplete line, or empty.
     let count = bytes.iter().filter(|b| **b == b'\n').count();
     let Some(Line::Header(header)) = lines.next().transpose()?.filter(|_| count > 0) else {
         return Err(damaged(1, "this is not the header of answers".to_owned()));
@@ -141,7 +142,7 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), StudyError> {
     }
 }
 
-/// Compares all of two headers but program and date.
+/// Compares everything in two headers except the program and the date.
 fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), StudyError> {
     let changed = if begun.htex_answers != now.htex_answers {
         format!("the file has version {}", begun.htex_answers)
@@ -165,7 +166,7 @@ fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), StudyEr
     Err(StudyError::OtherVersion { file: path.to_owned(), changed })
 }
 
-/// What differs between two sources.
+/// Returns how two sources differ.
 fn other_source(begun: Option<&SourceUsed>, now: Option<&SourceUsed>) -> String {
     let name = |source: Option<&SourceUsed>| match source {
         Some(source) => format!("{} at {} Hz", source.name, source.rate_hz),
@@ -181,7 +182,7 @@ fn other_source(begun: Option<&SourceUsed>, now: Option<&SourceUsed>) -> String 
     }
 }
 
-/// A file whose hash differs, or that only one of the two has.
+/// Returns a file whose hash differs, or that only one of the two headers has.
 pub(crate) fn other_file<'a>(begun: &'a Header, now: &'a Header) -> Option<&'a str> {
     let mut names = begun.files.keys().chain(now.files.keys());
     let differs = |name: &&String| begun.files.get(*name) != now.files.get(*name);

@@ -1,10 +1,10 @@
-//! What a device is given: the levels that a line of answers states.
+//! Measures what a device is given: the levels that a line of answers states.
 
 use htex_device::{DIRECT_LIMIT_V, DirectVoltage};
 
 use crate::study::lines::OutputLevels;
 
-/// Measures what is written to a device.
+/// Measures the samples that are written to a device.
 ///
 /// ```
 /// use htex_lab::study::Meter;
@@ -20,14 +20,14 @@ pub struct Meter {
     rate_hz: f64,
     frames: u64,
     peak: f64,
-    /// Sum of the squares.
+    /// Sum of the squared samples.
     energy: f64,
     direct: f64,
     last: DirectVoltage,
 }
 
 impl Meter {
-    /// A meter of samples in a unit, at a sample rate, hertz.
+    /// Creates a meter for samples in a unit, at a sample rate in hertz.
     pub fn new(unit: &str, rate_hz: f64) -> Self {
         Self {
             unit: unit.to_owned(),
@@ -40,7 +40,7 @@ impl Meter {
         }
     }
 
-    /// Takes samples that were written to the device.
+    /// Measures samples that were written to the device.
     pub fn take(&mut self, samples: &[f32]) {
         for sample in samples {
             let value = f64::from(*sample);
@@ -52,7 +52,7 @@ impl Meter {
         self.frames += samples.len() as u64;
     }
 
-    /// The levels so far.
+    /// Returns the levels so far.
     pub fn levels(&self) -> OutputLevels {
         OutputLevels {
             unit: self.unit.clone(),

@@ -1,26 +1,26 @@
 //! Rating studies: people feel textures through a device and rate each trial.
 //!
-//! A study is described by a file, `study.toml` ([`Study`]). Its [`Plan`] is a function of that
-//! file: the order of every participant. A [`Session`] takes one participant through the plan and
-//! appends each answer to a file before the next trial begins. Everything else is computed again
-//! from these files, such as the table of ratings ([`export`]).
+//! A study is described by a file, `study.toml` ([`Study`]). The file determines its [`Plan`],
+//! which is the order of trials for every participant. A [`Session`] takes one participant through
+//! the plan and appends each answer to a file before the next trial begins. Everything else, such
+//! as the table of ratings ([`export`]), is computed from these files.
 //!
 //! The defaults are those of the study in the paper (Methods, "Experiment"): 14 participants, five
 //! models, five repetitions, trials of 10 s, training, gain matching with AR, and similarity from 0
-//! "Different" to 6 "Same". One thing differs: the paper starts at the maximum voltage, and here
-//! each texture starts weak and rises until the participant feels it.
+//! "Different" to 6 "Same". There is one difference: the paper starts at the maximum voltage, but
+//! here each texture starts weak and rises until the participant feels it.
 //!
 //! From a study to ratings:
 //!
-//! 1. `read`, `check`: `study.toml`, and what it names. Problems are findings, those of motion,
-//!    device and assets by the rules of scenes.
-//! 2. `plan`: the order of every participant, a function of the file alone.
-//! 3. `session`: one participant on the way through the plan. `progress` is computed by the same
-//!    function whether lines are read or recorded; `log` appends a line and syncs it.
-//! 4. `run`: what is played, shown and asked, over three traits: a rig (renderer and device), an
-//!    asker (terminal, or a page), a clock. `felt` records a source while a trial plays, with the
-//!    reader and the writer of guided recordings.
-//! 5. `export`: the table of all participants; `felt_spectra`: that of what they felt.
+//! 1. `read`, `check`: read `study.toml` and check the files it names. Problems become findings.
+//!    Motion, device and assets are checked by the rules of scenes.
+//! 2. `plan`: the order for every participant, determined only by the file.
+//! 3. `session`: one participant's way through the plan. The same function computes the `progress`,
+//!    whether lines are read or recorded. `log` appends a line and syncs it.
+//! 4. `run`: plays, shows and asks through three traits: a rig (renderer and device), an asker
+//!    (terminal or page) and a clock. `felt` records a source while a trial plays, with the reader
+//!    and writer of guided recordings.
+//! 5. `export`: the table of all ratings. `felt_spectra`: the table of what the participants felt.
 
 mod asking;
 mod check;

@@ -1,25 +1,26 @@
-//! Orders of the trials of one participant.
+//! Orders the trials of one participant.
 
 use crate::study::Study;
 use crate::study::file::Order;
 use crate::study::random::Dice;
 
-/// A texture with a model, both by index; the model after the last one is the hidden reference.
+/// A texture in a model, both as indices. The model index after the last model is the hidden
+/// reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Condition {
     pub(crate) texture: usize,
     pub(crate) model: usize,
 }
 
-/// All conditions, texture by texture.
+/// Returns all conditions, texture by texture.
 pub(crate) fn conditions(study: &Study) -> Vec<Condition> {
     let models = study.all_models().len();
     let of = |texture| (0..models).map(move |model| Condition { texture, model });
     (0..study.textures.len()).flat_map(of).collect()
 }
 
-/// The conditions of all trials of a participant, in order; `index` is the participant's place in
-/// the list.
+/// Returns the conditions of all trials of a participant, in order. `index` is the participant's
+/// place in the list.
 pub(crate) fn order(study: &Study, index: usize, name: &str) -> Vec<Condition> {
     let all = conditions(study);
     let mut dice = Dice::new(study.seed, &["order", name]);
@@ -58,8 +59,9 @@ fn by_texture(all: &[Condition], study: &Study, dice: &mut Dice) -> Vec<Conditio
     trials
 }
 
-/// Rows of a square, one for each repetition of each participant, one participant after another.
-/// Which condition is which symbol, and the order of the rows, are shuffled for the whole study.
+/// Returns a participant's rows of a square, one for each repetition. The participants take the
+/// rows one after another. The assignment of conditions to symbols and the order of the rows are
+/// shuffled once for the whole study.
 fn rows(
     study: &Study,
     all: &[Condition],
@@ -76,18 +78,18 @@ fn rows(
     own.flatten().map(|symbol| all[symbols[*symbol]]).collect()
 }
 
-/// A Latin square: n rows of n symbols, each symbol once in each row and in each column. Rows and
-/// columns of a cyclic square are interchanged by fixed random permutations, since in a cyclic one
-/// each symbol would always follow the same one.
+/// Returns a Latin square: n rows of n symbols, with each symbol once in each row and in each
+/// column. The columns of a cyclic square are permuted at random (always in the same way), because
+/// in a cyclic square each symbol would always follow the same one. `rows` shuffles the rows.
 fn latin(count: usize) -> Vec<Vec<usize>> {
     let columns = Dice::new(count as u64, &["columns"]).permutation(count);
     let row = |row| columns.iter().map(|at| (row + at) % count).collect();
     (0..count).map(row).collect()
 }
 
-/// A Williams square: n rows for an even number of symbols, 2n for an odd one; each ordered pair of
-/// different symbols is adjacent equally often (Williams 1949, "Experimental designs balanced for
-/// the estimation of residual effects of treatments").
+/// Returns a Williams square: n rows for an even number of symbols, 2n for an odd one. Each ordered
+/// pair of different symbols is adjacent equally often (Williams 1949, "Experimental designs
+/// balanced for the estimation of residual effects of treatments").
 fn williams(count: usize) -> Vec<Vec<usize>> {
     // 0, 1, n-1, 2, n-2, …: all differences between neighbours are different.
     let first: Vec<usize> = (0..count)

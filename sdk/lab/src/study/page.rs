@@ -1,6 +1,7 @@
-//! The page of a session ([`crate::page`]), which asks. Each view has a number, and an answer names
-//! the number that it is for: a second press of a key, or one for a view that is gone, is not an
-//! answer.
+//! The page of a session ([`crate::page`]), which asks the participant.
+//!
+//! Each view has a number, and an answer names the number of its view. So a second press of a key,
+//! or a press for a view that is gone, does not count as an answer.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -14,26 +15,25 @@ use crate::study::asking::{Asker, Key, View};
 use crate::study::error::StudyError;
 use crate::study::gain::{GainKey, takes};
 
-/// A page that has said nothing of its finger for this long may be gone, and its finger counts as
-/// lifted.
+/// A page that has not reported its finger for this long may be gone. Its finger counts as lifted.
 const SILENT: Duration = Duration::from_millis(300);
 
-/// What a page is for.
+/// Options of a session's page.
 #[derive(Debug, Clone, Default)]
 pub struct PageOptions {
-    /// Port; 0 is any that is free.
+    /// Port; 0 means any free port.
     pub port: u16,
     pub title: String,
     /// RMS level of the masking noise, decibels relative to full scale.
     pub noise_dbfs: Option<f64>,
-    /// Whether the page takes the finger's motion: millimetres of a pixel of the page.
+    /// Millimetres per pixel of the page, if the page reports the finger's motion.
     pub touch_mm_per_px: Option<f64>,
 }
 
-/// A motion of the finger on the page.
+/// Motion of the finger on the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Touched {
-    /// Speed, mm/s; negative to the left; NaN if the page did not say one.
+    /// Speed, mm/s; negative to the left; NaN if the page did not report one.
     pub speed_mm_s: f64,
     /// Whether the finger is on the page.
     pub is_down: bool,
@@ -44,7 +44,7 @@ pub struct Touched {
 pub struct Touch(Arc<Asked>);
 
 impl Touch {
-    /// Its motion now: none, if the page has said nothing for 300 ms.
+    /// Returns its current motion; `None` if the page has not reported for 300 ms.
     pub fn now(&self) -> Option<Touched> {
         let state = self.0.lock();
         let (touched, at) = state.touched?;
@@ -52,31 +52,31 @@ impl Touch {
     }
 }
 
-/// A page that is served while this value lives.
+/// A page that is served as long as this value lives.
 pub struct Page {
     asked: Arc<Asked>,
     served: LocalPage,
 }
 
-/// What is asked, for the server's thread and for the session's.
+/// What is being asked, shared by the server's thread and the session's thread.
 struct Asked(Mutex<State>);
 
 struct State {
     options: PageOptions,
-    /// Number of the view.
+    /// Number of the current view.
     step: u64,
     view: View,
     shown: Instant,
     done: usize,
     all: usize,
     keys: VecDeque<Key>,
-    /// The view that has an answer.
+    /// Number of the view that has been answered.
     answered: Option<u64>,
-    /// The view that the page has.
+    /// Number of the view that the page has received.
     seen: u64,
     /// Whether a tab has stopped the session.
     is_stopped: bool,
-    /// The last motion, and when it came.
+    /// The last motion and its time.
     touched: Option<(Touched, Instant)>,
 }
 
@@ -95,7 +95,7 @@ impl Page {
         self.served.address()
     }
 
-    /// The finger on the page.
+    /// Returns the finger on the page.
     pub fn touch(&self) -> Touch {
         Touch(Arc::clone(&self.asked))
     }
@@ -145,7 +145,7 @@ impl Content for Asked {
     }
 }
 
-/// The state as the page gets it.
+/// The state in the form that the page receives.
 #[derive(Serialize)]
 struct Shown<'a> {
     step: u64,
@@ -195,7 +195,7 @@ impl State {
         })
     }
 
-    /// Takes a key, if it is for this view and the first one.
+    /// Accepts a key if it is for the current view and the first one for it.
     fn press(&mut self, body: &Value) {
         let step = body.get("step").and_then(Value::as_u64);
         let name = body.get("key").and_then(Value::as_str).unwrap_or_default();
@@ -219,7 +219,7 @@ impl State {
     }
 }
 
-/// The meaning of a key in a view.
+/// Returns the meaning of a key in a view.
 fn key(name: &str, view: &View) -> Option<Key> {
     match view {
         View::Ready { .. } | View::Rest { seconds: 0 } => (name == "go").then_some(Key::Go),
@@ -243,8 +243,8 @@ mod tests {
     use super::*;
     use crate::study::file::Phase;
 
-    /// A double press, of which the second one comes 0.15 to 0.45 s after the first one: it ends
-    /// the rest, and begins no trial.
+    /// A double press, whose second press comes 0.15 to 0.45 s after the first, ends the rest and
+    /// does not begin a trial.
     #[test]
     fn a_double_press_at_a_rest_begins_no_trial() {
         let mut state = State::new(PageOptions::default());

@@ -7,7 +7,7 @@ use crate::study::file::Phase;
 use crate::study::order::{Condition, conditions, order};
 use crate::study::random::Dice;
 
-/// The order of every participant; a function of the study file alone.
+/// The order of trials for every participant, determined only by the study file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
     /// Version of the study's format.
@@ -18,16 +18,16 @@ pub struct Plan {
     pub participants: Vec<ParticipantPlan>,
 }
 
-/// The order of one participant.
+/// The order of trials for one participant.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ParticipantPlan {
     pub participant: String,
-    /// Trials for practice; empty without that phase.
+    /// Practice trials; empty without that phase.
     pub training: Vec<Trial>,
-    /// Textures in the order in which they are matched, in the study's matching model; empty
+    /// Textures in the order in which they are matched, all in the study's matching model. Empty
     /// without that phase.
     pub gain: Vec<String>,
-    /// The trials that are rated.
+    /// The rated trials.
     pub trials: Vec<Trial>,
 }
 
@@ -45,7 +45,7 @@ pub struct Trial {
 }
 
 impl Plan {
-    /// The plan of a valid study.
+    /// Computes the plan of a valid study.
     pub fn new(study: &Study) -> Self {
         let names = study.participants.names();
         let plan = |(index, name): (usize, &String)| ParticipantPlan::new(study, index, name);
@@ -57,7 +57,7 @@ impl Plan {
         }
     }
 
-    /// The plan of a participant; `None` if the study has none of this name.
+    /// Returns a participant's plan; `None` if the study has no participant with this name.
     pub fn of(&self, participant: &str) -> Option<&ParticipantPlan> {
         let mut all = self.participants.iter();
         all.find(|plan| plan.participant == participant)
@@ -75,7 +75,7 @@ impl ParticipantPlan {
     }
 }
 
-/// Conditions drawn at random; all of them occur before one occurs twice.
+/// Draws practice trials at random. Every condition occurs before any occurs twice.
 fn training(study: &Study, name: &str) -> Vec<Trial> {
     if !study.has(Phase::Training) {
         return Vec::new();
@@ -97,7 +97,7 @@ fn gain_order(study: &Study, name: &str) -> Vec<String> {
     order.iter().map(|i| study.textures[*i].name()).collect()
 }
 
-/// Numbers the trials, and the repetitions of each condition.
+/// Numbers the trials and the repetitions of each condition.
 fn trials(study: &Study, order: &[Condition]) -> Vec<Trial> {
     let models = study.all_models();
     let mut seen = vec![0; study.textures.len() * models.len()];

@@ -1,7 +1,7 @@
-//! How far a session is: computed from its plan and its lines.
+//! Computes how far a session is, from its plan and its lines.
 //!
-//! Neither the plan nor the progress is stored: a session that was killed cannot disagree with its
-//! file.
+//! Neither the plan nor the progress is stored, so that a session that was killed cannot disagree
+//! with its file.
 
 use crate::study::Study;
 use crate::study::file::{Attribute, Phase};
@@ -9,16 +9,17 @@ use crate::study::gain::{GainKey, Match};
 use crate::study::lines::{Answer, Line, Matched, Rise, Stopped};
 use crate::study::plan::{ParticipantPlan, Trial};
 
-/// Largest difference of a level that a line states from the level that its key gives, decibels.
+/// Largest allowed difference between the level that a line states and the level that its key
+/// gives, decibels.
 const LEVEL_TOLERANCE_DB: f64 = 1e-6;
 
-/// What comes next in a session.
+/// The next step of a session.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
-    /// A trial is played, unless it just was, and rated by an attribute.
+    /// A trial is rated by an attribute. It is played first, unless it has just been played.
     Rate(Phase, Trial, Attribute),
-    /// The level of a texture rises until it is felt, before its first trial for practice; or its
-    /// gain is matched.
+    /// The level of a texture rises until it is felt, before its first practice trial; or its gain
+    /// is matched.
     Match {
         phase: Phase,
         texture: String,
@@ -28,7 +29,7 @@ pub enum Step {
         matching: Match,
     },
     Rest {
-        /// Trials before it.
+        /// Number of trials before it.
         after: u32,
         /// Shortest length, seconds.
         seconds: f64,
@@ -36,18 +37,18 @@ pub enum Step {
     Done,
 }
 
-/// A session's progress. Lines that were read and lines that are recorded are applied by the same
-/// function.
+/// A session's progress. The same function applies lines that were read and lines that are
+/// recorded.
 #[derive(Debug)]
 pub(crate) struct Progress {
     training: usize,
     answers: usize,
     rests: u32,
-    /// The textures of the training, in the order in which they first occur.
+    /// Levels of the textures in the training, in the order in which they first occur.
     rises: Vec<Level>,
-    /// The textures that are matched, or being matched, in the plan's order.
+    /// Levels of the textures to be matched, in the plan's order.
     gains: Vec<Level>,
-    /// Stops since the last line that is not a stop.
+    /// Number of stops since the last line that is not a stop.
     stops: u32,
     last_ms: u64,
 }
@@ -58,7 +59,7 @@ struct Level {
     texture: String,
     model: String,
     matching: Match,
-    /// The RMS that the drive of the level belongs to, once it is found.
+    /// The RMS that corresponds to the drive at this level, once the level is found.
     reference_rms: f64,
 }
 
@@ -75,22 +76,22 @@ impl Progress {
         }
     }
 
-    /// Stops since the last line that is not a stop.
+    /// Returns the number of stops since the last line that is not a stop.
     pub(crate) fn stops(&self) -> u32 {
         self.stops
     }
 
-    /// Time of the last line, milliseconds.
+    /// Returns the time of the last line, milliseconds.
     pub(crate) fn last_ms(&self) -> u64 {
         self.last_ms
     }
 
-    /// Ratings of the testing so far.
+    /// Returns the number of ratings in the testing so far.
     pub(crate) fn answers(&self) -> usize {
         self.answers
     }
 
-    /// What comes next.
+    /// Returns the next step.
     pub(crate) fn step(&self, study: &Study, plan: &ParticipantPlan) -> Step {
         if let Some(step) = rate(Phase::Training, &plan.training, self.training, study) {
             return self.rise_before(&step).unwrap_or(step);
@@ -110,7 +111,7 @@ impl Progress {
         rate(Phase::Testing, &plan.trials, self.answers, study).unwrap_or(Step::Done)
     }
 
-    /// The rise of a texture that was not felt before its trial for practice.
+    /// Returns the rise of a texture that has not been felt before its practice trial.
     fn rise_before(&self, step: &Step) -> Option<Step> {
         let Step::Rate(Phase::Training, trial, _) = step else {
             return None;
@@ -120,8 +121,8 @@ impl Progress {
         (!level.matching.is_found()).then(|| level.step(Phase::Training))
     }
 
-    /// The level that was found for a texture, for the trials of a phase: decibels relative to the
-    /// maximum, and the RMS that it belongs to.
+    /// Returns the level that was found for a texture, for the trials of a phase: decibels relative
+    /// to the maximum, and the corresponding RMS.
     pub(crate) fn found(&self, phase: Phase, texture: &str) -> Option<(f64, f64)> {
         let levels = match phase {
             Phase::Training => &self.rises,
@@ -209,8 +210,8 @@ impl Level {
         }
     }
 
-    /// Takes a key, after which the level is `gain_db`: else the line belongs to other rules than
-    /// ours, and nobody knows what was felt.
+    /// Applies a key. The level after it must be `gain_db`. Otherwise the line was written under
+    /// other rules, and nobody knows what was felt.
     fn press(&mut self, key: GainKey, gain_db: f64, reference_rms: f64) -> Result<(), String> {
         let mut pressed = self.matching.clone();
         if !pressed.press(key) {
@@ -229,7 +230,7 @@ impl Level {
     }
 }
 
-/// Each texture of the training, in the model of its first trial.
+/// Returns each texture of the training, in the model of its first trial.
 fn rises(study: &Study, plan: &ParticipantPlan) -> Vec<Level> {
     let mut levels: Vec<Level> = Vec::new();
     for trial in &plan.training {
@@ -255,7 +256,7 @@ fn gains(study: &Study, plan: &ParticipantPlan) -> Vec<Level> {
     plan.gain.iter().map(level).collect()
 }
 
-/// Checks that what was stopped is what plays now.
+/// Checks that the line stops what currently plays.
 fn stops(step: &Step, line: &Stopped) -> Result<(), String> {
     let is_this = match step {
         Step::Rate(phase, trial, _) => {
@@ -270,7 +271,7 @@ fn stops(step: &Step, line: &Stopped) -> Result<(), String> {
     if is_this { Ok(()) } else { Err(format!("{texture} with {model} does not play here")) }
 }
 
-/// The rating after so many ratings of a phase; `None` at its end.
+/// Returns the next rating of a phase after `ratings` ratings; `None` at its end.
 fn rate(phase: Phase, trials: &[Trial], ratings: usize, study: &Study) -> Option<Step> {
     let each = study.attributes.len().max(1);
     let trial = trials.get(ratings / each)?.clone();

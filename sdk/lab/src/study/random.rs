@@ -1,14 +1,14 @@
-//! Random numbers of a study: one generator for each purpose, so that none depends on another.
+//! Random numbers of a study. Each purpose has its own generator, so that none depends on another.
 
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// A seeded generator; the same seed and purpose give the same numbers on every machine.
+/// A seeded generator. The same seed and purpose give the same numbers on every machine.
 #[derive(Debug, Clone)]
 pub(crate) struct Dice(Xoshiro256PlusPlus);
 
 impl Dice {
-    /// The generator of a purpose, such as `["order", "P07"]`.
+    /// Creates the generator for a purpose, such as `["order", "P07"]`.
     pub(crate) fn new(seed: u64, purpose: &[&str]) -> Self {
         let mut hash = blake3::Hasher::new();
         hash.update(&seed.to_le_bytes());
@@ -19,14 +19,15 @@ impl Dice {
         Self(Xoshiro256PlusPlus::from_seed(*hash.finalize().as_bytes()))
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 bits.
     pub(crate) fn bits(&mut self) -> u64 {
         self.0.next_u64()
     }
 
-    /// A number below `count`, each equally likely; 0 when `count` is 0.
+    /// Returns a number below `count`, each with the same probability; 0 if `count` is 0.
     fn below(&mut self, count: u64) -> u64 {
-        // Numbers of the incomplete last run of `count` are drawn again.
+        // Numbers in the last, incomplete run of `count` are drawn again. They would favour small
+        // remainders.
         let most = u64::MAX - u64::MAX % count.max(1);
         loop {
             let bits = self.bits();
@@ -36,7 +37,7 @@ impl Dice {
         }
     }
 
-    /// Shuffles a list; every order is equally likely (Fisher and Yates).
+    /// Shuffles a list so that every order has the same probability (Fisher and Yates).
     pub(crate) fn shuffle<T>(&mut self, list: &mut [T]) {
         for last in (1..list.len()).rev() {
             let other = self.below(last as u64 + 1) as usize;
@@ -44,15 +45,15 @@ impl Dice {
         }
     }
 
-    /// The numbers below `count`, shuffled.
+    /// Returns the numbers below `count` in random order.
     pub(crate) fn permutation(&mut self, count: usize) -> Vec<usize> {
         let mut all: Vec<usize> = (0..count).collect();
         self.shuffle(&mut all);
         all
     }
 
-    /// A number of mean 0 and standard deviation 1, the sum of twelve uniform ones less 6: nearly
-    /// normal within ±3, and exact on every machine.
+    /// Returns a number with mean 0 and standard deviation 1: the sum of twelve uniform numbers
+    /// minus 6. It is nearly normal within ±3, and exactly the same on every machine.
     pub(crate) fn normal(&mut self) -> f64 {
         let unit = |bits: u64| (bits >> 11) as f64 / (1u64 << 53) as f64;
         (0..12).map(|_| unit(self.bits())).sum::<f64>() - 6.0

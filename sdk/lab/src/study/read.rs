@@ -1,4 +1,4 @@
-//! Reading and validation of `study.toml`.
+//! Reads and validates `study.toml`.
 
 use std::path::{Path, PathBuf};
 
@@ -13,9 +13,9 @@ use crate::study::file::{Phase, Study};
 use crate::study::rules as rule;
 use crate::study::stimulus::scene_of;
 
-/// Largest study file, bytes.
+/// Largest size of a study file, bytes.
 const MOST_BYTES: usize = 1 << 20;
-/// Deepest nesting.
+/// Largest nesting depth.
 const MOST_DEPTH: usize = 16;
 
 const DOCUMENT: Document = Document {
@@ -36,8 +36,8 @@ const DOCUMENT: Document = Document {
     },
 };
 
-/// Reads a study and checks it without the files it names. Returns `None`, with a finding that
-/// states the reason, if it cannot be used. Never panics.
+/// Reads a study and checks it without the files it names. If it cannot be used, adds a finding
+/// with the reason and returns `None`. Never panics.
 pub fn read_study(bytes: &[u8], findings: &mut Findings) -> Option<Study> {
     if bytes.len() > MOST_BYTES {
         let message = format!("the study has more than {MOST_BYTES} bytes");
@@ -77,7 +77,7 @@ fn parse(bytes: &[u8], findings: &mut Findings) -> Option<Value> {
     None
 }
 
-/// Reports settings of phases that do not take place.
+/// Reports settings for phases that do not take place.
 fn check_phase_tables(study: &Study, value: &Value, findings: &mut Findings) {
     for (key, phase) in [("training", Phase::Training), ("gain", Phase::Gain)] {
         let unused = value.get(key).is_some() && !study.has(phase);
@@ -88,9 +88,9 @@ fn check_phase_tables(study: &Study, value: &Value, findings: &mut Findings) {
     }
 }
 
-/// Checks the files of a study, and its motion and device, by the rules of scenes: each texture is
-/// opened with each model as it will be played. `path` is the study's file, and `device` the one
-/// that it is run with; a rehearsal checks the study's own.
+/// Checks the files, motion and device of a study by the rules of scenes: each texture is opened in
+/// each model as it will be played. `path` is the study's file. `device` is the device with which
+/// the study is run; a rehearsal checks the study's own.
 pub fn check_files(
     study: &Study,
     path: &Path,
@@ -104,7 +104,7 @@ pub fn check_files(
             let found = match LoadedScene::from_bytes(path, &scene, around, device) {
                 Ok(loaded) => loaded.notes,
                 Err(LoadError::Invalid { findings }) => findings,
-                // A scene in memory is not read from a file.
+                // This is a scene in memory, so no file can fail to be read.
                 Err(_) => Vec::new(),
             };
             for mut finding in found {
@@ -121,7 +121,7 @@ pub fn check_files(
     }
 }
 
-/// All models of a study with their pointers, that of the gain matching among them.
+/// Returns all models of a study with their pointers, including the model of the gain matching.
 fn models(study: &Study) -> Vec<(String, &str)> {
     let listed =
         study.models.iter().enumerate().map(|(i, model)| (format!("/models/{i}"), &model[..]));
@@ -132,8 +132,8 @@ fn models(study: &Study) -> Vec<(String, &str)> {
     listed.chain(reference).chain(gain).collect()
 }
 
-/// The files that determine what a study plays, as they are named there: assets, the trace, and the
-/// response of the device.
+/// Returns the files that determine what a study plays, as the study names them: assets, the trace,
+/// and the response of the device.
 pub fn files_of(study: &Study) -> Vec<PathBuf> {
     let assets = study.textures.iter().map(|texture| texture.asset.clone());
     let trace = match &study.motion {
@@ -147,7 +147,7 @@ pub fn files_of(study: &Study) -> Vec<PathBuf> {
     all
 }
 
-/// The JSON Schema of studies of version 1.0: `spec/schemas/study-1.json`.
+/// Returns the JSON Schema of studies, version 1.0: `spec/schemas/study-1.json`.
 pub fn study_schema() -> Value {
     htex_schema::document::<Study>("study-1.json", "Study of htex 1")
 }

@@ -13,7 +13,7 @@ message. A study can be run when no finding is an error. Motions, devices and as
 their codes. Codes never change their meaning.
 ";
 
-/// The page with all rules: `spec/study-findings.md`.
+/// Generates the page with all rules: `spec/study-findings.md`.
 pub fn findings_page() -> String {
     rules_page(HEAD, RULES)
 }

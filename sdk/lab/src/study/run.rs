@@ -1,4 +1,4 @@
-//! Running a session: what is played, shown and asked.
+//! Runs a session: plays, shows and asks.
 
 use std::time::Duration;
 
@@ -13,11 +13,11 @@ use crate::study::session::{Presented, Session};
 use crate::study::simulated::SimulatedParticipant;
 use crate::study::stimulus::Stimulus;
 
-/// Time between two looks at the keys while nothing plays.
+/// Time between two checks for keys while nothing plays.
 const LOOK: Duration = Duration::from_millis(5);
-/// How often something is played again after the device ran dry: another program takes the
-/// processor for a moment, seldom three times in a row; a buffer that is too small runs dry each
-/// time.
+/// How many times something is played again after the device ran dry. If another program takes the
+/// processor for a moment, this seldom happens three times in a row. A buffer that is too small
+/// runs dry every time.
 const MOST_REPEATS: u32 = 2;
 
 /// How a run ended.
@@ -25,7 +25,7 @@ const MOST_REPEATS: u32 = 2;
 pub enum Ended {
     /// The session is over.
     Done,
-    /// It was left before its end, and goes on when it is run again.
+    /// It was left before its end, and continues when it is run again.
     Left,
 }
 
@@ -78,12 +78,12 @@ struct Run<'r, 's, R: Rig> {
     asker: &'r mut dyn Asker,
     clock: &'r mut dyn Clock,
     simulated: Option<&'r SimulatedParticipant>,
-    /// What was felt last, by the name of its file: a trial before its questions, or a texture that
-    /// is being matched.
+    /// What was felt last, by its file name: a trial before its questions, or a texture that is
+    /// being matched.
     felt: Option<(Phase, String)>,
     /// How the trial that was felt last was played.
     presented: Presented,
-    /// What is said in the next view.
+    /// Notice for the next view.
     notice: Option<String>,
 }
 
@@ -93,7 +93,7 @@ impl<R: Rig> Run<'_, '_, R> {
         self.asker.show(view, done, all);
     }
 
-    /// Waits for a key that means something here; `None` when the session is left.
+    /// Waits for a key that has a meaning here; `None` if the session is left.
     fn wait<T>(&mut self, mut meaning: impl FnMut(Key) -> Option<T>) -> Option<T> {
         loop {
             if self.rig.is_interrupted() {
@@ -111,7 +111,7 @@ impl<R: Rig> Run<'_, '_, R> {
         }
     }
 
-    /// Waits for the key that begins something; false when the session is left.
+    /// Waits for the key that begins something; false if the session is left.
     fn ready(&mut self, phase: Phase, texture: &str) -> bool {
         if self.simulated.is_some() {
             return true;
@@ -140,8 +140,8 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(true)
     }
 
-    /// Plays a trial to its end, from its beginning when the device ran dry; false when the session
-    /// is left.
+    /// Plays a trial to its end, and starts it again if the device ran dry; false if the session is
+    /// left.
     fn play(&mut self, phase: Phase, stimulus: &Stimulus) -> Result<bool, R::Error> {
         self.presented = Presented::default();
         let mut left = false;
@@ -175,7 +175,7 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(true)
     }
 
-    /// Records that what played was left; false: the session ends.
+    /// Records that something was left while it played. Returns false, which ends the session.
     fn stopped(&mut self, left: bool, played: Played) -> Result<bool, R::Error> {
         let reason = if left { StopReason::Left } else { StopReason::Interrupted };
         let at_ms = self.clock.now_ms();
@@ -184,10 +184,10 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(false)
     }
 
-    /// Records that what played ended with an error.
+    /// Records that something ended with an error while it played.
     fn failed(&mut self, error: &R::Error) -> Result<(), R::Error> {
         let reason = if R::ran_dry(error) { StopReason::RanDry } else { StopReason::Failed };
-        // What was never given to a device is no stop.
+        // If the device was never given anything, this does not count as a stop.
         if let Some((drive_v, output)) = self.rig.output_before_error() {
             let at_ms = self.clock.now_ms();
             self.session.stopped(reason, drive_v, Some(output), at_ms)?;
@@ -195,8 +195,8 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(())
     }
 
-    /// Plays once; `None` if the device ran dry, and it is to be played again.
-    /// [`Presented::repeats`] counts.
+    /// Plays once. `None` if the device ran dry and it must be played again; [`Presented::repeats`]
+    /// counts this.
     fn attempt(
         &mut self,
         stimulus: &Stimulus,
@@ -220,7 +220,7 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(None)
     }
 
-    /// Says how a trial left its target.
+    /// Reports how a trial left its target.
     fn tell_off_target(&mut self, stimulus: &Stimulus) {
         let reasons = self.presented.felt.as_ref().map(|felt| &felt.off_target);
         if let Some(reasons) = reasons.filter(|reasons| !reasons.is_empty()) {
@@ -228,13 +228,13 @@ impl<R: Rig> Run<'_, '_, R> {
         }
     }
 
-    /// Says something to the person who conducts the session, and in the participant's next view.
+    /// Shows a notice to the experimenter, and in the participant's next view.
     fn say(&mut self, notice: String) {
         self.rig.tell(&notice);
         self.notice = Some(notice);
     }
 
-    /// The rating and the time that it took, milliseconds.
+    /// Asks for a rating. Returns it with the time it took, milliseconds.
     fn ask(
         &mut self,
         phase: Phase,
@@ -265,7 +265,7 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(rating.map(|rating| (rating, took_ms)))
     }
 
-    /// Plays a texture until a key of its rising level or of the matching, and records it.
+    /// Plays a texture until a key is pressed that changes its level, and records the key.
     fn matching(
         &mut self,
         phase: Phase,
@@ -331,7 +331,7 @@ impl<R: Rig> Run<'_, '_, R> {
             }
             left || pressed.is_some()
         };
-        // A motion that is a trace ends before a person has decided, and begins anew.
+        // A trace ends before a person has decided, so it is played again.
         let played = loop {
             let Some(played) = self.attempt(stimulus, &mut ends)? else {
                 continue;
@@ -356,7 +356,7 @@ impl<R: Rig> Run<'_, '_, R> {
         Ok(!self.rig.is_interrupted())
     }
 
-    /// Counts down, then waits for the key that goes on; false when the session is left.
+    /// Counts down, then waits for the key that continues; false if the session is left.
     fn rested(&mut self, end_ms: u64) -> bool {
         let mut shown = None;
         loop {

@@ -1,4 +1,4 @@
-//! A session: one participant on the way through a plan.
+//! A session: one participant's way through a plan.
 
 use std::path::Path;
 
@@ -16,8 +16,8 @@ use crate::study::plan::{ParticipantPlan, Trial};
 use crate::study::progress::{Progress, Step};
 use crate::study::stimulus::Stimulus;
 
-/// A participant's session, and the open file of its answers. What it records is on disk when a
-/// method returns.
+/// A participant's session with its open file of answers. Everything that a method records is on
+/// disk when the method returns.
 #[derive(Debug)]
 pub struct Session<'a> {
     study: &'a Study,
@@ -35,21 +35,21 @@ pub struct Session<'a> {
 pub struct Presented {
     /// Drive of a display, volts.
     pub drive_v: Option<f64>,
-    /// What the device was given.
+    /// Levels that the device was given.
     pub output: Option<OutputLevels>,
-    /// How often it was stopped before, by anything.
+    /// How many times it was stopped before, for any reason.
     pub stops: u32,
     /// The recording of what was felt, if there is one.
     pub felt: Option<FeltFile>,
-    /// How often it was begun before, and ended because the device ran dry.
+    /// How many times it was begun before and ended because the device ran dry.
     pub repeats: u32,
 }
 
 impl<'a> Session<'a> {
-    /// Opens a session in a folder: a new one, or one that goes on where it was.
+    /// Opens a session in a folder: a new session, or one that continues where it ended.
     ///
     /// # Errors
-    /// As [`Log::open`], and [`StudyError::Line`] if a line does not belong to the plan.
+    /// The errors of [`Log::open`], and [`StudyError::Line`] if a line does not belong to the plan.
     pub fn open(
         study: &'a Study,
         plan: &'a ParticipantPlan,
@@ -79,7 +79,7 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// What comes next.
+    /// Returns the next step.
     pub fn step(&self) -> Step {
         self.progress.step(self.study, self.plan)
     }
@@ -92,7 +92,7 @@ impl<'a> Session<'a> {
         &self.plan.participant
     }
 
-    /// The file of answers.
+    /// Returns the path of the file of answers.
     pub fn file(&self) -> &Path {
         self.log.path()
     }
@@ -101,18 +101,18 @@ impl<'a> Session<'a> {
         self.is_simulated
     }
 
-    /// Trials that are rated, and all trials.
+    /// Returns the number of rated trials, and the number of all trials.
     pub fn trials(&self) -> (usize, usize) {
         let each = self.study.attributes.len().max(1);
         (self.progress.answers() / each, self.plan.trials.len())
     }
 
-    /// Time of the last line, milliseconds; 0 before the first.
+    /// Returns the time of the last line, milliseconds; 0 before the first.
     pub fn last_ms(&self) -> u64 {
         self.progress.last_ms()
     }
 
-    /// What a trial plays.
+    /// Returns what a trial plays.
     pub fn stimulus(&self, phase: Phase, trial: &Trial) -> Stimulus {
         let found = self.progress.found(phase, &trial.texture);
         let name = match phase {
@@ -131,7 +131,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// What plays while the level of a texture rises, or its gain is matched.
+    /// Returns what plays while the level of a texture rises or its gain is matched.
     pub fn matching_stimulus(
         &self,
         phase: Phase,
@@ -155,18 +155,18 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// How often what plays now was stopped before.
+    /// Returns how many times the current stimulus was stopped before.
     pub fn stops(&self) -> u32 {
         self.progress.stops()
     }
 
-    /// A seed for the samples of one trial of one participant.
+    /// Returns a seed for the samples of one trial of one participant.
     fn seed(&self, what: &str, number: u32) -> u64 {
         let purpose = ["samples", self.participant(), what, &number.to_string()];
         crate::study::random::Dice::new(self.study.seed, &purpose).bits()
     }
 
-    /// Records that a session begins at a date ([`crate::study::utc`]), with which device.
+    /// Records that a session begins at a date ([`crate::study::utc`]), with its device.
     ///
     /// # Errors
     /// [`StudyError::File`].
@@ -180,10 +180,11 @@ impl<'a> Session<'a> {
         }))
     }
 
-    /// Records a rating of the present step, and how its trial was played.
+    /// Records a rating for the current step, and how its trial was played.
     ///
     /// # Errors
-    /// [`StudyError::File`], and [`StudyError::Line`] if the present step takes no such rating.
+    /// [`StudyError::File`], and [`StudyError::Line`] if the current step does not accept this
+    /// rating.
     pub fn rate(
         &mut self,
         rating: u8,
@@ -218,11 +219,11 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Records a key of a rising level or of the gain matching, and how the texture was played
+    /// Records a key press while a level rises or a gain is matched, and how the texture was played
     /// before the key.
     ///
     /// # Errors
-    /// As [`Self::rate`].
+    /// The errors of [`Self::rate`].
     pub fn press(&mut self, key: GainKey, played: &Played, at_ms: u64) -> Result<(), StudyError> {
         let Step::Match { phase, texture, model, mut matching } = self.step() else {
             return Err(self.misplaced("no gain is matched now"));
@@ -264,10 +265,11 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Records that what plays now ended before its time, and what the device was given until then.
+    /// Records that the current stimulus was stopped before its end, and what the device was given
+    /// until then.
     ///
     /// # Errors
-    /// As [`Self::rate`].
+    /// The errors of [`Self::rate`].
     pub fn stopped(
         &mut self,
         reason: StopReason,
@@ -301,7 +303,7 @@ impl<'a> Session<'a> {
     /// Records the end of a rest.
     ///
     /// # Errors
-    /// As [`Self::rate`].
+    /// The errors of [`Self::rate`].
     pub fn rested(&mut self, at_ms: u64) -> Result<(), StudyError> {
         let Step::Rest { after, .. } = self.step() else {
             return Err(self.misplaced("there is no rest now"));
@@ -310,7 +312,7 @@ impl<'a> Session<'a> {
         self.record(Line::Rest { after, at_ms, simulated })
     }
 
-    /// Applies the line first, so that only valid ones are written.
+    /// Applies the line before writing it, so that only valid lines are written.
     fn record(&mut self, line: Line) -> Result<(), StudyError> {
         let applied = self.progress.apply(self.study, self.plan, &line);
         applied.map_err(|problem| self.misplaced(&problem))?;
@@ -322,8 +324,8 @@ impl<'a> Session<'a> {
     }
 }
 
-/// The name of a trial's recording: its phase, number, texture and model, in characters that every
-/// file system takes.
+/// Returns the name of a trial's recording: its phase, number, texture and model, in characters
+/// that every file system accepts.
 fn felt_name(phase: &str, trial: &Trial) -> String {
     let name = format!("{phase}-{:04}-{}-{}", trial.number, trial.texture, trial.model);
     let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };

@@ -1,4 +1,4 @@
-//! Simulated participants, to try a study and to test it. Every file that they write says so.
+//! Simulated participants, to try and to test a study. Every file that they write says so.
 
 use crate::study::file::{Phase, Scale};
 use crate::study::gain::{GainKey, Match};
@@ -11,15 +11,15 @@ const RULE: &str = "rating = top - span * e / (e + 6) + b + n, rounded and held 
     dB; b: bias of the participant, standard deviation 0.07 of the span; n: noise of the trial, 0.1 of the span";
 /// Nine-band error at which the rating is in the middle of the scale, dB.
 const MIDDLE_DB: f64 = 6.0;
-/// Standard deviations, parts of the scale's span.
+/// Standard deviations, as parts of the scale's span.
 const BIAS: f64 = 0.07;
 const NOISE: f64 = 0.1;
-/// Range of the gains that they accept, dB below the maximum.
+/// Range of the gains that they accept, dB relative to the maximum.
 const GAIN_DB: (f64, f64) = (-18.0, -2.0);
 
-/// A simulated participant: ratings fall with the nine-band error of the representation, the
-/// paper's best predictor of similarity. Each rating depends on the seed, the participant and the
-/// trial alone, not on what was rated before.
+/// A simulated participant. Its ratings fall with the nine-band error of the representation, the
+/// paper's best predictor of similarity. Each rating only depends on the seed, the participant and
+/// the trial, not on earlier ratings.
 #[derive(Debug, Clone)]
 pub struct SimulatedParticipant {
     seed: u64,
@@ -32,12 +32,13 @@ impl SimulatedParticipant {
         Self { seed, name }
     }
 
-    /// Its entry in the header of answers.
+    /// Returns its entry in the header of answers.
     pub fn header(&self) -> Simulated {
         Simulated { seed: self.seed, rule: RULE.split_whitespace().collect::<Vec<_>>().join(" ") }
     }
 
-    /// Its rating of a trial of a phase whose representation has this nine-band error, dB.
+    /// Returns its rating of a trial in a phase. `error_db` is the nine-band error of the
+    /// representation, dB.
     pub fn rating(
         &self,
         phase: Phase,
@@ -56,19 +57,20 @@ impl SimulatedParticipant {
         felt.round().clamp(low, top) as u8
     }
 
-    /// Time that it takes to rate, milliseconds.
+    /// Returns the time that it takes to rate, milliseconds.
     pub fn response_ms(&self, phase: Phase, trial: &Trial, attribute: &str) -> u64 {
         800 + self.dice("response", phase, trial, attribute).bits() % 1200
     }
 
-    /// Its next key while a texture's gain is matched: it wants a gain of its own for each texture.
+    /// Returns its next key while a texture's gain is matched. It wants a different gain for each
+    /// texture.
     pub fn gain_key(&self, texture: &str, matching: &Match) -> GainKey {
         let mut dice = Dice::new(self.seed, &["gain", &self.name, texture]);
         let share = (dice.bits() >> 11) as f64 / (1u64 << 53) as f64;
         let wanted_db = GAIN_DB.0 + share * (GAIN_DB.1 - GAIN_DB.0);
         let off_db = matching.gain_db() - wanted_db;
         if matching.is_rising() {
-            // It stops where the texture is at least as strong as it wants it.
+            // Stop where the texture is at least as strong as the participant wants it.
             return if off_db < 0.0 && matching.gain_db() < 0.0 {
                 GainKey::MuchStronger
             } else {
@@ -82,7 +84,7 @@ impl SimulatedParticipant {
         };
         match (matching.takes(key), off_db > 0.0) {
             (true, _) => key,
-            // A staircase asks for a direction alone.
+            // A staircase only asks for a direction.
             (false, true) => GainKey::Weaker,
             (false, false) => GainKey::Stronger,
         }

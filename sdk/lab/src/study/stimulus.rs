@@ -1,4 +1,4 @@
-//! What a trial plays: a scene of one surface, and its gain.
+//! What a trial plays: a scene with one surface, and its gain.
 
 use std::path::Path;
 
@@ -8,8 +8,8 @@ use htex_scene::file::{DeviceChoice, Levels, Surface};
 
 use crate::study::file::Study;
 
-/// Level of a sound that stands for the maximum where the study names none, decibels relative to
-/// full scale.
+/// Level of a sound that counts as the maximum if the study names none, decibels relative to full
+/// scale.
 const SOUND_DBFS: f64 = -18.0;
 
 /// A texture in a model, and how it is played.
@@ -17,23 +17,23 @@ const SOUND_DBFS: f64 = -18.0;
 pub struct Stimulus {
     pub texture: String,
     pub model: String,
-    /// Length, seconds; `None`: until it is stopped.
+    /// Length, seconds. `None`: it plays until it is stopped.
     pub seconds: Option<f64>,
-    /// Seed of its random numbers.
+    /// Seed for its random numbers.
     pub seed: u64,
-    /// Gain relative to the maximum, decibels; `None`: as the study's device plays.
+    /// Gain relative to the maximum, decibels. `None`: at the level of the study's device.
     pub gain_db: Option<f64>,
     /// The RMS at which the gain was found, in the assets' unit, for devices whose levels are
     /// `own`.
     pub reference_rms: Option<f64>,
     /// Name of the recording of what is felt, without extension; `None` if it is not recorded.
     pub felt: Option<String>,
-    /// Name for a file that it is played to: `rise-vinyl`, `training-0003`, `gain-vinyl`,
-    /// `trial-0017`.
+    /// Name of the file to which it is played, if it is: `rise-vinyl`, `training-0003`,
+    /// `gain-vinyl`, `trial-0017`.
     pub file: String,
 }
 
-/// The scene of a texture in a model, as the bytes of a scene file beside the study.
+/// Returns the scene of a texture in a model, as the bytes of a scene file next to the study.
 pub fn scene_of(study: &Study, asset: &Path, model: &str) -> Vec<u8> {
     let surface = Surface { representation: model.to_owned(), ..Surface::everywhere(asset) };
     let scene = Scene {
@@ -46,19 +46,19 @@ pub fn scene_of(study: &Study, asset: &Path, model: &str) -> Vec<u8> {
         budget: Default::default(),
         effects: Default::default(),
     };
-    // A scene has no value that JSON lacks.
+    // Serialising cannot fail, because every value of a scene exists in JSON.
     serde_json::to_vec(&scene).unwrap_or_default()
 }
 
-/// The drive of a display to which nothing sets a gain, volts: `drive_v` of the study, or the
-/// limit.
+/// Returns the drive of a display if no gain is set, volts: `drive_v` of the study, or the
+/// display's limit.
 pub fn full_drive(device: &DeviceChoice, able: &Capabilities) -> Option<f64> {
     let is_display = able.quantity == Quantity::DisplayVoltage;
     device.drive_v.or(able.limit).filter(|_| is_display)
 }
 
-/// Sets a gain on a scene's device, relative to the maximum: a display's `drive_v` or its limit,
-/// the `gain_db` of other forces, or the level of a sound. Returns the drive of a display, volts.
+/// Sets a gain relative to the maximum on a scene's device: a display's `drive_v` or its limit, the
+/// `gain_db` of other forces, or the level of a sound. Returns the drive of a display, volts.
 pub fn set_gain(
     device: &mut DeviceChoice,
     able: &Capabilities,

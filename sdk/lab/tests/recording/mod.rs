@@ -1,4 +1,4 @@
-//! Sessions that record files, as fast as they are read.
+//! Recording sessions that read files as fast as possible.
 #![allow(dead_code, clippy::unwrap_used)] // Each test uses a part; a failed unwrap is a failed test.
 
 use std::fs;
@@ -42,13 +42,14 @@ impl Default for Settings {
     }
 }
 
-/// A file of simulated takes of 4 s one after the other, each of this force (N) and of 80 mm/s.
+/// Writes a file with simulated takes of 4 s one after the other, each with its force (N) and at 80
+/// mm/s.
 pub fn sweeps(folder: &Path, forces_n: &[f64]) -> PathBuf {
     let takes = forces_n.iter().map(|force_n| take(*force_n, 4.0));
     source(folder, &takes.collect::<Vec<_>>().concat())
 }
 
-/// A file that is recorded: rows of forces (N) and positions (mm).
+/// Writes a file to be recorded, with rows of forces (N) and positions (mm).
 pub fn source(folder: &Path, rows: &[String]) -> PathBuf {
     let path = folder.join("source.csv");
     let text = format!("fx_n,fy_n,fz_n,x_mm,y_mm\n{}\n", rows.join("\n"));
@@ -56,7 +57,7 @@ pub fn source(folder: &Path, rows: &[String]) -> PathBuf {
     path
 }
 
-/// The rows of a simulated take of this force (N) and length (s), at 80 mm/s.
+/// Returns the rows of a simulated take with this force (N) and length (s), at 80 mm/s.
 pub fn take(force_n: f64, seconds: f64) -> Vec<String> {
     let options = SimulationOptions::new(Surface::Vinyl)
         .with_rate_hz(RATE_HZ)
@@ -65,7 +66,7 @@ pub fn take(force_n: f64, seconds: f64) -> Vec<String> {
     rows(&options)
 }
 
-/// The rows of a simulated take.
+/// Returns the rows of a simulated take.
 pub fn rows(options: &SimulationOptions) -> Vec<String> {
     let mut csv = Vec::new();
     simulate(options).unwrap().write_csv(&mut csv).unwrap();
@@ -78,7 +79,7 @@ pub fn record(folder: &Path, source: &Path, settings: &Settings) -> Result<Recor
     record_with(folder, source, settings, None)
 }
 
-/// A session that records a file.
+/// Creates a session that records a file.
 pub fn session(
     folder: &Path,
     source: &Path,
@@ -123,7 +124,7 @@ pub fn record_with(
     session.record(&mut watch, &mut |_| ())
 }
 
-/// A CSV without times has the rate of the tests.
+/// Opens a file as a source. A CSV without times gets the sample rate of the tests.
 fn open(path: &Path) -> Box<dyn htex_device::Source> {
     use htex_device::{Settings, SourceAdapter};
     let given = [("path", path.to_str().unwrap()), ("pace", "fast"), ("rate_hz", "2000")]
